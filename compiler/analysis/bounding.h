@@ -1,0 +1,32 @@
+#pragma once
+
+#include <vector>
+
+#include "compiler/analysis/contraction.h"
+#include "compiler/graph/components.h"
+#include "compiler/graph/graph.h"
+#include "compiler/support/bounds.h"
+
+namespace graftal {
+
+/// Outer bounds of an object's limit set, in the object's own frame.
+struct ObjectBounds {
+    Box box;   ///< every face touches the set to within `box_tolerance` of its size
+    Ball ball; ///< holds the set; its radius within a few per cent of the least where effort allows
+    bool unbounded = false;  ///< holds a plane; box and ball are then of the rest
+};
+
+/// The box of a canonical primitive (exact), and its smallest ball. A plane has neither.
+ObjectBounds primitive_bounds(PrimitiveKind kind);
+
+/// The exact support function of a canonical primitive: max of <direction, x> over it. Not for planes.
+double primitive_support(PrimitiveKind kind, Vec3 direction);
+
+/// Bounds by object, masters before their users: ending objects from exact support functions of what they
+/// hold; unending ones by best-first support functions over balls that are first made invariant in the
+/// certificate's metric. Terminals do not count: the bounds are those of the limit set. Requires a
+/// contraction that is proved or acyclic.
+std::vector<ObjectBounds> bound_objects(const Graph& graph, const Components& components,
+                                        const Contraction& contraction);
+
+}  // namespace graftal

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "compiler/graph/components.h"
+#include "compiler/graph/graph.h"
+
+namespace graftal {
+
+/// The primitives that an unfolding to `steps` levels draws (see graph.h, "Levels"), exact, in decimal; a
+/// fitted proxy counts as one. Without `steps` an unending graph has no count. O(graph * steps) big-integer
+/// additions; steps over `max_counted_steps` give nothing too.
+inline constexpr unsigned max_counted_steps = 100'000;
+std::optional<std::string> count_leaves(const Graph& graph, const Components& components,
+                                        std::optional<unsigned> steps);
+
+/// The same counts in floating point, for planning: result[s][v] leaves of object v with s levels left, for
+/// s = 0 .. steps (one row for an ending graph); infinity where they overflow.
+std::vector<std::vector<double>> approximate_leaf_counts(const Graph& graph, const Components& components,
+                                                         unsigned steps);
+
+/// Similarity dimension of the limit set: the s at which [sum r_e^s] over the graph has spectral radius 1,
+/// the largest over components reachable from the root. Nothing for ending graphs, or where an instance
+/// within a cycle is no similarity. Exact where the open set condition holds, an upper bound otherwise.
+std::optional<double> similarity_dimension(const Graph& graph, const Components& components);
+
+}  // namespace graftal

@@ -1,0 +1,70 @@
+#pragma once
+
+#include <functional>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "compiler/analysis/bounding.h"
+#include "compiler/analysis/contraction.h"
+#include "compiler/cut/cut.h"
+#include "compiler/graph/components.h"
+#include "compiler/graph/graph.h"
+#include "compiler/lower/lower.h"
+#include "compiler/passes/pipeline.h"
+#include "compiler/scene/scene.h"
+#include "compiler/support/diagnostics.h"
+#include "compiler/support/source.h"
+
+namespace graftal {
+
+struct CompileOptions {
+    LowerOptions lower;
+    PipelineOptions pipeline;
+    std::optional<unsigned> steps;
+    ImageSize size;
+    CameraOverride camera;
+    CutOptions cut;  ///< its steps are taken from above
+};
+
+struct StageTime {
+    std::string stage;
+    double seconds = 0;
+};
+
+/// A model after analysis: all that `stats`, `check`, `print` and `graph` need.
+struct AnalysedModel {
+    std::string path;
+    Graph graph;
+    Components components;
+    Contraction contraction;
+    std::vector<ObjectBounds> bounds;  ///< empty unless the contraction is proved or acyclic
+    std::optional<unsigned> steps;     ///< from the command line, else from the model
+};
+
+/// A model ready to emit.
+struct CompiledModel {
+    AnalysedModel model;
+    View view;
+    Cut cut;
+};
+
+/// One compilation: owns the sources and the diagnostics, so that both outlive the results.
+struct Compilation {
+    SourceMap sources;
+    Diagnostics diagnostics;
+    Status status;  ///< the environment's, e.g. a model file that cannot be read
+    std::vector<StageTime> times;
+};
+
+/// text -> graph -> passes -> analysis. A cycle that does not contract is an error, unless `for_report`:
+/// then the verdict is part of the result.
+std::optional<AnalysedModel> analyse_model(const std::string& path, const CompileOptions& options,
+                                           Compilation& compilation, bool for_report = false);
+
+/// analyse_model, then view and cut.
+std::optional<CompiledModel> compile_model(const std::string& path, const CompileOptions& options,
+                                           Compilation& compilation);
+
+}  // namespace graftal

@@ -1,0 +1,80 @@
+#pragma once
+
+// The cut: Graph + View + budget -> bodies and placements. POV-Ray shares only mesh data between instances,
+// so a scene is one level of instancing: a list of placements of shared baked meshes (and of single
+// primitives). Which subtrees become meshes is chosen so that the whole costs least memory; with N visible
+// leaves both lists are about sqrt(N) long.
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "compiler/analysis/bounding.h"
+#include "compiler/analysis/contraction.h"
+#include "compiler/graph/components.h"
+#include "compiler/scene/scene.h"
+#include "compiler/support/diagnostics.h"
+
+namespace graftal {
+
+struct CutOptions {
+    double error_px = 0.5;                  ///< recursion ends where this much is left; 0: nothing is culled
+    std::optional<double> error_world;      ///< the same as a length in scene units, in place of error_px
+    std::optional<unsigned> steps;          ///< levels; nothing: as deep as the error asks for
+    std::uint64_t memory_bytes = 2ull << 30;  ///< POV-Ray's estimated peak
+    bool flatten = false;                   ///< every leaf its own placement: the absolute specification
+};
+
+/// A triangle mesh in its own frame, coordinates of order 1.
+struct Mesh {
+    std::vector<Vec3> vertices;
+    std::vector<Vec3> normals;                       ///< empty: flat; else one a vertex
+    std::vector<std::array<std::uint32_t, 3>> triangles;
+    std::vector<Rgb> palette;                        ///< opaque colours, linear; at least one
+    std::vector<std::uint32_t> colour_of_triangle;   ///< index into palette; empty if palette.size() == 1
+};
+
+/// A single exact primitive, or a baked mesh.
+struct Body {
+    std::string name;  ///< of the object it draws, for the reader of the scene; not unique
+    std::variant<PrimitiveKind, Mesh> shape;
+    Rgb rgb{0.8};      ///< base colour of a primitive; meshes have palettes
+};
+
+struct Placement {
+    std::uint32_t body = 0;
+    Affine world_from_body;
+};
+
+/// Placements that share a texture: one body's palette, one tint in front of it, one material (its rgb is
+/// already in the bodies; the finish counts).
+struct PlacementGroup {
+    PathTint tint;
+    Material material;
+    std::vector<Placement> placements;
+};
+
+struct Cut {
+    std::vector<Body> bodies;
+    std::vector<PlacementGroup> groups;
+    Box bounds;                        ///< of what is drawn (planes aside)
+    double error_px = 0;               ///< reached: largest projected size of a culled part; 0 if none was culled
+    double error_asked_px = 0;
+    double tessellation_px = 0;        ///< largest distance between a curved surface and its mesh
+    std::uint64_t placement_count = 0;
+    std::uint64_t triangle_count = 0;
+    double leaf_count = 0;             ///< leaves that the picture stands for
+    std::uint64_t estimated_bytes = 0; ///< of POV-Ray's memory
+};
+
+/// Cuts the graph for the view. Nothing, after an error in `diagnostics`, where the budget cannot be kept
+/// (with culling off) or the depth has no end; a budget that only allows a coarser picture gives that, with
+/// a warning that states the error reached. Requires a verified graph whose contraction is proved or acyclic.
+std::optional<Cut> cut_graph(const Graph& graph, const Components& components,
+                             const std::vector<ObjectBounds>& bounds, const View& view,
+                             const CutOptions& options, Diagnostics& diagnostics);
+
+}  // namespace graftal

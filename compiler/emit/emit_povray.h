@@ -1,0 +1,37 @@
+#pragma once
+
+#include <functional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "compiler/cut/cut.h"
+#include "compiler/graph/graph.h"
+#include "compiler/scene/scene.h"
+
+namespace graftal {
+
+/// Receives text piece by piece, so that a scene of gigabytes never lies in memory; returns false to stop.
+using TextSink = std::function<bool(std::string_view)>;
+
+/// A picture that the scene refers to: the palette of a mesh with more colours than a colour_map holds.
+struct PaletteImage {
+    std::string file_name;  ///< beside the scene; PNG, 16 bit, linear
+    int width = 0;
+    int height = 0;
+    std::vector<Rgb> pixels;  ///< row by row, top first
+};
+
+struct PovrayOptions {
+    std::string scene_name;  ///< of the model, for comments and file names; any text (it is made harmless)
+    bool include = false;    ///< `.inc`: declares the object in model coordinates, and draws nothing
+    bool progress = false;   ///< emits `#debug` marks that the driver reads as parse progress
+};
+
+/// Writes the scene as POV-Ray 3.7 SDL (research: povray.md): literal placements of shared meshes, grouped by
+/// texture; the whole scaled so that it is about 1000 units large. Returns false if the sink stopped it.
+/// `palettes` receives the pictures to write beside it. Deterministic.
+bool emit_povray(const Graph& graph, const Cut& cut, const View& view, const PovrayOptions& options,
+                 const TextSink& sink, std::vector<PaletteImage>& palettes);
+
+}  // namespace graftal

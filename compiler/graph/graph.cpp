@@ -1,0 +1,77 @@
+#include "compiler/graph/graph.h"
+
+#include <array>
+#include <unordered_map>
+
+namespace graftal {
+
+namespace {
+
+constexpr std::array<const char*, primitive_kind_count> primitive_names = {
+    "triangle", "sphere", "cube", "plane", "cylinder", "cone", "torus"};
+
+using ObjectsByName = std::unordered_map<std::string_view, const Object*>;
+
+ObjectsByName by_name(const Graph& graph) {
+    ObjectsByName objects;
+    for (const Object& object : graph.objects) objects.emplace(object.name, &object);
+    return objects;
+}
+
+bool equal(const Graph& a, const Instance& x, const Graph& b, const Instance& y) {
+    if (a.objects[x.master].name != b.objects[y.master].name) return false;
+    if (x.material.has_value() != y.material.has_value()) return false;
+    if (x.material && !(a.materials[*x.material] == b.materials[*y.material])) return false;
+    return x.parent_from_child == y.parent_from_child && x.tint == y.tint;
+}
+
+bool equal(const Graph& a, const Object& x, const Graph& b, const Object& y) {
+    if (x.primitive != y.primitive || x.instances.size() != y.instances.size()) return false;
+    if (x.terminal.has_value() != y.terminal.has_value()) return false;
+    if (x.terminal && !equal(a, *x.terminal, b, *y.terminal)) return false;
+    for (std::size_t i = 0; i < x.instances.size(); ++i)
+        if (!equal(a, x.instances[i], b, y.instances[i])) return false;
+    return true;
+}
+
+}  // namespace
+
+const char* name_of(PrimitiveKind kind) { return primitive_names[static_cast<std::size_t>(kind)]; }
+
+std::optional<PrimitiveKind> primitive_named(std::string_view name) {
+    for (std::size_t i = 0; i < primitive_names.size(); ++i)
+        if (name == primitive_names[i]) return static_cast<PrimitiveKind>(i);
+    return std::nullopt;
+}
+
+bool Material::operator==(const Material& other) const {
+    return name == other.name && rgb == other.rgb && ambient == other.ambient && diffuse == other.diffuse &&
+           specular == other.specular && roughness == other.roughness && reflection == other.reflection;
+}
+
+ObjectId Graph::add(Object object) {
+    objects.push_back(std::move(object));
+    return static_cast<ObjectId>(objects.size() - 1);
+}
+
+ObjectId Graph::primitive(PrimitiveKind kind) {
+    for (ObjectId id = 0; id < objects.size(); ++id)
+        if (objects[id].primitive == kind) return id;
+    Object object;
+    object.name = name_of(kind);
+    object.primitive = kind;
+    return add(std::move(object));
+}
+
+bool equal(const Graph& a, const Graph& b) {
+    if (a.objects.size() != b.objects.size() || !(a.settings == b.settings)) return false;
+    if (a.materials != b.materials || a.objects[a.root].name != b.objects[b.root].name) return false;
+    const ObjectsByName others = by_name(b);
+    for (const Object& object : a.objects) {
+        const auto other = others.find(object.name);
+        if (other == others.end() || !equal(a, object, b, *other->second)) return false;
+    }
+    return true;
+}
+
+}  // namespace graftal

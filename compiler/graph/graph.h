@@ -1,0 +1,86 @@
+#pragma once
+
+// The object-instance graph (Hart 1992, section 2): the one representation between the languages and the
+// picture.
+//
+// An object is a primitive or the union of its instances. An instance places its master by an affine map,
+// tints it, and may give it a material. Graphs may have cycles: an object that reaches a cycle is called
+// *unending*, its meaning is the limit set of the unfolding, which exists if every cycle contracts
+// (analysis/contraction.h decides that).
+//
+// Levels. `--steps n` cuts an unending model after n levels. One level is one instance whose master is
+// unending; the root is level 0. This count does not change when equal objects are merged. Where an unending
+// object is cut (no level left, or too small to see) it is drawn as
+//   1. its terminal, if it has one;
+//   2. else its instances of ending masters (its condensation set, its trunk), if it has any;
+//   3. else a proxy fitted to its bounds.
+//
+// Tints compose along a path from the root by PathTint, parent in front. The material nearest to the
+// primitive wins.
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "compiler/graph/settings.h"
+#include "compiler/support/affine.h"
+#include "compiler/support/source.h"
+#include "compiler/support/tint.h"
+
+namespace graftal {
+
+/// Canonical primitives (Hart 1992, section 2; sizes that the paper leaves open are ours):
+///   triangle  corners (0,1,0), (-sqrt(3)/2,-1/2,0), (sqrt(3)/2,-1/2,0): the gasket's hull, in the plane z = 0
+///   sphere    radius 1 about the origin
+///   cube      [-1,1]^3
+///   plane     y = 0, unbounded
+///   cylinder  radius 1 about the y axis, 0 <= y <= 1, capped
+///   cone      base radius 1 at y = 0, apex at y = 1, capped
+///   torus     about the y axis, radii 1 and 1/4
+enum class PrimitiveKind : std::uint8_t { triangle, sphere, cube, plane, cylinder, cone, torus };
+inline constexpr int primitive_kind_count = 7;
+
+/// The name that `.inst` uses; static storage.
+const char* name_of(PrimitiveKind kind);
+std::optional<PrimitiveKind> primitive_named(std::string_view name);
+
+using ObjectId = std::uint32_t;
+using MaterialId = std::uint32_t;
+
+struct Instance {
+    ObjectId master = 0;
+    Affine parent_from_child;
+    Tint tint;
+    std::optional<MaterialId> material;  ///< nothing: as the parent says
+    Span span;
+};
+
+struct Object {
+    std::string name;                        ///< unique, an `.inst` name such as `up`, `leaf.llr` or `tip(3)`
+    std::optional<PrimitiveKind> primitive;  ///< then there are no instances and no terminal
+    std::vector<Instance> instances;         ///< the union, in the order of the text
+    std::optional<Instance> terminal;        ///< drawn in place of the object where recursion is cut; its
+                                             ///< master must be ending
+    Span span;
+};
+
+/// Requires for most uses: verify() found nothing (verify.h).
+struct Graph {
+    std::vector<Object> objects;
+    std::vector<Material> materials;
+    ObjectId root = 0;
+    SceneSettings settings;
+
+    /// Adds an object and returns its id.
+    ObjectId add(Object object);
+    /// The object for a primitive, made on first use; named after the primitive.
+    ObjectId primitive(PrimitiveKind kind);
+};
+
+/// Equal structure: the same objects, names, instances (in order), transforms to the last bit, tints,
+/// materials, settings and root. Ids may differ, spans do not count.
+bool equal(const Graph& a, const Graph& b);
+
+}  // namespace graftal

@@ -1,0 +1,13 @@
+#pragma once
+
+#include <string>
+
+#include "compiler/graph/graph.h"
+
+namespace graftal {
+
+/// The graph as `.inst` text (docs/language.md); reading it back gives an equal() graph, numbers to the
+/// last bit. Requires a verified graph. Deterministic, O(graph).
+std::string print(const Graph& graph);
+
+}  // namespace graftal

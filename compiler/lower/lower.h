@@ -1,0 +1,31 @@
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+
+#include "compiler/graph/graph.h"
+#include "compiler/support/diagnostics.h"
+#include "compiler/support/source.h"
+#include "compiler/support/status.h"
+
+namespace graftal {
+
+struct LowerOptions {
+    std::map<std::string, double, std::less<>> set;  ///< `--set NAME=VALUE`: replaces the value of a `let`
+    std::size_t max_objects = 1'000'000;             ///< a model that enumerates more is an error
+};
+
+/// Reads a model, and all that it uses, and lowers it to a verified graph. The language follows the file
+/// name (`.inst`, `.rifs`, `.lsys`), for "-" (standard input) the first word of the text. Bad input is
+/// reported to `diagnostics` and gives nothing; a root file that cannot be read gives nothing and a failed
+/// `status`. Used files are looked up beside the file that names them.
+std::optional<Graph> lower_model(const std::string& path, const LowerOptions& options, SourceMap& sources,
+                                 Diagnostics& diagnostics, Status& status);
+
+/// The same for a text already at hand, as the model `name` (which decides the language and where used
+/// files are looked up).
+std::optional<Graph> lower_text(const std::string& name, std::string text, const LowerOptions& options,
+                                SourceMap& sources, Diagnostics& diagnostics);
+
+}  // namespace graftal

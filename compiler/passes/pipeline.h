@@ -1,0 +1,37 @@
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "compiler/graph/graph.h"
+
+namespace graftal {
+
+/// One pass: Graph -> Graph, never changing what unfold() gives (tests/property holds each to it).
+struct Pass {
+    const char* name;     ///< its function, its files, its `--dump-after` name and its test folder
+    const char* summary;  ///< one line for `--help-passes`
+    Graph (*run)(Graph);
+};
+
+/// All passes in the order in which they run.
+std::span<const Pass> pipeline();
+
+struct PassTime {
+    std::string name;
+    double seconds = 0;
+};
+
+struct PipelineOptions {
+    std::string stop_after;  ///< run up to and with this pass; empty: all
+    std::function<void(const Pass&, const Graph&)> after_each;  ///< for --dump-after; may be empty
+};
+
+/// Runs the passes in order and verifies the graph after each; aborts, naming the pass, if one broke it.
+Graph run_pipeline(Graph graph, const PipelineOptions& options = {}, std::vector<PassTime>* times = nullptr);
+
+}  // namespace graftal

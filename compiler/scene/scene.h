@@ -1,0 +1,71 @@
+#pragma once
+
+// What a renderer needs besides geometry: a camera, lights and a sky, all in world space (right-handed,
+// y up). Decided here from the model's scene statements and its bounds; engines only follow.
+
+#include <optional>
+#include <vector>
+
+#include "compiler/graph/graph.h"
+#include "compiler/support/bounds.h"
+
+namespace graftal {
+
+struct ImageSize {
+    int width = 1280;
+    int height = 720;
+    bool operator==(const ImageSize&) const = default;
+};
+
+/// A resolved camera. right, up and direction are orthonormal and right-handed: right x up = -direction.
+struct Camera {
+    Vec3 location{0, 0, 1};
+    Vec3 direction{0, 0, -1};
+    Vec3 up{0, 1, 0};
+    Vec3 right{1, 0, 0};
+    bool orthographic = false;
+    double angle_deg = 40;  ///< horizontal angle of view; perspective only
+    double width = 1;       ///< of the view in scene units; orthographic only
+
+    /// Pixels per scene unit at the point, for a picture `width_px` wide: what a length seen face on measures.
+    /// Infinity at or behind the eye of a perspective camera.
+    double pixels_per_unit(Vec3 point, int width_px) const;
+};
+
+struct Light {
+    Vec3 location{0.0};  ///< of a sun: a unit vector towards it
+    bool sun = false;
+    Rgb rgb{1.0};
+    bool shadowless = false;
+};
+
+struct Sky {
+    Rgb zenith{1.0};
+    Rgb horizon{1.0};  ///< equal to zenith: a plain background
+};
+
+struct Ground {
+    double height = 0;
+    Material material;
+};
+
+struct View {
+    ImageSize size;
+    Camera camera;
+    std::vector<Light> lights;
+    Sky sky;
+    std::optional<Ground> ground;
+};
+
+/// `--camera` of the command line: like the model's camera statement, and taking precedence over it field by
+/// field.
+using CameraOverride = CameraSetting;
+
+/// Resolves the scene statements of the model. What they leave out is chosen so that the whole of `bounds`
+/// is in the picture with a small margin: flat models (no depth along one axis) face on, models in space
+/// from the front, a little from the right and above; a key light with shadows over the viewer's left
+/// shoulder, a weaker shadowless fill from the right, and a sky that lets the model stand out. Requires
+/// bounds that are not empty.
+View frame(const Graph& graph, const Box& bounds, ImageSize size, const CameraOverride& camera = {});
+
+}  // namespace graftal

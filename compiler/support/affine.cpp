@@ -1,0 +1,93 @@
+#include "compiler/support/affine.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
+
+#include "compiler/support/check.h"
+
+namespace graftal {
+
+namespace {
+
+/// Cosine and sine of an angle in degrees, exact at multiples of 90.
+std::pair<double, double> cos_sin_deg(double angle_deg) {
+    const double turn = std::remainder(angle_deg, 360.0);
+    if (turn == 0) return {1, 0};
+    if (turn == 90) return {0, 1};
+    if (turn == -90) return {0, -1};
+    if (std::abs(turn) == 180) return {-1, 0};
+    const double angle = turn * std::numbers::pi / 180;
+    return {std::cos(angle), std::sin(angle)};
+}
+
+}  // namespace
+
+Affine Affine::scale(Vec3 factors) {
+    Mat3 linear(0.0);
+    for (int i = 0; i < 3; ++i) linear[i][i] = factors[i];
+    return {linear, Vec3(0.0)};
+}
+
+Affine Affine::rotate(Vec3 axis, double angle_deg) {
+    const double length = glm::length(axis);
+    GRAFTAL_CHECK(length > 0, "rotation about a zero axis");
+    const Vec3 u = axis / length;
+    const auto [c, s] = cos_sin_deg(angle_deg);
+    const Mat3 cross(0, u.z, -u.y, -u.z, 0, u.x, u.y, -u.x, 0);
+    return {c * Mat3(1.0) + (1 - c) * glm::outerProduct(u, u) + s * cross, Vec3(0.0)};
+}
+
+Affine operator*(const Affine& a, const Affine& b) { return {a.linear * b.linear, a(b.translation)}; }
+
+Affine inverse(const Affine& a) {
+    const Mat3 linear = glm::inverse(a.linear);
+    return {linear, -(linear * a.translation)};
+}
+
+Vec3 singular_values(const Mat3& linear) {
+    // One-sided Jacobi: rotate pairs of columns until all are orthogonal; their lengths are the answer.
+    Mat3 a = linear;
+    for (int sweep = 0; sweep < 30; ++sweep) {
+        bool rotated = false;
+        for (const auto& [p, q] : {std::pair{0, 1}, {0, 2}, {1, 2}}) {
+            const double alpha = glm::dot(a[p], a[p]);
+            const double beta = glm::dot(a[q], a[q]);
+            const double gamma = glm::dot(a[p], a[q]);
+            if (std::abs(gamma) <= 1e-16 * std::sqrt(alpha * beta) || gamma == 0) continue;
+            rotated = true;
+            const double zeta = (beta - alpha) / (2 * gamma);
+            const double t = std::copysign(1.0, zeta) / (std::abs(zeta) + std::hypot(1.0, zeta));
+            const double c = 1 / std::hypot(1.0, t);
+            const Vec3 column = a[p];
+            a[p] = c * column - c * t * a[q];
+            a[q] = c * t * column + c * a[q];
+        }
+        if (!rotated) break;
+    }
+    Vec3 lengths(glm::length(a[0]), glm::length(a[1]), glm::length(a[2]));
+    if (lengths.x < lengths.y) std::swap(lengths.x, lengths.y);
+    if (lengths.y < lengths.z) std::swap(lengths.y, lengths.z);
+    if (lengths.x < lengths.y) std::swap(lengths.x, lengths.y);
+    return lengths;
+}
+
+double norm(const Mat3& linear) { return singular_values(linear).x; }
+
+bool is_finite(const Affine& a) {
+    for (int column = 0; column < 3; ++column)
+        for (int row = 0; row < 3; ++row)
+            if (!std::isfinite(a.linear[column][row])) return false;
+    return std::isfinite(a.translation.x) && std::isfinite(a.translation.y) && std::isfinite(a.translation.z);
+}
+
+bool is_singular(const Affine& a, double relative) {
+    const Vec3 sigma = singular_values(a.linear);
+    return !(sigma.z > relative * sigma.x);
+}
+
+}  // namespace graftal

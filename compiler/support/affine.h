@@ -1,0 +1,45 @@
+#pragma once
+
+#include <glm/mat3x3.hpp>
+#include <glm/vec3.hpp>
+
+namespace graftal {
+
+using Vec3 = glm::dvec3;
+using Mat3 = glm::dmat3;  ///< column-major, as GLM has it: m[column][row]
+
+/// x -> linear x + translation. Named destination_from_source, so that products read from the right.
+struct Affine {
+    Mat3 linear{1.0};
+    Vec3 translation{0.0};
+
+    Vec3 operator()(Vec3 point) const { return linear * point + translation; }
+    bool operator==(const Affine&) const = default;
+
+    static Affine scale(Vec3 factors);
+    static Affine translate(Vec3 offset) { return {Mat3(1.0), offset}; }
+    /// Right-handed rotation about `axis` (need not be of unit length; not zero). Multiples of 90 degrees
+    /// about coordinate axes are exact.
+    static Affine rotate(Vec3 axis, double angle_deg);
+};
+
+/// First b, then a: (a * b)(x) = a(b(x)).
+Affine operator*(const Affine& a, const Affine& b);
+
+/// Requires a non-singular linear part.
+Affine inverse(const Affine& a);
+
+/// Singular values of the linear part, largest first (closed-form or Jacobi on A^T A; relative error
+/// about 1e-15 of the largest).
+Vec3 singular_values(const Mat3& linear);
+
+/// The largest stretch, |A|_2.
+double norm(const Mat3& linear);
+
+/// True if all entries are finite.
+bool is_finite(const Affine& a);
+
+/// True if the smallest singular value is at most `relative` times the largest, or all are zero.
+bool is_singular(const Affine& a, double relative = 1e-12);
+
+}  // namespace graftal

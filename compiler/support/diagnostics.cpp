@@ -1,0 +1,142 @@
+#include "compiler/support/diagnostics.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+namespace graftal {
+
+namespace {
+
+constexpr std::size_t widest_excerpt = 160;
+
+std::size_t code_points(std::string_view text) {
+    return static_cast<std::size_t>(
+        std::count_if(text.begin(), text.end(), [](char c) { return (c & 0xC0) != 0x80; }));
+}
+
+/// Control characters would move the caret or the terminal; tabs become one blank.
+std::string printable(std::string_view text) {
+    std::string out(text);
+    for (char& c : out)
+        if (static_cast<unsigned char>(c) < 0x20 || c == 0x7F) c = c == '\t' ? ' ' : '?';
+    return out;
+}
+
+std::string place(const SourceMap& sources, Span span) {
+    if (!span.known()) return "graftal";
+    const Position at = sources.position(span.file, span.begin);
+    return fmt::format("{}:{}:{}", sources.name(span.file), at.line, at.column);
+}
+
+void append_excerpt(std::string& out, const SourceMap& sources, Span span) {
+    if (!span.known()) return;
+    const Position at = sources.position(span.file, span.begin);
+    const std::string_view line = sources.line(span.file, at.line);
+    const auto line_begin = static_cast<std::uint32_t>(line.data() - sources.text(span.file).data());
+    std::size_t first = std::min<std::size_t>(span.begin - line_begin, line.size());
+    std::size_t last = std::min<std::size_t>(std::max(span.end, span.begin) - line_begin, line.size());
+
+    // A very long line is shown as a window around the caret.
+    std::size_t window_begin = 0;
+    if (line.size() > widest_excerpt) {
+        window_begin = first > widest_excerpt / 2 ? first - widest_excerpt / 2 : 0;
+        while (window_begin < first && (line[window_begin] & 0xC0) == 0x80) ++window_begin;
+    }
+    const std::string_view window = line.substr(window_begin, widest_excerpt);
+    first -= window_begin;
+    last = std::clamp(last - window_begin, first, window.size());
+    const std::size_t indent = code_points(window.substr(0, first));
+    const std::size_t width = std::max<std::size_t>(1, code_points(window.substr(first, last - first)));
+    out += fmt::format("    {}\n    {}^{}\n", printable(window), std::string(indent, ' '),
+                       std::string(width - 1, '~'));
+}
+
+}  // namespace
+
+Diagnostic& Diagnostic::with_hint(std::string text) {
+    hint = std::move(text);
+    return *this;
+}
+
+Diagnostic& Diagnostic::with_note(Span where, std::string text) {
+    notes.push_back({where, std::move(text)});
+    return *this;
+}
+
+Diagnostic& Diagnostics::error(Span span, std::string message) {
+    ++error_count_;
+    return add(Severity::error, span, std::move(message));
+}
+
+Diagnostic& Diagnostics::warning(Span span, std::string message) {
+    ++warning_count_;
+    return add(Severity::warning, span, std::move(message));
+}
+
+Diagnostic& Diagnostics::add(Severity severity, Span span, std::string message) {
+    const std::size_t count = severity == Severity::error ? error_count_ : warning_count_;
+    Diagnostic diagnostic{severity, span, std::move(message), {}, {}};
+    if (count > max_errors) return overflow_ = std::move(diagnostic);
+    all_.push_back(std::move(diagnostic));
+    return all_.back();
+}
+
+std::string Diagnostics::render(const SourceMap& sources) const {
+    std::string out;
+    for (const Diagnostic& diagnostic : all_) {
+        const char* severity = diagnostic.severity == Severity::error ? "error" : "warning";
+        out += fmt::format("{}: {}: {}\n", place(sources, diagnostic.span), severity, diagnostic.message);
+        append_excerpt(out, sources, diagnostic.span);
+        if (!diagnostic.hint.empty()) out += fmt::format("    hint: {}\n", diagnostic.hint);
+        for (const Note& note : diagnostic.notes) {
+            out += fmt::format("{}: note: {}\n", place(sources, note.span), note.message);
+            append_excerpt(out, sources, note.span);
+        }
+    }
+    if (error_count_ > max_errors) out += fmt::format("graftal: {} more errors\n", error_count_ - max_errors);
+    return out;
+}
+
+namespace {
+
+/// Optimal string alignment distance (Damerau-Levenshtein without overlapping edits).
+std::size_t edit_distance(std::string_view a, std::string_view b) {
+    std::vector<std::vector<std::size_t>> d(a.size() + 1, std::vector<std::size_t>(b.size() + 1));
+    for (std::size_t i = 0; i <= a.size(); ++i) d[i][0] = i;
+    for (std::size_t j = 0; j <= b.size(); ++j) d[0][j] = j;
+    for (std::size_t i = 1; i <= a.size(); ++i) {
+        for (std::size_t j = 1; j <= b.size(); ++j) {
+            const std::size_t change = d[i - 1][j - 1] + (a[i - 1] == b[j - 1] ? 0 : 1);
+            d[i][j] = std::min({d[i - 1][j] + 1, d[i][j - 1] + 1, change});
+            if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1])
+                d[i][j] = std::min(d[i][j], d[i - 2][j - 2] + 1);
+        }
+    }
+    return d[a.size()][b.size()];
+}
+
+}  // namespace
+
+std::string closest_name(std::string_view name, const std::vector<std::string>& candidates) {
+    constexpr std::size_t longest_name = 64;
+    if (name.size() > longest_name) return {};
+    std::string best;
+    std::size_t best_distance = std::max<std::size_t>(1, name.size() / 3) + 1;
+    for (const std::string& candidate : candidates) {
+        if (candidate.size() > longest_name) continue;
+        const std::size_t distance = edit_distance(name, candidate);
+        if (distance < best_distance && distance < std::max(name.size(), candidate.size())) {
+            best_distance = distance;
+            best = candidate;
+        }
+    }
+    return best;
+}
+
+std::string did_you_mean(std::string_view name, const std::vector<std::string>& candidates) {
+    const std::string best = closest_name(name, candidates);
+    return best.empty() ? "" : fmt::format("did you mean '{}'?", best);
+}
+
+}  // namespace graftal

@@ -1,0 +1,18 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace graftal {
+
+/// The shortest decimal text that reads back as the same double, whatever the locale; -0 prints as 0.
+std::string shortest(double value);
+
+/// Appends `value` with at most `digits` significant digits, without trailing zeros; locale-proof.
+void append_number(std::string& out, double value, int digits);
+
+/// Reads all of `text` as a decimal number; nothing if it is malformed or overflows.
+std::optional<double> parse_number(std::string_view text);
+
+}  // namespace graftal

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "compiler/support/diagnostics.h"
+#include "compiler/support/source.h"
+
+namespace graftal {
+
+/// An arithmetic expression over named values: + - * / % ^ (right associative, binds tighter than a sign on
+/// its left), comparisons and ! && || (giving 1 or 0), functions, and the constant pi. Trigonometric
+/// functions take and give degrees, as turtles and POV-Ray's users do: sin cos tan asin acos atan atan2;
+/// sqrt exp log floor ceil abs min max mod sign pow.
+struct Expression {
+    enum class Kind : std::uint8_t { number, name, call, unary, binary };
+
+    Kind kind = Kind::number;
+    double number = 0;
+    std::string text;                   ///< the name, function or operator
+    std::vector<Expression> operands;   ///< of a call, unary or binary
+    Span span;
+};
+
+/// The values that names have; `pi` and the functions need no entry.
+using Environment = std::map<std::string, double, std::less<>>;
+
+/// The value, or nothing after an error in `diagnostics`: unknown names (with a suggestion), wrong numbers of
+/// arguments, division by zero, and results that are not finite.
+std::optional<double> evaluate(const Expression& expression, const Environment& environment,
+                               Diagnostics& diagnostics);
+
+}  // namespace graftal

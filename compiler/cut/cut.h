@@ -21,37 +21,42 @@
 namespace graftal {
 
 struct CutOptions {
-    double error_px = 0.5;                  ///< recursion ends where this much is left; 0: nothing is culled
-    std::optional<double> error_world;      ///< the same as a length in scene units, in place of error_px
-    std::optional<unsigned> steps;          ///< levels; nothing: as deep as the error asks for
-    std::uint64_t memory_bytes = 2ull << 30;  ///< POV-Ray's estimated peak
-    bool flatten = false;                   ///< every leaf its own placement: the absolute specification
+    double error_px = 0.5; ///< parts whose diameter projects to at most this are culled; 0: nothing is
+    std::optional<double> error_world;       ///< the same as a length in scene units, in place of error_px
+    std::optional<unsigned> steps;           ///< levels; nothing: as deep as the error asks for
+    std::uint64_t memory_bytes = 2ull << 30; ///< POV-Ray's estimated peak
+    bool flatten = false;                    ///< every leaf its own placement: the absolute specification
 };
 
-/// A triangle mesh in its own frame, coordinates of order 1.
+/// A triangle mesh in its own frame, coordinates of order 1. Colours are not part of it: mirror images that
+/// differ in colour alone share a mesh. Each triangle names a slot of the palette that its group brings.
 struct Mesh {
     std::vector<Vec3> vertices;
-    std::vector<Vec3> normals;                       ///< empty: flat; else one a vertex
+    std::vector<Vec3> normals; ///< empty: flat; else one a vertex, of unit length
     std::vector<std::array<std::uint32_t, 3>> triangles;
-    std::vector<Rgb> palette;                        ///< opaque colours, linear; at least one
-    std::vector<std::uint32_t> colour_of_triangle;   ///< index into palette; empty if palette.size() == 1
+    std::vector<std::uint32_t> slot_of_triangle; ///< empty if slot_count == 1
+    std::uint32_t slot_count = 1;
 };
 
 /// A single exact primitive, or a baked mesh.
 struct Body {
-    std::string name;  ///< of the object it draws, for the reader of the scene; not unique
+    std::string name; ///< of the object it draws, for the reader of the scene; not unique
     std::variant<PrimitiveKind, Mesh> shape;
-    Rgb rgb{0.8};      ///< base colour of a primitive; meshes have palettes
 };
+
+/// Opaque colours, linear: one for each slot of the meshes that it is used with, or one for all slots (and
+/// for primitives).
+using Palette = std::vector<Rgb>;
 
 struct Placement {
     std::uint32_t body = 0;
     Affine world_from_body;
 };
 
-/// Placements that share a texture: one body's palette, one tint in front of it, one material (its rgb is
-/// already in the bodies; the finish counts).
+/// Placements that share a texture: a palette, one tint in front of it, and a finish (the material's rgb is
+/// already in the palette). Where the palette has one colour the tint is already in it too.
 struct PlacementGroup {
+    std::uint32_t palette = 0;
     PathTint tint;
     Material material;
     std::vector<Placement> placements;
@@ -59,11 +64,12 @@ struct PlacementGroup {
 
 struct Cut {
     std::vector<Body> bodies;
+    std::vector<Palette> palettes;
     std::vector<PlacementGroup> groups;
-    Box bounds;                        ///< of what is drawn (planes aside)
-    double error_px = 0;               ///< reached: largest projected size of a culled part; 0 if none was culled
+    Box bounds;          ///< of what is drawn (planes aside)
+    double error_px = 0; ///< reached: largest projected size of a culled part; 0 if none was culled
     double error_asked_px = 0;
-    double tessellation_px = 0;        ///< largest distance between a curved surface and its mesh
+    double tessellation_px = 0; ///< largest distance between a curved surface and its mesh
     std::uint64_t placement_count = 0;
     std::uint64_t triangle_count = 0;
     double leaf_count = 0;             ///< leaves that the picture stands for
@@ -77,4 +83,4 @@ std::optional<Cut> cut_graph(const Graph& graph, const Components& components,
                              const std::vector<ObjectBounds>& bounds, const View& view,
                              const CutOptions& options, Diagnostics& diagnostics);
 
-}  // namespace graftal
+} // namespace graftal

@@ -14,7 +14,8 @@ using ObjectsByName = std::unordered_map<std::string_view, const Object*>;
 
 ObjectsByName by_name(const Graph& graph) {
     ObjectsByName objects;
-    for (const Object& object : graph.objects) objects.emplace(object.name, &object);
+    for (const Object& object : graph.objects)
+        objects.emplace(object.name, &object);
     return objects;
 }
 
@@ -34,9 +35,11 @@ bool equal(const Graph& a, const Object& x, const Graph& b, const Object& y) {
     return true;
 }
 
-}  // namespace
+} // namespace
 
-const char* name_of(PrimitiveKind kind) { return primitive_names[static_cast<std::size_t>(kind)]; }
+const char* name_of(PrimitiveKind kind) {
+    return primitive_names[static_cast<std::size_t>(kind)];
+}
 
 std::optional<PrimitiveKind> primitive_named(std::string_view name) {
     for (std::size_t i = 0; i < primitive_names.size(); ++i)
@@ -74,4 +77,4 @@ bool equal(const Graph& a, const Graph& b) {
     return true;
 }
 
-}  // namespace graftal
+} // namespace graftal

@@ -15,13 +15,13 @@ struct Flaw {
     std::string message;
 };
 
-/// All rules that every stage may rely on: root, masters and materials exist; a primitive has no instances
-/// and no terminal; every other object has an instance; names are unique and printable; numbers are finite;
-/// tints lie in [0,1]; linear parts are not zero; terminals are ending; planes are not reached through
-/// cycles. O(graph).
+/// All rules that every stage may rely on: root, masters and materials exist; the root is a union; a
+/// primitive bears its own name and has no instances and no terminal; every other object has an instance;
+/// names are unique and `.inst` can write them (`up`, `leaf.llr`, `tip(3)`); numbers are finite; tints lie in
+/// [0,1]; linear parts are not zero; terminals are ending; planes are not reached through cycles. O(graph).
 std::vector<Flaw> verify(const Graph& graph);
 
 /// Aborts, naming `stage` and the object, if verify() finds a flaw: for use after lowering and each pass.
 void check_verified(const Graph& graph, std::string_view stage);
 
-}  // namespace graftal
+} // namespace graftal

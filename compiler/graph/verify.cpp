@@ -1,0 +1,218 @@
+#include "compiler/graph/verify.h"
+
+#include <algorithm>
+#include <cmath>
+#include <unordered_map>
+
+#include <fmt/format.h>
+
+#include "compiler/graph/components.h"
+#include "compiler/support/check.h"
+#include "compiler/support/number.h"
+
+namespace graftal {
+
+namespace {
+
+bool is_letter(char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_';
+}
+
+bool is_digit(char c) {
+    return c >= '0' && c <= '9';
+}
+
+/// A letter or underscore, then letters, digits, underscores and inner dots.
+bool is_plain_name(std::string_view name) {
+    if (name.empty() || !is_letter(name.front()) || name.back() == '.') return false;
+    if (name.find("..") != std::string_view::npos) return false;
+    return std::all_of(name.begin(), name.end(),
+                       [](char c) { return is_letter(c) || is_digit(c) || c == '.'; });
+}
+
+/// A plain name, or one with the numbers of a parametric object: `tip(3)`, `branch(2, 0.5)`.
+bool is_object_name(std::string_view name) {
+    const std::size_t parenthesis = name.find('(');
+    if (parenthesis == std::string_view::npos) return is_plain_name(name);
+    if (!is_plain_name(name.substr(0, parenthesis)) || name.back() != ')') return false;
+    std::string_view arguments = name.substr(parenthesis + 1, name.size() - parenthesis - 2);
+    while (true) {
+        const std::size_t comma = arguments.find(',');
+        const std::string_view argument = arguments.substr(0, comma);
+        const std::optional<double> value = parse_number(argument);
+        if (!value || shortest(*value) != argument) return false;
+        if (comma == std::string_view::npos) return true;
+        arguments.remove_prefix(comma + 1);
+        if (arguments.starts_with(' ')) arguments.remove_prefix(1);
+    }
+}
+
+bool finite(Vec3 v) {
+    return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+}
+
+template<typename T> bool finite(const std::optional<T>& value) {
+    return !value || finite(*value);
+}
+
+bool finite(const std::optional<double>& value) {
+    return !value || std::isfinite(*value);
+}
+
+bool in_unit_interval(double value) {
+    return value >= 0 && value <= 1;
+}
+
+class Verifier {
+  public:
+    explicit Verifier(const Graph& graph) : graph_(graph) {}
+
+    std::vector<Flaw> run() && {
+        check_root();
+        check_names();
+        check_materials();
+        check_settings();
+        for (ObjectId id = 0; id < graph_.objects.size(); ++id)
+            check_object(id);
+        if (flaws_.empty()) check_cycles(); // needs masters that exist
+        return std::move(flaws_);
+    }
+
+  private:
+    template<typename... Args> void flaw(ObjectId object, fmt::format_string<Args...> text, Args&&... args) {
+        flaws_.push_back({object, fmt::format(text, std::forward<Args>(args)...)});
+    }
+
+    void check_root() {
+        if (graph_.root >= graph_.objects.size())
+            flaw(graph_.root, "the root is object {} of {}", graph_.root, graph_.objects.size());
+        else if (graph_.objects[graph_.root].primitive)
+            flaw(graph_.root, "the root is a primitive, not a union");
+    }
+
+    void check_names() {
+        std::unordered_map<std::string_view, ObjectId> first;
+        for (ObjectId id = 0; id < graph_.objects.size(); ++id) {
+            const Object& object = graph_.objects[id];
+            const auto [other, is_new] = first.emplace(object.name, id);
+            if (!is_new) flaw(id, "the name is that of object {} too", other->second);
+            if (object.primitive && object.name != name_of(*object.primitive))
+                flaw(id, "a primitive '{}' under another name", name_of(*object.primitive));
+            if (!object.primitive && primitive_named(object.name))
+                flaw(id, "a union with a primitive's name");
+            if (!is_object_name(object.name)) flaw(id, "the name cannot be written in .inst");
+        }
+    }
+
+    void check_materials() {
+        std::unordered_map<std::string_view, MaterialId> first;
+        for (MaterialId id = 0; id < graph_.materials.size(); ++id) {
+            const Material& material = graph_.materials[id];
+            if (!first.emplace(material.name, id).second)
+                flaw(graph_.root, "two materials are named '{}'", material.name);
+            if (!is_plain_name(material.name))
+                flaw(graph_.root, "the name of material '{}' cannot be written in .inst", material.name);
+            const bool numbers = finite(material.rgb) && std::isfinite(material.ambient) &&
+                                 std::isfinite(material.diffuse) && std::isfinite(material.specular) &&
+                                 std::isfinite(material.roughness) && std::isfinite(material.reflection);
+            if (!numbers) flaw(graph_.root, "material '{}' has a number that is not finite", material.name);
+        }
+    }
+
+    void check_settings() {
+        const SceneSettings& settings = graph_.settings;
+        bool numbers = true;
+        if (const auto& camera = settings.camera)
+            numbers = finite(camera->location) && finite(camera->look_at) && finite(camera->up) &&
+                      finite(camera->angle_deg) && finite(camera->width);
+        for (const LightSetting& light : settings.lights)
+            numbers = numbers && finite(light.location) && finite(light.rgb);
+        if (const auto& background = settings.background)
+            numbers = numbers && finite(background->rgb) && finite(background->horizon);
+        if (const auto& ground = settings.ground) {
+            numbers = numbers && std::isfinite(ground->height) && finite(ground->rgb);
+            const bool known = !ground->material ||
+                               std::any_of(graph_.materials.begin(), graph_.materials.end(),
+                                           [&](const Material& m) { return m.name == *ground->material; });
+            if (!known) flaw(graph_.root, "the ground's material '{}' does not exist", *ground->material);
+        }
+        if (!numbers) flaw(graph_.root, "a scene setting is not finite");
+    }
+
+    void check_object(ObjectId id) {
+        const Object& object = graph_.objects[id];
+        if (object.primitive) {
+            if (!object.instances.empty()) flaw(id, "a primitive with instances");
+            if (object.terminal) flaw(id, "a primitive with a terminal");
+        } else if (object.instances.empty()) {
+            flaw(id, "an empty union");
+        }
+        for (std::size_t i = 0; i < object.instances.size(); ++i)
+            check_instance(id, fmt::format("instance {}", i), object.instances[i]);
+        if (object.terminal) check_instance(id, "the terminal", *object.terminal);
+    }
+
+    void check_instance(ObjectId id, std::string_view which, const Instance& instance) {
+        if (instance.master >= graph_.objects.size())
+            flaw(id, "{} has master {} of {} objects", which, instance.master, graph_.objects.size());
+        if (instance.material && *instance.material >= graph_.materials.size())
+            flaw(id, "{} has material {} of {}", which, *instance.material, graph_.materials.size());
+        if (!is_finite(instance.parent_from_child)) flaw(id, "{} has a transform that is not finite", which);
+        if (instance.parent_from_child.linear == Mat3(0.0)) flaw(id, "{} has a linear part of zero", which);
+        const Tint& tint = instance.tint;
+        const bool tint_in_range = in_unit_interval(tint.rgb.r) && in_unit_interval(tint.rgb.g) &&
+                                   in_unit_interval(tint.rgb.b) && in_unit_interval(tint.alpha);
+        if (!tint_in_range)
+            flaw(id, "{} has tint ({}, {}, {}) {} outside [0, 1]", which, tint.rgb.r, tint.rgb.g, tint.rgb.b,
+                 tint.alpha);
+    }
+
+    void check_cycles() {
+        const Components components = strong_components(graph_);
+        const std::vector<bool> holds_plane = plane_holders(components);
+        for (ObjectId id = 0; id < graph_.objects.size(); ++id) {
+            const std::optional<Instance>& terminal = graph_.objects[id].terminal;
+            if (terminal && components.unending[terminal->master])
+                flaw(id, "the terminal '{}' is unending", graph_.objects[terminal->master].name);
+            const bool plane = holds_plane[id] || (terminal && holds_plane[terminal->master]);
+            if (plane && components.cyclic[components.component_of[id]])
+                flaw(id, "a plane is reached through a cycle");
+        }
+    }
+
+    /// By object: reaches a plane by instances.
+    std::vector<bool> plane_holders(const Components& components) const {
+        std::vector<bool> holds(graph_.objects.size(), false);
+        for (const std::vector<ObjectId>& members : components.members) {
+            const bool any = std::any_of(members.begin(), members.end(), [&](ObjectId member) {
+                const Object& object = graph_.objects[member];
+                return object.primitive == PrimitiveKind::plane ||
+                       std::any_of(object.instances.begin(), object.instances.end(),
+                                   [&](const Instance& instance) { return holds[instance.master]; });
+            });
+            for (const ObjectId member : members)
+                holds[member] = any;
+        }
+        return holds;
+    }
+
+    const Graph& graph_;
+    std::vector<Flaw> flaws_;
+};
+
+} // namespace
+
+std::vector<Flaw> verify(const Graph& graph) {
+    return Verifier(graph).run();
+}
+
+void check_verified(const Graph& graph, std::string_view stage) {
+    const std::vector<Flaw> flaws = verify(graph);
+    if (flaws.empty()) return;
+    const Flaw& flaw = flaws.front();
+    const std::string_view name =
+        flaw.object < graph.objects.size() ? std::string_view(graph.objects[flaw.object].name) : "(none)";
+    GRAFTAL_CHECK(flaws.empty(), fmt::format("{}: object {}: {}", stage, name, flaw.message));
+}
+
+} // namespace graftal

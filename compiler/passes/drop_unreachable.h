@@ -8,4 +8,4 @@ namespace graftal {
 /// Ensures: every object is reachable from the root by instances or terminals; order is kept.
 Graph drop_unreachable(Graph graph);
 
-}  // namespace graftal
+} // namespace graftal

@@ -11,4 +11,4 @@ namespace graftal {
 /// Ensures: no two objects are equivalent; idempotent. O(E log V) expected.
 Graph merge_equivalent(Graph graph);
 
-}  // namespace graftal
+} // namespace graftal

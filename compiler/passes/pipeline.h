@@ -13,8 +13,8 @@ namespace graftal {
 
 /// One pass: Graph -> Graph, never changing what unfold() gives (tests/property holds each to it).
 struct Pass {
-    const char* name;     ///< its function, its files, its `--dump-after` name and its test folder
-    const char* summary;  ///< one line for `--help-passes`
+    const char* name;    ///< its function, its files, its `--dump-after` name and its test folder
+    const char* summary; ///< one line for `--help-passes`
     Graph (*run)(Graph);
 };
 
@@ -27,11 +27,11 @@ struct PassTime {
 };
 
 struct PipelineOptions {
-    std::string stop_after;  ///< run up to and with this pass; empty: all
-    std::function<void(const Pass&, const Graph&)> after_each;  ///< for --dump-after; may be empty
+    std::string stop_after;                                    ///< run up to and with this pass; empty: all
+    std::function<void(const Pass&, const Graph&)> after_each; ///< for --dump-after; may be empty
 };
 
 /// Runs the passes in order and verifies the graph after each; aborts, naming the pass, if one broke it.
 Graph run_pipeline(Graph graph, const PipelineOptions& options = {}, std::vector<PassTime>* times = nullptr);
 
-}  // namespace graftal
+} // namespace graftal

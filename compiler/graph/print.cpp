@@ -1,0 +1,168 @@
+#include "compiler/graph/print.h"
+
+#include <initializer_list>
+#include <string>
+#include <string_view>
+
+#include "compiler/support/number.h"
+
+namespace graftal {
+
+namespace {
+
+class Printer {
+  public:
+    explicit Printer(const Graph& graph) : graph_(graph) {}
+
+    std::string run() && {
+        for (const Material& material : graph_.materials)
+            print_material(material);
+        print_settings();
+        for (ObjectId id = 0; id < graph_.objects.size(); ++id)
+            if (!graph_.objects[id].primitive) print_object(id);
+        return std::move(out_);
+    }
+
+  private:
+    void print_numbers(std::string_view key, std::initializer_list<double> numbers) {
+        out_ += key;
+        const char* separator = ": ";
+        for (const double number : numbers) {
+            out_ += separator;
+            out_ += shortest(number);
+            separator = ", ";
+        }
+        out_ += '\n';
+    }
+
+    void print_vector(std::string_view key, Vec3 v) { print_numbers(key, {v.x, v.y, v.z}); }
+
+    void print_vector(std::string_view key, const std::optional<Vec3>& v) {
+        if (v) print_vector(key, *v);
+    }
+
+    void print_number(std::string_view key, const std::optional<double>& number) {
+        if (number) print_numbers(key, {*number});
+    }
+
+    void print_material(const Material& material) {
+        out_ += "material " + material.name + " {\n";
+        print_vector("  color", material.rgb);
+        print_numbers("  ambient", {material.ambient});
+        print_numbers("  diffuse", {material.diffuse});
+        print_numbers("  specular", {material.specular});
+        print_numbers("  roughness", {material.roughness});
+        print_numbers("  reflection", {material.reflection});
+        out_ += "}\n\n";
+    }
+
+    void print_settings() {
+        const SceneSettings& settings = graph_.settings;
+        const std::size_t before = out_.size();
+        if (settings.camera) print_camera(*settings.camera);
+        for (const LightSetting& light : settings.lights)
+            print_light(light);
+        if (settings.background) print_background(*settings.background);
+        if (settings.ground) print_ground(*settings.ground);
+        if (settings.steps) out_ += "steps: " + std::to_string(*settings.steps) + "\n";
+        if (out_.size() > before) out_ += '\n';
+    }
+
+    void print_camera(const CameraSetting& camera) {
+        out_ += "camera {\n";
+        print_vector("  location", camera.location);
+        print_vector("  look_at", camera.look_at);
+        print_vector("  up", camera.up);
+        print_number("  angle", camera.angle_deg);
+        if (camera.orthographic) out_ += "  orthographic\n";
+        print_number("  width", camera.width);
+        out_ += "}\n";
+    }
+
+    void print_light(const LightSetting& light) {
+        out_ += "light {\n";
+        print_vector(light.sun ? "  sun" : "  location", light.location);
+        print_vector("  color", light.rgb);
+        if (light.shadowless) out_ += "  shadowless\n";
+        out_ += "}\n";
+    }
+
+    void print_background(const BackgroundSetting& background) {
+        if (!background.horizon) return print_vector("background", background.rgb);
+        out_ += "background {\n";
+        print_vector("  zenith", background.rgb);
+        print_vector("  horizon", *background.horizon);
+        out_ += "}\n";
+    }
+
+    void print_ground(const GroundSetting& ground) {
+        out_ += "ground {\n";
+        print_numbers("  height", {ground.height});
+        if (ground.material) out_ += "  material: " + *ground.material + "\n";
+        print_vector("  color", ground.rgb);
+        out_ += "}\n";
+    }
+
+    void print_object(ObjectId id) {
+        const Object& object = graph_.objects[id];
+        out_ += id == graph_.root ? "object " : "canonical object ";
+        out_ += object.name + " {\n";
+        for (std::size_t i = 0; i < object.instances.size();)
+            i = print_group(object.instances, i);
+        if (object.terminal) {
+            out_ += "  terminal: " + master_name(*object.terminal) + "\n";
+            print_attributes(*object.terminal);
+        }
+        out_ += "}\n\n";
+    }
+
+    /// Writes the instances from `first` on that are placed alike as one statement, as Hart's texts do.
+    /// Returns where the next group begins.
+    std::size_t print_group(const std::vector<Instance>& instances, std::size_t first) {
+        std::size_t end = first + 1;
+        while (end < instances.size() && placed_alike(instances[first], instances[end]))
+            ++end;
+        out_ += end == first + 1 ? "  instance: " : "  union: ";
+        for (std::size_t i = first; i < end; ++i) {
+            if (i > first) out_ += ", ";
+            out_ += master_name(instances[i]);
+        }
+        out_ += '\n';
+        print_attributes(instances[first]);
+        return end;
+    }
+
+    static bool placed_alike(const Instance& a, const Instance& b) {
+        return a.parent_from_child == b.parent_from_child && a.tint == b.tint && a.material == b.material;
+    }
+
+    const std::string& master_name(const Instance& instance) const {
+        return graph_.objects[instance.master].name;
+    }
+
+    void print_attributes(const Instance& instance) {
+        const Affine& a = instance.parent_from_child;
+        if (!(a == Affine())) {
+            const Mat3& m = a.linear;
+            const Vec3 t = a.translation;
+            print_numbers(is_singular(a) ? "    projection" : "    matrix",
+                          {m[0][0], m[1][0], m[2][0], t.x, //
+                           m[0][1], m[1][1], m[2][1], t.y, //
+                           m[0][2], m[1][2], m[2][2], t.z});
+        }
+        const Tint& tint = instance.tint;
+        if (!(tint == Tint())) print_numbers("    tint", {tint.rgb.r, tint.rgb.g, tint.rgb.b, tint.alpha});
+        if (instance.material) out_ += "    material: " + graph_.materials[*instance.material].name + "\n";
+    }
+
+    const Graph& graph_;
+    std::string out_;
+};
+
+} // namespace
+
+std::string print(const Graph& graph) {
+    return Printer(graph).run();
+}
+
+} // namespace graftal

@@ -1,0 +1,307 @@
+#include "compiler/passes/merge_equivalent.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <compare>
+#include <cstdint>
+#include <numeric>
+#include <span>
+#include <unordered_map>
+#include <utility>
+#include <vector>
+
+#include "compiler/passes/rewrite.h"
+
+namespace graftal {
+
+namespace {
+
+/// How an instance places its master, as a number that equal placements share.
+using Label = std::uint32_t;
+
+/// All of an instance but its master, bit by bit.
+using Placement = std::array<std::uint64_t, 17>;
+
+struct PlacementHash {
+    std::size_t operator()(const Placement& placement) const {
+        std::uint64_t hash = 0;
+        for (const std::uint64_t word : placement) {
+            hash = (hash ^ word) * 0x9E3779B97F4A7C15u;
+            hash ^= hash >> 29;
+        }
+        return static_cast<std::size_t>(hash);
+    }
+};
+
+Placement placement_of(const Instance& instance, bool is_terminal) {
+    Placement placement;
+    std::size_t next = 0;
+    const auto put = [&](double value) {
+        placement[next++] = std::bit_cast<std::uint64_t>(value == 0 ? 0.0 : value); // -0 equals 0
+    };
+    const Affine& a = instance.parent_from_child;
+    for (int column = 0; column < 3; ++column)
+        for (int row = 0; row < 3; ++row)
+            put(a.linear[column][row]);
+    for (int row = 0; row < 3; ++row)
+        put(a.translation[row]);
+    for (int channel = 0; channel < 3; ++channel)
+        put(instance.tint.rgb[channel]);
+    put(instance.tint.alpha);
+    const std::uint64_t material = instance.material ? *instance.material + std::uint64_t{1} : 0;
+    placement[next] = material << 1 | (is_terminal ? 1u : 0u);
+    return placement;
+}
+
+class Labels {
+  public:
+    Label of(const Instance& instance, bool is_terminal) {
+        return labels_.emplace(placement_of(instance, is_terminal), static_cast<Label>(labels_.size()))
+            .first->second;
+    }
+
+  private:
+    std::unordered_map<Placement, Label, PlacementHash> labels_;
+};
+
+/// The graph as labelled edges, terminals included, to be read against their direction.
+struct Edges {
+    struct Arrival {
+        ObjectId user;
+        Label label;
+        auto operator<=>(const Arrival&) const = default;
+    };
+
+    std::vector<std::vector<Label>> labels_of; ///< by object: of its instances and terminal, sorted
+    std::vector<std::size_t> first_arrival;    ///< by object, and one past the last
+    std::vector<Arrival> arrivals;             ///< by master
+
+    std::span<const Arrival> into(ObjectId master) const {
+        return std::span(arrivals).subspan(first_arrival[master],
+                                           first_arrival[master + 1] - first_arrival[master]);
+    }
+};
+
+Edges edges_of(const Graph& graph) {
+    Edges edges;
+    edges.labels_of.resize(graph.objects.size());
+    edges.first_arrival.assign(graph.objects.size() + 1, 0);
+    Labels labels;
+    for (ObjectId user = 0; user < graph.objects.size(); ++user) {
+        const Object& object = graph.objects[user];
+        for (const Instance& instance : object.instances) {
+            edges.labels_of[user].push_back(labels.of(instance, false));
+            ++edges.first_arrival[instance.master + 1];
+        }
+        if (object.terminal) {
+            edges.labels_of[user].push_back(labels.of(*object.terminal, true));
+            ++edges.first_arrival[object.terminal->master + 1];
+        }
+    }
+    std::partial_sum(edges.first_arrival.begin(), edges.first_arrival.end(), edges.first_arrival.begin());
+
+    edges.arrivals.resize(edges.first_arrival.back());
+    std::vector<std::size_t> next(edges.first_arrival.begin(), edges.first_arrival.end() - 1);
+    for (ObjectId user = 0; user < graph.objects.size(); ++user) {
+        const Object& object = graph.objects[user];
+        std::vector<Label>& own = edges.labels_of[user];
+        for (std::size_t i = 0; i < object.instances.size(); ++i)
+            edges.arrivals[next[object.instances[i].master]++] = {user, own[i]};
+        if (object.terminal) edges.arrivals[next[object.terminal->master]++] = {user, own.back()};
+        std::sort(own.begin(), own.end());
+    }
+    return edges;
+}
+
+using BlockId = std::uint32_t;
+
+/// A partition of the objects, each block a contiguous range of `elements_`.
+class Partition {
+  public:
+    /// One block of everything.
+    explicit Partition(std::size_t size) : elements_(size), position_(size), block_of_(size, 0) {
+        std::iota(elements_.begin(), elements_.end(), 0u);
+        std::iota(position_.begin(), position_.end(), 0u);
+        blocks_.push_back({0, static_cast<std::uint32_t>(size)});
+    }
+
+    BlockId block_of(ObjectId object) const { return block_of_[object]; }
+    std::size_t block_count() const { return blocks_.size(); }
+    std::size_t size(BlockId block) const { return blocks_[block].end - blocks_[block].begin; }
+    std::span<const ObjectId> members(BlockId block) const {
+        return std::span(elements_).subspan(blocks_[block].begin, size(block));
+    }
+
+    /// Makes a block of its own out of some members of one block. O(members moved).
+    BlockId carve(std::span<const ObjectId> members) {
+        const auto fresh = static_cast<BlockId>(blocks_.size());
+        Block& old = blocks_[block_of_[members.front()]];
+        const std::uint32_t end = old.end;
+        for (const ObjectId object : members) {
+            const ObjectId other = elements_[--old.end];
+            std::swap(elements_[position_[object]], elements_[old.end]);
+            std::swap(position_[object], position_[other]);
+            block_of_[object] = fresh;
+        }
+        blocks_.push_back({old.end, end}); // invalidates `old`
+        return fresh;
+    }
+
+  private:
+    struct Block {
+        std::uint32_t begin, end;
+    };
+    std::vector<ObjectId> elements_;
+    std::vector<std::uint32_t> position_;
+    std::vector<BlockId> block_of_;
+    std::vector<Block> blocks_;
+};
+
+/// Finds the coarsest partition in which the objects of a block have the same labels into every block.
+///
+/// A block that has been split is a splitter again by all its parts but one, the largest: how often an object
+/// leads into that part follows from the others and from the whole, with which the partition agreed. So an
+/// edge is looked at again only when its master lies in a block of at most half the size: O(E log V) visits.
+class Refinement {
+  public:
+    explicit Refinement(const Graph& graph) : edges_(edges_of(graph)), partition_(graph.objects.size()) {
+        split_by_own_labels(graph);
+        for (BlockId block = 0; block < partition_.block_count(); ++block)
+            enqueue(block);
+    }
+
+    Partition run() && {
+        while (!queue_.empty()) {
+            const BlockId splitter = queue_.back();
+            queue_.pop_back();
+            queued_[splitter] = false;
+            split_by(splitter);
+        }
+        return std::move(partition_);
+    }
+
+  private:
+    /// An object that leads into the splitter, by the arrivals [first, last).
+    struct User {
+        BlockId block;
+        ObjectId object;
+        std::span<const Edges::Arrival> arrivals;
+    };
+
+    void split_by_own_labels(const Graph& graph) {
+        std::vector<ObjectId> order(graph.objects.size());
+        std::iota(order.begin(), order.end(), 0u);
+        const auto same_kind = [&](ObjectId a, ObjectId b) {
+            return graph.objects[a].primitive == graph.objects[b].primitive &&
+                   edges_.labels_of[a] == edges_.labels_of[b];
+        };
+        std::sort(order.begin(), order.end(), [&](ObjectId a, ObjectId b) {
+            if (graph.objects[a].primitive != graph.objects[b].primitive)
+                return graph.objects[a].primitive < graph.objects[b].primitive;
+            if (edges_.labels_of[a] != edges_.labels_of[b]) return edges_.labels_of[a] < edges_.labels_of[b];
+            return a < b;
+        });
+        for (auto first = order.begin(); first != order.end();) {
+            const auto end =
+                std::find_if(first, order.end(), [&](ObjectId id) { return !same_kind(*first, id); });
+            if (first != order.begin()) partition_.carve({first, end});
+            first = end;
+        }
+    }
+
+    void split_by(BlockId splitter) {
+        arrivals_.clear();
+        for (const ObjectId master : partition_.members(splitter)) {
+            const auto into = edges_.into(master);
+            arrivals_.insert(arrivals_.end(), into.begin(), into.end());
+        }
+        std::sort(arrivals_.begin(), arrivals_.end());
+
+        users_.clear();
+        for (auto first = arrivals_.begin(); first != arrivals_.end();) {
+            const auto end =
+                std::find_if(first, arrivals_.end(), [&](const auto& a) { return a.user != first->user; });
+            users_.push_back({partition_.block_of(first->user), first->user, {first, end}});
+            first = end;
+        }
+        std::sort(users_.begin(), users_.end(), [](const User& a, const User& b) {
+            if (a.block != b.block) return a.block < b.block;
+            const auto order = compare_labels(a, b);
+            return order != 0 ? order < 0 : a.object < b.object;
+        });
+        for (auto first = users_.begin(); first != users_.end();) {
+            const auto end = std::find_if(first, users_.end(),
+                                          [&](const User& user) { return user.block != first->block; });
+            split_block({first, end});
+            first = end;
+        }
+    }
+
+    static std::strong_ordering compare_labels(const User& a, const User& b) {
+        return std::lexicographical_compare_three_way(
+            a.arrivals.begin(), a.arrivals.end(), b.arrivals.begin(), b.arrivals.end(),
+            [](const Edges::Arrival& x, const Edges::Arrival& y) { return x.label <=> y.label; });
+    }
+
+    /// Splits one block by what its users of the splitter (all of them, sorted) have into it; the objects
+    /// that are no users keep the block's number, or else the last kind of user does.
+    void split_block(std::span<const User> users) {
+        const BlockId block = users.front().block;
+        parts_.assign(1, block);
+        while (!users.empty()) {
+            const auto end = std::find_if(users.begin(), users.end(), [&](const User& user) {
+                return compare_labels(users.front(), user) != 0;
+            });
+            const auto count = static_cast<std::size_t>(end - users.begin());
+            if (count == partition_.size(block)) break; // nobody else is left in it
+            part_members_.clear();
+            for (const User& user : users.first(count))
+                part_members_.push_back(user.object);
+            parts_.push_back(partition_.carve(part_members_));
+            users = users.subspan(count);
+        }
+        queued_.resize(partition_.block_count(), false);
+        const auto smaller = [&](BlockId a, BlockId b) { return partition_.size(a) < partition_.size(b); };
+        const BlockId spared =
+            queued_[block] ? block : *std::max_element(parts_.begin(), parts_.end(), smaller);
+        for (const BlockId part : parts_)
+            if (part != spared) enqueue(part);
+    }
+
+    void enqueue(BlockId block) {
+        queued_.resize(partition_.block_count(), false);
+        queued_[block] = true;
+        queue_.push_back(block);
+    }
+
+    const Edges edges_;
+    Partition partition_;
+    std::vector<BlockId> queue_;
+    std::vector<bool> queued_; // by block
+    // Scratch space of split_by, kept between calls.
+    std::vector<Edges::Arrival> arrivals_;
+    std::vector<User> users_;
+    std::vector<BlockId> parts_;
+    std::vector<ObjectId> part_members_;
+};
+
+} // namespace
+
+Graph merge_equivalent(Graph graph) {
+    const Partition partition = Refinement(graph).run();
+    std::vector<ObjectId> first_of(partition.block_count());
+    std::vector<bool> keep(graph.objects.size(), false);
+    for (BlockId block = 0; block < partition.block_count(); ++block) {
+        const std::span<const ObjectId> members = partition.members(block);
+        first_of[block] = *std::min_element(members.begin(), members.end());
+        keep[first_of[block]] = true;
+    }
+    const std::vector<std::uint32_t> new_object = compact(graph.objects, keep);
+    const auto merged = [&](ObjectId object) { return new_object[first_of[partition.block_of(object)]]; };
+    for_each_instance(graph, [&](Instance& instance) { instance.master = merged(instance.master); });
+    graph.root = merged(graph.root);
+    return graph;
+}
+
+} // namespace graftal

@@ -1,0 +1,35 @@
+#pragma once
+
+// What passes that drop and renumber objects share.
+
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+#include "compiler/graph/graph.h"
+
+namespace graftal {
+
+/// Calls `visit` on every instance and terminal of the graph.
+template<typename Visit> void for_each_instance(Graph& graph, const Visit& visit) {
+    for (Object& object : graph.objects) {
+        for (Instance& instance : object.instances)
+            visit(instance);
+        if (object.terminal) visit(*object.terminal);
+    }
+}
+
+/// Keeps the marked elements in their order. Returns the new index by old index, UINT32_MAX for the dropped.
+template<typename T> std::vector<std::uint32_t> compact(std::vector<T>& all, const std::vector<bool>& keep) {
+    std::vector<std::uint32_t> new_index(all.size(), UINT32_MAX);
+    std::uint32_t kept = 0;
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        if (!keep[i]) continue;
+        if (kept != i) all[kept] = std::move(all[i]);
+        new_index[i] = kept++;
+    }
+    all.erase(all.begin() + kept, all.end());
+    return new_index;
+}
+
+} // namespace graftal

@@ -1,0 +1,267 @@
+#include "compiler/lower/lower_settings.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "compiler/lower/lower_transform.h"
+#include "compiler/support/number.h"
+
+namespace graftal {
+
+namespace {
+
+using Kind = SceneStatement::Kind;
+
+constexpr double most_steps = 1e9;
+
+/// One statement's fields by name, each evaluated and checked on demand.
+class Fields {
+  public:
+    Fields(const SceneStatement& statement, const Environment& lets, Diagnostics& diagnostics)
+        : statement_(statement), lets_(lets), diagnostics_(diagnostics) {
+        for (auto field = statement.fields.begin(); field != statement.fields.end(); ++field) {
+            const auto first = std::find_if(statement.fields.begin(), field, [&](const SceneField& other) {
+                return other.keyword == field->keyword;
+            });
+            if (first == field) continue;
+            diagnostics.error(field->span, fmt::format("duplicate '{}'", field->keyword))
+                .with_note(first->span, "first given here");
+        }
+    }
+
+    const SceneField* find(std::string_view keyword) const {
+        const auto found = std::find_if(statement_.fields.begin(), statement_.fields.end(),
+                                        [&](const SceneField& field) { return field.keyword == keyword; });
+        return found == statement_.fields.end() ? nullptr : &*found;
+    }
+
+    bool flag(std::string_view keyword) const { return find(keyword) != nullptr; }
+
+    std::optional<Vec3> vector(std::string_view keyword) const {
+        const SceneField* field = find(keyword);
+        return field ? lower_vector(field->values, lets_, diagnostics_) : std::nullopt;
+    }
+
+    std::optional<Rgb> color(std::string_view keyword) const {
+        const SceneField* field = find(keyword);
+        return field ? lower_color(field->values, lets_, diagnostics_) : std::nullopt;
+    }
+
+    std::optional<double> number(std::string_view keyword) const {
+        const SceneField* field = find(keyword);
+        return field ? evaluate(field->values[0], lets_, diagnostics_) : std::nullopt;
+    }
+
+    /// A number for which `good` holds, else the error "'angle' must lie ..., not 200".
+    template<typename Predicate>
+    std::optional<double> number(std::string_view keyword, const Predicate& good,
+                                 std::string_view demand) const {
+        const std::optional<double> value = number(keyword);
+        if (!value || good(*value)) return value;
+        diagnostics_.error(find(keyword)->values[0].span,
+                           fmt::format("'{}' must {}, not {}", keyword, demand, shortest(*value)));
+        return std::nullopt;
+    }
+
+    void unit_number(std::string_view keyword, double& target) const {
+        target = number(
+                     keyword, [](double x) { return x >= 0 && x <= 1; }, "lie between 0 and 1")
+                     .value_or(target);
+    }
+
+    void error(std::string_view keyword, std::string message) const {
+        diagnostics_.error(find(keyword)->span, std::move(message));
+    }
+
+    void error_at_statement(std::string message, std::string hint) const {
+        diagnostics_.error(statement_.span, std::move(message)).with_hint(std::move(hint));
+    }
+
+  private:
+    const SceneStatement& statement_;
+    const Environment& lets_;
+    Diagnostics& diagnostics_;
+};
+
+CameraSetting lower_camera(const Fields& fields) {
+    CameraSetting camera;
+    camera.location = fields.vector("location");
+    camera.look_at = fields.vector("look_at");
+    camera.up = fields.vector("up");
+    camera.orthographic = fields.flag("orthographic");
+    camera.angle_deg = fields.number(
+        "angle", [](double x) { return x > 0 && x < 180; }, "lie between 0 and 180 degrees");
+    camera.width = fields.number(
+        "width", [](double x) { return x > 0; }, "be positive");
+    if (camera.up == Vec3(0.0)) fields.error("up", "'up' must have a direction");
+    if (camera.location && camera.look_at && *camera.location == *camera.look_at)
+        fields.error("look_at", "the camera looks at its own location");
+    if (camera.width && !camera.orthographic)
+        fields.error("width", "'width' belongs to an orthographic camera; give 'angle' instead");
+    if (camera.angle_deg && camera.orthographic)
+        fields.error("angle", "an orthographic camera has no 'angle'; give 'width' instead");
+    return camera;
+}
+
+LightSetting lower_light(const Fields& fields) {
+    LightSetting light;
+    light.sun = fields.flag("sun");
+    if (light.sun && fields.flag("location"))
+        fields.error("location", "a light has either a location or, as a sun, a direction");
+    if (!light.sun && !fields.flag("location"))
+        fields.error_at_statement("this light has no place", "give it 'location: x, y, z' or 'sun: x, y, z'");
+    light.location = fields.vector(light.sun ? "sun" : "location").value_or(Vec3(1.0));
+    if (light.sun && light.location == Vec3(0.0)) fields.error("sun", "'sun' must have a direction");
+    light.rgb = fields.color("color").value_or(light.rgb);
+    light.shadowless = fields.flag("shadowless");
+    return light;
+}
+
+BackgroundSetting lower_background(const Fields& fields) {
+    BackgroundSetting background;
+    if (!fields.flag("zenith"))
+        fields.error_at_statement("this background has no colour", "give it 'zenith: r, g, b'");
+    background.rgb = fields.color("zenith").value_or(background.rgb);
+    background.horizon = fields.color("horizon");
+    return background;
+}
+
+GroundSetting lower_ground(const Fields& fields) {
+    GroundSetting ground;
+    ground.height = fields.number("height").value_or(0);
+    ground.rgb = fields.color("color");
+    if (const SceneField* material = fields.find("material")) ground.material = material->name;
+    return ground;
+}
+
+Material lower_material(const Fields& fields, const SceneStatement& statement) {
+    Material material;
+    material.name = statement.name;
+    material.span = statement.span;
+    material.rgb = fields.color("color").value_or(material.rgb);
+    fields.unit_number("ambient", material.ambient);
+    fields.unit_number("diffuse", material.diffuse);
+    fields.unit_number("specular", material.specular);
+    fields.unit_number("reflection", material.reflection);
+    material.roughness =
+        fields
+            .number(
+                "roughness", [](double x) { return x > 0 && x <= 1; }, "be above 0 and at most 1")
+            .value_or(material.roughness);
+    return material;
+}
+
+std::optional<unsigned> lower_steps(const Fields& fields) {
+    const std::optional<double> steps = fields.number(
+        "steps", [](double x) { return x >= 0 && x <= most_steps && x == std::floor(x); },
+        "be a whole number between 0 and 1000000000");
+    if (!steps) return std::nullopt;
+    return static_cast<unsigned>(*steps);
+}
+
+/// Statements that may occur once, and materials once a name.
+void check_duplicates(const std::vector<SceneStatement>& statements, Diagnostics& diagnostics) {
+    std::map<std::pair<Kind, std::string>, Span> first;
+    for (const SceneStatement& statement : statements) {
+        if (statement.kind == Kind::let || statement.kind == Kind::light) continue;
+        const auto [place, fresh] = first.try_emplace({statement.kind, statement.name}, statement.span);
+        if (fresh) continue;
+        const std::string& keyword = scene_keywords()[static_cast<std::size_t>(statement.kind)];
+        diagnostics
+            .error(statement.span, statement.kind == Kind::material
+                                       ? fmt::format("duplicate material '{}'", statement.name)
+                                       : fmt::format("duplicate '{}'", keyword))
+            .with_note(place->second, "first defined here");
+    }
+}
+
+void check_set_names(const Environment& lets, Lowering& lowering) {
+    std::vector<std::string> known;
+    for (const auto& [name, value] : lets)
+        known.push_back(name);
+    for (const auto& [name, value] : lowering.options.set)
+        if (!lets.contains(name))
+            lowering.diagnostics.error(Span(), fmt::format("--set {}: the model has no 'let {}'", name, name))
+                .with_hint(did_you_mean(name, known));
+}
+
+} // namespace
+
+Environment lower_lets(const std::vector<SceneStatement>& statements, Lowering& lowering) {
+    Environment lets;
+    std::map<std::string, Span, std::less<>> first;
+    for (const SceneStatement& statement : statements) {
+        if (statement.kind != Kind::let) continue;
+        for (const SceneField& let : statement.fields) {
+            if (let.keyword == "pi") {
+                lowering.diagnostics.error(let.span, "'pi' is a constant and cannot be set");
+                continue;
+            }
+            const auto [place, fresh] = first.try_emplace(let.keyword, let.span);
+            if (!fresh) {
+                lowering.diagnostics.error(let.span, fmt::format("duplicate 'let {}'", let.keyword))
+                    .with_note(place->second, "first defined here");
+                continue;
+            }
+            std::optional<double> value = evaluate(let.values[0], lets, lowering.diagnostics);
+            const auto set = lowering.options.set.find(let.keyword);
+            if (set != lowering.options.set.end() && lowering.at_root_model()) value = set->second;
+            // A let in error still has a value, so that its uses are not errors too.
+            lets[let.keyword] = value.value_or(1);
+        }
+    }
+    if (lowering.at_root_model()) check_set_names(lets, lowering);
+    return lets;
+}
+
+void lower_settings(const std::vector<SceneStatement>& statements, const Environment& lets, Graph& graph,
+                    Lowering& lowering) {
+    check_duplicates(statements, lowering.diagnostics);
+    for (const SceneStatement& statement : statements) {
+        if (statement.kind == Kind::let) continue;
+        const Fields fields(statement, lets, lowering.diagnostics);
+        switch (statement.kind) {
+        case Kind::camera:
+            graph.settings.camera = lower_camera(fields);
+            break;
+        case Kind::light:
+            graph.settings.lights.push_back(lower_light(fields));
+            break;
+        case Kind::background:
+            graph.settings.background = lower_background(fields);
+            break;
+        case Kind::ground:
+            graph.settings.ground = lower_ground(fields);
+            break;
+        case Kind::material:
+            graph.materials.push_back(lower_material(fields, statement));
+            break;
+        case Kind::steps:
+            graph.settings.steps = lower_steps(fields);
+            break;
+        case Kind::let:
+            break;
+        }
+    }
+    for (const SceneStatement& statement : statements)
+        for (const SceneField& field : statement.fields)
+            if (statement.kind == Kind::ground && field.keyword == "material")
+                material_named(field.name, field.name_span, graph, lowering.diagnostics);
+}
+
+std::optional<MaterialId> material_named(std::string_view name, Span span, const Graph& graph,
+                                         Diagnostics& diagnostics) {
+    for (MaterialId id = 0; id < graph.materials.size(); ++id)
+        if (graph.materials[id].name == name) return id;
+    std::vector<std::string> known;
+    for (const Material& material : graph.materials)
+        known.push_back(material.name);
+    diagnostics.error(span, fmt::format("unknown material '{}'", name)).with_hint(did_you_mean(name, known));
+    return std::nullopt;
+}
+
+} // namespace graftal

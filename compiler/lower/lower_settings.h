@@ -1,0 +1,23 @@
+#pragma once
+
+#include <vector>
+
+#include "compiler/lower/lowering.h"
+#include "compiler/syntax/scene_statements.h"
+
+namespace graftal {
+
+/// The values of the `let` statements, in the order of the text, with `--set` in place of a value where this
+/// is the root model. Errors: duplicates, unknown names (also of `--set`), values that are not finite.
+Environment lower_lets(const std::vector<SceneStatement>& statements, Lowering& lowering);
+
+/// Fills `settings` and `materials` of `graph` from all other statements; errors for values out of range and
+/// for duplicates. Material names are then known: use material_named().
+void lower_settings(const std::vector<SceneStatement>& statements, const Environment& lets, Graph& graph,
+                    Lowering& lowering);
+
+/// The material of this name, or nothing after the error "unknown material" with a suggestion.
+std::optional<MaterialId> material_named(std::string_view name, Span span, const Graph& graph,
+                                         Diagnostics& diagnostics);
+
+} // namespace graftal

@@ -1,0 +1,185 @@
+#include "compiler/lower/lower_transform.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "compiler/support/number.h"
+
+namespace graftal {
+
+namespace {
+
+using Kind = TransformLine::Kind;
+
+template<std::size_t count>
+std::optional<std::array<double, count>> evaluate_all(const std::vector<Expression>& values,
+                                                      const Environment& environment,
+                                                      Diagnostics& diagnostics) {
+    std::array<double, count> numbers{};
+    bool good = values.size() <= count;
+    for (std::size_t i = 0; i < values.size() && i < count; ++i) {
+        const std::optional<double> number = evaluate(values[i], environment, diagnostics);
+        if (number)
+            numbers[i] = *number;
+        else
+            good = false;
+    }
+    if (!good) return std::nullopt;
+    return numbers;
+}
+
+/// Checks that evaluated values lie in [0,1].
+template<std::size_t count>
+bool in_unit_range(const std::array<double, count>& numbers, const std::vector<Expression>& values,
+                   Diagnostics& diagnostics) {
+    bool good = true;
+    for (std::size_t i = 0; i < count; ++i) {
+        if (numbers[i] >= 0 && numbers[i] <= 1) continue;
+        const char* what = i == 3 ? "alpha" : "a colour component";
+        diagnostics.error(values[i].span,
+                          fmt::format("{} must lie between 0 and 1, not {}", what, shortest(numbers[i])));
+        good = false;
+    }
+    return good;
+}
+
+int axis_index(char axis) {
+    return axis - 'x';
+}
+
+Vec3 axis_vector(char axis) {
+    Vec3 unit(0.0);
+    unit[axis_index(axis)] = 1;
+    return unit;
+}
+
+Vec3 scale_factors(const std::array<double, 12>& n, std::size_t count) {
+    if (count == 1) return Vec3(n[0]);
+    if (count == 2) return {n[0], n[1], std::sqrt(std::abs(n[0])) * std::sqrt(std::abs(n[1]))};
+    return {n[0], n[1], n[2]};
+}
+
+Affine from_rows(const std::array<double, 12>& n) {
+    Affine result;
+    for (int row = 0; row < 3; ++row) {
+        for (int column = 0; column < 3; ++column)
+            result.linear[column][row] = n[static_cast<std::size_t>(4 * row + column)];
+        result.translation[row] = n[static_cast<std::size_t>(4 * row + 3)];
+    }
+    return result;
+}
+
+Affine shear(std::string_view axes, double factor) {
+    Affine result;
+    result.linear[axis_index(axes[1])][axis_index(axes[0])] = factor;
+    return result;
+}
+
+std::optional<Affine> rotation(const TransformLine& line, const std::array<double, 12>& n,
+                               Diagnostics& diagnostics) {
+    if (!line.axes.empty()) return Affine::rotate(axis_vector(line.axes[0]), n[0]);
+    const Vec3 axis(n[0], n[1], n[2]);
+    // The largest component first, so that neither tiny nor huge axes leave the range of doubles.
+    const double largest = std::max({std::abs(axis.x), std::abs(axis.y), std::abs(axis.z)});
+    if (largest > 0) return Affine::rotate(axis / largest, n[3]);
+    diagnostics.error(line.span, "the axis of this rotation has no direction");
+    return std::nullopt;
+}
+
+bool vanishes(const Affine& a) {
+    return a.linear == Mat3(0.0);
+}
+
+bool check_map(const Affine& map, bool projection, Span span, std::string_view what,
+               Diagnostics& diagnostics) {
+    if (!is_finite(map)) {
+        diagnostics.error(span, fmt::format("{} overflows", what));
+        return false;
+    }
+    if (vanishes(map)) {
+        diagnostics.error(span, fmt::format("{} maps everything to one point", what));
+        return false;
+    }
+    if (!projection && is_singular(map)) {
+        diagnostics.error(span, fmt::format("{} is singular: it flattens what it maps", what))
+            .with_hint("use 'projection' with the numbers of the matrix if that is meant");
+        return false;
+    }
+    return true;
+}
+
+} // namespace
+
+std::optional<Vec3> lower_vector(const std::vector<Expression>& values, const Environment& environment,
+                                 Diagnostics& diagnostics) {
+    const auto n = evaluate_all<3>(values, environment, diagnostics);
+    if (!n) return std::nullopt;
+    return Vec3((*n)[0], (*n)[1], (*n)[2]);
+}
+
+std::optional<Rgb> lower_color(const std::vector<Expression>& values, const Environment& environment,
+                               Diagnostics& diagnostics) {
+    const auto n = evaluate_all<3>(values, environment, diagnostics);
+    if (!n || !in_unit_range(*n, values, diagnostics)) return std::nullopt;
+    return Rgb((*n)[0], (*n)[1], (*n)[2]);
+}
+
+std::optional<Tint> lower_tint(const std::vector<Expression>& values, const Environment& environment,
+                               Diagnostics& diagnostics) {
+    const auto n = evaluate_all<4>(values, environment, diagnostics);
+    if (!n || !in_unit_range(*n, values, diagnostics)) return std::nullopt;
+    return Tint{Rgb((*n)[0], (*n)[1], (*n)[2]), (*n)[3]};
+}
+
+std::optional<Affine> lower_transform(const TransformLine& line, const Environment& environment,
+                                      Diagnostics& diagnostics) {
+    const auto n = evaluate_all<12>(line.numbers, environment, diagnostics);
+    if (!n) return std::nullopt;
+    std::optional<Affine> map;
+    switch (line.kind) {
+    case Kind::scale:
+        map = Affine::scale(scale_factors(*n, line.numbers.size()));
+        break;
+    case Kind::rotate:
+        map = rotation(line, *n, diagnostics);
+        break;
+    case Kind::translate:
+        map = Affine::translate({(*n)[0], (*n)[1], (*n)[2]});
+        break;
+    case Kind::shear:
+        map = shear(line.axes, (*n)[0]);
+        break;
+    case Kind::matrix:
+    case Kind::projection:
+        map = from_rows(*n);
+        break;
+    }
+    const std::string_view keyword = transform_keywords[static_cast<std::size_t>(line.kind)];
+    if (!map || !check_map(*map, line.kind == Kind::projection, line.span, fmt::format("this {}", keyword),
+                           diagnostics))
+        return std::nullopt;
+    return map;
+}
+
+std::optional<Affine> lower_transforms(const std::vector<TransformLine>& lines,
+                                       const Environment& environment, Diagnostics& diagnostics) {
+    std::optional<Affine> product;
+    bool good = true;
+    bool projection = false;
+    for (const TransformLine& line : lines) {
+        const std::optional<Affine> map = lower_transform(line, environment, diagnostics);
+        good = good && map;
+        projection |= line.kind == Kind::projection;
+        if (good) product = product ? *map * *product : *map;
+    }
+    if (!good) return std::nullopt;
+    if (lines.size() > 1 && !check_map(*product, projection, join(lines.front().span, lines.back().span),
+                                       "the product of these transforms", diagnostics))
+        return std::nullopt;
+    return product.value_or(Affine());
+}
+
+} // namespace graftal

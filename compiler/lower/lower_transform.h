@@ -1,0 +1,39 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "compiler/support/affine.h"
+#include "compiler/support/tint.h"
+#include "compiler/syntax/expression.h"
+#include "compiler/syntax/transform.h"
+
+namespace graftal {
+
+/// Evaluates three expressions.
+std::optional<Vec3> lower_vector(const std::vector<Expression>& values, const Environment& environment,
+                                 Diagnostics& diagnostics);
+
+/// Evaluates three expressions as linear RGB; components outside [0,1] are errors.
+std::optional<Rgb> lower_color(const std::vector<Expression>& values, const Environment& environment,
+                               Diagnostics& diagnostics);
+
+/// Evaluates four expressions, colour and alpha; values outside [0,1] are errors.
+std::optional<Tint> lower_tint(const std::vector<Expression>& values, const Environment& environment,
+                               Diagnostics& diagnostics);
+
+/// The map of one line. Errors: singular maps (but not of `projection`, which must only not vanish), zero
+/// axes, numbers that are not finite. `matrix` and `projection` are taken to the last bit.
+///
+/// Two factors of a scale are those of x and y; z gets their geometric mean, so that flat figures keep a
+/// regular map that is a similarity where the flat one was.
+std::optional<Affine> lower_transform(const TransformLine& line, const Environment& environment,
+                                      Diagnostics& diagnostics);
+
+/// The product of the lines, the first applied first; identity for none. A single line is taken to the last
+/// bit. Besides the errors of the lines: products that are singular (unless a `projection` takes part),
+/// vanish or overflow.
+std::optional<Affine> lower_transforms(const std::vector<TransformLine>& lines,
+                                       const Environment& environment, Diagnostics& diagnostics);
+
+} // namespace graftal

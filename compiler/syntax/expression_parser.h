@@ -1,0 +1,38 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include "compiler/syntax/expression.h"
+#include "compiler/syntax/token_stream.h"
+
+namespace graftal {
+
+/// An expression has at most this many numbers, names and operators, and so at most this depth.
+inline constexpr std::size_t max_expression_size = 1000;
+
+/// Parses one expression, or reports why not and gives nothing; what was taken stays taken.
+std::optional<Expression> parse_expression(TokenStream& stream);
+
+/// The same in a row of numbers without commas: a sign with white space before it and none after it begins
+/// the next number (`1 -2` is two numbers, `1 - 2` and `1-2` are one), and so does a '<'.
+std::optional<Expression> parse_row_expression(TokenStream& stream);
+
+/// Parses `min` to `max` expressions, with commas between them, as `a, b, c` or `<a, b, c>`. `what` names
+/// the place in messages: "'scale' takes 1 to 3 numbers". A comma before a line's keyword or after the last
+/// number that fits is left alone.
+std::optional<std::vector<Expression>> parse_numbers(TokenStream& stream, std::size_t min, std::size_t max,
+                                                     std::string_view what);
+
+/// Three numbers: `x, y, z` or `<x, y, z>`.
+std::optional<std::vector<Expression>> parse_vector(TokenStream& stream, std::string_view what);
+
+/// A colour: a vector that `rgb` may precede.
+std::optional<std::vector<Expression>> parse_color(TokenStream& stream, std::string_view what);
+
+/// A tint: colour and alpha, `r, g, b, a` or `rgb <r, g, b> a`: four expressions.
+std::optional<std::vector<Expression>> parse_tint(TokenStream& stream, std::string_view what);
+
+} // namespace graftal

@@ -1,0 +1,213 @@
+#include "compiler/syntax/scene_statements.h"
+
+#include <algorithm>
+#include <optional>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "compiler/syntax/expression_parser.h"
+
+namespace graftal {
+
+namespace {
+
+using Kind = SceneStatement::Kind;
+
+enum class Shape { flag, number, vector, color, name };
+
+struct FieldRule {
+    std::string_view keyword;
+    Shape shape;
+};
+
+/// The fields of a statement in braces; empty for the others.
+const std::vector<FieldRule>& rules(Kind kind) {
+    static const std::vector<FieldRule> camera = {{"location", Shape::vector},   {"look_at", Shape::vector},
+                                                  {"up", Shape::vector},         {"angle", Shape::number},
+                                                  {"orthographic", Shape::flag}, {"width", Shape::number}};
+    static const std::vector<FieldRule> light = {{"location", Shape::vector},
+                                                 {"sun", Shape::vector},
+                                                 {"color", Shape::color},
+                                                 {"shadowless", Shape::flag}};
+    static const std::vector<FieldRule> background = {{"zenith", Shape::color}, {"horizon", Shape::color}};
+    static const std::vector<FieldRule> ground = {
+        {"height", Shape::number}, {"color", Shape::color}, {"material", Shape::name}};
+    static const std::vector<FieldRule> material = {
+        {"color", Shape::color},     {"ambient", Shape::number},   {"diffuse", Shape::number},
+        {"specular", Shape::number}, {"roughness", Shape::number}, {"reflection", Shape::number}};
+    static const std::vector<FieldRule> none;
+    switch (kind) {
+    case Kind::camera:
+        return camera;
+    case Kind::light:
+        return light;
+    case Kind::background:
+        return background;
+    case Kind::ground:
+        return ground;
+    case Kind::material:
+        return material;
+    default:
+        return none;
+    }
+}
+
+std::optional<Kind> kind_of(const Token& token) {
+    const std::vector<std::string>& keywords = scene_keywords();
+    const auto found = std::find(keywords.begin(), keywords.end(), token.text);
+    if (token.kind != TokenKind::name || found == keywords.end()) return std::nullopt;
+    return static_cast<Kind>(found - keywords.begin());
+}
+
+class StatementParser {
+  public:
+    StatementParser(TokenStream& stream, SceneStatement& statement)
+        : stream_(stream), statement_(statement) {}
+
+    bool parse() {
+        const Token keyword = stream_.next();
+        statement_.span = keyword.span;
+        switch (statement_.kind) {
+        case Kind::let:
+            return parse_lets();
+        case Kind::steps:
+            stream_.accept(":");
+            return parse_value("steps", keyword.span, Shape::number);
+        case Kind::material:
+            return parse_name() && parse_block(keyword);
+        case Kind::background:
+            stream_.accept(":");
+            if (!stream_.at("{")) return parse_value("zenith", keyword.span, Shape::color);
+            return parse_block(keyword);
+        default:
+            return parse_block(keyword);
+        }
+    }
+
+  private:
+    bool parse_name() {
+        const std::optional<Token> name = stream_.expect_name("a name after 'material'");
+        if (!name) return false;
+        statement_.name = name->text;
+        statement_.span = name->span;
+        return true;
+    }
+
+    bool parse_lets() {
+        do {
+            const std::optional<Token> name = stream_.expect_name("a name after 'let'");
+            if (!name || !stream_.expect("=", name->text)) return false;
+            if (!parse_value(name->text, name->span, Shape::number)) return false;
+        } while (stream_.accept(","));
+        return true;
+    }
+
+    bool parse_block(const Token& keyword) {
+        stream_.accept(":");
+        const Token open = stream_.peek();
+        if (!stream_.expect("{", stream_.previous().text)) return false;
+        while (!stream_.accept("}")) {
+            if (stream_.at_end() || (stream_.peek().first_on_line && begins_other_statement())) {
+                stream_.expected(fmt::format("'}}' at the end of '{}'", keyword.text))
+                    .with_note(open.span, "to close this '{'");
+                return true; // the stream stands at the next statement already
+            }
+            if (stream_.accept(",")) continue;
+            if (!parse_field(keyword.text)) stream_.skip_line();
+        }
+        return true;
+    }
+
+    /// `ground { material: stone` goes on, `ground {` and then `material stone {` does not.
+    bool begins_other_statement() const {
+        const Token& word = stream_.peek();
+        if (word.is("object") || word.is("canonical") || word.is("rifs") || word.is("lsys")) return true;
+        return at_scene_statement(stream_) && !is_field(word.text);
+    }
+
+    bool is_field(std::string_view word) const {
+        if (word == "material" && stream_.peek(2).is("{")) return false;
+        const std::vector<FieldRule>& known = rules(statement_.kind);
+        return std::any_of(known.begin(), known.end(),
+                           [&](const FieldRule& rule) { return rule.keyword == word; });
+    }
+
+    bool parse_field(std::string_view statement) {
+        const std::vector<FieldRule>& known = rules(statement_.kind);
+        const Token keyword = stream_.peek();
+        for (const FieldRule& rule : known)
+            if (keyword.is(rule.keyword)) {
+                stream_.next();
+                stream_.accept(":");
+                return parse_value(keyword.text, keyword.span, rule.shape);
+            }
+        std::vector<std::string> candidates;
+        for (const FieldRule& rule : known)
+            candidates.emplace_back(rule.keyword);
+        const std::string found = stream_.found();
+        stream_.next();
+        stream_.diagnostics()
+            .error(keyword.span, fmt::format("'{}' has no field {}", statement, found))
+            .with_hint(did_you_mean(keyword.text, candidates));
+        return false;
+    }
+
+    bool parse_value(std::string_view keyword, Span span, Shape shape) {
+        SceneField field;
+        field.keyword = keyword;
+        field.span = span;
+        const std::string what = fmt::format("'{}'", keyword);
+        std::optional<std::vector<Expression>> values(std::in_place);
+        switch (shape) {
+        case Shape::flag:
+            break;
+        case Shape::number:
+            values = parse_numbers(stream_, 1, 1, what);
+            break;
+        case Shape::vector:
+            values = parse_vector(stream_, what);
+            break;
+        case Shape::color:
+            values = parse_color(stream_, what);
+            break;
+        case Shape::name: {
+            const std::optional<Token> name = stream_.expect_name("a name after " + what);
+            if (!name) return false;
+            field.name = name->text;
+            field.name_span = name->span;
+            break;
+        }
+        }
+        if (!values) return false;
+        field.values = std::move(*values);
+        statement_.fields.push_back(std::move(field));
+        return true;
+    }
+
+    TokenStream& stream_;
+    SceneStatement& statement_;
+};
+
+} // namespace
+
+const std::vector<std::string>& scene_keywords() {
+    static const std::vector<std::string> keywords = {"camera",   "light", "background", "ground",
+                                                      "material", "steps", "let"};
+    return keywords;
+}
+
+bool at_scene_statement(const TokenStream& stream) {
+    return kind_of(stream.peek()).has_value();
+}
+
+void parse_scene_statement(TokenStream& stream, std::vector<SceneStatement>& statements) {
+    SceneStatement statement;
+    statement.kind = *kind_of(stream.peek());
+    if (StatementParser(stream, statement).parse())
+        statements.push_back(std::move(statement));
+    else
+        stream.skip_line();
+}
+
+} // namespace graftal

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "compiler/syntax/expression.h"
+#include "compiler/syntax/token_stream.h"
+
+namespace graftal {
+
+/// `keyword: values` in a scene statement, unevaluated.
+struct SceneField {
+    std::string keyword;
+    Span span;                      ///< of the keyword
+    std::vector<Expression> values; ///< none of a flag, one of a number, three of a vector or colour
+    std::string name;               ///< where the value is a name (`material: bark`)
+    Span name_span;
+};
+
+/// camera, light, background, ground, material, steps or let. Short forms are spelled out: `steps: 5` has
+/// the field "steps", `background: r,g,b` the field "zenith", and `let a = 1, b = 2` one field a name.
+struct SceneStatement {
+    enum class Kind : std::uint8_t { camera, light, background, ground, material, steps, let };
+
+    Kind kind = Kind::camera;
+    std::string name; ///< of a material
+    Span span;        ///< of the keyword, or of the material's name
+    std::vector<SceneField> fields;
+};
+
+/// The words that begin scene statements, for suggestions.
+const std::vector<std::string>& scene_keywords();
+
+/// True if the next tokens begin a scene statement.
+bool at_scene_statement(const TokenStream& stream);
+
+/// Requires at_scene_statement(). Parses the statement into `statements`; errors are reported, and the
+/// stream then stands where parsing can go on.
+void parse_scene_statement(TokenStream& stream, std::vector<SceneStatement>& statements);
+
+} // namespace graftal

@@ -1,0 +1,116 @@
+#include "compiler/syntax/token_stream.h"
+
+#include <algorithm>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "compiler/support/check.h"
+
+namespace graftal {
+
+namespace {
+
+constexpr std::size_t longest_shown = 40;
+
+bool opens(const Token& token) {
+    return token.is("{") || token.is("(") || token.is("[");
+}
+bool closes(const Token& token) {
+    return token.is("}") || token.is(")") || token.is("]");
+}
+
+/// At most longest_shown bytes, cut between characters.
+std::string shown(std::string_view text) {
+    if (text.size() <= longest_shown) return std::string(text);
+    std::size_t size = longest_shown;
+    while (size > 0 && (text[size] & 0xC0) == 0x80)
+        --size;
+    return std::string(text.substr(0, size)) + "...";
+}
+
+} // namespace
+
+TokenStream::TokenStream(std::vector<Token> tokens, Diagnostics& diagnostics)
+    : tokens_(std::move(tokens)), diagnostics_(diagnostics) {
+    GRAFTAL_CHECK(!tokens_.empty() && tokens_.back().kind == TokenKind::end, "tokens without an end");
+    check_nesting();
+}
+
+void TokenStream::check_nesting() {
+    std::size_t depth = 0;
+    for (const Token& token : tokens_) {
+        if (opens(token)) ++depth;
+        if (closes(token) && depth > 0) --depth;
+        if (depth <= max_nesting) continue;
+        diagnostics_.error(token.span, fmt::format("brackets are nested more than {} deep", max_nesting));
+        tokens_.erase(tokens_.begin(), tokens_.end() - 1);
+        return;
+    }
+}
+
+const Token& TokenStream::peek(std::size_t ahead) const {
+    return tokens_[std::min(at_ + ahead, tokens_.size() - 1)];
+}
+
+const Token& TokenStream::next() {
+    const Token& token = peek();
+    if (at_ + 1 < tokens_.size()) ++at_;
+    return token;
+}
+
+bool TokenStream::accept(std::string_view symbol_or_name) {
+    if (!at(symbol_or_name)) return false;
+    next();
+    return true;
+}
+
+bool TokenStream::expect(std::string_view symbol_or_name, std::string_view after) {
+    if (accept(symbol_or_name)) return true;
+    expected(after.empty() ? fmt::format("'{}'", symbol_or_name)
+                           : fmt::format("'{}' after '{}'", symbol_or_name, shown(after)));
+    return false;
+}
+
+std::optional<Token> TokenStream::expect_name(std::string_view what) {
+    if (at_name()) return next();
+    expected(what);
+    return std::nullopt;
+}
+
+std::optional<Token> TokenStream::expect_string(std::string_view what) {
+    if (peek().kind == TokenKind::string) return next();
+    expected(what);
+    return std::nullopt;
+}
+
+Diagnostic& TokenStream::expected(std::string_view what) {
+    return diagnostics_.error(peek().span, fmt::format("expected {}, found {}", what, found()));
+}
+
+std::string TokenStream::found() const {
+    const Token& token = peek();
+    switch (token.kind) {
+    case TokenKind::end:
+        return "the end of the file";
+    case TokenKind::string:
+        return fmt::format("the string \"{}\"", shown(token.text));
+    default:
+        return fmt::format("'{}'", shown(token.text));
+    }
+}
+
+void TokenStream::skip_line() {
+    while (!at_end() && !at("}") && !peek().first_on_line)
+        if (next().is("{")) skip_block();
+}
+
+void TokenStream::skip_block() {
+    for (std::size_t depth = 1; depth > 0 && !at_end();) {
+        const Token& token = next();
+        if (token.is("{")) ++depth;
+        if (token.is("}")) --depth;
+    }
+}
+
+} // namespace graftal

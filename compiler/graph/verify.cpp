@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 #include <unordered_map>
 
 #include <fmt/format.h>
@@ -22,12 +23,14 @@ bool is_digit(char c) {
     return c >= '0' && c <= '9';
 }
 
-/// A letter or underscore, then letters, digits, underscores and inner dots.
+/// As the lexers have it: a letter or underscore, then letters, digits, underscores, and dots before letters.
 bool is_plain_name(std::string_view name) {
     if (name.empty() || !is_letter(name.front()) || name.back() == '.') return false;
-    if (name.find("..") != std::string_view::npos) return false;
-    return std::all_of(name.begin(), name.end(),
-                       [](char c) { return is_letter(c) || is_digit(c) || c == '.'; });
+    for (std::size_t i = 1; i < name.size(); ++i) {
+        const bool dot_before_letter = name[i] == '.' && is_letter(name[i + 1]);
+        if (!is_letter(name[i]) && !is_digit(name[i]) && !dot_before_letter) return false;
+    }
+    return true;
 }
 
 /// A plain name, or one with the numbers of a parametric object: `tip(3)`, `branch(2, 0.5)`.
@@ -148,23 +151,26 @@ class Verifier {
             flaw(id, "an empty union");
         }
         for (std::size_t i = 0; i < object.instances.size(); ++i)
-            check_instance(id, fmt::format("instance {}", i), object.instances[i]);
-        if (object.terminal) check_instance(id, "the terminal", *object.terminal);
+            check_instance(id, i, object.instances[i]);
+        if (object.terminal) check_instance(id, std::nullopt, *object.terminal);
     }
 
-    void check_instance(ObjectId id, std::string_view which, const Instance& instance) {
+    /// `index`: of the instance; nothing for a terminal.
+    void check_instance(ObjectId id, std::optional<std::size_t> index, const Instance& instance) {
+        const auto fault = [&](const std::string& what) {
+            flaw(id, "{} {}", index ? fmt::format("instance {}", *index) : "the terminal", what);
+        };
         if (instance.master >= graph_.objects.size())
-            flaw(id, "{} has master {} of {} objects", which, instance.master, graph_.objects.size());
+            fault(fmt::format("has master {} of {} objects", instance.master, graph_.objects.size()));
         if (instance.material && *instance.material >= graph_.materials.size())
-            flaw(id, "{} has material {} of {}", which, *instance.material, graph_.materials.size());
-        if (!is_finite(instance.parent_from_child)) flaw(id, "{} has a transform that is not finite", which);
-        if (instance.parent_from_child.linear == Mat3(0.0)) flaw(id, "{} has a linear part of zero", which);
+            fault(fmt::format("has material {} of {}", *instance.material, graph_.materials.size()));
+        if (!is_finite(instance.parent_from_child)) fault("has a transform that is not finite");
+        if (instance.parent_from_child.linear == Mat3(0.0)) fault("has a linear part of zero");
         const Tint& tint = instance.tint;
-        const bool tint_in_range = in_unit_interval(tint.rgb.r) && in_unit_interval(tint.rgb.g) &&
-                                   in_unit_interval(tint.rgb.b) && in_unit_interval(tint.alpha);
-        if (!tint_in_range)
-            flaw(id, "{} has tint ({}, {}, {}) {} outside [0, 1]", which, tint.rgb.r, tint.rgb.g, tint.rgb.b,
-                 tint.alpha);
+        if (!in_unit_interval(tint.rgb.r) || !in_unit_interval(tint.rgb.g) || !in_unit_interval(tint.rgb.b) ||
+            !in_unit_interval(tint.alpha))
+            fault(fmt::format("has tint ({}, {}, {}) {} outside [0, 1]", tint.rgb.r, tint.rgb.g, tint.rgb.b,
+                              tint.alpha));
     }
 
     void check_cycles() {

@@ -1,5 +1,6 @@
 #include "compiler/passes/pipeline.h"
 
+#include <algorithm>
 #include <array>
 #include <chrono>
 
@@ -8,6 +9,7 @@
 #include "compiler/graph/verify.h"
 #include "compiler/passes/drop_unreachable.h"
 #include "compiler/passes/merge_equivalent.h"
+#include "compiler/support/check.h"
 
 namespace graftal {
 
@@ -25,6 +27,9 @@ std::span<const Pass> pipeline() {
 }
 
 Graph run_pipeline(Graph graph, const PipelineOptions& options, std::vector<PassTime>* times) {
+    const bool known = std::any_of(passes.begin(), passes.end(),
+                                   [&](const Pass& pass) { return options.stop_after == pass.name; });
+    GRAFTAL_CHECK(known || options.stop_after.empty(), fmt::format("no pass '{}'", options.stop_after));
     for (const Pass& pass : passes) {
         const auto begin = std::chrono::steady_clock::now();
         graph = pass.run(std::move(graph));

@@ -32,6 +32,7 @@ struct PipelineOptions {
 };
 
 /// Runs the passes in order and verifies the graph after each; aborts, naming the pass, if one broke it.
+/// Requires that `stop_after` is empty or names a pass.
 Graph run_pipeline(Graph graph, const PipelineOptions& options = {}, std::vector<PassTime>* times = nullptr);
 
 } // namespace graftal

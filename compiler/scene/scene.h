@@ -24,24 +24,32 @@ struct Camera {
     Vec3 up{0, 1, 0};
     Vec3 right{1, 0, 0};
     bool orthographic = false;
-    double angle_deg = 40;  ///< horizontal angle of view; perspective only
-    double width = 1;       ///< of the view in scene units; orthographic only
+    double angle_deg = 40; ///< horizontal angle of view; perspective only
+    double width = 1;      ///< of the view in scene units; orthographic only
 
-    /// Pixels per scene unit at the point, for a picture `width_px` wide: what a length seen face on measures.
-    /// Infinity at or behind the eye of a perspective camera.
+    /// Pixels per scene unit at the point, for a picture `width_px` wide: what a length at right angles to
+    /// the line of sight measures, at most (towards the corners of a perspective picture it is drawn out
+    /// radially). Infinity at or behind the eye of a perspective camera.
     double pixels_per_unit(Vec3 point, int width_px) const;
 };
 
 struct Light {
-    Vec3 location{0.0};  ///< of a sun: a unit vector towards it
+    Vec3 location{0.0}; ///< of a sun: a unit vector towards it
     bool sun = false;
     Rgb rgb{1.0};
-    bool shadowless = false;
+    bool shadowless = false; ///< then it makes no highlights either, as in POV-Ray
 };
 
+/// The background in a direction d (unit) runs from `horizon`, where dot(d, axis) <= from, to `zenith`,
+/// where dot(d, axis) >= to, linearly in that product.
 struct Sky {
     Rgb zenith{1.0};
-    Rgb horizon{1.0};  ///< equal to zenith: a plain background
+    Rgb horizon{1.0}; ///< equal to zenith: a plain background
+    Vec3 axis{0, 1, 0};
+    double from = 0;
+    double to = 1;
+
+    Rgb colour(Vec3 direction) const;
 };
 
 struct Ground {
@@ -62,10 +70,10 @@ struct View {
 using CameraOverride = CameraSetting;
 
 /// Resolves the scene statements of the model. What they leave out is chosen so that the whole of `bounds`
-/// is in the picture with a small margin: flat models (no depth along one axis) face on, models in space
-/// from the front, a little from the right and above; a key light with shadows over the viewer's left
-/// shoulder, a weaker shadowless fill from the right, and a sky that lets the model stand out. Requires
-/// bounds that are not empty.
+/// is in the picture with a small margin: flat models (no depth along one axis) face on, undistorted and in
+/// their true colours; models in space from the front, a little from the right and above, with a key light
+/// with shadows over the viewer's left shoulder and a weaker shadowless fill from the right; a background
+/// that lets the model stand out. Requires bounds that are not empty.
 View frame(const Graph& graph, const Box& bounds, ImageSize size, const CameraOverride& camera = {});
 
-}  // namespace graftal
+} // namespace graftal

@@ -1,0 +1,116 @@
+#include "compiler/scene/backdrop.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <numbers>
+
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+
+namespace graftal {
+
+namespace {
+
+constexpr int path_count = 400;
+constexpr int path_length = 60; // by then half-covering tints leave 1e-18 of what is below
+
+/// Of 0 to n - 1; the same sequence everywhere (splitmix64).
+class Dice {
+  public:
+    std::size_t roll(std::size_t n) {
+        state_ += 0x9e3779b97f4a7c15u;
+        std::uint64_t z = state_;
+        z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
+        z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
+        return static_cast<std::size_t>((z ^ (z >> 31)) % n);
+    }
+
+  private:
+    std::uint64_t state_ = 0;
+};
+
+Rgb colour_of_path(const Graph& graph, Dice& dice) {
+    PathTint tint;
+    Rgb base = Material{}.rgb;
+    ObjectId at = graph.root;
+    for (int step = 0; step < path_length; ++step) {
+        const Object& object = graph.objects[at];
+        if (object.primitive || object.instances.empty()) break;
+        const Instance& instance = object.instances[dice.roll(object.instances.size())];
+        tint = tint * PathTint(instance.tint);
+        if (instance.material) base = graph.materials[*instance.material].rgb;
+        at = instance.master;
+    }
+    return tint.over(base);
+}
+
+/// How different two colours look, about 0 to 1: cube roots are near to even steps for the eye, and green
+/// counts most for lightness.
+double contrast(Rgb a, Rgb b) {
+    const Rgb difference(std::cbrt(a.r) - std::cbrt(b.r), std::cbrt(a.g) - std::cbrt(b.g),
+                         std::cbrt(a.b) - std::cbrt(b.b));
+    return std::sqrt(glm::dot(Rgb(0.3, 0.55, 0.15), difference * difference));
+}
+
+/// What the less visible fifth of the colours has at most.
+double low_contrast(const std::vector<Rgb>& colours, Rgb background) {
+    std::vector<double> contrasts;
+    for (const Rgb& colour : colours)
+        contrasts.push_back(contrast(colour, background));
+    const auto fifth = contrasts.begin() + static_cast<std::ptrdiff_t>(contrasts.size() / 5);
+    std::nth_element(contrasts.begin(), fifth, contrasts.end());
+    return *fifth;
+}
+
+struct Shades {
+    Rgb zenith, horizon;
+};
+
+constexpr double enough_contrast = 0.2;
+
+Shades choose(const std::vector<Rgb>& colours, Shades light, Shades dark) {
+    const double over_light = low_contrast(colours, 0.5 * (light.zenith + light.horizon));
+    const double over_dark = low_contrast(colours, 0.5 * (dark.zenith + dark.horizon));
+    return over_light >= std::min(enough_contrast, over_dark) ? light : dark;
+}
+
+} // namespace
+
+std::vector<Rgb> sample_colours(const Graph& graph) {
+    Dice dice;
+    std::vector<Rgb> colours;
+    for (int i = 0; i < path_count; ++i)
+        colours.push_back(colour_of_path(graph, dice));
+    return colours;
+}
+
+Sky automatic_sky(const std::vector<Rgb>& colours, const View& view, bool flat) {
+    if (flat) {
+        const Rgb paper(0.90, 0.89, 0.86), slate(0.012, 0.015, 0.022);
+        const Shades plain = choose(colours, {paper, paper}, {slate, slate});
+        return {.zenith = plain.zenith, .horizon = plain.horizon};
+    }
+    // Lit sides are about as bright as the plain colour, those in the shade a third of it.
+    std::vector<Rgb> shaded;
+    for (const Rgb& colour : colours)
+        shaded.insert(shaded.end(), {0.85 * colour, 0.45 * colour});
+    const Shades shades =
+        choose(shaded, {{0.42, 0.56, 0.76}, {0.80, 0.86, 0.92}}, {{0.035, 0.06, 0.11}, {0.17, 0.22, 0.29}});
+    Sky sky{.zenith = shades.zenith, .horizon = shades.horizon};
+    const Camera& camera = view.camera;
+    if (camera.orthographic) {
+        sky.zenith = sky.horizon = 0.5 * (sky.zenith + sky.horizon);
+    } else if (view.ground) {
+        sky.to = 0.6;
+    } else {
+        const double half = camera.angle_deg * std::numbers::pi / 360;
+        const double rise = std::sin(std::atan(std::tan(half) * view.size.height / view.size.width));
+        sky.axis = camera.up;
+        sky.from = -rise;
+        sky.to = rise;
+    }
+    return sky;
+}
+
+} // namespace graftal

@@ -1,0 +1,254 @@
+#include "compiler/scene/framing.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+
+namespace graftal {
+
+namespace {
+
+constexpr double margin = 0.05;            // of the picture's width or height, on each side
+constexpr double automatic_angle_deg = 36; // across the longer side of the picture
+constexpr double widest_angle_deg = 90;    // that fitting may choose
+constexpr double close_up_angle_deg = 60;  // where the eye is too near to fit
+constexpr double azimuth_deg = 28;         // of the eye, from the front towards the right
+constexpr double elevation_deg = 20;       // of the eye
+constexpr double slab_elevation_deg = 42;  // of the eye over a model that lies on the ground
+constexpr double solid_share = 0.35;       // thickness from which on a model is seen fully from the side
+
+double radians(double degrees) {
+    return degrees * std::numbers::pi / 180;
+}
+
+/// Bounds as the camera sees them: centred, of half extent 1, so that no length can over- or underflow.
+struct Subject {
+    Vec3 centre;
+    double scale = 1; ///< scene units
+    std::array<Vec3, 8> corners;
+
+    explicit Subject(const Box& bounds) : centre(0.5 * bounds.min + 0.5 * bounds.max) {
+        const Vec3 half = 0.5 * bounds.max - 0.5 * bounds.min;
+        const double reach = std::max({std::abs(centre.x), std::abs(centre.y), std::abs(centre.z)});
+        scale = std::max({half.x, half.y, half.z, 1e-12 * reach});
+        if (scale == 0) scale = 1; // a point at the origin
+        for (int i = 0; i < 8; ++i)
+            corners[static_cast<std::size_t>(i)] =
+                Vec3(i & 1 ? half.x : -half.x, i & 2 ? half.y : -half.y, i & 4 ? half.z : -half.z) / scale;
+    }
+
+    Vec3 local(Vec3 world) const { return (world - centre) / scale; }
+    Vec3 world(Vec3 local) const { return centre + scale * local; }
+};
+
+Vec3 axis_vector(int axis) {
+    Vec3 v(0.0);
+    v[axis] = 1;
+    return v;
+}
+
+Vec3 eye_direction(double azimuth, double elevation) {
+    const double a = radians(azimuth), e = radians(elevation);
+    return {std::sin(a) * std::cos(e), std::sin(e), std::cos(a) * std::cos(e)};
+}
+
+/// From the model towards the eye, where nothing says otherwise.
+Vec3 automatic_eye_direction(const Box& bounds) {
+    const double share = thickness(bounds);
+    const int axis = thinnest_axis(bounds);
+    if (share <= flat_share) return axis_vector(axis);
+    const double t = std::clamp((share - thin_share) / (solid_share - thin_share), 0.0, 1.0);
+    const double solid = t * t * (3 - 2 * t);
+    if (axis == 1)
+        return eye_direction(azimuth_deg, slab_elevation_deg + solid * (elevation_deg - slab_elevation_deg));
+    if (share <= thin_share) return axis_vector(axis);
+    const Vec3 aside = eye_direction(azimuth_deg, elevation_deg);
+    return glm::normalize(solid * aside + (1 - solid) * axis_vector(axis));
+}
+
+/// Sets up and right to go with the direction. An up vector along the direction says nothing: then the y
+/// axis stands in, and where that is the line of sight itself, the z axis, away from the eye's side.
+void orient(Camera& camera, Vec3 direction, Vec3 up) {
+    camera.direction = direction;
+    const auto aside = [&](Vec3 v) { return glm::cross(direction, v); };
+    const auto useless = [&](Vec3 v) {
+        const double length = glm::length(v);
+        return !(length > 0) || !std::isfinite(length) || glm::length(aside(v)) <= 1e-9 * length;
+    };
+    if (useless(up)) up = {0, 1, 0};
+    if (useless(up)) up = {0, 0, direction.y < 0 ? -1 : 1};
+    camera.right = glm::normalize(aside(up));
+    camera.up = glm::cross(camera.right, direction);
+}
+
+/// Half extents of the picture per unit of depth, less the margin.
+struct Frustum {
+    double x, y;
+
+    Frustum(double angle_deg, double aspect)
+        : x((1 - 2 * margin) * std::tan(radians(angle_deg) / 2)), y(x / aspect) {}
+};
+
+/// A point in the camera's axes: to the right, up, and depth.
+Vec3 in_axes(const Camera& camera, Vec3 p) {
+    return {glm::dot(p, camera.right), glm::dot(p, camera.up), glm::dot(p, camera.direction)};
+}
+
+/// One step towards equal margins left and right, below and above, which the tighter pair has already.
+void centre_eye(const Camera& camera, const Subject& subject, Vec3& eye) {
+    Vec3 most(-std::numeric_limits<double>::infinity()), least(-most);
+    for (const Vec3 corner : subject.corners) {
+        const Vec3 p = in_axes(camera, corner) - eye;
+        most = glm::max(most, p / p.z);
+        least = glm::min(least, p / p.z);
+    }
+    const double depth = in_axes(camera, Vec3(0.0)).z - eye.z;
+    eye.x += depth * (most.x + least.x) / 2;
+    eye.y += depth * (most.y + least.y) / 2;
+}
+
+/// The nearest eye whose frustum holds all corners, in the camera's axes. Each side plane of the frustum asks
+/// for slope * depth_of_eye <= c: the two that are tighter meet in the answer.
+Vec3 nearest_eye(const Camera& camera, const Subject& subject, Frustum slope) {
+    double depth = std::numeric_limits<double>::infinity();
+    Vec3 most(-depth), least(-depth);
+    for (const Vec3 corner : subject.corners) {
+        const Vec3 p = in_axes(camera, corner);
+        most = glm::max(most, Vec3(p.x - slope.x * p.z, p.y - slope.y * p.z, 0));
+        least = glm::max(least, Vec3(-p.x - slope.x * p.z, -p.y - slope.y * p.z, 0));
+        depth = std::min(depth, p.z - 0.25); // never in the model
+    }
+    depth = std::min({depth, -(most.x + least.x) / (2 * slope.x), -(most.y + least.y) / (2 * slope.y)});
+    Vec3 eye((most.x - least.x) / 2, (most.y - least.y) / 2, depth);
+    for (int i = 0; i < 20; ++i)
+        centre_eye(camera, subject, eye);
+    return eye;
+}
+
+/// How far the eye must be from `target` (local), which stays in the middle of the picture.
+double nearest_distance(const Camera& camera, const Subject& subject, Vec3 target, Frustum slope) {
+    double distance = 0;
+    for (const Vec3 corner : subject.corners) {
+        const Vec3 p = in_axes(camera, corner - target);
+        distance =
+            std::max({distance, std::abs(p.x) / slope.x - p.z, std::abs(p.y) / slope.y - p.z, 0.25 - p.z});
+    }
+    return distance;
+}
+
+/// The horizontal angle that shows all corners from a given eye (local).
+double fitting_angle_deg(const Camera& camera, const Subject& subject, Vec3 eye, double aspect) {
+    double tangent = 0;
+    for (const Vec3 corner : subject.corners) {
+        const Vec3 p = in_axes(camera, corner - eye);
+        if (!(p.z > 0)) return close_up_angle_deg;
+        tangent = std::max({tangent, std::abs(p.x) / p.z, aspect * std::abs(p.y) / p.z});
+    }
+    const double angle = 2 * std::atan(tangent / (1 - 2 * margin)) * 180 / std::numbers::pi;
+    return angle > widest_angle_deg ? close_up_angle_deg : std::max(angle, 1e-6);
+}
+
+/// `automatic_angle_deg` across the longer side.
+double automatic_horizontal_angle_deg(double aspect) {
+    const double longer = std::tan(radians(automatic_angle_deg) / 2);
+    return 2 * std::atan(longer * std::min(aspect, 1.0)) * 180 / std::numbers::pi;
+}
+
+void place_perspective(Camera& camera, const CameraSetting& setting, const Subject& subject, double aspect) {
+    if (setting.location) {
+        camera.location = *setting.location;
+        camera.angle_deg = setting.angle_deg.value_or(
+            fitting_angle_deg(camera, subject, subject.local(*setting.location), aspect));
+        return;
+    }
+    camera.angle_deg = setting.angle_deg.value_or(automatic_horizontal_angle_deg(aspect));
+    const Frustum slope(camera.angle_deg, aspect);
+    if (setting.look_at) {
+        const Vec3 target = subject.local(*setting.look_at);
+        const double distance = nearest_distance(camera, subject, target, slope);
+        camera.location = subject.world(target - distance * camera.direction);
+    } else {
+        const Vec3 eye = nearest_eye(camera, subject, slope);
+        camera.location = subject.world(eye.x * camera.right + eye.y * camera.up + eye.z * camera.direction);
+    }
+}
+
+/// Parallel rays start in the plane of the location, so that it lies well in front of the model.
+void place_orthographic(Camera& camera, const CameraSetting& setting, const Subject& subject, double aspect) {
+    const Vec3 anchor = setting.location  ? subject.local(*setting.location)
+                        : setting.look_at ? subject.local(*setting.look_at)
+                                          : Vec3(0.0);
+    double half_width = 0;
+    double nearest = 0;
+    for (const Vec3 corner : subject.corners) {
+        const Vec3 p = in_axes(camera, corner - anchor);
+        half_width = std::max({half_width, std::abs(p.x), aspect * std::abs(p.y)});
+        nearest = std::min(nearest, p.z);
+    }
+    if (half_width == 0) half_width = 1; // a point, or a segment seen along its length
+    camera.orthographic = true;
+    camera.width = setting.width.value_or(2 * subject.scale * half_width / (1 - 2 * margin));
+    camera.location = setting.location.value_or(subject.world(anchor - (3 - nearest) * camera.direction));
+}
+
+} // namespace
+
+int thinnest_axis(const Box& bounds) {
+    const Vec3 size = 0.5 * bounds.max - 0.5 * bounds.min;
+    // Extents that differ by rounding only are equal.
+    const double least = std::min({size.x, size.y, size.z});
+    const double slack = least + flat_share * std::max({size.x, size.y, size.z});
+    for (const int axis : {2, 0})
+        if (size[axis] <= slack) return axis;
+    return 1;
+}
+
+double thickness(const Box& bounds) {
+    const Vec3 size = 0.5 * bounds.max - 0.5 * bounds.min;
+    const double largest = std::max({size.x, size.y, size.z});
+    return largest > 0 ? std::min({size.x, size.y, size.z}) / largest : 0;
+}
+
+CameraSetting merge(const CameraSetting& model, const CameraSetting& over) {
+    CameraSetting merged = model;
+    if (over.location) merged.location = over.location;
+    if (over.look_at) merged.look_at = over.look_at;
+    if (over.up) merged.up = over.up;
+    if (over.angle_deg) merged.angle_deg = over.angle_deg;
+    if (over.width) merged.width = over.width;
+    if (over.orthographic || over.width)
+        merged.orthographic = true;
+    else if (over.angle_deg)
+        merged.orthographic = false;
+    else if (merged.width && !merged.angle_deg)
+        merged.orthographic = true;
+    return merged;
+}
+
+Camera frame_camera(const CameraSetting& setting, const Box& bounds, ImageSize size) {
+    const Subject subject(bounds);
+    const double aspect = static_cast<double>(size.width) / size.height;
+    const bool figure =
+        thickness(bounds) <= thin_share && (thickness(bounds) <= flat_share || thinnest_axis(bounds) != 1);
+    Camera camera;
+    Vec3 direction = -automatic_eye_direction(bounds);
+    if (setting.location) {
+        const Vec3 target = setting.look_at ? subject.local(*setting.look_at) : Vec3(0.0);
+        const Vec3 sight = target - subject.local(*setting.location);
+        const double length = glm::length(sight);
+        if (length > 0 && std::isfinite(length)) direction = sight / length;
+    }
+    orient(camera, direction, setting.up.value_or(Vec3(0, 1, 0)));
+    if (setting.orthographic || (figure && !setting.location && !setting.angle_deg))
+        place_orthographic(camera, setting, subject, aspect);
+    else
+        place_perspective(camera, setting, subject, aspect);
+    return camera;
+}
+
+} // namespace graftal

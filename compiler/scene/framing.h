@@ -1,0 +1,27 @@
+#pragma once
+
+#include "compiler/scene/scene.h"
+
+namespace graftal {
+
+/// Extent along an axis of a box, as a share of its largest extent, at or below which there is no depth.
+inline constexpr double flat_share = 1e-6;
+/// Share below which a model is a figure drawn with thick lines: shown face on as well, but lit as a solid.
+inline constexpr double thin_share = 0.06;
+
+/// The axis (0, 1, 2 for x, y, z) along which the box is thinnest; of equally thin ones z, then x, then y.
+int thinnest_axis(const Box& bounds);
+
+/// Extent along the thinnest axis over the largest extent; 0 for a point.
+double thickness(const Box& bounds);
+
+/// `over` taking precedence over `model`, field by field. An angle or a width says which projection is meant.
+CameraSetting merge(const CameraSetting& model, const CameraSetting& over);
+
+/// The camera that fulfils the setting and shows the whole of the bounds: as near, or as wide, as leaves a
+/// margin of 5 % on either side of the tighter dimension. Only where location and angle (or width) are both
+/// given, or the eye is so near that more than 90 degrees would be needed, part of the bounds may be out of
+/// view.
+Camera frame_camera(const CameraSetting& setting, const Box& bounds, ImageSize size);
+
+} // namespace graftal

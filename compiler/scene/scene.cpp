@@ -1,0 +1,113 @@
+#include "compiler/scene/scene.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+
+#include "compiler/scene/backdrop.h"
+#include "compiler/scene/framing.h"
+#include "compiler/support/check.h"
+
+namespace graftal {
+
+namespace {
+
+/// A vector in the camera's axes (right, up, towards the viewer), in world axes.
+Vec3 from_camera(const Camera& camera, Vec3 v) {
+    return v.x * camera.right + v.y * camera.up - v.z * camera.direction;
+}
+
+/// A model without depth takes one light at right angles, so that a colour c is drawn as ambient * c +
+/// diffuse * light * c = c. The light is shadowless: a highlight would lie over the whole of it.
+std::vector<Light> flat_lights(const Camera& camera, int axis) {
+    const Material ordinary;
+    Vec3 towards(0.0);
+    towards[axis] = camera.direction[axis] > 0 ? -1 : 1;
+    return {{.location = towards,
+             .sun = true,
+             .rgb = Rgb((1 - ordinary.ambient) / ordinary.diffuse),
+             .shadowless = true}};
+}
+
+/// Key and fill: on white of the default material they add up to less than 1 whichever way it faces.
+std::vector<Light> solid_lights(const Camera& camera, bool over_ground) {
+    Vec3 key = glm::normalize(from_camera(camera, {-0.6, 0.75, 0.75}));
+    // Over ground, an eye that looks up must not put the sun below the horizon.
+    if (over_ground && key.y < 0.3) key = glm::normalize(Vec3(key.x, 0.3, key.z));
+    const Vec3 fill = glm::normalize(from_camera(camera, {0.85, 0.2, 0.6}));
+    return {{.location = key, .sun = true, .rgb = {0.98, 0.95, 0.89}},
+            {.location = fill, .sun = true, .rgb = {0.15, 0.17, 0.20}, .shadowless = true}};
+}
+
+std::vector<Light> model_lights(const std::vector<LightSetting>& settings) {
+    std::vector<Light> lights;
+    for (const LightSetting& setting : settings) {
+        Light light{setting.location, setting.sun, setting.rgb, setting.shadowless};
+        if (setting.sun) {
+            const Vec3 size = glm::abs(setting.location);
+            const double largest = std::max({size.x, size.y, size.z});
+            // A sun from nowhere stands overhead.
+            light.location = largest > 0 ? glm::normalize(setting.location / largest) : Vec3(0, 1, 0);
+        }
+        lights.push_back(light);
+    }
+    return lights;
+}
+
+Ground resolve(const GroundSetting& setting, const std::vector<Material>& materials) {
+    Ground ground;
+    ground.height = setting.height;
+    ground.material.rgb = {0.42, 0.41, 0.38};
+    ground.material.specular = 0;
+    if (setting.material)
+        for (const Material& material : materials)
+            if (material.name == *setting.material) ground.material = material;
+    if (setting.rgb) ground.material.rgb = *setting.rgb;
+    return ground;
+}
+
+} // namespace
+
+double Camera::pixels_per_unit(Vec3 point, int width_px) const {
+    if (orthographic) return width_px / width;
+    const Vec3 sight = point - location;
+    const double depth = glm::dot(sight, direction);
+    if (!(depth > 0)) return std::numeric_limits<double>::infinity();
+    const double focal_px = 0.5 * width_px / std::tan(angle_deg * std::numbers::pi / 360);
+    return focal_px / depth * (glm::length(sight) / depth);
+}
+
+Rgb Sky::colour(Vec3 direction) const {
+    const double t = std::clamp((glm::dot(direction, axis) - from) / (to - from), 0.0, 1.0);
+    return (1 - t) * horizon + t * zenith;
+}
+
+View frame(const Graph& graph, const Box& bounds, ImageSize size, const CameraOverride& camera) {
+    GRAFTAL_CHECK(!bounds.empty(), "frame: empty bounds");
+    GRAFTAL_CHECK(size.width > 0 && size.height > 0, "frame: empty picture");
+    const SceneSettings& settings = graph.settings;
+    const bool flat = thickness(bounds) <= flat_share;
+    View view;
+    view.size = size;
+    view.camera = frame_camera(merge(settings.camera.value_or(CameraSetting{}), camera), bounds, size);
+    if (settings.ground) view.ground = resolve(*settings.ground, graph.materials);
+    if (!settings.lights.empty())
+        view.lights = model_lights(settings.lights);
+    else if (flat)
+        view.lights = flat_lights(view.camera, thinnest_axis(bounds));
+    else
+        view.lights = solid_lights(view.camera, view.ground.has_value());
+    if (settings.background) {
+        view.sky.zenith = settings.background->rgb;
+        view.sky.horizon = settings.background->horizon.value_or(settings.background->rgb);
+    } else {
+        view.sky = automatic_sky(sample_colours(graph), view, flat);
+    }
+    return view;
+}
+
+} // namespace graftal

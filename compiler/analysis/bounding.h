@@ -11,9 +11,9 @@ namespace graftal {
 
 /// Outer bounds of an object's limit set, in the object's own frame.
 struct ObjectBounds {
-    Box box;   ///< every face touches the set to within `box_tolerance` of its size
+    Box box;   ///< every face touches the set to within 1e-10 of its size where effort allows
     Ball ball; ///< holds the set; its radius within a few per cent of the least where effort allows
-    bool unbounded = false;  ///< holds a plane; box and ball are then of the rest
+    bool unbounded = false; ///< holds a plane; box and ball are then of the rest
 };
 
 /// The box of a canonical primitive (exact), and its smallest ball. A plane has neither.
@@ -29,4 +29,4 @@ double primitive_support(PrimitiveKind kind, Vec3 direction);
 std::vector<ObjectBounds> bound_objects(const Graph& graph, const Components& components,
                                         const Contraction& contraction);
 
-}  // namespace graftal
+} // namespace graftal

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "compiler/graph/components.h"
@@ -16,13 +17,16 @@ struct GraphStep {
 
 enum class Verdict { acyclic, proved, refuted, undecided };
 
-/// A checkable reason why every cycle contracts: for each object of a cycle a metric P = L^T L in which every
-/// path of `depth` instances within its component shrinks lengths by rate^depth at least. Depth 1 is the
-/// usual case; identity metrics with depth 1 say that every instance contracts as it stands.
+/// A checkable reason why every cycle contracts. Each object of a cycle has a metric |L x| p. Along every
+/// path of `depth` instances that stays in one component there is a prefix (of one instance or more, root
+/// side first, from v to u) whose linear part M shrinks lengths by `rate` an instance at least:
+///     |L_v M L_u^-1|_2 p_u <= rate^length p_v.
+/// Depth 1 is the usual case; there identity metrics say that the instances contract as they stand, up to a
+/// choice of unit for each object.
 struct ContractionCertificate {
-    std::vector<Mat3> metric;    ///< L by object, upper triangular; the identity outside cycles
-    std::vector<double> weight;  ///< p_v > 0 by object: |L_v A_e L_u^-1| p_u <= rate p_v for v <- u at depth 1
-    double rate = 0;             ///< < 1
+    std::vector<Mat3> metric;       ///< L by object, upper triangular; the identity outside cycles
+    std::vector<double> log_weight; ///< log p by object; 0 outside cycles
+    double rate = 0;                ///< < 1
     int depth = 1;
 };
 
@@ -32,8 +36,8 @@ struct Contraction {
     Verdict verdict = Verdict::acyclic;
     double lower = 0;
     double upper = 0;
-    std::vector<GraphStep> worst_cycle;  ///< the cycle that gives `lower`, from an object back to itself
-    ContractionCertificate certificate;  ///< of a PROVED verdict
+    std::vector<GraphStep> worst_cycle; ///< the cycle that gives `lower`, from an object back to itself
+    ContractionCertificate certificate; ///< of a PROVED verdict
 
     /// The figure to print: the spectral radius of the worst cycle, per instance.
     double rate() const { return lower; }
@@ -44,8 +48,13 @@ struct Contraction {
 /// undecided, with the interval reached. A refutation names a cycle whose spectral radius is at least 1.
 Contraction decide_contraction(const Graph& graph, const Components& components);
 
-/// Re-checks a certificate from the graph alone, by other means than those that found it.
+/// Re-checks a certificate from the graph alone, by other means than those that found it: eigenvalues of
+/// M^T M with a margin for rounding, over all paths as far as needed. False, too, where that takes over
+/// 10^7 products.
 bool certificate_holds(const Graph& graph, const Components& components,
                        const ContractionCertificate& certificate);
 
-}  // namespace graftal
+/// The objects along a closed walk by name, e.g. "a -> b -> a"; the middle of a long one is left out.
+std::string describe_cycle(const Graph& graph, const std::vector<GraphStep>& cycle);
+
+} // namespace graftal

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -11,14 +12,18 @@
 namespace graftal {
 
 /// The primitives that an unfolding to `steps` levels draws (see graph.h, "Levels"), exact, in decimal; a
-/// fitted proxy counts as one. Without `steps` an unending graph has no count. O(graph * steps) big-integer
-/// additions; steps over `max_counted_steps` give nothing too.
+/// fitted proxy counts as one. Ending graphs need no steps. Nothing where an unending graph has no steps or
+/// more than `max_counted_steps`, and where the number has over `max_counted_digits` digits or costs over
+/// some seconds to add up: O(graph * steps * digits), equal objects counted once.
 inline constexpr unsigned max_counted_steps = 100'000;
+inline constexpr unsigned max_counted_digits = 1'000'000;
 std::optional<std::string> count_leaves(const Graph& graph, const Components& components,
                                         std::optional<unsigned> steps);
 
 /// The same counts in floating point, for planning: result[s][v] leaves of object v with s levels left, for
-/// s = 0 .. steps (one row for an ending graph); infinity where they overflow.
+/// s = 0 .. steps (one row for an ending graph); infinity where they overflow. The table ends early at
+/// `max_approximate_counts` numbers: the last row then stands for the deeper ones too.
+inline constexpr std::size_t max_approximate_counts = std::size_t{1} << 26;
 std::vector<std::vector<double>> approximate_leaf_counts(const Graph& graph, const Components& components,
                                                          unsigned steps);
 
@@ -27,4 +32,4 @@ std::vector<std::vector<double>> approximate_leaf_counts(const Graph& graph, con
 /// within a cycle is no similarity. Exact where the open set condition holds, an upper bound otherwise.
 std::optional<double> similarity_dimension(const Graph& graph, const Components& components);
 
-}  // namespace graftal
+} // namespace graftal

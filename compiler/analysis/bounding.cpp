@@ -1,0 +1,171 @@
+#include "compiler/analysis/bounding.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+
+#include "compiler/analysis/cycle_graph.h"
+#include "compiler/analysis/invariant.h"
+#include "compiler/analysis/outer.h"
+#include "compiler/analysis/primitive_shape.h"
+#include "compiler/analysis/support_query.h"
+#include "compiler/support/check.h"
+
+namespace graftal {
+
+namespace {
+
+constexpr double exact = 1e-11; // tolerance of box faces, relative to the size
+constexpr double rough = 1e-3;  // of a first pass over a cycle, which makes the second fast
+
+/// Pieces to spend on support functions, dealt out so that all objects get some and what one leaves over
+/// the next may use.
+class Effort {
+  public:
+    explicit Effort(std::uint64_t queries) : queries_left_(queries) {}
+
+    std::uint64_t allowance() const {
+        return std::clamp<std::uint64_t>(8 * left_ / std::max<std::uint64_t>(queries_left_, 1), 24, 400'000);
+    }
+    void spend(std::uint64_t pieces) {
+        left_ -= std::min(left_, pieces);
+        if (queries_left_ > 0) --queries_left_;
+    }
+
+  private:
+    std::uint64_t left_ = 6'000'000;
+    std::uint64_t queries_left_;
+};
+
+class Bounder {
+  public:
+    Bounder(const Graph& graph, const Components& components, const Contraction& contraction)
+        : graph_(graph), components_(components), contraction_(contraction), outers_(graph.objects.size()),
+          unbounded_(graph.objects.size(), false), search_(graph, outers_),
+          effort_(12 * graph.objects.size()) {}
+
+    std::vector<ObjectBounds> run() {
+        const std::vector<std::uint32_t> places = places_in_components(components_);
+        for (std::uint32_t c = 0; c < components_.members.size(); ++c) {
+            if (components_.cyclic[c])
+                bound_component(cycle_graph(graph_, components_, places, c));
+            else
+                bound_object(components_.members[c].front());
+        }
+        std::vector<ObjectBounds> result;
+        for (ObjectId id = 0; id < graph_.objects.size(); ++id)
+            result.push_back(bounds_of(id));
+        return result;
+    }
+
+  private:
+    void bound_component(const CycleGraph& cycle) {
+        bound_cycle(cycle, components_, contraction_.certificate, outers_);
+        for (const double tolerance : {rough, exact})
+            for (const ObjectId id : cycle.objects)
+                find_box(id, tolerance);
+    }
+
+    void bound_object(ObjectId id) {
+        const Object& object = graph_.objects[id];
+        if (object.primitive) {
+            bound_primitive(id, *object.primitive);
+            return;
+        }
+        Outer& outer = outers_[id];
+        for (const Instance& instance : object.instances) {
+            unbounded_[id] = unbounded_[id] || unbounded_[instance.master];
+            const Outer& part = outers_[instance.master];
+            if (part.empty) continue;
+            outer.box.include(transformed(instance.parent_from_child, part.box));
+            outer.empty = false;
+        }
+        if (outer.empty) return;
+        keep_in_range(outer.box);
+        outer.set_ball(circumball(outer.box));
+        find_box(id, exact);
+    }
+
+    void bound_primitive(ObjectId id, PrimitiveKind kind) {
+        const ObjectBounds bounds = primitive_bounds(kind);
+        unbounded_[id] = bounds.unbounded;
+        if (bounds.unbounded) return;
+        Outer& outer = outers_[id];
+        outer.box = bounds.box;
+        outer.set_ball(bounds.ball);
+        outer.empty = false;
+        for (int i = 0; i < 3; ++i) {
+            Vec3 axis(0.0);
+            axis[i] = 1;
+            outer.points[static_cast<std::size_t>(outer.point_count++)] = primitive_support_point(kind, axis);
+            outer.points[static_cast<std::size_t>(outer.point_count++)] =
+                primitive_support_point(kind, -axis);
+        }
+    }
+
+    /// Narrows the box by support functions along the axes; keeps the points that its faces touch.
+    void find_box(ObjectId id, double relative_tolerance) {
+        Outer& outer = outers_[id];
+        Box box = outer.box;
+        std::array<Vec3, 6> points;
+        const double size = glm::length(outer.box.max - outer.box.min);
+        const double position = std::max(glm::length(outer.box.max), glm::length(outer.box.min));
+        const double tolerance = relative_tolerance * size + 1e-15 * position;
+        for (int i = 0; i < 6; ++i) {
+            const int axis = i / 2;
+            Vec3 direction(0.0);
+            direction[axis] = i % 2 == 0 ? 1 : -1;
+            const Support found = search_.run(id, direction, tolerance, effort_.allowance());
+            effort_.spend(search_.pieces());
+            const double face = within_range(found.upper + 4e-12 * size + 4e-15 * position);
+            if (i % 2 == 0)
+                box.max[axis] = std::min(box.max[axis], face);
+            else
+                box.min[axis] = std::max(box.min[axis], -face);
+            points[static_cast<std::size_t>(i)] = found.point;
+        }
+        outer.box = box;
+        std::copy(points.begin(), points.end(), outer.points.begin());
+        outer.point_count = 6;
+        const Ball about = circumball(box);
+        if (about.radius < outer.ball().radius) outer.set_ball(about);
+    }
+
+    static void keep_in_range(Box& box) {
+        for (int i = 0; i < 3; ++i) {
+            box.min[i] = std::isnan(box.min[i]) ? -largest_length : within_range(box.min[i]);
+            box.max[i] = within_range(box.max[i]);
+        }
+    }
+
+    ObjectBounds bounds_of(ObjectId id) const {
+        const Outer& outer = outers_[id];
+        ObjectBounds bounds;
+        bounds.unbounded = unbounded_[id];
+        if (outer.empty) return bounds;
+        bounds.box = outer.box;
+        bounds.ball = outer.ball();
+        return bounds;
+    }
+
+    const Graph& graph_;
+    const Components& components_;
+    const Contraction& contraction_;
+    Outers outers_;
+    std::vector<bool> unbounded_;
+    SupportSearch search_;
+    Effort effort_;
+};
+
+} // namespace
+
+std::vector<ObjectBounds> bound_objects(const Graph& graph, const Components& components,
+                                        const Contraction& contraction) {
+    GRAFTAL_CHECK(contraction.verdict == Verdict::proved || contraction.verdict == Verdict::acyclic,
+                  "bound_objects: needs a contraction that is proved or acyclic");
+    return Bounder(graph, components, contraction).run();
+}
+
+} // namespace graftal

@@ -1,0 +1,142 @@
+#include "compiler/analysis/contraction.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "compiler/analysis/cycle_graph.h"
+#include "compiler/analysis/cycle_mean.h"
+
+namespace graftal {
+
+namespace {
+
+/// Radii this near to 1 count as 1: products of rotations are not more exact.
+constexpr double refuting_radius = 1 - 1e-12;
+/// Rates from here on are too near to 1 to be told from it by a re-check in floating point.
+constexpr double provable_rate = 1 - 1e-11;
+
+/// Logs of norms; a vanishing part has a very small one instead of -infinity.
+double log_norm(double norm) {
+    return std::log(std::max(norm, 1e-300));
+}
+
+/// Relative room in the rate for the rounding of a re-check that works by other means.
+double rounding_room(const ContractionCertificate& certificate) {
+    double largest_log = 0;
+    for (const double log_weight : certificate.log_weight)
+        largest_log = std::max(largest_log, std::abs(log_weight));
+    double condition = 1;
+    for (const Mat3& l : certificate.metric) {
+        if (l == Mat3(1.0)) continue;
+        const Vec3 sigma = singular_values(l);
+        condition = std::max(condition, sigma.x / sigma.z);
+    }
+    return 1e-12 + 1e-14 * (largest_log + condition * condition + certificate.depth);
+}
+
+/// What is known of one component: an interval, the walk behind its lower end, the reasons for its upper end.
+struct Findings {
+    double lower = 0;
+    double upper = 0;
+    std::vector<std::uint32_t> walk;
+    std::vector<double> log_weight;
+    std::vector<Mat3> metric;
+    double rate = 0; ///< of the weights and metrics at `depth`
+    int depth = 1;
+};
+
+Findings by_cycle_mean(const CycleGraph& cycle) {
+    std::vector<double> weight;
+    bool similarities = true;
+    for (const CycleEdge& edge : cycle.edges) {
+        const Mat3& linear = cycle.transform(edge).linear;
+        weight.push_back(log_norm(norm(linear)));
+        similarities = similarities && similarity_ratio(linear) > 0;
+    }
+    CycleMean found = max_cycle_mean(cycle, weight);
+    Findings findings;
+    findings.lower =
+        std::exp(log_spectral_radius(cycle, found.cycle) / static_cast<double>(found.cycle.size()));
+    findings.rate = findings.upper = std::exp(found.bound);
+    if (similarities && findings.upper - findings.lower <= 1e-9 * findings.upper)
+        findings.upper = findings.lower;
+    findings.walk = std::move(found.cycle);
+    findings.log_weight = std::move(found.potential);
+    findings.metric.assign(cycle.size(), Mat3(1.0));
+    return findings;
+}
+
+Findings examine(const CycleGraph& cycle) {
+    return by_cycle_mean(cycle);
+}
+
+/// The steps of a closed walk, begun at its object of least number.
+std::vector<GraphStep> steps_of(const CycleGraph& cycle, const std::vector<std::uint32_t>& walk) {
+    std::vector<GraphStep> steps;
+    for (const std::uint32_t e : walk)
+        steps.push_back(cycle.edges[e].step);
+    const auto least =
+        std::min_element(steps.begin(), steps.end(),
+                         [](const GraphStep& a, const GraphStep& b) { return a.object < b.object; });
+    std::rotate(steps.begin(), least, steps.end());
+    return steps;
+}
+
+void take_in(Contraction& result, const CycleGraph& cycle, const Findings& findings) {
+    if (findings.lower > result.lower || result.worst_cycle.empty()) {
+        result.lower = findings.lower;
+        result.worst_cycle = steps_of(cycle, findings.walk);
+    }
+    result.upper = std::max(result.upper, findings.upper);
+    result.certificate.rate = std::max(result.certificate.rate, findings.rate);
+    result.certificate.depth = std::max(result.certificate.depth, findings.depth);
+    for (std::uint32_t v = 0; v < cycle.size(); ++v) {
+        result.certificate.metric[cycle.objects[v]] = findings.metric[v];
+        result.certificate.log_weight[cycle.objects[v]] = findings.log_weight[v];
+    }
+}
+
+} // namespace
+
+Contraction decide_contraction(const Graph& graph, const Components& components) {
+    Contraction result;
+    if (!components.any_cycle()) return result;
+    result.certificate.metric.assign(graph.objects.size(), Mat3(1.0));
+    result.certificate.log_weight.assign(graph.objects.size(), 0.0);
+    const std::vector<std::uint32_t> places = places_in_components(components);
+    for (std::uint32_t c = 0; c < components.members.size(); ++c) {
+        if (!components.cyclic[c]) continue;
+        const CycleGraph cycle = cycle_graph(graph, components, places, c);
+        take_in(result, cycle, examine(cycle));
+    }
+    result.certificate.rate *= 1 + rounding_room(result.certificate);
+    if (result.lower >= refuting_radius)
+        result.verdict = Verdict::refuted;
+    else if (result.certificate.rate <= provable_rate &&
+             certificate_holds(graph, components, result.certificate))
+        result.verdict = Verdict::proved;
+    else
+        result.verdict = Verdict::undecided;
+    if (result.verdict != Verdict::proved) result.certificate = {};
+    return result;
+}
+
+std::string describe_cycle(const Graph& graph, const std::vector<GraphStep>& cycle) {
+    constexpr std::size_t shown_in_full = 12;
+    constexpr std::size_t shown_at_each_end = 4;
+    std::string text;
+    for (std::size_t i = 0; i < cycle.size(); ++i) {
+        if (cycle.size() > shown_in_full && i == shown_at_each_end) {
+            const std::size_t left_out = cycle.size() - 2 * shown_at_each_end;
+            text += fmt::format("... ({} more) -> ", left_out);
+            i += left_out;
+        }
+        text += fmt::format("{} -> ", graph.objects[cycle[i].object].name);
+    }
+    if (!cycle.empty()) text += graph.objects[cycle.front().object].name;
+    return text;
+}
+
+} // namespace graftal

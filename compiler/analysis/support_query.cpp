@@ -1,0 +1,154 @@
+#include "compiler/analysis/support_query.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+
+#include "compiler/analysis/primitive_shape.h"
+
+namespace graftal {
+
+namespace {
+
+constexpr double nowhere = -std::numeric_limits<double>::infinity();
+
+std::uint64_t mixed(std::uint64_t hash, std::uint64_t value) {
+    hash ^= value + 0x9e3779b97f4a7c15u + (hash << 6) + (hash >> 2);
+    return hash * 0xff51afd7ed558ccdu;
+}
+
+} // namespace
+
+Support SupportSearch::run(ObjectId object, Vec3 direction, double tolerance, std::uint64_t most_pieces) {
+    arena_.clear();
+    heap_.clear();
+    filled_ = 0;
+    ++run_;
+    pieces_ = 0;
+    tolerance_ = tolerance;
+    best_ = discarded_ = nowhere;
+    Piece root;
+    root.direction = direction;
+    root.object = object;
+    arena_.push_back(root);
+    expand(0);
+    const auto nearer = [this](std::uint32_t a, std::uint32_t b) {
+        return arena_[a].upper != arena_[b].upper ? arena_[a].upper < arena_[b].upper : a > b;
+    };
+    double open = nowhere;
+    while (!heap_.empty()) {
+        std::pop_heap(heap_.begin(), heap_.end(), nearer);
+        const std::uint32_t top = heap_.back();
+        heap_.pop_back();
+        if (arena_[top].dominated) continue;
+        if (arena_[top].upper <= best_ + tolerance_ || pieces_ >= most_pieces) {
+            open = arena_[top].upper;
+            break;
+        }
+        expand(top);
+    }
+    const Vec3 point = point_in_root(best_parent_, best_instance_, best_point_);
+    return {std::max({open, discarded_, best_}), best_, point};
+}
+
+void SupportSearch::expand(std::uint32_t parent) {
+    const Piece from = arena_[parent];
+    const std::vector<Instance>& instances = graph_.objects[from.object].instances;
+    for (std::uint32_t i = 0; i < instances.size(); ++i) {
+        const Instance& instance = instances[i];
+        const Outer& outer = outers_[instance.master];
+        if (outer.empty) continue;
+        ++pieces_;
+        Piece piece;
+        piece.object = instance.master;
+        piece.parent = parent;
+        piece.instance = i;
+        piece.direction = from.direction * instance.parent_from_child.linear; // A^T d
+        piece.offset = from.offset + glm::dot(from.direction, instance.parent_from_child.translation);
+        const std::optional<PrimitiveKind> primitive = graph_.objects[instance.master].primitive;
+        const Vec3 point = primitive ? primitive_support_point(*primitive, piece.direction)
+                                     : outer.farthest_point(piece.direction);
+        const double reached = piece.offset + glm::dot(piece.direction, point);
+        if (reached > best_) {
+            best_ = reached;
+            best_parent_ = parent;
+            best_instance_ = i;
+            best_point_ = point;
+        }
+        if (primitive) continue;
+        piece.upper = within_range(piece.offset + outer.above(piece.direction));
+        piece.at_centre = piece.offset + glm::dot(piece.direction, outer.centre);
+        if (piece.upper <= best_ + tolerance_)
+            discarded_ = std::max(discarded_, piece.upper);
+        else
+            push(piece);
+    }
+}
+
+void SupportSearch::push(const Piece& piece) {
+    const auto number = static_cast<std::uint32_t>(arena_.size());
+    Slot& slot = slot_for(key_of(piece));
+    if (slot.run == run_) {
+        // Of two pieces of one object and direction only the farther one matters.
+        if (arena_[slot.piece].at_centre >= piece.at_centre) return;
+        arena_[slot.piece].dominated = true;
+    } else {
+        slot.run = run_;
+        slot.key = key_of(piece);
+        ++filled_;
+    }
+    slot.piece = number;
+    arena_.push_back(piece);
+    heap_.push_back(number);
+    std::push_heap(heap_.begin(), heap_.end(), [this](std::uint32_t a, std::uint32_t b) {
+        return arena_[a].upper != arena_[b].upper ? arena_[a].upper < arena_[b].upper : a > b;
+    });
+}
+
+SupportSearch::Key SupportSearch::key_of(const Piece& piece) {
+    const Vec3 d = piece.direction;
+    const double largest = std::max({std::abs(d.x), std::abs(d.y), std::abs(d.z)});
+    Key key;
+    key.object = piece.object;
+    if (!(largest > 0) || !std::isfinite(largest)) return key;
+    std::frexp(largest, &key.exponent);
+    constexpr int kept_bits = 41;
+    const auto rounded = [&key](double x) { return std::llround(std::ldexp(x, kept_bits - key.exponent)); };
+    key.x = rounded(d.x);
+    key.y = rounded(d.y);
+    key.z = rounded(d.z);
+    return key;
+}
+
+SupportSearch::Slot& SupportSearch::slot_for(const Key& key) {
+    if (2 * (filled_ + 1) > table_.size()) grow_table();
+    std::uint64_t hash = key.object;
+    for (const std::int64_t part : {key.x, key.y, key.z, std::int64_t{key.exponent}})
+        hash = mixed(hash, static_cast<std::uint64_t>(part));
+    std::size_t at = (hash ^ (hash >> 32)) & (table_.size() - 1);
+    while (table_[at].run == run_ && !(table_[at].key == key))
+        at = (at + 1) & (table_.size() - 1);
+    return table_[at];
+}
+
+void SupportSearch::grow_table() {
+    std::vector<Slot> old(std::max<std::size_t>(64, 2 * table_.size()));
+    std::swap(old, table_);
+    for (const Slot& slot : old)
+        if (slot.run == run_) slot_for(slot.key) = slot;
+}
+
+Vec3 SupportSearch::point_in_root(std::uint32_t parent, std::uint32_t instance, Vec3 point) const {
+    for (;;) {
+        const Piece& piece = arena_[parent];
+        point = graph_.objects[piece.object].instances[instance].parent_from_child(point);
+        if (parent == 0) return point;
+        instance = piece.instance;
+        parent = piece.parent;
+    }
+}
+
+} // namespace graftal

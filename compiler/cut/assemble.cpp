@@ -1,0 +1,320 @@
+#include "compiler/cut/assemble.h"
+
+#include <algorithm>
+#include <bit>
+#include <limits>
+#include <map>
+#include <tuple>
+#include <unordered_map>
+
+#include "compiler/analysis/bounding.h"
+#include "compiler/cut/bake.h"
+#include "compiler/cut/placed_set.h"
+
+namespace graftal {
+
+namespace {
+
+/// Pieces whose map is flatter than this are not placed by POV-Ray but baked into a neighbour above.
+constexpr double flattest_placement = 1e-5;
+
+/// One thing at its place, before the meshes exist.
+struct Placed {
+    static constexpr std::uint32_t no_request = UINT32_MAX;
+
+    std::uint32_t request = no_request; ///< which mesh; none: a primitive
+    std::uint32_t painter = 0;
+    PrimitiveKind kind = PrimitiveKind::sphere;
+    Affine world_from_thing; ///< the request's representative, or the primitive
+    PathTint tint;           ///< of a mesh
+    Rgb rgb{0.8};            ///< of a primitive, tints in front
+    std::optional<MaterialId> material;
+};
+
+using RequestKey = std::tuple<NodeId, std::uint32_t, std::int32_t, std::int64_t>;
+using PainterKey = std::tuple<std::uint32_t, std::uint32_t, std::array<double, 3>>;
+
+std::array<double, 3> as_array(const Rgb& rgb) {
+    return {rgb.r, rgb.g, rgb.b};
+}
+
+/// Depth-first unfolding down to the pieces that become meshes.
+class Unfolding {
+  public:
+    Unfolding(const CutGraph& cut, const Symmetry& symmetry, const Projection& projection,
+              const Choice& choice, Weights& weights)
+        : cut_(cut), symmetry_(symmetry), projection_(projection), choice_(choice), weights_(weights),
+          seen_(cut.nodes[cut.root].ball.radius) {}
+
+    bool run(const Piece& root, std::size_t max_placements) {
+        std::vector<Piece> stack = {root};
+        std::vector<Piece> children;
+        while (!stack.empty()) {
+            const Piece piece = stack.back();
+            stack.pop_back();
+            if (placed.size() > max_placements) return false;
+            visit(piece, children);
+            stack.insert(stack.end(), children.rbegin(), children.rend());
+        }
+        return true;
+    }
+
+    std::vector<Placed> placed;
+    std::vector<BakeRequest> requests;
+    double culled_detail = 0;
+
+  private:
+    void visit(const Piece& piece, std::vector<Piece>& children) {
+        children.clear();
+        const CutNode& node = cut_.nodes[piece.node];
+        if (node.primitive)
+            return place_primitive(*node.primitive, piece.world_from_node, piece, piece.inherited);
+        const double detail = detail_of(cut_, projection_, piece);
+        const bool cut = is_cut(node, piece.steps, detail);
+        const PieceKind kind = weights_.normalised({piece.node, piece.steps, PieceKind::step_of(detail)});
+        if (cut && detail <= 1) culled_detail = std::max(culled_detail, detail);
+        if (node.sealed) return place_mesh(piece, kind);
+        if (followed_edges(node, cut).empty())
+            return place_primitive(PrimitiveKind::sphere, piece.world_from_node * node.node_from_proxy, piece,
+                                   node.mean.over(piece.inherited));
+        const Weights::Weight weight = weights_.of(kind);
+        if (!node.unbounded && weight.leaves > 1 && weight.triangles <= choice_.threshold)
+            return place_mesh(piece, kind);
+        bool placeable = true;
+        for (const CutEdge& edge : followed_edges(node, cut)) {
+            children.push_back(descend(cut_, piece, edge, cut));
+            const Affine& world_from_child = children.back().world_from_node;
+            placeable = placeable && (edge.similarity || !is_singular(world_from_child, flattest_placement));
+        }
+        if (placeable || node.unbounded) return;
+        children.clear();
+        place_mesh(piece, kind);
+    }
+
+    void place_primitive(PrimitiveKind kind, const Affine& world_from_primitive, const Piece& piece,
+                         Rgb base) {
+        Placed thing;
+        thing.kind = kind;
+        const Ball ball = world_ball(cut_, piece);
+        thing.world_from_thing = thickened(
+            world_from_primitive, leaf_thickness(world_from_primitive, projection_.detail_per_unit(ball)));
+        if (!seen_.insert(static_cast<std::uint32_t>(kind), thing.world_from_thing)) return;
+        thing.rgb = piece.tint.over(base);
+        thing.material = piece.material;
+        placed.push_back(thing);
+    }
+
+    void place_mesh(const Piece& piece, const PieceKind& kind) {
+        const std::int32_t octave = kind.detail_step == PieceKind::endless_detail
+                                        ? kind.detail_step
+                                        : (std::max(kind.detail_step, 0) + PieceKind::steps_an_octave - 1) /
+                                              PieceKind::steps_an_octave;
+        const NodeId representative = symmetry_.representative[piece.node];
+        const std::int64_t finish = piece.material ? static_cast<std::int64_t>(*piece.material) : -1;
+        const auto [request, added] =
+            request_of_.emplace(RequestKey{representative, kind.steps, octave, finish},
+                                static_cast<std::uint32_t>(requests.size()));
+        if (added) {
+            requests.emplace_back();
+            requests.back().representative = representative;
+            requests.back().steps = kind.steps;
+            requests.back().material = piece.material;
+        }
+        BakeRequest& bake = requests[request->second];
+        const Ball ball = world_ball(cut_, piece);
+        bake.detail_per_unit =
+            std::max(bake.detail_per_unit, projection_.detail_per_unit(ball) * piece.scale);
+        bake.pixels_per_unit =
+            std::max(bake.pixels_per_unit, projection_.pixels_per_unit(ball) * piece.scale);
+
+        Placed thing;
+        thing.request = request->second;
+        thing.world_from_thing = piece.world_from_node * symmetry_.node_from_representative[piece.node];
+        if (!seen_.insert(thing.request + primitive_kind_count, thing.world_from_thing)) return;
+        thing.painter = painter(request->second, piece);
+        thing.tint = piece.tint;
+        thing.material = piece.material;
+        placed.push_back(thing);
+    }
+
+    std::uint32_t painter(std::uint32_t request, const Piece& piece) {
+        std::vector<Painter>& painters = requests[request].painters;
+        const std::uint32_t pair = symmetry_.pair[piece.node];
+        const auto [place, added] = painter_of_.emplace(PainterKey{request, pair, as_array(piece.inherited)},
+                                                        static_cast<std::uint32_t>(painters.size()));
+        if (added) painters.push_back({pair, piece.inherited});
+        return place->second;
+    }
+
+    const CutGraph& cut_;
+    const Symmetry& symmetry_;
+    const Projection& projection_;
+    const Choice& choice_;
+    Weights& weights_;
+    PlacedSet seen_;
+    std::map<RequestKey, std::uint32_t> request_of_;
+    std::map<PainterKey, std::uint32_t> painter_of_;
+};
+
+/// Sorts what was placed into bodies, palettes and groups of one texture.
+class Grouping {
+  public:
+    Grouping(const CutGraph& cut, const std::vector<BakeRequest>& requests, std::vector<Baked>& baked)
+        : cut_(cut), baked_(baked) {
+        for (std::size_t r = 0; r < baked.size(); ++r) {
+            first_body_.push_back(static_cast<std::uint32_t>(result_.bodies.size()));
+            palette_.emplace_back();
+            for (BakedPart& part : baked[r].parts) {
+                result_.triangle_count += part.mesh.triangles.size();
+                box_.push_back(box_of(part.mesh));
+                result_.bodies.push_back({cut.nodes[requests[r].representative].name, std::move(part.mesh)});
+                palette_.back().emplace_back(part.palettes.size(), no_palette);
+            }
+        }
+    }
+
+    void add(const Placed& thing) {
+        if (thing.request == Placed::no_request) return add_primitive(thing);
+        const Baked& baked = baked_[thing.request];
+        for (std::uint32_t p = 0; p < baked.parts.size(); ++p) {
+            const Palette& palette = baked.parts[p].palettes[thing.painter];
+            const std::uint32_t body = first_body_[thing.request] + p;
+            const Affine world_from_body = thing.world_from_thing * baked.representative_from_body;
+            const auto& material = baked.parts[p].material;
+            if (palette.size() == 1)
+                place(body, world_from_body, colour(thing.tint.over(palette[0])), {}, material);
+            else
+                place(body, world_from_body, palette_id(thing.request, p, thing.painter), thing.tint,
+                      material);
+            result_.bounds.include(transformed(world_from_body, box_[body]));
+        }
+    }
+
+    Cut take() {
+        result_.palettes = std::move(palettes_);
+        return std::move(result_);
+    }
+
+  private:
+    static constexpr std::uint32_t no_palette = UINT32_MAX;
+
+    static Box box_of(const Mesh& mesh) {
+        Box box;
+        for (const Vec3& vertex : mesh.vertices)
+            box.include(vertex);
+        return box;
+    }
+
+    void add_primitive(const Placed& thing) {
+        const auto kind = static_cast<std::size_t>(thing.kind);
+        if (primitive_body_[kind] == no_palette) {
+            primitive_body_[kind] = static_cast<std::uint32_t>(result_.bodies.size());
+            box_.push_back(thing.kind == PrimitiveKind::plane ? Box() : primitive_bounds(thing.kind).box);
+            result_.bodies.push_back({name_of(thing.kind), thing.kind});
+        }
+        const std::uint32_t body = primitive_body_[kind];
+        place(body, thing.world_from_thing, colour(thing.rgb), {}, thing.material);
+        result_.bounds.include(transformed(thing.world_from_thing, box_[body]));
+    }
+
+    void place(std::uint32_t body, const Affine& world_from_body, std::uint32_t palette, const PathTint& tint,
+               const std::optional<MaterialId>& material) {
+        const Material finish = material ? cut_.materials[*material] : Material();
+        const std::array<double, 10> key = {static_cast<double>(palette),
+                                            tint.premultiplied.r,
+                                            tint.premultiplied.g,
+                                            tint.premultiplied.b,
+                                            tint.alpha,
+                                            finish.ambient,
+                                            finish.diffuse,
+                                            finish.specular,
+                                            finish.roughness,
+                                            finish.reflection};
+        const auto [group, added] = group_of_.emplace(key, result_.groups.size());
+        if (added) result_.groups.push_back({palette, tint, finish, {}});
+        result_.groups[group->second].placements.push_back({body, world_from_body});
+        ++result_.placement_count;
+    }
+
+    std::uint32_t colour(const Rgb& rgb) {
+        const auto [palette, added] =
+            colour_palette_.emplace(as_array(rgb), static_cast<std::uint32_t>(palettes_.size()));
+        if (added) palettes_.push_back({rgb});
+        return palette->second;
+    }
+
+    std::uint32_t palette_id(std::uint32_t request, std::uint32_t part, std::uint32_t painter) {
+        std::uint32_t& id = palette_[request][part][painter];
+        if (id == no_palette) {
+            id = static_cast<std::uint32_t>(palettes_.size());
+            palettes_.push_back(baked_[request].parts[part].palettes[painter]);
+        }
+        return id;
+    }
+
+    const CutGraph& cut_;
+    std::vector<Baked>& baked_;
+    Cut result_;
+    std::vector<Box> box_;                                         ///< by body
+    std::vector<std::uint32_t> first_body_;                        ///< by request
+    std::vector<std::vector<std::vector<std::uint32_t>>> palette_; ///< by request, part, painter
+    std::vector<Palette> palettes_;
+    std::array<std::uint32_t, primitive_kind_count> primitive_body_ = [] {
+        std::array<std::uint32_t, primitive_kind_count> none;
+        none.fill(no_palette);
+        return none;
+    }();
+    struct ArrayHash {
+        template<std::size_t n> std::size_t operator()(const std::array<double, n>& numbers) const {
+            std::uint64_t h = 0;
+            for (const double x : numbers)
+                h = (std::rotl(h, 23) ^ std::bit_cast<std::uint64_t>(x)) * 0x9E3779B97F4A7C15ull;
+            return h ^ (h >> 32);
+        }
+    };
+    std::unordered_map<std::array<double, 3>, std::uint32_t, ArrayHash> colour_palette_;
+    std::unordered_map<std::array<double, 10>, std::size_t, ArrayHash> group_of_;
+};
+
+std::uint64_t estimated_bytes(const Cut& cut) {
+    double bytes = PovrayCosts::base + PovrayCosts::placement * static_cast<double>(cut.placement_count) +
+                   PovrayCosts::triangle * static_cast<double>(cut.triangle_count) +
+                   PovrayCosts::own_texture * static_cast<double>(cut.groups.size());
+    for (const Palette& palette : cut.palettes)
+        if (palette.size() > 1) bytes += PovrayCosts::slot * static_cast<double>(palette.size());
+    for (const Body& body : cut.bodies)
+        if (const Mesh* mesh = std::get_if<Mesh>(&body.shape))
+            bytes += PovrayCosts::coloured_triangle * static_cast<double>(mesh->slot_of_triangle.size());
+    return static_cast<std::uint64_t>(bytes);
+}
+
+} // namespace
+
+std::optional<Cut> assemble(const CutGraph& cut, const Symmetry& symmetry, const Projection& projection,
+                            const Piece& root, const Choice& choice, Weights& weights,
+                            const AssemblyLimits& limits) {
+    Unfolding unfolding(cut, symmetry, projection, choice, weights);
+    if (!unfolding.run(root, limits.max_placements)) return std::nullopt;
+    std::vector<Baked> baked;
+    std::size_t triangles = 0;
+    double culled_detail = unfolding.culled_detail;
+    double tessellation_px = 0;
+    for (const BakeRequest& request : unfolding.requests) {
+        baked.push_back(bake(cut, symmetry, request, limits.max_triangles - triangles));
+        triangles += baked.back().triangles;
+        if (!baked.back().complete || triangles > limits.max_triangles) return std::nullopt;
+        culled_detail = std::max(culled_detail, baked.back().culled_detail);
+        tessellation_px = std::max(tessellation_px, baked.back().tessellation_px);
+    }
+    Grouping grouping(cut, unfolding.requests, baked);
+    for (const Placed& thing : unfolding.placed)
+        grouping.add(thing);
+    Cut result = grouping.take();
+    result.error_px = culled_detail;
+    result.tessellation_px = tessellation_px;
+    result.leaf_count = choice.leaves;
+    result.estimated_bytes = estimated_bytes(result);
+    return result;
+}
+
+} // namespace graftal

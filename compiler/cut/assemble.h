@@ -1,0 +1,22 @@
+#pragma once
+
+#include <cstdint>
+
+#include "compiler/cut/choose.h"
+#include "compiler/cut/cut.h"
+#include "compiler/cut/symmetry.h"
+
+namespace graftal {
+
+struct AssemblyLimits {
+    std::size_t max_placements = 0;
+    std::size_t max_triangles = 0;
+};
+
+/// Unfolds the graph down to the chosen threshold and bakes what lies below: placements in depth-first order,
+/// which keeps neighbours together. Nothing if a limit is passed on the way.
+std::optional<Cut> assemble(const CutGraph& cut, const Symmetry& symmetry, const Projection& projection,
+                            const Piece& root, const Choice& choice, Weights& weights,
+                            const AssemblyLimits& limits);
+
+} // namespace graftal

@@ -1,0 +1,61 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "compiler/cut/choose.h"
+#include "compiler/cut/symmetry.h"
+
+namespace graftal {
+
+/// A colouring of a mesh: the pair (representative, node) gives the tints, `inherited` the colour of what
+/// names no material.
+struct Painter {
+    std::uint32_t pair = 0;
+    Rgb inherited{0.8};
+};
+
+/// One subtree to become meshes, in the frame of its class's representative.
+struct BakeRequest {
+    NodeId representative = 0;
+    std::uint32_t steps = unlimited_steps;
+    double detail_per_unit = 0;         ///< of the representative's frame, where it is seen largest
+    double pixels_per_unit = 0;         ///< likewise; decides how finely curved surfaces are meshed
+    std::optional<MaterialId> material; ///< the finish of what names no material
+    std::vector<Painter> painters;
+};
+
+/// The triangles of one finish, and what each painter's colours are.
+struct BakedPart {
+    std::optional<MaterialId> material;
+    Mesh mesh;
+    std::vector<Palette> palettes; ///< by painter
+};
+
+struct Baked {
+    Affine representative_from_body; ///< scaling by a power of two, so that coordinates stay exact
+    std::vector<BakedPart> parts;
+    std::size_t triangles = 0;
+    double culled_detail = 0; ///< largest detail of a culled part
+    double tessellation_px = 0;
+    bool complete = true; ///< false: stopped at max_triangles
+};
+
+/// Unfolds the request into triangles. Leaves that coincide are drawn once; faces on which two cubes meet are
+/// not drawn at all, nobody can see them. Deterministic.
+Baked bake(const CutGraph& cut, const Symmetry& symmetry, const BakeRequest& request,
+           std::size_t max_triangles);
+
+/// The thickness that a leaf needs where a unit has this detail: 0 unless the map is singular or nearly so
+/// (then POV-Ray would lose it); half of the error allowed, or a thousandth of its size where nothing is
+/// culled.
+double leaf_thickness(const Affine& place, double detail_per_unit);
+
+/// The map with no singular value under `thickness`.
+Affine thickened(const Affine& place, double thickness);
+
+/// What curved surfaces may be off by, and the fineness that follows for a primitive of this size.
+inline constexpr double tessellation_tolerance_px = 0.2;
+
+} // namespace graftal

@@ -1,0 +1,189 @@
+#include "compiler/cut/choose.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <queue>
+
+#include <glm/geometric.hpp>
+
+namespace graftal {
+
+namespace {
+
+/// Beyond this many, pieces are only counted.
+constexpr double max_real_pieces = 4000;
+constexpr std::size_t max_splits = 200'000;
+
+/// What one mesh would serve: congruent nodes with equal steps, details within an octave.
+struct MeshKind {
+    NodeId representative;
+    std::uint32_t steps;
+    std::int32_t octave;
+    auto operator<=>(const MeshKind&) const = default;
+};
+
+class Chooser {
+  public:
+    Chooser(const CutGraph& cut, const Symmetry& symmetry, const Projection& projection, Weights& weights)
+        : cut_(cut), symmetry_(symmetry), projection_(projection), weights_(weights) {}
+
+    Choice choose(const Piece& root) {
+        add_piece(root);
+        placement_bytes_ = PovrayCosts::placement + (cut_.tinted ? PovrayCosts::own_texture : 0);
+        Choice best = current(std::numeric_limits<double>::infinity());
+        for (std::size_t splits = 0; !queue_.empty() && splits < max_splits; ++splits) {
+            const Entry entry = queue_.top();
+            queue_.pop();
+            const double weight = entry.weight;
+            split(entry.kind);
+            while (!queue_.empty() && queue_.top().weight == weight) {
+                const PieceKind same = queue_.top().kind;
+                queue_.pop();
+                split(same);
+            }
+            const double next = queue_.empty() ? 0 : queue_.top().weight;
+            const Choice now = current(next);
+            if (now.bytes < best.bytes || !std::isfinite(best.bytes)) best = now;
+            if (placements_ * placement_bytes_ > best.bytes) break;
+        }
+        best.leaves = weights_.of(kind_of(root)).leaves;
+        return best;
+    }
+
+  private:
+    struct Entry {
+        double weight;
+        PieceKind kind;
+        bool operator<(const Entry& other) const {
+            if (weight != other.weight) return weight < other.weight;
+            return std::tie(kind.node, kind.steps, kind.detail_step) >
+                   std::tie(other.kind.node, other.kind.steps, other.kind.detail_step);
+        }
+    };
+
+    struct Bucket {
+        double count = 0;
+        std::vector<Piece> pieces;
+    };
+
+    PieceKind kind_of(const Piece& piece) const {
+        return weights_.normalised(
+            {piece.node, piece.steps, PieceKind::step_of(detail_of(cut_, projection_, piece))});
+    }
+
+    MeshKind mesh_kind(const PieceKind& kind) const {
+        const std::int32_t octave =
+            kind.detail_step == PieceKind::endless_detail
+                ? kind.detail_step
+                : (kind.detail_step + PieceKind::steps_an_octave - 1) / PieceKind::steps_an_octave;
+        return {symmetry_.representative[kind.node], kind.steps, octave};
+    }
+
+    bool splits(const PieceKind& kind) {
+        return weights_.of(kind).leaves > 1 && !cut_.nodes[kind.node].sealed;
+    }
+
+    Bucket& bucket_for(const PieceKind& kind) {
+        const auto [place, added] = buckets_.try_emplace(kind);
+        if (added) {
+            const Weights::Weight weight = weights_.of(kind);
+            if (splits(kind))
+                queue_.push(
+                    {cut_.nodes[kind.node].unbounded ? std::numeric_limits<double>::max() : weight.triangles,
+                     kind});
+            if (weight.leaves > 1 && live_meshes_[mesh_kind(kind)]++ == 0)
+                triangles_ += mesh_triangles_[mesh_kind(kind)] = weight.triangles;
+        }
+        return place->second;
+    }
+
+    void add_piece(const Piece& piece) {
+        Bucket& bucket = bucket_for(kind_of(piece));
+        bucket.count += 1;
+        placements_ += 1;
+        bucket.pieces.push_back(piece);
+    }
+
+    void split(const PieceKind& kind) {
+        auto node = buckets_.extract(kind);
+        if (node.empty()) return;
+        const Bucket& bucket = node.mapped();
+        placements_ -= bucket.count;
+        if (--live_meshes_[mesh_kind(kind)] == 0) triangles_ -= mesh_triangles_[mesh_kind(kind)];
+        const bool cut = weights_.is_cut(kind);
+        const bool real =
+            static_cast<double>(bucket.pieces.size()) == bucket.count && placements_ < max_real_pieces;
+        for (const CutEdge& edge : followed_edges(cut_.nodes[kind.node], cut)) {
+            if (real) {
+                for (const Piece& piece : bucket.pieces)
+                    add_piece(descend(cut_, piece, edge, cut));
+            } else {
+                bucket_for(weights_.child_kind(kind, edge)).count += bucket.count;
+                placements_ += bucket.count;
+            }
+        }
+    }
+
+    Choice current(double threshold) const {
+        const double per_triangle =
+            PovrayCosts::triangle + (cut_.tinted ? PovrayCosts::coloured_triangle + PovrayCosts::slot : 0);
+        Choice choice;
+        choice.threshold = threshold;
+        choice.placements = placements_;
+        choice.triangles = triangles_;
+        choice.bytes = PovrayCosts::base + placements_ * placement_bytes_ + triangles_ * per_triangle;
+        return choice;
+    }
+
+    const CutGraph& cut_;
+    const Symmetry& symmetry_;
+    const Projection& projection_;
+    Weights& weights_;
+    double placement_bytes_ = 0;
+    double placements_ = 0;
+    double triangles_ = 0;
+    std::unordered_map<PieceKind, Bucket, PieceKindHash> buckets_;
+    std::map<MeshKind, int> live_meshes_;
+    std::map<MeshKind, double> mesh_triangles_;
+    std::priority_queue<Entry> queue_;
+};
+
+} // namespace
+
+Piece descend(const CutGraph& cut, const Piece& piece, const CutEdge& edge, bool piece_is_cut) {
+    Piece child;
+    child.node = edge.child;
+    child.steps = steps_after(piece.steps, edge);
+    child.world_from_node = piece.world_from_node * edge.node_from_child;
+    child.scale = edge.similarity ? piece.scale * edge.stretch : norm(child.world_from_node.linear);
+    child.tint = piece.tint * edge.tint;
+    const CutNode& node = cut.nodes[piece.node];
+    child.inherited = piece_is_cut && node.terminal ? node.mean.over(piece.inherited) : piece.inherited;
+    child.material = piece.material;
+    if (edge.material) {
+        child.material = edge.material;
+        child.inherited = cut.materials[*edge.material].rgb;
+    }
+    return child;
+}
+
+Ball world_ball(const CutGraph& cut, const Piece& piece) {
+    const Ball& ball = cut.nodes[piece.node].ball;
+    return {piece.world_from_node(ball.centre), piece.scale * ball.radius};
+}
+
+double detail_of(const CutGraph& cut, const Projection& projection, const Piece& piece) {
+    const Ball ball = world_ball(cut, piece);
+    if (!projection.culls() || cut.nodes[piece.node].unbounded)
+        return std::numeric_limits<double>::infinity();
+    return 2 * ball.radius * projection.detail_per_unit(ball);
+}
+
+Choice choose_cut(const CutGraph& cut, const Symmetry& symmetry, const Projection& projection,
+                  const Piece& root, Weights& weights) {
+    return Chooser(cut, symmetry, projection, weights).choose(root);
+}
+
+} // namespace graftal

@@ -1,0 +1,55 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "compiler/cut/detail.h"
+#include "compiler/cut/symmetry.h"
+
+namespace graftal {
+
+/// What POV-Ray 3.7 needs, in bytes (measured; docs/povray.md).
+struct PovrayCosts {
+    static constexpr double base = 24e6;
+    static constexpr double placement = 868;
+    static constexpr double own_texture = 830; ///< more, for a placement that shares its texture with none
+    static constexpr double triangle = 236;
+    static constexpr double coloured_triangle = 4; ///< more, for its slot
+    static constexpr double slot = 20;             ///< one colour of a palette
+};
+
+/// A subtree at its place in the world.
+struct Piece {
+    NodeId node = 0;
+    std::uint32_t steps = unlimited_steps;
+    Affine world_from_node;
+    double scale = 1; ///< norm of the linear part
+    PathTint tint;
+    Rgb inherited{0.8};                 ///< the colour that what names no material shows
+    std::optional<MaterialId> material; ///< whose finish it shows
+};
+
+/// Steps down one edge. What stands for a cut node takes on the node's mean colour.
+Piece descend(const CutGraph& cut, const Piece& piece, const CutEdge& edge, bool piece_is_cut);
+
+/// The node's ball, placed.
+Ball world_ball(const CutGraph& cut, const Piece& piece);
+/// The detail of the piece's diameter.
+double detail_of(const CutGraph& cut, const Projection& projection, const Piece& piece);
+
+struct Choice {
+    double threshold = 0; ///< pieces that weigh more triangles than this become placements of their parts
+    double bytes = 0;     ///< of POV-Ray's memory, estimated
+    double placements = 0;
+    double triangles = 0;
+    double leaves = 0;
+};
+
+/// Finds the threshold at which placements and meshes together cost least. Pieces are split heaviest first,
+/// as real pieces while there are few, then as counts; the cost of placements only grows, so the search ends
+/// where they alone cost more than the best found.
+Choice choose_cut(const CutGraph& cut, const Symmetry& symmetry, const Projection& projection,
+                  const Piece& root, Weights& weights);
+
+} // namespace graftal

@@ -1,0 +1,150 @@
+#include "compiler/cut/cut.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "compiler/cut/assemble.h"
+#include "compiler/cut/choose.h"
+#include "compiler/cut/cut_graph.h"
+#include "compiler/cut/symmetry.h"
+
+namespace graftal {
+
+namespace {
+
+/// The error grows by this where the memory does not suffice: a quarter less on each side of a leaf.
+constexpr double coarser = 1.25;
+/// The nearest that the eye is taken to be, in radii of the model.
+constexpr double nearest_share = 1e-5;
+
+std::string readable_bytes(double bytes) {
+    const char* const units[] = {"bytes", "KiB", "MiB", "GiB", "TiB", "PiB"};
+    int unit = 0;
+    for (; bytes >= 1024 && unit < 5; ++unit)
+        bytes /= 1024;
+    return fmt::format("{:.3g} {}", bytes, units[unit]);
+}
+
+class Cutter {
+  public:
+    Cutter(const Graph& graph, const Components& components, const std::vector<ObjectBounds>& bounds,
+           const View& view, const CutOptions& options, Diagnostics& diagnostics)
+        : graph_(graph), unending_(components.unending[graph.root]), view_(view), options_(options),
+          diagnostics_(diagnostics), cut_(build_cut_graph(graph, components, bounds)),
+          symmetry_(find_symmetry(cut_)) {}
+
+    std::optional<Cut> run() {
+        const bool culls = options_.error_world ? *options_.error_world > 0 : options_.error_px > 0;
+        if (unending_ && !options_.steps && !culls) return refuse_endless();
+        // A coarser error than the whole picture cannot be asked for.
+        const double coarsest = 4.0 * std::max(view_.size.width, view_.size.height);
+        CutOptions options = options_;
+        double factor = 1;
+        for (; options_.error_px * factor <= coarsest || options.error_world; factor *= coarser) {
+            if (options.error_world) options.error_world = *options_.error_world * factor;
+            bool too_much = false;
+            std::optional<Cut> cut = attempt(options, options_.error_px * factor, too_much);
+            if (cut) return finish(std::move(*cut), factor, options);
+            if (!culls) return refuse_size();
+            if (factor > 1e12) break;
+        }
+        return refuse_size();
+    }
+
+  private:
+    std::optional<Cut> attempt(const CutOptions& options, double error_px, bool& too_much) {
+        const double near = nearest_share * std::max(cut_.nodes[cut_.root].ball.radius, 1e-280);
+        const Projection projection(view_, options, error_px, near);
+        Weights weights(cut_);
+        Piece root;
+        root.node = cut_.root;
+        root.steps = options.steps.value_or(unlimited_steps);
+        choice_ = options.flatten ? flat_choice(projection, root, weights)
+                                  : choose_cut(cut_, symmetry_, projection, root, weights);
+        const auto memory = static_cast<double>(options.memory_bytes);
+        too_much = !(choice_.bytes <= memory);
+        if (too_much) return std::nullopt;
+        const AssemblyLimits limits{static_cast<std::size_t>(memory / PovrayCosts::placement) + 1,
+                                    static_cast<std::size_t>(memory / PovrayCosts::triangle) + 1};
+        std::optional<Cut> cut = assemble(cut_, symmetry_, projection, root, choice_, weights, limits);
+        too_much = !cut || static_cast<double>(cut->estimated_bytes) > memory;
+        if (cut && too_much) choice_.bytes = static_cast<double>(cut->estimated_bytes);
+        if (too_much) return std::nullopt;
+        return cut;
+    }
+
+    Choice flat_choice(const Projection& projection, const Piece& root, Weights& weights) const {
+        const PieceKind kind{root.node, root.steps, PieceKind::step_of(detail_of(cut_, projection, root))};
+        Choice choice;
+        choice.leaves = weights.of(kind).leaves;
+        choice.placements = choice.leaves;
+        choice.bytes = PovrayCosts::base + choice.leaves * PovrayCosts::placement;
+        return choice;
+    }
+
+    Cut finish(Cut cut, double factor, const CutOptions& options) {
+        const double unit_px =
+            options.error_world ? *options.error_world * root_pixels_per_unit() : options_.error_px * factor;
+        cut.error_px *= unit_px;
+        cut.error_asked_px =
+            options.error_world ? *options_.error_world * root_pixels_per_unit() : options_.error_px;
+        if (factor > 1)
+            diagnostics_
+                .warning(graph_.objects[graph_.root].span,
+                         fmt::format("{} of memory allow an error of {:.2f} px, not {:.2f} px",
+                                     readable_bytes(static_cast<double>(options_.memory_bytes)), unit_px,
+                                     cut.error_asked_px))
+                .with_hint("give more with --memory, or ask for less with --error or --steps");
+        return cut;
+    }
+
+    double root_pixels_per_unit() const {
+        const Ball& ball = cut_.nodes[cut_.root].ball;
+        return Projection(view_, options_, 1, 1e-5 * std::max(ball.radius, 1e-280)).pixels_per_unit(ball);
+    }
+
+    std::nullopt_t refuse_endless() {
+        diagnostics_
+            .error(graph_.objects[graph_.root].span,
+                   "the recursion has no end, and nothing says how deep to draw it")
+            .with_hint("give a depth with --steps N, or a size in pixels with --error");
+        return std::nullopt;
+    }
+
+    std::nullopt_t refuse_size() {
+        diagnostics_
+            .error(
+                graph_.objects[graph_.root].span,
+                fmt::format("{} leaves need about {} in POV-Ray, more than the {} allowed",
+                            choice_.leaves < 1e15 ? fmt::format("{:.0f}", choice_.leaves)
+                                                  : fmt::format("{:.3g}", choice_.leaves),
+                            std::isfinite(choice_.bytes) ? readable_bytes(choice_.bytes) : "endless memory",
+                            readable_bytes(static_cast<double>(options_.memory_bytes))))
+            .with_hint(
+                options_.flatten
+                    ? "leave out --flatten, cull with --error, lower --steps, or allow more with --memory"
+                    : "cull with --error, lower --steps, or allow more with --memory");
+        return std::nullopt;
+    }
+
+    const Graph& graph_;
+    bool unending_;
+    const View& view_;
+    const CutOptions& options_;
+    Diagnostics& diagnostics_;
+    CutGraph cut_;
+    Symmetry symmetry_;
+    Choice choice_;
+};
+
+} // namespace
+
+std::optional<Cut> cut_graph(const Graph& graph, const Components& components,
+                             const std::vector<ObjectBounds>& bounds, const View& view,
+                             const CutOptions& options, Diagnostics& diagnostics) {
+    return Cutter(graph, components, bounds, view, options, diagnostics).run();
+}
+
+} // namespace graftal

@@ -1,0 +1,264 @@
+#include "compiler/cut/cut_graph.h"
+
+#include <algorithm>
+#include <cmath>
+#include <unordered_map>
+
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
+
+#include "compiler/passes/drop_unreachable.h"
+#include "compiler/passes/merge_equivalent.h"
+#include "compiler/support/check.h"
+
+namespace graftal {
+
+namespace {
+
+/// Ending objects of at most this many primitives are drawn whole rather than replaced by a proxy.
+constexpr double uncullable_leaves = 16;
+/// A proxy is at least this share of its longest half axis thick, so that flat sets have a body.
+constexpr double thinnest_proxy = 0.02;
+
+/// What moves from an object to the edges that lead to it, and where those edges then lead.
+struct Factor {
+    Instance instance; ///< master, map, tint and material to compose with
+    Box box;           ///< of the object once the map is taken out
+    Ball ball;
+};
+
+Tint composed(const Tint& parent, const Tint& child) {
+    const PathTint path = PathTint(parent) * PathTint(child);
+    return path.alpha > 0 ? Tint{path.premultiplied / path.alpha, path.alpha} : Tint{};
+}
+
+Instance composed(const Instance& parent, const Instance& child) {
+    return {child.master, parent.parent_from_child * child.parent_from_child,
+            composed(parent.tint, child.tint), child.material ? child.material : parent.material,
+            parent.span};
+}
+
+bool share_placement(const Instance& a, const Instance& b) {
+    return a.parent_from_child == b.parent_from_child && a.tint == b.tint && a.material == b.material;
+}
+
+bool factorable(const Object& object) {
+    if (object.primitive) return false;
+    const Instance& first = object.instances.front();
+    if (is_singular(first.parent_from_child)) return false;
+    for (const Instance& instance : object.instances)
+        if (!share_placement(instance, first)) return false;
+    return !object.terminal ||
+           (object.terminal->tint == first.tint && object.terminal->material == first.material);
+}
+
+Ball enclosing_ball(const Box& box, const std::vector<Ball>& balls) {
+    if (box.empty()) return {};
+    Ball best{box.centre(), 0.5 * glm::length(box.size())};
+    double reach = 0;
+    for (const Ball& ball : balls)
+        if (!ball.empty()) reach = std::max(reach, glm::distance(best.centre, ball.centre) + ball.radius);
+    best.radius = std::min(best.radius, reach);
+    return best;
+}
+
+/// Splits every object into a factor and what is left, in place.
+std::vector<Factor> take_out_factors(Graph& graph, const Components& components,
+                                     const std::vector<ObjectBounds>& bounds) {
+    std::vector<Factor> factors(graph.objects.size());
+    // Masters first, so that chains of single instances collapse in one sweep.
+    for (const auto& members : components.members) {
+        for (const ObjectId id : members) {
+            Object& object = graph.objects[id];
+            Factor& factor = factors[id];
+            factor = {{id, {}, {}, {}, object.span}, bounds[id].box, bounds[id].ball};
+            if (id == graph.root || !factorable(object)) continue;
+            const Instance first = object.instances.front();
+            if (object.instances.size() == 1 && !components.unending[id] && !object.terminal) {
+                const Factor& master = factors[first.master];
+                factor = {composed(first, master.instance), master.box, master.ball};
+                continue;
+            }
+            factor.instance.parent_from_child = first.parent_from_child;
+            factor.instance.tint = first.tint;
+            factor.instance.material = first.material;
+            Box box;
+            std::vector<Ball> balls;
+            for (Instance& instance : object.instances) {
+                box.include(bounds[instance.master].box);
+                balls.push_back(bounds[instance.master].ball);
+                instance.parent_from_child = {};
+                instance.tint = {};
+                instance.material = {};
+            }
+            factor.box = box;
+            factor.ball = enclosing_ball(box, balls);
+            if (object.terminal) {
+                object.terminal->parent_from_child =
+                    inverse(first.parent_from_child) * object.terminal->parent_from_child;
+                object.terminal->tint = {};
+                object.terminal->material = {};
+            }
+        }
+    }
+    return factors;
+}
+
+void apply_factors(Graph& graph, const std::vector<Factor>& factors) {
+    for (Object& object : graph.objects) {
+        for (Instance& instance : object.instances)
+            instance = composed(instance, factors[instance.master].instance);
+        if (object.terminal)
+            *object.terminal = composed(*object.terminal, factors[object.terminal->master].instance);
+    }
+}
+
+Affine ellipsoid_in(const Box& box) {
+    if (box.empty()) return {};
+    Vec3 half = 0.5 * box.size();
+    const double longest = std::max({half.x, half.y, half.z, 1e-12});
+    half = glm::max(half, Vec3(thinnest_proxy * longest));
+    return Affine::translate(box.centre()) * Affine::scale(half);
+}
+
+/// Builds the nodes of a factored graph.
+class Builder {
+  public:
+    Builder(const Graph& graph, const Components& components) : graph_(graph), components_(components) {}
+
+    CutGraph build(const std::unordered_map<std::string, const Factor*>& factor_of,
+                   const std::unordered_map<std::string, bool>& unbounded) {
+        const auto count = graph_.objects.size();
+        cut_.nodes.resize(count);
+        cut_.root = graph_.root;
+        const std::vector<double> leaves = approximate_leaves();
+        for (ObjectId id = 0; id < count; ++id) {
+            const Object& object = graph_.objects[id];
+            const Factor& factor = *factor_of.at(object.name);
+            CutNode node;
+            node.name = object.name;
+            node.primitive = object.primitive;
+            node.unending = components_.unending[id];
+            node.unbounded = unbounded.at(object.name);
+            node.cullable = node.unending || leaves[id] > uncullable_leaves;
+            node.ball = factor.ball.empty() ? Ball{Vec3(0.0), 0.0} : factor.ball;
+            node.node_from_proxy = ellipsoid_in(factor.box);
+            for (const Instance& instance : object.instances)
+                node.edges.push_back(edge(instance, node));
+            if (object.terminal) {
+                node.stop_edges.push_back(edge(*object.terminal, node));
+                node.terminal = true;
+            } else if (node.unending) {
+                for (const CutEdge& candidate : node.edges)
+                    if (candidate.levels == 0) node.stop_edges.push_back(candidate);
+            }
+            cut_.nodes[id] = std::move(node);
+        }
+        return std::move(cut_);
+    }
+
+  private:
+    CutEdge edge(const Instance& instance, const CutNode& node) {
+        CutEdge edge{instance.master, instance.parent_from_child, PathTint(instance.tint), instance.material,
+                     components_.unending[instance.master] ? 1u : 0u};
+        const Vec3 sigma = singular_values(edge.node_from_child.linear);
+        edge.stretch = sigma.x;
+        edge.volume_stretch = std::cbrt(sigma.x * sigma.y * sigma.z);
+        if (edge.volume_stretch <= 0) edge.volume_stretch = edge.stretch;
+        edge.similarity = sigma.z > sigma.x * (1 - 1e-9);
+        cut_.tinted = cut_.tinted || instance.tint.alpha > 0;
+        if (node.unending && edge.levels > 0 && sigma.x >= 0.97) cut_.contractive = false;
+        return is_singular(edge.node_from_child, 1e-9) ? sealed_detour(std::move(edge), node) : edge;
+    }
+
+    /// A node between the two that holds the singular edge alone; the edge to it is the identity. It takes
+    /// over the level, and passes on what it is asked to draw, cut or not.
+    CutEdge sealed_detour(CutEdge edge, const CutNode& node) {
+        CutNode detour;
+        detour.name = node.name;
+        detour.unending = edge.levels > 0;
+        detour.sealed = true;
+        detour.cullable = false;
+        detour.ball = node.ball;
+        detour.node_from_proxy = node.node_from_proxy;
+        const unsigned levels = edge.levels;
+        edge.levels = 0;
+        detour.edges = {edge};
+        detour.stop_edges = {edge};
+        cut_.nodes.push_back(std::move(detour));
+        return {static_cast<NodeId>(cut_.nodes.size() - 1), {}, {}, {}, levels, 1, 1, true};
+    }
+
+    std::vector<double> approximate_leaves() const {
+        std::vector<double> leaves(graph_.objects.size(), 0);
+        for (const auto& members : components_.members)
+            for (const ObjectId id : members) {
+                leaves[id] = graph_.objects[id].primitive ? 1 : 0;
+                for (const Instance& instance : graph_.objects[id].instances)
+                    leaves[id] += leaves[instance.master];
+            }
+        return leaves;
+    }
+
+    const Graph& graph_;
+    const Components& components_;
+    CutGraph cut_;
+};
+
+/// Mean colours by sweeps: exact for ending nodes after one, converging geometrically for the others.
+void set_mean_colours(CutGraph& cut, const std::vector<NodeId>& masters_first) {
+    constexpr int sweeps = 48;
+    for (int sweep = 0; sweep < sweeps; ++sweep) {
+        double change = 0;
+        for (const NodeId id : masters_first) {
+            CutNode& node = cut.nodes[id];
+            if (node.primitive) continue;
+            MeanColour sum{Rgb(0.0), 0};
+            double weights = 0;
+            for (const CutEdge& edge : node.edges) {
+                const CutNode& child = cut.nodes[edge.child];
+                MeanColour mean = child.mean;
+                if (edge.material) mean = {mean.over(cut.materials[*edge.material].rgb), 0};
+                const double reach = edge.stretch * std::max(child.ball.radius, 1e-9);
+                const double weight = std::max(reach * reach, 1e-300);
+                sum.fixed += weight * edge.tint.over(mean.fixed);
+                sum.open += weight * (1 - edge.tint.alpha) * mean.open;
+                weights += weight;
+            }
+            const MeanColour mean{sum.fixed / weights, sum.open / weights};
+            change = std::max(change, glm::length(mean.fixed - node.mean.fixed));
+            node.mean = mean;
+        }
+        if (change < 1e-7) break;
+    }
+}
+
+} // namespace
+
+CutGraph build_cut_graph(const Graph& graph, const Components& components,
+                         const std::vector<ObjectBounds>& bounds) {
+    Graph factored = graph;
+    const std::vector<Factor> factors = take_out_factors(factored, components, bounds);
+    std::unordered_map<std::string, const Factor*> factor_of;
+    std::unordered_map<std::string, bool> unbounded;
+    for (ObjectId id = 0; id < graph.objects.size(); ++id) {
+        factor_of.emplace(graph.objects[id].name, &factors[id]);
+        unbounded.emplace(graph.objects[id].name, bounds[id].unbounded);
+    }
+    apply_factors(factored, factors);
+    factored = merge_equivalent(drop_unreachable(std::move(factored)));
+
+    const Components merged = strong_components(factored);
+    CutGraph cut = Builder(factored, merged).build(factor_of, unbounded);
+    cut.materials = factored.materials;
+    std::vector<NodeId> masters_first;
+    for (NodeId id = static_cast<NodeId>(factored.objects.size()); id < cut.nodes.size(); ++id)
+        masters_first.push_back(id);
+    for (const auto& members : merged.members)
+        masters_first.insert(masters_first.end(), members.begin(), members.end());
+    set_mean_colours(cut, masters_first);
+    return cut;
+}
+
+} // namespace graftal

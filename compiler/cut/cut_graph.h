@@ -1,0 +1,80 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "compiler/analysis/bounding.h"
+#include "compiler/graph/components.h"
+#include "compiler/graph/graph.h"
+
+namespace graftal {
+
+using NodeId = std::uint32_t;
+
+struct CutEdge {
+    NodeId child = 0;
+    Affine node_from_child;
+    PathTint tint;
+    std::optional<MaterialId> material;
+    unsigned levels = 0;       ///< 1 if the child is unending (graph.h, "Levels")
+    double stretch = 1;        ///< norm of the linear part
+    double volume_stretch = 1; ///< cube root of the determinant; the stretch if that is zero
+    bool similarity = false;   ///< then a path's norm is the product of its stretches
+};
+
+/// What a node's limit looks like from afar, weighted by area: fixed + open * (the colour that it inherits).
+struct MeanColour {
+    Rgb fixed{0.0};
+    double open = 1;
+
+    Rgb over(Rgb inherited) const { return fixed + open * inherited; }
+};
+
+/// An object as the cut sees it.
+struct CutNode {
+    std::string name;
+    std::optional<PrimitiveKind> primitive;
+    std::vector<CutEdge> edges;
+    std::vector<CutEdge> stop_edges; ///< drawn in place of the edges where the node is cut; if empty: proxy
+    bool terminal = false;           ///< stop_edges holds the terminal, not the ending instances
+    bool unending = false;
+    bool unbounded = false; ///< holds a plane: always expanded into placements
+    bool sealed = false;    ///< leads through a singular map: never expanded, POV-Ray could not place it
+    bool cullable = true;   ///< worth a proxy; a handful of primitives is drawn as it is
+    Ball ball;
+    Affine node_from_proxy; ///< places the unit sphere: the ellipsoid inscribed in the node's box
+    MeanColour mean;
+};
+
+/// The graph prepared for cutting: same unfolding, fewer and more alike nodes.
+///   - A map that all instances of an object share is moved to the edges that lead to the object, so that the
+///     attractors of an IFS, all images of one set, become one node.
+///   - Objects that are equal then are merged.
+///   - Ending objects of one instance vanish into their users' edges.
+struct CutGraph {
+    std::vector<CutNode> nodes;
+    std::vector<Material> materials;
+    NodeId root = 0;
+    bool tinted = false;     ///< some instance has a tint
+    bool contractive = true; ///< every edge between unending nodes has stretch < 1: products of stretches end
+};
+
+/// Requires what cut_graph() requires. O(graph).
+CutGraph build_cut_graph(const Graph& graph, const Components& components,
+                         const std::vector<ObjectBounds>& bounds);
+
+/// The edges that a visit follows: all of them, or those of a cut node.
+inline const std::vector<CutEdge>& followed_edges(const CutNode& node, bool cut) {
+    return cut ? node.stop_edges : node.edges;
+}
+
+inline constexpr std::uint32_t unlimited_steps = UINT32_MAX;
+
+/// Levels left after an edge; requires steps >= edge.levels.
+inline std::uint32_t steps_after(std::uint32_t steps, const CutEdge& edge) {
+    return steps == unlimited_steps ? steps : steps - edge.levels;
+}
+
+} // namespace graftal

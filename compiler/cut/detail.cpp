@@ -1,0 +1,131 @@
+#include "compiler/cut/detail.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include <glm/geometric.hpp>
+
+#include "compiler/cut/tessellate.h"
+
+namespace graftal {
+
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+/// The triangles of a proxy: an octahedron.
+constexpr double proxy_triangles = 8;
+constexpr std::size_t max_known_kinds = 4'000'000;
+
+} // namespace
+
+Projection::Projection(const View& view, const CutOptions& options, double error_px, double near)
+    : camera_(view.camera), width_px_(view.size.width),
+      pixels_per_tangent_(0.5 * view.size.width /
+                          std::tan(0.5 * view.camera.angle_deg * std::numbers::pi / 180)),
+      near_(near), error_px_(error_px), error_world_(options.error_world.value_or(0)),
+      culls_(options.error_world ? *options.error_world > 0 : error_px > 0) {}
+
+double Projection::pixels_per_unit(const Ball& ball) const {
+    if (camera_.orthographic) return width_px_ / camera_.width;
+    const Vec3 from_eye = ball.centre - camera_.location;
+    // Off the axis a length looks larger than its distance says, behind the eye its distance decides.
+    const double depth = std::max(glm::dot(from_eye, camera_.direction), 0.5 * glm::length(from_eye));
+    return pixels_per_tangent_ / std::max(depth - ball.radius, near_);
+}
+
+double Projection::detail_per_unit(const Ball& ball) const {
+    if (!culls_) return infinity;
+    return error_world_ > 0 ? 1 / error_world_ : pixels_per_unit(ball) / error_px_;
+}
+
+std::int32_t PieceKind::step_of(double detail) {
+    if (!std::isfinite(detail)) return endless_detail;
+    const double step = std::ceil(std::log2(std::max(detail, 1e-300)) * steps_an_octave - 1e-6);
+    return static_cast<std::int32_t>(step);
+}
+
+std::size_t PieceKindHash::operator()(const PieceKind& kind) const {
+    std::uint64_t h = kind.node;
+    h = (h ^ kind.steps) * 0x9E3779B97F4A7C15ull;
+    h = (h ^ (h >> 29) ^ static_cast<std::uint32_t>(kind.detail_step)) * 0xBF58476D1CE4E5B9ull;
+    return h ^ (h >> 32);
+}
+
+bool is_cut(const CutNode& node, std::uint32_t steps, double detail) {
+    if (node.primitive || node.unbounded) return false;
+    return (node.unending && steps == 0) || (node.cullable && detail <= 1);
+}
+
+bool Weights::is_cut(const PieceKind& kind) const {
+    const double detail = kind.detail_step <= 0 ? 1 : 2;
+    return graftal::is_cut(cut_.nodes[kind.node], kind.steps, detail);
+}
+
+PieceKind Weights::normalised(PieceKind kind) const {
+    const CutNode& node = cut_.nodes[kind.node];
+    if (!node.unending) kind.steps = unlimited_steps;
+    if (kind.detail_step != PieceKind::endless_detail) kind.detail_step = std::max(kind.detail_step, -1);
+    if (node.primitive || !node.cullable) {
+        if (!node.unending) kind.detail_step = 0;
+    }
+    return kind;
+}
+
+PieceKind Weights::child_kind(const PieceKind& parent, const CutEdge& edge) const {
+    PieceKind kind{edge.child, steps_after(parent.steps, edge), parent.detail_step};
+    if (kind.detail_step != PieceKind::endless_detail) {
+        // Products of stretches end only if every edge contracts; volumes always do.
+        const double ratio = cut_.contractive ? edge.stretch : edge.volume_stretch;
+        const double sizes = std::max(cut_.nodes[edge.child].ball.radius, 1e-300) /
+                             std::max(cut_.nodes[parent.node].ball.radius, 1e-300);
+        const double change = std::log2(std::max(ratio * sizes, 1e-300)) * PieceKind::steps_an_octave;
+        kind.detail_step += static_cast<std::int32_t>(std::clamp(std::round(change), -1e8, 1e8));
+        kind.detail_step = std::min(kind.detail_step, 1 << 20);
+    }
+    return normalised(kind);
+}
+
+Weights::Weight Weights::of(const PieceKind& asked) {
+    struct Frame {
+        PieceKind kind;
+        std::size_t next_edge;
+        Weight sum;
+    };
+    const PieceKind start = normalised(asked);
+    if (const auto found = known_.find(start); found != known_.end()) return found->second;
+    std::vector<Frame> stack = {{start, 0, {}}};
+    known_.emplace(start, Weight{proxy_triangles, 1}); // what a kind under way counts as
+    while (!stack.empty()) {
+        Frame& frame = stack.back();
+        const CutNode& node = cut_.nodes[frame.kind.node];
+        const bool cut = is_cut(frame.kind);
+        const auto& edges = followed_edges(node, cut);
+        if (frame.next_edge < edges.size()) {
+            const CutEdge& edge = edges[frame.next_edge];
+            const PieceKind child = child_kind(frame.kind, edge);
+            const auto found = known_.find(child);
+            if (found != known_.end()) {
+                frame.sum.triangles += found->second.triangles;
+                frame.sum.leaves += found->second.leaves;
+                ++frame.next_edge;
+            } else if (known_.size() < max_known_kinds) {
+                known_.emplace(child, Weight{proxy_triangles, 1});
+                stack.push_back({child, 0, {}});
+            } else {
+                ++frame.next_edge;
+            }
+            continue;
+        }
+        if (node.primitive && *node.primitive != PrimitiveKind::plane)
+            frame.sum = {static_cast<double>(tessellated(*node.primitive, 0).triangles.size()), 1};
+        else if (edges.empty())
+            frame.sum = {proxy_triangles, 1};
+        known_[frame.kind] = frame.sum;
+        stack.pop_back();
+    }
+    return known_.at(start);
+}
+
+} // namespace graftal

@@ -1,0 +1,85 @@
+#pragma once
+
+#include <cstdint>
+#include <unordered_map>
+#include <vector>
+
+#include "compiler/cut/cut.h"
+#include "compiler/cut/cut_graph.h"
+
+namespace graftal {
+
+/// How large things look. A *detail* is a length measured in units of the error allowed: what measures at
+/// most 1 may be culled. Infinite where nothing is culled.
+class Projection {
+  public:
+    /// `near` is the least distance that counts, so that the eye may lie on the model.
+    Projection(const View& view, const CutOptions& options, double error_px, double near);
+
+    /// Pixels that one scene unit measures at the ball's nearest point, at most.
+    double pixels_per_unit(const Ball& world_ball) const;
+    /// The detail of one scene unit there.
+    double detail_per_unit(const Ball& world_ball) const;
+
+    bool culls() const { return culls_; }
+
+  private:
+    Camera camera_;
+    int width_px_;
+    double pixels_per_tangent_;
+    double near_;
+    double error_px_;
+    double error_world_;
+    bool culls_;
+};
+
+/// A node with the levels it has left and the detail of its diameter: what is baked as one mesh. Details are
+/// counted in steps of 2^(1/32).
+struct PieceKind {
+    NodeId node = 0;
+    std::uint32_t steps = unlimited_steps;
+    std::int32_t detail_step = endless_detail;
+
+    static constexpr std::int32_t endless_detail = INT32_MAX;
+    static constexpr int steps_an_octave = 32;
+
+    /// The step of a detail, rounded up. Requires detail > 0.
+    static std::int32_t step_of(double detail);
+    bool operator==(const PieceKind&) const = default;
+};
+
+struct PieceKindHash {
+    std::size_t operator()(const PieceKind& kind) const;
+};
+
+/// Estimates what an unfolded piece holds, by one memoised sweep: O(kinds reached).
+class Weights {
+  public:
+    explicit Weights(const CutGraph& cut) : cut_(cut) {}
+
+    struct Weight {
+        double triangles = 0;
+        double leaves = 0;
+    };
+
+    /// Saturates at infinity; kinds that lead back to themselves without losing detail count as one leaf.
+    Weight of(const PieceKind& kind);
+
+    /// Kinds are the same where levels do not matter.
+    PieceKind normalised(PieceKind kind) const;
+
+    /// True if the kind is drawn by its stop edges or proxy.
+    bool is_cut(const PieceKind& kind) const;
+
+    /// The kind an edge leads to, without looking at where the piece lies.
+    PieceKind child_kind(const PieceKind& parent, const CutEdge& edge) const;
+
+  private:
+    const CutGraph& cut_;
+    std::unordered_map<PieceKind, Weight, PieceKindHash> known_;
+};
+
+/// The rule that ends recursion: no level left, or too small.
+bool is_cut(const CutNode& node, std::uint32_t steps, double detail);
+
+} // namespace graftal

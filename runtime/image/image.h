@@ -1,0 +1,70 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "compiler/support/status.h"
+#include "compiler/support/tint.h"
+
+namespace graftal {
+
+/// Samples as a file stores them, row by row, top first, channels together. Integer files give
+/// value / largest value in [0, 1]; nothing is converted between colour spaces, and alpha stays straight
+/// in PNG.
+struct Image {
+    int width = 0;
+    int height = 0;
+    int channels = 0; ///< 1 grey, 2 grey and alpha, 3 RGB, 4 RGB and alpha
+    std::vector<float> pixels;
+
+    bool operator==(const Image&) const = default;
+};
+
+/// How the samples of a picture are to be understood, and how many bits they keep in a PNG. EXR files keep
+/// 32-bit floats and are linear by definition.
+enum class SampleFormat {
+    srgb8,    ///< 8 bit, sRGB encoded: for people
+    linear16, ///< 16 bit, linear light (gamma 1 in the file): for numbers
+};
+
+/// What a picture says about its making.
+struct ImageMetadata {
+    std::string software;    ///< tag Software
+    std::string description; ///< tag ImageDescription: the command line
+};
+
+/// True for names that write_image knows: `.png` and `.exr`, in any case.
+bool is_picture_name(const std::string& path);
+bool is_exr_name(const std::string& path);
+
+/// Reads any format that OpenImageIO knows; refuses pictures of more than 2^29 samples.
+Status read_image(const std::string& path, Image& image);
+
+/// Writes `.png` or `.exr`, whole or not at all. Requires is_picture_name(path). The bytes depend on the
+/// arguments only. Samples are clamped to [0, 1] in PNG.
+Status write_image(const std::string& path, const Image& image, SampleFormat format,
+                   const ImageMetadata& metadata = {});
+
+/// Writes a 16-bit PNG of linear values for an SDL image_map with `gamma 1.0`: sample = round(65535 value).
+/// Requires pixels.size() = width * height.
+Status write_palette(const std::string& path, int width, int height, const std::vector<Rgb>& pixels);
+
+/// How far two pictures are apart. Over the samples a_i, b_i, i = 1..N, of all pixels and channels
+/// (a grey picture counts as RGB, a missing alpha as 1), with d_i = |a_i - b_i|:
+///   max = max d_i,   mean = (1/N) sum d_i,   rms = sqrt((1/N) sum d_i^2).
+/// Samples that are both NaN, or equal infinities, agree; any other pair with one of them is infinitely
+/// apart.
+struct ImageDifference {
+    bool same_size = true; ///< else nothing below is set
+    double max = 0;
+    double mean = 0;
+    double rms = 0;
+    std::uint64_t over_threshold = 0; ///< pixels with a d_i > threshold
+    std::uint64_t differing = 0;      ///< pixels with a d_i > 0
+    std::uint64_t pixels = 0;
+};
+
+ImageDifference compare_images(const Image& a, const Image& b, double threshold = 0);
+
+} // namespace graftal

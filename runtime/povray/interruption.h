@@ -1,0 +1,21 @@
+#pragma once
+
+namespace graftal {
+
+/// While one of these lives, SIGINT, SIGTERM and SIGHUP do not end the process but are remembered, so that
+/// temporary files can be removed and children stopped. May be nested; the last one to go restores the
+/// previous handling.
+class Interruption {
+  public:
+    Interruption();
+    ~Interruption();
+    Interruption(const Interruption&) = delete;
+    Interruption& operator=(const Interruption&) = delete;
+
+    /// The last signal caught since the outermost one began, or 0; still readable after it ended.
+    static int signal();
+    /// Becomes readable when a signal arrives; for poll(). -1 if there is no Interruption.
+    static int wake_descriptor();
+};
+
+} // namespace graftal

@@ -1,0 +1,143 @@
+#include "runtime/povray/povray.h"
+
+#include <csignal>
+#include <cstring>
+#include <fstream>
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include "compiler/support/file.h"
+
+namespace graftal {
+
+namespace {
+
+/// An empty file that stands in for the settings of the user and of the machine.
+constexpr const char* settings_file = "settings.ini";
+
+std::string in_directory(const PovrayJob& job, const std::string& name) {
+    return job.directory + "/" + name;
+}
+
+std::string describe(const PovrayJob& job, const PovrayMessage& message) {
+    std::string text;
+    if (message.line > 0) text = fmt::format("{} line {}: ", message.file, message.line);
+    text += message.text;
+    if (message.line == 0 || message.file != job.scene) return text;
+    const std::string object = object_comment_before(in_directory(job, job.scene), message.line);
+    return object.empty() ? text : fmt::format("{} (in object {})", text, object);
+}
+
+/// What POV-Ray said about a failed run: its errors, else its last lines.
+std::string complaints(const PovrayJob& job, const PovrayLog& log) {
+    std::string text;
+    for (const PovrayMessage& message : log.messages)
+        if (message.kind != PovrayMessage::Kind::warning)
+            text += fmt::format("\n    {}", describe(job, message));
+    if (!text.empty()) return text;
+    for (const std::string& line : log.last_lines)
+        text += fmt::format("\n    {}", line);
+    return text;
+}
+
+bool is_there(const std::string& path) {
+    return ::access(path.c_str(), R_OK) == 0;
+}
+
+/// Why a run was no success, or "".
+std::string failure(const PovrayJob& job, const PovrayLog& log, const ProcessResult& process) {
+    if (process.interrupted) return "interrupted";
+    if (process.signal == SIGKILL)
+        return "POV-Ray was killed; it may have run out of memory (a smaller --memory makes a smaller scene)";
+    if (process.signal) return fmt::format("POV-Ray crashed: {}", ::strsignal(process.signal));
+    if (process.exit_code != 0)
+        return fmt::format("POV-Ray failed with status {}:{}", process.exit_code, complaints(job, log));
+    if (!log.finished)
+        return fmt::format("POV-Ray ended with status 0 but did not finish:{}", complaints(job, log));
+    if (!is_there(in_directory(job, job.picture))) return "POV-Ray finished without writing the picture";
+    if (log.illegal_matrix)
+        return "POV-Ray changed a placement that is too small for it: the picture is wrong";
+    if (log.no_objects) return "POV-Ray found no objects in the scene";
+    if (job.finite_objects && log.finite_objects && *job.finite_objects != *log.finite_objects)
+        return fmt::format("POV-Ray found {} objects in a scene of {}: the picture is wrong",
+                           *log.finite_objects, *job.finite_objects);
+    return {};
+}
+
+} // namespace
+
+std::vector<std::string> povray_arguments(const PovrayJob& job) {
+    std::vector<std::string> arguments = {
+        "+I" + job.scene,
+        "+O" + job.picture,
+        fmt::format("+W{}", job.width),
+        fmt::format("+H{}", job.height),
+        "-D",
+        job.linear16 ? "+FN16" : "+FN8",
+        job.linear16 ? "File_Gamma=1.0" : "File_Gamma=srgb",
+    };
+    if (job.threads > 0) arguments.push_back(fmt::format("+WT{}", job.threads));
+    if (job.antialias) {
+        // Jitter is off: a picture must not depend on how its blocks were shared among threads.
+        for (const std::string& argument : {std::string("+A0.1"), std::string("+AM2"),
+                                            fmt::format("+R{}", *job.antialias), std::string("-J")})
+            arguments.push_back(argument);
+    } else {
+        arguments.push_back("-A");
+    }
+    return arguments;
+}
+
+Status povray_available(const std::string& program) {
+    if (find_program(program)) return {};
+    return Status::failure(
+        fmt::format("cannot find the program '{}'; install it by 'apt-get install povray'", program));
+}
+
+PovrayResult run_povray(const PovrayJob& job) {
+    PovrayResult result;
+    result.status = povray_available(job.program);
+    if (!result.status.ok()) return result;
+    result.status = write_text(in_directory(job, settings_file), "");
+    if (!result.status.ok()) return result;
+    const std::string picture = in_directory(job, job.picture);
+    ::unlink(picture.c_str());
+
+    PovrayMessageReader reader(job.on_progress);
+    ProcessOptions options;
+    options.arguments = povray_arguments(job);
+    options.arguments.insert(options.arguments.begin(), job.program);
+    options.directory = job.directory;
+    options.environment = {{"POVINI", settings_file}};
+    options.on_error_text = [&](std::string_view text) { reader.feed(text); };
+    result.process = run_process(options);
+    reader.finish();
+    result.log = reader.log();
+
+    ::unlink(in_directory(job, settings_file).c_str());
+    const std::size_t dot = job.picture.rfind('.');
+    ::unlink(in_directory(job, job.picture.substr(0, dot) + ".pov-state").c_str());
+    result.status = result.process.status;
+    if (!result.status.ok()) return result;
+    const std::string reason = failure(job, result.log, result.process);
+    if (!reason.empty()) {
+        ::unlink(picture.c_str());
+        result.status = Status::failure(reason);
+    }
+    return result;
+}
+
+std::string object_comment_before(const std::string& path, int line) {
+    constexpr std::string_view mark = "// object ";
+    std::ifstream file(path);
+    std::string text, found;
+    for (int number = 1; number <= line && std::getline(file, text); ++number) {
+        const std::size_t at = text.find_first_not_of(' ');
+        if (at != std::string::npos && text.compare(at, mark.size(), mark) == 0)
+            found = text.substr(at + mark.size());
+    }
+    return found;
+}
+
+} // namespace graftal

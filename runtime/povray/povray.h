@@ -1,0 +1,49 @@
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "compiler/support/status.h"
+#include "runtime/povray/messages.h"
+#include "runtime/povray/process.h"
+
+namespace graftal {
+
+/// A scene file to be rendered by POV-Ray 3.7 as a child process.
+struct PovrayJob {
+    std::string program = "povray"; ///< as find_program takes it
+    std::string directory;          ///< holds the scene and what it refers to; the picture is written there
+    std::string scene = "scene.pov";
+    std::string picture = "picture.png";
+    int width = 0;
+    int height = 0;
+    int threads = 0;              ///< 0: as many as POV-Ray likes
+    std::optional<int> antialias; ///< N: adaptive, up to 2^N x 2^N samples a pixel, N in 1..9; nothing: off
+    bool linear16 = false;        ///< 16-bit PNG of linear values; else 8-bit sRGB
+    std::optional<std::uint64_t> finite_objects; ///< that POV-Ray must find; nothing: not checked
+    std::function<void(const PovrayProgress&)> on_progress;
+};
+
+struct PovrayResult {
+    Status status; ///< says what went wrong, with POV-Ray's words and the part of the model at fault
+    PovrayLog log;
+    ProcessResult process;
+};
+
+/// POV-Ray's arguments for the job, without the program.
+std::vector<std::string> povray_arguments(const PovrayJob& job);
+
+/// Fails, with advice, if POV-Ray is not installed.
+Status povray_available(const std::string& program = "povray");
+
+/// Runs POV-Ray. Success means: exit status 0, the picture is there, "POV-Ray finished" was printed, and no
+/// warning that makes the picture wrong. A picture that is no success is removed. No settings of the user's
+/// POV-Ray are read. Requires that scene and picture are plain file names.
+PovrayResult run_povray(const PovrayJob& job);
+
+/// The nearest comment `// object TEXT` at or before a line of an SDL file: TEXT, or "" if there is none.
+/// Emitted scenes have one in front of what each object of the model became.
+std::string object_comment_before(const std::string& path, int line);
+
+} // namespace graftal

@@ -42,6 +42,20 @@ Status write_failure(const std::string& path, std::string text) {
     return Status::failure(fmt::format("cannot write picture '{}': {}", path, complaint(std::move(text))));
 }
 
+bool read_floats(OIIO::ImageInput& input, Image& image) {
+    return input.read_image(0, 0, 0, image.channels, OIIO::TypeDesc::FLOAT, image.pixels.data());
+}
+
+/// Whole numbers become the float nearest to level / largest, which OpenImageIO's own conversion misses by a
+/// last bit. 8-bit levels arrive as 257 times themselves, 65535 = 255 * 257.
+bool read_levels(OIIO::ImageInput& input, Image& image) {
+    std::vector<std::uint16_t> levels(image.pixels.size());
+    if (!input.read_image(0, 0, 0, image.channels, OIIO::TypeDesc::UINT16, levels.data())) return false;
+    std::transform(levels.begin(), levels.end(), image.pixels.begin(),
+                   [](std::uint16_t level) { return static_cast<float>(level) / 65535.0f; });
+    return true;
+}
+
 /// Writes float samples in the file format `spec` asks for.
 Status write_samples(const std::string& path, const OIIO::ImageSpec& spec, const float* samples) {
     PendingFile pending(path);
@@ -76,7 +90,8 @@ Status read_image(const std::string& path, Image& image) {
     const int channels = std::min(spec.nchannels, 4);
     image = {spec.width, spec.height, channels, {}};
     image.pixels.resize(spec.image_pixels() * static_cast<std::uint64_t>(channels));
-    if (!input->read_image(0, 0, 0, channels, OIIO::TypeDesc::FLOAT, image.pixels.data()))
+    const bool whole = spec.format == OIIO::TypeDesc::UINT8 || spec.format == OIIO::TypeDesc::UINT16;
+    if (!(whole ? read_levels(*input, image) : read_floats(*input, image)))
         return read_failure(path, input->geterror());
     return {};
 }

@@ -1,0 +1,183 @@
+#include "runtime/povray/process.h"
+
+#include <chrono>
+#include <csignal>
+#include <cstdlib>
+#include <filesystem>
+#include <thread>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include "runtime/povray/interruption.h"
+#include "runtime/povray/temporary_directory.h"
+
+namespace graftal {
+namespace {
+
+struct Outcome {
+    ProcessResult result;
+    std::string text;
+};
+
+Outcome shell(const std::string& script, double grace_seconds = 10) {
+    Outcome outcome;
+    ProcessOptions options;
+    options.arguments = {"sh", "-c", script};
+    options.grace_seconds = grace_seconds;
+    options.environment = {{"GRAFTAL_TEST", "a b'c"}};
+    options.on_error_text = [&](std::string_view text) { outcome.text += text; };
+    outcome.result = run_process(options);
+    return outcome;
+}
+
+/// Sends a signal to ourselves once the child says that it is ready.
+Outcome interrupt_shell(const std::string& script, int number, double grace_seconds) {
+    Outcome outcome;
+    ProcessOptions options;
+    options.arguments = {"sh", "-c", script};
+    options.grace_seconds = grace_seconds;
+    options.on_error_text = [&](std::string_view text) {
+        if (outcome.text.empty()) ::kill(::getpid(), number);
+        outcome.text += text;
+    };
+    outcome.result = run_process(options);
+    return outcome;
+}
+
+TEST(Process, ReportsTheExitStatusAndStandardError) {
+    const Outcome outcome = shell("printf 'one\\rtwo\\n' >&2; echo lost; exit 7");
+    EXPECT_TRUE(outcome.result.status.ok());
+    EXPECT_EQ(outcome.result.exit_code, 7);
+    EXPECT_EQ(outcome.result.signal, 0);
+    EXPECT_FALSE(outcome.result.succeeded());
+    EXPECT_EQ(outcome.text, "one\rtwo\n");
+}
+
+TEST(Process, ReportsTheSignalThatEndedIt) {
+    const ProcessResult result = shell("kill -SEGV $$").result;
+    EXPECT_EQ(result.signal, SIGSEGV);
+    EXPECT_EQ(result.exit_code, -1);
+    EXPECT_FALSE(result.succeeded());
+}
+
+TEST(Process, EnvironmentReachesTheChildUnchanged) {
+    EXPECT_EQ(shell("printf %s \"$GRAFTAL_TEST\" >&2").text, "a b'c");
+}
+
+TEST(Process, StandardInputIsEmpty) {
+    EXPECT_EQ(shell("cat >&2; echo end >&2").text, "end\n");
+}
+
+TEST(Process, RunsInItsDirectory) {
+    TemporaryDirectory directory;
+    ASSERT_TRUE(directory.create().ok());
+    std::string text;
+    ProcessOptions options;
+    options.arguments = {"sh", "-c", "pwd -P >&2"};
+    options.directory = directory.path();
+    options.on_error_text = [&](std::string_view piece) { text += piece; };
+    EXPECT_TRUE(run_process(options).succeeded());
+    EXPECT_EQ(text, std::filesystem::canonical(directory.path()).string() + "\n");
+    options.directory = directory.path() + "/none";
+    EXPECT_FALSE(run_process(options).status.ok());
+}
+
+TEST(Process, MissingProgramIsAFailureOfTheEnvironment) {
+    ProcessOptions options;
+    options.arguments = {"graftal-no-such-program"};
+    EXPECT_THAT(run_process(options).status.message(), testing::HasSubstr("graftal-no-such-program"));
+    EXPECT_FALSE(find_program("graftal-no-such-program"));
+    EXPECT_FALSE(find_program("/"));
+    EXPECT_TRUE(find_program("sh"));
+}
+
+TEST(Process, MegabytesOfTextDoNotBlock) {
+    const Outcome outcome = shell("head -c 3000000 /dev/zero >&2");
+    EXPECT_TRUE(outcome.result.succeeded());
+    EXPECT_EQ(outcome.text.size(), 3'000'000u);
+}
+
+TEST(Process, ClosedStandardErrorIsNotTheEnd) {
+    const ProcessResult result = shell("exec 2>&-; sleep 0.1; exit 5").result;
+    EXPECT_EQ(result.exit_code, 5);
+    EXPECT_GE(result.wall_seconds, 0.1);
+}
+
+TEST(Process, MeasuresMemoryAndTime) {
+    const ProcessResult result =
+        shell("head -c 50000000 /dev/zero | tail -c 49000000 >/dev/null; exit 0").result;
+    EXPECT_GT(result.peak_bytes, 1'000'000u);
+    EXPECT_GE(result.user_seconds + result.system_seconds, 0);
+}
+
+TEST(Process, InterruptionIsPassedOnAndWaitedFor) {
+    const Interruption interruption;
+    const Outcome outcome = interrupt_shell(
+        "trap 'echo cleaned >&2; exit 2' TERM; echo ready >&2; while :; do sleep 0.05; done", SIGINT, 10);
+    EXPECT_EQ(outcome.result.interrupted, SIGINT);
+    EXPECT_EQ(outcome.result.exit_code, 2);
+    EXPECT_THAT(outcome.text, testing::HasSubstr("cleaned"));
+    EXPECT_EQ(Interruption::signal(), SIGINT);
+}
+
+TEST(Process, ChildThatIgnoresTheInterruptionIsKilled) {
+    const Interruption interruption;
+    const Outcome outcome =
+        interrupt_shell("trap '' TERM INT; echo ready >&2; while :; do sleep 0.05; done", SIGTERM, 0.2);
+    EXPECT_EQ(outcome.result.interrupted, SIGTERM);
+    EXPECT_EQ(outcome.result.signal, SIGKILL);
+    EXPECT_LT(outcome.result.wall_seconds, 5);
+}
+
+TEST(Process, InterruptionBeforeTheStartEndsTheChildToo) {
+    const Interruption interruption;
+    ::raise(SIGHUP);
+    const ProcessResult result = shell("sleep 30", 0.5).result;
+    EXPECT_EQ(result.interrupted, SIGHUP);
+    EXPECT_LT(result.wall_seconds, 5);
+}
+
+TEST(Interruptions, ANewOneForgetsTheLast) {
+    {
+        const Interruption first;
+        ::raise(SIGINT);
+        EXPECT_EQ(Interruption::signal(), SIGINT);
+    }
+    EXPECT_EQ(Interruption::signal(), SIGINT);
+    const Interruption second;
+    EXPECT_EQ(Interruption::signal(), 0);
+    {
+        const Interruption nested;
+        ::raise(SIGTERM);
+    }
+    EXPECT_EQ(Interruption::signal(), SIGTERM);
+}
+
+TEST(TemporaryDirectories, HonourTmpdirAndDisappear) {
+    TemporaryDirectory outer;
+    ASSERT_TRUE(outer.create().ok());
+    const char* old = std::getenv("TMPDIR");
+    const std::string saved = old ? old : "";
+    ::setenv("TMPDIR", outer.path().c_str(), 1);
+    std::string inner_path;
+    {
+        TemporaryDirectory inner;
+        ASSERT_TRUE(inner.create().ok());
+        inner_path = inner.path();
+        EXPECT_EQ(inner_path.find(outer.path()), 0u);
+        std::filesystem::create_directories(inner_path + "/a/b");
+    }
+    EXPECT_FALSE(std::filesystem::exists(inner_path));
+    ::setenv("TMPDIR", (outer.path() + "/none").c_str(), 1);
+    TemporaryDirectory impossible;
+    EXPECT_FALSE(impossible.create().ok());
+    if (old)
+        ::setenv("TMPDIR", saved.c_str(), 1);
+    else
+        ::unsetenv("TMPDIR");
+}
+
+} // namespace
+} // namespace graftal

@@ -25,11 +25,12 @@ std::pair<double, double> cos_sin_deg(double angle_deg) {
     return {std::cos(angle), std::sin(angle)};
 }
 
-}  // namespace
+} // namespace
 
 Affine Affine::scale(Vec3 factors) {
     Mat3 linear(0.0);
-    for (int i = 0; i < 3; ++i) linear[i][i] = factors[i];
+    for (int i = 0; i < 3; ++i)
+        linear[i][i] = factors[i];
     return {linear, Vec3(0.0)};
 }
 
@@ -42,7 +43,9 @@ Affine Affine::rotate(Vec3 axis, double angle_deg) {
     return {c * Mat3(1.0) + (1 - c) * glm::outerProduct(u, u) + s * cross, Vec3(0.0)};
 }
 
-Affine operator*(const Affine& a, const Affine& b) { return {a.linear * b.linear, a(b.translation)}; }
+Affine operator*(const Affine& a, const Affine& b) {
+    return {a.linear * b.linear, a(b.translation)};
+}
 
 Affine inverse(const Affine& a) {
     const Mat3 linear = glm::inverse(a.linear);
@@ -50,8 +53,18 @@ Affine inverse(const Affine& a) {
 }
 
 Vec3 singular_values(const Mat3& linear) {
+    double largest = 0;
+    for (int column = 0; column < 3; ++column)
+        for (int row = 0; row < 3; ++row)
+            largest = std::max(largest, std::abs(linear[column][row]));
+    if (largest == 0 || !std::isfinite(largest)) return Vec3(largest);
+    // Brought near 1 by a power of two, without rounding, so that no square overflows or vanishes. In two
+    // steps, for the factor itself may overflow.
+    const int exponent = std::ilogb(largest);
+    const double half_scale = std::exp2(-exponent / 2), rest_scale = std::exp2(-exponent - -exponent / 2);
+
     // One-sided Jacobi: rotate pairs of columns until all are orthogonal; their lengths are the answer.
-    Mat3 a = linear;
+    Mat3 a = linear * half_scale * rest_scale;
     for (int sweep = 0; sweep < 30; ++sweep) {
         bool rotated = false;
         for (const auto& [p, q] : {std::pair{0, 1}, {0, 2}, {1, 2}}) {
@@ -73,10 +86,12 @@ Vec3 singular_values(const Mat3& linear) {
     if (lengths.x < lengths.y) std::swap(lengths.x, lengths.y);
     if (lengths.y < lengths.z) std::swap(lengths.y, lengths.z);
     if (lengths.x < lengths.y) std::swap(lengths.x, lengths.y);
-    return lengths;
+    return lengths / half_scale / rest_scale;
 }
 
-double norm(const Mat3& linear) { return singular_values(linear).x; }
+double norm(const Mat3& linear) {
+    return singular_values(linear).x;
+}
 
 bool is_finite(const Affine& a) {
     for (int column = 0; column < 3; ++column)
@@ -90,4 +105,4 @@ bool is_singular(const Affine& a, double relative) {
     return !(sigma.z > relative * sigma.x);
 }
 
-}  // namespace graftal
+} // namespace graftal

@@ -6,7 +6,7 @@
 namespace graftal {
 
 using Vec3 = glm::dvec3;
-using Mat3 = glm::dmat3;  ///< column-major, as GLM has it: m[column][row]
+using Mat3 = glm::dmat3; ///< column-major, as GLM has it: m[column][row]
 
 /// x -> linear x + translation. Named destination_from_source, so that products read from the right.
 struct Affine {
@@ -29,8 +29,8 @@ Affine operator*(const Affine& a, const Affine& b);
 /// Requires a non-singular linear part.
 Affine inverse(const Affine& a);
 
-/// Singular values of the linear part, largest first (closed-form or Jacobi on A^T A; relative error
-/// about 1e-15 of the largest).
+/// Singular values of the linear part, largest first (one-sided Jacobi; error about 1e-15 of the largest), at
+/// any scale that doubles hold.
 Vec3 singular_values(const Mat3& linear);
 
 /// The largest stretch, |A|_2.
@@ -42,4 +42,4 @@ bool is_finite(const Affine& a);
 /// True if the smallest singular value is at most `relative` times the largest, or all are zero.
 bool is_singular(const Affine& a, double relative = 1e-12);
 
-}  // namespace graftal
+} // namespace graftal

@@ -18,7 +18,8 @@ Box transformed(const Affine& a, const Box& box) {
     if (box.empty()) return {};
     const Vec3 half = 0.5 * box.size();
     Vec3 reach(0.0);
-    for (int column = 0; column < 3; ++column) reach += glm::abs(a.linear[column]) * half[column];
+    for (int column = 0; column < 3; ++column)
+        reach += glm::abs(a.linear[column]) * half[column];
     const Vec3 centre = a(box.centre());
     return {centre - reach, centre + reach};
 }
@@ -28,4 +29,4 @@ Ball transformed(const Affine& a, const Ball& ball) {
     return {a(ball.centre), norm(a.linear) * ball.radius};
 }
 
-}  // namespace graftal
+} // namespace graftal

@@ -34,4 +34,4 @@ Box transformed(const Affine& a, const Box& box);
 /// A ball that holds the image of a ball: radius times the largest stretch.
 Ball transformed(const Affine& a, const Ball& ball);
 
-}  // namespace graftal
+} // namespace graftal

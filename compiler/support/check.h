@@ -6,9 +6,10 @@ namespace graftal {
 
 /// Ends the process after printing where and why. A broken invariant is a bug of graftal, never of a model.
 /// `context` names the stage or pass and the object, e.g. "merge_equivalent: object llr".
-[[noreturn]] void invariant_broken(const char* file, int line, const char* condition, std::string_view context);
+[[noreturn]] void invariant_broken(const char* file, int line, const char* condition,
+                                   std::string_view context);
 
-}  // namespace graftal
+} // namespace graftal
 
 /// Aborts with `context` unless `condition` holds; active in every build type.
 #define GRAFTAL_CHECK(condition, context)                                                                    \

@@ -41,9 +41,13 @@ void append_excerpt(std::string& out, const SourceMap& sources, Span span) {
     std::size_t window_begin = 0;
     if (line.size() > widest_excerpt) {
         window_begin = first > widest_excerpt / 2 ? first - widest_excerpt / 2 : 0;
-        while (window_begin < first && (line[window_begin] & 0xC0) == 0x80) ++window_begin;
+        while (window_begin < first && (line[window_begin] & 0xC0) == 0x80)
+            ++window_begin;
     }
-    const std::string_view window = line.substr(window_begin, widest_excerpt);
+    std::size_t window_end = std::min(window_begin + widest_excerpt, line.size());
+    while (window_end < line.size() && window_end > first && (line[window_end] & 0xC0) == 0x80)
+        --window_end;
+    const std::string_view window = line.substr(window_begin, window_end - window_begin);
     first -= window_begin;
     last = std::clamp(last - window_begin, first, window.size());
     const std::size_t indent = code_points(window.substr(0, first));
@@ -52,7 +56,7 @@ void append_excerpt(std::string& out, const SourceMap& sources, Span span) {
                        std::string(width - 1, '~'));
 }
 
-}  // namespace
+} // namespace
 
 Diagnostic& Diagnostic::with_hint(std::string text) {
     hint = std::move(text);
@@ -103,8 +107,10 @@ namespace {
 /// Optimal string alignment distance (Damerau-Levenshtein without overlapping edits).
 std::size_t edit_distance(std::string_view a, std::string_view b) {
     std::vector<std::vector<std::size_t>> d(a.size() + 1, std::vector<std::size_t>(b.size() + 1));
-    for (std::size_t i = 0; i <= a.size(); ++i) d[i][0] = i;
-    for (std::size_t j = 0; j <= b.size(); ++j) d[0][j] = j;
+    for (std::size_t i = 0; i <= a.size(); ++i)
+        d[i][0] = i;
+    for (std::size_t j = 0; j <= b.size(); ++j)
+        d[0][j] = j;
     for (std::size_t i = 1; i <= a.size(); ++i) {
         for (std::size_t j = 1; j <= b.size(); ++j) {
             const std::size_t change = d[i - 1][j - 1] + (a[i - 1] == b[j - 1] ? 0 : 1);
@@ -116,7 +122,7 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
     return d[a.size()][b.size()];
 }
 
-}  // namespace
+} // namespace
 
 std::string closest_name(std::string_view name, const std::vector<std::string>& candidates) {
     constexpr std::size_t longest_name = 64;
@@ -139,4 +145,4 @@ std::string did_you_mean(std::string_view name, const std::vector<std::string>& 
     return best.empty() ? "" : fmt::format("did you mean '{}'?", best);
 }
 
-}  // namespace graftal
+} // namespace graftal

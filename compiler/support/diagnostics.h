@@ -20,7 +20,7 @@ struct Diagnostic {
     Severity severity = Severity::error;
     Span span;
     std::string message;
-    std::string hint;  ///< what to write instead; may be empty
+    std::string hint; ///< what to write instead; may be empty
     std::vector<Note> notes;
 
     Diagnostic& with_hint(std::string text);
@@ -63,4 +63,4 @@ std::string closest_name(std::string_view name, const std::vector<std::string>& 
 /// " (did you mean 'x'?)"-style hint for closest_name, or "" if there is none.
 std::string did_you_mean(std::string_view name, const std::vector<std::string>& candidates);
 
-}  // namespace graftal
+} // namespace graftal

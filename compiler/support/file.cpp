@@ -1,10 +1,12 @@
 #include "compiler/support/file.h"
 
+#include <atomic>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
 #include <memory>
+#include <system_error>
 
 #include <fmt/format.h>
 #include <unistd.h>
@@ -33,14 +35,15 @@ Status read_stream(std::FILE* stream, const std::string& path, std::string& text
     return std::ferror(stream) ? system_failure("read", path) : Status();
 }
 
-}  // namespace
+} // namespace
 
 Status read_text(const std::string& path, std::string& text, std::size_t max_bytes) {
     if (path == "-") return read_stream(stdin, "standard input", text, max_bytes);
-    if (std::filesystem::is_directory(path)) {
-        errno = EISDIR;
-        return system_failure("read", path);
-    }
+    // Looked at before it is opened: opening a pipe that nobody writes would wait for ever.
+    std::error_code error;
+    const std::filesystem::file_status status = std::filesystem::status(path, error);
+    if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status))
+        return Status::failure(fmt::format("cannot read '{}': not a regular file", path));
     const OpenFile file(std::fopen(path.c_str(), "rb"));
     if (!file) return system_failure("open", path);
     return read_stream(file.get(), path, text, max_bytes);
@@ -48,8 +51,9 @@ Status read_text(const std::string& path, std::string& text, std::size_t max_byt
 
 PendingFile::PendingFile(std::string path) : path_(std::move(path)) {
     const std::filesystem::path final_path(path_);
-    const std::string name =
-        fmt::format(".{}.{}{}", final_path.stem().string(), ::getpid(), final_path.extension().string());
+    static std::atomic<unsigned> count = 0; // two writers of one file do not share a temporary
+    const std::string name = fmt::format(".{}.{}.{}{}", final_path.stem().string(), ::getpid(), ++count,
+                                         final_path.extension().string());
     temporary_ = (final_path.parent_path() / name).string();
 }
 
@@ -76,4 +80,4 @@ Status write_text(const std::string& path, std::string_view text) {
     return pending.commit();
 }
 
-}  // namespace graftal
+} // namespace graftal

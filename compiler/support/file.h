@@ -33,4 +33,4 @@ class PendingFile {
 /// Writes `text` to `path` by a PendingFile, or to standard output for "-".
 Status write_text(const std::string& path, std::string_view text);
 
-}  // namespace graftal
+} // namespace graftal

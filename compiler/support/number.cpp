@@ -1,22 +1,38 @@
 #include "compiler/support/number.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <system_error>
 
 namespace graftal {
 
 namespace {
 
 /// POV-Ray and people read "1e-05" and "1e-5" alike; to_chars is already locale-proof.
-template <typename... Format>
-void append_chars(std::string& out, double value, Format... format) {
+template<typename... Format> void append_chars(std::string& out, double value, Format... format) {
     char buffer[64];
-    if (value == 0) value = 0;  // drops the sign of -0
+    if (value == 0) value = 0; // drops the sign of -0
     const auto [end, error] = std::to_chars(buffer, buffer + sizeof buffer, value, format...);
     out.append(buffer, error == std::errc() ? end : buffer);
 }
 
-}  // namespace
+/// Of a number text that is out of range: true if it is too small for a double, false if too large. Tells by
+/// the decimal place of the first digit that is not 0.
+bool underflows(std::string_view text) {
+    const std::size_t e = std::min(text.find_first_of("eE"), text.size());
+    const std::string_view mantissa = text.substr(0, e);
+    const std::string_view exponent = text.substr(std::min(e + 1, text.size()));
+    long long shift = 0;
+    if (std::from_chars(exponent.data(), exponent.data() + exponent.size(), shift).ec ==
+        std::errc::result_out_of_range)
+        return exponent.starts_with('-');
+    const auto dot = static_cast<long long>(std::min(mantissa.find('.'), mantissa.size()));
+    const auto first_digit = static_cast<long long>(mantissa.find_first_of("123456789"));
+    return shift < first_digit - dot;
+}
+
+} // namespace
 
 std::string shortest(double value) {
     std::string out;
@@ -31,8 +47,10 @@ void append_number(std::string& out, double value, int digits) {
 std::optional<double> parse_number(std::string_view text) {
     double value = 0;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
+    if (end != text.data() + text.size()) return std::nullopt;
+    if (error == std::errc::result_out_of_range && underflows(text)) return 0;
+    if (error != std::errc() || !std::isfinite(value)) return std::nullopt;
     return value;
 }
 
-}  // namespace graftal
+} // namespace graftal

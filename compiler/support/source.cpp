@@ -8,9 +8,11 @@ namespace graftal {
 
 namespace {
 
-bool continues_code_point(char byte) { return (static_cast<unsigned char>(byte) & 0xC0) == 0x80; }
+bool continues_code_point(char byte) {
+    return (static_cast<unsigned char>(byte) & 0xC0) == 0x80;
+}
 
-}  // namespace
+} // namespace
 
 Span join(Span a, Span b) {
     if (!a.known()) return b;
@@ -53,4 +55,4 @@ std::string_view SourceMap::line(FileId file, std::uint32_t line) const {
     return text;
 }
 
-}  // namespace graftal
+} // namespace graftal

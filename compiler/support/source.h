@@ -55,7 +55,7 @@ class SourceMap {
         std::string text;
         std::vector<std::uint32_t> line_begins;
     };
-    std::deque<File> files_;  // a deque, so that views stay valid while files are added
+    std::deque<File> files_; // a deque, so that views stay valid while files are added
 };
 
-}  // namespace graftal
+} // namespace graftal

@@ -21,4 +21,4 @@ class [[nodiscard]] Status {
     std::string message_;
 };
 
-}  // namespace graftal
+} // namespace graftal

@@ -4,7 +4,7 @@
 
 namespace graftal {
 
-using Rgb = glm::dvec3;  ///< linear light, components in [0, 1]
+using Rgb = glm::dvec3; ///< linear light, components in [0, 1]
 
 /// The tint of one instance as a model writes it: a straight colour and the share it covers
 /// (Hart 1992, section 5). Alpha 0 leaves what is below unchanged.
@@ -36,4 +36,4 @@ inline PathTint operator*(const PathTint& parent, const PathTint& child) {
     return {parent.premultiplied + through * child.premultiplied, parent.alpha + through * child.alpha};
 }
 
-}  // namespace graftal
+} // namespace graftal

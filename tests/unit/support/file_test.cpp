@@ -1,0 +1,134 @@
+#include "compiler/support/file.h"
+
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+namespace graftal {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+
+/// A folder of its own, removed afterwards.
+class Files : public testing::Test {
+  protected:
+    void SetUp() override {
+        const auto* test = testing::UnitTest::GetInstance()->current_test_info();
+        folder_ =
+            fs::temp_directory_path() / ("graftal_" + std::string(test->name()) + std::to_string(::getpid()));
+        fs::create_directories(folder_);
+    }
+    void TearDown() override { fs::remove_all(folder_); }
+
+    std::string path(const std::string& name) const { return (folder_ / name).string(); }
+    std::size_t file_count() const {
+        return static_cast<std::size_t>(
+            std::distance(fs::directory_iterator(folder_), fs::directory_iterator()));
+    }
+    static std::string contents(const std::string& file) {
+        std::ifstream in(file, std::ios::binary);
+        return {std::istreambuf_iterator<char>(in), {}};
+    }
+
+    fs::path folder_;
+};
+
+TEST_F(Files, WriteThenReadGivesTheSameBytes) {
+    const std::string text("a\r\n\0\xFF end", 9);
+    ASSERT_TRUE(write_text(path("x.inst"), text).ok());
+    std::string back = "old";
+    ASSERT_TRUE(read_text(path("x.inst"), back).ok());
+    EXPECT_EQ(back, text);
+    EXPECT_EQ(file_count(), 1u) << "no temporary is left";
+}
+
+TEST_F(Files, ReadingSaysWhatWasTriedAndWhatTheSystemAnswered) {
+    std::string text;
+    EXPECT_EQ(read_text(path("none.inst"), text).message(),
+              "cannot open '" + path("none.inst") + "': No such file or directory");
+    EXPECT_EQ(read_text(folder_.string(), text).message(),
+              "cannot read '" + folder_.string() + "': not a regular file");
+}
+
+TEST_F(Files, ReadingStopsAtTheLimit) {
+    ASSERT_TRUE(write_text(path("big"), std::string(1000, 'x')).ok());
+    std::string text;
+    EXPECT_TRUE(read_text(path("big"), text, 1000).ok());
+    EXPECT_EQ(read_text(path("big"), text, 999).message(), "'" + path("big") + "' is longer than 999 bytes");
+    const Status endless = read_text("/dev/zero", text, 1 << 20);
+    EXPECT_FALSE(endless.ok()) << "an endless device must not fill the memory";
+    EXPECT_LE(text.size(), std::size_t{1} << 20);
+}
+
+TEST_F(Files, ReadingAPipeThatNobodyWritesDoesNotHang) {
+    ASSERT_EQ(::mkfifo(path("pipe").c_str(), 0600), 0);
+    std::string text;
+    EXPECT_EQ(read_text(path("pipe"), text).message(),
+              "cannot read '" + path("pipe") + "': not a regular file");
+}
+
+TEST_F(Files, APendingFileAppearsByCommitOnly) {
+    std::string temporary;
+    {
+        PendingFile pending(path("out.png"));
+        temporary = pending.temporary_path();
+        EXPECT_EQ(fs::path(temporary).parent_path(), folder_) << "renaming needs the same file system";
+        EXPECT_EQ(fs::path(temporary).extension(), ".png");
+        std::ofstream(temporary) << "half";
+        EXPECT_FALSE(fs::exists(path("out.png")));
+    }
+    EXPECT_EQ(file_count(), 0u) << "without commit nothing stays";
+
+    PendingFile pending(path("out.png"));
+    std::ofstream(pending.temporary_path()) << "whole";
+    ASSERT_TRUE(pending.commit().ok());
+    EXPECT_EQ(contents(path("out.png")), "whole");
+    EXPECT_EQ(file_count(), 1u);
+}
+
+TEST_F(Files, AFailureLeavesTheOldFileWhole) {
+    ASSERT_TRUE(write_text(path("out.pov"), "old").ok());
+    {
+        PendingFile pending(path("out.pov"));
+        std::ofstream(pending.temporary_path()) << "half of the ne";
+    }
+    EXPECT_EQ(contents(path("out.pov")), "old");
+    ASSERT_TRUE(write_text(path("out.pov"), "new").ok());
+    EXPECT_EQ(contents(path("out.pov")), "new");
+}
+
+TEST_F(Files, TwoOutputsOfOneStemDoNotShareATemporary) {
+    PendingFile first(path("a.png")), second(path("b.png")), third(path("a.png"));
+    EXPECT_NE(first.temporary_path(), second.temporary_path());
+    EXPECT_NE(first.temporary_path(), third.temporary_path()) << "two writers of one file";
+}
+
+TEST_F(Files, WhereNothingCanBeWrittenSaysSo) {
+    EXPECT_EQ(write_text(path("no/such/folder/x"), "text").message(),
+              "cannot write '" + path("no/such/folder/x") + "': No such file or directory");
+    fs::create_directory(path("taken"));
+    EXPECT_THAT(write_text(path("taken"), "text").message(),
+                HasSubstr("cannot write '" + path("taken") + "'"));
+    EXPECT_EQ(file_count(), 1u) << "no temporary is left after a failed rename";
+    PendingFile never_written(path("y"));
+    EXPECT_FALSE(never_written.commit().ok());
+}
+
+TEST_F(Files, AFullDiskIsAFailure) {
+    // The device that is always full; a link keeps the temporary, made beside it, out of /dev.
+    std::ofstream full("/dev/full");
+    if (!full) GTEST_SKIP() << "no /dev/full here";
+    fs::create_symlink("/dev/full", path("full"));
+    EXPECT_TRUE(write_text(path("full"), "text").ok()) << "the link is replaced, not followed";
+    EXPECT_EQ(contents(path("full")), "text");
+}
+
+} // namespace
+} // namespace graftal

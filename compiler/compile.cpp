@@ -1,0 +1,170 @@
+#include "compiler/compile.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <utility>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "compiler/graph/verify.h"
+#include "compiler/support/number.h"
+
+namespace graftal {
+
+namespace {
+
+/// Runs stages and notes how long each took.
+class Stages {
+  public:
+    explicit Stages(std::vector<StageTime>& times) : times_(times) {}
+
+    template<typename Work> auto run(const char* stage, const Work& work) {
+        const auto begin = std::chrono::steady_clock::now();
+        auto result = work();
+        const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - begin;
+        times_.push_back({stage, elapsed.count()});
+        return result;
+    }
+
+  private:
+    std::vector<StageTime>& times_;
+};
+
+bool is_pass_or_empty(const std::string& name, Diagnostics& diagnostics) {
+    std::vector<std::string> names;
+    for (const Pass& pass : pipeline())
+        names.emplace_back(pass.name);
+    if (name.empty() || std::find(names.begin(), names.end(), name) != names.end()) return true;
+    diagnostics.error({}, fmt::format("there is no pass '{}'", name))
+        .with_hint(fmt::format("the passes are {}", fmt::join(names, ", ")));
+    return false;
+}
+
+Graph optimise(Graph graph, const PipelineOptions& options, std::vector<StageTime>& times) {
+    std::vector<PassTime> pass_times;
+    graph = run_pipeline(std::move(graph), options, &pass_times);
+    for (PassTime& time : pass_times)
+        times.push_back({std::move(time.name), time.seconds});
+    return graph;
+}
+
+std::string digits(double value, int count) {
+    std::string out;
+    append_number(out, value, count);
+    return out;
+}
+
+/// Where the model says the step of a cycle; a generated instance stands for its object.
+Span span_of(const Graph& graph, const GraphStep& step) {
+    const Object& object = graph.objects[step.object];
+    const Span span = object.instances[step.instance].span;
+    return span.known() ? span : object.span;
+}
+
+void report_refuted(const Graph& graph, const Contraction& contraction, Diagnostics& diagnostics) {
+    const std::vector<GraphStep>& cycle = contraction.worst_cycle;
+    diagnostics
+        .error(span_of(graph, cycle.front()),
+               fmt::format("the cycle {} does not contract: its spectral radius is {}{}",
+                           describe_cycle(graph, cycle), digits(contraction.rate(), 6),
+                           cycle.size() > 1 ? " an instance" : ""))
+        .with_hint("an object may contain itself only if every way round makes it smaller: scale down an "
+                   "instance of the cycle");
+}
+
+void report_undecided(const Graph& graph, const Contraction& contraction, Diagnostics& diagnostics) {
+    const std::vector<GraphStep>& cycle = contraction.worst_cycle;
+    const Span span = cycle.empty() ? graph.objects[graph.root].span : span_of(graph, cycle.front());
+    Diagnostic& error = diagnostics.error(
+        span,
+        fmt::format("cannot prove that every cycle contracts: the factor an instance lies between {} and {}",
+                    digits(contraction.lower, 12), digits(contraction.upper, 12)));
+    error.with_hint("a slightly smaller scale on the instances that expand settles it");
+    if (!cycle.empty())
+        error.with_note(span,
+                        fmt::format("the cycle that contracts least is {}", describe_cycle(graph, cycle)));
+}
+
+/// Whether the limit of the unfolding is known to exist.
+bool converges(const Contraction& contraction) {
+    return contraction.verdict == Verdict::acyclic || contraction.verdict == Verdict::proved;
+}
+
+void report_verdict(const Graph& graph, const Contraction& contraction, Diagnostics& diagnostics) {
+    if (contraction.verdict == Verdict::refuted)
+        report_refuted(graph, contraction, diagnostics);
+    else
+        report_undecided(graph, contraction, diagnostics);
+}
+
+bool is_finite(const Box& box) {
+    const Vec3 diagonal = box.size();
+    return box.empty() ||
+           (std::isfinite(diagonal.x) && std::isfinite(diagonal.y) && std::isfinite(diagonal.z));
+}
+
+/// A model of nothing but planes is framed as the unit cube would be.
+Box box_to_frame(const ObjectBounds& bounds) {
+    return bounds.box.empty() ? Box{Vec3(-1.0), Vec3(1.0)} : bounds.box;
+}
+
+} // namespace
+
+std::optional<AnalysedModel> analyse_model(const std::string& path, const CompileOptions& options,
+                                           Compilation& compilation, bool for_report) {
+    Diagnostics& diagnostics = compilation.diagnostics;
+    if (!is_pass_or_empty(options.pipeline.stop_after, diagnostics)) return std::nullopt;
+    Stages stages(compilation.times);
+
+    std::optional<Graph> lowered = stages.run("lower", [&] {
+        return lower_model(path, options.lower, compilation.sources, diagnostics, compilation.status);
+    });
+    if (!lowered) return std::nullopt;
+    check_verified(*lowered, "after lowering");
+
+    AnalysedModel model;
+    model.path = path;
+    model.graph = optimise(std::move(*lowered), options.pipeline, compilation.times);
+    model.steps = options.steps ? options.steps : model.graph.settings.steps;
+    model.components = stages.run("components", [&] { return strong_components(model.graph); });
+    model.contraction =
+        stages.run("contraction", [&] { return decide_contraction(model.graph, model.components); });
+    if (!converges(model.contraction)) {
+        if (for_report) return model;
+        report_verdict(model.graph, model.contraction, diagnostics);
+        return std::nullopt;
+    }
+
+    model.bounds = stages.run(
+        "bounding", [&] { return bound_objects(model.graph, model.components, model.contraction); });
+    const Object& root = model.graph.objects[model.graph.root];
+    if (!is_finite(model.bounds[model.graph.root].box)) {
+        diagnostics.error(root.span, "the model is larger than floating-point numbers can hold");
+        return std::nullopt;
+    }
+    return model;
+}
+
+std::optional<CompiledModel> compile_model(const std::string& path, const CompileOptions& options,
+                                           Compilation& compilation) {
+    std::optional<AnalysedModel> model = analyse_model(path, options, compilation);
+    if (!model) return std::nullopt;
+    Stages stages(compilation.times);
+
+    const ObjectBounds& bounds = model->bounds[model->graph.root];
+    View view = stages.run(
+        "frame", [&] { return frame(model->graph, box_to_frame(bounds), options.size, options.camera); });
+
+    CutOptions cut_options = options.cut;
+    cut_options.steps = model->steps;
+    std::optional<Cut> cut = stages.run("cut", [&] {
+        return cut_graph(model->graph, model->components, model->bounds, view, cut_options,
+                         compilation.diagnostics);
+    });
+    if (!cut) return std::nullopt;
+    return CompiledModel{std::move(*model), std::move(view), std::move(*cut)};
+}
+
+} // namespace graftal

@@ -1,0 +1,254 @@
+#include "compiler/lower/lower_rifs.h"
+
+#include <algorithm>
+#include <map>
+#include <string>
+#include <utility>
+
+#include <fmt/format.h>
+#include <glm/common.hpp>
+
+#include "compiler/graph/components.h"
+#include "compiler/lower/lower_settings.h"
+#include "compiler/lower/lower_transform.h"
+#include "compiler/lower/lowering.h"
+#include "compiler/lower/rifs_system.h"
+#include "compiler/syntax/rifs_parser.h"
+
+namespace graftal {
+
+namespace {
+
+/// A condensation or terminal, looked up and evaluated.
+struct Part {
+    ObjectId master = 0;
+    Affine parent_from_child;
+    Tint tint;
+    std::optional<MaterialId> material;
+    Span span;
+};
+
+/// Two tints of one path as one (Hart 1992, eq. (9), (10)), straight again.
+Tint composed(const Tint& parent, const Tint& child) {
+    if (parent.alpha == 0) return child;
+    if (child.alpha == 0) return parent;
+    const PathTint path = PathTint(parent) * PathTint(child);
+    return {glm::min(path.premultiplied / path.alpha, Rgb(1.0)), std::min(path.alpha, 1.0)};
+}
+
+class RifsLowering {
+  public:
+    RifsLowering(FileId file, Lowering& lowering)
+        : file_(file), errors_before_(lowering.diagnostics.error_count()), lowering_(lowering),
+          diagnostics_(lowering.diagnostics),
+          tree_(parse_rifs(lowering.sources, file, lowering.diagnostics)) {}
+
+    /// All checks run, whatever has failed before, so that one run reports all of a file's errors.
+    std::optional<Graph> run() && {
+        if (tree_.blocks.empty() && !failed())
+            diagnostics_.error({file_, 0, 0}, "this file has no 'rifs' block")
+                .with_hint("rifs NAME { map NAME { scale 1/2 } ... }");
+        lets_ = lower_lets(tree_.statements, lowering_);
+        lower_settings(tree_.statements, lets_, graph_, lowering_);
+        import_models();
+        const RifsLooks looks(lets_, graph_.materials, diagnostics_);
+        system_ = evaluate_rifs(tree_, lets_, looks, diagnostics_);
+        check_block_names();
+        lower_parts(looks);
+        if (!resolve_digraphs(system_, lets_, lowering_) || failed()) return std::nullopt;
+        mark_empty(system_, diagnostics_);
+        if (!failed()) add_objects();
+        if (failed()) return std::nullopt;
+        return std::move(graph_);
+    }
+
+  private:
+    bool failed() const { return diagnostics_.error_count() > errors_before_; }
+
+    void import_models() {
+        for (const RifsUse& use : tree_.uses) {
+            if (diagnostics_.full()) return;
+            const auto [first, fresh] = uses_.try_emplace(use.name.text, Use{use.name.span, std::nullopt});
+            if (!fresh) {
+                diagnostics_.error(use.name.span, fmt::format("duplicate use '{}'", use.name.text))
+                    .with_note(first->second.span, "first defined here");
+            } else if (primitive_named(use.name.text)) {
+                diagnostics_.error(
+                    use.name.span,
+                    fmt::format("'{}' is a primitive and cannot name a used model", use.name.text));
+            } else if (use.name.text.find('.') != std::string_view::npos) {
+                diagnostics_.error(
+                    use.name.span,
+                    fmt::format("the name '{}' of a used model must not have a '.'", use.name.text));
+            } else {
+                first->second.root = import_model(graph_, use.span, use.name.text, use.path, lowering_);
+            }
+        }
+    }
+
+    /// Objects of blocks and of used models are told apart by these names.
+    void check_block_names() {
+        for (const RifsBlock& block : tree_.blocks)
+            if (const auto use = uses_.find(block.name.text); use != uses_.end())
+                diagnostics_
+                    .error(block.name.span, fmt::format("'{}' is a used model already", block.name.text))
+                    .with_note(use->second.span, "first defined here");
+    }
+
+    void lower_parts(const RifsLooks& looks) {
+        std::vector<std::pair<const RifsPart*, bool>> parts; // whether it is a terminal
+        for (const RifsBlock& block : tree_.blocks) {
+            for (const RifsPart& part : block.condense)
+                parts.emplace_back(&part, false);
+            if (block.terminal) parts.emplace_back(&*block.terminal, true);
+            for (const RifsMap& map : block.maps)
+                if (map.terminal) parts.emplace_back(&*map.terminal, true);
+        }
+        for (const auto& [part, is_terminal] : parts)
+            if (!diagnostics_.full()) lower_part(*part, looks);
+        const Components components = strong_components(graph_);
+        const std::vector<bool> unbounded = plane_holders(components);
+        for (const auto& [part, is_terminal] : parts)
+            if (const auto lowered = parts_.find(part); lowered != parts_.end())
+                check_part(*part, lowered->second.master, is_terminal, components, unbounded);
+    }
+
+    void lower_part(const RifsPart& part, const RifsLooks& looks) {
+        const std::optional<ObjectId> master = find_master(part.master);
+        const std::optional<Affine> placed = lower_transforms(part.transforms, lets_, diagnostics_);
+        const Tint tint = looks.tint(part.look);
+        const std::optional<MaterialId> material = looks.material(part.look);
+        if (master && placed) parts_.emplace(&part, Part{*master, *placed, tint, material, part.span});
+    }
+
+    std::optional<ObjectId> find_master(const RifsName& name) {
+        if (const auto kind = primitive_named(name.text)) return graph_.primitive(*kind);
+        if (const auto use = uses_.find(name.text); use != uses_.end()) return use->second.root;
+        std::vector<std::string> known;
+        for (int kind = 0; kind < primitive_kind_count; ++kind)
+            known.emplace_back(name_of(static_cast<PrimitiveKind>(kind)));
+        for (const auto& [used, use] : uses_)
+            known.emplace_back(used);
+        diagnostics_.error(name.span, fmt::format("'{}' is no primitive and no used model", name.text))
+            .with_hint(did_you_mean(name.text, known));
+        return std::nullopt;
+    }
+
+    /// By object: reaches a plane.
+    std::vector<bool> plane_holders(const Components& components) const {
+        std::vector<bool> holds(graph_.objects.size(), false);
+        for (const std::vector<ObjectId>& members : components.members) {
+            const bool any = std::any_of(members.begin(), members.end(), [&](ObjectId member) {
+                const Object& object = graph_.objects[member];
+                return object.primitive == PrimitiveKind::plane ||
+                       std::any_of(object.instances.begin(), object.instances.end(),
+                                   [&](const Instance& instance) { return holds[instance.master]; });
+            });
+            for (const ObjectId member : members)
+                holds[member] = any;
+        }
+        return holds;
+    }
+
+    void check_part(const RifsPart& part, ObjectId master, bool is_terminal, const Components& components,
+                    const std::vector<bool>& unbounded) {
+        const std::string_view name = part.master.text;
+        if (unbounded[master])
+            diagnostics_.error(part.master.span,
+                               fmt::format("'{}' is unbounded and cannot be part of a fractal", name));
+        if (is_terminal && components.unending[master])
+            diagnostics_
+                .error(part.master.span, fmt::format("the terminal '{}' goes on for ever itself", name))
+                .with_hint("a terminal is drawn where recursion is cut; 'condense' may be recursive");
+    }
+
+    void add_objects() {
+        const bool qualified = tree_.blocks.size() > 1 || names_collide();
+        std::vector<ObjectId> ids(system_.nodes.size());
+        auto next = static_cast<ObjectId>(graph_.objects.size());
+        for (std::uint32_t i = 0; i < system_.nodes.size(); ++i)
+            if (!system_.nodes[i].empty) ids[i] = next++;
+        for (const RifsNode& node : system_.nodes) {
+            if (node.empty) continue;
+            const std::string_view block = system_.blocks[node.block].source->name.text;
+            add_node(node, qualified ? fmt::format("{}.{}", block, node.name) : node.name, ids);
+        }
+        add_root(ids);
+    }
+
+    bool names_collide() const {
+        return std::any_of(system_.nodes.begin(), system_.nodes.end(), [&](const RifsNode& node) {
+            return node.name == system_.blocks[node.block].source->name.text;
+        });
+    }
+
+    /// A_j = w_j(C u U A_i): the condensation sets of the block that w_j is applied to, then the masters.
+    void add_node(const RifsNode& node, std::string name, const std::vector<ObjectId>& ids) {
+        Object object;
+        object.name = std::move(name);
+        object.span = node.source->name.span;
+        const RifsBlock& under = *system_.blocks[system_.block_under(node)].source;
+        for (const RifsPart& condensed : under.condense)
+            object.instances.push_back(placed(parts_.at(&condensed), &node));
+        for (const std::uint32_t master : node.masters)
+            if (!system_.nodes[master].empty)
+                object.instances.push_back(
+                    {ids[master], node.map, node.tint, node.material, node.source->name.span});
+        const std::optional<RifsPart>& terminal =
+            node.source->terminal ? node.source->terminal : under.terminal;
+        if (terminal) object.terminal = placed(parts_.at(&*terminal), &node);
+        graph_.add(std::move(object));
+    }
+
+    void add_root(const std::vector<ObjectId>& ids) {
+        const RifsSubsystem& main = system_.blocks[system_.main];
+        Object root;
+        root.name = main.source->name.text;
+        root.span = main.source->name.span;
+        for (const RifsPart& condensed : main.source->condense)
+            root.instances.push_back(placed(parts_.at(&condensed), nullptr));
+        for (const std::uint32_t start : main.start)
+            if (!system_.nodes[start].empty)
+                root.instances.push_back(
+                    {ids[start], Affine(), Tint(), std::nullopt, system_.nodes[start].source->name.span});
+        if (main.source->terminal) root.terminal = placed(parts_.at(&*main.source->terminal), nullptr);
+        graph_.root = graph_.add(std::move(root));
+    }
+
+    /// A part under the map of `node`, or as it is.
+    Instance placed(const Part& part, const RifsNode* node) {
+        if (!node) return {part.master, part.parent_from_child, part.tint, part.material, part.span};
+        const Affine map = node->map * part.parent_from_child;
+        if (!is_finite(map) || map.linear == Mat3(0.0))
+            diagnostics_
+                .error(part.span, fmt::format("under map '{}' this {}", node->name,
+                                              is_finite(map) ? "vanishes" : "is not finite"))
+                .with_note(node->source->name.span, "the map is here");
+        return {part.master, map, composed(node->tint, part.tint),
+                part.material ? part.material : node->material, part.span};
+    }
+
+    struct Use {
+        Span span;
+        std::optional<ObjectId> root; ///< nothing after an error
+    };
+
+    FileId file_;
+    std::size_t errors_before_;
+    Lowering& lowering_;
+    Diagnostics& diagnostics_;
+    RifsFile tree_;
+    Environment lets_;
+    Graph graph_;
+    RifsSystem system_;
+    std::map<std::string_view, Use> uses_;
+    std::map<const RifsPart*, Part> parts_; // looked up only, never walked
+};
+
+} // namespace
+
+std::optional<Graph> lower_rifs(FileId file, Lowering& lowering) {
+    return RifsLowering(file, lowering).run();
+}
+
+} // namespace graftal

@@ -81,7 +81,7 @@ class RifsLowering {
                     use.name.span,
                     fmt::format("the name '{}' of a used model must not have a '.'", use.name.text));
             } else {
-                first->second.root = import_model(graph_, use.span, use.name.text, use.path, lowering_);
+                first->second.root = import_model(graph_, use.path_span, use.name.text, use.path, lowering_);
             }
         }
     }
@@ -107,10 +107,8 @@ class RifsLowering {
         for (const auto& [part, is_terminal] : parts)
             if (!diagnostics_.full()) lower_part(*part, looks);
         const Components components = strong_components(graph_);
-        const std::vector<bool> unbounded = plane_holders(components);
         for (const auto& [part, is_terminal] : parts)
-            if (const auto lowered = parts_.find(part); lowered != parts_.end())
-                check_part(*part, lowered->second.master, is_terminal, components, unbounded);
+            if (is_terminal) check_terminal(*part, components);
     }
 
     void lower_part(const RifsPart& part, const RifsLooks& looks) {
@@ -134,32 +132,14 @@ class RifsLowering {
         return std::nullopt;
     }
 
-    /// By object: reaches a plane.
-    std::vector<bool> plane_holders(const Components& components) const {
-        std::vector<bool> holds(graph_.objects.size(), false);
-        for (const std::vector<ObjectId>& members : components.members) {
-            const bool any = std::any_of(members.begin(), members.end(), [&](ObjectId member) {
-                const Object& object = graph_.objects[member];
-                return object.primitive == PrimitiveKind::plane ||
-                       std::any_of(object.instances.begin(), object.instances.end(),
-                                   [&](const Instance& instance) { return holds[instance.master]; });
-            });
-            for (const ObjectId member : members)
-                holds[member] = any;
-        }
-        return holds;
-    }
-
-    void check_part(const RifsPart& part, ObjectId master, bool is_terminal, const Components& components,
-                    const std::vector<bool>& unbounded) {
-        const std::string_view name = part.master.text;
-        if (unbounded[master])
-            diagnostics_.error(part.master.span,
-                               fmt::format("'{}' is unbounded and cannot be part of a fractal", name));
-        if (is_terminal && components.unending[master])
-            diagnostics_
-                .error(part.master.span, fmt::format("the terminal '{}' goes on for ever itself", name))
-                .with_hint("a terminal is drawn where recursion is cut; 'condense' may be recursive");
+    /// Once a part; check_graph() would report it for each object that has it.
+    void check_terminal(const RifsPart& part, const Components& components) {
+        const auto lowered = parts_.find(&part);
+        if (lowered == parts_.end() || !components.unending[lowered->second.master]) return;
+        diagnostics_
+            .error(part.master.span,
+                   fmt::format("the terminal '{}' goes on for ever itself", part.master.text))
+            .with_hint("a terminal is drawn where recursion is cut; 'condense' may be recursive");
     }
 
     void add_objects() {

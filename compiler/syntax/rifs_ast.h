@@ -104,7 +104,7 @@ struct RifsBlock {
 struct RifsUse {
     RifsName name;
     std::string_view path;
-    Span span;
+    Span path_span;
 };
 
 struct RifsFile {

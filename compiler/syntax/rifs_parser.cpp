@@ -44,12 +44,12 @@ class RifsParser {
     }
 
     bool parse_use() {
-        const Token keyword = stream_.next();
+        stream_.next();
         const std::optional<RifsName> name = parse_rifs_name(stream_, "a name after 'use'");
         if (!name || !stream_.expect("=", name->text)) return false;
         const std::optional<Token> path = stream_.expect_string("the file name in quotes");
         if (!path) return false;
-        file_.uses.push_back({*name, path->text, stream_.span_from(keyword.span)});
+        file_.uses.push_back({*name, path->text, path->span});
         return true;
     }
 

@@ -5,9 +5,11 @@
 #include <bit>
 #include <cmath>
 #include <map>
-#include <unordered_map>
 
 #include <Eigen/SVD>
+#include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
+#include <tsl/robin_map.h>
 
 #include "compiler/cut/leaf_walk.h"
 #include "compiler/cut/mesh_builder.h"
@@ -26,6 +28,7 @@ struct KeptLeaf {
     Affine place;
     std::size_t number = 0; ///< in the order of the walk
     std::size_t part = 0;
+    Rgb rgb{0.0}; ///< as the first painter has it
 };
 
 std::int64_t part_key(const std::optional<MaterialId>& material) {
@@ -41,14 +44,25 @@ struct RgbHash {
     }
 };
 
+struct Mix {
+    std::size_t operator()(std::uint64_t value) const {
+        const std::uint64_t h = value * 0x9E3779B97F4A7C15ull;
+        return h ^ (h >> 32);
+    }
+};
+
 /// Numbers the distinct tuples of colours that leaves take over all painters, one painter at a time.
 class SlotTable {
   public:
     explicit SlotTable(std::size_t leaves) : slot_of_leaf(leaves, 0), count(leaves > 0 ? 1 : 0) {}
 
     void refine(const std::vector<Rgb>& colours) {
-        std::unordered_map<Rgb, std::uint32_t, RgbHash> numbers;
-        std::unordered_map<std::uint64_t, std::uint32_t> refined;
+        // One colour refines nothing, and neither does anything once each leaf has its own slot.
+        if (count == colours.size() ||
+            std::all_of(colours.begin(), colours.end(), [&](const Rgb& c) { return c == colours[0]; }))
+            return;
+        tsl::robin_map<Rgb, std::uint32_t, RgbHash> numbers;
+        tsl::robin_map<std::uint64_t, std::uint32_t, Mix> refined;
         for (std::size_t leaf = 0; leaf < colours.size(); ++leaf) {
             const auto colour =
                 numbers.emplace(colours[leaf], static_cast<std::uint32_t>(numbers.size())).first->second;
@@ -116,7 +130,7 @@ class Baker {
             const bool flat = tessellated(leaf.kind, 0).normals.empty();
             if (!flat) smooth_[part->second] = true;
             baked_.culled_detail = std::max(baked_.culled_detail, leaf.culled_detail);
-            leaves_.push_back({leaf.kind, place, number, part->second});
+            leaves_.push_back({leaf.kind, place, number, part->second, leaf.rgb});
             triangles += tessellated(leaf.kind, 0).triangles.size();
             if (triangles > max_triangles_) {
                 baked_.complete = false;
@@ -129,10 +143,12 @@ class Baker {
         MeshBuilder builder(smooth_[part]);
         const Affine body_from_representative = inverse(baked_.representative_from_body);
         std::vector<std::size_t> kept_number;
+        std::vector<Rgb> first_colours;
         for (const KeptLeaf& leaf : leaves_) {
             if (leaf.part != part) continue;
             builder.add(leaf.kind, fineness(leaf), body_from_representative * leaf.place, kept_number.size());
             kept_number.push_back(leaf.number);
+            first_colours.push_back(leaf.rgb);
             if (baked_.triangles + builder.triangle_count() > 4 * max_triangles_) {
                 baked_.complete = false;
                 return;
@@ -143,7 +159,7 @@ class Baker {
         BakedPart result;
         result.material = materials_[part];
         result.mesh = std::move(builder.mesh);
-        paint(result, kept_number, builder.leaf_of_triangle);
+        paint(result, kept_number, std::move(first_colours), builder.leaf_of_triangle);
         baked_.triangles += result.mesh.triangles.size();
         baked_.parts.push_back(std::move(result));
     }
@@ -155,14 +171,14 @@ class Baker {
         return level;
     }
 
-    void paint(BakedPart& part, const std::vector<std::size_t>& kept_number,
+    void paint(BakedPart& part, const std::vector<std::size_t>& kept_number, std::vector<Rgb> first_colours,
                const std::vector<std::size_t>& leaf_of_triangle) {
-        std::vector<std::vector<Rgb>> colours;
+        std::vector<std::vector<Rgb>> colours = {std::move(first_colours)};
+        for (std::size_t i = 1; i < request_.painters.size(); ++i)
+            colours.push_back(colours_by(request_.painters[i], kept_number));
         SlotTable slots(kept_number.size());
-        for (const Painter& painter : request_.painters) {
-            colours.push_back(colours_by(painter, kept_number));
-            slots.refine(colours.back());
-        }
+        for (const auto& by_leaf : colours)
+            slots.refine(by_leaf);
         for (const auto& by_leaf : colours)
             part.palettes.push_back(slots.palette(by_leaf));
         part.mesh.slot_count = slots.count;

@@ -32,7 +32,7 @@ class Cutter {
     Cutter(const Graph& graph, const Components& components, const std::vector<ObjectBounds>& bounds,
            const View& view, const CutOptions& options, Diagnostics& diagnostics)
         : graph_(graph), unending_(components.unending[graph.root]), view_(view), options_(options),
-          diagnostics_(diagnostics), cut_(build_cut_graph(graph, components, bounds)),
+          diagnostics_(diagnostics), cut_(prepared(graph, components, bounds)),
           symmetry_(find_symmetry(cut_)) {}
 
     std::optional<Cut> run() {
@@ -54,13 +54,20 @@ class Cutter {
     }
 
   private:
+    static CutGraph prepared(const Graph& graph, const Components& components,
+                             const std::vector<ObjectBounds>& bounds) {
+        CutGraph cut = build_cut_graph(graph, components, bounds);
+        split_into_halves(cut);
+        return cut;
+    }
+
     std::optional<Cut> attempt(const CutOptions& options, double error_px, bool& too_much) {
         const double near = nearest_share * std::max(cut_.nodes[cut_.root].ball.radius, 1e-280);
         const Projection projection(view_, options, error_px, near);
-        Weights weights(cut_);
         Piece root;
         root.node = cut_.root;
         root.steps = options.steps.value_or(unlimited_steps);
+        Weights weights(cut_, visible_cube_triangles(cut_, symmetry_, root.steps));
         choice_ = options.flatten ? flat_choice(projection, root, weights)
                                   : choose_cut(cut_, symmetry_, projection, root, weights);
         const auto memory = static_cast<double>(options.memory_bytes);

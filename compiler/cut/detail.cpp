@@ -118,7 +118,9 @@ Weights::Weight Weights::of(const PieceKind& asked) {
             }
             continue;
         }
-        if (node.primitive && *node.primitive != PrimitiveKind::plane)
+        if (node.primitive == PrimitiveKind::cube)
+            frame.sum = {cube_triangles_, 1};
+        else if (node.primitive && *node.primitive != PrimitiveKind::plane)
             frame.sum = {static_cast<double>(tessellated(*node.primitive, 0).triangles.size()), 1};
         else if (edges.empty())
             frame.sum = {proxy_triangles, 1};

@@ -55,7 +55,9 @@ struct PieceKindHash {
 /// Estimates what an unfolded piece holds, by one memoised sweep: O(kinds reached).
 class Weights {
   public:
-    explicit Weights(const CutGraph& cut) : cut_(cut) {}
+    /// `cube_triangles`: how many of a cube's triangles stay visible in a mesh, on average.
+    explicit Weights(const CutGraph& cut, double cube_triangles = 12)
+        : cut_(cut), cube_triangles_(cube_triangles) {}
 
     struct Weight {
         double triangles = 0;
@@ -76,6 +78,7 @@ class Weights {
 
   private:
     const CutGraph& cut_;
+    double cube_triangles_;
     std::unordered_map<PieceKind, Weight, PieceKindHash> known_;
 };
 

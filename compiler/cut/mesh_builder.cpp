@@ -17,6 +17,8 @@ namespace {
 /// Positions that round to the same multiple of this, in body units, are one vertex: a few steps of
 /// POV-Ray's float32.
 constexpr double weld_unit = 1.0 / (1 << 21);
+/// The cube's.
+constexpr std::size_t most_flat_vertices = 8;
 
 std::uint64_t mix(std::uint64_t h, std::uint64_t value) {
     h = (h ^ value) * 0x9E3779B97F4A7C15ull;
@@ -106,7 +108,7 @@ void MeshBuilder::add_flat(PrimitiveKind kind, const Affine& body_from_leaf, boo
 std::uint32_t MeshBuilder::welded(Vec3 point) {
     GridPoint cell;
     for (int k = 0; k < 3; ++k)
-        cell.cell[k] = std::llround(point[k] / weld_unit);
+        cell.cell[k] = static_cast<std::int64_t>(std::floor(point[k] / weld_unit + 0.5));
     const auto [place, added] = vertex_at_.emplace(cell, static_cast<std::uint32_t>(mesh.vertices.size()));
     if (added) mesh.vertices.push_back(point);
     return place->second;
@@ -115,7 +117,7 @@ std::uint32_t MeshBuilder::welded(Vec3 point) {
 void MeshBuilder::push_unless_hidden(std::array<std::uint32_t, 3> corners, bool solid, std::size_t leaf) {
     Face face{corners};
     std::sort(face.corners.begin(), face.corners.end());
-    const auto [place, added] = triangle_at_.emplace(face, mesh.triangles.size());
+    const auto [place, added] = triangle_at_.emplace(face, static_cast<std::uint32_t>(mesh.triangles.size()));
     if (added) {
         push(corners, leaf);
         origin_.push_back({solid, false});

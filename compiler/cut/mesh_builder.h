@@ -3,8 +3,9 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <unordered_map>
 #include <vector>
+
+#include <tsl/robin_map.h>
 
 #include "compiler/cut/cut.h"
 
@@ -56,8 +57,8 @@ class MeshBuilder {
     void drop_unused_vertices();
 
     bool smooth_;
-    std::unordered_map<GridPoint, std::uint32_t, Hash> vertex_at_;
-    std::unordered_map<Face, std::size_t, Hash> triangle_at_;
+    tsl::robin_map<GridPoint, std::uint32_t, Hash> vertex_at_;
+    tsl::robin_map<Face, std::uint32_t, Hash> triangle_at_;
     std::vector<Origin> origin_; ///< by triangle of a flat mesh
 };
 

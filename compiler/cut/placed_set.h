@@ -3,7 +3,8 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <unordered_set>
+
+#include <tsl/robin_set.h>
 
 #include "compiler/support/affine.h"
 
@@ -25,7 +26,7 @@ class PlacedSet {
     };
 
     double unit_;
-    std::unordered_set<Digest, First> seen_;
+    tsl::robin_set<Digest, First> seen_;
 };
 
 } // namespace graftal

@@ -125,7 +125,40 @@ class Finder {
         return std::move(result_);
     }
 
+    /// For each edge whether it belongs to the first half; empty if the node has no halves.
+    std::vector<bool> halves(NodeId id) {
+        const CutNode& node = cut_.nodes[id];
+        if (!node.unending || node.sealed || node.edges.size() < 4 || node.edges.size() % 2 != 0) return {};
+        for (const Mat3& linear : candidates()) {
+            if (linear * linear != Mat3(1.0) || linear == Mat3(1.0) || checks_++ >= max_checks) continue;
+            const std::size_t before = result_.pairs.size();
+            const Affine moved{linear, centres_[id] - linear * centres_[id]};
+            const std::uint32_t pair = congruent(id, id, moved);
+            std::vector<bool> first(node.edges.size(), true);
+            bool found = pair != no_pair;
+            for (std::uint32_t i = 0; found && i < first.size(); ++i) {
+                const std::uint32_t twin = result_.pairs[pair].edge[i];
+                found = twin != i && result_.pairs[pair].edge[twin] == i;
+                if (twin < i) first[i] = false;
+            }
+            forget(before);
+            if (found) return first;
+        }
+        return {};
+    }
+
   private:
+    static const std::vector<Mat3>& candidates() {
+        static const std::vector<Mat3> all = cube_symmetries();
+        return all;
+    }
+
+    void forget(std::size_t pairs_to_keep) {
+        for (; keys_.size() > pairs_to_keep; keys_.pop_back())
+            known_.erase(keys_.back());
+        result_.pairs.resize(pairs_to_keep);
+    }
+
     std::tuple<std::size_t, long long, long long> signature(NodeId id) const {
         const CutNode& node = cut_.nodes[id];
         const auto rounded = [](double x) { return std::llround(std::log(std::max(x, 1e-300)) * 1e6); };
@@ -138,8 +171,7 @@ class Finder {
     }
 
     bool joins(NodeId representative, NodeId node) {
-        static const std::vector<Mat3> candidates = cube_symmetries();
-        for (const Mat3& linear : candidates) {
+        for (const Mat3& linear : candidates()) {
             if (checks_++ >= max_checks) return false;
             const Affine moved{linear, centres_[node] - linear * centres_[representative]};
             const std::size_t before = result_.pairs.size();
@@ -150,9 +182,7 @@ class Finder {
                 result_.pair[node] = pair;
                 return true;
             }
-            for (; keys_.size() > before; keys_.pop_back())
-                known_.erase(keys_.back());
-            result_.pairs.resize(before);
+            forget(before);
         }
         return false;
     }
@@ -288,6 +318,30 @@ class Finder {
 };
 
 } // namespace
+
+void split_into_halves(CutGraph& cut) {
+    std::vector<std::vector<bool>> halves;
+    Finder finder(cut);
+    const auto count = static_cast<NodeId>(cut.nodes.size());
+    for (NodeId id = 0; id < count; ++id)
+        halves.push_back(finder.halves(id));
+    for (NodeId id = 0; id < count; ++id) {
+        if (halves[id].empty()) continue;
+        std::vector<CutEdge> both;
+        for (const bool first : {true, false}) {
+            CutNode half = cut.nodes[id];
+            half.edges.clear();
+            half.stop_edges.clear();
+            half.terminal = false;
+            half.cullable = false; // the whole node is culled or cut, never a half
+            for (std::size_t i = 0; i < halves[id].size(); ++i)
+                if (halves[id][i] == first) half.edges.push_back(cut.nodes[id].edges[i]);
+            both.push_back({static_cast<NodeId>(cut.nodes.size()), {}, {}, {}, 0, 1, 1, true});
+            cut.nodes.push_back(std::move(half));
+        }
+        cut.nodes[id].edges = std::move(both);
+    }
+}
 
 Symmetry find_symmetry(const CutGraph& cut) {
     return Finder(cut).find();

@@ -29,6 +29,11 @@ struct Symmetry {
     std::vector<NodePair> pairs;
 };
 
+/// Where a node is its own image under a half turn or mirror that leaves none of its edges in place, it is
+/// replaced by two placements of one half: the choice of the cut gets finer, meshes half as large. Changes
+/// no unfolding.
+void split_into_halves(CutGraph& cut);
+
 /// Finds the classes: candidates are checked coinductively (a pair is congruent if its edges can be paired so
 /// that all child pairs are), so cycles are no obstacle. Sound; it may miss congruences where several edges
 /// of a node coincide. Bounded effort.

@@ -4,6 +4,8 @@
 #include <string>
 #include <vector>
 
+#include <glm/geometric.hpp>
+
 #include "compiler/analysis/bounding.h"
 #include "compiler/graph/components.h"
 #include "compiler/graph/graph.h"
@@ -42,7 +44,22 @@ inline Graph gasket(bool solid) {
     ObjectId terminal = graph.primitive(PrimitiveKind::triangle);
     if (solid) {
         corners = {Vec3(1, 1, 1), Vec3(1, -1, -1), Vec3(-1, 1, -1), Vec3(-1, -1, 1)};
-        terminal = graph.primitive(PrimitiveKind::cube);
+        const ObjectId face = graph.primitive(PrimitiveKind::triangle);
+        Object tetrahedron{"tetrahedron", {}, {}, {}, {}};
+        for (int opposite = 0; opposite < 4; ++opposite) {
+            // The map that takes the canonical triangle's corners to three of the four.
+            std::vector<Vec3> p;
+            for (int i = 0; i < 4; ++i)
+                if (i != opposite)
+                    p.push_back(corners[i]);
+            const Vec3 centre = (p[0] + p[1] + p[2]) / 3.0;
+            Affine place{Mat3(1.0), centre};
+            place.linear[1] = p[0] - centre;
+            place.linear[0] = (p[2] - p[1]) / std::sqrt(3.0);
+            place.linear[2] = glm::cross(place.linear[0], place.linear[1]) / glm::length(p[0] - centre);
+            tetrahedron.instances.push_back({face, place, {}, {}, {}});
+        }
+        terminal = graph.add(std::move(tetrahedron));
     }
     Object attractor{"gasket", {}, {}, {}, {}};
     const auto self = static_cast<ObjectId>(graph.objects.size());

@@ -1,0 +1,59 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "compiler/cut/bake.h"
+#include "compiler/cut/choose.h"
+
+namespace graftal {
+
+namespace {
+
+constexpr double fewest_leaves = 300;
+constexpr double most_leaves = 6000;
+constexpr std::size_t max_sample_triangles = 200'000;
+
+/// A kind of the node with about the right number of leaves, by levels if the model is cut by levels.
+bool find_sample(Weights& weights, NodeId node, bool by_levels, PieceKind& sample) {
+    for (std::int32_t depth = 1; depth < 64; ++depth) {
+        sample = {node, unlimited_steps, depth * PieceKind::steps_an_octave / 2};
+        if (by_levels) sample = {node, static_cast<std::uint32_t>(depth), PieceKind::endless_detail};
+        const double leaves = weights.of(sample).leaves;
+        if (leaves > most_leaves) return false;
+        if (leaves >= fewest_leaves) return true;
+    }
+    return false;
+}
+
+} // namespace
+
+double visible_cube_triangles(const CutGraph& cut, const Symmetry& symmetry, std::uint32_t steps) {
+    constexpr double whole_cube = 12;
+    const bool cubes = std::any_of(cut.nodes.begin(), cut.nodes.end(),
+                                   [](const CutNode& node) { return node.primitive == PrimitiveKind::cube; });
+    if (!cubes) return whole_cube;
+    Weights weights(cut);
+    for (const CutEdge& edge : cut.nodes[cut.root].edges) {
+        const NodeId node = symmetry.representative[edge.child];
+        PieceKind sample;
+        if (!cut.nodes[node].unending || cut.nodes[node].unbounded ||
+            !find_sample(weights, node, steps != unlimited_steps, sample))
+            continue;
+        BakeRequest request;
+        request.representative = node;
+        request.steps = sample.steps;
+        request.detail_per_unit =
+            sample.detail_step == PieceKind::endless_detail
+                ? std::numeric_limits<double>::infinity()
+                : std::exp2(static_cast<double>(sample.detail_step) / PieceKind::steps_an_octave) /
+                      (2 * cut.nodes[node].ball.radius);
+        request.painters = {{symmetry.pair[node], Rgb(0.0)}};
+        const Baked baked = bake(cut, symmetry, request, max_sample_triangles);
+        const double nominal = weights.of(sample).triangles;
+        if (baked.complete && nominal > 0)
+            return whole_cube * std::min(1.0, static_cast<double>(baked.triangles) / nominal);
+    }
+    return whole_cube;
+}
+
+} // namespace graftal

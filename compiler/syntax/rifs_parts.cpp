@@ -50,6 +50,11 @@ bool take_rifs_map(TokenStream& stream, std::size_t& map_room) {
 }
 
 std::optional<RifsName> parse_rifs_name(TokenStream& stream, std::string_view what) {
+    // A name may stand on the next line, but not where that line begins another item.
+    if (stream.peek().first_on_line && at_rifs_item(stream) && !stream.peek(1).is("->")) {
+        stream.expected(what);
+        return std::nullopt;
+    }
     const std::optional<Token> name = stream.expect_name(what);
     if (!name) return std::nullopt;
     return RifsName{name->text, name->span};

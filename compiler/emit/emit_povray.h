@@ -16,16 +16,16 @@ using TextSink = std::function<bool(std::string_view)>;
 
 /// A picture that the scene refers to: the palette of a mesh with more colours than a colour_map holds.
 struct PaletteImage {
-    std::string file_name;  ///< beside the scene; PNG, 16 bit, linear
+    std::string file_name; ///< beside the scene; PNG, 16 bit, linear
     int width = 0;
     int height = 0;
-    std::vector<Rgb> pixels;  ///< row by row, top first
+    std::vector<Rgb> pixels; ///< row by row, top first
 };
 
 struct PovrayOptions {
-    std::string scene_name;  ///< of the model, for comments and file names; any text (it is made harmless)
-    bool include = false;    ///< `.inc`: declares the object in model coordinates, and draws nothing
-    bool progress = false;   ///< emits `#debug` marks that the driver reads as parse progress
+    std::string scene_name; ///< of the model, for comments and file names; any text (it is made harmless)
+    bool include = false;   ///< `.inc`: declares the object in model coordinates, and draws nothing
+    bool progress = false;  ///< emits `#debug` marks that the driver reads as parse progress
 };
 
 /// Writes the scene as POV-Ray 3.7 SDL (research: povray.md): literal placements of shared meshes, grouped by
@@ -34,4 +34,4 @@ struct PovrayOptions {
 bool emit_povray(const Graph& graph, const Cut& cut, const View& view, const PovrayOptions& options,
                  const TextSink& sink, std::vector<PaletteImage>& palettes);
 
-}  // namespace graftal
+} // namespace graftal

@@ -1,0 +1,111 @@
+#include "compiler/emit/povray_textures.h"
+
+#include <algorithm>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "compiler/emit/povray_palette.h"
+#include "compiler/support/check.h"
+#include "compiler/support/number.h"
+
+namespace graftal {
+
+namespace {
+
+constexpr int colour_digits = 7; // half a unit is 1/300 of the last bit of a 16-bit picture
+constexpr double no_tint = 1e-9; // alpha this near to 0 or 1 is as good as that
+constexpr double least_roughness = 5e-4;
+
+std::string rgb_text(Rgb rgb) {
+    std::string text = "rgb <";
+    for (int i = 0; i < 3; ++i) {
+        if (i > 0) text += ",";
+        append_number(text, rgb[i], colour_digits);
+    }
+    return text + ">";
+}
+
+std::string number_text(double value) {
+    std::string text;
+    append_number(text, value, colour_digits);
+    return text;
+}
+
+std::string finish_text(const Material& m, bool shining) {
+    std::string text = fmt::format("ambient {} diffuse {}", number_text(m.ambient), number_text(m.diffuse));
+    if (shining && m.specular > 0)
+        text += fmt::format(" specular {} roughness {}", number_text(m.specular),
+                            number_text(std::max(m.roughness, least_roughness)));
+    if (shining && m.reflection > 0) text += fmt::format(" reflection {}", number_text(m.reflection));
+    return text;
+}
+
+std::string texture_text(const std::string& pigment, const std::string& finish) {
+    return fmt::format("texture {{ pigment {{ {} }} finish {{ {} }} }}", pigment, finish);
+}
+
+} // namespace
+
+PovrayTextures::PovrayTextures(const Cut& cut, const std::string& prefix, std::string file_stem)
+    : cut_(cut), prefix_(prefix), file_stem_(std::move(file_stem)), finish_names_(prefix + "F_") {}
+
+std::string PovrayTextures::finish(const Material& material, bool shining) {
+    const std::string text = finish_text(material, shining);
+    std::string& name = finish_by_text_[text];
+    if (name.empty()) {
+        const std::string wish = material.name.empty() ? "default" : material.name;
+        name = finish_names_.next(text == finish_text(material, true) ? wish : wish + "_matt");
+        finish_declarations_.push_back(fmt::format("#declare {} = finish {{ {} }}\n", name, text));
+    }
+    return name;
+}
+
+std::string PovrayTextures::palette_name(std::uint32_t index) {
+    std::string& name = palettes_[index];
+    if (name.empty()) name = fmt::format("{}P_{}", prefix_, palettes_.size());
+    return name;
+}
+
+std::string PovrayTextures::plain(Rgb rgb, const Material& material) {
+    return texture_text(rgb_text(rgb), finish(material, true));
+}
+
+std::string PovrayTextures::layered(const Palette& palette, std::uint32_t index, const PathTint& tint,
+                                    const Material& material) {
+    if (tint.alpha >= 1 - no_tint) return plain(tint.premultiplied, material);
+    if (palette.size() == 1) return plain(tint.over(palette[0]), material);
+    const std::string colours = palette_name(index);
+    if (tint.alpha <= no_tint) return texture_text(colours, finish(material, true));
+    // Highlights and reflections belong to the top layer alone: each layer adds its own.
+    const std::string top =
+        fmt::format("{} transmit {}", rgb_text(tint.premultiplied / tint.alpha), number_text(1 - tint.alpha));
+    return texture_text(colours, finish(material, false)) + "\n          " +
+           texture_text(top, finish(material, true));
+}
+
+std::uint32_t PovrayTextures::texture_of(const PlacementGroup& group) {
+    GRAFTAL_CHECK(group.palette < cut_.palettes.size() && !cut_.palettes[group.palette].empty(),
+                  "emit_povray: a group without colours");
+    std::string text = layered(cut_.palettes[group.palette], group.palette, group.tint, group.material);
+    const auto [at, added] =
+        texture_by_text_.try_emplace(std::move(text), static_cast<std::uint32_t>(textures_.size()));
+    if (added) textures_.push_back(at->first);
+    return at->second;
+}
+
+std::string PovrayTextures::declarations(std::vector<PaletteImage>& pictures) const {
+    std::string text;
+    for (const std::string& declaration : finish_declarations_)
+        text += declaration;
+    for (const auto& [index, name] : palettes_) {
+        const Palette& palette = cut_.palettes[index];
+        const std::string file_name = fmt::format("{}_{}.png", file_stem_, name);
+        text += fmt::format("#declare {} = pigment {{ {} }}\n", name, palette_pigment(palette, file_name));
+        if (PaletteLayout(static_cast<std::uint32_t>(palette.size())).picture())
+            pictures.push_back(palette_image(palette, file_name));
+    }
+    return text;
+}
+
+} // namespace graftal

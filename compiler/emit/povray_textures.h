@@ -1,0 +1,52 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <unordered_map>
+#include <vector>
+
+#include "compiler/cut/cut.h"
+#include "compiler/emit/emit_povray.h"
+#include "compiler/emit/povray_names.h"
+
+namespace graftal {
+
+/// Gathers what the groups of a cut look like: textures, and the finishes and palettes that these share.
+/// Tints are applied exactly (Hart 1992, eq. (9) and (10)): to a single colour here, over a palette by a
+/// second layer of the texture (research: povray.md, section 3).
+class PovrayTextures {
+  public:
+    /// `prefix` begins every name; `file_stem` the names of pictures.
+    PovrayTextures(const Cut& cut, const std::string& prefix, std::string file_stem);
+
+    /// Of the group's primitives and meshes: an index into all(). Equal looks have equal indices.
+    std::uint32_t texture_of(const PlacementGroup& group);
+    /// A texture of one colour.
+    std::string plain(Rgb rgb, const Material& material);
+
+    /// `texture { ... }`, one or two layers.
+    const std::vector<std::string>& all() const { return textures_; }
+    /// `#declare` of the finishes and palettes that the textures name. Adds the pictures they need.
+    std::string declarations(std::vector<PaletteImage>& pictures) const;
+
+  private:
+    std::string layered(const Palette& palette, std::uint32_t index, const PathTint& tint,
+                        const Material& material);
+    /// The name of the finish, with or without what shines.
+    std::string finish(const Material& material, bool shining);
+    std::string palette_name(std::uint32_t index);
+
+    const Cut& cut_;
+    std::string prefix_;
+    std::string file_stem_;
+    UniqueNames finish_names_;
+    std::unordered_map<std::string, std::string> finish_by_text_;
+    std::vector<std::string> finish_declarations_;
+    std::map<std::uint32_t, std::string> palettes_; ///< by index in the cut: the declared name
+    std::unordered_map<std::string, std::uint32_t> texture_by_text_;
+    std::vector<std::string> textures_;
+};
+
+} // namespace graftal

@@ -1,0 +1,30 @@
+#pragma once
+
+#include "compiler/emit/sdl_writer.h"
+#include "compiler/scene/scene.h"
+
+namespace graftal {
+
+class PovrayTextures;
+
+/// Where the scene's own units lie in POV-Ray's: p -> scale * (p - origin).
+struct PovrayUnits {
+    double scale = 1;
+    Vec3 origin{0.0};
+
+    Vec3 operator()(Vec3 world) const { return scale * (world - origin); }
+    Affine pov_from_world() const { return {Mat3(scale), -scale * origin}; }
+};
+
+/// POV-Ray's tolerances are absolute: it drops hits nearer than 1e-4 and shadows nearer than 1e-3, sees
+/// nothing beyond 1e7, and keeps objects out of its tree that are larger than 2700. The scene is brought to
+/// an extent of 400 to 1000 units by a round factor (1, 2 or 5 times a power of ten), or less where the
+/// camera would be farther than 5e6 from it; and about the origin, if it lies far from there.
+PovrayUnits choose_units(const Box& bounds, const Camera& camera);
+
+/// Camera, lights, sky and ground. The camera carries the mirror between the right-handed scene and
+/// POV-Ray's left-handed habit: its axes are given outright, never by look_at.
+void write_view(SdlWriter& out, const View& view, const PovrayUnits& units, Vec3 centre,
+                const std::string& ground_texture);
+
+} // namespace graftal

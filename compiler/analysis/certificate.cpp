@@ -10,7 +10,7 @@ namespace graftal {
 
 namespace {
 
-constexpr std::uint64_t max_products = 10'000'000;
+constexpr std::uint64_t max_products = 5'000'000;
 constexpr double provable_rate = 1 - 1e-11;
 
 Eigen::Matrix3d eigen(const Mat3& m) {

@@ -7,6 +7,8 @@
 
 #include "compiler/analysis/cycle_graph.h"
 #include "compiler/analysis/cycle_mean.h"
+#include "compiler/analysis/gripenberg.h"
+#include "compiler/analysis/metric.h"
 
 namespace graftal {
 
@@ -16,11 +18,6 @@ namespace {
 constexpr double refuting_radius = 1 - 1e-12;
 /// Rates from here on are too near to 1 to be told from it by a re-check in floating point.
 constexpr double provable_rate = 1 - 1e-11;
-
-/// Logs of norms; a vanishing part has a very small one instead of -infinity.
-double log_norm(double norm) {
-    return std::log(std::max(norm, 1e-300));
-}
 
 /// Relative room in the rate for the rounding of a re-check that works by other means.
 double rounding_room(const ContractionCertificate& certificate) {
@@ -47,29 +44,93 @@ struct Findings {
     int depth = 1;
 };
 
-Findings by_cycle_mean(const CycleGraph& cycle) {
+/// Effort left for all components together; none may take more than half of it.
+struct Effort {
+    std::uint64_t edge_visits = 6'000'000;
+    std::uint64_t products = 2'000'000;
+};
+
+void take_certificate(Findings& findings, const MetricChoice& choice, double log_rate, int depth) {
+    findings.metric = choice.metric;
+    findings.log_weight = choice.log_weight;
+    findings.rate = std::exp(log_rate);
+    findings.depth = depth;
+}
+
+/// Step 1: the norms as they are, in the best unit for each object. Exact for similarities.
+MetricChoice by_cycle_mean(const CycleGraph& cycle, Findings& findings) {
     std::vector<double> weight;
     bool similarities = true;
     for (const CycleEdge& edge : cycle.edges) {
         const Mat3& linear = cycle.transform(edge).linear;
-        weight.push_back(log_norm(norm(linear)));
+        weight.push_back(log_norm(linear));
         similarities = similarities && similarity_ratio(linear) > 0;
     }
     CycleMean found = max_cycle_mean(cycle, weight);
-    Findings findings;
     findings.lower =
         std::exp(log_spectral_radius(cycle, found.cycle) / static_cast<double>(found.cycle.size()));
-    findings.rate = findings.upper = std::exp(found.bound);
+    findings.upper = std::exp(found.bound);
     if (similarities && findings.upper - findings.lower <= 1e-9 * findings.upper)
         findings.upper = findings.lower;
     findings.walk = std::move(found.cycle);
-    findings.log_weight = std::move(found.potential);
-    findings.metric.assign(cycle.size(), Mat3(1.0));
-    return findings;
+    MetricChoice plain{std::vector<Mat3>(cycle.size(), Mat3(1.0)), std::move(found.potential), found.bound,
+                       1};
+    take_certificate(findings, plain, plain.log_rate, 1);
+    return plain;
 }
 
-Findings examine(const CycleGraph& cycle) {
-    return by_cycle_mean(cycle);
+/// Step 2: other metrics. Gives the one with the least rate; the certificate becomes the one that makes the
+/// first bounds small, where one proves anything.
+MetricChoice by_metrics(const CycleGraph& cycle, const MetricChoice& plain, Findings& findings,
+                        Effort& effort) {
+    const auto width = [](const MetricChoice& choice) {
+        const double rate = std::exp(choice.log_rate);
+        return rate <= provable_rate ? choice.condition / (1 - rate) : INFINITY;
+    };
+    std::uint64_t visits = effort.edge_visits / 2;
+    effort.edge_visits -= visits;
+    MetricChoice best = plain;
+    double least_width = width(plain);
+    for (const MetricChoice& choice : search_metrics(cycle, plain, visits)) {
+        if (width(choice) < least_width) {
+            least_width = width(choice);
+            take_certificate(findings, choice, choice.log_rate, 1);
+        }
+        if (choice.log_rate < best.log_rate) best = choice;
+    }
+    effort.edge_visits += visits;
+    findings.upper = std::min(findings.upper, std::exp(best.log_rate));
+    return best;
+}
+
+/// Step 3: paths. With a proof at hand a little effort, to narrow the interval.
+void by_paths(const CycleGraph& cycle, const MetricChoice& choice, Findings& findings, Effort& effort) {
+    const bool proved = findings.rate <= provable_rate;
+    PathSearchLimits limits;
+    limits.log_lower = std::log(std::max(findings.lower, 1e-300));
+    limits.prove = !proved;
+    limits.products = std::min<std::uint64_t>(effort.products / 2, proved ? 20'000 : 1'000'000);
+    const PathSearch found = search_paths(cycle, choice, limits);
+    effort.products -= std::min(effort.products, found.products);
+    if (!found.walk.empty()) {
+        findings.lower = std::exp(found.log_lower);
+        findings.walk = found.walk;
+    }
+    findings.upper = std::max(findings.lower, std::min(findings.upper, std::exp(found.log_rate)));
+    if (!proved && std::exp(found.log_rate) <= provable_rate)
+        take_certificate(findings, choice, found.log_rate, found.depth);
+}
+
+Findings examine(const CycleGraph& cycle, Effort& effort) {
+    Findings findings;
+    const MetricChoice plain = by_cycle_mean(cycle, findings);
+    const auto settled = [&findings] {
+        return findings.lower >= refuting_radius || findings.upper - findings.lower <= 1e-9 * findings.upper;
+    };
+    if (settled()) return findings;
+    const MetricChoice best = by_metrics(cycle, plain, findings, effort);
+    if (!settled()) by_paths(cycle, best, findings, effort);
+    return findings;
 }
 
 /// The steps of a closed walk, begun at its object of least number.
@@ -106,10 +167,11 @@ Contraction decide_contraction(const Graph& graph, const Components& components)
     result.certificate.metric.assign(graph.objects.size(), Mat3(1.0));
     result.certificate.log_weight.assign(graph.objects.size(), 0.0);
     const std::vector<std::uint32_t> places = places_in_components(components);
+    Effort effort;
     for (std::uint32_t c = 0; c < components.members.size(); ++c) {
         if (!components.cyclic[c]) continue;
         const CycleGraph cycle = cycle_graph(graph, components, places, c);
-        take_in(result, cycle, examine(cycle));
+        take_in(result, cycle, examine(cycle, effort));
     }
     result.certificate.rate *= 1 + rounding_room(result.certificate);
     if (result.lower >= refuting_radius)

@@ -50,7 +50,7 @@ Contraction decide_contraction(const Graph& graph, const Components& components)
 
 /// Re-checks a certificate from the graph alone, by other means than those that found it: eigenvalues of
 /// M^T M with a margin for rounding, over all paths as far as needed. False, too, where that takes over
-/// 10^7 products.
+/// 5 * 10^6 products.
 bool certificate_holds(const Graph& graph, const Components& components,
                        const ContractionCertificate& certificate);
 

@@ -32,10 +32,28 @@ CycleGraph cycle_graph(const Graph& graph, const Components& components,
     return cycle;
 }
 
+double largest_entry(const Mat3& linear) {
+    double largest = 0;
+    for (int column = 0; column < 3; ++column)
+        for (int row = 0; row < 3; ++row)
+            largest = std::max(largest, std::abs(linear[column][row]));
+    return largest;
+}
+
 double similarity_ratio(const Mat3& linear) {
-    const Vec3 sigma = singular_values(linear);
+    const double size = largest_entry(linear);
+    if (!(size > 0)) return -1;
+    const Vec3 sigma = singular_values(linear * (1 / size));
     if (sigma.x - sigma.z > 1e-9 * sigma.x) return -1;
-    return std::cbrt(sigma.x * sigma.y * sigma.z);
+    return size * std::cbrt(sigma.x * sigma.y * sigma.z);
+}
+
+double spectral_radius(const Mat3& linear) {
+    Eigen::Matrix3d matrix;
+    for (int column = 0; column < 3; ++column)
+        for (int row = 0; row < 3; ++row)
+            matrix(row, column) = linear[column][row];
+    return Eigen::EigenSolver<Eigen::Matrix3d>(matrix, false).eigenvalues().cwiseAbs().maxCoeff();
 }
 
 double log_spectral_radius(const CycleGraph& cycle, std::span<const std::uint32_t> walk) {
@@ -52,19 +70,13 @@ double log_spectral_radius(const CycleGraph& cycle, std::span<const std::uint32_
         }
         similarities = false;
         product = product * linear;
-        const double size = norm(product);
+        const double size = largest_entry(product);
         if (!(size > 0)) return -std::numeric_limits<double>::infinity();
         product *= 1 / size;
         log_scale += std::log(size);
     }
     if (similarities) return log_scale;
-    Eigen::Matrix3d matrix;
-    for (int column = 0; column < 3; ++column)
-        for (int row = 0; row < 3; ++row)
-            matrix(row, column) = product[column][row];
-    const double radius =
-        Eigen::EigenSolver<Eigen::Matrix3d>(matrix, false).eigenvalues().cwiseAbs().maxCoeff();
-    return log_scale + std::log(radius);
+    return log_scale + std::log(spectral_radius(product));
 }
 
 } // namespace graftal

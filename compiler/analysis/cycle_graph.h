@@ -40,6 +40,12 @@ std::vector<std::uint32_t> places_in_components(const Components& components);
 CycleGraph cycle_graph(const Graph& graph, const Components& components,
                        const std::vector<std::uint32_t>& places, std::uint32_t component);
 
+/// The largest magnitude of an entry.
+double largest_entry(const Mat3& linear);
+
+/// The largest magnitude of an eigenvalue.
+double spectral_radius(const Mat3& linear);
+
 /// The log of the spectral radius of a product of linear parts along a closed walk (edge numbers, root side
 /// first), -infinity for 0. A sum of logs where all parts are similarities, so without rounding worth naming.
 double log_spectral_radius(const CycleGraph& cycle, std::span<const std::uint32_t> walk);

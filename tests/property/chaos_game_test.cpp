@@ -1,0 +1,170 @@
+// The oracle of the cut: points of the limit set, found by random walks that know nothing of bounds, cuts or
+// meshes, against the geometry that would be sent to POV-Ray.
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <filesystem>
+#include <random>
+#include <vector>
+
+#include <gtest/gtest.h>
+#include <tsl/robin_map.h>
+
+#include "compiler/compile.h"
+
+namespace graftal {
+namespace {
+
+constexpr int walk_count = 100'000;
+
+/// Random points of the limit set: each walk goes down from the root until its ball is a point. Instances are
+/// chosen by the square of their stretch, so that large parts get many points, with a floor for the thin.
+std::vector<Vec3> chaos_points(const AnalysedModel& model) {
+    std::mt19937 random(20240607);
+    const auto& objects = model.graph.objects;
+    std::vector<std::discrete_distribution<int>> choice(objects.size());
+    for (ObjectId id = 0; id < objects.size(); ++id) {
+        std::vector<double> weights;
+        for (const Instance& instance : objects[id].instances)
+            weights.push_back(model.components.unending[instance.master]
+                                  ? std::max(0.01, std::pow(norm(instance.parent_from_child.linear), 2))
+                                  : 0);
+        if (std::any_of(weights.begin(), weights.end(), [](double w) { return w > 0; }))
+            choice[id] = std::discrete_distribution<int>(weights.begin(), weights.end());
+    }
+    const double size = model.bounds[model.graph.root].ball.radius;
+    std::vector<Vec3> points;
+    for (int walk = 0; walk < walk_count; ++walk) {
+        ObjectId id = model.graph.root;
+        Affine world_from_object;
+        for (int step = 0; step < 100'000; ++step) {
+            const Instance& instance = objects[id].instances[choice[id](random)];
+            world_from_object = world_from_object * instance.parent_from_child;
+            id = instance.master;
+            if (norm(world_from_object.linear) * model.bounds[id].ball.radius < 1e-9 * size) break;
+        }
+        points.push_back(world_from_object(model.bounds[id].ball.centre));
+    }
+    return points;
+}
+
+/// All corners of all bodies, in the world.
+std::vector<Vec3> drawn_points(const Cut& cut) {
+    std::vector<Vec3> points;
+    for (const PlacementGroup& group : cut.groups)
+        for (const Placement& placement : group.placements) {
+            const Body& body = cut.bodies[placement.body];
+            if (const Mesh* mesh = std::get_if<Mesh>(&body.shape))
+                for (const Vec3& vertex : mesh->vertices)
+                    points.push_back(placement.world_from_body(vertex));
+            else
+                points.push_back(placement.world_from_body.translation);
+        }
+    return points;
+}
+
+/// Distances to the nearest of many points, up to a limit.
+class Neighbours {
+  public:
+    Neighbours(const std::vector<Vec3>& points, double limit) : points_(points), cell_(limit) {
+        for (std::size_t i = 0; i < points.size(); ++i)
+            cells_[key(points[i], 0, 0, 0)].push_back(i);
+    }
+
+    double distance(Vec3 point) const {
+        double nearest = std::numeric_limits<double>::infinity();
+        for (int x = -1; x <= 1; ++x)
+            for (int y = -1; y <= 1; ++y)
+                for (int z = -1; z <= 1; ++z) {
+                    const auto found = cells_.find(key(point, x, y, z));
+                    if (found == cells_.end()) continue;
+                    for (const std::size_t i : found->second)
+                        nearest = std::min(nearest, glm::distance(point, points_[i]));
+                }
+        return nearest;
+    }
+
+    double farthest(const std::vector<Vec3>& others) const {
+        double farthest = 0;
+        for (const Vec3& other : others)
+            farthest = std::max(farthest, distance(other));
+        return farthest;
+    }
+
+  private:
+    using Cell = std::array<std::int64_t, 3>;
+    struct Hash {
+        std::size_t operator()(const Cell& cell) const {
+            std::uint64_t h = 0;
+            for (const auto k : cell)
+                h = (h ^ static_cast<std::uint64_t>(k)) * 0x9E3779B97F4A7C15ull;
+            return h ^ (h >> 32);
+        }
+    };
+
+    Cell key(Vec3 p, int x, int y, int z) const {
+        return {static_cast<std::int64_t>(std::floor(p.x / cell_)) + x,
+                static_cast<std::int64_t>(std::floor(p.y / cell_)) + y,
+                static_cast<std::int64_t>(std::floor(p.z / cell_)) + z};
+    }
+
+    const std::vector<Vec3>& points_;
+    double cell_;
+    tsl::robin_map<Cell, std::vector<std::size_t>, Hash> cells_;
+};
+
+std::vector<std::string> recursive_scenes() {
+    std::vector<std::string> scenes;
+    const std::filesystem::path root = GRAFTAL_SOURCE_DIR;
+    for (const char* folder : {"scenes/ifs", "scenes/hart"})
+        for (const auto& entry : std::filesystem::directory_iterator(root / folder))
+            if (entry.path().extension() == ".rifs" || entry.path().filename() == "sierpinski.inst")
+                scenes.push_back(std::filesystem::relative(entry.path(), root).string());
+    std::sort(scenes.begin(), scenes.end());
+    return scenes;
+}
+
+class ChaosGame : public testing::TestWithParam<std::string> {};
+
+// Every part that is culled has a diameter of at most the error and is drawn within its own ball or box, so
+// each point lies within sqrt(3) errors of a corner; drawn corners lie near points up to how densely 10^5
+// points can cover the set.
+TEST_P(ChaosGame, PointsAndGeometryAreCloseBothWays) {
+    CompileOptions options;
+    options.size = {400, 300};
+    options.cut.error_px = 4;
+    Compilation compilation;
+    const std::optional<CompiledModel> compiled =
+        compile_model(std::string(GRAFTAL_SOURCE_DIR) + "/" + GetParam(), options, compilation);
+    ASSERT_TRUE(compiled) << compilation.diagnostics.render(compilation.sources);
+    const std::vector<Vec3> points = chaos_points(compiled->model);
+    const std::vector<Vec3> drawn = drawn_points(compiled->cut);
+    ASSERT_FALSE(drawn.empty());
+
+    const Ball& ball = compiled->model.bounds[compiled->model.graph.root].ball;
+    const Camera& camera = compiled->view.camera;
+    // The least resolution over the model gives the largest error in scene units.
+    const double pixels_per_unit =
+        camera.pixels_per_unit(ball.centre + camera.direction * ball.radius, options.size.width);
+    const double error = compiled->cut.error_px / pixels_per_unit;
+    RecordProperty("error", std::to_string(error));
+
+    const double to_geometry = Neighbours(drawn, 4 * error).farthest(points);
+    EXPECT_LE(to_geometry, std::sqrt(3.0) * error);
+    const double coverage = 0.06 * ball.radius;
+    const double to_points = Neighbours(points, 4 * error + coverage).farthest(drawn);
+    EXPECT_LE(to_points, std::sqrt(3.0) * error + coverage);
+    std::printf("%-40s error %.4g  points to geometry %.4g  geometry to points %.4g (of radius %.3g)\n",
+                GetParam().c_str(), error, to_geometry, to_points, ball.radius);
+}
+
+INSTANTIATE_TEST_SUITE_P(Scenes, ChaosGame, testing::ValuesIn(recursive_scenes()), [](const auto& info) {
+    std::string name = info.param;
+    std::replace_if(
+        name.begin(), name.end(), [](char c) { return !std::isalnum(static_cast<unsigned char>(c)); }, '_');
+    return name;
+});
+
+} // namespace
+} // namespace graftal

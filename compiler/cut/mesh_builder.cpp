@@ -25,16 +25,32 @@ std::uint64_t mix(std::uint64_t h, std::uint64_t value) {
     return h ^ (h >> 31);
 }
 
-template<typename Number> std::size_t hash_of(const std::array<Number, 3>& numbers) {
+template<typename Number, std::size_t n> std::size_t hash_of(const std::array<Number, n>& numbers) {
     std::uint64_t h = 0;
     for (const Number number : numbers)
         h = mix(h, static_cast<std::uint64_t>(number));
     return h;
 }
 
-/// Parity of the order of three different numbers; turning a triangle over changes it.
-bool is_odd(const std::array<std::uint32_t, 3>& c) {
-    return ((c[0] > c[1]) + (c[0] > c[2]) + (c[1] > c[2])) % 2 == 1;
+/// The facets of a flat primitive, counter-clockwise seen from outside, over the corners that tessellated()
+/// has; four-cornered ones are cut from the first to the third corner, as there.
+std::vector<std::vector<std::uint32_t>> facets_of(PrimitiveKind kind) {
+    if (kind == PrimitiveKind::triangle) return {{0, 1, 2}};
+    std::vector<std::vector<std::uint32_t>> quads;
+    for (std::uint32_t axis = 0; axis < 3; ++axis) {
+        const std::uint32_t u = 1u << (axis + 1) % 3, v = 1u << (axis + 2) % 3, w = 1u << axis;
+        quads.push_back({w, w | u, w | u | v, w | v});
+        quads.push_back({0, v, u | v, u});
+    }
+    return quads;
+}
+
+/// Whether the corners run from the least towards its smaller neighbour: turning a facet over changes it.
+bool turns_to_smaller(const std::array<std::uint32_t, 4>& c) {
+    const std::size_t count = c[3] == UINT32_MAX ? 3 : 4;
+    const std::size_t least =
+        static_cast<std::size_t>(std::min_element(c.begin(), c.begin() + count) - c.begin());
+    return c[(least + 1) % count] < c[(least + count - 1) % count];
 }
 
 } // namespace
@@ -42,8 +58,8 @@ bool is_odd(const std::array<std::uint32_t, 3>& c) {
 std::size_t MeshBuilder::Hash::operator()(const GridPoint& point) const {
     return hash_of(point.cell);
 }
-std::size_t MeshBuilder::Hash::operator()(const Face& face) const {
-    return hash_of(face.corners);
+std::size_t MeshBuilder::Hash::operator()(const FacetKey& key) const {
+    return hash_of(key.corners);
 }
 
 void MeshBuilder::add(PrimitiveKind kind, int fineness, const Affine& body_from_leaf, std::size_t leaf) {
@@ -92,16 +108,20 @@ void MeshBuilder::add_facets(PrimitiveKind kind, const Affine& body_from_leaf, b
 
 void MeshBuilder::add_flat(PrimitiveKind kind, const Affine& body_from_leaf, bool mirrored,
                            std::size_t leaf) {
+    static const auto triangle_facets = facets_of(PrimitiveKind::triangle);
+    static const auto cube_facets = facets_of(PrimitiveKind::cube);
+    const bool solid = kind == PrimitiveKind::cube;
     const TessellatedPrimitive& shape = tessellated(kind, 0);
-    std::vector<std::uint32_t> index;
-    for (const Vec3& vertex : shape.vertices)
-        index.push_back(welded(body_from_leaf(vertex)));
-    for (const auto& t : shape.triangles) {
-        std::array<std::uint32_t, 3> corners = {index[t[0]], index[t[1]], index[t[2]]};
-        if (mirrored) std::swap(corners[1], corners[2]);
-        const bool degenerate =
-            corners[0] == corners[1] || corners[1] == corners[2] || corners[0] == corners[2];
-        if (!degenerate) push_unless_hidden(corners, kind == PrimitiveKind::cube, leaf);
+    std::array<std::uint32_t, most_flat_vertices> index;
+    GRAFTAL_CHECK(shape.vertices.size() <= index.size(), name_of(kind));
+    for (std::size_t i = 0; i < shape.vertices.size(); ++i)
+        index[i] = welded(body_from_leaf(shape.vertices[i]));
+    for (const auto& corners : solid ? cube_facets : triangle_facets) {
+        Facet facet{
+            {Facet::no_corner, Facet::no_corner, Facet::no_corner, Facet::no_corner}, solid, false, leaf};
+        for (std::size_t i = 0; i < corners.size(); ++i)
+            facet.corners[mirrored ? (corners.size() - i) % corners.size() : i] = index[corners[i]];
+        add_unless_hidden(facet);
     }
 }
 
@@ -109,57 +129,58 @@ std::uint32_t MeshBuilder::welded(Vec3 point) {
     GridPoint cell;
     for (int k = 0; k < 3; ++k)
         cell.cell[k] = static_cast<std::int64_t>(std::floor(point[k] / weld_unit + 0.5));
-    const auto [place, added] = vertex_at_.emplace(cell, static_cast<std::uint32_t>(mesh.vertices.size()));
-    if (added) mesh.vertices.push_back(point);
+    const auto [place, added] = vertex_at_.emplace(cell, static_cast<std::uint32_t>(vertices_.size()));
+    if (added) vertices_.push_back(point);
     return place->second;
 }
 
-void MeshBuilder::push_unless_hidden(std::array<std::uint32_t, 3> corners, bool solid, std::size_t leaf) {
-    Face face{corners};
-    std::sort(face.corners.begin(), face.corners.end());
-    const auto [place, added] = triangle_at_.emplace(face, static_cast<std::uint32_t>(mesh.triangles.size()));
+void MeshBuilder::add_unless_hidden(const Facet& facet) {
+    FacetKey key{facet.corners};
+    std::sort(key.corners.begin(), key.corners.end());
+    if (std::adjacent_find(key.corners.begin(), key.corners.begin() + 3) != key.corners.begin() + 3)
+        return; // too thin to have an inside
+    const std::size_t triangles = facet.corners[3] == Facet::no_corner ? 1 : 2;
+    const auto [place, added] = facet_at_.emplace(key, static_cast<std::uint32_t>(facets_.size()));
     if (added) {
-        push(corners, leaf);
-        origin_.push_back({solid, false});
+        facets_.push_back(facet);
+        triangle_count_ += triangles;
         return;
     }
-    Origin& other = origin_[place->second];
-    const bool back_to_back = is_odd(corners) != is_odd(mesh.triangles[place->second]);
-    if (solid && other.solid && back_to_back) other.hidden = true;
+    Facet& other = facets_[place->second];
+    const bool back_to_back = turns_to_smaller(facet.corners) != turns_to_smaller(other.corners);
+    if (facet.solid && other.solid && back_to_back && !other.hidden) {
+        other.hidden = true;
+        triangle_count_ -= triangles;
+    }
 }
 
-void MeshBuilder::push(std::array<std::uint32_t, 3> corners, std::size_t leaf) {
+void MeshBuilder::push(const std::array<std::uint32_t, 3>& corners, std::size_t leaf) {
     mesh.triangles.push_back(corners);
     leaf_of_triangle.push_back(leaf);
+    if (smooth_) ++triangle_count_;
 }
 
 void MeshBuilder::finish() {
-    std::size_t kept = 0;
-    for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
-        if (!smooth_ && origin_[i].hidden) continue;
-        mesh.triangles[kept] = mesh.triangles[i];
-        leaf_of_triangle[kept++] = leaf_of_triangle[i];
+    if (smooth_) return;
+    used_.assign(vertices_.size(), UINT32_MAX);
+    mesh.triangles.reserve(triangle_count_);
+    leaf_of_triangle.reserve(triangle_count_);
+    for (const Facet& facet : facets_) {
+        if (facet.hidden) continue;
+        std::array<std::uint32_t, 4> c = facet.corners;
+        for (std::uint32_t& corner : c)
+            if (corner != Facet::no_corner) corner = used(corner);
+        push({c[0], c[1], c[2]}, facet.leaf);
+        if (c[3] != Facet::no_corner) push({c[0], c[2], c[3]}, facet.leaf);
     }
-    mesh.triangles.resize(kept);
-    leaf_of_triangle.resize(kept);
-    drop_unused_vertices();
 }
 
-void MeshBuilder::drop_unused_vertices() {
-    constexpr std::uint32_t unused = UINT32_MAX;
-    std::vector<std::uint32_t> renumbered(mesh.vertices.size(), unused);
-    std::vector<Vec3> vertices, normals;
-    for (auto& triangle : mesh.triangles)
-        for (std::uint32_t& corner : triangle) {
-            if (renumbered[corner] == unused) {
-                renumbered[corner] = static_cast<std::uint32_t>(vertices.size());
-                vertices.push_back(mesh.vertices[corner]);
-                if (smooth_) normals.push_back(mesh.normals[corner]);
-            }
-            corner = renumbered[corner];
-        }
-    mesh.vertices = std::move(vertices);
-    mesh.normals = std::move(normals);
+std::uint32_t MeshBuilder::used(std::uint32_t vertex) {
+    if (used_[vertex] == UINT32_MAX) {
+        used_[vertex] = static_cast<std::uint32_t>(mesh.vertices.size());
+        mesh.vertices.push_back(vertices_[vertex]);
+    }
+    return used_[vertex];
 }
 
 } // namespace graftal

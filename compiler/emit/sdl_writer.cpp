@@ -19,10 +19,9 @@ constexpr int placement_digits = 9;
 constexpr double noise_share = 1e-13;
 constexpr std::size_t longest_number = 40;
 
-/// Powers of ten that a double holds exactly.
-constexpr std::array<double, 23> power_of_ten = {1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,
-                                                 1e8,  1e9,  1e10, 1e11, 1e12, 1e13, 1e14, 1e15,
-                                                 1e16, 1e17, 1e18, 1e19, 1e20, 1e21, 1e22};
+/// Powers of ten that both a double and a 64-bit integer hold exactly.
+constexpr std::array<double, 20> power_of_ten = {1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,  1e8,  1e9,
+                                                 1e10, 1e11, 1e12, 1e13, 1e14, 1e15, 1e16, 1e17, 1e18, 1e19};
 
 /// floor(log10(value)) for 1e-7 <= value < 1e15.
 int decimal_exponent(double value) {
@@ -43,7 +42,7 @@ void write_digits(char* out, std::uint64_t n, int count) {
     }
 }
 
-/// Writes the decimal fraction 0.000nnn or nn.nnn; requires 1e-7 <= value < 10^digits, digits <= 15.
+/// Writes the decimal fraction 0.000nnn or nn.nnn; requires 1e-7 <= value < 10^digits, digits <= 12.
 /// One rounding of a product with an exact power of ten: as good as exact, and many times faster than the
 /// general conversion.
 char* write_fixed(char* out, double value, int digits) {
@@ -65,7 +64,8 @@ char* write_fixed(char* out, double value, int digits) {
 
 } // namespace
 
-SdlWriter::SdlWriter(const TextSink& sink) : sink_(sink), buffer_(std::make_unique<char[]>(capacity)) {}
+SdlWriter::SdlWriter(const TextSink& sink)
+    : sink_(sink), buffer_(std::make_unique_for_overwrite<char[]>(capacity)) {}
 
 char* SdlWriter::room(std::size_t bytes) {
     if (used_ + bytes > capacity) flush();

@@ -18,7 +18,7 @@ class SdlWriter {
     SdlWriter& operator<<(std::string_view text);
     SdlWriter& operator<<(std::uint64_t number);
 
-    /// At most `digits` significant digits (1 to 15), no trailing zeros; the error is at most half a unit in
+    /// At most `digits` significant digits (1 to 12), no trailing zeros; the error is at most half a unit in
     /// the last digit and 1e-15. Requires a finite value.
     SdlWriter& number(double value, int digits);
     /// `<x,y,z>`

@@ -1,0 +1,453 @@
+#include "compiler/emit/emit_povray.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "compiler/cut/tessellate.h"
+
+namespace graftal {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+
+Affine place(Vec3 at, Vec3 size) {
+    return Affine::translate(at) * Affine::scale(size);
+}
+
+/// A cut put together by hand; one unit of it is 500 of POV-Ray's.
+struct Scene {
+    Cut cut;
+    Graph graph;
+    PovrayOptions options{.scene_name = "model"};
+    std::vector<PaletteImage> pictures;
+
+    Scene() {
+        cut.bounds = {Vec3(-1), Vec3(1)};
+        graph.root = graph.primitive(PrimitiveKind::sphere);
+    }
+
+    std::uint32_t body(PrimitiveKind kind) {
+        cut.bodies.push_back({name_of(kind), kind});
+        return static_cast<std::uint32_t>(cut.bodies.size() - 1);
+    }
+
+    /// Two triangles, of a slot each.
+    std::uint32_t mesh(std::string name, std::uint32_t slot_count = 1) {
+        Mesh mesh;
+        mesh.vertices = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
+        mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
+        mesh.slot_count = slot_count;
+        if (slot_count > 1) mesh.slot_of_triangle = {slot_count - 1, 0};
+        cut.bodies.push_back({std::move(name), std::move(mesh)});
+        return static_cast<std::uint32_t>(cut.bodies.size() - 1);
+    }
+
+    std::uint32_t palette(Palette palette) {
+        cut.palettes.push_back(std::move(palette));
+        return static_cast<std::uint32_t>(cut.palettes.size() - 1);
+    }
+
+    PlacementGroup& group(std::uint32_t palette, std::vector<Placement> placements, PathTint tint = {}) {
+        cut.placement_count += placements.size();
+        cut.groups.push_back({palette, tint, {}, std::move(placements)});
+        return cut.groups.back();
+    }
+
+    View view() const { return frame(graph, cut.bounds, {400, 300}); }
+
+    std::string text() { return text(view()); }
+    std::string text(const View& view) {
+        std::string all;
+        pictures.clear();
+        EXPECT_TRUE(emit_povray(
+            graph, cut, view, options,
+            [&](std::string_view piece) {
+                all += piece;
+                return true;
+            },
+            pictures));
+        return all;
+    }
+};
+
+std::size_t count(const std::string& text, const std::string& part) {
+    std::size_t n = 0;
+    for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1))
+        ++n;
+    return n;
+}
+
+/// The three numbers after the first `keyword <`.
+Vec3 vector_after(const std::string& text, const std::string& keyword) {
+    std::size_t at = text.find(keyword + " <");
+    EXPECT_NE(at, std::string::npos) << keyword;
+    const char* p = text.c_str() + at + keyword.size() + 2;
+    Vec3 v;
+    for (int i = 0; i < 3; ++i) {
+        char* end = nullptr;
+        v[i] = std::strtod(p, &end);
+        p = end + 1;
+    }
+    return v;
+}
+
+Scene one_sphere() {
+    Scene scene;
+    scene.group(scene.palette({Rgb(1, 0, 0)}), {{scene.body(PrimitiveKind::sphere), {}}});
+    return scene;
+}
+
+TEST(EmitPovray, BeginsWithTheVersionAndIsLinear) {
+    const std::string text = one_sphere().text();
+    EXPECT_EQ(text.rfind("#version 3.7;\n", 0), 0u);
+    EXPECT_THAT(text, HasSubstr("assumed_gamma 1 "));
+    EXPECT_EQ(count(text, "{"), count(text, "}"));
+}
+
+TEST(EmitPovray, IsTheSameEveryTime) {
+    EXPECT_EQ(one_sphere().text(), one_sphere().text());
+}
+
+TEST(EmitPovray, CameraIsGivenByItsAxesAndNotMirrored) {
+    Scene scene = one_sphere();
+    const std::string text =
+        scene.text(frame(scene.graph, scene.cut.bounds, {400, 300}, {.location = Vec3(0, 0, 9)}));
+    EXPECT_THAT(text, Not(HasSubstr("look_at")));
+    EXPECT_EQ(vector_after(text, "location"), Vec3(0, 0, 4500));
+    EXPECT_GT(vector_after(text, "right").x, 1.33);
+    EXPECT_EQ(vector_after(text, "up"), Vec3(0, 1, 0));
+    EXPECT_LT(vector_after(text, "direction").z, 0);
+}
+
+TEST(EmitPovray, AngleOfViewIsHorizontal) {
+    Scene scene = one_sphere();
+    const std::string text = scene.text(
+        frame(scene.graph, scene.cut.bounds, {300, 600}, {.location = Vec3(0, 0, 9), .angle_deg = 90}));
+    EXPECT_DOUBLE_EQ(vector_after(text, "right").x, 0.5);
+    EXPECT_DOUBLE_EQ(vector_after(text, "direction").z, -0.25);
+}
+
+TEST(EmitPovray, ParallelViewsHaveTheirWidthAndHeight) {
+    Scene scene = one_sphere();
+    const std::string text = scene.text(frame(scene.graph, scene.cut.bounds, {400, 200}, {.width = 3}));
+    EXPECT_THAT(text, HasSubstr("orthographic"));
+    EXPECT_NEAR(vector_after(text, "up").y / 750, scene.view().camera.up.y, 1e-9);
+}
+
+TEST(EmitPovray, LightsSkyAndGroundFollowTheView) {
+    Scene scene = one_sphere();
+    View view = scene.view();
+    view.lights = {{.location = {0, 1, 0}, .sun = true, .rgb = {0.5, 0.25, 1}, .shadowless = true},
+                   {.location = {1, 2, 3}}};
+    view.sky = {.zenith = Rgb(0.1), .horizon = Rgb(0.1)};
+    view.ground = Ground{.height = -0.5, .material = {.rgb = {0, 1, 0}}};
+    std::string text = scene.text(view);
+    EXPECT_THAT(
+        text,
+        HasSubstr("light_source { <0,1000000,0> rgb <0.5,0.25,1> parallel point_at <0,0,0> shadowless }"));
+    EXPECT_THAT(text, HasSubstr("light_source { <500,1000,1500> rgb <1,1,1> }"));
+    EXPECT_THAT(text, HasSubstr("background { rgb <0.1,0.1,0.1> }"));
+    EXPECT_THAT(text, HasSubstr("plane { y, -250\n  texture { pigment { rgb <0,1,0> }"));
+    EXPECT_THAT(text, Not(HasSubstr("max_trace_level")));
+    view.sky.horizon = Rgb(0.9);
+    view.ground->material.reflection = 0.5;
+    text = scene.text(view);
+    EXPECT_THAT(text, HasSubstr("sky_sphere"));
+    EXPECT_THAT(text, HasSubstr("reflection 0.5"));
+    EXPECT_THAT(text, HasSubstr("max_trace_level 8"));
+}
+
+TEST(EmitPovray, WorldIsBroughtToAboutAThousandUnits) {
+    for (const double size : {1e-12, 1e-5, 0.3, 1.0, 7.0, 1e9})
+        for (const double away : {0.0, 100.0}) {
+            Scene scene = one_sphere();
+            const Vec3 centre(away * size, 0, 0);
+            scene.cut.groups[0].placements[0].world_from_body = place(centre, Vec3(size));
+            scene.cut.bounds = {centre - Vec3(size), centre + Vec3(size)};
+            const std::string text = scene.text();
+            const Vec3 at = vector_after(text, "sphere {");
+            EXPECT_LE(std::abs(at.x), 1e-6) << size << " " << away;
+            const double radius =
+                std::strtod(text.c_str() + text.find(">, ", text.find("sphere { <")) + 3, nullptr);
+            EXPECT_GE(radius, 200) << size;
+            EXPECT_LE(radius, 500.1) << size;
+        }
+}
+
+TEST(EmitPovray, FarCamerasStayWithinPovraysReach) {
+    Scene scene = one_sphere();
+    const std::string text =
+        scene.text(frame(scene.graph, scene.cut.bounds, {400, 300}, {.location = Vec3(0, 0, 1e6)}));
+    EXPECT_LE(vector_after(text, "location").z, 5e6);
+}
+
+TEST(EmitPovray, EmptyCutsAndPointsAreScenesToo) {
+    Scene nothing;
+    nothing.cut.bounds = {};
+    EXPECT_THAT(nothing.text(frame(nothing.graph, {Vec3(0), Vec3(1)}, {10, 10})), HasSubstr("camera"));
+    Scene point = one_sphere();
+    point.cut.bounds = {Vec3(3), Vec3(3)};
+    EXPECT_THAT(point.text(), HasSubstr("camera"));
+}
+
+TEST(EmitPovray, PrimitivesThatNeedNoMatrixHaveNone) {
+    struct Case {
+        PrimitiveKind kind;
+        Affine a;
+        const char* text;
+    };
+    const Affine turned = Affine::rotate({0, 0, 1}, -90);
+    const Case cases[] = {
+        {PrimitiveKind::sphere, place({1, 0, 0}, Vec3(0.5)) * Affine::rotate({1, 2, 3}, 40),
+         "sphere { <500,0,0>, 250"},
+        {PrimitiveKind::sphere, place({0, 0, 0}, {-1, 1, 1}), "sphere { <0,0,0>, 500"},
+        {PrimitiveKind::sphere, place({0, 0, 0}, {1, 1, 0.5}),
+         "sphere { 0, 1 matrix <500,0,0,0,500,0,0,0,250,0,0,0>"},
+        {PrimitiveKind::cube, place({1, 0, 0}, {1, 0.1, -0.2}), "box { <0,-50,-100>, <1000,50,100>"},
+        {PrimitiveKind::cube, turned * Affine::scale({1, 0.1, 0.2}), "box { <-50,-500,-100>, <50,500,100>"},
+        {PrimitiveKind::cube, {Mat3(1, 0, 0, 2, 0, 0, 0, 0, 1), Vec3(0)}, "box { -1, 1 matrix <"},
+        {PrimitiveKind::cylinder, place({0, 1, 0}, {0.1, 2, 0.1}), "cylinder { <0,500,0>, <0,1500,0>, 50"},
+        {PrimitiveKind::cylinder, turned * Affine::scale({1, 2, 1}), "cylinder { <0,0,0>, <1000,0,0>, 500"},
+        {PrimitiveKind::cylinder,
+         {Mat3(1, 0, 0, 0.1, 1, 0, 0, 0, 1), Vec3(0)},
+         "cylinder { 0, y, 1 matrix <"},
+        {PrimitiveKind::cone, place({0, 1, 0}, {0.1, 2, 0.1}), "cone { <0,500,0>, 50, <0,1500,0>, 0"},
+        {PrimitiveKind::cone, place({0, 1, 0}, {0.1, 2, 0.2}), "cone { 0, 1, y, 0 matrix <"},
+        {PrimitiveKind::torus, {}, "torus { 1, 0.25 matrix <500,"},
+        {PrimitiveKind::plane, {}, "plane { y, 0 matrix <500,"},
+        {PrimitiveKind::triangle, place({0, 0, 0}, {1, 2, 0}),
+         "triangle { <0,1000,0>, <-433.012702,-500,0>, <433.012702,-500,0>"},
+        {PrimitiveKind::triangle, place({0, 0, 0}, Vec3(1e-8)),
+         "triangle { <0,1,0>, <-0.86602540378443865,-0.5,0>"},
+        {PrimitiveKind::sphere, place({0, 0, 0}, Vec3(1e-8)), "sphere { 0, 1 matrix <"}};
+    for (const Case& c : cases) {
+        Scene scene;
+        scene.group(scene.palette({Rgb(1)}), {{scene.body(c.kind), c.a}});
+        EXPECT_THAT(scene.text(), HasSubstr(c.text)) << name_of(c.kind);
+    }
+}
+
+TEST(EmitPovray, MeshesAreDeclaredOnceAndPlacedByMatrix) {
+    Scene scene;
+    const std::uint32_t leaf = scene.mesh("leaf(3)");
+    scene.mesh("never placed");
+    scene.group(scene.palette({Rgb(0, 1, 0)}), {{leaf, {}}, {leaf, place({1, 0, 0}, Vec3(0.5))}});
+    const std::string text = scene.text();
+    EXPECT_THAT(text, HasSubstr("// leaf(3): 2 triangles\n#declare M_leaf_3 = mesh2 {"));
+    EXPECT_THAT(text, HasSubstr("vertex_vectors { 4,\n    <0,0,0>,<1,0,0>,<1,1,0>,<0,1,0> }"));
+    EXPECT_THAT(text, HasSubstr("face_indices { 2,\n    <0,1,2>,<0,2,3> }"));
+    EXPECT_THAT(text, HasSubstr("union {\nobject { M_leaf_3 matrix <500,0,0,0,500,0,0,0,500,0,0,0> }\n"
+                                "object { M_leaf_3 matrix <250,0,0,0,250,0,0,0,250,500,0,0> }\n"
+                                "  texture { pigment { rgb <0,1,0> } finish { F_default } }\n}"));
+    EXPECT_EQ(count(text, "mesh2"), 1u);
+    EXPECT_THAT(text, Not(HasSubstr("uv_")));
+    EXPECT_THAT(text, Not(HasSubstr("normal_vectors")));
+}
+
+TEST(EmitPovray, SmoothMeshesHaveNormals) {
+    Scene scene;
+    const TessellatedPrimitive& sphere = tessellated(PrimitiveKind::sphere, 0);
+    Mesh mesh;
+    mesh.vertices = sphere.vertices;
+    mesh.normals = sphere.normals;
+    mesh.triangles = sphere.triangles;
+    scene.cut.bodies.push_back({"ball", mesh});
+    scene.group(scene.palette({Rgb(0, 1, 0)}), {{0, {}}});
+    EXPECT_THAT(scene.text(), HasSubstr("normal_vectors { 6,\n    <1,0,0>,<-1,0,0>"));
+}
+
+TEST(EmitPovray, FlattenedPlacementsCanBeInverted) {
+    Scene scene;
+    scene.group(scene.palette({Rgb(1)}), {{scene.mesh("leaf"), place({0, 0, 0}, {1, 1, 0})}});
+    EXPECT_THAT(scene.text(), HasSubstr("matrix <500,0,0,0,500,0,0,0,0.0005,0,0,0>"));
+}
+
+TEST(EmitPovray, GroupsThatLookAlikeShareAUnion) {
+    Scene scene;
+    const std::uint32_t ball = scene.body(PrimitiveKind::sphere);
+    scene.group(scene.palette({Rgb(0.5)}), {{ball, {}}});
+    scene.group(scene.palette({Rgb(0.9)}), {{ball, {}}});
+    scene.group(scene.palette({Rgb(0)}), {{ball, {}}}, PathTint(Tint{Rgb(1), 0.5}));
+    const std::string text = scene.text();
+    EXPECT_EQ(count(text, "union {"), 1u);
+    EXPECT_EQ(count(text, "rgb <0.5,0.5,0.5>"), 1u);
+    EXPECT_EQ(count(text, "sphere { <"), 3u);
+}
+
+TEST(EmitPovray, OnePlacementIsNoUnion) {
+    EXPECT_THAT(one_sphere().text(), Not(HasSubstr("union")));
+}
+
+TEST(EmitPovray, PlanesAreObjectsOfTheirOwn) {
+    Scene scene;
+    const std::uint32_t plane = scene.body(PrimitiveKind::plane), ball = scene.body(PrimitiveKind::sphere);
+    scene.group(scene.palette({Rgb(0.5)}), {{plane, {}}, {ball, {}}, {ball, {}}, {plane, {}}, {ball, {}}});
+    const std::string text = scene.text();
+    const std::size_t begin = text.find("union {"), end = text.find("\n}\n", begin);
+    EXPECT_EQ(count(text.substr(begin, end - begin), "sphere {"), 3u);
+    EXPECT_EQ(count(text.substr(begin, end - begin), "plane {"), 0u);
+    EXPECT_EQ(count(text, "plane {"), 2u);
+}
+
+TEST(EmitPovray, TintsOverOneColourAreComposedByEquations9And10) {
+    Scene scene;
+    const PathTint tint = PathTint(Tint{Rgb(1, 0, 0), 0.5}) * PathTint(Tint{Rgb(0, 1, 0), 0.25});
+    scene.group(scene.palette({Rgb(0.8)}), {{scene.body(PrimitiveKind::sphere), {}}}, tint);
+    // 0.5 red + 0.5 (0.25 green + 0.75 * 0.8)
+    EXPECT_THAT(scene.text(), HasSubstr("rgb <0.8,0.425,0.3>"));
+}
+
+TEST(EmitPovray, TintsOverPalettesAreALayerThatAloneShines) {
+    Scene scene;
+    const std::uint32_t colours = scene.palette({Rgb(0.1), Rgb(0.2), Rgb(0.3)});
+    const std::uint32_t leaf = scene.mesh("leaf", 3);
+    scene.group(colours, {{leaf, {}}}, PathTint(Tint{Rgb(1, 0.5, 0), 0.25})).material.reflection = 0.5;
+    const std::string text = scene.text();
+    EXPECT_THAT(text, HasSubstr("#declare P_1 = pigment { uv_mapping gradient x color_map {"));
+    EXPECT_THAT(
+        text,
+        HasSubstr("texture { pigment { P_1 } finish { F_default_matt } }\n"
+                  "          texture { pigment { rgb <1,0.5,0> transmit 0.75 } finish { F_default } }"));
+    EXPECT_THAT(text, HasSubstr("F_default_matt = finish { ambient 0.1 diffuse 0.8 }"));
+    EXPECT_THAT(
+        text,
+        HasSubstr(
+            "F_default = finish { ambient 0.1 diffuse 0.8 specular 0.1 roughness 0.05 reflection 0.5 }"));
+    EXPECT_THAT(text, HasSubstr("uv_vectors { 2,\n    <0.833333333,0.5>,<0.166666667,0.5> }"));
+    EXPECT_THAT(text, HasSubstr("uv_indices { 2,\n    <0,0,0>,<1,1,1> }"));
+}
+
+TEST(EmitPovray, TintsThatHideAllOrNothingAreOneLayer) {
+    for (const double alpha : {0.0, 1.0}) {
+        Scene scene;
+        const std::uint32_t colours = scene.palette({Rgb(0.1), Rgb(0.2), Rgb(0.3)});
+        scene.group(colours, {{scene.mesh("leaf", 3), {}}}, PathTint(Tint{Rgb(1, 0.5, 0), alpha}));
+        const std::string text = scene.text();
+        EXPECT_EQ(count(text, "texture {"), 1u);
+        EXPECT_EQ(count(text, "P_1"), alpha == 0 ? 2u : 0u);
+        EXPECT_EQ(count(text, "transmit"), 0u);
+        EXPECT_THAT(text, HasSubstr("finish { F_default }"));
+    }
+}
+
+TEST(EmitPovray, LargePalettesArePicturesBesideTheScene) {
+    Scene scene;
+    scene.options.scene_name = "a/b c";
+    Palette many;
+    for (int i = 0; i < 200; ++i)
+        many.emplace_back(i / 200.0);
+    const std::uint32_t first = scene.palette(many), second = scene.palette(Palette(200, Rgb(0.5)));
+    const std::uint32_t leaf = scene.mesh("leaf", 200);
+    scene.group(first, {{leaf, {}}});
+    scene.group(second, {{leaf, {}}});
+    scene.group(first, {{leaf, {}}}, PathTint(Tint{Rgb(1), 0.5}));
+    const std::string text = scene.text();
+    ASSERT_EQ(scene.pictures.size(), 2u);
+    EXPECT_EQ(scene.pictures[0].file_name, "a_b_c_P_1.png");
+    EXPECT_EQ(scene.pictures[1].file_name, "a_b_c_P_2.png");
+    EXPECT_EQ(count(text, "image_map { png \"a_b_c_P_1.png\" gamma 1.0 }"), 1u);
+    EXPECT_EQ(scene.pictures[0].pixels[7], many[7]);
+}
+
+TEST(EmitPovray, TextOfTheModelNeverBecomesSdl) {
+    Scene scene = one_sphere();
+    const std::string evil = "x\n#include \"secret\"\n} */ ; #declare Sphere";
+    scene.options.scene_name = evil;
+    scene.group(scene.palette({Rgb(0.1), Rgb(1)}), {{scene.mesh(evil, 2), {}}}).material.name = evil;
+    for (const bool include : {false, true}) {
+        scene.options.include = include;
+        const std::string text = scene.text();
+        EXPECT_EQ(count(text, "\n#include"), 0u);
+        EXPECT_EQ(count(text, "\"secret"), 0u);
+        EXPECT_EQ(count(text, "*/"), 0u);
+        EXPECT_EQ(count(text, "#declare Sphere"), 0u);
+        EXPECT_EQ(count(text, "{"), count(text, "}"));
+    }
+}
+
+TEST(EmitPovray, IncludesDeclareTheObjectAndDrawNothing) {
+    Scene scene = one_sphere();
+    scene.options = {.scene_name = "union", .include = true};
+    scene.group(scene.palette({Rgb(0.1), Rgb(1)}), {{scene.mesh("leaf", 2), place({1, 0, 0}, Vec3(1))}});
+    const std::string text = scene.text();
+    for (const char* const word : {"camera {", "light_source", "background", "sky_sphere", "global_settings"})
+        EXPECT_THAT(text, Not(HasSubstr(word)));
+    EXPECT_THAT(text, HasSubstr("#declare Union =\nunion {\nsphere { <0,0,0>, 1\n"));
+    EXPECT_THAT(text, HasSubstr("object { Union_M_leaf matrix <1,0,0,0,1,0,0,0,1,1,0,0>"));
+    EXPECT_EQ(count(text, "#declare Union"), count(text, "#declare"));
+    EXPECT_EQ(count(text, "{") - count(text, "//     object {"),
+              count(text, "}") - count(text, "//     object {"));
+
+    // A union of one would be a warning.
+    Scene single = one_sphere();
+    single.options = {.scene_name = "ball", .include = true};
+    EXPECT_THAT(single.text(), HasSubstr("#declare Ball =\nsphere {"));
+}
+
+TEST(EmitPovray, ProgressCountsToAHundred) {
+    Scene scene;
+    const std::uint32_t ball = scene.body(PrimitiveKind::sphere), leaf = scene.mesh("leaf");
+    PlacementGroup& group = scene.group(scene.palette({Rgb(1)}), {});
+    for (int i = 0; i < 5000; ++i)
+        group.placements.push_back({i % 2 ? ball : leaf, place({i / 5000.0, 0, 0}, Vec3(0.01))});
+    scene.cut.placement_count = 5000;
+    EXPECT_EQ(count(scene.text(), "#debug"), 0u);
+    scene.options.progress = true;
+    const std::string text = scene.text();
+    int last = 0, marks = 0;
+    for (std::size_t at = text.find("#debug"); at != std::string::npos; at = text.find("#debug", at + 1)) {
+        const int percent = std::atoi(text.c_str() + at + 10);
+        EXPECT_EQ(text.substr(at - 1, 11), "\n#debug \"@@");
+        EXPECT_GT(percent, last);
+        last = percent;
+        ++marks;
+    }
+    EXPECT_EQ(last, 100);
+    EXPECT_GE(marks, 95);
+    EXPECT_LE(marks, 100);
+}
+
+TEST(EmitPovray, SinksMayStopAtAnyPiece) {
+    Scene scene;
+    const std::uint32_t ball = scene.body(PrimitiveKind::sphere);
+    PlacementGroup& group = scene.group(scene.palette({Rgb(1)}), {});
+    for (int i = 0; i < 50'000; ++i)
+        group.placements.push_back({ball, place({i / 5e4, 0, 0}, Vec3(0.01))});
+    std::size_t pieces = 0;
+    const auto emit = [&](std::size_t allowed) {
+        pieces = 0;
+        return emit_povray(
+            scene.graph, scene.cut, scene.view(), scene.options,
+            [&](std::string_view) { return ++pieces < allowed; }, scene.pictures);
+    };
+    EXPECT_TRUE(emit(SIZE_MAX));
+    const std::size_t all = pieces;
+    EXPECT_GT(all, 5u);
+    for (std::size_t allowed = 1; allowed <= all; ++allowed) {
+        EXPECT_FALSE(emit(allowed));
+        EXPECT_EQ(pieces, allowed);
+    }
+}
+
+TEST(EmitPovrayDeathTest, BrokenCutsAreBugs) {
+    Scene scene;
+    scene.group(scene.palette({Rgb(1)}), {{7, {}}});
+    EXPECT_DEATH(scene.text(), "without a body");
+    Scene empty;
+    empty.cut.bodies.push_back({"none", Mesh{}});
+    empty.group(empty.palette({Rgb(1)}), {{0, {}}});
+    EXPECT_DEATH(empty.text(), "without triangles");
+    Scene nan = one_sphere();
+    nan.cut.groups[0].placements[0].world_from_body.translation.x = std::nan("");
+    EXPECT_DEATH(nan.text(), "finite");
+}
+
+} // namespace
+} // namespace graftal

@@ -45,8 +45,8 @@ bool is_object_name(std::string_view name) {
         const std::optional<double> value = parse_number(argument);
         if (!value || shortest(*value) != argument) return false;
         if (comma == std::string_view::npos) return true;
-        arguments.remove_prefix(comma + 1);
-        if (arguments.starts_with(' ')) arguments.remove_prefix(1);
+        if (!arguments.substr(comma).starts_with(", ")) return false;
+        arguments.remove_prefix(comma + 2);
     }
 }
 

@@ -1,0 +1,266 @@
+#include "tests/property/random_graph.h"
+
+#include <algorithm>
+#include <array>
+#include <numeric>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "compiler/graph/components.h"
+
+namespace graftal::testing {
+
+namespace {
+
+class Generator {
+  public:
+    Generator(Choices& choices, const RandomGraphOptions& options) : choices_(choices), options_(options) {}
+
+    Graph run() && {
+        add_materials();
+        const std::uint32_t union_count = 1 + choices_.below(options_.max_objects);
+        for (std::uint32_t i = 0; i < union_count; ++i) {
+            Object object;
+            object.name = union_name(i);
+            unions_.push_back(graph_.add(std::move(object)));
+        }
+        graph_.root = unions_[choices_.below(union_count)];
+        for (std::uint32_t i = 0; i < union_count; ++i)
+            fill(i);
+        add_terminals();
+        if (options_.settings) add_settings();
+        if (options_.duplicates && !choices_.one_in(4)) plant_duplicates(graph_, choices_);
+        return std::move(graph_);
+    }
+
+  private:
+    std::string union_name(std::uint32_t i) {
+        const std::string number = std::to_string(i);
+        switch (choices_.below(4)) {
+        case 0:
+            return "leaf.o" + number;
+        case 1:
+            return "tip(" + number + ")";
+        case 2:
+            return "branch(" + number + ", -0.5)";
+        default:
+            return "o" + number;
+        }
+    }
+
+    double number() {
+        static constexpr std::array<double, 12> numbers = {
+            0, -0.0, 1, -1, 0.5, 1.0 / 3, -2, 0.1, 1e-30, 1e200, 1e-320, -0.7071067811865476};
+        const std::uint32_t choice = choices_.below(numbers.size() + 4);
+        if (choice < numbers.size()) return numbers[choice];
+        return static_cast<double>(choices_.below(1u << 30)) / (1u << 29) - 1;
+    }
+
+    double unit() {
+        static constexpr std::array<double, 4> numbers = {0, 0.5, 1, 1.0 / 3};
+        return numbers[choices_.below(numbers.size())];
+    }
+
+    Vec3 vector() {
+        const double x = number(), y = number();
+        return {x, y, number()};
+    }
+
+    Rgb colour() {
+        const double r = unit(), g = unit();
+        return {r, g, unit()};
+    }
+
+    void add_materials() {
+        const std::uint32_t count = choices_.below(4);
+        for (std::uint32_t i = 0; i < count; ++i) {
+            Material material;
+            material.name = "m" + std::to_string(i);
+            material.rgb = colour();
+            material.ambient = unit();
+            material.roughness = 0.01 + 0.9 * unit();
+            if (choices_.one_in(2)) material.reflection = unit();
+            graph_.materials.push_back(material);
+        }
+    }
+
+    Affine transform() {
+        switch (choices_.below(8)) {
+        case 0:
+            return {};
+        case 1:
+            return Affine::translate({1, 0, 0}) * Affine::scale(Vec3(0.5));
+        case 2:
+            return Affine::scale(Vec3(0.5));
+        case 3: // the same but for signs of zeros
+            return {Mat3(0.5, -0.0, 0, 0, 0.5, -0.0, -0.0, 0, 0.5), Vec3(-0.0)};
+        case 4:
+            return Affine::rotate({0, 1, 0}, 30.0 * choices_.below(12)) * Affine::scale({-0.4, 0.6, 0.3});
+        case 5: // flat
+            return Affine::scale({1, 0, 1});
+        case 6:
+            return Affine::translate(vector());
+        default:
+            return any_transform();
+        }
+    }
+
+    Affine any_transform() {
+        Affine a;
+        for (int column = 0; column < 3; ++column)
+            for (int row = 0; row < 3; ++row)
+                a.linear[column][row] = number();
+        a.translation = vector();
+        if (a.linear == Mat3(0.0)) a.linear[0][1] = 0.25;
+        return a;
+    }
+
+    Instance instance_of(ObjectId master) {
+        Instance instance;
+        instance.master = master;
+        instance.parent_from_child = transform();
+        if (choices_.one_in(3)) {
+            const Rgb rgb = colour();
+            instance.tint = {rgb, unit()};
+        }
+        if (!graph_.materials.empty() && choices_.one_in(4))
+            instance.material = choices_.below(static_cast<std::uint32_t>(graph_.materials.size()));
+        return instance;
+    }
+
+    PrimitiveKind primitive_kind() {
+        const auto kind = static_cast<PrimitiveKind>(choices_.below(primitive_kind_count));
+        const bool allowed = kind != PrimitiveKind::plane || !options_.cycles; // no plane within a cycle
+        return allowed ? kind : PrimitiveKind::sphere;
+    }
+
+    /// Without cycles, object i leads to later objects only.
+    ObjectId master_for(std::uint32_t i) {
+        const auto union_count = static_cast<std::uint32_t>(unions_.size());
+        const std::uint32_t first = options_.cycles && choices_.one_in(3) ? 0 : i + 1;
+        if (first >= union_count || choices_.one_in(3)) return graph_.primitive(primitive_kind());
+        return unions_[first + choices_.below(union_count - first)];
+    }
+
+    void fill(std::uint32_t i) {
+        const std::uint32_t count = 1 + choices_.below(options_.max_instances);
+        for (std::uint32_t k = 0; k < count; ++k) {
+            const ObjectId master = master_for(i); // may add an object
+            Instance instance = instance_of(master);
+            std::vector<Instance>& instances = graph_.objects[unions_[i]].instances;
+            // Placed like the one before: print groups such instances.
+            if (!instances.empty() && choices_.one_in(4)) {
+                instance = instances.back();
+                instance.master = master;
+            }
+            instances.push_back(instance);
+        }
+    }
+
+    void add_terminals() {
+        const Components components = strong_components(graph_);
+        std::vector<ObjectId> ending;
+        for (ObjectId id = 0; id < graph_.objects.size(); ++id)
+            if (!components.unending[id]) ending.push_back(id);
+        for (const ObjectId id : unions_) {
+            if (ending.empty() || !choices_.one_in(4)) continue;
+            const ObjectId master = ending[choices_.below(static_cast<std::uint32_t>(ending.size()))];
+            graph_.objects[id].terminal = instance_of(master);
+        }
+    }
+
+    void add_settings() {
+        SceneSettings& settings = graph_.settings;
+        if (choices_.one_in(3)) settings.camera = camera();
+        for (std::uint32_t i = choices_.below(3); i > 0; --i) {
+            const bool sun = choices_.one_in(2);
+            const Rgb rgb = colour();
+            settings.lights.push_back({Vec3(1, 0.1 * i, -3), sun, rgb, choices_.one_in(2)});
+        }
+        if (choices_.one_in(3)) {
+            settings.background = BackgroundSetting{colour(), {}};
+            if (choices_.one_in(2)) settings.background->horizon = colour();
+        }
+        if (choices_.one_in(3)) {
+            GroundSetting ground;
+            ground.height = number();
+            if (!graph_.materials.empty() && choices_.one_in(2))
+                ground.material = graph_.materials.back().name;
+            if (choices_.one_in(2)) ground.rgb = colour();
+            settings.ground = ground;
+        }
+        if (choices_.one_in(3)) settings.steps = choices_.below(20);
+    }
+
+    CameraSetting camera() {
+        CameraSetting camera;
+        if (choices_.one_in(2)) camera.location = Vec3(number(), 1, -5);
+        if (choices_.one_in(2)) camera.look_at = Vec3(number(), -1, 0);
+        if (choices_.one_in(2)) camera.up = Vec3(0, 0, 1);
+        camera.orthographic = choices_.one_in(2);
+        if (!camera.orthographic && choices_.one_in(2)) camera.angle_deg = 12.5;
+        if (camera.orthographic && choices_.one_in(2)) camera.width = 3;
+        return camera;
+    }
+
+    Choices& choices_;
+    const RandomGraphOptions options_;
+    Graph graph_;
+    std::vector<ObjectId> unions_;
+};
+
+} // namespace
+
+std::uint32_t Choices::below(std::uint32_t count) {
+    if (!from_bytes_) return static_cast<std::uint32_t>(random_() % count);
+    std::uint32_t value = 0;
+    for (std::uint64_t reach = 1; reach < count && !bytes_.empty(); reach <<= 8) {
+        value = value << 8 | bytes_.front();
+        bytes_ = bytes_.subspan(1);
+    }
+    return value % count;
+}
+
+Graph random_graph(Choices& choices, const RandomGraphOptions& options) {
+    return Generator(choices, options).run();
+}
+
+void plant_duplicates(Graph& graph, Choices& choices) {
+    const auto old_count = static_cast<ObjectId>(graph.objects.size());
+    std::vector<ObjectId> copy_of(old_count);
+    for (ObjectId id = 0; id < old_count; ++id) {
+        copy_of[id] = id;
+        if (graph.objects[id].primitive) continue;
+        Object copy = graph.objects[id];
+        copy.name = "copy" + std::to_string(id);
+        for (std::size_t i = copy.instances.size(); i > 1; --i)
+            std::swap(copy.instances[i - 1], copy.instances[choices.below(static_cast<std::uint32_t>(i))]);
+        copy_of[id] = graph.add(std::move(copy));
+    }
+    const auto redirect = [&](Instance& instance) {
+        if (choices.one_in(2)) instance.master = copy_of[instance.master];
+    };
+    for (Object& object : graph.objects) {
+        std::for_each(object.instances.begin(), object.instances.end(), redirect);
+        if (object.terminal) redirect(*object.terminal);
+    }
+}
+
+Graph permuted(const Graph& graph, Choices& choices) {
+    std::vector<ObjectId> new_id(graph.objects.size());
+    std::iota(new_id.begin(), new_id.end(), 0u);
+    for (std::size_t i = new_id.size(); i > 1; --i)
+        std::swap(new_id[i - 1], new_id[choices.below(static_cast<std::uint32_t>(i))]);
+    Graph result = graph;
+    result.root = new_id[graph.root];
+    for (ObjectId id = 0; id < graph.objects.size(); ++id) {
+        Object& object = result.objects[new_id[id]] = graph.objects[id];
+        for (Instance& instance : object.instances)
+            instance.master = new_id[instance.master];
+        if (object.terminal) object.terminal->master = new_id[object.terminal->master];
+    }
+    return result;
+}
+
+} // namespace graftal::testing

@@ -78,6 +78,7 @@ class Fields {
     }
 
     void error_at_statement(std::string message, std::string hint) const {
+        if (!statement_.complete) return; // what is missed may be what could not be read
         diagnostics_.error(statement_.span, std::move(message)).with_hint(std::move(hint));
     }
 
@@ -168,6 +169,7 @@ void check_duplicates(const std::vector<SceneStatement>& statements, Diagnostics
     std::map<std::pair<Kind, std::string>, Span> first;
     for (const SceneStatement& statement : statements) {
         if (statement.kind == Kind::let || statement.kind == Kind::light) continue;
+        if (statement.kind == Kind::material && statement.name.empty()) continue; // reported already
         const auto [place, fresh] = first.try_emplace({statement.kind, statement.name}, statement.span);
         if (fresh) continue;
         const std::string& keyword = scene_keywords()[static_cast<std::size_t>(statement.kind)];
@@ -183,10 +185,13 @@ void check_set_names(const Environment& lets, Lowering& lowering) {
     std::vector<std::string> known;
     for (const auto& [name, value] : lets)
         known.push_back(name);
-    for (const auto& [name, value] : lowering.options.set)
+    for (const auto& [name, value] : lowering.options.set) {
         if (!lets.contains(name))
             lowering.diagnostics.error(Span(), fmt::format("--set {}: the model has no 'let {}'", name, name))
                 .with_hint(did_you_mean(name, known));
+        if (!std::isfinite(value))
+            lowering.diagnostics.error(Span(), fmt::format("--set {}: the value is not finite", name));
+    }
 }
 
 } // namespace

@@ -56,9 +56,15 @@ Vec3 axis_vector(char axis) {
     return unit;
 }
 
+/// Exact for equal magnitudes, and without overflow.
+double geometric_mean(double a, double b) {
+    if (std::abs(a) == std::abs(b)) return std::abs(a);
+    return std::sqrt(std::abs(a)) * std::sqrt(std::abs(b));
+}
+
 Vec3 scale_factors(const std::array<double, 12>& n, std::size_t count) {
     if (count == 1) return Vec3(n[0]);
-    if (count == 2) return {n[0], n[1], std::sqrt(std::abs(n[0])) * std::sqrt(std::abs(n[1]))};
+    if (count == 2) return {n[0], n[1], geometric_mean(n[0], n[1])};
     return {n[0], n[1], n[2]};
 }
 

@@ -30,14 +30,20 @@ struct Lowering {
     std::vector<LoadingFile> loading; ///< from the root model to the file being lowered
     /// Models already lowered, by path; null after errors. A model used twice is read and reported once.
     std::map<std::string, std::shared_ptr<const Graph>> lowered;
+    std::size_t use_count = 0; ///< `use` statements so far, in all files
 
     /// `--set` speaks to the root model only.
     bool at_root_model() const { return loading.size() <= 1; }
 };
 
+/// Lowers a file by the front-end that its name asks for. `asked_for` is where errors about the choice
+/// belong.
+std::optional<Graph> lower_file(FileId file, Span asked_for, Lowering& lowering);
+
 /// Loads `use NAME = "path"`: looked up beside the file that holds `use_span`, lowered, and appended to
 /// `into`: objects as `NAME.object`, primitives shared, materials shared where equal, else renamed to
 /// `NAME.material`; its scene settings do not count. Gives the id of its root, or nothing after an error.
+/// Requires that `into` has its own materials already, and no object yet whose name begins with `NAME.`.
 std::optional<ObjectId> import_model(Graph& into, Span use_span, std::string_view name, std::string_view path,
                                      Lowering& lowering);
 

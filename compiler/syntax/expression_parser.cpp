@@ -80,7 +80,8 @@ class ExpressionParser {
     std::optional<Expression> parse_primary() {
         if (stream_.at("(")) return parse_parenthesis();
         const TokenKind kind = stream_.peek().kind;
-        if (kind != TokenKind::number && kind != TokenKind::name) {
+        const bool next_line = stream_.peek(1).is(":"); // a keyword, no value
+        if (kind != TokenKind::number && (kind != TokenKind::name || next_line)) {
             stream_.expected("a number");
             return std::nullopt;
         }
@@ -185,7 +186,7 @@ class ExpressionParser {
 
 std::string count_words(std::size_t min, std::size_t max) {
     if (min == max) return fmt::format("{} number{}", min, min == 1 ? "" : "s");
-    return fmt::format("{} to {} numbers", min, max);
+    return fmt::format("{} {} {} numbers", min, max == min + 1 ? "or" : "to", max);
 }
 
 /// Whether a comma before this token goes on with a list of numbers.
@@ -215,7 +216,7 @@ std::optional<std::vector<Expression>> parse_numbers(TokenStream& stream, std::s
             ExpressionParser(stream, angle ? Mode::angle_brackets : Mode::plain).parse();
         if (!number) return std::nullopt;
         numbers.push_back(std::move(*number));
-    } while (stream.at(",") && (angle || begins_number(stream.peek(1), stream.peek(2))) &&
+    } while (max > 1 && stream.at(",") && (angle || begins_number(stream.peek(1), stream.peek(2))) &&
              numbers.size() <= max && stream.accept(","));
     if (numbers.size() < min || numbers.size() > max) {
         const std::string found = numbers.size() > max ? "more" : std::to_string(numbers.size());

@@ -97,10 +97,24 @@ class StatementParser {
     bool parse_lets() {
         do {
             const std::optional<Token> name = stream_.expect_name("a name after 'let'");
-            if (!name || !stream_.expect("=", name->text)) return false;
-            if (!parse_value(name->text, name->span, Shape::number)) return false;
+            if (!name) return false;
+            if (!stream_.expect("=", name->text) || !parse_value(name->text, name->span, Shape::number)) {
+                add_placeholder(*name);
+                statement_.complete = false;
+                while (!stream_.at_end() && !stream_.peek().first_on_line && !stream_.at(","))
+                    stream_.next();
+            }
         } while (stream_.accept(","));
         return true;
+    }
+
+    void add_placeholder(const Token& name) {
+        SceneField field;
+        field.keyword = name.text;
+        field.span = name.span;
+        field.values.emplace_back();
+        field.values.back().number = 1;
+        statement_.fields.push_back(std::move(field));
     }
 
     bool parse_block(const Token& keyword) {
@@ -114,7 +128,10 @@ class StatementParser {
                 return true; // the stream stands at the next statement already
             }
             if (stream_.accept(",")) continue;
-            if (!parse_field(keyword.text)) stream_.skip_line();
+            if (!parse_field(keyword.text)) {
+                statement_.complete = false;
+                stream_.skip_line();
+            }
         }
         return true;
     }
@@ -204,10 +221,11 @@ bool at_scene_statement(const TokenStream& stream) {
 void parse_scene_statement(TokenStream& stream, std::vector<SceneStatement>& statements) {
     SceneStatement statement;
     statement.kind = *kind_of(stream.peek());
-    if (StatementParser(stream, statement).parse())
-        statements.push_back(std::move(statement));
-    else
+    if (!StatementParser(stream, statement).parse()) {
+        statement.complete = false;
         stream.skip_line();
+    }
+    statements.push_back(std::move(statement));
 }
 
 } // namespace graftal

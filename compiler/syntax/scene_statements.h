@@ -28,6 +28,7 @@ struct SceneStatement {
     std::string name; ///< of a material
     Span span;        ///< of the keyword, or of the material's name
     std::vector<SceneField> fields;
+    bool complete = true; ///< false if an error lost a part of it
 };
 
 /// The words that begin scene statements, for suggestions.
@@ -37,7 +38,7 @@ const std::vector<std::string>& scene_keywords();
 bool at_scene_statement(const TokenStream& stream);
 
 /// Requires at_scene_statement(). Parses the statement into `statements`; errors are reported, and the
-/// stream then stands where parsing can go on.
+/// stream then stands where parsing can go on. A `let` in error has the value 1, so that its uses are known.
 void parse_scene_statement(TokenStream& stream, std::vector<SceneStatement>& statements);
 
 } // namespace graftal

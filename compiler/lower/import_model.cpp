@@ -1,0 +1,176 @@
+#include <algorithm>
+#include <cstring>
+#include <filesystem>
+#include <system_error>
+#include <unordered_map>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "compiler/lower/lowering.h"
+#include "compiler/support/file.h"
+
+namespace graftal {
+
+namespace {
+
+constexpr std::size_t max_use_depth = 32;
+constexpr std::size_t max_uses = 1000;
+
+/// Points at each `use` on the way from the root model, the nearest first.
+void add_chain(Diagnostic& error, const Lowering& lowering) {
+    for (auto file = lowering.loading.rbegin(); file != lowering.loading.rend(); ++file)
+        if (file->use_span.known()) error.with_note(file->use_span, "used from here");
+}
+
+std::string path_beside(Span use_span, std::string_view path, const SourceMap& sources) {
+    const std::filesystem::path user(sources.name(use_span.file));
+    return (user.parent_path() / path).lexically_normal().string();
+}
+
+bool check_path(Span use_span, std::string_view path, Lowering& lowering) {
+    const bool printable =
+        std::none_of(path.begin(), path.end(), [](char c) { return static_cast<unsigned char>(c) < 0x20; });
+    if (printable && !path.empty()) return true;
+    lowering.diagnostics.error(use_span, "this is not the name of a file");
+    return false;
+}
+
+bool check_chain(Span use_span, const std::string& path, Lowering& lowering) {
+    const std::vector<LoadingFile>& loading = lowering.loading;
+    const auto again = std::find_if(loading.begin(), loading.end(),
+                                    [&](const LoadingFile& file) { return file.path == path; });
+    if (again != loading.end()) {
+        std::string cycle;
+        for (auto file = again; file != loading.end(); ++file)
+            cycle += file->path + " -> ";
+        add_chain(
+            lowering.diagnostics.error(use_span, fmt::format("'{}' uses itself: {}{}", path, cycle, path)),
+            lowering);
+        return false;
+    }
+    if (loading.size() > max_use_depth) {
+        lowering.diagnostics.error(use_span, fmt::format("models are used more than {} deep", max_use_depth));
+        return false;
+    }
+    return true;
+}
+
+/// The text of a regular file. Others (pipes, devices) could keep a compilation waiting for ever.
+std::optional<std::string> read_used(Span use_span, const std::string& path, Lowering& lowering) {
+    std::error_code code;
+    const std::filesystem::file_status status = std::filesystem::status(path, code);
+    std::string text;
+    Status read;
+    if (!std::filesystem::exists(status))
+        read = Status::failure(fmt::format("cannot open '{}': {}", path, std::strerror(ENOENT)));
+    else if (!std::filesystem::is_regular_file(status))
+        read = Status::failure(fmt::format("'{}' is not a regular file", path));
+    else
+        read = read_text(path, text);
+    if (read.ok()) return text;
+    add_chain(lowering.diagnostics.error(use_span, read.message()), lowering);
+    return std::nullopt;
+}
+
+std::shared_ptr<const Graph> load(Span use_span, const std::string& path, Lowering& lowering) {
+    if (!check_chain(use_span, path, lowering)) return nullptr;
+    const auto known = lowering.lowered.find(path);
+    if (known != lowering.lowered.end()) return known->second;
+    std::shared_ptr<const Graph> result;
+    if (std::optional<std::string> text = read_used(use_span, path, lowering)) {
+        const FileId file = lowering.sources.add(path, std::move(*text));
+        lowering.loading.push_back({path, use_span});
+        if (std::optional<Graph> graph = lower_file(file, use_span, lowering))
+            result = std::make_shared<const Graph>(std::move(*graph));
+        lowering.loading.pop_back();
+    }
+    lowering.lowered[path] = result;
+    return result;
+}
+
+std::size_t instance_count(const Graph& graph) {
+    std::size_t count = 0;
+    for (const Object& object : graph.objects)
+        count += object.instances.size();
+    return count;
+}
+
+/// Ids of `into` for the materials of `from`, in order.
+std::vector<MaterialId> append_materials(Graph& into, const Graph& from, std::string_view prefix) {
+    std::unordered_map<std::string, MaterialId> known;
+    for (MaterialId id = 0; id < into.materials.size(); ++id)
+        known.emplace(into.materials[id].name, id);
+    std::vector<MaterialId> ids;
+    for (Material material : from.materials) {
+        const auto same = known.find(material.name);
+        if (same != known.end() && into.materials[same->second] == material) {
+            ids.push_back(same->second);
+            continue;
+        }
+        const std::string name = material.name;
+        if (known.contains(name)) material.name = fmt::format("{}.{}", prefix, name);
+        for (int i = 2; known.contains(material.name); ++i)
+            material.name = fmt::format("{}.{}_{}", prefix, name, i);
+        ids.push_back(static_cast<MaterialId>(into.materials.size()));
+        known.emplace(material.name, ids.back());
+        into.materials.push_back(std::move(material));
+    }
+    return ids;
+}
+
+ObjectId append_objects(Graph& into, const Graph& from, std::string_view prefix,
+                        const std::vector<MaterialId>& materials) {
+    std::vector<ObjectId> ids;
+    for (const Object& object : from.objects) {
+        if (object.primitive) {
+            ids.push_back(into.primitive(*object.primitive));
+            continue;
+        }
+        Object copy = object;
+        copy.name = fmt::format("{}.{}", prefix, object.name);
+        ids.push_back(into.add(std::move(copy)));
+    }
+    const auto translate = [&](Instance& instance) {
+        instance.master = ids[instance.master];
+        if (instance.material) instance.material = materials[*instance.material];
+    };
+    for (std::size_t i = 0; i < ids.size(); ++i) {
+        if (from.objects[i].primitive) continue;
+        Object& object = into.objects[ids[i]];
+        for (Instance& instance : object.instances)
+            translate(instance);
+        if (object.terminal) translate(*object.terminal);
+    }
+    return ids[from.root];
+}
+
+} // namespace
+
+bool within_limits(std::size_t objects, std::size_t instances, Span span, Lowering& lowering) {
+    const std::size_t most_objects = lowering.options.max_objects;
+    const std::size_t most_instances = most_objects * max_instances_per_object;
+    if (objects <= most_objects && instances <= most_instances) return true;
+    lowering.diagnostics.error(
+        span, objects > most_objects ? fmt::format("the model has more than {} objects", most_objects)
+                                     : fmt::format("the model has more than {} instances", most_instances));
+    return false;
+}
+
+std::optional<ObjectId> import_model(Graph& into, Span use_span, std::string_view name, std::string_view path,
+                                     Lowering& lowering) {
+    if (!check_path(use_span, path, lowering)) return std::nullopt;
+    if (++lowering.use_count > max_uses) {
+        lowering.diagnostics.error(use_span, fmt::format("the model has more than {} uses", max_uses));
+        return std::nullopt;
+    }
+    const std::shared_ptr<const Graph> model =
+        load(use_span, path_beside(use_span, path, lowering.sources), lowering);
+    if (!model || !within_limits(into.objects.size() + model->objects.size(),
+                                 instance_count(into) + instance_count(*model), use_span, lowering))
+        return std::nullopt;
+    const std::vector<MaterialId> materials = append_materials(into, *model, name);
+    return append_objects(into, *model, name, materials);
+}
+
+} // namespace graftal

@@ -1,0 +1,80 @@
+#include "compiler/lower/lower.h"
+
+#include <filesystem>
+#include <string_view>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "compiler/graph/verify.h"
+#include "compiler/lower/check_graph.h"
+#include "compiler/lower/lower_inst.h"
+#include "compiler/lower/lower_rifs.h"
+#include "compiler/lower/lowering.h"
+#include "compiler/support/file.h"
+#include "compiler/syntax/lexer.h"
+
+namespace graftal {
+
+namespace {
+
+constexpr std::string_view standard_input = "<stdin>";
+
+/// The extension that a text without a file name would have: by the first word outside of braces that only
+/// one language begins a statement with.
+std::string guessed_extension(FileId file, const SourceMap& sources) {
+    Diagnostics ignored; // the front-end reads the text again
+    std::size_t depth = 0;
+    for (const Token& token : lex(sources, file, ignored)) {
+        if (token.is("{")) ++depth;
+        if (token.is("}") && depth > 0) --depth;
+        if (depth > 0 || !token.first_on_line) continue;
+        if (token.is("main")) return ".rifs";  // `main rifs NAME {`
+        if (token.is("rifs") || token.is("lsys")) return "." + std::string(token.text);
+        if (token.is("object") || token.is("canonical")) break;
+    }
+    return ".inst";
+}
+
+std::optional<Graph> lower_root(FileId file, const LowerOptions& options, SourceMap& sources,
+                                Diagnostics& diagnostics) {
+    Lowering lowering{sources, diagnostics, options, {}, {}, 0};
+    const std::filesystem::path path(sources.name(file));
+    lowering.loading.push_back({path.lexically_normal().string(), Span()});
+    std::optional<Graph> graph = lower_file(file, Span{file, 0, 0}, lowering);
+    if (!graph || diagnostics.has_errors() || !check_graph(*graph, diagnostics)) return std::nullopt;
+    check_verified(*graph, "lower");
+    return graph;
+}
+
+} // namespace
+
+std::optional<Graph> lower_file(FileId file, Span asked_for, Lowering& lowering) {
+    const std::string_view name = lowering.sources.name(file);
+    const std::string extension = name == standard_input ? guessed_extension(file, lowering.sources)
+                                                         : std::filesystem::path(name).extension().string();
+    if (extension == ".inst") return lower_inst(file, lowering);
+    if (extension == ".rifs") return lower_rifs(file, lowering);
+    if (extension == ".lsys")
+        lowering.diagnostics.error(asked_for, "no front-end for '.lsys' models in this version");
+    else
+        lowering.diagnostics.error(asked_for, fmt::format("'{}' is no model that is known here", name))
+            .with_hint("the names of models end in .inst or .rifs");
+    return std::nullopt;
+}
+
+std::optional<Graph> lower_model(const std::string& path, const LowerOptions& options, SourceMap& sources,
+                                 Diagnostics& diagnostics, Status& status) {
+    std::string text;
+    status = read_text(path, text);
+    if (!status.ok()) return std::nullopt;
+    return lower_text(path, std::move(text), options, sources, diagnostics);
+}
+
+std::optional<Graph> lower_text(const std::string& name, std::string text, const LowerOptions& options,
+                                SourceMap& sources, Diagnostics& diagnostics) {
+    const FileId file = sources.add(name == "-" ? std::string(standard_input) : name, std::move(text));
+    return lower_root(file, options, sources, diagnostics);
+}
+
+} // namespace graftal

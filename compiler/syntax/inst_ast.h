@@ -1,0 +1,75 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "compiler/syntax/expression.h"
+#include "compiler/syntax/scene_statements.h"
+#include "compiler/syntax/transform.h"
+
+namespace graftal {
+
+/// `tip` or `tip(n-1)` where an object is placed.
+struct InstReference {
+    std::string name;
+    std::vector<Expression> arguments;
+    Span span;
+};
+
+struct InstTint {
+    std::vector<Expression> values; ///< r, g, b, alpha
+    Span span;
+};
+
+/// `union:`, `instance:`, a bare name or `terminal:`, and the lines after it, which hold for each of its
+/// masters, the first line applied first.
+struct InstGroup {
+    bool terminal = false;
+    std::vector<InstReference> masters; ///< one or more; one of a terminal
+    std::vector<TransformLine> transforms;
+    std::vector<InstTint> tints;
+    std::optional<std::string> material;
+    Span material_span;
+    Span span;
+};
+
+/// One parameter of a definition: a name, or a number that the argument must equal.
+struct InstParameter {
+    std::string name; ///< empty for a number
+    double number = 0;
+    Span span;
+
+    bool is_number() const { return name.empty(); }
+};
+
+/// `canonical object tip(n) { ... }`; without `canonical` it is rendered.
+struct InstDefinition {
+    std::string name;
+    bool rendered = false;
+    std::vector<InstParameter> parameters;
+    std::vector<InstGroup> groups;
+    std::size_t size = 0; ///< tokens: what enumerating it once costs
+    Span span;            ///< of the name with its parameters
+};
+
+/// `use NAME = "path"`.
+struct InstUse {
+    std::string name;
+    std::string path;
+    Span span; ///< of the path
+    Span name_span;
+};
+
+/// A whole `.inst` file.
+struct InstModule {
+    std::vector<InstUse> uses;
+    std::vector<InstDefinition> definitions;
+    std::vector<SceneStatement> scene;
+    Span end;             ///< the place after the last token
+    bool complete = true; ///< false if an error lost a definition: its name is then not known
+};
+
+} // namespace graftal

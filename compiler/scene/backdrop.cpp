@@ -67,12 +67,13 @@ struct Shades {
     Rgb zenith, horizon;
 };
 
-constexpr double enough_contrast = 0.2;
+/// Light backgrounds look better where both will do.
+constexpr double preference_for_light = 1.3;
 
 Shades choose(const std::vector<Rgb>& colours, Shades light, Shades dark) {
     const double over_light = low_contrast(colours, 0.5 * (light.zenith + light.horizon));
     const double over_dark = low_contrast(colours, 0.5 * (dark.zenith + dark.horizon));
-    return over_light >= std::min(enough_contrast, over_dark) ? light : dark;
+    return preference_for_light * over_light >= over_dark ? light : dark;
 }
 
 } // namespace

@@ -39,8 +39,8 @@ std::vector<Light> solid_lights(const Camera& camera, bool over_ground) {
     // Over ground, an eye that looks up must not put the sun below the horizon.
     if (over_ground && key.y < 0.3) key = glm::normalize(Vec3(key.x, 0.3, key.z));
     const Vec3 fill = glm::normalize(from_camera(camera, {0.85, 0.2, 0.6}));
-    return {{.location = key, .sun = true, .rgb = {0.98, 0.95, 0.89}},
-            {.location = fill, .sun = true, .rgb = {0.15, 0.17, 0.20}, .shadowless = true}};
+    return {{.location = key, .sun = true, .rgb = {0.96, 0.93, 0.87}},
+            {.location = fill, .sun = true, .rgb = {0.27, 0.29, 0.33}, .shadowless = true}};
 }
 
 std::vector<Light> model_lights(const std::vector<LightSetting>& settings) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <map>
+#include <set>
 #include <string>
 #include <utility>
 
@@ -96,19 +97,26 @@ class RifsLowering {
     }
 
     void lower_parts(const RifsLooks& looks) {
-        std::vector<std::pair<const RifsPart*, bool>> parts; // whether it is a terminal
+        std::vector<const RifsPart*> parts;
+        std::set<const RifsPart*> terminals; // looked up only
+        const auto add_terminal = [&](const std::optional<RifsPart>& terminal) {
+            if (terminal) terminals.insert(parts.emplace_back(&*terminal));
+        };
         for (const RifsBlock& block : tree_.blocks) {
             for (const RifsPart& part : block.condense)
-                parts.emplace_back(&part, false);
-            if (block.terminal) parts.emplace_back(&*block.terminal, true);
+                parts.push_back(&part);
             for (const RifsMap& map : block.maps)
-                if (map.terminal) parts.emplace_back(&*map.terminal, true);
+                add_terminal(map.terminal);
+            add_terminal(block.terminal);
         }
-        for (const auto& [part, is_terminal] : parts)
+        std::sort(parts.begin(), parts.end(), [](const RifsPart* a, const RifsPart* b) {
+            return a->span.begin < b->span.begin; // in the order of the text
+        });
+        for (const RifsPart* part : parts)
             if (!diagnostics_.full()) lower_part(*part, looks);
         const Components components = strong_components(graph_);
-        for (const auto& [part, is_terminal] : parts)
-            if (is_terminal) check_terminal(*part, components);
+        for (const RifsPart* part : parts)
+            if (terminals.contains(part)) check_terminal(*part, components);
     }
 
     void lower_part(const RifsPart& part, const RifsLooks& looks) {

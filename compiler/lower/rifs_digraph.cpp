@@ -27,7 +27,7 @@ class DigraphResolver {
             block_ids_.try_emplace(system_.blocks[b].source->name.text, b);
         for (RifsSubsystem& block : system_.blocks)
             if (!resolve_block(block)) return false;
-        return resolve_sources(); // needs the starts of all blocks
+        return resolve_sources() && count_rest(); // these need the starts of all blocks
     }
 
   private:
@@ -138,10 +138,12 @@ class DigraphResolver {
         std::vector<Edge> edges;
         std::vector<double> sums(follow.rows.size(), 0);
         bool weights = false;
+        bool in_range = true;
         for (const RifsCell& cell : follow.cells) {
             double value = cell.number;
             if (cell.expression != RifsCell::literal)
                 value = evaluate(follow.expressions[cell.expression], lets_, diagnostics_).value_or(0);
+            in_range &= value >= 0 && value <= 1;
             if (value < 0 || value > 1)
                 diagnostics_.error(cell.span,
                                    fmt::format("an entry must lie between 0 and 1, not {}", shortest(value)));
@@ -150,7 +152,7 @@ class DigraphResolver {
             if (value != 0)
                 edges.push_back({block_->first + cell.row, block_->first + cell.column, cell.span});
         }
-        for (std::size_t row = 0; weights && row < sums.size(); ++row)
+        for (std::size_t row = 0; weights && in_range && row < sums.size(); ++row)
             if (std::abs(sums[row] - 1) > row_slack)
                 diagnostics_.warning(follow.rows[row].span,
                                      fmt::format("the probabilities of row {} do not add up to 1", row + 1));
@@ -208,6 +210,15 @@ class DigraphResolver {
             node.masters = start;
         }
         return true;
+    }
+
+    /// The instances that are no edges: condensation sets, and those of the root.
+    bool count_rest() {
+        for (const RifsNode& node : system_.nodes)
+            instances_ += system_.blocks[system_.block_under(node)].source->condense.size();
+        if (system_.blocks.empty()) return true;
+        const RifsSubsystem& main = system_.blocks[system_.main];
+        return add_instances(main.start.size() + main.source->condense.size(), main.source->name.span);
     }
 
     /// Sorts by `to`, then `from`; equal ones by their place in the text, of which the first stays.

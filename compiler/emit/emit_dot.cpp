@@ -14,7 +14,7 @@ std::string quoted(std::string_view text) {
     std::string out = "\"";
     for (const char c : text) {
         if (c == '"' || c == '\\') out += '\\';
-        out += c;
+        out += static_cast<unsigned char>(c) < 0x20 ? '?' : c;
     }
     return out + '"';
 }

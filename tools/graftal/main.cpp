@@ -1,1 +1,55 @@
-int main() { return 2; }
+#include <csignal>
+#include <new>
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include "tools/graftal/commands.h"
+#include "tools/graftal/options.h"
+#include "tools/graftal/report.h"
+
+namespace {
+
+/// A file that we open must never become a standard stream that the caller has closed: such a stream is
+/// opened the wrong way round, so that its use still fails.
+void occupy_standard_streams() {
+    for (int stream = STDIN_FILENO; stream <= STDERR_FILENO; ++stream)
+        if (::fcntl(stream, F_GETFD) < 0 &&
+            ::open("/dev/null", stream == STDIN_FILENO ? O_WRONLY : O_RDONLY) != stream)
+            ::_exit(graftal::exit_environment);
+}
+
+int run(const graftal::Options& options) {
+    using graftal::Command;
+    switch (options.command) {
+    case Command::render:
+        return graftal::run_render(options);
+    case Command::compile:
+        return graftal::run_compile(options);
+    case Command::check:
+        return graftal::run_check(options);
+    case Command::stats:
+        return graftal::run_stats(options);
+    case Command::print:
+        return graftal::run_print(options);
+    case Command::graph:
+        return graftal::run_graph(options);
+    case Command::compare:
+        return graftal::run_compare(options);
+    }
+    return graftal::exit_usage;
+}
+
+} // namespace
+
+int main(int argc, char** argv) {
+    occupy_standard_streams();
+    std::signal(SIGPIPE, SIG_IGN); // a closed pipe is a failed write, and reported as one
+    try {
+        const graftal::ParsedCommandLine parsed = graftal::parse_command_line(argc, argv);
+        return parsed.options ? run(*parsed.options) : parsed.exit_status;
+    } catch (const std::bad_alloc&) {
+        graftal::complain("out of memory");
+        return graftal::exit_environment;
+    }
+}

@@ -1,0 +1,116 @@
+#include "runtime/render/render.h"
+
+#include <chrono>
+#include <filesystem>
+
+#include <fmt/format.h>
+
+#include "runtime/povray/interruption.h"
+#include "runtime/povray/temporary_directory.h"
+#include "runtime/render/scene_files.h"
+
+namespace graftal {
+
+namespace {
+
+class Stopwatch {
+  public:
+    double seconds() const {
+        return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+    }
+
+  private:
+    std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+/// Where the scene goes: the directory to keep, or a temporary one.
+Status choose_directory(const std::string& keep, TemporaryDirectory& temporary, std::string& directory) {
+    if (keep.empty()) {
+        Status status = temporary.create();
+        directory = temporary.path();
+        return status;
+    }
+    std::error_code error;
+    std::filesystem::create_directories(keep, error);
+    directory = keep;
+    return error ? Status::failure(fmt::format("cannot make the directory '{}': {}", keep, error.message()))
+                 : Status();
+}
+
+RenderReport report_of(const Cut& cut) {
+    RenderReport report;
+    report.leaf_count = cut.leaf_count;
+    report.placement_count = cut.placement_count;
+    report.triangle_count = cut.triangle_count;
+    report.error_px = cut.error_px;
+    report.tessellation_px = cut.tessellation_px;
+    report.estimated_bytes = cut.estimated_bytes;
+    return report;
+}
+
+/// The picture that POV-Ray left becomes the one that was asked for.
+Status finish_picture(const PovrayJob& job, const RenderOptions& options) {
+    const std::string raw = job.directory + "/" + job.picture;
+    Image image;
+    Status status = read_image(raw, image);
+    std::error_code ignored;
+    std::filesystem::remove(raw, ignored);
+    if (!status.ok()) return status;
+    if (Interruption::signal()) return Status::failure("interrupted");
+    return write_image(options.output, image, options.format, options.metadata);
+}
+
+PovrayJob job_for(const RenderOptions& options) {
+    PovrayJob job;
+    job.width = options.compile.size.width;
+    job.height = options.compile.size.height;
+    job.threads = options.threads;
+    job.antialias = options.antialias;
+    job.linear16 = options.format == SampleFormat::linear16 || is_exr_name(options.output);
+    job.on_progress = options.on_progress;
+    return job;
+}
+
+/// Checks what would fail late, and writes the scene.
+Status prepare(const CompiledModel& model, const RenderOptions& options, TemporaryDirectory& temporary,
+               PovrayJob& job) {
+    Status status = povray_available(job.program);
+    if (status.ok()) status = check_writable(options.output);
+    if (status.ok()) status = choose_directory(options.keep, temporary, job.directory);
+    if (status.ok()) status = write_scene(model, job.directory + "/" + job.scene, false, true);
+    return status;
+}
+
+} // namespace
+
+std::optional<RenderReport> render_model(const std::string& path, const RenderOptions& options,
+                                         Compilation& compilation) {
+    std::optional<CompiledModel> model = compile_model(path, options.compile, compilation);
+    if (!model) return std::nullopt;
+
+    const Interruption interruption;
+    TemporaryDirectory temporary;
+    PovrayJob job = job_for(options);
+    const auto run = [&](const char* stage, const auto& work) {
+        const Stopwatch watch;
+        compilation.status = work();
+        compilation.times.push_back({stage, watch.seconds()});
+        return compilation.status.ok();
+    };
+
+    if (!run("emit", [&] { return prepare(*model, options, temporary, job); })) return std::nullopt;
+    RenderReport report = report_of(model->cut);
+    model.reset(); // POV-Ray may need the memory
+
+    const auto trace = [&] {
+        const PovrayResult result = run_povray(job);
+        report.peak_bytes = result.process.peak_bytes;
+        report.povray_seconds = result.process.wall_seconds;
+        return result.status;
+    };
+    if (!run("povray", trace)) return std::nullopt;
+    if (!run("picture", [&] { return finish_picture(job, options); })) return std::nullopt;
+    return report;
+}
+
+} // namespace graftal

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "compiler/compile.h"
+#include "runtime/image/image.h"
+#include "runtime/povray/povray.h"
+
+namespace graftal {
+
+struct RenderOptions {
+    CompileOptions compile;
+    std::string output;                        ///< where the picture goes: is_picture_name(output)
+    ImageMetadata metadata;                    ///< to be written into it
+    SampleFormat format = SampleFormat::srgb8; ///< of a PNG; an EXR is linear anyhow
+    std::optional<int> antialias = 3;          ///< as PovrayJob has it
+    int threads = 0;                           ///< 0: as many as POV-Ray likes
+    std::string keep;                          ///< a directory for the scene, to stay; empty: a temporary one
+    std::function<void(const PovrayProgress&)> on_progress;
+};
+
+/// What came of a rendering, for the summary.
+struct RenderReport {
+    double leaf_count = 0;
+    std::uint64_t placement_count = 0;
+    std::uint64_t triangle_count = 0;
+    double error_px = 0;
+    double tessellation_px = 0;
+    std::uint64_t estimated_bytes = 0;
+    std::uint64_t peak_bytes = 0; ///< of POV-Ray
+    double povray_seconds = 0;
+};
+
+/// Model file -> picture file, by POV-Ray. Nothing comes back after errors in `compilation.diagnostics` (the
+/// model's fault), or with a failed `compilation.status` (the environment's); then no file appears at the
+/// output. SIGINT, SIGTERM and SIGHUP during the rendering clean up and give the status "interrupted"; see
+/// Interruption::signal().
+std::optional<RenderReport> render_model(const std::string& path, const RenderOptions& options,
+                                         Compilation& compilation);
+
+} // namespace graftal

@@ -1,0 +1,105 @@
+#include "runtime/render/scene_files.h"
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+#include <memory>
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include "compiler/emit/emit_povray.h"
+#include "compiler/support/file.h"
+#include "runtime/image/image.h"
+#include "runtime/povray/interruption.h"
+
+namespace graftal {
+
+namespace {
+
+struct Close {
+    void operator()(std::FILE* file) const { std::fclose(file); }
+};
+using OpenFile = std::unique_ptr<std::FILE, Close>;
+
+Status write_failure(const std::string& path, int reason) {
+    return Status::failure(fmt::format("cannot write '{}': {}", path, std::strerror(reason)));
+}
+
+/// Emits to an open file. `name` is the file's, for messages.
+Status emit_to(std::FILE* file, const std::string& name, const CompiledModel& model,
+               const PovrayOptions& options, std::vector<PaletteImage>& palettes) {
+    int reason = 0;
+    const auto sink = [&](std::string_view text) {
+        if (Interruption::signal()) return false;
+        errno = 0;
+        if (std::fwrite(text.data(), 1, text.size(), file) == text.size()) return true;
+        reason = errno;
+        return false;
+    };
+    const bool complete = emit_povray(model.model.graph, model.cut, model.view, options, sink, palettes);
+    if (Interruption::signal()) return Status::failure("interrupted");
+    if (!complete) return write_failure(name, reason);
+    return std::fflush(file) == 0 ? Status() : write_failure(name, errno);
+}
+
+std::string model_name(const CompiledModel& model) {
+    const std::string& path = model.model.path;
+    return path == "-" ? "standard input" : std::filesystem::path(path).filename().string();
+}
+
+Status copy_to_standard_output(std::FILE* file) {
+    std::rewind(file);
+    char buffer[1 << 16];
+    while (const std::size_t count = std::fread(buffer, 1, sizeof buffer, file)) {
+        const Status status = write_text("-", std::string_view(buffer, count));
+        if (!status.ok()) return status;
+    }
+    return std::ferror(file) ? write_failure("standard output", errno) : Status();
+}
+
+} // namespace
+
+Status write_scene(const CompiledModel& model, const std::string& path, bool include, bool progress) {
+    const PovrayOptions options{model_name(model), include, progress};
+    PendingFile pending(path);
+    const OpenFile file(std::fopen(pending.temporary_path().c_str(), "wb"));
+    if (!file) return write_failure(path, errno);
+    std::vector<PaletteImage> palettes;
+    Status status = emit_to(file.get(), path, model, options, palettes);
+    const std::filesystem::path folder = std::filesystem::path(path).parent_path();
+    for (const PaletteImage& palette : palettes) {
+        if (!status.ok()) break;
+        status = write_palette((folder / palette.file_name).string(), palette.width, palette.height,
+                               palette.pixels);
+    }
+    return status.ok() ? pending.commit() : status;
+}
+
+Status print_scene(const CompiledModel& model, bool include) {
+    // By way of a file, since only the end of the text tells whether palettes are needed.
+    const OpenFile file(std::tmpfile());
+    if (!file) return write_failure("a temporary file", errno);
+    std::vector<PaletteImage> palettes;
+    const Status status =
+        emit_to(file.get(), "a temporary file", model, {model_name(model), include, false}, palettes);
+    if (!status.ok()) return status;
+    if (!palettes.empty())
+        return Status::failure(
+            fmt::format("the scene needs {} palette picture{} beside it; write it to a file "
+                        "by '-o SCENE.pov'",
+                        palettes.size(), palettes.size() == 1 ? "" : "s"));
+    return copy_to_standard_output(file.get());
+}
+
+Status check_writable(const std::string& path) {
+    const std::filesystem::path folder = std::filesystem::path(path).parent_path();
+    std::error_code error;
+    if (std::filesystem::is_directory(path, error)) return write_failure(path, EISDIR);
+    const std::string place = folder.empty() ? "." : folder.string();
+    if (::access(place.c_str(), W_OK | X_OK) != 0) return write_failure(path, errno);
+    return {};
+}
+
+} // namespace graftal

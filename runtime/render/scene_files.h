@@ -1,0 +1,21 @@
+#pragma once
+
+#include <string>
+
+#include "compiler/compile.h"
+#include "compiler/support/status.h"
+
+namespace graftal {
+
+/// Writes the model as SDL to `path`, and the palettes that it refers to beside it, each whole or not at all.
+/// `include` gives the `.inc` form; `progress` adds the marks that the POV-Ray driver reads. An interruption
+/// (interruption.h) ends it early as a failure.
+Status write_scene(const CompiledModel& model, const std::string& path, bool include, bool progress);
+
+/// The same to standard output. A model that needs palette files fails: there is nowhere to put them.
+Status print_scene(const CompiledModel& model, bool include);
+
+/// Fails if no file can be made at `path`: its folder is missing or closed, or it is a folder itself.
+Status check_writable(const std::string& path);
+
+} // namespace graftal

@@ -1,0 +1,23 @@
+#pragma once
+
+#include "tools/graftal/options.h"
+
+namespace graftal {
+
+// One function a command. Each returns the exit status: 0 done, 1 the model or the result is at fault,
+// 3 the environment, 128 + n after signal n.
+
+inline constexpr int exit_done = 0;
+inline constexpr int exit_fault = 1;
+inline constexpr int exit_usage = 2;
+inline constexpr int exit_environment = 3;
+
+int run_render(const Options& options);
+int run_compile(const Options& options);
+int run_check(const Options& options);
+int run_stats(const Options& options);
+int run_print(const Options& options);
+int run_graph(const Options& options);
+int run_compare(const Options& options);
+
+} // namespace graftal

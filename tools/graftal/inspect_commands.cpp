@@ -1,0 +1,88 @@
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "compiler/emit/emit_dot.h"
+#include "compiler/graph/print.h"
+#include "compiler/support/file.h"
+#include "runtime/povray/interruption.h"
+#include "runtime/povray/process.h"
+#include "runtime/povray/temporary_directory.h"
+#include "tools/graftal/commands.h"
+#include "tools/graftal/report.h"
+
+namespace graftal {
+
+namespace {
+
+std::string verdict_text(const Contraction& contraction) {
+    return contraction.verdict == Verdict::acyclic
+               ? std::string("no cycles")
+               : fmt::format("contracts by {:.6g} an instance", contraction.rate());
+}
+
+int check_one(const Options& options, const std::string& path) {
+    Compilation compilation;
+    const std::optional<AnalysedModel> model = analyse_model(path, compile_options(options), compilation);
+    const int status = conclude(options, compilation);
+    if (status != exit_done || !model || options.quiet) return status;
+    return print_output(fmt::format("{}: ok, {}\n", path, verdict_text(model->contraction)));
+}
+
+/// DOT -> SVG by Graphviz's own program, which writes beside the output and is renamed.
+Status write_svg(const std::string& dot, const std::string& output) {
+    if (!find_program("dot"))
+        return Status::failure("cannot find the program 'dot'; install it by 'apt-get install graphviz'");
+    const Interruption interruption;
+    TemporaryDirectory directory;
+    Status status = directory.create();
+    const std::string source = directory.path() + "/graph.dot";
+    if (status.ok()) status = write_text(source, dot);
+    if (!status.ok()) return status;
+
+    PendingFile pending(output);
+    std::string messages;
+    ProcessOptions options;
+    options.arguments = {"dot", "-Tsvg", "-o", pending.temporary_path(), source};
+    options.on_error_text = [&](std::string_view text) { messages += text; };
+    const ProcessResult result = run_process(options);
+    if (!result.status.ok()) return result.status;
+    if (result.interrupted) return Status::failure("interrupted");
+    if (!result.succeeded())
+        return Status::failure(fmt::format("'dot' failed with status {}: {}", result.exit_code, messages));
+    return pending.commit();
+}
+
+} // namespace
+
+int run_check(const Options& options) {
+    int worst = exit_done;
+    for (const std::string& path : options.operands) {
+        const int status = check_one(options, path);
+        // A fault of a model outranks one of the environment.
+        if (worst != exit_fault && status != exit_done) worst = status;
+    }
+    return worst;
+}
+
+int run_print(const Options& options) {
+    Compilation compilation;
+    const std::optional<AnalysedModel> model =
+        analyse_model(options.operands.front(), compile_options(options), compilation, true);
+    const int status = conclude(options, compilation);
+    return model && status == exit_done ? print_output(print(model->graph)) : status;
+}
+
+int run_graph(const Options& options) {
+    Compilation compilation;
+    const std::optional<AnalysedModel> model =
+        analyse_model(options.operands.front(), compile_options(options), compilation, true);
+    if (model) {
+        const std::string dot = emit_dot(model->graph, model->components);
+        compilation.status = options.output.ends_with(".svg") ? write_svg(dot, options.output)
+                                                              : write_text(options.output, dot);
+    }
+    return conclude(options, compilation);
+}
+
+} // namespace graftal

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "compiler/scene/scene.h"
+
+namespace graftal {
+
+// What the command line's values mean. Each returns nothing where the text is malformed or out of range.
+
+/// "1280x720"; each side 1..32768, at most 2^28 pixels.
+std::optional<ImageSize> parse_size(std::string_view text);
+
+/// "2G", "500M", "64K" (powers of 1024) or a plain number of bytes.
+std::optional<std::uint64_t> parse_bytes(std::string_view text);
+
+/// "0.5": a finite number, at least `least`.
+std::optional<double> parse_at_least(std::string_view text, double least);
+
+/// A whole number in [least, most].
+std::optional<std::uint64_t> parse_whole(std::string_view text, std::uint64_t least, std::uint64_t most);
+
+/// "NAME=VALUE" with a finite number.
+std::optional<std::pair<std::string, double>> parse_setting(std::string_view text);
+
+/// Adds words such as "location=1,2,3 look_at=0,0,0 up=0,1,0 angle=40 orthographic width=3" to the camera;
+/// returns what is wrong with them, or "".
+std::string parse_camera(std::string_view text, CameraOverride& camera);
+
+/// The words as a POSIX shell would have to be given them.
+std::string shell_quoted(const std::vector<std::string>& words);
+
+} // namespace graftal

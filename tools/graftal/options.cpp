@@ -1,0 +1,326 @@
+#include "tools/graftal/options.h"
+
+#include <filesystem>
+#include <functional>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include "compiler/passes/pipeline.h"
+#include "tools/graftal/commands.h"
+#include "tools/graftal/option_values.h"
+#include "tools/graftal/report.h"
+
+namespace graftal {
+
+namespace {
+
+/// Adds an option whose text `read` turns into a value; what it refuses is a usage error saying `expected`.
+template<typename Read, typename Store>
+CLI::Option* add_value(CLI::App& app, const std::string& name, const std::string& value_name,
+                       const std::string& help, const std::string& expected, Read read, Store store) {
+    const auto apply = [=](const std::string& text) {
+        auto value = read(text);
+        if (!value) throw CLI::ValidationError(fmt::format("{}: '{}' is not {}", name, text, expected));
+        store(std::move(*value));
+    };
+    return app.add_option_function<std::string>(name, apply, help)->type_name(value_name);
+}
+
+std::optional<std::string> pass_named(const std::string& text, bool all_allowed) {
+    if (all_allowed && text == "all") return text;
+    std::vector<std::string> names;
+    for (const Pass& pass : pipeline())
+        names.emplace_back(pass.name);
+    if (std::find(names.begin(), names.end(), text) != names.end()) return text;
+    const std::string hint = did_you_mean(text, names);
+    throw CLI::ValidationError(
+        fmt::format("there is no pass '{}' ({})", text, hint.empty() ? "see 'graftal --help-passes'" : hint));
+}
+
+/// Of every command that reads a model.
+void add_common(CLI::App& app, Options& options) {
+    CompileOptions& compile = options.compile;
+    constexpr std::uint64_t most_steps = 4'000'000'000;
+    add_value(
+        app, "--steps", "N", "Depth: levels of the recursion, derivation steps of an L-system",
+        "a whole number from 0 to 4000000000",
+        [](const std::string& text) { return parse_whole(text, 0, most_steps); },
+        [&](std::uint64_t steps) { compile.steps = static_cast<unsigned>(steps); });
+    add_value(
+        app, "--set", "NAME=VALUE", "Replace the value of a 'let' of the model (may be repeated)",
+        "of the form NAME=NUMBER", [](const std::string& text) { return parse_setting(text); },
+        [&](const std::pair<std::string, double>& setting) {
+            compile.lower.set[setting.first] = setting.second;
+        })
+        ->multi_option_policy(CLI::MultiOptionPolicy::Throw);
+    // No model of this version is random: the number is only checked.
+    add_value(
+        app, "--seed", "N", "Seed of random models", "a whole number",
+        [](const std::string& text) { return parse_whole(text, 0, UINT64_MAX); }, [](std::uint64_t) {});
+    add_value(
+        app, "--threads", "N", "Threads to use (default: all processors)", "a whole number from 1 to 512",
+        [](const std::string& text) { return parse_whole(text, 1, 512); },
+        [&](std::uint64_t threads) { options.threads = static_cast<int>(threads); });
+    add_value(
+        app, "--dump-after", "PASS", "Print the graph on standard error after this pass, or after 'all'",
+        "a pass", [](const std::string& text) { return pass_named(text, true); },
+        [&](const std::string& pass) { options.dump_after = pass; });
+    app.add_flag("--time", options.time, "Print the time of each stage on standard error");
+    app.add_flag("-q,--quiet", options.quiet, "No progress and no summary; errors and warnings only");
+}
+
+/// Of the commands that look at the model from a camera.
+void add_view(CLI::App& app, Options& options) {
+    CompileOptions& compile = options.compile;
+    add_value(app, "--size", "WxH", "Size of the picture in pixels (default 1280x720)",
+              "a size such as 1280x720, at most 32768 a side", parse_size,
+              [&](ImageSize size) { compile.size = size; });
+    const auto camera = [&compile](const std::string& text) {
+        const std::string problem = parse_camera(text, compile.camera);
+        if (!problem.empty()) throw CLI::ValidationError("--camera: " + problem);
+    };
+    app.add_option_function<std::string>(
+           "--camera", camera,
+           "Camera: any of location=X,Y,Z look_at=X,Y,Z up=X,Y,Z angle=DEGREES "
+           "orthographic width=UNITS; the rest is as the model says or automatic")
+        ->type_name("\"WORDS\"");
+    CLI::Option* pixels = add_value(
+        app, "--error", "PX", "Leave out what is smaller than this on the picture (default 0.5; 0: nothing)",
+        "a number of pixels, 0 or more", [](const std::string& text) { return parse_at_least(text, 0); },
+        [&](double error) { compile.cut.error_px = error; });
+    add_value(
+        app, "--error-world", "X", "The same as a length in the model's units", "a length, 0 or more",
+        [](const std::string& text) { return parse_at_least(text, 0); },
+        [&](double error) { compile.cut.error_world = error; })
+        ->excludes(pixels);
+    add_value(app, "--memory", "BYTES", "Memory that POV-Ray may need; suffixes K M G (default 2G)",
+              "a number of bytes such as 512M", parse_bytes,
+              [&](std::uint64_t bytes) { compile.cut.memory_bytes = bytes; });
+    app.add_flag("--flatten", compile.cut.flatten,
+                 "Spell out every part in its place, without sharing (for comparison)");
+}
+
+void add_model(CLI::App& app, Options& options) {
+    app.add_option("MODEL", options.operands, "Model file (.inst, .rifs), or - for standard input")
+        ->required()
+        ->expected(1)
+        ->type_name("");
+}
+
+void add_render(CLI::App& app, Options& options) {
+    add_model(app, options);
+    app.add_option("-o,--output", options.output,
+                   "Picture, .png or .exr (default: MODEL's name + .png, here)")
+        ->type_name("FILE");
+    add_view(app, options);
+    add_common(app, options);
+    const auto engine = [](const std::string& text) {
+        if (text == "native")
+            throw CLI::ValidationError("--engine: 'native' is not in this version; the engine is povray");
+        if (text != "povray") throw CLI::ValidationError(fmt::format("--engine: '{}' is not povray", text));
+    };
+    app.add_option_function<std::string>("--engine", engine, "What draws: povray")->type_name("NAME");
+    const auto antialias = [&options](const std::string& text) {
+        const auto depth = parse_whole(text, 1, 9);
+        if (!depth && text != "off")
+            throw CLI::ValidationError(
+                fmt::format("--antialias: '{}' is neither 'off' nor a whole number from 1 to 9", text));
+        options.antialias = depth ? std::optional(static_cast<int>(*depth)) : std::nullopt;
+    };
+    app.add_option_function<std::string>(
+           "--antialias", antialias, "Smooth edges by up to 2^N x 2^N samples a pixel, or off (default 3)")
+        ->type_name("off|N");
+    app.add_flag_callback(
+        "--linear", [&] { options.format = SampleFormat::linear16; },
+        "Write a 16-bit PNG of linear values, for measuring; else 8-bit sRGB");
+    app.add_option("--keep", options.keep, "Leave the scene and its palettes in this directory")
+        ->type_name("DIR");
+    app.footer("Examples:\n"
+               "  graftal render scenes/hart/pound_sign.rifs            # makes pound_sign.png\n"
+               "  graftal render fern.rifs -o fern.exr --size 600x900\n"
+               "  graftal render tree.inst --camera \"location=0,2,9 look_at=0,1,0 angle=30\"\n"
+               "  graftal render gasket.inst --steps 6 --error 0        # six levels, nothing left out\n"
+               "  graftal print tree.inst | graftal render - -o tree.png");
+}
+
+void add_compile(CLI::App& app, Options& options) {
+    add_model(app, options);
+    app.add_option("-o,--output", options.output,
+                   "Scene: .pov draws the model, .inc declares it for use in a scene of your own; palettes "
+                   "appear beside it (default: the scene on standard output)")
+        ->type_name("FILE");
+    add_view(app, options);
+    add_common(app, options);
+    app.footer("Examples:\n"
+               "  graftal compile fern.rifs -o fern.pov && povray +Ifern.pov +W640 +H480\n"
+               "  graftal compile fern.rifs -o fern.inc --error-world 0.001\n"
+               "  graftal compile fern.rifs | less");
+}
+
+void add_check(CLI::App& app, Options& options) {
+    app.add_option("MODEL", options.operands, "Model files, or - for standard input")
+        ->required()
+        ->expected(1, -1)
+        ->type_name("");
+    add_common(app, options);
+    app.footer("Example:\n  graftal check scenes/*/*.rifs      # status 1 if any model is at fault");
+}
+
+void add_stats(CLI::App& app, Options& options) {
+    add_model(app, options);
+    app.add_flag("--json", options.json, "One JSON object on standard output");
+    add_common(app, options);
+    app.footer("Examples:\n"
+               "  graftal stats scenes/hart/pound_sign.rifs\n"
+               "  graftal stats scenes/hart/pound_sign.rifs --steps 100 --json | jq -r .leaves");
+}
+
+void add_print(CLI::App& app, Options& options) {
+    add_model(app, options);
+    add_value(
+        app, "--after", "PASS", "Print the graph as it is after this pass (default: after all)", "a pass",
+        [](const std::string& text) { return pass_named(text, false); },
+        [&](const std::string& pass) { options.compile.pipeline.stop_after = pass; });
+    add_common(app, options);
+    app.footer("Examples:\n"
+               "  graftal print fern.rifs > fern.inst     # the same model in the instancing language\n"
+               "  graftal print fern.rifs --after drop_unreachable");
+}
+
+void add_graph(CLI::App& app, Options& options) {
+    add_model(app, options);
+    app.add_option("-o,--output", options.output,
+                   "Drawing of the graph: .dot, or .svg by Graphviz (default: DOT on standard output)")
+        ->type_name("FILE");
+    add_common(app, options);
+    app.footer("Examples:\n"
+               "  graftal graph pound_sign.rifs -o pound_sign.svg\n"
+               "  graftal graph pound_sign.rifs | dot -Tpdf > pound_sign.pdf");
+}
+
+void add_compare(CLI::App& app, Options& options) {
+    app.add_option("A B", options.operands, "Two pictures of one size")
+        ->required()
+        ->expected(2)
+        ->type_name("");
+    add_value(
+        app, "--threshold", "T", "Largest difference of a sample that passes, 0..1 (default 0)",
+        "a number, 0 or more", [](const std::string& text) { return parse_at_least(text, 0); },
+        [&](double threshold) { options.threshold = threshold; });
+    app.add_flag("-q,--quiet", options.quiet, "No figures; the exit status only");
+    app.footer("Prints max, mean and rms of |a - b| over all samples as they are stored (no colour\n"
+               "conversion), and count, the number of pixels over the threshold. Status 0 if count is 0,\n"
+               "1 if not or if the sizes differ, 3 if a picture cannot be read.\n"
+               "Example:\n  graftal compare before.png after.png --threshold 0.01");
+}
+
+struct CommandEntry {
+    Command command;
+    const char* name;
+    const char* summary;
+    void (*add)(CLI::App&, Options&);
+};
+
+constexpr CommandEntry commands[] = {
+    {Command::render, "render", "Make a picture of a model, by POV-Ray", add_render},
+    {Command::compile, "compile", "Write a model as a POV-Ray scene", add_compile},
+    {Command::check, "check", "Read models and say what is wrong with them", add_check},
+    {Command::stats, "stats", "Sizes, contraction, dimension and bounds of a model", add_stats},
+    {Command::print, "print", "Print the graph of a model as .inst text", add_print},
+    {Command::graph, "graph", "Draw the graph of a model", add_graph},
+    {Command::compare, "compare", "Measure how far two pictures are apart", add_compare},
+};
+
+int usage_error(const std::string& message, const std::string& command) {
+    complain(message);
+    say(fmt::format("Try 'graftal{}{} --help' for more information.\n", command.empty() ? "" : " ", command));
+    return exit_usage;
+}
+
+/// A wrong first word is most likely a misspelt command.
+std::string wrong_command(int argc, const char* const* argv) {
+    if (argc < 2) return "which command?";
+    const std::string word = argv[1];
+    std::vector<std::string> names;
+    for (const CommandEntry& entry : commands)
+        names.emplace_back(entry.name);
+    if (word.empty() || word.front() == '-' || std::find(names.begin(), names.end(), word) != names.end())
+        return {};
+    const std::string hint = did_you_mean(word, names);
+    return fmt::format("there is no command '{}'{}", word, hint.empty() ? "" : " (" + hint + ")");
+}
+
+std::string passes_text() {
+    std::string text;
+    for (const Pass& pass : pipeline())
+        text += fmt::format("{:<20} {}\n", pass.name, pass.summary);
+    return text;
+}
+
+/// What is wrong with options that are each right, or "".
+std::string complete(Options& options) {
+    const std::string extension = std::filesystem::path(options.output).extension().string();
+    const bool from_stdin = options.operands.front() == "-";
+    if (options.command == Command::render) {
+        if (options.output.empty() && from_stdin)
+            return "a model from standard input has no name: say where the picture goes by '-o FILE'";
+        if (options.output.empty())
+            options.output = std::filesystem::path(options.operands.front()).stem().string() + ".png";
+        if (!is_picture_name(options.output))
+            return fmt::format("'{}' ends neither in .png nor in .exr", options.output);
+    }
+    if (options.output.empty()) options.output = "-";
+    const bool to_stdout = options.output == "-";
+    if (options.command == Command::compile && !to_stdout && extension != ".pov" && extension != ".inc")
+        return fmt::format("'{}' ends neither in .pov nor in .inc", options.output);
+    if (options.command == Command::graph && !to_stdout && extension != ".dot" && extension != ".svg")
+        return fmt::format("'{}' ends neither in .dot nor in .svg", options.output);
+    return {};
+}
+
+} // namespace
+
+ParsedCommandLine parse_command_line(int argc, const char* const* argv) {
+    Options options;
+    CLI::App app("graftal compiles fractal and plant models into object-instance graphs, and those into\n"
+                 "POV-Ray scenes and pictures.",
+                 "graftal");
+    app.set_version_flag("--version", "graftal " GRAFTAL_VERSION);
+    bool help_passes = false;
+    app.add_flag("--help-passes", help_passes, "List the passes of the compiler");
+    app.footer("'graftal COMMAND --help' explains a command and shows examples.\n"
+               "Exit status: 0 done, 1 the model or the result is at fault, 2 usage, 3 the environment.");
+    for (const CommandEntry& entry : commands) {
+        CLI::App* command = app.add_subcommand(entry.name, entry.summary);
+        entry.add(*command, options);
+        command->callback([&options, &entry] { options.command = entry.command; });
+    }
+
+    const std::string wrong = wrong_command(argc, argv);
+    if (!wrong.empty()) return {std::nullopt, usage_error(wrong, "")};
+    const auto chosen = [&]() -> std::string {
+        return app.get_subcommands().empty() ? "" : app.get_subcommands().front()->get_name();
+    };
+    try {
+        app.parse(argc, argv);
+    } catch (const CLI::CallForHelp&) {
+        const std::string name = chosen();
+        return {std::nullopt, print_output(name.empty() ? app.help() : app.get_subcommand(name)->help())};
+    } catch (const CLI::CallForVersion& version) {
+        return {std::nullopt, print_output(std::string(version.what()) + "\n")};
+    } catch (const CLI::ParseError& error) {
+        return {std::nullopt, usage_error(error.what(), chosen())};
+    }
+    if (help_passes) return {std::nullopt, print_output(passes_text())};
+    if (chosen().empty()) return {std::nullopt, usage_error("which command?", "")};
+    const std::string problem = complete(options);
+    if (!problem.empty()) return {std::nullopt, usage_error(problem, chosen())};
+
+    std::vector<std::string> words(argv, argv + argc);
+    words.front() = "graftal";
+    options.command_line = shell_quoted(words);
+    return {std::move(options), exit_done};
+}
+
+} // namespace graftal

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "compiler/compile.h"
+#include "runtime/image/image.h"
+
+namespace graftal {
+
+enum class Command { render, compile, check, stats, print, graph, compare };
+
+/// The command line, understood.
+struct Options {
+    Command command = Command::render;
+    std::vector<std::string> operands; ///< the model or models; for compare the two pictures
+    std::string output;                ///< of render, compile and graph; "-" is standard output
+    CompileOptions compile;
+    std::string dump_after; ///< a pass, "all", or ""
+    bool time = false;
+    bool quiet = false;
+    int threads = 0;
+
+    SampleFormat format = SampleFormat::srgb8;
+    std::optional<int> antialias = 3;
+    std::string keep;
+    bool json = false;
+    double threshold = 0;
+
+    std::string command_line; ///< for the metadata of a picture
+};
+
+struct ParsedCommandLine {
+    std::optional<Options> options; ///< nothing: end with exit_status (--help, --version, a wrong option)
+    int exit_status = 0;
+};
+
+/// Reads the command line; help goes to standard output, complaints in the GNU form to standard error.
+ParsedCommandLine parse_command_line(int argc, const char* const* argv);
+
+} // namespace graftal

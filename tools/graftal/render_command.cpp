@@ -1,0 +1,75 @@
+#include <fmt/format.h>
+
+#include "runtime/povray/interruption.h"
+#include "runtime/render/render.h"
+#include "runtime/render/scene_files.h"
+#include "tools/graftal/commands.h"
+#include "tools/graftal/progress_bar.h"
+#include "tools/graftal/report.h"
+
+namespace graftal {
+
+namespace {
+
+std::string bytes_text(std::uint64_t bytes) {
+    const double mib = static_cast<double>(bytes) / (1 << 20);
+    return mib < 10'000 ? fmt::format("{:.0f} MiB", mib) : fmt::format("{:.1f} GiB", mib / 1024);
+}
+
+/// Whole numbers up to a million, then "4.7e+11".
+std::string count_text(double count) {
+    return count < 1e6 ? fmt::format("{:.0f}", count) : fmt::format("{:.2e}", count);
+}
+
+std::string cut_text(double leaves, std::uint64_t placements, std::uint64_t triangles, double error_px) {
+    std::string text = fmt::format("{} leaves as {} placements", count_text(leaves), placements);
+    if (triangles > 0) text += fmt::format(" of meshes with {} triangles", triangles);
+    return text + (error_px > 0 ? fmt::format(", error {:.2g} px", error_px) : ", nothing left out");
+}
+
+} // namespace
+
+int run_render(const Options& options) {
+    ProgressBar bar(!options.quiet);
+    RenderOptions render;
+    render.compile = compile_options(options);
+    render.output = options.output;
+    render.metadata = {"graftal " GRAFTAL_VERSION, options.command_line};
+    render.format = options.format;
+    render.antialias = options.antialias;
+    render.threads = options.threads;
+    render.keep = options.keep;
+    render.on_progress = [&](const PovrayProgress& progress) { bar.show(progress); };
+
+    Compilation compilation;
+    bar.show("compiling...");
+    const std::optional<RenderReport> report = render_model(options.operands.front(), render, compilation);
+    bar.clear();
+    const int status = conclude(options, compilation);
+    if (report && !options.quiet)
+        say(fmt::format(
+            "{}: {}; POV-Ray {:.1f} s, peak {}\n", options.output,
+            cut_text(report->leaf_count, report->placement_count, report->triangle_count, report->error_px),
+            report->povray_seconds, bytes_text(report->peak_bytes)));
+    return status;
+}
+
+int run_compile(const Options& options) {
+    Compilation compilation;
+    const std::optional<CompiledModel> model =
+        compile_model(options.operands.front(), compile_options(options), compilation);
+    if (model) {
+        const Interruption interruption;
+        const bool include = options.output.ends_with(".inc");
+        compilation.status = options.output == "-" ? print_scene(*model, include)
+                                                   : write_scene(*model, options.output, include, false);
+    }
+    const int status = conclude(options, compilation);
+    if (status == exit_done && !options.quiet && options.output != "-")
+        say(fmt::format("{}: {}\n", options.output,
+                        cut_text(model->cut.leaf_count, model->cut.placement_count, model->cut.triangle_count,
+                                 model->cut.error_px)));
+    return status;
+}
+
+} // namespace graftal

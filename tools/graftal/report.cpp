@@ -1,0 +1,50 @@
+#include "tools/graftal/report.h"
+
+#include <cstdio>
+
+#include <fmt/format.h>
+
+#include "compiler/graph/print.h"
+#include "compiler/support/file.h"
+#include "runtime/povray/interruption.h"
+#include "tools/graftal/commands.h"
+
+namespace graftal {
+
+void say(const std::string& text) {
+    std::fputs(text.c_str(), stderr);
+}
+
+void complain(std::string_view text) {
+    say(fmt::format("graftal: {}\n", text));
+}
+
+int conclude(const Options& options, const Compilation& compilation) {
+    say(compilation.diagnostics.render(compilation.sources));
+    if (!compilation.status.ok()) complain(compilation.status.message());
+    if (options.time)
+        for (const StageTime& time : compilation.times)
+            say(fmt::format("{:>10.3f} s  {}\n", time.seconds, time.stage));
+    if (Interruption::signal()) return 128 + Interruption::signal();
+    if (compilation.diagnostics.has_errors()) return exit_fault;
+    return compilation.status.ok() ? exit_done : exit_environment;
+}
+
+int print_output(std::string_view text) {
+    const Status status = write_text("-", text);
+    if (status.ok()) return exit_done;
+    complain(status.message());
+    return exit_environment;
+}
+
+CompileOptions compile_options(const Options& options) {
+    CompileOptions compile = options.compile;
+    if (options.dump_after.empty()) return compile;
+    compile.pipeline.after_each = [wanted = options.dump_after](const Pass& pass, const Graph& graph) {
+        if (wanted == "all" || wanted == pass.name)
+            say(fmt::format("// after {}\n{}", pass.name, print(graph)));
+    };
+    return compile;
+}
+
+} // namespace graftal

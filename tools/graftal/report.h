@@ -1,0 +1,27 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "compiler/compile.h"
+#include "tools/graftal/options.h"
+
+namespace graftal {
+
+/// TEXT on standard error, which may be closed.
+void say(const std::string& text);
+
+/// "graftal: TEXT" on standard error.
+void complain(std::string_view text);
+
+/// Prints the diagnostics, the failed status if there is one, and the times if they were asked for; returns
+/// the exit status that follows.
+int conclude(const Options& options, const Compilation& compilation);
+
+/// Writes to standard output; exit status 0, or 3 with a complaint if it is closed or full.
+int print_output(std::string_view text);
+
+/// The options of the compiler with `--dump-after` connected.
+CompileOptions compile_options(const Options& options);
+
+} // namespace graftal

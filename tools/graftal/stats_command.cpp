@@ -1,0 +1,127 @@
+#include <filesystem>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "compiler/analysis/counts.h"
+#include "tools/graftal/commands.h"
+#include "tools/graftal/report.h"
+
+namespace graftal {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+const char* name_of(Verdict verdict) {
+    switch (verdict) {
+    case Verdict::acyclic:
+        return "acyclic";
+    case Verdict::proved:
+        return "proved";
+    case Verdict::refuted:
+        return "refuted";
+    case Verdict::undecided:
+        return "undecided";
+    }
+    return "";
+}
+
+template<typename Value> Json or_null(const std::optional<Value>& value) {
+    return value ? Json(*value) : Json(nullptr);
+}
+
+/// The extension of the model's name, without the dot.
+std::string language_of(const std::string& path) {
+    const std::string extension = std::filesystem::path(path).extension().string();
+    return extension.empty() ? "" : extension.substr(1);
+}
+
+Json vector_json(Vec3 v) {
+    return Json::array({v.x, v.y, v.z});
+}
+
+Json contraction_json(const AnalysedModel& model) {
+    const Contraction& contraction = model.contraction;
+    const bool cyclic = contraction.verdict != Verdict::acyclic;
+    Json cycle = Json::array();
+    for (const GraphStep& step : contraction.worst_cycle)
+        cycle.push_back(model.graph.objects[step.object].name);
+    Json json = {{"verdict", name_of(contraction.verdict)},
+                 {"rate", cyclic ? Json(contraction.rate()) : Json(nullptr)},
+                 {"cycle", cyclic ? std::move(cycle) : Json(nullptr)}};
+    if (!cyclic) return json;
+    json["lower"] = contraction.lower;
+    json["upper"] = contraction.upper;
+    if (contraction.verdict == Verdict::proved)
+        json["certificate"] = {
+            {"rate", contraction.certificate.rate},
+            {"depth", contraction.certificate.depth},
+            {"holds", certificate_holds(model.graph, model.components, contraction.certificate)}};
+    return json;
+}
+
+Json bounds_json(const AnalysedModel& model) {
+    if (model.bounds.empty()) return nullptr;
+    const ObjectBounds& bounds = model.bounds[model.graph.root];
+    if (bounds.box.empty()) return nullptr;
+    return {{"min", vector_json(bounds.box.min)}, {"max", vector_json(bounds.box.max)}};
+}
+
+Json stats_json(const AnalysedModel& model) {
+    const Graph& graph = model.graph;
+    std::size_t instances = 0;
+    for (const Object& object : graph.objects)
+        instances += object.instances.size();
+    const bool converges =
+        model.contraction.verdict == Verdict::proved || model.contraction.verdict == Verdict::acyclic;
+    return {
+        {"model", model.path},
+        {"language", language_of(model.path)},
+        {"objects", graph.objects.size()},
+        {"instances", instances},
+        {"steps", or_null(model.steps)},
+        {"leaves", or_null(count_leaves(graph, model.components, model.steps))},
+        {"contraction", contraction_json(model)},
+        {"dimension", converges ? or_null(similarity_dimension(graph, model.components)) : Json(nullptr)},
+        {"bounds", bounds_json(model)},
+        {"unbounded", !model.bounds.empty() && model.bounds[graph.root].unbounded},
+        {"error", 0},
+    };
+}
+
+std::string text_of(const Json& value) {
+    if (value.is_string()) return value.get<std::string>();
+    if (!value.is_array()) return value.is_null() ? "-" : value.dump();
+    std::string text;
+    for (const Json& item : value)
+        text += (text.empty() ? "" : " ") + text_of(item);
+    return text;
+}
+
+/// One line a key; the keys of nested objects behind the outer one.
+void append_lines(const Json& json, const std::string& prefix, std::string& out) {
+    for (const auto& [key, value] : json.items()) {
+        if (value.is_object())
+            append_lines(value, prefix + key + " ", out);
+        else
+            out += fmt::format("{:<28}{}\n", prefix + key, text_of(value));
+    }
+}
+
+} // namespace
+
+int run_stats(const Options& options) {
+    Compilation compilation;
+    const std::optional<AnalysedModel> model =
+        analyse_model(options.operands.front(), compile_options(options), compilation, true);
+    const int status = conclude(options, compilation);
+    if (!model || status != exit_done) return status;
+    const Json json = stats_json(*model);
+    if (options.json) return print_output(json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
+    std::string text;
+    append_lines(json, "", text);
+    return print_output(text);
+}
+
+} // namespace graftal

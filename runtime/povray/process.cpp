@@ -1,10 +1,12 @@
 #include "runtime/povray/process.h"
 
+#include <algorithm>
 #include <cerrno>
 #include <chrono>
 #include <csignal>
 #include <cstdlib>
 #include <cstring>
+#include <fstream>
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -86,6 +88,15 @@ class ExecTables {
     ::_exit(127);
 }
 
+/// The number of kilobytes behind a word such as "VmHWM:" in /proc/PID/status, as bytes; 0 if it is not
+/// there.
+std::uint64_t memory_of(const std::string& process, std::string_view word) {
+    std::ifstream file("/proc/" + process + "/status");
+    for (std::string line; std::getline(file, line);)
+        if (line.starts_with(word)) return 1024 * std::strtoull(line.c_str() + word.size(), nullptr, 10);
+    return 0;
+}
+
 class Descriptor {
   public:
     explicit Descriptor(int number = -1) : number_(number) {}
@@ -133,6 +144,8 @@ class Watch {
         }
     }
     int interrupted() const { return interrupted_; }
+    /// The child's resident memory at its highest, as seen when it last wrote.
+    std::uint64_t peak_bytes() const { return peak_bytes_; }
 
   private:
     void heed_interruption() {
@@ -151,6 +164,7 @@ class Watch {
         char buffer[1 << 14];
         const ssize_t count = ::read(text_, buffer, sizeof buffer);
         if (count == 0 || (count < 0 && errno != EINTR)) text_ = -1;
+        peak_bytes_ = std::max(peak_bytes_, memory_of(std::to_string(child_), "VmHWM:"));
         if (count > 0 && options_.on_error_text)
             options_.on_error_text(std::string_view(buffer, static_cast<std::size_t>(count)));
     }
@@ -160,6 +174,7 @@ class Watch {
     const ProcessOptions& options_;
     int interrupted_ = 0;
     bool killed_ = false;
+    std::uint64_t peak_bytes_ = 0;
     Clock::time_point interrupted_at_;
 };
 
@@ -174,7 +189,6 @@ void record_end(int wait_status, const rusage& usage, ProcessResult& result) {
     };
     result.user_seconds = seconds(usage.ru_utime);
     result.system_seconds = seconds(usage.ru_stime);
-    result.peak_bytes = static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;
 }
 
 } // namespace
@@ -214,6 +228,7 @@ ProcessResult run_process(const ProcessOptions& options) {
     if (null_device.get() < 0 || !open_pipe(text_in, text_out) || !open_pipe(report_in, report_out))
         return fail(system_failure("open a pipe"));
     const ExecTables tables(options);
+    const std::uint64_t own_bytes = memory_of("self", "VmRSS:");
     const Clock::time_point start = Clock::now();
     const pid_t parent = ::getpid();
     const pid_t child = ::fork();
@@ -238,6 +253,10 @@ ProcessResult run_process(const ProcessOptions& options) {
     result.interrupted = watch.interrupted();
     result.wall_seconds = seconds_since(start);
     record_end(wait_status, usage, result);
+    // The kernel's figure starts from what the child was before exec: a copy of us.
+    const std::uint64_t peak_since_fork = static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;
+    constexpr std::uint64_t slack = 4 << 20;
+    result.peak_bytes = peak_since_fork > own_bytes + slack ? peak_since_fork : watch.peak_bytes();
     return result;
 }
 

@@ -60,6 +60,17 @@ Status finish_picture(const PovrayJob& job, const RenderOptions& options) {
     return write_image(options.output, image, options.format, options.metadata);
 }
 
+/// What POV-Ray must count as finite objects: every placement but those of planes.
+std::uint64_t finite_objects(const Cut& cut) {
+    std::uint64_t count = 0;
+    for (const PlacementGroup& group : cut.groups)
+        for (const Placement& placement : group.placements) {
+            const auto* primitive = std::get_if<PrimitiveKind>(&cut.bodies[placement.body].shape);
+            count += !primitive || *primitive != PrimitiveKind::plane;
+        }
+    return count;
+}
+
 PovrayJob job_for(const RenderOptions& options) {
     PovrayJob job;
     job.width = options.compile.size.width;
@@ -100,6 +111,7 @@ std::optional<RenderReport> render_model(const std::string& path, const RenderOp
 
     if (!run("emit", [&] { return prepare(*model, options, temporary, job); })) return std::nullopt;
     RenderReport report = report_of(model->cut);
+    job.finite_objects = finite_objects(model->cut);
     model.reset(); // POV-Ray may need the memory
 
     const auto trace = [&] {

@@ -15,7 +15,7 @@ struct RenderOptions {
     std::string output;                        ///< where the picture goes: is_picture_name(output)
     ImageMetadata metadata;                    ///< to be written into it
     SampleFormat format = SampleFormat::srgb8; ///< of a PNG; an EXR is linear anyhow
-    std::optional<int> antialias = 3;          ///< as PovrayJob has it
+    std::optional<int> antialias = 2;          ///< as PovrayJob has it
     int threads = 0;                           ///< 0: as many as POV-Ray likes
     std::string keep;                          ///< a directory for the scene, to stay; empty: a temporary one
     std::function<void(const PovrayProgress&)> on_progress;

@@ -129,7 +129,7 @@ void add_render(CLI::App& app, Options& options) {
         options.antialias = depth ? std::optional(static_cast<int>(*depth)) : std::nullopt;
     };
     app.add_option_function<std::string>(
-           "--antialias", antialias, "Smooth edges by up to 2^N x 2^N samples a pixel, or off (default 3)")
+           "--antialias", antialias, "Smooth edges by up to 2^N x 2^N samples a pixel, or off (default 2)")
         ->type_name("off|N");
     app.add_flag_callback(
         "--linear", [&] { options.format = SampleFormat::linear16; },

@@ -23,7 +23,7 @@ struct Options {
     int threads = 0;
 
     SampleFormat format = SampleFormat::srgb8;
-    std::optional<int> antialias = 3;
+    std::optional<int> antialias = 2;
     std::string keep;
     bool json = false;
     double threshold = 0;

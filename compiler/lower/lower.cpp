@@ -20,20 +20,20 @@ namespace {
 
 constexpr std::string_view standard_input = "<stdin>";
 
-/// The extension that a text without a file name would have: by the first word outside of braces that only
-/// one language begins a statement with.
-std::string guessed_extension(FileId file, const SourceMap& sources) {
+/// The language of a text without a file name: by the first word outside of braces that only one language
+/// begins a statement with.
+std::string guessed_language(FileId file, const SourceMap& sources) {
     Diagnostics ignored; // the front-end reads the text again
     std::size_t depth = 0;
     for (const Token& token : lex(sources, file, ignored)) {
         if (token.is("{")) ++depth;
         if (token.is("}") && depth > 0) --depth;
         if (depth > 0 || !token.first_on_line) continue;
-        if (token.is("main")) return ".rifs";  // `main rifs NAME {`
-        if (token.is("rifs") || token.is("lsys")) return "." + std::string(token.text);
+        if (token.is("main")) return "rifs"; // `main rifs NAME {`
+        if (token.is("rifs") || token.is("lsys")) return std::string(token.text);
         if (token.is("object") || token.is("canonical")) break;
     }
-    return ".inst";
+    return "inst";
 }
 
 std::optional<Graph> lower_root(FileId file, const LowerOptions& options, SourceMap& sources,
@@ -49,13 +49,19 @@ std::optional<Graph> lower_root(FileId file, const LowerOptions& options, Source
 
 } // namespace
 
+std::string model_language(FileId file, const SourceMap& sources) {
+    const std::string_view name = sources.name(file);
+    if (name == standard_input) return guessed_language(file, sources);
+    const std::string extension = std::filesystem::path(name).extension().string();
+    return extension.empty() ? "" : extension.substr(1);
+}
+
 std::optional<Graph> lower_file(FileId file, Span asked_for, Lowering& lowering) {
     const std::string_view name = lowering.sources.name(file);
-    const std::string extension = name == standard_input ? guessed_extension(file, lowering.sources)
-                                                         : std::filesystem::path(name).extension().string();
-    if (extension == ".inst") return lower_inst(file, lowering);
-    if (extension == ".rifs") return lower_rifs(file, lowering);
-    if (extension == ".lsys")
+    const std::string language = model_language(file, lowering.sources);
+    if (language == "inst") return lower_inst(file, lowering);
+    if (language == "rifs") return lower_rifs(file, lowering);
+    if (language == "lsys")
         lowering.diagnostics.error(asked_for, "no front-end for '.lsys' models in this version");
     else
         lowering.diagnostics.error(asked_for, fmt::format("'{}' is no model that is known here", name))

@@ -12,8 +12,8 @@
 namespace graftal {
 
 struct LowerOptions {
-    std::map<std::string, double, std::less<>> set;  ///< `--set NAME=VALUE`: replaces the value of a `let`
-    std::size_t max_objects = 1'000'000;             ///< a model that enumerates more is an error
+    std::map<std::string, double, std::less<>> set; ///< `--set NAME=VALUE`: replaces the value of a `let`
+    std::size_t max_objects = 1'000'000;            ///< a model that enumerates more is an error
 };
 
 /// Reads a model, and all that it uses, and lowers it to a verified graph. The language follows the file
@@ -23,9 +23,13 @@ struct LowerOptions {
 std::optional<Graph> lower_model(const std::string& path, const LowerOptions& options, SourceMap& sources,
                                  Diagnostics& diagnostics, Status& status);
 
-/// The same for a text already at hand, as the model `name` (which decides the language and where used
-/// files are looked up).
+/// "inst", "rifs" or "lsys", by the name of the file, for standard input by its text; else whatever follows
+/// the dot of the name. The file of the model itself is the first in `sources`.
+std::string model_language(FileId file, const SourceMap& sources);
+
+/// The same as lower_model for a text already at hand, as the model `name` (which decides the language and
+/// where used files are looked up).
 std::optional<Graph> lower_text(const std::string& name, std::string text, const LowerOptions& options,
                                 SourceMap& sources, Diagnostics& diagnostics);
 
-}  // namespace graftal
+} // namespace graftal

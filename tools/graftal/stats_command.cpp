@@ -1,5 +1,3 @@
-#include <filesystem>
-
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
@@ -29,12 +27,6 @@ const char* name_of(Verdict verdict) {
 
 template<typename Value> Json or_null(const std::optional<Value>& value) {
     return value ? Json(*value) : Json(nullptr);
-}
-
-/// The extension of the model's name, without the dot.
-std::string language_of(const std::string& path) {
-    const std::string extension = std::filesystem::path(path).extension().string();
-    return extension.empty() ? "" : extension.substr(1);
 }
 
 Json vector_json(Vec3 v) {
@@ -68,7 +60,7 @@ Json bounds_json(const AnalysedModel& model) {
     return {{"min", vector_json(bounds.box.min)}, {"max", vector_json(bounds.box.max)}};
 }
 
-Json stats_json(const AnalysedModel& model) {
+Json stats_json(const AnalysedModel& model, const SourceMap& sources) {
     const Graph& graph = model.graph;
     std::size_t instances = 0;
     for (const Object& object : graph.objects)
@@ -77,7 +69,7 @@ Json stats_json(const AnalysedModel& model) {
         model.contraction.verdict == Verdict::proved || model.contraction.verdict == Verdict::acyclic;
     return {
         {"model", model.path},
-        {"language", language_of(model.path)},
+        {"language", model_language(0, sources)},
         {"objects", graph.objects.size()},
         {"instances", instances},
         {"steps", or_null(model.steps)},
@@ -105,7 +97,7 @@ void append_lines(const Json& json, const std::string& prefix, std::string& out)
         if (value.is_object())
             append_lines(value, prefix + key + " ", out);
         else
-            out += fmt::format("{:<28}{}\n", prefix + key, text_of(value));
+            out += fmt::format("{:<28} {}\n", prefix + key, text_of(value));
     }
 }
 
@@ -117,7 +109,7 @@ int run_stats(const Options& options) {
         analyse_model(options.operands.front(), compile_options(options), compilation, true);
     const int status = conclude(options, compilation);
     if (!model || status != exit_done) return status;
-    const Json json = stats_json(*model);
+    const Json json = stats_json(*model, compilation.sources);
     if (options.json) return print_output(json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
     std::string text;
     append_lines(json, "", text);

@@ -105,14 +105,10 @@ class Unfolding {
     }
 
     void place_mesh(const Piece& piece, const PieceKind& kind) {
-        const std::int32_t octave = kind.detail_step == PieceKind::endless_detail
-                                        ? kind.detail_step
-                                        : (std::max(kind.detail_step, 0) + PieceKind::steps_an_octave - 1) /
-                                              PieceKind::steps_an_octave;
         const NodeId representative = symmetry_.representative[piece.node];
         const std::int64_t finish = piece.material ? static_cast<std::int64_t>(*piece.material) : -1;
         const auto [request, added] =
-            request_of_.emplace(RequestKey{representative, kind.steps, octave, finish},
+            request_of_.emplace(RequestKey{representative, kind.steps, weights_.mesh_bin(kind), finish},
                                 static_cast<std::uint32_t>(requests.size()));
         if (added) {
             requests.emplace_back();

@@ -212,7 +212,7 @@ class Baker {
 double leaf_thickness(const Affine& place, double detail_per_unit) {
     if (!is_singular(place, flattest_leaf)) return 0;
     constexpr double thinnest_share = 1e-3;
-    return std::isfinite(detail_per_unit) ? 0.5 / detail_per_unit : thinnest_share * norm(place.linear);
+    return std::isfinite(detail_per_unit) ? 1 / detail_per_unit : thinnest_share * norm(place.linear);
 }
 
 Affine thickened(const Affine& place, double thickness) {

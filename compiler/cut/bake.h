@@ -48,8 +48,8 @@ Baked bake(const CutGraph& cut, const Symmetry& symmetry, const BakeRequest& req
            std::size_t max_triangles);
 
 /// The thickness that a leaf needs where a unit has this detail: 0 unless the map is singular or nearly so
-/// (then POV-Ray would lose it); half of the error allowed, or a thousandth of its size where nothing is
-/// culled.
+/// (then POV-Ray would lose it); the error allowed to either side, or a thousandth of its size where nothing
+/// is culled.
 double leaf_thickness(const Affine& place, double detail_per_unit);
 
 /// The map with no singular value under `thickness`.

@@ -5,6 +5,7 @@
 #include <limits>
 #include <map>
 #include <queue>
+#include <utility>
 
 #include <glm/geometric.hpp>
 
@@ -16,11 +17,11 @@ namespace {
 constexpr double max_real_pieces = 4000;
 constexpr std::size_t max_splits = 200'000;
 
-/// What one mesh would serve: congruent nodes with equal steps, details within an octave.
+/// What one mesh would serve.
 struct MeshKind {
     NodeId representative;
     std::uint32_t steps;
-    std::int32_t octave;
+    std::int32_t bin;
     auto operator<=>(const MeshKind&) const = default;
 };
 
@@ -74,11 +75,7 @@ class Chooser {
     }
 
     MeshKind mesh_kind(const PieceKind& kind) const {
-        const std::int32_t octave =
-            kind.detail_step == PieceKind::endless_detail
-                ? kind.detail_step
-                : (kind.detail_step + PieceKind::steps_an_octave - 1) / PieceKind::steps_an_octave;
-        return {symmetry_.representative[kind.node], kind.steps, octave};
+        return {symmetry_.representative[kind.node], kind.steps, weights_.mesh_bin(kind)};
     }
 
     bool splits(const PieceKind& kind) {
@@ -93,10 +90,23 @@ class Chooser {
                 queue_.push(
                     {cut_.nodes[kind.node].unbounded ? std::numeric_limits<double>::max() : weight.triangles,
                      kind});
-            if (weight.leaves > 1 && live_meshes_[mesh_kind(kind)]++ == 0)
-                triangles_ += mesh_triangles_[mesh_kind(kind)] = weight.triangles;
+            if (weight.leaves > 1) add_mesh(mesh_kind(kind), weight.triangles);
         }
         return place->second;
+    }
+
+    /// A mesh is as fine as the finest of its pieces asks for.
+    void add_mesh(const MeshKind& kind, double triangles) {
+        LiveMesh& mesh = live_meshes_[kind];
+        const double before = mesh.triangles;
+        ++mesh.kinds;
+        mesh.triangles = std::max(mesh.triangles, triangles);
+        triangles_ += mesh.triangles - before;
+    }
+
+    void drop_mesh(const MeshKind& kind) {
+        LiveMesh& mesh = live_meshes_[kind];
+        if (--mesh.kinds == 0) triangles_ -= std::exchange(mesh.triangles, 0);
     }
 
     void add_piece(const Piece& piece) {
@@ -111,7 +121,7 @@ class Chooser {
         if (node.empty()) return;
         const Bucket& bucket = node.mapped();
         placements_ -= bucket.count;
-        if (--live_meshes_[mesh_kind(kind)] == 0) triangles_ -= mesh_triangles_[mesh_kind(kind)];
+        drop_mesh(mesh_kind(kind));
         const bool cut = weights_.is_cut(kind);
         const bool real =
             static_cast<double>(bucket.pieces.size()) == bucket.count && placements_ < max_real_pieces;
@@ -145,8 +155,11 @@ class Chooser {
     double placements_ = 0;
     double triangles_ = 0;
     std::unordered_map<PieceKind, Bucket, PieceKindHash> buckets_;
-    std::map<MeshKind, int> live_meshes_;
-    std::map<MeshKind, double> mesh_triangles_;
+    struct LiveMesh {
+        int kinds = 0; ///< of pieces that it serves now
+        double triangles = 0;
+    };
+    std::map<MeshKind, LiveMesh> live_meshes_;
     std::priority_queue<Entry> queue_;
 };
 

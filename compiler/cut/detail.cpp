@@ -73,6 +73,10 @@ PieceKind Weights::normalised(PieceKind kind) const {
     return kind;
 }
 
+std::int32_t Weights::mesh_bin(const PieceKind& kind) {
+    return static_cast<std::int32_t>(std::lround(std::log2(std::clamp(of(kind).leaves, 1.0, 1e300))));
+}
+
 PieceKind Weights::child_kind(const PieceKind& parent, const CutEdge& edge) const {
     PieceKind kind{edge.child, steps_after(parent.steps, edge), parent.detail_step};
     if (kind.detail_step != PieceKind::endless_detail) {

@@ -70,6 +70,10 @@ class Weights {
     /// Kinds are the same where levels do not matter.
     PieceKind normalised(PieceKind kind) const;
 
+    /// Pieces of congruent nodes, equal steps and equal bins share a mesh. A bin is an octave of leaf counts:
+    /// in a strictly self-similar model pieces of one bin unfold alike, in others nearly so.
+    std::int32_t mesh_bin(const PieceKind& kind);
+
     /// True if the kind is drawn by its stop edges or proxy.
     bool is_cut(const PieceKind& kind) const;
 

@@ -132,8 +132,8 @@ class ChaosGame : public testing::TestWithParam<std::string> {};
 // points can cover the set.
 TEST_P(ChaosGame, PointsAndGeometryAreCloseBothWays) {
     CompileOptions options;
-    options.size = {400, 300};
-    options.cut.error_px = 4;
+    options.size = {320, 240};
+    options.cut.error_px = 8;
     Compilation compilation;
     const std::optional<CompiledModel> compiled =
         compile_model(std::string(GRAFTAL_SOURCE_DIR) + "/" + GetParam(), options, compilation);

@@ -31,6 +31,14 @@ struct KeptLeaf {
     Rgb rgb{0.0}; ///< as the first painter has it
 };
 
+/// The same for all crushed leaves in one cell of half a thickness, of one size to a factor of 2.
+Affine crushed_mark(const Affine& place, double thickness) {
+    Affine mark{Mat3(std::exp2(std::round(std::log2(norm(place.linear))))), {}};
+    for (int k = 0; k < 3; ++k)
+        mark.translation[k] = 0.5 * thickness * std::round(place.translation[k] / (0.5 * thickness));
+    return mark;
+}
+
 std::int64_t part_key(const std::optional<MaterialId>& material) {
     return material ? static_cast<std::int64_t>(*material) : -1;
 }
@@ -121,7 +129,10 @@ class Baker {
         for (std::size_t number = 0; walk.next(leaf); ++number) {
             const double thickness = leaf_thickness(leaf.representative_from_leaf, request_.detail_per_unit);
             const Affine place = thickened(leaf.representative_from_leaf, thickness);
-            if (!seen.insert(static_cast<std::uint32_t>(leaf.kind), place)) continue;
+            // What a singular map crushes onto a line or a sheet piles up there: one leaf a thickness will
+            // do.
+            const Affine mark = thickness > 0 ? crushed_mark(place, thickness) : place;
+            if (!seen.insert(static_cast<std::uint32_t>(leaf.kind), mark)) continue;
             const auto [part, added] = part_of.emplace(part_key(leaf.material), materials_.size());
             if (added) {
                 materials_.push_back(leaf.material);

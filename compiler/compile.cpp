@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <glm/common.hpp>
 
 #include "compiler/graph/verify.h"
 #include "compiler/support/number.h"
@@ -99,10 +100,12 @@ void report_verdict(const Graph& graph, const Contraction& contraction, Diagnost
         report_undecided(graph, contraction, diagnostics);
 }
 
-bool is_finite(const Box& box) {
-    const Vec3 diagonal = box.size();
-    return box.empty() ||
-           (std::isfinite(diagonal.x) && std::isfinite(diagonal.y) && std::isfinite(diagonal.z));
+/// The largest model: squares and products of its lengths must be numbers too.
+constexpr double largest_size = 1e100;
+
+bool too_large(const Box& box) {
+    const Vec3 far = glm::max(glm::abs(box.min), glm::abs(box.max));
+    return !box.empty() && !(std::max({far.x, far.y, far.z}) <= largest_size);
 }
 
 /// A model of nothing but planes is framed as the unit cube would be.
@@ -139,9 +142,12 @@ std::optional<AnalysedModel> analyse_model(const std::string& path, const Compil
 
     model.bounds = stages.run(
         "bounding", [&] { return bound_objects(model.graph, model.components, model.contraction); });
-    const Object& root = model.graph.objects[model.graph.root];
-    if (!is_finite(model.bounds[model.graph.root].box)) {
-        diagnostics.error(root.span, "the model is larger than floating-point numbers can hold");
+    if (too_large(model.bounds[model.graph.root].box)) {
+        diagnostics
+            .error(model.graph.objects[model.graph.root].span,
+                   fmt::format("the model reaches farther than {} units from the origin",
+                               shortest(largest_size)))
+            .with_hint("scale it down");
         return std::nullopt;
     }
     return model;

@@ -24,7 +24,7 @@ CLI::Option* add_value(CLI::App& app, const std::string& name, const std::string
         if (!value) throw CLI::ValidationError(fmt::format("{}: '{}' is not {}", name, text, expected));
         store(std::move(*value));
     };
-    return app.add_option_function<std::string>(name, apply, help)->type_name(value_name);
+    return app.add_option_function<std::string>(name, apply, help)->type_name(value_name)->take_last();
 }
 
 std::optional<std::string> pass_named(const std::string& text, bool all_allowed) {
@@ -47,13 +47,18 @@ void add_common(CLI::App& app, Options& options) {
         "a whole number from 0 to 4000000000",
         [](const std::string& text) { return parse_whole(text, 0, most_steps); },
         [&](std::uint64_t steps) { compile.steps = static_cast<unsigned>(steps); });
-    add_value(
-        app, "--set", "NAME=VALUE", "Replace the value of a 'let' of the model (may be repeated)",
-        "of the form NAME=NUMBER", [](const std::string& text) { return parse_setting(text); },
-        [&](const std::pair<std::string, double>& setting) {
-            compile.lower.set[setting.first] = setting.second;
-        })
-        ->multi_option_policy(CLI::MultiOptionPolicy::Throw);
+    const auto set = [&compile](const std::vector<std::string>& texts) {
+        for (const std::string& text : texts) {
+            const auto setting = parse_setting(text);
+            if (!setting)
+                throw CLI::ValidationError(fmt::format("--set: '{}' is not of the form NAME=NUMBER", text));
+            compile.lower.set[setting->first] = setting->second;
+        }
+    };
+    app.add_option_function<std::vector<std::string>>(
+           "--set", set, "Replace the value of a 'let' of the model (may be repeated)")
+        ->allow_extra_args(false)
+        ->type_name("NAME=VALUE");
     // No model of this version is random: the number is only checked.
     add_value(
         app, "--seed", "N", "Seed of random models", "a whole number",
@@ -76,14 +81,17 @@ void add_view(CLI::App& app, Options& options) {
     add_value(app, "--size", "WxH", "Size of the picture in pixels (default 1280x720)",
               "a size such as 1280x720, at most 32768 a side", parse_size,
               [&](ImageSize size) { compile.size = size; });
-    const auto camera = [&compile](const std::string& text) {
-        const std::string problem = parse_camera(text, compile.camera);
-        if (!problem.empty()) throw CLI::ValidationError("--camera: " + problem);
+    const auto camera = [&compile](const std::vector<std::string>& texts) {
+        for (const std::string& text : texts) {
+            const std::string problem = parse_camera(text, compile.camera);
+            if (!problem.empty()) throw CLI::ValidationError("--camera: " + problem);
+        }
     };
-    app.add_option_function<std::string>(
+    app.add_option_function<std::vector<std::string>>(
            "--camera", camera,
-           "Camera: any of location=X,Y,Z look_at=X,Y,Z up=X,Y,Z angle=DEGREES "
-           "orthographic width=UNITS; the rest is as the model says or automatic")
+           "Camera: any of location=X,Y,Z look_at=X,Y,Z up=X,Y,Z angle=DEGREES orthographic width=UNITS; the "
+           "rest is as the model says or automatic")
+        ->allow_extra_args(false)
         ->type_name("\"WORDS\"");
     CLI::Option* pixels = add_value(
         app, "--error", "PX", "Leave out what is smaller than this on the picture (default 0.5; 0: nothing)",
@@ -102,9 +110,9 @@ void add_view(CLI::App& app, Options& options) {
 }
 
 void add_model(CLI::App& app, Options& options) {
-    app.add_option("MODEL", options.operands, "Model file (.inst, .rifs), or - for standard input")
+    const auto set = [&options](const std::string& model) { options.operands = {model}; };
+    app.add_option_function<std::string>("MODEL", set, "Model file (.inst, .rifs), or - for standard input")
         ->required()
-        ->expected(1)
         ->type_name("");
 }
 
@@ -306,7 +314,8 @@ ParsedCommandLine parse_command_line(int argc, const char* const* argv) {
         app.parse(argc, argv);
     } catch (const CLI::CallForHelp&) {
         const std::string name = chosen();
-        return {std::nullopt, print_output(name.empty() ? app.help() : app.get_subcommand(name)->help())};
+        return {std::nullopt,
+                print_output(name.empty() ? app.help() : app.get_subcommand(name)->help("graftal"))};
     } catch (const CLI::CallForVersion& version) {
         return {std::nullopt, print_output(std::string(version.what()) + "\n")};
     } catch (const CLI::ParseError& error) {

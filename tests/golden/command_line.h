@@ -1,0 +1,42 @@
+#pragma once
+
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "runtime/povray/temporary_directory.h"
+
+namespace graftal {
+
+struct RunResult {
+    int status = -1; ///< as a shell has it: 128 + n after signal n
+    std::string out;
+    std::string err;
+};
+
+/// Runs the program `graftal` by a shell in an empty folder of the test's own. Its temporary files go to a
+/// folder there too, so that what is left behind is seen.
+class CommandLine : public testing::Test {
+  protected:
+    void SetUp() override;
+
+    /// The arguments are shell text: quotes, redirections and pipes work.
+    RunResult graftal(const std::string& arguments) const;
+    RunResult shell(const std::string& command) const;
+
+    std::string path(const std::string& name) const { return directory_.path() + "/work/" + name; }
+    void write(const std::string& name, const std::string& text) const;
+    std::string read(const std::string& name) const;
+    bool exists(const std::string& name) const;
+    /// The names in the working folder, sorted, separated by blanks.
+    std::string files() const;
+    /// The same of the folder for temporary files.
+    std::string temporary_files() const;
+
+    TemporaryDirectory directory_;
+};
+
+/// A path in the project.
+std::string source_path(const std::string& name);
+
+} // namespace graftal

@@ -1,0 +1,201 @@
+#include "tests/golden/command_line.h"
+
+#include <filesystem>
+
+#include <gmock/gmock.h>
+
+namespace graftal {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::StartsWith;
+
+const std::string gasket = "'" + source_path("scenes/hart/sierpinski.inst") + "'";
+const std::string pound_sign = "'" + source_path("scenes/hart/pound_sign.rifs") + "'";
+const std::string bad_model = "object top {\n    union: nowhere\n}\n";
+
+TEST_F(CommandLine, UsageErrorsAreStatusTwoAndPointAtTheHelp) {
+    const struct {
+        std::string arguments, message;
+    } cases[] = {
+        {"", "graftal: which command?\nTry 'graftal --help' for more information.\n"},
+        {"rendr x.inst", "graftal: there is no command 'rendr' (did you mean 'render'?)\n"},
+        {"render", "Try 'graftal render --help' for more information.\n"},
+        {"render a.inst b.inst", "b.inst"},
+        {"render a.inst --no-such-option", "--no-such-option"},
+        {"render a.inst --size 0x100", "--size: '0x100' is not a size such as 1280x720"},
+        {"render a.inst --size 100", "--size: '100' is not"},
+        {"render a.inst --size 99999x2", "--size: '99999x2' is not"},
+        {"render a.inst --memory 2X", "--memory: '2X' is not"},
+        {"render a.inst --memory 0", "--memory: '0' is not"},
+        {"render a.inst --memory 99999999999999G", "is not a number of bytes"},
+        {"render a.inst --error -1", "--error: '-1' is not"},
+        {"render a.inst --error nan", "--error: 'nan' is not"},
+        {"render a.inst --error 1 --error-world 1", "--error"},
+        {"render a.inst --steps -3", "--steps: '-3' is not"},
+        {"render a.inst --steps 1e3", "--steps: '1e3' is not"},
+        {"render a.inst --set x", "--set: 'x' is not of the form NAME=NUMBER"},
+        {"render a.inst --set x=inf", "--set: 'x=inf' is not"},
+        {"render a.inst --seed x", "--seed: 'x' is not"},
+        {"render a.inst --threads 0", "--threads: '0' is not"},
+        {"render a.inst --antialias 12", "--antialias: '12' is neither"},
+        {"render a.inst --engine native", "--engine: 'native' is not in this version; the engine is povray"},
+        {"render a.inst --engine luxury", "--engine: 'luxury' is not povray"},
+        {"render a.inst --camera location=1,2", "--camera: 'location=1,2' is not of the form location=X,Y,Z"},
+        {"render a.inst --camera 'angle=180'", "--camera: angle must lie between 0 and 180 degrees"},
+        {"render a.inst --camera 'zoom=2'", "--camera: 'zoom=2' is none of"},
+        {"render a.inst -o a.jpg", "graftal: 'a.jpg' ends neither in .png nor in .exr\n"},
+        {"render -", "standard input has no name"},
+        {"compile a.inst -o a.png", "'a.png' ends neither in .pov nor in .inc"},
+        {"graph a.inst -o a.pdf", "'a.pdf' ends neither in .dot nor in .svg"},
+        {"print a.inst --after drop_unreachabel", "did you mean 'drop_unreachable'?"},
+        {"stats a.inst --dump-after nothing", "there is no pass 'nothing' (see 'graftal --help-passes')"},
+        {"compare one.png", "Try 'graftal compare --help'"},
+        {"compare a.png b.png --threshold x", "--threshold: 'x' is not"},
+    };
+    for (const auto& [arguments, message] : cases) {
+        const RunResult result = graftal(arguments);
+        EXPECT_EQ(result.status, 2) << arguments;
+        EXPECT_THAT(result.err,
+                    AllOf(StartsWith("graftal: "), HasSubstr(message), HasSubstr("\nTry 'graftal")))
+            << arguments;
+        EXPECT_EQ(result.out, "") << arguments;
+    }
+    EXPECT_EQ(files(), "");
+}
+
+TEST_F(CommandLine, HelpGoesToStandardOutput) {
+    for (const std::string command :
+         {"", "render ", "compile ", "check ", "stats ", "print ", "graph ", "compare "}) {
+        const RunResult result = graftal(command + "--help");
+        EXPECT_EQ(result.status, 0) << command;
+        EXPECT_THAT(result.out, HasSubstr(command.empty() ? "Exit status" : "xample")) << command;
+        EXPECT_EQ(result.err, "") << command;
+    }
+    EXPECT_THAT(graftal("--version").out, StartsWith("graftal 0."));
+    EXPECT_THAT(graftal("--help-passes").out, HasSubstr("merge_equivalent"));
+}
+
+TEST_F(CommandLine, BadModelIsStatusOneAndTouchesNoFile) {
+    write("bad.inst", bad_model);
+    for (const char* name : {"bad.png", "bad.pov", "bad.dot", "bad.svg"})
+        write(name, "old");
+    const std::string before = files();
+    for (const std::string arguments :
+         {"render bad.inst", "render bad.inst -o bad.png", "compile bad.inst -o bad.pov", "compile bad.inst",
+          "check bad.inst", "stats bad.inst --json", "print bad.inst", "graph bad.inst -o bad.dot",
+          "graph bad.inst -o bad.svg", "render - -o bad.png <bad.inst"}) {
+        const RunResult result = graftal(arguments);
+        EXPECT_EQ(result.status, 1) << arguments;
+        EXPECT_THAT(result.err, HasSubstr(":2:12: error: ")) << arguments;
+        EXPECT_EQ(result.out, "") << arguments;
+    }
+    EXPECT_EQ(files(), before);
+    EXPECT_EQ(read("bad.png") + read("bad.pov") + read("bad.dot") + read("bad.svg"), "oldoldoldold");
+    EXPECT_EQ(temporary_files(), "");
+}
+
+TEST_F(CommandLine, EnvironmentIsStatusThree) {
+    std::filesystem::create_directory(path("folder.png"));
+    for (const std::string& arguments : std::vector<std::string>{
+             "render none.inst", "check none.inst", "render " + gasket + " -o no/such/folder.png",
+             "render " + gasket + " -o folder.png", "compile " + gasket + " -o no/such/folder.pov",
+             "print " + gasket + " >&-", "print " + gasket + " >/dev/full", "stats " + gasket + " --json >&-",
+             "compile " + gasket + " >/dev/full", "graph " + gasket + " >/dev/full", "--help >&-",
+             "compare none.png none.png"}) {
+        const RunResult result = graftal(arguments);
+        EXPECT_EQ(result.status, 3) << arguments;
+        EXPECT_THAT(result.err, StartsWith("graftal: ")) << arguments;
+    }
+    EXPECT_EQ(files(), "folder.png");
+    EXPECT_EQ(temporary_files(), "");
+}
+
+TEST_F(CommandLine, MissingProgramsAreNamedWithTheirPackages) {
+    const RunResult povray = shell("PATH=/nowhere \"$graftal\" render " + gasket + " -o a.png");
+    EXPECT_EQ(povray.status, 3);
+    EXPECT_EQ(povray.err,
+              "graftal: cannot find the program 'povray'; install it by 'apt-get install povray'\n");
+    const RunResult dot = shell("PATH=/nowhere \"$graftal\" graph " + gasket + " -o a.svg");
+    EXPECT_EQ(dot.status, 3);
+    EXPECT_EQ(dot.err, "graftal: cannot find the program 'dot'; install it by 'apt-get install graphviz'\n");
+    EXPECT_EQ(files(), "");
+}
+
+TEST_F(CommandLine, ClosedPipeIsNoCrash) {
+    const RunResult result =
+        shell("{ \"$graftal\" print " + gasket + "; echo $? >status; } | sleep 0; cat status >&2");
+    // The reader may be gone before or after the text is written; a signal would show as 141.
+    EXPECT_THAT(result.err, testing::AnyOf(HasSubstr("0\n"), HasSubstr("3\n")));
+    const RunResult many = shell("for i in 1 2 3 4 5; do { \"$graftal\" print " + gasket +
+                                 "; echo $? >&3; } 2>/dev/null | true; done 3>&2");
+    EXPECT_EQ(many.err.find("141"), std::string::npos);
+}
+
+TEST_F(CommandLine, UnwritableTemporaryFolderIsStatusThree) {
+    const RunResult result = shell("TMPDIR=/nowhere/at/all \"$graftal\" render " + gasket + " -o a.png");
+    EXPECT_EQ(result.status, 3);
+    EXPECT_THAT(result.err, HasSubstr("temporary directory"));
+    EXPECT_EQ(files(), "");
+}
+
+TEST_F(CommandLine, CheckReportsEachModelAndTheWorstStatus) {
+    write("bad.inst", bad_model);
+    const RunResult good = graftal("check " + gasket + " " + pound_sign);
+    EXPECT_EQ(good.status, 0);
+    EXPECT_THAT(good.out, AllOf(HasSubstr("sierpinski.inst: ok, contracts by 0.5"),
+                                HasSubstr("pound_sign.rifs: ok, contracts by 0.5")));
+    EXPECT_EQ(good.err, "");
+    EXPECT_EQ(graftal("check bad.inst none.inst").status, 1);
+    EXPECT_EQ(graftal("check none.inst bad.inst").status, 1);
+    EXPECT_EQ(graftal("check " + gasket + " none.inst").status, 3);
+    EXPECT_EQ(graftal("check --quiet " + gasket).out, "");
+}
+
+TEST_F(CommandLine, PrintedGraphReadsBackAsItself) {
+    ASSERT_EQ(graftal("print " + pound_sign + " >a.inst").status, 0);
+    ASSERT_EQ(graftal("print - <a.inst >b.inst").status, 0);
+    EXPECT_EQ(read("a.inst"), read("b.inst"));
+    EXPECT_THAT(read("a.inst"), HasSubstr("canonical object"));
+}
+
+TEST_F(CommandLine, DumpAfterGoesToStandardError) {
+    const RunResult one = graftal("check -q " + gasket + " --dump-after drop_unreachable");
+    EXPECT_THAT(one.err, StartsWith("// after drop_unreachable\n"));
+    EXPECT_EQ(one.err.find("after merge_equivalent"), std::string::npos);
+    EXPECT_THAT(graftal("check -q " + gasket + " --dump-after all").err,
+                HasSubstr("// after merge_equivalent\n"));
+    EXPECT_THAT(graftal("check -q --time " + gasket).err, HasSubstr(" s  bounding\n"));
+}
+
+TEST_F(CommandLine, GraphIsDotOnStandardOutputOrInAFile) {
+    const RunResult result = graftal("graph " + gasket);
+    EXPECT_EQ(result.status, 0);
+    EXPECT_THAT(result.out, StartsWith("digraph"));
+    ASSERT_EQ(graftal("graph " + gasket + " -o g.dot").status, 0);
+    EXPECT_EQ(read("g.dot"), result.out);
+}
+
+TEST_F(CommandLine, SvgIsDrawnByTheProgramDot) {
+    std::filesystem::create_directory(path("bin"));
+    write("bin/dot", "#!/bin/sh\n[ \"$1\" = -Tsvg ] && [ \"$2\" = -o ] && cp \"$4\" \"$3\"\n");
+    ASSERT_EQ(
+        shell("chmod +x bin/dot; PATH=\"$PWD/bin:$PATH\" \"$graftal\" graph " + gasket + " -o g.svg").status,
+        0);
+    EXPECT_THAT(read("g.svg"), StartsWith("digraph"));
+    write("bin/dot", "#!/bin/sh\necho broken >&2; echo half >\"$3\"; exit 4\n");
+    const RunResult result =
+        shell("chmod +x bin/dot; PATH=\"$PWD/bin:$PATH\" \"$graftal\" graph " + gasket + " -o h.svg");
+    EXPECT_EQ(result.status, 3);
+    EXPECT_THAT(result.err, HasSubstr("'dot' failed with status 4: broken"));
+    EXPECT_EQ(files(), "bin g.svg");
+}
+
+TEST_F(CommandLine, ModelNamesCannotBecomeOptionsOfOtherPrograms) {
+    EXPECT_EQ(graftal("render -- -D.inst").status, 3);
+    EXPECT_EQ(files(), "");
+}
+
+} // namespace
+} // namespace graftal

@@ -1,0 +1,203 @@
+#include "tests/golden/command_line.h"
+
+#include <chrono>
+#include <csignal>
+#include <cstdlib>
+#include <filesystem>
+
+#include <thread>
+
+#include <fcntl.h>
+#include <gmock/gmock.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "runtime/image/image.h"
+
+namespace graftal {
+namespace {
+
+using testing::HasSubstr;
+
+const std::string gasket = "'" + source_path("scenes/hart/sierpinski.inst") + "'";
+const std::string pound_sign = "'" + source_path("scenes/hart/pound_sign.rifs") + "'";
+const std::string small = " --size 96x54 ";
+
+class Render : public CommandLine {
+  protected:
+    Image picture(const std::string& name) const {
+        Image image;
+        const Status status = read_image(path(name), image);
+        EXPECT_TRUE(status.ok()) << status.message();
+        return image;
+    }
+};
+
+TEST_F(Render, MakesAPictureNamedAfterTheModelHere) {
+    const RunResult result = graftal("render " + gasket + small);
+    EXPECT_EQ(result.status, 0) << result.err;
+    EXPECT_EQ(result.out, "");
+    EXPECT_THAT(result.err, testing::StartsWith("sierpinski.png: "));
+    EXPECT_EQ(result.err.find('\r'), std::string::npos) << "no progress in a pipe";
+    EXPECT_EQ(files(), "sierpinski.png");
+    EXPECT_EQ(temporary_files(), "");
+    EXPECT_EQ(picture("sierpinski.png").width, 96);
+    EXPECT_EQ(picture("sierpinski.png").height, 54);
+}
+
+TEST_F(Render, TwoRunsGiveTheSameBytes) {
+    for (const std::string name : {"a", "b"}) {
+        ASSERT_EQ(shell("mkdir " + name + "; cd " + name + "; \"$graftal\" compile " + pound_sign + small +
+                        "-o scene.pov -q")
+                      .status,
+                  0);
+    }
+    EXPECT_EQ(shell("diff -r a b").status, 0) << "scene or palettes differ";
+    EXPECT_NE(shell("cat a/*.pov").out, "");
+    ASSERT_EQ(graftal("render " + pound_sign + small + "-o c.png --threads 1").status, 0);
+    ASSERT_EQ(graftal("render " + pound_sign + small + "-o d.png --threads 2").status, 0);
+    EXPECT_EQ(compare_images(picture("c.png"), picture("d.png")).differing, 0u);
+}
+
+TEST_F(Render, QuietIsSilent) {
+    const RunResult result = graftal("render --quiet " + gasket + small);
+    EXPECT_EQ(result.status, 0);
+    EXPECT_EQ(result.out + result.err, "");
+    EXPECT_EQ(files(), "sierpinski.png");
+}
+
+TEST_F(Render, PictureSaysWhichCommandMadeIt) {
+    ASSERT_EQ(graftal("render " + gasket + small + "-o 'a b.png'").status, 0);
+    EXPECT_THAT(read("a b.png"), HasSubstr("--size 96x54 -o 'a b.png'"));
+    EXPECT_THAT(read("a b.png"), HasSubstr("graftal 0."));
+}
+
+TEST_F(Render, LinearPngAndExrHoldTheSameValues) {
+    ASSERT_EQ(graftal("render " + gasket + small + "--antialias off --linear -o a.png").status, 0);
+    ASSERT_EQ(graftal("render " + gasket + small + "--antialias off -o a.exr").status, 0);
+    EXPECT_EQ(compare_images(picture("a.png"), picture("a.exr")).max, 0);
+    EXPECT_EQ(graftal("compare a.png a.exr").status, 0);
+}
+
+TEST_F(Render, OldPictureIsReplacedWhole) {
+    write("a.png", "old");
+    ASSERT_EQ(graftal("render " + gasket + small + "-o a.png").status, 0);
+    EXPECT_EQ(picture("a.png").width, 96);
+    EXPECT_EQ(files(), "a.png");
+}
+
+TEST_F(Render, KeptSceneCanBeRenderedByHand) {
+    ASSERT_EQ(graftal("render " + pound_sign + small + "--antialias off -q --keep kept -o a.png").status, 0);
+    ASSERT_EQ(shell("cd kept && povray +Iscene.pov +Ob.png +W96 +H54 -D -A +FN8 File_Gamma=srgb 2>/dev/null")
+                  .status,
+              0);
+    EXPECT_EQ(compare_images(picture("a.png"), picture("kept/b.png")).differing, 0u);
+}
+
+TEST_F(Render, CameraOfTheCommandLineMovesThePicture) {
+    ASSERT_EQ(graftal("render " + gasket + small + "-q -o a.png").status, 0);
+    ASSERT_EQ(graftal("render " + gasket + small +
+                      "-q -o b.png --camera 'location=0,0,9 look_at=0,0,0' --camera 'orthographic width=40'")
+                  .status,
+              0);
+    EXPECT_GT(compare_images(picture("a.png"), picture("b.png")).differing, 100u);
+}
+
+TEST_F(Render, CompiledSceneNeedsNothingElse) {
+    ASSERT_EQ(graftal("compile " + gasket + small + ">a.pov").status, 0);
+    ASSERT_EQ(graftal("compile " + gasket + small + "-o b.pov").status, 0);
+    EXPECT_EQ(read("a.pov"), read("b.pov"));
+    EXPECT_EQ(shell("povray +Ia.pov +Oa.png +W96 +H54 -D 2>/dev/null").status, 0);
+    ASSERT_EQ(graftal("compile " + gasket + small + "-o gasket.inc -q").status, 0);
+    EXPECT_THAT(read("gasket.inc"), HasSubstr("#declare"));
+}
+
+TEST_F(Render, SceneWithPalettesHasNoPlaceOnStandardOutput) {
+    const RunResult result = graftal("compile " + pound_sign + small);
+    EXPECT_EQ(result.status, 3);
+    EXPECT_EQ(result.out, "");
+    EXPECT_THAT(result.err, HasSubstr("write it to a file by '-o SCENE.pov'"));
+}
+
+TEST_F(Render, CompareMeasuresAndJudges) {
+    ASSERT_TRUE(write_image(path("a.png"), Image{2, 1, 1, {0, 1}}, SampleFormat::srgb8).ok());
+    ASSERT_TRUE(write_image(path("b.png"), Image{2, 1, 1, {0.2f, 1}}, SampleFormat::srgb8).ok());
+    ASSERT_TRUE(write_image(path("c.png"), Image{1, 2, 1, {0, 1}}, SampleFormat::srgb8).ok());
+    const RunResult same = graftal("compare a.png a.png");
+    EXPECT_EQ(same.status, 0);
+    EXPECT_EQ(same.out, "max   0\nmean  0\nrms   0\ncount 0 of 2\n");
+    const RunResult apart = graftal("compare a.png b.png");
+    EXPECT_EQ(apart.status, 1);
+    EXPECT_EQ(apart.out, "max   0.200000003\nmean  0.100000001\nrms   0.141421358\ncount 1 of 2\n");
+    EXPECT_EQ(graftal("compare a.png b.png --threshold 0.21").status, 0);
+    EXPECT_EQ(graftal("compare a.png b.png --threshold 0.19").status, 1);
+    const RunResult sizes = graftal("compare a.png c.png --threshold 9");
+    EXPECT_EQ(sizes.status, 1);
+    EXPECT_EQ(sizes.err, "graftal: 'a.png' has 2x1 pixels, 'c.png' has 1x2\n");
+    EXPECT_EQ(graftal("compare a.png none.png").status, 3);
+}
+
+/// Starts a slow rendering, sends it the signal once POV-Ray runs, and returns the exit status.
+class InterruptedRender : public Render {
+  protected:
+    void SetUp() override {
+        Render::SetUp();
+        std::filesystem::create_directory(path("bin"));
+        // Says where it is, then does nothing until it is told to end.
+        write("bin/povray", "#!/bin/sh\ntrap 'echo cleaned >&2; exit 2' TERM\necho $$ >'" + path("child") +
+                                ".new'\nmv '" + path("child") + ".new' '" + path("child") +
+                                "'\nwhile :; do sleep 0.02; done\n");
+        ASSERT_EQ(shell("chmod +x bin/povray").status, 0);
+    }
+
+    int render_until(int signal) {
+        const pid_t pid = ::fork();
+        if (pid == 0) {
+            const int null_device = ::open("/dev/null", O_RDWR);
+            ::dup2(null_device, STDERR_FILENO);
+            ::signal(SIGINT, SIG_DFL);
+            ::setenv("PATH", (path("bin") + ":/usr/bin:/bin").c_str(), 1);
+            ::setenv("TMPDIR", (directory_.path() + "/tmp").c_str(), 1);
+            const std::string model = source_path("scenes/hart/sierpinski.inst"), picture = path("a.png");
+            ::execl(GRAFTAL_PROGRAM, "graftal", "render", model.c_str(), "-o", picture.c_str(), "--size",
+                    "96x54", nullptr);
+            ::_exit(126);
+        }
+        for (int i = 0; i < 2000 && !exists("child"); ++i)
+            std::this_thread::sleep_for(std::chrono::milliseconds(5));
+        EXPECT_NE(temporary_files(), "");
+        ::kill(pid, signal);
+        int wait_status = 0;
+        ::waitpid(pid, &wait_status, 0);
+        return WIFEXITED(wait_status) ? WEXITSTATUS(wait_status) : -WTERMSIG(wait_status);
+    }
+    bool child_lives() const { return ::kill(std::stoi(read("child")), 0) == 0; }
+};
+
+TEST_F(InterruptedRender, LeavesNoFileNoFolderAndNoChild) {
+    for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+        EXPECT_EQ(render_until(signal), 128 + signal);
+        EXPECT_EQ(temporary_files(), "");
+        EXPECT_FALSE(exists("a.png"));
+        EXPECT_FALSE(child_lives());
+        std::filesystem::remove(path("child"));
+    }
+    EXPECT_EQ(files(), "bin");
+}
+
+TEST_F(InterruptedRender, KeepsTheOldPicture) {
+    write("a.png", "old");
+    EXPECT_EQ(render_until(SIGINT), 128 + SIGINT);
+    EXPECT_EQ(read("a.png"), "old");
+}
+
+TEST_F(InterruptedRender, ChildDiesEvenIfWeAreKilled) {
+    EXPECT_EQ(render_until(SIGKILL), -SIGKILL);
+    for (int i = 0; i < 400 && child_lives(); ++i)
+        std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    EXPECT_FALSE(child_lives());
+    EXPECT_FALSE(exists("a.png"));
+}
+
+} // namespace
+} // namespace graftal

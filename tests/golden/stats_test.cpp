@@ -1,0 +1,96 @@
+#include "tests/golden/command_line.h"
+
+#include <gmock/gmock.h>
+#include <nlohmann/json.hpp>
+
+namespace graftal {
+namespace {
+
+using Json = nlohmann::json;
+
+class Stats : public CommandLine {
+  protected:
+    Json stats(const std::string& arguments) const {
+        const RunResult result = graftal("stats --json " + arguments);
+        EXPECT_EQ(result.status, 0) << result.err;
+        return Json::parse(result.out, nullptr, false);
+    }
+};
+
+const std::string pound_sign = "'" + source_path("scenes/hart/pound_sign.rifs") + "'";
+
+TEST_F(Stats, HaveTheirDocumentedKeys) {
+    const Json json = stats(pound_sign);
+    for (const char* key : {"model", "language", "objects", "instances", "steps", "leaves", "contraction",
+                            "dimension", "bounds", "error"})
+        EXPECT_TRUE(json.contains(key)) << key;
+    for (const char* key : {"verdict", "rate", "cycle"})
+        EXPECT_TRUE(json["contraction"].contains(key)) << key;
+    EXPECT_EQ(json["language"], "rifs");
+    EXPECT_TRUE(json["steps"].is_null());
+    EXPECT_TRUE(json["leaves"].is_null());
+    EXPECT_EQ(json["error"], 0);
+}
+
+TEST_F(Stats, OfThePoundSignAreThoseOfThePaper) {
+    const Json json = stats(pound_sign + " --steps 3");
+    EXPECT_EQ(json["contraction"]["verdict"], "proved");
+    EXPECT_NEAR(json["contraction"]["rate"].get<double>(), 0.5, 1e-9);
+    EXPECT_NEAR(json["dimension"].get<double>(), 2.807354922, 1e-8);
+    EXPECT_EQ(json["steps"], 3);
+    EXPECT_EQ(json["leaves"], "392");
+    for (int axis = 0; axis < 3; ++axis) {
+        EXPECT_NEAR(json["bounds"]["min"][axis].get<double>(), -1, 1e-9);
+        EXPECT_NEAR(json["bounds"]["max"][axis].get<double>(), 1, 1e-9);
+    }
+}
+
+TEST_F(Stats, CountsAreExactAtAHundredLevels) {
+    // 8 * 7^99
+    EXPECT_EQ(stats(pound_sign + " --steps 100")["leaves"],
+              "3696544582428294847251026021828819212408232227319571886781594664447647382442203497144");
+}
+
+TEST_F(Stats, AbsurdDepthIsNoCountButNoCrash) {
+    EXPECT_TRUE(stats(pound_sign + " --steps 4000000000")["leaves"].is_null());
+}
+
+TEST_F(Stats, OfAnEndingModel) {
+    write("cube.inst", "object top {\n    union: cube, cube\n    translate: 0, 3, 0\n}\n");
+    const Json json = stats("cube.inst");
+    EXPECT_EQ(json["language"], "inst");
+    EXPECT_EQ(json["contraction"]["verdict"], "acyclic");
+    EXPECT_TRUE(json["contraction"]["rate"].is_null());
+    EXPECT_TRUE(json["dimension"].is_null());
+    EXPECT_EQ(json["leaves"], "2");
+}
+
+TEST_F(Stats, NameTheCycleThatDoesNotContract) {
+    write("grow.inst", "canonical object grow {\n    instance: grow\n    scale: 1.5\n    instance: cube\n}\n"
+                       "object top {\n    instance: grow\n}\n");
+    const Json json = stats("grow.inst");
+    EXPECT_EQ(json["contraction"]["verdict"], "refuted");
+    EXPECT_NEAR(json["contraction"]["rate"].get<double>(), 1.5, 1e-9);
+    EXPECT_EQ(json["contraction"]["cycle"], Json::array({"grow"}));
+    EXPECT_TRUE(json["bounds"].is_null());
+    EXPECT_EQ(graftal("check grow.inst").status, 1);
+}
+
+TEST_F(Stats, LanguageOfStandardInputFollowsTheText) {
+    EXPECT_EQ(stats("- <" + pound_sign)["language"], "rifs");
+    EXPECT_EQ(stats("- <'" + source_path("scenes/hart/sierpinski.inst") + "'")["language"], "inst");
+}
+
+TEST_F(Stats, NamesThatAreNoUtf8AreStillJson) {
+    write("\xff.inst", "object top {\n    union: cube\n}\n");
+    EXPECT_TRUE(stats("\xff.inst").contains("model"));
+}
+
+TEST_F(Stats, PlainTextHasTheSameFigures) {
+    const RunResult result = graftal("stats " + pound_sign + " --steps 3");
+    EXPECT_THAT(result.out, testing::HasSubstr("leaves                       392\n"));
+    EXPECT_THAT(result.out, testing::HasSubstr("contraction verdict          proved\n"));
+}
+
+} // namespace
+} // namespace graftal

@@ -160,8 +160,12 @@ std::optional<CompiledModel> compile_model(const std::string& path, const Compil
     Stages stages(compilation.times);
 
     const ObjectBounds& bounds = model->bounds[model->graph.root];
-    View view = stages.run(
-        "frame", [&] { return frame(model->graph, box_to_frame(bounds), options.size, options.camera); });
+    // Levels of an unending model are framed alike, by the box: their terminals may reach beyond the limit set.
+    const bool cut_off = model->steps && model->components.unending[model->graph.root];
+    View view = stages.run("frame", [&] {
+        return frame(model->graph, box_to_frame(bounds), options.size, options.camera,
+                     cut_off ? nullptr : &model->bounds);
+    });
 
     CutOptions cut_options = options.cut;
     cut_options.steps = model->steps;

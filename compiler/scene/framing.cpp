@@ -1,13 +1,15 @@
 #include "compiler/scene/framing.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <vector>
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
+
+#include "compiler/scene/outline.h"
 
 namespace graftal {
 
@@ -29,8 +31,8 @@ double radians(double degrees) {
 /// Bounds as the camera sees them: centred, of half extent 1, so that no length can over- or underflow.
 struct Subject {
     Vec3 centre;
-    double scale = 1; ///< scene units
-    std::array<Vec3, 8> corners;
+    double scale = 1;          ///< scene units
+    std::vector<Vec3> corners; ///< their hull holds all that is to be seen
 
     explicit Subject(const Box& bounds) : centre(0.5 * bounds.min + 0.5 * bounds.max) {
         const Vec3 half = 0.5 * bounds.max - 0.5 * bounds.min;
@@ -38,8 +40,8 @@ struct Subject {
         scale = std::max({half.x, half.y, half.z, 1e-12 * reach});
         if (scale == 0) scale = 1; // a point at the origin
         for (int i = 0; i < 8; ++i)
-            corners[static_cast<std::size_t>(i)] =
-                Vec3(i & 1 ? half.x : -half.x, i & 2 ? half.y : -half.y, i & 4 ? half.z : -half.z) / scale;
+            corners.push_back(
+                Vec3(i & 1 ? half.x : -half.x, i & 2 ? half.y : -half.y, i & 4 ? half.z : -half.z) / scale);
     }
 
     Vec3 local(Vec3 world) const { return (world - centre) / scale; }
@@ -178,11 +180,39 @@ void place_perspective(Camera& camera, const CameraSetting& setting, const Subje
     }
 }
 
+/// The point of which as much lies to the left as to the right, and as much below as above.
+Vec3 middle(const Camera& camera, const Subject& subject) {
+    Vec3 most(-std::numeric_limits<double>::infinity()), least(-most);
+    for (const Vec3 corner : subject.corners) {
+        most = glm::max(most, in_axes(camera, corner));
+        least = glm::min(least, in_axes(camera, corner));
+    }
+    const Vec3 centre = 0.5 * (most + least);
+    return centre.x * camera.right + centre.y * camera.up + centre.z * camera.direction;
+}
+
+/// Takes the outline of the parts in place of the corners of the box. The directions are those in which the
+/// sides of the picture cut into space, by parallel rays and by those of the automatic angle.
+void look_closer(Subject& subject, const Camera& camera, const Parts& parts, double aspect) {
+    const Frustum slope(automatic_horizontal_angle_deg(aspect), aspect);
+    std::vector<Vec3> directions;
+    for (const Vec3 side : {camera.right, -camera.right, camera.up, -camera.up})
+        directions.push_back(side);
+    for (const double sign : {1.0, -1.0}) {
+        directions.push_back(sign * camera.right - slope.x * camera.direction);
+        directions.push_back(sign * camera.up - slope.y * camera.direction);
+    }
+    std::vector<Vec3> points = outline(parts.graph, parts.bounds, directions);
+    for (Vec3& point : points)
+        point = subject.local(point);
+    if (!points.empty()) subject.corners = std::move(points);
+}
+
 /// Parallel rays start in the plane of the location, so that it lies well in front of the model.
 void place_orthographic(Camera& camera, const CameraSetting& setting, const Subject& subject, double aspect) {
     const Vec3 anchor = setting.location  ? subject.local(*setting.location)
                         : setting.look_at ? subject.local(*setting.look_at)
-                                          : Vec3(0.0);
+                                          : middle(camera, subject);
     double half_width = 0;
     double nearest = 0;
     for (const Vec3 corner : subject.corners) {
@@ -230,8 +260,9 @@ CameraSetting merge(const CameraSetting& model, const CameraSetting& over) {
     return merged;
 }
 
-Camera frame_camera(const CameraSetting& setting, const Box& bounds, ImageSize size) {
-    const Subject subject(bounds);
+Camera frame_camera(const CameraSetting& setting, const Box& bounds, const std::optional<Parts>& parts,
+                    ImageSize size) {
+    Subject subject(bounds);
     const double aspect = static_cast<double>(size.width) / size.height;
     const bool figure =
         thickness(bounds) <= thin_share && (thickness(bounds) <= flat_share || thinnest_axis(bounds) != 1);
@@ -244,6 +275,8 @@ Camera frame_camera(const CameraSetting& setting, const Box& bounds, ImageSize s
         if (length > 0 && std::isfinite(length)) direction = sight / length;
     }
     orient(camera, direction, setting.up.value_or(Vec3(0, 1, 0)));
+    // Seen face on, the box is exact already.
+    if (parts && !figure) look_closer(subject, camera, *parts, aspect);
     if (setting.orthographic || (figure && !setting.location && !setting.angle_deg))
         place_orthographic(camera, setting, subject, aspect);
     else

@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "compiler/analysis/bounding.h"
 #include "compiler/graph/graph.h"
 #include "compiler/support/bounds.h"
 
@@ -73,7 +74,10 @@ using CameraOverride = CameraSetting;
 /// is in the picture with a small margin: flat models (no depth along one axis) face on, undistorted and in
 /// their true colours; models in space from the front, a little from the right and above, with a key light
 /// with shadows over the viewer's left shoulder and a weaker shadowless fill from the right; a background
-/// that lets the model stand out. Requires bounds that are not empty.
-View frame(const Graph& graph, const Box& bounds, ImageSize size, const CameraOverride& camera = {});
+/// that lets the model stand out. With the bounds of all objects as well, the picture is filled by the limit
+/// set itself rather than by its box (not for use where a model is cut off after few levels, whose parts
+/// may be larger). Requires bounds that are not empty.
+View frame(const Graph& graph, const Box& bounds, ImageSize size, const CameraOverride& camera = {},
+           const std::vector<ObjectBounds>* object_bounds = nullptr);
 
 } // namespace graftal

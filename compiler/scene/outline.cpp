@@ -1,0 +1,119 @@
+#include "compiler/scene/outline.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <glm/geometric.hpp>
+
+namespace graftal {
+
+namespace {
+
+constexpr std::size_t even_pieces = 1000; // to unfold by size alone
+constexpr std::size_t most_pieces = 8000; // in all
+constexpr int most_steps_a_direction = 400;
+constexpr double small_share = 2e-3; // of the root's size: not unfolded further
+
+struct Piece {
+    Affine world_from_object;
+    ObjectId object = 0;
+    double size = 0; ///< length of the longest axis of its box in the world; 0 if it is not to be unfolded
+};
+
+class Outline {
+  public:
+    Outline(const Graph& graph, const std::vector<ObjectBounds>& bounds) : graph_(graph), bounds_(bounds) {
+        add(graph.root, {});
+        small_ = pieces_.empty() ? 0 : small_share * pieces_[0].size;
+    }
+
+    /// The largest pieces first, so that all get about equally small.
+    void unfold_evenly() {
+        const auto smaller = [](const Piece& a, const Piece& b) { return a.size < b.size; };
+        // Steps are counted too: a chain of single instances has one piece all along.
+        for (std::size_t step = 0; step < even_pieces && !pieces_.empty() && pieces_.size() < even_pieces;
+             ++step) {
+            std::pop_heap(pieces_.begin(), pieces_.end(), smaller);
+            const std::size_t before = pieces_.size() - 1;
+            if (!unfold_last()) return;
+            for (std::size_t i = before + 1; i <= pieces_.size(); ++i)
+                std::push_heap(pieces_.begin(), pieces_.begin() + static_cast<std::ptrdiff_t>(i), smaller);
+        }
+    }
+
+    /// Until the piece that reaches farthest is small.
+    void unfold_towards(Vec3 direction) {
+        for (int step = 0; step < most_steps_a_direction && !pieces_.empty(); ++step) {
+            const auto farthest =
+                std::max_element(pieces_.begin(), pieces_.end(), [&](const Piece& a, const Piece& b) {
+                    return reach(a, direction) < reach(b, direction);
+                });
+            std::swap(*farthest, pieces_.back());
+            if (!unfold_last()) return;
+        }
+    }
+
+    std::vector<Vec3> corners() const {
+        std::vector<Vec3> points;
+        points.reserve(8 * pieces_.size());
+        for (const Piece& piece : pieces_) {
+            const Box& box = bounds_[piece.object].box;
+            for (int i = 0; i < 8; ++i)
+                points.push_back(
+                    piece.world_from_object(Vec3(i & 1 ? box.max.x : box.min.x, i & 2 ? box.max.y : box.min.y,
+                                                 i & 4 ? box.max.z : box.min.z)));
+        }
+        return points;
+    }
+
+  private:
+    void add(ObjectId object, const Affine& world_from_object) {
+        const Box& box = bounds_[object].box;
+        if (box.empty()) return; // nothing but planes
+        const Vec3 size = box.size();
+        double longest = 0;
+        for (int axis = 0; axis < 3; ++axis)
+            longest = std::max(longest, size[axis] * glm::length(world_from_object.linear[axis]));
+        if (graph_.objects[object].primitive) longest = 0;
+        pieces_.push_back({world_from_object, object, longest});
+    }
+
+    /// Replaces the last piece by its instances. False if it is small enough or there are too many.
+    bool unfold_last() {
+        const Piece piece = pieces_.back();
+        const Object& object = graph_.objects[piece.object];
+        if (piece.size <= small_ || pieces_.size() + object.instances.size() > most_pieces) return false;
+        pieces_.pop_back();
+        for (const Instance& instance : object.instances)
+            add(instance.master, piece.world_from_object * instance.parent_from_child);
+        return true;
+    }
+
+    double reach(const Piece& piece, Vec3 direction) const {
+        const Box& box = bounds_[piece.object].box;
+        const Vec3 half = 0.5 * box.size();
+        double sum = glm::dot(direction, piece.world_from_object(box.centre()));
+        for (int axis = 0; axis < 3; ++axis)
+            sum += half[axis] * std::abs(glm::dot(direction, piece.world_from_object.linear[axis]));
+        return sum;
+    }
+
+    const Graph& graph_;
+    const std::vector<ObjectBounds>& bounds_;
+    std::vector<Piece> pieces_;
+    double small_ = 0;
+};
+
+} // namespace
+
+std::vector<Vec3> outline(const Graph& graph, const std::vector<ObjectBounds>& bounds,
+                          const std::vector<Vec3>& directions) {
+    Outline pieces(graph, bounds);
+    pieces.unfold_evenly();
+    for (const Vec3 direction : directions)
+        pieces.unfold_towards(direction);
+    return pieces.corners();
+}
+
+} // namespace graftal

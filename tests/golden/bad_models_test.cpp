@@ -10,7 +10,7 @@
 
 #include <gtest/gtest.h>
 
-#include "compiler/lower/lower.h"
+#include "compiler/compile.h"
 #include "compiler/support/file.h"
 
 namespace graftal {
@@ -31,16 +31,14 @@ class BadModel : public ::testing::TestWithParam<std::string> {};
 
 TEST_P(BadModel, is_explained) {
     std::filesystem::current_path(folder); // so that messages name the file and not the machine
-    SourceMap sources;
-    Diagnostics diagnostics;
-    Status status;
-    const std::optional<Graph> graph = lower_model(GetParam(), {}, sources, diagnostics, status);
-    EXPECT_TRUE(status.ok()) << status.message();
-    EXPECT_FALSE(graph);
-    EXPECT_TRUE(diagnostics.has_errors());
+    Compilation compilation;
+    const std::optional<AnalysedModel> model = analyse_model(GetParam(), {}, compilation);
+    EXPECT_TRUE(compilation.status.ok()) << compilation.status.message();
+    EXPECT_FALSE(model);
+    EXPECT_TRUE(compilation.diagnostics.has_errors());
 
     const std::string expected_path = GetParam() + ".expected";
-    const std::string found = diagnostics.render(sources);
+    const std::string found = compilation.diagnostics.render(compilation.sources);
     if (std::getenv("GRAFTAL_REWRITE_EXPECTED")) {
         ASSERT_TRUE(write_text(expected_path, found).ok());
         return;

@@ -11,13 +11,14 @@
 #include "compiler/analysis/outer.h"
 #include "compiler/analysis/primitive_shape.h"
 #include "compiler/analysis/support_query.h"
+#include "compiler/analysis/tight_ball.h"
 #include "compiler/support/check.h"
 
 namespace graftal {
 
 namespace {
 
-constexpr double exact = 1e-11; // tolerance of box faces, relative to the size
+constexpr double exact = 1e-12; // tolerance of box faces, relative to the size
 constexpr double rough = 1e-3;  // of a first pass over a cycle, which makes the second fast
 
 /// Pieces to spend on support functions, dealt out so that all objects get some and what one leaves over
@@ -27,7 +28,7 @@ class Effort {
     explicit Effort(std::uint64_t queries) : queries_left_(queries) {}
 
     std::uint64_t allowance() const {
-        return std::clamp<std::uint64_t>(8 * left_ / std::max<std::uint64_t>(queries_left_, 1), 24, 400'000);
+        return std::clamp<std::uint64_t>(8 * left_ / std::max<std::uint64_t>(queries_left_, 1), 16, 400'000);
     }
     void spend(std::uint64_t pieces) {
         left_ -= std::min(left_, pieces);
@@ -35,16 +36,25 @@ class Effort {
     }
 
   private:
-    std::uint64_t left_ = 6'000'000;
+    std::uint64_t left_ = 8'000'000;
     std::uint64_t queries_left_;
 };
+
+/// Six faces for each object, twice within cycles.
+std::uint64_t queries(const Graph& graph, const Components& components) {
+    std::uint64_t count = 0;
+    for (ObjectId id = 0; id < graph.objects.size(); ++id)
+        if (!graph.objects[id].primitive) count += components.cyclic[components.component_of[id]] ? 12 : 6;
+    return count;
+}
 
 class Bounder {
   public:
     Bounder(const Graph& graph, const Components& components, const Contraction& contraction)
         : graph_(graph), components_(components), contraction_(contraction), outers_(graph.objects.size()),
           unbounded_(graph.objects.size(), false), search_(graph, outers_),
-          effort_(12 * graph.objects.size()) {}
+          effort_(queries(graph, components)),
+          pieces_of_ball_(std::clamp<std::size_t>(400'000 / graph.objects.size(), 4, 400)) {}
 
     std::vector<ObjectBounds> run() {
         const std::vector<std::uint32_t> places = places_in_components(components_);
@@ -66,6 +76,8 @@ class Bounder {
         for (const double tolerance : {rough, exact})
             for (const ObjectId id : cycle.objects)
                 find_box(id, tolerance);
+        for (const ObjectId id : cycle.objects)
+            find_ball(id);
     }
 
     void bound_object(ObjectId id) {
@@ -86,6 +98,7 @@ class Bounder {
         keep_in_range(outer.box);
         outer.set_ball(circumball(outer.box));
         find_box(id, exact);
+        find_ball(id);
     }
 
     void bound_primitive(ObjectId id, PrimitiveKind kind) {
@@ -133,6 +146,12 @@ class Bounder {
         if (about.radius < outer.ball().radius) outer.set_ball(about);
     }
 
+    void find_ball(ObjectId id) {
+        Ball ball = tight_ball(graph_, outers_, id, pieces_of_ball_);
+        ball.radius = within_range(ball.radius * (1 + 4e-12) + 4e-15 * glm::length(ball.centre));
+        if (ball.radius < outers_[id].ball().radius) outers_[id].set_ball(ball);
+    }
+
     static void keep_in_range(Box& box) {
         for (int i = 0; i < 3; ++i) {
             box.min[i] = std::isnan(box.min[i]) ? -largest_length : within_range(box.min[i]);
@@ -157,6 +176,7 @@ class Bounder {
     std::vector<bool> unbounded_;
     SupportSearch search_;
     Effort effort_;
+    std::size_t pieces_of_ball_;
 };
 
 } // namespace

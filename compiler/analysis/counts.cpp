@@ -36,6 +36,8 @@ class Budget {
         return effort_ <= max_word_operations && bits(sum) <= max_bits;
     }
 
+    std::uint64_t effort() const { return effort_; }
+
   private:
     std::uint64_t effort_ = 0;
     Number product_; // kept, because long numbers are costly to allocate
@@ -58,6 +60,17 @@ std::vector<Times> masters_of(const Object& object) {
         ++result.back().times;
     }
     return result;
+}
+
+/// Foresees, from the effort of the first levels, what all will cost: numbers grow in proportion to the
+/// level at most, so the effort is a L + b L^2.
+constexpr unsigned probed_levels = 1000;
+bool costs_too_much(std::uint64_t half_way, std::uint64_t whole_way, unsigned steps) {
+    constexpr double probed = probed_levels;
+    const double b =
+        2 * (static_cast<double>(whole_way) - 2 * static_cast<double>(half_way)) / (probed * probed);
+    const double a = static_cast<double>(whole_way) / probed - b * probed;
+    return (a + b * steps) * steps > static_cast<double>(max_word_operations);
 }
 
 /// Masters before their users, and ending objects before unending ones, whose terminals they may be.
@@ -180,6 +193,7 @@ class Counter {
             count.push_back(fixed_[id].where_cut);
         }
         std::vector<Number> deeper(count.size());
+        std::uint64_t half_way = 0;
         for (unsigned level = 0; level < steps; ++level) {
             for (std::size_t c = 0; c < table.size(); ++c) {
                 deeper[c] = table[c].fixed->every_level;
@@ -187,6 +201,9 @@ class Counter {
                     if (!budget_.add(deeper[c], count[part.master], part.times)) return std::nullopt;
             }
             std::swap(count, deeper);
+            if (level == probed_levels / 2) half_way = budget_.effort();
+            if (level == probed_levels && costs_too_much(half_way, budget_.effort(), steps))
+                return std::nullopt;
         }
         return count[partition.class_of[graph_.root]];
     }

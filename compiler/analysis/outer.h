@@ -30,8 +30,8 @@ struct Outer {
 
 using Outers = std::vector<Outer>; ///< by object
 
-/// Lengths beyond this are taken for it: sizes that double precision cannot hold.
-inline constexpr double largest_length = 1e290;
+/// Lengths beyond this are taken for it; their squares are still numbers.
+inline constexpr double largest_length = 1e140;
 
 /// `value`, brought into the range of lengths; NaN becomes `largest_length`.
 double within_range(double value);

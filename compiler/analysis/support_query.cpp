@@ -1,6 +1,7 @@
 #include "compiler/analysis/support_query.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
 
@@ -30,17 +31,16 @@ Support SupportSearch::run(ObjectId object, Vec3 direction, double tolerance, st
     pieces_ = 0;
     tolerance_ = tolerance;
     best_ = discarded_ = nowhere;
+    magnitude_ = 0;
     Piece root;
     root.direction = direction;
     root.object = object;
     arena_.push_back(root);
     expand(0);
-    const auto nearer = [this](std::uint32_t a, std::uint32_t b) {
-        return arena_[a].upper != arena_[b].upper ? arena_[a].upper < arena_[b].upper : a > b;
-    };
     double open = nowhere;
     while (!heap_.empty()) {
-        std::pop_heap(heap_.begin(), heap_.end(), nearer);
+        std::pop_heap(heap_.begin(), heap_.end(),
+                      [this](std::uint32_t a, std::uint32_t b) { return nearer(a, b); });
         const std::uint32_t top = heap_.back();
         heap_.pop_back();
         if (arena_[top].dominated) continue;
@@ -51,7 +51,8 @@ Support SupportSearch::run(ObjectId object, Vec3 direction, double tolerance, st
         expand(top);
     }
     const Vec3 point = point_in_root(best_parent_, best_instance_, best_point_);
-    return {std::max({open, discarded_, best_}), best_, point};
+    const double rounding = 16 * std::numeric_limits<double>::epsilon() * magnitude_;
+    return {std::max({open, discarded_, best_}) + rounding, best_, point};
 }
 
 void SupportSearch::expand(std::uint32_t parent) {
@@ -67,7 +68,10 @@ void SupportSearch::expand(std::uint32_t parent) {
         piece.parent = parent;
         piece.instance = i;
         piece.direction = from.direction * instance.parent_from_child.linear; // A^T d
-        piece.offset = from.offset + glm::dot(from.direction, instance.parent_from_child.translation);
+        const Vec3 shift = from.direction * instance.parent_from_child.translation;
+        piece.offset = from.offset + (shift.x + shift.y + shift.z);
+        magnitude_ = std::max(magnitude_, std::abs(from.offset) + std::abs(shift.x) + std::abs(shift.y) +
+                                              std::abs(shift.z));
         const std::optional<PrimitiveKind> primitive = graph_.objects[instance.master].primitive;
         const Vec3 point = primitive ? primitive_support_point(*primitive, piece.direction)
                                      : outer.farthest_point(piece.direction);
@@ -80,6 +84,11 @@ void SupportSearch::expand(std::uint32_t parent) {
         }
         if (primitive) continue;
         piece.upper = within_range(piece.offset + outer.above(piece.direction));
+        if (piece.upper == largest_length) {
+            // Out of range: nothing to be gained by looking closer.
+            discarded_ = largest_length;
+            continue;
+        }
         piece.at_centre = piece.offset + glm::dot(piece.direction, outer.centre);
         if (piece.upper <= best_ + tolerance_)
             discarded_ = std::max(discarded_, piece.upper);
@@ -90,22 +99,28 @@ void SupportSearch::expand(std::uint32_t parent) {
 
 void SupportSearch::push(const Piece& piece) {
     const auto number = static_cast<std::uint32_t>(arena_.size());
-    Slot& slot = slot_for(key_of(piece));
+    if (!merge(piece, number)) return;
+    arena_.push_back(piece);
+    heap_.push_back(number);
+    std::push_heap(heap_.begin(), heap_.end(),
+                   [this](std::uint32_t a, std::uint32_t b) { return nearer(a, b); });
+}
+
+bool SupportSearch::merge(const Piece& piece, std::uint32_t number) {
+    constexpr std::uint32_t worth_merging = 48;
+    if (number < worth_merging) return true;
+    const Key key = key_of(piece);
+    Slot& slot = slot_for(key);
     if (slot.run == run_) {
-        // Of two pieces of one object and direction only the farther one matters.
-        if (arena_[slot.piece].at_centre >= piece.at_centre) return;
+        if (arena_[slot.piece].at_centre >= piece.at_centre) return false;
         arena_[slot.piece].dominated = true;
     } else {
         slot.run = run_;
-        slot.key = key_of(piece);
+        slot.key = key;
         ++filled_;
     }
     slot.piece = number;
-    arena_.push_back(piece);
-    heap_.push_back(number);
-    std::push_heap(heap_.begin(), heap_.end(), [this](std::uint32_t a, std::uint32_t b) {
-        return arena_[a].upper != arena_[b].upper ? arena_[a].upper < arena_[b].upper : a > b;
-    });
+    return true;
 }
 
 SupportSearch::Key SupportSearch::key_of(const Piece& piece) {
@@ -114,9 +129,15 @@ SupportSearch::Key SupportSearch::key_of(const Piece& piece) {
     Key key;
     key.object = piece.object;
     if (!(largest > 0) || !std::isfinite(largest)) return key;
-    std::frexp(largest, &key.exponent);
-    constexpr int kept_bits = 41;
-    const auto rounded = [&key](double x) { return std::llround(std::ldexp(x, kept_bits - key.exponent)); };
+    // Fixed point, 41 bits below the largest component; the exponent is read off the bits, which is fast.
+    constexpr int kept_bits = 41, mantissa_bits = 52, bias = 1023;
+    key.exponent = static_cast<std::int32_t>(std::bit_cast<std::uint64_t>(largest) >> mantissa_bits) - bias;
+    if (key.exponent <= kept_bits - bias) return Key{0, 0, 0, 0, piece.object}; // all but zero
+    const auto scale =
+        std::bit_cast<double>(static_cast<std::uint64_t>(kept_bits - key.exponent + bias) << mantissa_bits);
+    const auto rounded = [scale](double x) {
+        return static_cast<std::int64_t>(x * scale + std::copysign(0.5, x));
+    };
     key.x = rounded(d.x);
     key.y = rounded(d.y);
     key.z = rounded(d.z);

@@ -24,7 +24,7 @@ class SupportSearch {
     SupportSearch(const Graph& graph, const Outers& outers) : graph_(graph), outers_(outers) {}
 
     /// Stops when upper - lower <= tolerance or after about `most_pieces` pieces; `upper` is true anyway,
-    /// but for rounding and for 1e-12 of the object's size. Requires an object that is no primitive and not
+    /// but for 1e-12 of the object's size. Requires an object that is no primitive and not
     /// empty.
     Support run(ObjectId object, Vec3 direction, double tolerance, std::uint64_t most_pieces);
 
@@ -57,6 +57,11 @@ class SupportSearch {
 
     void expand(std::uint32_t parent);
     void push(const Piece& piece);
+    /// Of pieces of one object and direction only the farthest matters: false if it is not this one.
+    bool merge(const Piece& piece, std::uint32_t number);
+    bool nearer(std::uint32_t a, std::uint32_t b) const {
+        return arena_[a].upper != arena_[b].upper ? arena_[a].upper < arena_[b].upper : a > b;
+    }
     Slot& slot_for(const Key& key);
     void grow_table();
     Vec3 point_in_root(std::uint32_t parent, std::uint32_t instance, Vec3 point) const;
@@ -72,6 +77,7 @@ class SupportSearch {
     std::uint64_t pieces_ = 0;
     double tolerance_ = 0;
     double discarded_ = 0; // largest upper of the pieces that cannot matter
+    double magnitude_ = 0;  // of the terms added up, for their rounding
     double best_ = 0;
     std::uint32_t best_parent_ = 0;
     std::uint32_t best_instance_ = 0;

@@ -1,0 +1,162 @@
+#include "compiler/analysis/tight_ball.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include <glm/geometric.hpp>
+
+#include "compiler/analysis/smallest_ball.h"
+#include "compiler/support/check.h"
+
+namespace graftal {
+
+namespace {
+
+/// Pieces that hold the ball up are split while their radius is over this part of its.
+constexpr double small_piece = 0.02;
+
+/// What a ball stands for, and is split into.
+struct Origin {
+    enum class Kind { object, primitive, disc, point };
+    Kind kind = Kind::point;
+    ObjectId object = 0; ///< of `object` and `primitive`
+    Affine place;        ///< root from object; a disc has radius 1 about the y axis at y = 0
+};
+
+class Pieces {
+  public:
+    Pieces(const Graph& graph, const Outers& outers) : graph_(graph), outers_(outers) {}
+
+    /// Pieces made so far, those since split included.
+    std::size_t made() const { return made_; }
+    const std::vector<Ball>& balls() const { return balls_; }
+
+    void add_instances(ObjectId id, const Affine& place) {
+        for (const Instance& instance : graph_.objects[id].instances) {
+            if (outers_[instance.master].empty) continue;
+            const bool primitive = graph_.objects[instance.master].primitive.has_value();
+            const Affine inner = place * instance.parent_from_child;
+            const Ball whole = outers_[instance.master].ball();
+            add({inner(whole.centre), within_range(norm(inner.linear) * whole.radius)},
+                {primitive ? Origin::Kind::primitive : Origin::Kind::object, instance.master, inner});
+        }
+    }
+
+    /// Splits all that touch `about`, or nearly so, and are not small against it; false if there are none.
+    bool split_supporting(const Ball& about) {
+        std::vector<std::size_t> supporting;
+        for (std::size_t i = 0; i < balls_.size(); ++i) {
+            const Ball& ball = balls_[i];
+            if (origins_[i].kind == Origin::Kind::point || ball.radius < small_piece * about.radius) continue;
+            if (glm::length(ball.centre - about.centre) + ball.radius >=
+                (1 - 0.25 * small_piece) * about.radius)
+                supporting.push_back(i);
+        }
+        for (std::size_t k = supporting.size(); k-- > 0;) {
+            const std::size_t i = supporting[k];
+            const Origin origin = origins_[i];
+            balls_[i] = balls_.back();
+            balls_.pop_back();
+            origins_[i] = origins_.back();
+            origins_.pop_back();
+            split(origin);
+        }
+        return !supporting.empty();
+    }
+
+  private:
+    void add(const Ball& ball, const Origin& origin) {
+        balls_.push_back(ball);
+        origins_.push_back(origin);
+        ++made_;
+    }
+
+    void add_point(Vec3 at) { add({at, 0}, {}); }
+
+    /// The ball about a disc, which sticks out of its plane.
+    void add_disc(const Affine& place) {
+        Mat3 flat = place.linear;
+        flat[1] = Vec3(0.0);
+        add({place.translation, norm(flat)}, {Origin::Kind::disc, 0, place});
+    }
+
+    void split(const Origin& origin) {
+        if (origin.kind == Origin::Kind::object)
+            add_instances(origin.object, origin.place);
+        else if (origin.kind == Origin::Kind::primitive)
+            split_primitive(origin.place, *graph_.objects[origin.object].primitive);
+        else
+            split_disc(origin.place);
+    }
+
+    /// Into the corners of a polygon about it.
+    void split_disc(const Affine& place) {
+        constexpr int corners = 24;
+        const double radius = 1 / std::cos(std::numbers::pi / corners);
+        for (int i = 0; i < corners; ++i) {
+            const double angle = 2 * std::numbers::pi * i / corners;
+            add_point(place(radius * Vec3(std::cos(angle), 0, std::sin(angle))));
+        }
+    }
+
+    /// Into things whose hull holds it.
+    void split_primitive(const Affine& place, PrimitiveKind kind) {
+        switch (kind) {
+        case PrimitiveKind::triangle:
+            add_point(place(Vec3(0, 1, 0)));
+            add_point(place(Vec3(-std::numbers::sqrt3 / 2, -0.5, 0)));
+            add_point(place(Vec3(std::numbers::sqrt3 / 2, -0.5, 0)));
+            return;
+        case PrimitiveKind::sphere:
+            add({place.translation, norm(place.linear)}, {});
+            return;
+        case PrimitiveKind::cube:
+            for (const double x : {-1, 1})
+                for (const double y : {-1, 1})
+                    for (const double z : {-1, 1})
+                        add_point(place(Vec3(x, y, z)));
+            return;
+        case PrimitiveKind::cylinder:
+            add_disc(place);
+            add_disc(place * Affine::translate({0, 1, 0}));
+            return;
+        case PrimitiveKind::cone:
+            add_disc(place);
+            add_point(place(Vec3(0, 1, 0)));
+            return;
+        case PrimitiveKind::torus: {
+            Mat3 flat = place.linear;
+            flat[1] = Vec3(0.0);
+            add({place.translation, norm(flat) + 0.25 * norm(place.linear)}, {});
+            return;
+        }
+        case PrimitiveKind::plane:
+            break;
+        }
+        GRAFTAL_CHECK(kind != PrimitiveKind::plane, "a plane has no ball");
+    }
+
+    const Graph& graph_;
+    const Outers& outers_;
+    std::vector<Ball> balls_;
+    std::vector<Origin> origins_;
+    std::size_t made_ = 0;
+};
+
+} // namespace
+
+Ball tight_ball(const Graph& graph, const Outers& outers, ObjectId id, std::size_t most_pieces) {
+    Pieces pieces(graph, outers);
+    pieces.add_instances(id, Affine{});
+    Ball best = smallest_ball(pieces.balls());
+    Ball current = best;
+    while (pieces.made() < most_pieces && pieces.split_supporting(current)) {
+        current = smallest_ball(pieces.balls());
+        if (current.radius < best.radius) best = current;
+    }
+    return best;
+}
+
+} // namespace graftal

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "runtime/image/image.h"
+
+namespace graftal {
+
+/// Pictures in files, by OpenImageIO; image.h is the interface to use. The code lies in a module that
+/// image.cpp loads. Each function returns what went wrong, in words, or "".
+struct PictureFiles {
+    enum class Samples { integer8, integer16, real32 };
+
+    struct Tag {
+        std::string name;
+        std::string value;
+    };
+
+    std::string (*read)(const std::string& path, std::uint64_t most_samples, Image& image);
+    std::string (*write)(const std::string& path, const Image& image, Samples samples, bool linear,
+                         const std::vector<Tag>& tags);
+};
+
+/// The name under which the module exports its `const PictureFiles*`-returning function.
+inline constexpr const char* picture_files_symbol = "graftal_picture_files";
+
+} // namespace graftal

@@ -182,6 +182,7 @@ Contraction decide_contraction(const Graph& graph, const Components& components)
     else
         result.verdict = Verdict::undecided;
     if (result.verdict != Verdict::proved) result.certificate = {};
+    if (result.verdict == Verdict::undecided) result.upper = std::max(result.upper, 1.0);
     return result;
 }
 

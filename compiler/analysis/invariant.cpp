@@ -110,11 +110,18 @@ class Invariant {
         }
     }
 
+    /// The distance of a placed point from the centre of `v`, in its metric, with room for its rounding.
+    double distance(ObjectId v, const Affine& place, Vec3 point) const {
+        const Mat3& l = metric(v);
+        const Vec3 moved = place.linear * point;
+        const double size =
+            glm::length(moved) + glm::length(place.translation) + glm::length(outers_[v].centre);
+        return glm::length(l * (moved + place.translation - outers_[v].centre)) + 4e-15 * norm(l) * size;
+    }
+
     /// Farthest distance from the centre of `v`, in its metric, that an instance at `place` reaches.
     double reach_of_outside(ObjectId v, const Affine& place, const Outer& part) const {
-        const Mat3& l = metric(v);
-        return glm::length(l * (place(part.centre) - outers_[v].centre)) +
-               norm(l * place.linear * glm::transpose(part.reach));
+        return distance(v, place, part.centre) + norm(metric(v) * place.linear * glm::transpose(part.reach));
     }
 
     /// A radius in units of the weights that holds for all objects: no path that the certificate follows, nor
@@ -173,8 +180,8 @@ class Invariant {
                 path.push_back({instance.master, 0, place});
                 continue;
             }
-            const Vec3 shift = place(outers_[instance.master].centre) - outers_[start].centre;
-            needed = std::max(needed, within_range(glm::length(metric(start) * shift) / (1 - shrunk)));
+            const double shift = distance(start, place, outers_[instance.master].centre);
+            needed = std::max(needed, within_range(shift / (1 - shrunk)));
         }
         return needed;
     }
@@ -191,7 +198,7 @@ class Invariant {
             const Affine& place = cycle_.transform(e);
             const ObjectId v = cycle_.objects[e.from], u = cycle_.objects[e.to];
             stretch.push_back(norm(metric(v) * place.linear * glm::inverse(metric(u))));
-            shift.push_back(glm::length(metric(v) * (place(outers_[u].centre) - outers_[v].centre)));
+            shift.push_back(distance(v, place, outers_[u].centre));
         }
         std::vector<double> outside(cycle_.size(), 0.0);
         for (std::uint32_t v = 0; v < cycle_.size(); ++v)

@@ -9,7 +9,8 @@ namespace graftal {
 
 namespace {
 
-constexpr int max_rounds = 64;
+constexpr std::uint32_t max_rounds = 64;
+constexpr std::uint32_t max_nodes_looked_at = 1'500'000; // in all rounds
 
 /// A node as its label and edges show it, with the classes of the round before.
 using Signature = std::vector<double>;
@@ -53,7 +54,8 @@ Partition group_equal_nodes(const LabelledGraph& graph) {
     Partition partition;
     partition.class_of.assign(n, 0);
     if (n > 0) partition.representative.push_back(0);
-    for (int round = 0; round < max_rounds; ++round) {
+    const std::uint32_t rounds = std::clamp(max_nodes_looked_at / std::max(n, 1u), 4u, max_rounds);
+    for (std::uint32_t round = 0; round < rounds; ++round) {
         Partition finer = refine(graph, partition);
         if (finer.size() == partition.size()) return finer;
         partition = std::move(finer);

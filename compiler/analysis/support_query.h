@@ -77,7 +77,7 @@ class SupportSearch {
     std::uint64_t pieces_ = 0;
     double tolerance_ = 0;
     double discarded_ = 0; // largest upper of the pieces that cannot matter
-    double magnitude_ = 0;  // of the terms added up, for their rounding
+    double magnitude_ = 0; // of the terms added up, for their rounding
     double best_ = 0;
     std::uint32_t best_parent_ = 0;
     std::uint32_t best_instance_ = 0;

@@ -97,5 +97,16 @@ TEST(Dimension, OfALargeComponentOfUnequalObjects) {
     EXPECT_LT(s, std::log(2) / -std::log(.6));
 }
 
+TEST(Dimension, OfAVeryLargeComponentEndsSoon) {
+    // A ring of 100,000 objects with one chord: grouping objects does not end soon, nor does the iteration.
+    std::vector<Edge> edges;
+    for (ObjectId i = 0; i < 100'000; ++i)
+        edges.push_back({i, (i + 1) % 100'000, scaled(.9, Vec3(0.0))});
+    edges.push_back({0, 50'000, scaled(.5, Vec3(0.0))});
+    const std::optional<double> s = dimension(digraph(100'000, edges));
+    EXPECT_LT(s.value_or(0), 1);
+    EXPECT_EQ(count_leaves(digraph(100'000, edges), strong_components(digraph(100'000, edges)), 5), "2");
+}
+
 } // namespace
 } // namespace graftal

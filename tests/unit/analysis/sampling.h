@@ -49,13 +49,11 @@ inline Vec3 random_point_of(PrimitiveKind kind, std::mt19937& random) {
 /// fill evenly, or nearly so.
 class Sampler {
   public:
-    explicit Sampler(const Graph& graph)
-        : graph_(graph), weights_(graph.objects.size()), stretch_(graph.objects.size()) {
+    explicit Sampler(const Graph& graph) : graph_(graph), weights_(graph.objects.size()) {
         for (std::size_t id = 0; id < graph.objects.size(); ++id) {
             double sum = 0;
             for (const Instance& part : graph.objects[id].instances) {
                 const double stretch = norm(part.parent_from_child.linear);
-                stretch_[id].push_back(stretch);
                 weights_[id].push_back(sum += std::clamp(stretch * stretch, .01, 1.0));
             }
         }
@@ -64,11 +62,16 @@ class Sampler {
     /// Follows a path to a primitive, or until it is in the set to rounding, or for `longest` instances.
     Vec3 point(ObjectId id, std::mt19937& random, int longest = 1000) const {
         std::vector<const Affine*> path;
-        double scale = 1;
-        while (!graph_.objects[id].primitive && static_cast<int>(path.size()) < longest && scale > 1e-22) {
-            const std::size_t choice = choose(id, random);
-            const Instance& chosen = graph_.objects[id].instances[choice];
-            scale *= stretch_[id][choice];
+        Mat3 product(1.0);
+        const auto vanished = [&product] {
+            double sum = 0;
+            for (int column = 0; column < 3; ++column)
+                sum += glm::dot(product[column], product[column]);
+            return sum < 1e-44;
+        };
+        while (!graph_.objects[id].primitive && static_cast<int>(path.size()) < longest && !vanished()) {
+            const Instance& chosen = graph_.objects[id].instances[choose(id, random)];
+            product = product * chosen.parent_from_child.linear;
             path.push_back(&chosen.parent_from_child);
             id = chosen.master;
         }
@@ -97,8 +100,17 @@ class Sampler {
 
     const Graph& graph_;
     std::vector<std::vector<double>> weights_; // by object: running sums over its instances
-    std::vector<std::vector<double>> stretch_; // by object and instance
 };
+
+inline Affine random_affine(std::mt19937& random, double size) {
+    std::normal_distribution<double> normal(0, size);
+    Affine map;
+    for (int column = 0; column < 3; ++column)
+        for (int row = 0; row < 3; ++row)
+            map.linear[column][row] = normal(random);
+    map.translation = {normal(random), normal(random), normal(random)};
+    return map;
+}
 
 inline std::vector<Vec3> random_points(const Graph& graph, ObjectId id, std::size_t count, unsigned seed) {
     return Sampler(graph).points(id, count, seed);

@@ -56,7 +56,7 @@ TEST(RifsCounts, mutuallyRecursiveObjectsTakeTurns) {
     std::uint64_t acute = 10;
     std::uint64_t obtuse = 0;
     for (unsigned steps = 1; steps <= 7; ++steps) {
-        EXPECT_EQ(leaves("ifs/penrose", steps), acute + obtuse) << steps;
+        EXPECT_EQ(leaves("tilings/penrose", steps), acute + obtuse) << steps;
         const std::uint64_t acute_before = acute;
         acute = acute_before + obtuse;
         obtuse = acute_before + 2 * obtuse;

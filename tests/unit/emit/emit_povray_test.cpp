@@ -10,99 +10,14 @@
 #include <gtest/gtest.h>
 
 #include "compiler/cut/tessellate.h"
+#include "tests/unit/emit/scene_by_hand.h"
 
 namespace graftal {
 namespace {
 
+using namespace by_hand;
 using testing::HasSubstr;
 using testing::Not;
-
-Affine place(Vec3 at, Vec3 size) {
-    return Affine::translate(at) * Affine::scale(size);
-}
-
-/// A cut put together by hand; one unit of it is 500 of POV-Ray's.
-struct Scene {
-    Cut cut;
-    Graph graph;
-    PovrayOptions options{.scene_name = "model"};
-    std::vector<PaletteImage> pictures;
-
-    Scene() {
-        cut.bounds = {Vec3(-1), Vec3(1)};
-        graph.root = graph.primitive(PrimitiveKind::sphere);
-    }
-
-    std::uint32_t body(PrimitiveKind kind) {
-        cut.bodies.push_back({name_of(kind), kind});
-        return static_cast<std::uint32_t>(cut.bodies.size() - 1);
-    }
-
-    /// Two triangles, of a slot each.
-    std::uint32_t mesh(std::string name, std::uint32_t slot_count = 1) {
-        Mesh mesh;
-        mesh.vertices = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
-        mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
-        mesh.slot_count = slot_count;
-        if (slot_count > 1) mesh.slot_of_triangle = {slot_count - 1, 0};
-        cut.bodies.push_back({std::move(name), std::move(mesh)});
-        return static_cast<std::uint32_t>(cut.bodies.size() - 1);
-    }
-
-    std::uint32_t palette(Palette palette) {
-        cut.palettes.push_back(std::move(palette));
-        return static_cast<std::uint32_t>(cut.palettes.size() - 1);
-    }
-
-    PlacementGroup& group(std::uint32_t palette, std::vector<Placement> placements, PathTint tint = {}) {
-        cut.placement_count += placements.size();
-        cut.groups.push_back({palette, tint, {}, std::move(placements)});
-        return cut.groups.back();
-    }
-
-    View view() const { return frame(graph, cut.bounds, {400, 300}); }
-
-    std::string text() { return text(view()); }
-    std::string text(const View& view) {
-        std::string all;
-        pictures.clear();
-        EXPECT_TRUE(emit_povray(
-            graph, cut, view, options,
-            [&](std::string_view piece) {
-                all += piece;
-                return true;
-            },
-            pictures));
-        return all;
-    }
-};
-
-std::size_t count(const std::string& text, const std::string& part) {
-    std::size_t n = 0;
-    for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1))
-        ++n;
-    return n;
-}
-
-/// The three numbers after the first `keyword <`.
-Vec3 vector_after(const std::string& text, const std::string& keyword) {
-    std::size_t at = text.find(keyword + " <");
-    EXPECT_NE(at, std::string::npos) << keyword;
-    const char* p = text.c_str() + at + keyword.size() + 2;
-    Vec3 v;
-    for (int i = 0; i < 3; ++i) {
-        char* end = nullptr;
-        v[i] = std::strtod(p, &end);
-        p = end + 1;
-    }
-    return v;
-}
-
-Scene one_sphere() {
-    Scene scene;
-    scene.group(scene.palette({Rgb(1, 0, 0)}), {{scene.body(PrimitiveKind::sphere), {}}});
-    return scene;
-}
 
 TEST(EmitPovray, BeginsWithTheVersionAndIsLinear) {
     const std::string text = one_sphere().text();
@@ -113,88 +28,6 @@ TEST(EmitPovray, BeginsWithTheVersionAndIsLinear) {
 
 TEST(EmitPovray, IsTheSameEveryTime) {
     EXPECT_EQ(one_sphere().text(), one_sphere().text());
-}
-
-TEST(EmitPovray, CameraIsGivenByItsAxesAndNotMirrored) {
-    Scene scene = one_sphere();
-    const std::string text =
-        scene.text(frame(scene.graph, scene.cut.bounds, {400, 300}, {.location = Vec3(0, 0, 9)}));
-    EXPECT_THAT(text, Not(HasSubstr("look_at")));
-    EXPECT_EQ(vector_after(text, "location"), Vec3(0, 0, 4500));
-    EXPECT_GT(vector_after(text, "right").x, 1.33);
-    EXPECT_EQ(vector_after(text, "up"), Vec3(0, 1, 0));
-    EXPECT_LT(vector_after(text, "direction").z, 0);
-}
-
-TEST(EmitPovray, AngleOfViewIsHorizontal) {
-    Scene scene = one_sphere();
-    const std::string text = scene.text(
-        frame(scene.graph, scene.cut.bounds, {300, 600}, {.location = Vec3(0, 0, 9), .angle_deg = 90}));
-    EXPECT_DOUBLE_EQ(vector_after(text, "right").x, 0.5);
-    EXPECT_DOUBLE_EQ(vector_after(text, "direction").z, -0.25);
-}
-
-TEST(EmitPovray, ParallelViewsHaveTheirWidthAndHeight) {
-    Scene scene = one_sphere();
-    const std::string text = scene.text(frame(scene.graph, scene.cut.bounds, {400, 200}, {.width = 3}));
-    EXPECT_THAT(text, HasSubstr("orthographic"));
-    EXPECT_NEAR(vector_after(text, "up").y / 750, scene.view().camera.up.y, 1e-9);
-}
-
-TEST(EmitPovray, LightsSkyAndGroundFollowTheView) {
-    Scene scene = one_sphere();
-    View view = scene.view();
-    view.lights = {{.location = {0, 1, 0}, .sun = true, .rgb = {0.5, 0.25, 1}, .shadowless = true},
-                   {.location = {1, 2, 3}}};
-    view.sky = {.zenith = Rgb(0.1), .horizon = Rgb(0.1)};
-    view.ground = Ground{.height = -0.5, .material = {.rgb = {0, 1, 0}}};
-    std::string text = scene.text(view);
-    EXPECT_THAT(
-        text,
-        HasSubstr("light_source { <0,1000000,0> rgb <0.5,0.25,1> parallel point_at <0,0,0> shadowless }"));
-    EXPECT_THAT(text, HasSubstr("light_source { <500,1000,1500> rgb <1,1,1> }"));
-    EXPECT_THAT(text, HasSubstr("background { rgb <0.1,0.1,0.1> }"));
-    EXPECT_THAT(text, HasSubstr("plane { y, -250\n  texture { pigment { rgb <0,1,0> }"));
-    EXPECT_THAT(text, Not(HasSubstr("max_trace_level")));
-    view.sky.horizon = Rgb(0.9);
-    view.ground->material.reflection = 0.5;
-    text = scene.text(view);
-    EXPECT_THAT(text, HasSubstr("sky_sphere"));
-    EXPECT_THAT(text, HasSubstr("reflection 0.5"));
-    EXPECT_THAT(text, HasSubstr("max_trace_level 8"));
-}
-
-TEST(EmitPovray, WorldIsBroughtToAboutAThousandUnits) {
-    for (const double size : {1e-12, 1e-5, 0.3, 1.0, 7.0, 1e9})
-        for (const double away : {0.0, 100.0}) {
-            Scene scene = one_sphere();
-            const Vec3 centre(away * size, 0, 0);
-            scene.cut.groups[0].placements[0].world_from_body = place(centre, Vec3(size));
-            scene.cut.bounds = {centre - Vec3(size), centre + Vec3(size)};
-            const std::string text = scene.text();
-            const Vec3 at = vector_after(text, "sphere {");
-            EXPECT_LE(std::abs(at.x), 1e-6) << size << " " << away;
-            const double radius =
-                std::strtod(text.c_str() + text.find(">, ", text.find("sphere { <")) + 3, nullptr);
-            EXPECT_GE(radius, 200) << size;
-            EXPECT_LE(radius, 500.1) << size;
-        }
-}
-
-TEST(EmitPovray, FarCamerasStayWithinPovraysReach) {
-    Scene scene = one_sphere();
-    const std::string text =
-        scene.text(frame(scene.graph, scene.cut.bounds, {400, 300}, {.location = Vec3(0, 0, 1e6)}));
-    EXPECT_LE(vector_after(text, "location").z, 5e6);
-}
-
-TEST(EmitPovray, EmptyCutsAndPointsAreScenesToo) {
-    Scene nothing;
-    nothing.cut.bounds = {};
-    EXPECT_THAT(nothing.text(frame(nothing.graph, {Vec3(0), Vec3(1)}, {10, 10})), HasSubstr("camera"));
-    Scene point = one_sphere();
-    point.cut.bounds = {Vec3(3), Vec3(3)};
-    EXPECT_THAT(point.text(), HasSubstr("camera"));
 }
 
 TEST(EmitPovray, PrimitivesThatNeedNoMatrixHaveNone) {

@@ -2,15 +2,14 @@
 // meshes, against the geometry that would be sent to POV-Ray.
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <filesystem>
 #include <random>
 #include <vector>
 
+#include <boost/geometry.hpp>
+#include <boost/geometry/index/rtree.hpp>
 #include <gtest/gtest.h>
-#include <tsl/robin_map.h>
-#include <tsl/robin_set.h>
 
 #include "compiler/compile.h"
 
@@ -74,32 +73,6 @@ std::vector<Vec3> drawn_points(const Cut& cut) {
     return points;
 }
 
-using Cell = std::array<std::int64_t, 3>;
-
-struct CellHash {
-    std::size_t operator()(const Cell& cell) const {
-        std::uint64_t h = 0;
-        for (const auto k : cell)
-            h = (h ^ static_cast<std::uint64_t>(k)) * 0x9E3779B97F4A7C15ull;
-        return h ^ (h >> 32);
-    }
-};
-
-Cell cell_of(Vec3 p, double unit) {
-    return {static_cast<std::int64_t>(std::floor(p.x / unit)),
-            static_cast<std::int64_t>(std::floor(p.y / unit)),
-            static_cast<std::int64_t>(std::floor(p.z / unit))};
-}
-
-/// One point of each cell of a grid.
-std::vector<Vec3> thinned(const std::vector<Vec3>& points, double unit) {
-    tsl::robin_set<Cell, CellHash> taken;
-    std::vector<Vec3> kept;
-    for (const Vec3& point : points)
-        if (taken.insert(cell_of(point, unit)).second) kept.push_back(point);
-    return kept;
-}
-
 /// About `count` of the points, evenly spread over their order.
 std::vector<Vec3> every_nth(const std::vector<Vec3>& points, std::size_t count) {
     std::vector<Vec3> kept;
@@ -108,44 +81,22 @@ std::vector<Vec3> every_nth(const std::vector<Vec3>& points, std::size_t count) 
     return kept;
 }
 
-/// Distances to the nearest of many points, up to a limit.
-class Neighbours {
-  public:
-    Neighbours(const std::vector<Vec3>& points, double limit) : points_(points), cell_(limit) {
-        for (std::size_t i = 0; i < points.size(); ++i)
-            cells_[key(points[i], 0, 0, 0)].push_back(i);
+/// The distance from each of some points to the nearest of others; the largest.
+double farthest_from(const std::vector<Vec3>& others, const std::vector<Vec3>& points) {
+    using Point = boost::geometry::model::point<double, 3, boost::geometry::cs::cartesian>;
+    std::vector<Point> tree_points;
+    tree_points.reserve(others.size());
+    for (const Vec3& p : others)
+        tree_points.emplace_back(p.x, p.y, p.z);
+    const boost::geometry::index::rtree<Point, boost::geometry::index::rstar<16>> tree(tree_points);
+    double farthest = 0;
+    for (const Vec3& p : points) {
+        const Point from(p.x, p.y, p.z);
+        for (auto it = tree.qbegin(boost::geometry::index::nearest(from, 1)); it != tree.qend(); ++it)
+            farthest = std::max(farthest, boost::geometry::distance(from, *it));
     }
-
-    double distance(Vec3 point) const {
-        double nearest = std::numeric_limits<double>::infinity();
-        for (int x = -1; x <= 1; ++x)
-            for (int y = -1; y <= 1; ++y)
-                for (int z = -1; z <= 1; ++z) {
-                    const auto found = cells_.find(key(point, x, y, z));
-                    if (found == cells_.end()) continue;
-                    for (const std::size_t i : found->second)
-                        nearest = std::min(nearest, glm::distance(point, points_[i]));
-                }
-        return nearest;
-    }
-
-    double farthest(const std::vector<Vec3>& others) const {
-        double farthest = 0;
-        for (const Vec3& other : others)
-            farthest = std::max(farthest, distance(other));
-        return farthest;
-    }
-
-  private:
-    Cell key(Vec3 p, int x, int y, int z) const {
-        const Cell cell = cell_of(p, cell_);
-        return {cell[0] + x, cell[1] + y, cell[2] + z};
-    }
-
-    std::vector<Vec3> points_;
-    double cell_;
-    tsl::robin_map<Cell, std::vector<std::size_t>, CellHash> cells_;
-};
+    return farthest;
+}
 
 std::vector<std::string> recursive_scenes() {
     std::vector<std::string> scenes;
@@ -183,17 +134,17 @@ TEST_P(ChaosGame, PointsAndGeometryAreCloseBothWays) {
     const double error = compiled->cut.error_px / pixels_per_unit;
     RecordProperty("error", std::to_string(error));
 
-    const double to_geometry = Neighbours(thinned(drawn, 0.1 * error), 4 * error).farthest(points);
+    const double to_geometry = farthest_from(drawn, points);
     EXPECT_LE(to_geometry, std::sqrt(3.0) * error);
     const double coverage = 0.06 * ball.radius;
-    const double to_points = Neighbours(points, 4 * error + coverage).farthest(every_nth(drawn, 20'000));
+    const double to_points = farthest_from(points, every_nth(drawn, 20'000));
     EXPECT_LE(to_points, std::sqrt(3.0) * error + coverage);
     std::printf("%-40s error %.4g  points to geometry %.4g  geometry to points %.4g (of radius %.3g)\n",
                 GetParam().c_str(), error, to_geometry, to_points, ball.radius);
 }
 
-INSTANTIATE_TEST_SUITE_P(Scenes, ChaosGame, testing::ValuesIn(recursive_scenes()), [](const auto& info) {
-    std::string name = info.param;
+INSTANTIATE_TEST_SUITE_P(Scenes, ChaosGame, testing::ValuesIn(recursive_scenes()), [](const auto& scene) {
+    std::string name = scene.param;
     std::replace_if(
         name.begin(), name.end(), [](char c) { return !std::isalnum(static_cast<unsigned char>(c)); }, '_');
     return name;

@@ -8,7 +8,7 @@
 
 #include "compiler/support/check.h"
 #include "compiler/support/file.h"
-#include "runtime/image/files/picture_files.h"
+#include "runtime/image/picture_files.h"
 
 namespace graftal {
 

@@ -1,4 +1,4 @@
-#include "runtime/image/files/picture_files.h"
+#include "runtime/image/picture_files.h"
 
 #include <algorithm>
 #include <memory>

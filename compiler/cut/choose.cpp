@@ -34,20 +34,18 @@ class Chooser {
         add_piece(root);
         placement_bytes_ = PovrayCosts::placement + (cut_.tinted ? PovrayCosts::own_texture : 0);
         Choice best = current(std::numeric_limits<double>::infinity());
-        for (std::size_t splits = 0; !queue_.empty() && splits < max_splits; ++splits) {
-            const Entry entry = queue_.top();
-            queue_.pop();
-            const double weight = entry.weight;
-            split(entry.kind);
-            while (!queue_.empty() && queue_.top().weight == weight) {
-                const PieceKind same = queue_.top().kind;
+        std::size_t splits = 0;
+        while (!queue_.empty() && splits < max_splits) {
+            const double weight = queue_.top().weight;
+            for (; !queue_.empty() && queue_.top().weight == weight && splits < max_splits; ++splits) {
+                const PieceKind kind = queue_.top().kind;
                 queue_.pop();
-                split(same);
+                split(kind);
             }
             const double next = queue_.empty() ? 0 : queue_.top().weight;
             const Choice now = current(next);
             if (now.bytes < best.bytes || !std::isfinite(best.bytes)) best = now;
-            if (placements_ * placement_bytes_ > best.bytes) break;
+            if (!(placements_ * placement_bytes_ <= best.bytes)) break;
         }
         best.leaves = weights_.of(kind_of(root)).leaves;
         return best;
@@ -59,8 +57,9 @@ class Chooser {
         PieceKind kind;
         bool operator<(const Entry& other) const {
             if (weight != other.weight) return weight < other.weight;
-            return std::tie(kind.node, kind.steps, kind.detail_step) >
-                   std::tie(other.kind.node, other.kind.steps, other.kind.detail_step);
+            // What is farthest from its end first: a kind is split once, after all that lead to it.
+            return std::tie(kind.steps, kind.detail_step, kind.node) <
+                   std::tie(other.kind.steps, other.kind.detail_step, other.kind.node);
         }
     };
 
@@ -102,11 +101,20 @@ class Chooser {
         ++mesh.kinds;
         mesh.triangles = std::max(mesh.triangles, triangles);
         triangles_ += mesh.triangles - before;
+        most_triangles_ = std::max(most_triangles_, triangles_);
     }
 
     void drop_mesh(const MeshKind& kind) {
         LiveMesh& mesh = live_meshes_[kind];
-        if (--mesh.kinds == 0) triangles_ -= std::exchange(mesh.triangles, 0);
+        if (--mesh.kinds > 0) return;
+        triangles_ -= std::exchange(mesh.triangles, 0);
+        // What is left after subtracting far larger numbers, or infinities, is noise: summed anew.
+        if (!(triangles_ >= 1e-3 * most_triangles_)) {
+            triangles_ = 0;
+            for (const auto& [key, live] : live_meshes_)
+                triangles_ += live.triangles;
+            most_triangles_ = triangles_;
+        }
     }
 
     void add_piece(const Piece& piece) {
@@ -123,9 +131,10 @@ class Chooser {
         placements_ -= bucket.count;
         drop_mesh(mesh_kind(kind));
         const bool cut = weights_.is_cut(kind);
-        const bool real =
-            static_cast<double>(bucket.pieces.size()) == bucket.count && placements_ < max_real_pieces;
-        for (const CutEdge& edge : followed_edges(cut_.nodes[kind.node], cut)) {
+        const auto& edges = followed_edges(cut_.nodes[kind.node], cut);
+        const bool real = static_cast<double>(bucket.pieces.size()) == bucket.count &&
+                          placements_ + bucket.count * static_cast<double>(edges.size()) <= max_real_pieces;
+        for (const CutEdge& edge : edges) {
             if (real) {
                 for (const Piece& piece : bucket.pieces)
                     add_piece(descend(cut_, piece, edge, cut));
@@ -154,6 +163,7 @@ class Chooser {
     double placement_bytes_ = 0;
     double placements_ = 0;
     double triangles_ = 0;
+    double most_triangles_ = 0; ///< since they were last summed
     std::unordered_map<PieceKind, Bucket, PieceKindHash> buckets_;
     struct LiveMesh {
         int kinds = 0; ///< of pieces that it serves now

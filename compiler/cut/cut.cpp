@@ -19,6 +19,11 @@ constexpr double coarser = 1.25;
 /// The nearest that the eye is taken to be, in radii of the model.
 constexpr double nearest_share = 1e-5;
 
+std::string readable_count(double count) {
+    if (!std::isfinite(count)) return "more than 1e308";
+    return count < 1e15 ? fmt::format("{:.0f}", count) : fmt::format("{:.3g}", count);
+}
+
 std::string readable_bytes(double bytes) {
     const char* const units[] = {"bytes", "KiB", "MiB", "GiB", "TiB", "PiB"};
     int unit = 0;
@@ -121,14 +126,15 @@ class Cutter {
     }
 
     std::nullopt_t refuse_size() {
+        const auto memory = static_cast<double>(options_.memory_bytes);
+        // Where the estimate fitted but what was unfolded did not, nobody knows how much it would have been.
+        std::string need;
+        if (std::isfinite(choice_.bytes) && choice_.bytes > memory)
+            need = "about " + readable_bytes(choice_.bytes) + " in POV-Ray, ";
         diagnostics_
-            .error(
-                graph_.objects[graph_.root].span,
-                fmt::format("{} leaves need about {} in POV-Ray, more than the {} allowed",
-                            choice_.leaves < 1e15 ? fmt::format("{:.0f}", choice_.leaves)
-                                                  : fmt::format("{:.3g}", choice_.leaves),
-                            std::isfinite(choice_.bytes) ? readable_bytes(choice_.bytes) : "endless memory",
-                            readable_bytes(static_cast<double>(options_.memory_bytes))))
+            .error(graph_.objects[graph_.root].span,
+                   fmt::format("{} leaves need {}more than the {} allowed", readable_count(choice_.leaves),
+                               need, readable_bytes(memory)))
             .with_hint(
                 options_.flatten
                     ? "leave out --flatten, cull with --error, lower --steps, or allow more with --memory"

@@ -159,15 +159,20 @@ class Finder {
         result_.pairs.resize(pairs_to_keep);
     }
 
+    /// Equal for congruent nodes. Balls are not: the search for them is no more symmetric than it must be.
     std::tuple<std::size_t, long long, long long> signature(NodeId id) const {
         const CutNode& node = cut_.nodes[id];
         const auto rounded = [](double x) { return std::llround(std::log(std::max(x, 1e-300)) * 1e6); };
         double spread = 0;
-        for (const CutEdge& edge : node.edges)
+        double stretch = 0;
+        for (const CutEdge& edge : node.edges) {
             spread += glm::distance(edge.node_from_child(centres_[edge.child]), centres_[id]);
+            stretch += edge.stretch;
+        }
+        // Of points that coincide but for rounding the spread is noise.
+        if (spread < 1e-6 * node.ball.radius) spread = 0;
         const std::size_t kind = node.primitive ? 1'000'000 + static_cast<std::size_t>(*node.primitive) : 0;
-        return {kind + node.edges.size(), rounded(node.ball.radius),
-                rounded(spread + 1e-6 * node.ball.radius)};
+        return {kind + node.edges.size(), rounded(stretch), rounded(spread)};
     }
 
     bool joins(NodeId representative, NodeId node) {
@@ -343,8 +348,19 @@ void split_into_halves(CutGraph& cut) {
     }
 }
 
-Symmetry find_symmetry(const CutGraph& cut) {
-    return Finder(cut).find();
+Symmetry find_symmetry(CutGraph& cut) {
+    Symmetry symmetry = Finder(cut).find();
+    // One ball a class, its smallest: congruent pieces then end at the same size.
+    const auto take_smaller = [&](NodeId to, NodeId from, const Affine& to_from_from) {
+        const Ball& ball = cut.nodes[from].ball;
+        if (ball.radius < cut.nodes[to].ball.radius)
+            cut.nodes[to].ball = {to_from_from(ball.centre), ball.radius};
+    };
+    for (NodeId id = 0; id < cut.nodes.size(); ++id)
+        take_smaller(symmetry.representative[id], id, inverse(symmetry.node_from_representative[id]));
+    for (NodeId id = 0; id < cut.nodes.size(); ++id)
+        take_smaller(id, symmetry.representative[id], symmetry.node_from_representative[id]);
+    return symmetry;
 }
 
 } // namespace graftal

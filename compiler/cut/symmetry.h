@@ -36,7 +36,7 @@ void split_into_halves(CutGraph& cut);
 
 /// Finds the classes: candidates are checked coinductively (a pair is congruent if its edges can be paired so
 /// that all child pairs are), so cycles are no obstacle. Sound; it may miss congruences where several edges
-/// of a node coincide. Bounded effort.
-Symmetry find_symmetry(const CutGraph& cut);
+/// of a node coincide. Bounded effort. All balls of a class become images of its smallest.
+Symmetry find_symmetry(CutGraph& cut);
 
 } // namespace graftal

@@ -103,6 +103,50 @@ TEST(Cut, MirrorImagesShareOneMesh) {
     EXPECT_EQ(result.leaf_count, 8 * std::pow(7, 5));
 }
 
+TEST(Cut, MirrorImagesShareOneMeshWhateverTheirBalls) {
+    const Graph graph = test::pound_sign(3, false);
+    std::vector<ObjectBounds> bounds = test::bounds_of(graph);
+    for (std::size_t id = 0; id < bounds.size(); ++id)
+        bounds[id].ball.radius *= 1 + 0.01 * static_cast<double>(id);
+    for (const double error_px : {0.0, 2.0}) {
+        Diagnostics diagnostics;
+        const std::optional<Cut> result = cut_graph(graph, strong_components(graph), bounds, front_view(),
+                                                    {.error_px = error_px, .steps = 7}, diagnostics);
+        ASSERT_TRUE(result);
+        EXPECT_EQ(result->bodies.size(), 1u);
+    }
+}
+
+/// Unions of two of the next: 2^length cubes.
+Graph doubling_chain(int length) {
+    Graph graph;
+    ObjectId below = graph.primitive(PrimitiveKind::cube);
+    for (int i = 0; i < length; ++i) {
+        Object object;
+        object.name = "b" + std::to_string(i);
+        for (const double side : {-1.0, 1.0}) {
+            Instance instance;
+            instance.master = below;
+            instance.parent_from_child = Affine::translate(Vec3(side, 0, 0)) *
+                                         Affine::rotate(Vec3(0, 1, 0), 20 * side) * Affine::scale(Vec3(0.45));
+            object.instances.push_back(instance);
+        }
+        below = graph.add(std::move(object));
+    }
+    graph.root = below;
+    return graph;
+}
+
+TEST(Cut, DeepUnionsAreRefusedOrCulledWithoutUnfoldingThem) {
+    for (const int length : {60, 500, 3000}) {
+        const Graph graph = doubling_chain(length);
+        Diagnostics diagnostics;
+        EXPECT_FALSE(cut(graph, {.error_px = 0}, diagnostics)) << length;
+        EXPECT_EQ(diagnostics.error_count(), 1u);
+        EXPECT_LE(must_cut(graph, {.error_px = 2}).error_px, 2) << length;
+    }
+}
+
 TEST(Cut, HiddenFacesBetweenCubesAreNotDrawn) {
     const Cut result = must_cut(test::pound_sign(3, false), {.error_px = 0, .steps = 6});
     const double leaves_a_mesh = result.leaf_count / static_cast<double>(result.placement_count);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <string_view>
 
 #include <fmt/format.h>
 
@@ -15,6 +16,11 @@
 namespace graftal {
 
 namespace {
+
+/// POV-Ray leaves out a layer that contributes less than its adc_bailout, by default 1/255: hundreds of times
+/// what a 16-bit picture shows.
+constexpr double default_bailout = 1.0 / 255;
+constexpr std::string_view fine_bailout = "adc_bailout 1e-6";
 
 /// Placements begin to end - 1 of one group.
 struct Run {
@@ -54,6 +60,7 @@ class Emitter {
     void write_header();
     bool write_objects();
     bool write_bucket(const Bucket& bucket);
+    bool needs_fine_bailout() const { return textures_.least_transmit() < default_bailout; }
 
     const Cut& cut_;
     const PovrayOptions& options_;
@@ -139,6 +146,7 @@ bool Emitter::write_scene(const View& view, std::vector<PaletteImage>& pictures)
     out_ << "; the camera mirrors it into POV-Ray's.\n// 1 unit of the model is ";
     out_.number(units_.scale, 6) << " here; <0,0,0> here is ";
     out_.vector(origin, 12) << " of the model.\n\nglobal_settings { assumed_gamma 1";
+    if (needs_fine_bailout()) out_ << " " << fine_bailout;
     out_ << (reflects(cut_, view) ? std::string_view(" max_trace_level 8 }\n") : " }\n");
     const std::string ground =
         view.ground ? textures_.plain(view.ground->material.rgb, view.ground->material) : "";
@@ -151,8 +159,10 @@ bool Emitter::write_scene(const View& view, std::vector<PaletteImage>& pictures)
 
 bool Emitter::write_include(std::vector<PaletteImage>& pictures) {
     write_header();
-    out_ << ", and its colours are linear light.\n// In a scene of your own, with assumed_gamma 1:\n"
-         << fmt::format("//     #include \"{}.inc\"\n", harmless(options_.scene_name))
+    out_ << ", and its colours are linear light.\n// In a scene of your own, with assumed_gamma 1";
+    if (needs_fine_bailout()) out_ << " and " << fine_bailout;
+    out_ << ":\n"
+         << fmt::format("//     #include \"{}\"\n", harmless(options_.file_name))
          << fmt::format("//     object {{ {} }}                   // right-handed\n", identifier_)
          << fmt::format(
                 "//     object {{ {} scale <1,1,-1> }}    // for a camera with look_at, left-handed\n",

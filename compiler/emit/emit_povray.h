@@ -25,6 +25,7 @@ struct PaletteImage {
 struct PovrayOptions {
     std::string scene_name; ///< of the model, for comments and file names; any text (it is made harmless)
     bool include = false;   ///< `.inc`: declares the object in model coordinates, and draws nothing
+    std::string file_name;  ///< of the `.inc`, for the comment that says how to use it
     bool progress = false;  ///< emits `#debug` marks that the driver reads as parse progress
 };
 

@@ -77,6 +77,7 @@ std::string PovrayTextures::layered(const Palette& palette, std::uint32_t index,
     if (palette.size() == 1) return plain(tint.over(palette[0]), material);
     const std::string colours = palette_name(index);
     if (tint.alpha <= no_tint) return texture_text(colours, finish(material, true));
+    least_transmit_ = std::min(least_transmit_, 1 - tint.alpha);
     // Highlights and reflections belong to the top layer alone: each layer adds its own.
     const std::string top =
         fmt::format("{} transmit {}", rgb_text(tint.premultiplied / tint.alpha), number_text(1 - tint.alpha));

@@ -28,6 +28,8 @@ class PovrayTextures {
 
     /// `texture { ... }`, one or two layers.
     const std::vector<std::string>& all() const { return textures_; }
+    /// The least share that a tint leaves of the palette below it; 1 if there are no layers.
+    double least_transmit() const { return least_transmit_; }
     /// `#declare` of the finishes and palettes that the textures name. Adds the pictures they need.
     std::string declarations(std::vector<PaletteImage>& pictures) const;
 
@@ -47,6 +49,7 @@ class PovrayTextures {
     std::map<std::uint32_t, std::string> palettes_; ///< by index in the cut: the declared name
     std::unordered_map<std::string, std::uint32_t> texture_by_text_;
     std::vector<std::string> textures_;
+    double least_transmit_ = 1;
 };
 
 } // namespace graftal

@@ -62,7 +62,10 @@ Status copy_to_standard_output(std::FILE* file) {
 } // namespace
 
 Status write_scene(const CompiledModel& model, const std::string& path, bool include, bool progress) {
-    const PovrayOptions options{model_name(model), include, progress};
+    const PovrayOptions options{.scene_name = model_name(model),
+                                .include = include,
+                                .file_name = std::filesystem::path(path).filename().string(),
+                                .progress = progress};
     PendingFile pending(path);
     const OpenFile file(std::fopen(pending.temporary_path().c_str(), "wb"));
     if (!file) return write_failure(path, errno);
@@ -82,8 +85,8 @@ Status print_scene(const CompiledModel& model, bool include) {
     const OpenFile file(std::tmpfile());
     if (!file) return write_failure("a temporary file", errno);
     std::vector<PaletteImage> palettes;
-    const Status status =
-        emit_to(file.get(), "a temporary file", model, {model_name(model), include, false}, palettes);
+    const Status status = emit_to(file.get(), "a temporary file", model,
+                                  {.scene_name = model_name(model), .include = include}, palettes);
     if (!status.ok()) return status;
     if (!palettes.empty())
         return Status::failure(

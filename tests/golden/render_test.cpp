@@ -109,6 +109,7 @@ TEST_F(Render, CompiledSceneNeedsNothingElse) {
     EXPECT_EQ(read("a.pov"), read("b.pov"));
     EXPECT_EQ(shell("povray +Ia.pov +Oa.png +W96 +H54 -D 2>/dev/null").status, 0);
     ASSERT_EQ(graftal("compile " + gasket + small + "-o gasket.inc -q").status, 0);
+    EXPECT_THAT(read("gasket.inc"), HasSubstr("#include \"gasket.inc\"")) << "says how to use itself";
     EXPECT_THAT(read("gasket.inc"), HasSubstr("#declare"));
 }
 

@@ -157,6 +157,18 @@ TEST(EmitPovray, TintsOverPalettesAreALayerThatAloneShines) {
     EXPECT_THAT(text, HasSubstr("uv_indices { 2,\n    <0,0,0>,<1,1,1> }"));
 }
 
+TEST(EmitPovray, TintsThatHideAlmostAllStillShowWhatIsBelow) {
+    for (const double alpha : {0.99, 0.999}) {
+        Scene scene;
+        const std::uint32_t colours = scene.palette({Rgb(0.1), Rgb(0.2), Rgb(0.3)});
+        scene.group(colours, {{scene.mesh("leaf", 3), {}}}, PathTint(Tint{Rgb(1, 0.5, 0), alpha}));
+        const std::size_t expected = alpha > 1 - 1.0 / 255;
+        EXPECT_EQ(count(scene.text(), "global_settings { assumed_gamma 1 adc_bailout 1e-6 }"), expected);
+        scene.options.include = true;
+        EXPECT_EQ(count(scene.text(), "with assumed_gamma 1 and adc_bailout 1e-6:\n"), expected);
+    }
+}
+
 TEST(EmitPovray, TintsThatHideAllOrNothingAreOneLayer) {
     for (const double alpha : {0.0, 1.0}) {
         Scene scene;

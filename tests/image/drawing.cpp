@@ -1,0 +1,95 @@
+#include "tests/image/drawing.h"
+
+#include <algorithm>
+
+#include <gtest/gtest.h>
+
+#include "compiler/support/file.h"
+#include "runtime/povray/povray.h"
+#include "runtime/povray/temporary_directory.h"
+#include "runtime/render/scene_files.h"
+
+namespace graftal {
+
+namespace {
+
+std::optional<CompiledModel> compile_path(const std::string& path, const CompileOptions& options) {
+    Compilation compilation;
+    std::optional<CompiledModel> model = compile_model(path, options, compilation);
+    EXPECT_TRUE(model.has_value()) << compilation.diagnostics.render(compilation.sources)
+                                   << compilation.status.message();
+    return model;
+}
+
+Image picture_of(const std::string& directory, ImageSize size, SampleFormat format) {
+    PovrayJob job;
+    job.directory = directory;
+    job.width = size.width;
+    job.height = size.height;
+    job.linear16 = format == SampleFormat::linear16;
+    const PovrayResult result = run_povray(job);
+    EXPECT_TRUE(result.status.ok()) << result.status.message();
+    Image image;
+    if (!result.status.ok()) return image;
+    const Status status = read_image(directory + "/" + job.picture, image);
+    EXPECT_TRUE(status.ok()) << status.message();
+    return image;
+}
+
+} // namespace
+
+std::optional<CompiledModel> compile_text(const std::string& name, const std::string& text,
+                                          const CompileOptions& options) {
+    TemporaryDirectory directory;
+    EXPECT_TRUE(directory.create().ok());
+    const std::string path = directory.path() + "/" + name;
+    EXPECT_TRUE(write_text(path, text).ok());
+    return compile_path(path, options);
+}
+
+std::optional<CompiledModel> compile_file(const std::string& path, const CompileOptions& options) {
+    return compile_path(GRAFTAL_SOURCE_DIR "/" + path, options);
+}
+
+Image draw(const CompiledModel& model, SampleFormat format) {
+    TemporaryDirectory directory;
+    EXPECT_TRUE(directory.create().ok());
+    const Status status = write_scene(model, directory.path() + "/scene.pov", false, false);
+    EXPECT_TRUE(status.ok()) << status.message();
+    return picture_of(directory.path(), model.view.size, format);
+}
+
+Image draw_by_hand(const CompiledModel& model, const std::string& scene, SampleFormat format) {
+    TemporaryDirectory directory;
+    EXPECT_TRUE(directory.create().ok());
+    const Status status = write_scene(model, directory.path() + "/model.inc", true, false);
+    EXPECT_TRUE(status.ok()) << status.message();
+    EXPECT_TRUE(write_text(directory.path() + "/scene.pov", scene).ok());
+    return picture_of(directory.path(), model.view.size, format);
+}
+
+double share_covered(const Image& image) {
+    const auto channels = static_cast<std::size_t>(image.channels);
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < image.pixels.size(); i += channels)
+        count += !std::equal(image.pixels.begin(), image.pixels.begin() + image.channels,
+                             image.pixels.begin() + static_cast<std::ptrdiff_t>(i));
+    return static_cast<double>(count * channels) / static_cast<double>(image.pixels.size());
+}
+
+void show_pigments(CompiledModel& model) {
+    for (PlacementGroup& group : model.cut.groups) {
+        group.material.ambient = 1;
+        group.material.diffuse = group.material.specular = group.material.reflection = 0;
+    }
+}
+
+CompileOptions whole(ImageSize size, std::optional<unsigned> steps) {
+    CompileOptions options;
+    options.size = size;
+    options.cut.error_px = 0;
+    options.steps = steps;
+    return options;
+}
+
+} // namespace graftal

@@ -1,0 +1,29 @@
+#include "tests/image/parted_cut.h"
+
+#include <gtest/gtest.h>
+
+#include "compiler/cut/assemble.h"
+
+namespace graftal {
+
+CompiledModel parted_at(const CompiledModel& model, double mesh_triangles) {
+    CutGraph cut = build_cut_graph(model.model.graph, model.model.components, model.model.bounds);
+    split_into_halves(cut);
+    const Symmetry symmetry = find_symmetry(cut);
+    const CutOptions options;
+    const Projection projection(model.view, options, 0, 1e-5);
+    Piece root;
+    root.node = cut.root;
+    root.steps = model.model.steps.value_or(unlimited_steps);
+    Weights weights(cut);
+    Choice choice;
+    choice.threshold = mesh_triangles;
+    std::optional<Cut> result =
+        assemble(cut, symmetry, projection, root, choice, weights, {1'000'000, 4'000'000});
+    EXPECT_TRUE(result.has_value());
+    CompiledModel parted = model;
+    if (result) parted.cut = std::move(*result);
+    return parted;
+}
+
+} // namespace graftal

@@ -9,6 +9,7 @@
 #include <fmt/ranges.h>
 #include <glm/common.hpp>
 
+#include "compiler/frame_model.h"
 #include "compiler/graph/verify.h"
 #include "compiler/support/number.h"
 
@@ -108,11 +109,6 @@ bool too_large(const Box& box) {
     return !box.empty() && !(std::max({far.x, far.y, far.z}) <= largest_size);
 }
 
-/// A model of nothing but planes is framed as the unit cube would be.
-Box box_to_frame(const ObjectBounds& bounds) {
-    return bounds.box.empty() ? Box{Vec3(-1.0), Vec3(1.0)} : bounds.box;
-}
-
 } // namespace
 
 std::optional<AnalysedModel> analyse_model(const std::string& path, const CompileOptions& options,
@@ -158,15 +154,7 @@ std::optional<CompiledModel> compile_model(const std::string& path, const Compil
     std::optional<AnalysedModel> model = analyse_model(path, options, compilation);
     if (!model) return std::nullopt;
     Stages stages(compilation.times);
-
-    const ObjectBounds& bounds = model->bounds[model->graph.root];
-    // Levels of an unending model are framed alike, by the box: their terminals may reach beyond the limit set.
-    const bool cut_off = model->steps && model->components.unending[model->graph.root];
-    View view = stages.run("frame", [&] {
-        return frame(model->graph, box_to_frame(bounds), options.size, options.camera,
-                     cut_off ? nullptr : &model->bounds);
-    });
-
+    View view = stages.run("frame", [&] { return frame_model(*model, options.size, options.camera); });
     CutOptions cut_options = options.cut;
     cut_options.steps = model->steps;
     std::optional<Cut> cut = stages.run("cut", [&] {

@@ -25,7 +25,7 @@ struct CompileOptions {
     std::optional<unsigned> steps;
     ImageSize size;
     CameraOverride camera;
-    CutOptions cut;  ///< its steps are taken from above
+    CutOptions cut; ///< its steps are taken from above
 };
 
 struct StageTime {
@@ -39,8 +39,8 @@ struct AnalysedModel {
     Graph graph;
     Components components;
     Contraction contraction;
-    std::vector<ObjectBounds> bounds;  ///< empty unless the contraction is proved or acyclic
-    std::optional<unsigned> steps;     ///< from the command line, else from the model
+    std::vector<ObjectBounds> bounds; ///< empty unless the contraction is proved or acyclic
+    std::optional<unsigned> steps;    ///< from the command line, else from the model
 };
 
 /// A model ready to emit.
@@ -54,7 +54,7 @@ struct CompiledModel {
 struct Compilation {
     SourceMap sources;
     Diagnostics diagnostics;
-    Status status;  ///< the environment's, e.g. a model file that cannot be read
+    Status status; ///< the environment's, e.g. a model file that cannot be read
     std::vector<StageTime> times;
 };
 
@@ -67,4 +67,4 @@ std::optional<AnalysedModel> analyse_model(const std::string& path, const Compil
 std::optional<CompiledModel> compile_model(const std::string& path, const CompileOptions& options,
                                            Compilation& compilation);
 
-}  // namespace graftal
+} // namespace graftal

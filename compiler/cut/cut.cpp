@@ -73,9 +73,11 @@ class Cutter {
         root.node = cut_.root;
         root.steps = options.steps.value_or(unlimited_steps);
         Weights weights(cut_, visible_cube_triangles(cut_, symmetry_, root.steps));
-        choice_ = options.flatten ? flat_choice(projection, root, weights)
-                                  : choose_cut(cut_, symmetry_, projection, root, weights);
         const auto memory = static_cast<double>(options.memory_bytes);
+        const PieceKind whole{root.node, root.steps, PieceKind::step_of(detail_of(cut_, projection, root))};
+        choice_ = options.flatten || better_flat(weights.of(whole), memory)
+                      ? flat_choice(weights.of(whole))
+                      : choose_cut(cut_, symmetry_, projection, root, weights);
         too_much = !(choice_.bytes <= memory);
         if (too_much) return std::nullopt;
         const AssemblyLimits limits{static_cast<std::size_t>(memory / PovrayCosts::placement) + 1,
@@ -87,13 +89,20 @@ class Cutter {
         return cut;
     }
 
-    Choice flat_choice(const Projection& projection, const Piece& root, Weights& weights) const {
-        const PieceKind kind{root.node, root.steps, PieceKind::step_of(detail_of(cut_, projection, root))};
+    static Choice flat_choice(const Weights::Weight& whole) {
         Choice choice;
-        choice.leaves = weights.of(kind).leaves;
-        choice.placements = choice.leaves;
-        choice.bytes = PovrayCosts::base + choice.leaves * PovrayCosts::placement;
+        choice.leaves = whole.leaves;
+        choice.placements = whole.leaves;
+        choice.bytes = PovrayCosts::base + whole.leaves * PovrayCosts::placement;
         return choice;
+    }
+
+    /// Twigs, leaves and balls are best spelt out where they are few enough: they are drawn exactly, and
+    /// POV-Ray traces them several times as fast as their meshes in boxes that overlap.
+    static bool better_flat(const Weights::Weight& whole, double memory) {
+        constexpr double share_of_memory = 0.125;
+        return flat_choice(whole).bytes <= share_of_memory * memory &&
+               whole.curved_leaves > 0.5 * whole.leaves;
     }
 
     Cut finish(Cut cut, double factor, const CutOptions& options) {

@@ -14,8 +14,8 @@ namespace graftal {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
-/// The triangles of a proxy: an octahedron.
-constexpr double proxy_triangles = 8;
+/// A proxy's mesh is an octahedron.
+constexpr Weights::Weight proxy{8, 1, 1};
 constexpr std::size_t max_known_kinds = 4'000'000;
 
 } // namespace
@@ -85,10 +85,17 @@ PieceKind Weights::child_kind(const PieceKind& parent, const CutEdge& edge) cons
         const double sizes = std::max(cut_.nodes[edge.child].ball.radius, 1e-300) /
                              std::max(cut_.nodes[parent.node].ball.radius, 1e-300);
         const double change = std::log2(std::max(ratio * sizes, 1e-300)) * PieceKind::steps_an_octave;
-        kind.detail_step += static_cast<std::int32_t>(std::clamp(std::round(change), -1e8, 1e8));
+        // Rounded up, so that what is counted is never less than what is unfolded.
+        kind.detail_step += static_cast<std::int32_t>(std::clamp(std::ceil(change - 1e-6), -1e8, 1e8));
         kind.detail_step = std::min(kind.detail_step, 1 << 20);
     }
     return normalised(kind);
+}
+
+Weights::Weight Weights::of_primitive(PrimitiveKind kind) const {
+    if (kind == PrimitiveKind::cube) return {cube_triangles_, 1, 0};
+    const TessellatedPrimitive& coarsest = tessellated(kind, 0);
+    return {static_cast<double>(coarsest.triangles.size()), 1, coarsest.normals.empty() ? 0.0 : 1.0};
 }
 
 Weights::Weight Weights::of(const PieceKind& asked) {
@@ -100,7 +107,7 @@ Weights::Weight Weights::of(const PieceKind& asked) {
     const PieceKind start = normalised(asked);
     if (const auto found = known_.find(start); found != known_.end()) return found->second;
     std::vector<Frame> stack = {{start, 0, {}}};
-    known_.emplace(start, Weight{proxy_triangles, 1}); // what a kind under way counts as
+    known_.emplace(start, proxy); // what a kind under way counts as
     while (!stack.empty()) {
         Frame& frame = stack.back();
         const CutNode& node = cut_.nodes[frame.kind.node];
@@ -113,21 +120,20 @@ Weights::Weight Weights::of(const PieceKind& asked) {
             if (found != known_.end()) {
                 frame.sum.triangles += found->second.triangles;
                 frame.sum.leaves += found->second.leaves;
+                frame.sum.curved_leaves += found->second.curved_leaves;
                 ++frame.next_edge;
             } else if (known_.size() < max_known_kinds) {
-                known_.emplace(child, Weight{proxy_triangles, 1});
+                known_.emplace(child, proxy);
                 stack.push_back({child, 0, {}});
             } else {
                 ++frame.next_edge;
             }
             continue;
         }
-        if (node.primitive == PrimitiveKind::cube)
-            frame.sum = {cube_triangles_, 1};
-        else if (node.primitive && *node.primitive != PrimitiveKind::plane)
-            frame.sum = {static_cast<double>(tessellated(*node.primitive, 0).triangles.size()), 1};
+        if (node.primitive && *node.primitive != PrimitiveKind::plane)
+            frame.sum = of_primitive(*node.primitive);
         else if (edges.empty())
-            frame.sum = {proxy_triangles, 1};
+            frame.sum = proxy;
         known_[frame.kind] = frame.sum;
         stack.pop_back();
     }

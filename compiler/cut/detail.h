@@ -34,14 +34,14 @@ class Projection {
 };
 
 /// A node with the levels it has left and the detail of its diameter: what is baked as one mesh. Details are
-/// counted in steps of 2^(1/32).
+/// counted in steps of 2^(1/256).
 struct PieceKind {
     NodeId node = 0;
     std::uint32_t steps = unlimited_steps;
     std::int32_t detail_step = endless_detail;
 
     static constexpr std::int32_t endless_detail = INT32_MAX;
-    static constexpr int steps_an_octave = 32;
+    static constexpr int steps_an_octave = 256;
 
     /// The step of a detail, rounded up. Requires detail > 0.
     static std::int32_t step_of(double detail);
@@ -62,6 +62,7 @@ class Weights {
     struct Weight {
         double triangles = 0;
         double leaves = 0;
+        double curved_leaves = 0; ///< those whose meshes only come near them
     };
 
     /// Saturates at infinity; kinds that lead back to themselves without losing detail count as one leaf.
@@ -81,6 +82,8 @@ class Weights {
     PieceKind child_kind(const PieceKind& parent, const CutEdge& edge) const;
 
   private:
+    Weight of_primitive(PrimitiveKind kind) const;
+
     const CutGraph& cut_;
     double cube_triangles_;
     std::unordered_map<PieceKind, Weight, PieceKindHash> known_;

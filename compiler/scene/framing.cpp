@@ -9,8 +9,6 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
-#include "compiler/scene/outline.h"
-
 namespace graftal {
 
 namespace {
@@ -39,9 +37,8 @@ struct Subject {
         const double reach = std::max({std::abs(centre.x), std::abs(centre.y), std::abs(centre.z)});
         scale = std::max({half.x, half.y, half.z, 1e-12 * reach});
         if (scale == 0) scale = 1; // a point at the origin
-        for (int i = 0; i < 8; ++i)
-            corners.push_back(
-                Vec3(i & 1 ? half.x : -half.x, i & 2 ? half.y : -half.y, i & 4 ? half.z : -half.z) / scale);
+        for (const Vec3& corner : Box{-half, half}.corners())
+            corners.push_back(corner / scale);
     }
 
     Vec3 local(Vec3 world) const { return (world - centre) / scale; }
@@ -191,9 +188,9 @@ Vec3 middle(const Camera& camera, const Subject& subject) {
     return centre.x * camera.right + centre.y * camera.up + centre.z * camera.direction;
 }
 
-/// Takes the outline of the parts in place of the corners of the box. The directions are those in which the
+/// Takes the outline in place of the corners of the box. The directions are those in which the
 /// sides of the picture cut into space, by parallel rays and by those of the automatic angle.
-void look_closer(Subject& subject, const Camera& camera, const Parts& parts, double aspect) {
+void look_closer(Subject& subject, const Camera& camera, const Outliner& outliner, double aspect) {
     const Frustum slope(automatic_horizontal_angle_deg(aspect), aspect);
     std::vector<Vec3> directions;
     for (const Vec3 side : {camera.right, -camera.right, camera.up, -camera.up})
@@ -202,7 +199,7 @@ void look_closer(Subject& subject, const Camera& camera, const Parts& parts, dou
         directions.push_back(sign * camera.right - slope.x * camera.direction);
         directions.push_back(sign * camera.up - slope.y * camera.direction);
     }
-    std::vector<Vec3> points = outline(parts.graph, parts.bounds, directions);
+    std::vector<Vec3> points = outliner(directions);
     for (Vec3& point : points)
         point = subject.local(point);
     if (!points.empty()) subject.corners = std::move(points);
@@ -260,7 +257,7 @@ CameraSetting merge(const CameraSetting& model, const CameraSetting& over) {
     return merged;
 }
 
-Camera frame_camera(const CameraSetting& setting, const Box& bounds, const std::optional<Parts>& parts,
+Camera frame_camera(const CameraSetting& setting, const Box& bounds, const Outliner& outliner,
                     ImageSize size) {
     Subject subject(bounds);
     const double aspect = static_cast<double>(size.width) / size.height;
@@ -276,7 +273,7 @@ Camera frame_camera(const CameraSetting& setting, const Box& bounds, const std::
     }
     orient(camera, direction, setting.up.value_or(Vec3(0, 1, 0)));
     // Seen face on, the box is exact already.
-    if (parts && !figure) look_closer(subject, camera, *parts, aspect);
+    if (outliner && !figure) look_closer(subject, camera, outliner, aspect);
     if (setting.orthographic || (figure && !setting.location && !setting.angle_deg))
         place_orthographic(camera, setting, subject, aspect);
     else

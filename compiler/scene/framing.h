@@ -22,17 +22,11 @@ double thickness(const Box& bounds);
 /// `over` taking precedence over `model`, field by field. An angle or a width says which projection is meant.
 CameraSetting merge(const CameraSetting& model, const CameraSetting& over);
 
-/// What a model is made of, for closer framing than its box allows.
-struct Parts {
-    const Graph& graph;
-    const std::vector<ObjectBounds>& bounds;
-};
-
-/// The camera that fulfils the setting and shows the whole of the bounds, or of the parts in them: as near,
+/// The camera that fulfils the setting and shows the whole of the bounds, or of the outline in them: as near,
 /// or as wide, as leaves a margin of 5 % on either side of the tighter dimension. Only where location and
 /// angle (or width) are both given, or the eye is so near that more than 90 degrees would be needed, part of
 /// the model may be out of view.
-Camera frame_camera(const CameraSetting& setting, const Box& bounds, const std::optional<Parts>& parts,
+Camera frame_camera(const CameraSetting& setting, const Box& bounds, const Outliner& outliner,
                     ImageSize size);
 
 } // namespace graftal

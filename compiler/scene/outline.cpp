@@ -58,11 +58,8 @@ class Outline {
         std::vector<Vec3> points;
         points.reserve(8 * pieces_.size());
         for (const Piece& piece : pieces_) {
-            const Box& box = bounds_[piece.object].box;
-            for (int i = 0; i < 8; ++i)
-                points.push_back(
-                    piece.world_from_object(Vec3(i & 1 ? box.max.x : box.min.x, i & 2 ? box.max.y : box.min.y,
-                                                 i & 4 ? box.max.z : box.min.z)));
+            for (const Vec3& corner : bounds_[piece.object].box.corners())
+                points.push_back(piece.world_from_object(corner));
         }
         return points;
     }

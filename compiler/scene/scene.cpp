@@ -87,16 +87,15 @@ Rgb Sky::colour(Vec3 direction) const {
 }
 
 View frame(const Graph& graph, const Box& bounds, ImageSize size, const CameraOverride& camera,
-           const std::vector<ObjectBounds>* object_bounds) {
+           const Outliner& outliner) {
     GRAFTAL_CHECK(!bounds.empty(), "frame: empty bounds");
     GRAFTAL_CHECK(size.width > 0 && size.height > 0, "frame: empty picture");
     const SceneSettings& settings = graph.settings;
     const bool flat = thickness(bounds) <= flat_share;
     View view;
     view.size = size;
-    std::optional<Parts> parts;
-    if (object_bounds) parts.emplace(Parts{graph, *object_bounds});
-    view.camera = frame_camera(merge(settings.camera.value_or(CameraSetting{}), camera), bounds, parts, size);
+    view.camera =
+        frame_camera(merge(settings.camera.value_or(CameraSetting{}), camera), bounds, outliner, size);
     if (settings.ground) view.ground = resolve(*settings.ground, graph.materials);
     if (!settings.lights.empty())
         view.lights = model_lights(settings.lights);

@@ -3,6 +3,7 @@
 // What a renderer needs besides geometry: a camera, lights and a sky, all in world space (right-handed,
 // y up). Decided here from the model's scene statements and its bounds; engines only follow.
 
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -66,6 +67,9 @@ struct View {
     std::optional<Ground> ground;
 };
 
+/// Gives points whose convex hull holds the model, close to it where it reaches farthest in the directions.
+using Outliner = std::function<std::vector<Vec3>(const std::vector<Vec3>& directions)>;
+
 /// `--camera` of the command line: like the model's camera statement, and taking precedence over it field by
 /// field.
 using CameraOverride = CameraSetting;
@@ -74,10 +78,9 @@ using CameraOverride = CameraSetting;
 /// is in the picture with a small margin: flat models (no depth along one axis) face on, undistorted and in
 /// their true colours; models in space from the front, a little from the right and above, with a key light
 /// with shadows over the viewer's left shoulder and a weaker shadowless fill from the right; a background
-/// that lets the model stand out. With the bounds of all objects as well, the picture is filled by the limit
-/// set itself rather than by its box (not for use where a model is cut off after few levels, whose parts
-/// may be larger). Requires bounds that are not empty.
+/// that lets the model stand out. With an outline as well, the picture is filled by the model itself rather
+/// than by its box. Requires bounds that are not empty.
 View frame(const Graph& graph, const Box& bounds, ImageSize size, const CameraOverride& camera = {},
-           const std::vector<ObjectBounds>* object_bounds = nullptr);
+           const Outliner& outliner = {});
 
 } // namespace graftal

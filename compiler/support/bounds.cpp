@@ -14,6 +14,13 @@ void Box::include(const Box& other) {
     max = glm::max(max, other.max);
 }
 
+std::array<Vec3, 8> Box::corners() const {
+    std::array<Vec3, 8> corners;
+    for (int i = 0; i < 8; ++i)
+        corners[i] = {i & 1 ? max.x : min.x, i & 2 ? max.y : min.y, i & 4 ? max.z : min.z};
+    return corners;
+}
+
 Box transformed(const Affine& a, const Box& box) {
     if (box.empty()) return {};
     const Vec3 half = 0.5 * box.size();

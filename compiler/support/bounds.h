@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <limits>
 
 #include "compiler/support/affine.h"
@@ -14,6 +15,7 @@ struct Box {
     bool empty() const { return !(min.x <= max.x && min.y <= max.y && min.z <= max.z); }
     Vec3 centre() const { return 0.5 * (min + max); }
     Vec3 size() const { return max - min; }
+    std::array<Vec3, 8> corners() const;
     void include(Vec3 point);
     void include(const Box& other);
     bool operator==(const Box&) const = default;

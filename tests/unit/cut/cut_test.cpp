@@ -117,6 +117,18 @@ TEST(Cut, MirrorImagesShareOneMeshWhateverTheirBalls) {
     }
 }
 
+TEST(Cut, CurvedLeavesAreSpeltOutWhereTheyAreFew) {
+    Graph graph = test::gasket(false);
+    const ObjectId cylinder = graph.primitive(PrimitiveKind::cylinder);
+    for (Object& object : graph.objects)
+        if (object.terminal) object.terminal->master = cylinder;
+    EXPECT_EQ(must_cut(graph, {.error_px = 0, .steps = 6}).placement_count, 729u);
+    const Cut many = must_cut(graph, {.error_px = 0, .steps = 15});
+    EXPECT_LT(many.placement_count, 100'000u);
+    EXPECT_GT(many.triangle_count, 0u);
+    EXPECT_EQ(many.leaf_count, std::pow(3, 15));
+}
+
 /// Unions of two of the next: 2^length cubes.
 Graph doubling_chain(int length) {
     Graph graph;

@@ -29,6 +29,10 @@ struct Tetrahedron {
                  .parent_from_child = Affine::translate(0.5 * corner) * Affine::scale(Vec3(0.5))});
         graph.root = graph.add(std::move(object));
     }
+
+    Outliner outliner() const {
+        return [this](const std::vector<Vec3>& directions) { return outline(graph, bounds, directions); };
+    }
 };
 
 double reach(const std::vector<Vec3>& points, Vec3 direction) {
@@ -115,7 +119,7 @@ TEST(Outline, HostileGraphsEndSoon) {
 TEST(Outline, FillsThePictureWithTheModelInsteadOfItsBox) {
     const Tetrahedron model;
     const View by_box = frame(model.graph, unit_box, {400, 300});
-    const View view = frame(model.graph, unit_box, {400, 300}, {}, &model.bounds);
+    const View view = frame(model.graph, unit_box, {400, 300}, {}, model.outliner());
     EXPECT_EQ(view.camera.direction, by_box.camera.direction);
     EXPECT_EQ(view.camera.angle_deg, by_box.camera.angle_deg);
     double left = 1, right = 0, bottom = 1, top = 0;
@@ -141,7 +145,7 @@ TEST(Outline, ParallelViewsAreFilledAndCentredToo) {
     const Tetrahedron model;
     const Camera by_box = frame(model.graph, unit_box, {400, 300}, {.orthographic = true}).camera;
     const Camera camera =
-        frame(model.graph, unit_box, {400, 300}, {.orthographic = true}, &model.bounds).camera;
+        frame(model.graph, unit_box, {400, 300}, {.orthographic = true}, model.outliner()).camera;
     EXPECT_LT(camera.width, 0.95 * by_box.width);
     for (const Vec3 corner : model.corners)
         EXPECT_GT(glm::dot(corner - camera.location, camera.direction), 0);

@@ -1,0 +1,50 @@
+#include "compiler/frame_model.h"
+
+#include "compiler/cut/unfold.h"
+#include "compiler/scene/outline.h"
+
+namespace graftal {
+
+namespace {
+
+/// The corners of all that is drawn of an unending model by its steps: a tree of a few levels may be a small
+/// part of its limit set, and terminals may reach beyond it. Nothing where there is too much to look at.
+std::vector<Vec3> corners_of_levels(const AnalysedModel& model) {
+    constexpr std::uint64_t most_leaves = 200'000;
+    constexpr unsigned most_steps = 200; // a leaf may lie that deep
+    if (*model.steps > most_steps) return {};
+    std::vector<Vec3> points;
+    const auto add = [&](const UnfoldedLeaf& leaf) {
+        const Box& box = model.bounds[leaf.object].box;
+        if (!box.empty())
+            for (const Vec3& corner : box.corners())
+                points.push_back(leaf.world_from_object(corner));
+        return true;
+    };
+    if (!unfold(model.graph, model.components, model.steps, most_leaves, add)) return {};
+    return points;
+}
+
+Box box_of(const std::vector<Vec3>& points) {
+    Box box;
+    for (const Vec3& point : points)
+        box.include(point);
+    return box;
+}
+
+} // namespace
+
+View frame_model(const AnalysedModel& model, ImageSize size, const CameraOverride& camera) {
+    if (model.steps && model.components.unending[model.graph.root]) {
+        const std::vector<Vec3> points = corners_of_levels(model);
+        if (!points.empty())
+            return frame(model.graph, box_of(points), size, camera, [&](const auto&) { return points; });
+    }
+    const Box& box = model.bounds[model.graph.root].box;
+    const Box unit{Vec3(-1.0), Vec3(1.0)}; // stands in for nothing but planes
+    return frame(
+        model.graph, box.empty() ? unit : box, size, camera,
+        [&](const std::vector<Vec3>& directions) { return outline(model.graph, model.bounds, directions); });
+}
+
+} // namespace graftal

@@ -15,10 +15,9 @@ std::vector<Vec3> corners_of_levels(const AnalysedModel& model) {
     if (*model.steps > most_steps) return {};
     std::vector<Vec3> points;
     const auto add = [&](const UnfoldedLeaf& leaf) {
-        const Box& box = model.bounds[leaf.object].box;
-        if (!box.empty())
-            for (const Vec3& corner : box.corners())
-                points.push_back(leaf.world_from_object(corner));
+        for (const Vec3& corner :
+             hull_points(model.graph.objects[leaf.object], model.bounds[leaf.object].box))
+            points.push_back(leaf.world_from_object(corner));
         return true;
     };
     if (!unfold(model.graph, model.components, model.steps, most_leaves, add)) return {};

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "compiler/analysis/contraction.h"
@@ -18,6 +19,9 @@ struct ObjectBounds {
 
 /// The box of a canonical primitive (exact), and its smallest ball. A plane has neither.
 ObjectBounds primitive_bounds(PrimitiveKind kind);
+
+/// The corners of the canonical triangle: equilateral, on the unit circle about z, its apex up.
+std::array<Vec3, 3> triangle_corners();
 
 /// The exact support function of a canonical primitive: max of <direction, x> over it. Not for planes.
 double primitive_support(PrimitiveKind kind, Vec3 direction);

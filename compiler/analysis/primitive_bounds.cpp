@@ -28,11 +28,16 @@ Vec3 farther(Vec3 direction, Vec3 a, Vec3 b) {
 
 } // namespace
 
+std::array<Vec3, 3> triangle_corners() {
+    return {Vec3(0, 1, 0), Vec3(-half_sqrt3, -0.5, 0), Vec3(half_sqrt3, -0.5, 0)};
+}
+
 Vec3 primitive_support_point(PrimitiveKind kind, Vec3 direction) {
     switch (kind) {
-    case PrimitiveKind::triangle:
-        return farther(direction, Vec3(0, 1, 0),
-                       farther(direction, Vec3(-half_sqrt3, -0.5, 0), Vec3(half_sqrt3, -0.5, 0)));
+    case PrimitiveKind::triangle: {
+        const auto [top, left, right] = triangle_corners();
+        return farther(direction, top, farther(direction, left, right));
+    }
     case PrimitiveKind::sphere: {
         const double length = glm::length(direction);
         return length > 0 ? direction / length : Vec3(1, 0, 0);

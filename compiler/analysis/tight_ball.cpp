@@ -7,6 +7,7 @@
 
 #include <glm/geometric.hpp>
 
+#include "compiler/analysis/bounding.h"
 #include "compiler/analysis/smallest_ball.h"
 #include "compiler/support/check.h"
 
@@ -105,9 +106,8 @@ class Pieces {
     void split_primitive(const Affine& place, PrimitiveKind kind) {
         switch (kind) {
         case PrimitiveKind::triangle:
-            add_point(place(Vec3(0, 1, 0)));
-            add_point(place(Vec3(-std::numbers::sqrt3 / 2, -0.5, 0)));
-            add_point(place(Vec3(std::numbers::sqrt3 / 2, -0.5, 0)));
+            for (const Vec3& corner : triangle_corners())
+                add_point(place(corner));
             return;
         case PrimitiveKind::sphere:
             add({place.translation, norm(place.linear)}, {});

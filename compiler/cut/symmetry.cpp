@@ -4,12 +4,13 @@
 #include <array>
 #include <cmath>
 #include <map>
-#include <numbers>
 #include <tuple>
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
+
+#include "compiler/analysis/bounding.h"
 
 namespace graftal {
 
@@ -54,9 +55,7 @@ bool is_orthogonal(const Mat3& m) {
 /// Whether the map takes the canonical primitive onto itself.
 bool preserves(PrimitiveKind kind, const Affine& a) {
     if (kind == PrimitiveKind::triangle) {
-        const double half_width = std::numbers::sqrt3 / 2;
-        const std::array<Vec3, 3> corners = {Vec3(0, 1, 0), Vec3(-half_width, -0.5, 0),
-                                             Vec3(half_width, -0.5, 0)};
+        const std::array<Vec3, 3> corners = triangle_corners();
         for (const Vec3& corner : corners) {
             const bool lands = std::any_of(corners.begin(), corners.end(), [&](const Vec3& other) {
                 return glm::distance(a(corner), other) < tolerance;

@@ -9,6 +9,7 @@
 
 #include <glm/geometric.hpp>
 
+#include "compiler/analysis/bounding.h"
 #include "compiler/support/check.h"
 
 namespace graftal {
@@ -210,9 +211,8 @@ TessellatedPrimitive make_cube() {
 }
 
 TessellatedPrimitive make_triangle() {
-    const double half = std::sqrt(3.0) / 2;
-    return {
-        .vertices = {{0, 1, 0}, {-half, -0.5, 0}, {half, -0.5, 0}}, .normals = {}, .triangles = {{0, 1, 2}}};
+    const auto [top, left, right] = triangle_corners();
+    return {.vertices = {top, left, right}, .normals = {}, .triangles = {{0, 1, 2}}};
 }
 
 TessellatedPrimitive make(PrimitiveKind kind, int fineness) {

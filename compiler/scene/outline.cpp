@@ -58,7 +58,7 @@ class Outline {
         std::vector<Vec3> points;
         points.reserve(8 * pieces_.size());
         for (const Piece& piece : pieces_) {
-            for (const Vec3& corner : bounds_[piece.object].box.corners())
+            for (const Vec3& corner : hull_points(graph_.objects[piece.object], bounds_[piece.object].box))
                 points.push_back(piece.world_from_object(corner));
         }
         return points;
@@ -103,6 +103,16 @@ class Outline {
 };
 
 } // namespace
+
+std::vector<Vec3> hull_points(const Object& object, const Box& box) {
+    if (object.primitive == PrimitiveKind::triangle) {
+        const auto corners = triangle_corners();
+        return {corners.begin(), corners.end()};
+    }
+    if (box.empty()) return {};
+    const auto corners = box.corners();
+    return {corners.begin(), corners.end()};
+}
 
 std::vector<Vec3> outline(const Graph& graph, const std::vector<ObjectBounds>& bounds,
                           const std::vector<Vec3>& directions) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -19,7 +20,7 @@ struct PaletteImage {
     std::string file_name; ///< beside the scene; PNG, 16 bit, linear
     int width = 0;
     int height = 0;
-    std::vector<Rgb> pixels; ///< row by row, top first
+    std::span<const Rgb> pixels; ///< row by row, top first, of a palette of the cut; may end early
 };
 
 struct PovrayOptions {
@@ -31,7 +32,8 @@ struct PovrayOptions {
 
 /// Writes the scene as POV-Ray 3.7 SDL (research: povray.md): literal placements of shared meshes, grouped by
 /// texture; the whole scaled so that it is about 1000 units large. Returns false if the sink stopped it.
-/// `palettes` receives the pictures to write beside it. Deterministic.
+/// `palettes` receives the pictures to write beside it, all before the sink gets its first piece.
+/// Deterministic.
 bool emit_povray(const Graph& graph, const Cut& cut, const View& view, const PovrayOptions& options,
                  const TextSink& sink, std::vector<PaletteImage>& palettes);
 

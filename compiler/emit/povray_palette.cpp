@@ -63,10 +63,7 @@ std::string palette_pigment(const Palette& palette, const std::string& file_name
 
 PaletteImage palette_image(const Palette& palette, std::string file_name) {
     const PaletteLayout layout(static_cast<std::uint32_t>(palette.size()));
-    PaletteImage image{std::move(file_name), layout.width(), layout.height(), palette};
-    image.pixels.resize(static_cast<std::size_t>(layout.width()) * static_cast<std::size_t>(layout.height()),
-                        palette.back());
-    return image;
+    return {std::move(file_name), layout.width(), layout.height(), palette};
 }
 
 } // namespace graftal

@@ -33,7 +33,7 @@ class PaletteLayout {
 /// The pigment of a palette: `uv_mapping ...`, a colour map, or a picture of the given file name.
 std::string palette_pigment(const Palette& palette, const std::string& file_name);
 
-/// The picture. Requires a palette whose layout is one.
+/// The picture, over the palette's own colours. Requires a palette whose layout is one.
 PaletteImage palette_image(const Palette& palette, std::string file_name);
 
 } // namespace graftal

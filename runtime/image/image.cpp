@@ -84,14 +84,4 @@ Status write_image(const std::string& path, const Image& image, SampleFormat for
     return error.empty() ? pending.commit() : failure("write", path, error);
 }
 
-Status write_palette(const std::string& path, int width, int height, const std::vector<Rgb>& pixels) {
-    GRAFTAL_CHECK(pixels.size() == static_cast<std::size_t>(width) * static_cast<std::size_t>(height), path);
-    Image image{width, height, 3, {}};
-    image.pixels.reserve(3 * pixels.size());
-    for (const Rgb& rgb : pixels)
-        for (int c = 0; c < 3; ++c)
-            image.pixels.push_back(static_cast<float>(rgb[c]));
-    return write_image(path, image, SampleFormat::linear16);
-}
-
 } // namespace graftal

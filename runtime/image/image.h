@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -47,8 +48,8 @@ Status write_image(const std::string& path, const Image& image, SampleFormat for
                    const ImageMetadata& metadata = {});
 
 /// Writes a 16-bit PNG of linear values for an SDL image_map with `gamma 1.0`: sample = round(65535 value).
-/// Requires pixels.size() = width * height.
-Status write_palette(const std::string& path, int width, int height, const std::vector<Rgb>& pixels);
+/// Pixels that are missing at the end are filled with the last. Requires 0 < pixels.size() <= width * height.
+Status write_palette(const std::string& path, int width, int height, std::span<const Rgb> pixels);
 
 /// How far two pictures are apart. Over the samples a_i, b_i, i = 1..N, of all pixels and channels
 /// (a grey picture counts as RGB, a missing alpha as 1), with d_i = |a_i - b_i|:

@@ -4,6 +4,8 @@
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
+#include <functional>
+#include <future>
 #include <memory>
 
 #include <fmt/format.h>
@@ -27,12 +29,25 @@ Status write_failure(const std::string& path, int reason) {
     return Status::failure(fmt::format("cannot write '{}': {}", path, std::strerror(reason)));
 }
 
-/// Emits to an open file. `name` is the file's, for messages.
+Status write_palettes(const std::filesystem::path& folder, const std::vector<PaletteImage>& palettes) {
+    Status status;
+    for (const PaletteImage& palette : palettes) {
+        if (!status.ok()) break;
+        status = write_palette((folder / palette.file_name).string(), palette.width, palette.height,
+                               palette.pixels);
+    }
+    return status;
+}
+
+/// Emits to an open file. `name` is the file's, for messages; `on_text` is called before each piece is
+/// written.
 Status emit_to(std::FILE* file, const std::string& name, const CompiledModel& model,
-               const PovrayOptions& options, std::vector<PaletteImage>& palettes) {
+               const PovrayOptions& options, std::vector<PaletteImage>& palettes,
+               const std::function<void()>& on_text) {
     int reason = 0;
     const auto sink = [&](std::string_view text) {
         if (Interruption::signal()) return false;
+        on_text();
         errno = 0;
         if (std::fwrite(text.data(), 1, text.size(), file) == text.size()) return true;
         reason = errno;
@@ -69,13 +84,17 @@ Status write_scene(const CompiledModel& model, const std::string& path, bool inc
     PendingFile pending(path);
     const OpenFile file(std::fopen(pending.temporary_path().c_str(), "wb"));
     if (!file) return write_failure(path, errno);
-    std::vector<PaletteImage> palettes;
-    Status status = emit_to(file.get(), path, model, options, palettes);
     const std::filesystem::path folder = std::filesystem::path(path).parent_path();
-    for (const PaletteImage& palette : palettes) {
-        if (!status.ok()) break;
-        status = write_palette((folder / palette.file_name).string(), palette.width, palette.height,
-                               palette.pixels);
+    std::vector<PaletteImage> palettes;
+    std::future<Status> written; // meanwhile
+    const auto on_text = [&] {
+        if (written.valid() || palettes.empty()) return;
+        written = std::async(std::launch::async, write_palettes, std::cref(folder), std::cref(palettes));
+    };
+    Status status = emit_to(file.get(), path, model, options, palettes, on_text);
+    if (written.valid()) {
+        const Status palettes_status = written.get();
+        if (status.ok()) status = palettes_status;
     }
     return status.ok() ? pending.commit() : status;
 }
@@ -86,7 +105,7 @@ Status print_scene(const CompiledModel& model, bool include) {
     if (!file) return write_failure("a temporary file", errno);
     std::vector<PaletteImage> palettes;
     const Status status = emit_to(file.get(), "a temporary file", model,
-                                  {.scene_name = model_name(model), .include = include}, palettes);
+                                  {.scene_name = model_name(model), .include = include}, palettes, [] {});
     if (!status.ok()) return status;
     if (!palettes.empty())
         return Status::failure(

@@ -40,7 +40,8 @@ TEST(PovrayPalette, PicturesAreHitInTheMiddleOfTheRightPixel) {
         const Palette palette = ramp(count);
         const PaletteImage image = palette_image(palette, "x.png");
         const PaletteLayout layout(count);
-        ASSERT_EQ(image.pixels.size(), static_cast<std::size_t>(image.width) * image.height);
+        ASSERT_EQ(image.pixels.size(), count);
+        ASSERT_LE(count, static_cast<std::size_t>(image.width) * image.height);
         ASSERT_LE(image.width, 4096);
         for (std::uint32_t slot = 0; slot < count; slot += 1 + count / 1000) {
             const auto [u, v] = layout.uv(slot);

@@ -91,11 +91,24 @@ TEST_F(ImageFiles, PngSaysWhoMadeItAndHowItIsEncoded) {
 }
 
 TEST_F(ImageFiles, PaletteHoldsLinearValuesRounded) {
-    ASSERT_TRUE(write_palette(path("p.png"), 2, 1, {Rgb(0.5, 1.0 / 3, 0), Rgb(1, 2, -1)}).ok());
+    ASSERT_TRUE(write_palette(path("p.png"), 2, 1, std::vector{Rgb(0.5, 1.0 / 3, 0), Rgb(1, 2, -1)}).ok());
     Image back;
     ASSERT_TRUE(read_image(path("p.png"), back).ok());
     const auto level = [](double k) { return static_cast<float>(k / 65535); };
     EXPECT_THAT(back.pixels, testing::ElementsAre(level(32768), level(21845), 0, 1, 1, 0));
+}
+
+TEST_F(ImageFiles, PaletteThatEndsEarlyIsFilledWithItsLastColour) {
+    ASSERT_TRUE(write_palette(path("p.png"), 2, 2, std::vector{Rgb(0), Rgb(1)}).ok());
+    Image back;
+    ASSERT_TRUE(read_image(path("p.png"), back).ok());
+    EXPECT_EQ(back.height, 2);
+    EXPECT_THAT(back.pixels, testing::ElementsAre(0, 0, 0, 1, 1, 1, 1, 1, 1, 1, 1, 1));
+}
+
+TEST_F(ImageFiles, PaletteThatCannotBeWrittenIsAFailure) {
+    EXPECT_THAT(write_palette(path("none/p.png"), 1, 1, std::vector{Rgb(0)}).message(),
+                testing::HasSubstr("none/p.png"));
 }
 
 TEST_F(ImageFiles, MissingFileAndNoPictureAreFailures) {

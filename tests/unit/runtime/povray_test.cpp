@@ -76,7 +76,7 @@ TEST_F(Povray, LinearPictureHoldsTheColourAsItIs) {
 }
 
 TEST_F(Povray, PaletteIsReadAsLinear) {
-    ASSERT_TRUE(write_palette(path("palette.png"), 2, 1, {Rgb(0.1, 0.2, 0.3), Rgb(0.1, 0.2, 0.3)}).ok());
+    ASSERT_TRUE(write_palette(path("palette.png"), 2, 1, std::vector(2, Rgb(0.1, 0.2, 0.3))).ok());
     scene("box { <-9,-9,0>, <9,9,1> pigment { image_map { png \"palette.png\" gamma 1.0 } }"
           " finish { emission 1 ambient 0 diffuse 0 } }\n");
     job_.linear16 = true;

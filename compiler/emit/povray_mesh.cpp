@@ -35,10 +35,6 @@ bool write_vectors(SdlWriter& out, std::string_view keyword, const std::vector<V
     return !out.stopped();
 }
 
-void write_indices(SdlWriter& out, std::uint64_t a, std::uint64_t b, std::uint64_t c) {
-    out << "<" << a << "," << b << "," << c << ">";
-}
-
 /// The slots that the triangles name, numbered in order of first use: a mesh may use few of many.
 class UsedSlots {
   public:
@@ -96,7 +92,7 @@ bool declare_mesh(SdlWriter& out, std::string_view name, const Mesh& mesh, bool 
     for (std::size_t i = 0; i < mesh.triangles.size() && !out.stopped(); ++i) {
         separate(out, i);
         const auto& [a, b, c] = mesh.triangles[i];
-        write_indices(out, a, b, c);
+        out.indices(a, b, c);
         progress.step();
     }
     out << " }\n";
@@ -105,7 +101,7 @@ bool declare_mesh(SdlWriter& out, std::string_view name, const Mesh& mesh, bool 
         for (std::size_t i = 0; i < mesh.triangles.size() && !out.stopped(); ++i) {
             separate(out, i);
             const std::uint32_t place = used.place_of(mesh.slot_of_triangle[i]);
-            write_indices(out, place, place, place);
+            out.indices(place, place, place);
         }
         out << " }\n";
     }

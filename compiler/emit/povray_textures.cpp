@@ -17,13 +17,13 @@ constexpr int colour_digits = 7; // half a unit is 1/300 of the last bit of a 16
 constexpr double no_tint = 1e-9; // alpha this near to 0 or 1 is as good as that
 constexpr double least_roughness = 5e-4;
 
-std::string rgb_text(Rgb rgb) {
-    std::string text = "rgb <";
+void append_rgb(std::string& text, Rgb rgb) {
+    text += "rgb <";
     for (int i = 0; i < 3; ++i) {
         if (i > 0) text += ",";
         append_number(text, rgb[i], colour_digits);
     }
-    return text + ">";
+    text += ">";
 }
 
 std::string number_text(double value) {
@@ -41,8 +41,14 @@ std::string finish_text(const Material& m, bool shining) {
     return text;
 }
 
-std::string texture_text(const std::string& pigment, const std::string& finish) {
-    return fmt::format("texture {{ pigment {{ {} }} finish {{ {} }} }}", pigment, finish);
+void begin_texture(std::string& text) {
+    text += "texture { pigment { ";
+}
+
+void end_texture(std::string& text, const std::string& finish) {
+    text += " } finish { ";
+    text += finish;
+    text += " } }";
 }
 
 } // namespace
@@ -50,7 +56,14 @@ std::string texture_text(const std::string& pigment, const std::string& finish) 
 PovrayTextures::PovrayTextures(const Cut& cut, const std::string& prefix, std::string file_stem)
     : cut_(cut), prefix_(prefix), file_stem_(std::move(file_stem)), finish_names_(prefix + "F_") {}
 
-std::string PovrayTextures::finish(const Material& material, bool shining) {
+const std::string& PovrayTextures::finish(const Material& material, bool shining) {
+    if (!(last_finish_.material == material)) last_finish_ = {material, {}, {}};
+    std::string& name = shining ? last_finish_.shining : last_finish_.matt;
+    if (name.empty()) name = named_finish(material, shining);
+    return name;
+}
+
+std::string PovrayTextures::named_finish(const Material& material, bool shining) {
     const std::string text = finish_text(material, shining);
     std::string& name = finish_by_text_[text];
     if (name.empty()) {
@@ -61,38 +74,55 @@ std::string PovrayTextures::finish(const Material& material, bool shining) {
     return name;
 }
 
-std::string PovrayTextures::palette_name(std::uint32_t index) {
+const std::string& PovrayTextures::palette_name(std::uint32_t index) {
     std::string& name = palettes_[index];
     if (name.empty()) name = fmt::format("{}P_{}", prefix_, palettes_.size());
     return name;
 }
 
-std::string PovrayTextures::plain(Rgb rgb, const Material& material) {
-    return texture_text(rgb_text(rgb), finish(material, true));
+void PovrayTextures::append_plain(std::string& text, Rgb rgb, const Material& material) {
+    begin_texture(text);
+    append_rgb(text, rgb);
+    end_texture(text, finish(material, true));
 }
 
-std::string PovrayTextures::layered(const Palette& palette, std::uint32_t index, const PathTint& tint,
-                                    const Material& material) {
-    if (tint.alpha >= 1 - no_tint) return plain(tint.premultiplied, material);
-    if (palette.size() == 1) return plain(tint.over(palette[0]), material);
-    const std::string colours = palette_name(index);
-    if (tint.alpha <= no_tint) return texture_text(colours, finish(material, true));
+std::string PovrayTextures::plain(Rgb rgb, const Material& material) {
+    std::string text;
+    append_plain(text, rgb, material);
+    return text;
+}
+
+void PovrayTextures::append_layered(std::string& text, const PlacementGroup& group) {
+    const Palette& palette = cut_.palettes[group.palette];
+    const PathTint& tint = group.tint;
+    if (tint.alpha >= 1 - no_tint) return append_plain(text, tint.premultiplied, group.material);
+    if (palette.size() == 1) return append_plain(text, tint.over(palette[0]), group.material);
+    const std::string& shining = finish(group.material, true);
+    begin_texture(text);
+    text += palette_name(group.palette);
+    if (tint.alpha <= no_tint) return end_texture(text, shining);
     least_transmit_ = std::min(least_transmit_, 1 - tint.alpha);
     // Highlights and reflections belong to the top layer alone: each layer adds its own.
-    const std::string top =
-        fmt::format("{} transmit {}", rgb_text(tint.premultiplied / tint.alpha), number_text(1 - tint.alpha));
-    return texture_text(colours, finish(material, false)) + "\n          " +
-           texture_text(top, finish(material, true));
+    end_texture(text, finish(group.material, false));
+    text += "\n          ";
+    begin_texture(text);
+    append_rgb(text, tint.premultiplied / tint.alpha);
+    text += " transmit ";
+    append_number(text, 1 - tint.alpha, colour_digits);
+    end_texture(text, shining);
 }
 
 std::uint32_t PovrayTextures::texture_of(const PlacementGroup& group) {
     GRAFTAL_CHECK(group.palette < cut_.palettes.size() && !cut_.palettes[group.palette].empty(),
                   "emit_povray: a group without colours");
-    std::string text = layered(cut_.palettes[group.palette], group.palette, group.tint, group.material);
-    const auto [at, added] =
-        texture_by_text_.try_emplace(std::move(text), static_cast<std::uint32_t>(textures_.size()));
-    if (added) textures_.push_back(at->first);
-    return at->second;
+    text_.clear();
+    append_layered(text_, group);
+    if (const auto known = texture_by_text_.find(text_); known != texture_by_text_.end())
+        return known->second;
+    const auto index = static_cast<std::uint32_t>(textures_.size());
+    textures_.push_back(text_);
+    texture_by_text_.emplace(textures_.back(), index);
+    return index;
 }
 
 std::string PovrayTextures::declarations(std::vector<PaletteImage>& pictures) const {

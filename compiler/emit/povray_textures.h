@@ -1,11 +1,15 @@
 #pragma once
 
 #include <cstdint>
+#include <deque>
 #include <map>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <unordered_map>
 #include <vector>
+
+#include <tsl/robin_map.h>
 
 #include "compiler/cut/cut.h"
 #include "compiler/emit/emit_povray.h"
@@ -27,18 +31,25 @@ class PovrayTextures {
     std::string plain(Rgb rgb, const Material& material);
 
     /// `texture { ... }`, one or two layers.
-    const std::vector<std::string>& all() const { return textures_; }
+    const std::deque<std::string>& all() const { return textures_; }
     /// The least share that a tint leaves of the palette below it; 1 if there are no layers.
     double least_transmit() const { return least_transmit_; }
     /// `#declare` of the finishes and palettes that the textures name. Adds the pictures they need.
     std::string declarations(std::vector<PaletteImage>& pictures) const;
 
   private:
-    std::string layered(const Palette& palette, std::uint32_t index, const PathTint& tint,
-                        const Material& material);
+    /// Names of one material's finishes, where they are known.
+    struct FinishNames {
+        Material material;
+        std::string shining, matt;
+    };
+
+    void append_layered(std::string& text, const PlacementGroup& group);
+    void append_plain(std::string& text, Rgb rgb, const Material& material);
     /// The name of the finish, with or without what shines.
-    std::string finish(const Material& material, bool shining);
-    std::string palette_name(std::uint32_t index);
+    const std::string& finish(const Material& material, bool shining);
+    std::string named_finish(const Material& material, bool shining);
+    const std::string& palette_name(std::uint32_t index);
 
     const Cut& cut_;
     std::string prefix_;
@@ -47,8 +58,10 @@ class PovrayTextures {
     std::unordered_map<std::string, std::string> finish_by_text_;
     std::vector<std::string> finish_declarations_;
     std::map<std::uint32_t, std::string> palettes_; ///< by index in the cut: the declared name
-    std::unordered_map<std::string, std::uint32_t> texture_by_text_;
-    std::vector<std::string> textures_;
+    FinishNames last_finish_;
+    std::deque<std::string> textures_;
+    tsl::robin_map<std::string_view, std::uint32_t> texture_by_text_; ///< into textures_
+    std::string text_;                                                ///< of the texture under way
     double least_transmit_ = 1;
 };
 

@@ -1,6 +1,7 @@
 #include "compiler/support/number.h"
 
 #include <bit>
+#include <charconv>
 #include <clocale>
 #include <cmath>
 #include <cstdint>
@@ -52,6 +53,21 @@ TEST(Number, DigitsAreSignificantAndTrailingZerosGo) {
     std::string out = "x = ";
     append_number(out, 1.5, 4);
     EXPECT_EQ(out, "x = 1.5") << "it appends";
+}
+
+TEST(Number, TheShortWayGivesWhatTheLibraryGives) {
+    std::mt19937_64 random(11);
+    for (int i = 0; i < 200'000; ++i) {
+        const int digits = 1 + static_cast<int>(random() % 17);
+        double value = std::ldexp(static_cast<double>(random() >> 11), -53); // [0, 1)
+        if (i % 3 == 0) value *= std::pow(10, static_cast<int>(random() % 24) - 8);
+        if (i % 3 == 1) value = std::round(value * 1024) / 1024; // often a tie
+        char expected[64];
+        char* const end =
+            std::to_chars(expected, expected + sizeof expected, value, std::chars_format::general, digits)
+                .ptr;
+        ASSERT_EQ(with_digits(value, digits), std::string(expected, end));
+    }
 }
 
 TEST(Number, TinyNegativesDoNotPrintAsMinusZero) {

@@ -115,6 +115,7 @@ class Unfolding {
             requests.back().representative = representative;
             requests.back().steps = kind.steps;
             requests.back().material = piece.material;
+            requests.back().expected_leaves = weights_.of(kind).leaves;
         }
         BakeRequest& bake = requests[request->second];
         const Ball ball = world_ball(cut_, piece);
@@ -243,7 +244,7 @@ class Grouping {
         std::uint32_t& id = palette_[request][part][painter];
         if (id == no_palette) {
             id = static_cast<std::uint32_t>(palettes_.size());
-            palettes_.push_back(baked_[request].parts[part].palettes[painter]);
+            palettes_.push_back(std::move(baked_[request].parts[part].palettes[painter]));
         }
         return id;
     }

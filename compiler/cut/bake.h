@@ -24,6 +24,7 @@ struct BakeRequest {
     double pixels_per_unit = 0;         ///< likewise; decides how finely curved surfaces are meshed
     std::optional<MaterialId> material; ///< the finish of what names no material
     std::vector<Painter> painters;
+    double expected_leaves = 0; ///< about; what is known of it saves memory
 };
 
 /// The triangles of one finish, and what each painter's colours are.

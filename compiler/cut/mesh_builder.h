@@ -5,9 +5,8 @@
 #include <cstdint>
 #include <vector>
 
-#include <tsl/robin_map.h>
-
 #include "compiler/cut/cut.h"
+#include "compiler/cut/facet_set.h"
 
 namespace graftal {
 
@@ -20,55 +19,29 @@ class MeshBuilder {
     explicit MeshBuilder(bool smooth) : smooth_(smooth) {}
 
     /// Adds a primitive, meshed at the fineness, placed by a regular map. `leaf` is the caller's number.
-    void add(PrimitiveKind kind, int fineness, const Affine& body_from_leaf, std::size_t leaf);
+    void add(PrimitiveKind kind, int fineness, const Affine& body_from_leaf, std::uint32_t leaf);
 
     /// Makes the triangles of the faces that are seen. Call once, after the last add().
     void finish();
 
-    /// Hidden faces not counted.
-    std::size_t triangle_count() const { return triangle_count_; }
+    /// So far, faces that are found to be hidden not counted.
+    std::size_t triangle_count() const;
 
     Mesh mesh; ///< without slots
-    std::vector<std::size_t> leaf_of_triangle;
+    std::vector<std::uint32_t> leaf_of_triangle;
 
   private:
-    struct GridPoint {
-        std::array<std::int64_t, 3> cell;
-        bool operator==(const GridPoint&) const = default;
-    };
-    /// A polygon of three or four corners of a flat primitive.
-    struct Facet {
-        static constexpr std::uint32_t no_corner = UINT32_MAX;
-
-        std::array<std::uint32_t, 4> corners; ///< in order; a triangle's last is no_corner
-        bool solid = false;
-        bool hidden = false;
-        std::size_t leaf = 0;
-    };
-    /// The corners of a facet, ascending.
-    struct FacetKey {
-        std::array<std::uint32_t, 4> corners;
-        bool operator==(const FacetKey&) const = default;
-    };
-    struct Hash {
-        std::size_t operator()(const GridPoint& point) const;
-        std::size_t operator()(const FacetKey& key) const;
-    };
-
-    void add_smooth(PrimitiveKind kind, int fineness, const Affine& body_from_leaf, std::size_t leaf);
-    void add_facets(PrimitiveKind kind, const Affine& body_from_leaf, bool mirrored, std::size_t leaf);
-    void add_flat(PrimitiveKind kind, const Affine& body_from_leaf, bool mirrored, std::size_t leaf);
-    std::uint32_t welded(Vec3 point);
-    void add_unless_hidden(const Facet& facet);
-    void push(const std::array<std::uint32_t, 3>& corners, std::size_t leaf);
+    void add_smooth(PrimitiveKind kind, int fineness, const Affine& body_from_leaf, std::uint32_t leaf);
+    void add_facets(PrimitiveKind kind, const Affine& body_from_leaf, bool mirrored, std::uint32_t leaf);
+    void add_flat(PrimitiveKind kind, const Affine& body_from_leaf, bool mirrored, std::uint32_t leaf);
+    void push(const std::array<std::uint32_t, 3>& corners, std::uint32_t leaf);
     std::uint32_t used(std::uint32_t vertex);
 
     bool smooth_;
-    std::size_t triangle_count_ = 0;
-    tsl::robin_map<GridPoint, std::uint32_t, Hash> vertex_at_;
-    tsl::robin_map<FacetKey, std::uint32_t, Hash> facet_at_;
-    std::vector<Facet> facets_;  ///< of a flat mesh
-    std::vector<Vec3> vertices_; ///< likewise, before those of hidden facets go
+    // Of a flat mesh. Neighbours come soon after each other: most faces meet while they are among the latest
+    // few, whose tables are small enough for a cache.
+    FacetSet latest_;
+    FacetSet all_;
     std::vector<std::uint32_t> used_;
 };
 

@@ -14,7 +14,8 @@ namespace graftal {
 /// tens of thousands of coincident objects black, or crashes. Keeps 128-bit digests, not the maps.
 class PlacedSet {
   public:
-    explicit PlacedSet(double size);
+    /// Room is made for as many as are expected.
+    explicit PlacedSet(double size, std::size_t expected = 0);
 
     /// False if it is there already.
     bool insert(std::uint32_t thing, const Affine& place);

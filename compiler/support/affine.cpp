@@ -43,10 +43,6 @@ Affine Affine::rotate(Vec3 axis, double angle_deg) {
     return {c * Mat3(1.0) + (1 - c) * glm::outerProduct(u, u) + s * cross, Vec3(0.0)};
 }
 
-Affine operator*(const Affine& a, const Affine& b) {
-    return {a.linear * b.linear, a(b.translation)};
-}
-
 Affine inverse(const Affine& a) {
     const Mat3 linear = glm::inverse(a.linear);
     return {linear, -(linear * a.translation)};
@@ -101,6 +97,12 @@ bool is_finite(const Affine& a) {
 }
 
 bool is_singular(const Affine& a, double relative) {
+    // The two longer stretches make at most half of the sum of squares, and the longest is at most its root.
+    // So a determinant this large, with room for rounding, leaves the shortest more than its share.
+    const double squares = glm::dot(a.linear[0], a.linear[0]) + glm::dot(a.linear[1], a.linear[1]) +
+                           glm::dot(a.linear[2], a.linear[2]);
+    const double cube = squares * std::sqrt(squares);
+    if (cube > 1e-270 && std::abs(glm::determinant(a.linear)) > std::max(relative, 1e-9) * cube) return false;
     const Vec3 sigma = singular_values(a.linear);
     return !(sigma.z > relative * sigma.x);
 }

@@ -24,7 +24,9 @@ struct Affine {
 };
 
 /// First b, then a: (a * b)(x) = a(b(x)).
-Affine operator*(const Affine& a, const Affine& b);
+inline Affine operator*(const Affine& a, const Affine& b) {
+    return {a.linear * b.linear, a(b.translation)};
+}
 
 /// Requires a non-singular linear part.
 Affine inverse(const Affine& a);

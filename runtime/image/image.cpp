@@ -84,4 +84,20 @@ Status write_image(const std::string& path, const Image& image, SampleFormat for
     return error.empty() ? pending.commit() : failure("write", path, error);
 }
 
+Status write_palette(const std::string& path, int width, int height, std::span<const Rgb> pixels) {
+    const auto size = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
+    GRAFTAL_CHECK(!pixels.empty() && pixels.size() <= size, path);
+    if (!module().files) return failure("write", path, module().error);
+    std::vector<std::uint16_t> levels;
+    levels.reserve(3 * size);
+    for (std::size_t i = 0; i < size; ++i) {
+        const Rgb& rgb = pixels[std::min(i, pixels.size() - 1)];
+        for (int c = 0; c < 3; ++c)
+            levels.push_back(static_cast<std::uint16_t>(65535 * std::clamp(rgb[c], 0.0, 1.0) + 0.5));
+    }
+    PendingFile pending(path);
+    const std::string error = module().files->write_levels(pending.temporary_path(), width, height, levels);
+    return error.empty() ? pending.commit() : failure("write", path, error);
+}
+
 } // namespace graftal

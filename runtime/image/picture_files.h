@@ -21,6 +21,9 @@ struct PictureFiles {
     std::string (*read)(const std::string& path, std::uint64_t most_samples, Image& image);
     std::string (*write)(const std::string& path, const Image& image, Samples samples, bool linear,
                          const std::vector<Tag>& tags);
+    /// 16-bit RGB as PNG, not compressed: as quick to write as it can be. `levels` holds the samples of all pixels.
+    std::string (*write_levels)(const std::string& path, int width, int height,
+                                const std::vector<std::uint16_t>& levels);
 };
 
 /// The name under which the module exports its `const PictureFiles*`-returning function.

@@ -75,11 +75,24 @@ std::string write(const std::string& path, const Image& image, PictureFiles::Sam
     return {};
 }
 
+std::string write_levels(const std::string& path, int width, int height,
+                         const std::vector<std::uint16_t>& levels) {
+    OIIO::ImageSpec spec(width, height, 3, OIIO::TypeDesc::UINT16);
+    spec.attribute("oiio:ColorSpace", "Linear");
+    spec.attribute("png:compressionLevel", 0);
+    const std::unique_ptr<OIIO::ImageOutput> output = OIIO::ImageOutput::create(path);
+    if (!output) return complaint({});
+    if (!output->open(path, spec) || !output->write_image(OIIO::TypeDesc::UINT16, levels.data()) ||
+        !output->close())
+        return complaint(output->geterror());
+    return {};
+}
+
 } // namespace
 
 } // namespace graftal
 
 extern "C" const graftal::PictureFiles* graftal_picture_files() {
-    static constexpr graftal::PictureFiles files{graftal::read, graftal::write};
+    static constexpr graftal::PictureFiles files{graftal::read, graftal::write, graftal::write_levels};
     return &files;
 }

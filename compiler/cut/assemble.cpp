@@ -10,6 +10,7 @@
 #include "compiler/analysis/bounding.h"
 #include "compiler/cut/bake.h"
 #include "compiler/cut/placed_set.h"
+#include "compiler/support/id_table.h"
 
 namespace graftal {
 
@@ -195,6 +196,11 @@ class Grouping {
   private:
     static constexpr std::uint32_t no_palette = UINT32_MAX;
 
+    static bool share_finish(const Material& a, const Material& b) {
+        return a.ambient == b.ambient && a.diffuse == b.diffuse && a.specular == b.specular &&
+               a.roughness == b.roughness && a.reflection == b.reflection;
+    }
+
     static Box box_of(const Mesh& mesh) {
         Box box;
         for (const Vec3& vertex : mesh.vertices)
@@ -216,20 +222,20 @@ class Grouping {
 
     void place(std::uint32_t body, const Affine& world_from_body, std::uint32_t palette, const PathTint& tint,
                const std::optional<MaterialId>& material) {
-        const Material finish = material ? cut_.materials[*material] : Material();
-        const std::array<double, 10> key = {static_cast<double>(palette),
-                                            tint.premultiplied.r,
-                                            tint.premultiplied.g,
-                                            tint.premultiplied.b,
-                                            tint.alpha,
-                                            finish.ambient,
-                                            finish.diffuse,
-                                            finish.specular,
-                                            finish.roughness,
-                                            finish.reflection};
-        const auto [group, added] = group_of_.emplace(key, result_.groups.size());
-        if (added) result_.groups.push_back({palette, tint, finish, {}});
-        result_.groups[group->second].placements.push_back({body, world_from_body});
+        static const Material plain;
+        const Material& finish = material ? cut_.materials[*material] : plain;
+        std::uint64_t hash = mixed(0, palette);
+        for (const double number :
+             {tint.premultiplied.r, tint.premultiplied.g, tint.premultiplied.b, tint.alpha, finish.ambient,
+              finish.diffuse, finish.specular, finish.roughness, finish.reflection})
+            hash = mixed(hash, std::bit_cast<std::uint64_t>(number));
+        const auto next = static_cast<std::uint32_t>(result_.groups.size());
+        const std::uint32_t id = group_ids_.find_or_add(hash, next, [&](std::uint32_t other) {
+            const PlacementGroup& group = result_.groups[other];
+            return group.palette == palette && group.tint == tint && share_finish(group.material, finish);
+        });
+        if (id == next) result_.groups.push_back({palette, tint, finish, {}});
+        result_.groups[id].placements.push_back({body, world_from_body});
         ++result_.placement_count;
     }
 
@@ -262,7 +268,7 @@ class Grouping {
         return none;
     }();
     struct ArrayHash {
-        template<std::size_t n> std::size_t operator()(const std::array<double, n>& numbers) const {
+        std::size_t operator()(const std::array<double, 3>& numbers) const {
             std::uint64_t h = 0;
             for (const double x : numbers)
                 h = (std::rotl(h, 23) ^ std::bit_cast<std::uint64_t>(x)) * 0x9E3779B97F4A7C15ull;
@@ -270,7 +276,7 @@ class Grouping {
         }
     };
     std::unordered_map<std::array<double, 3>, std::uint32_t, ArrayHash> colour_palette_;
-    std::unordered_map<std::array<double, 10>, std::size_t, ArrayHash> group_of_;
+    IdTable group_ids_;
 };
 
 std::uint64_t estimated_bytes(const Cut& cut) {

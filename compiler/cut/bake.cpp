@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <future>
 #include <map>
+#include <span>
 
 #include <Eigen/SVD>
 #include <glm/geometric.hpp>
@@ -22,6 +24,7 @@ namespace {
 constexpr double flattest_leaf = 1e-6;
 /// Room is made for so many leaves beforehand, at most.
 constexpr double most_expected_leaves = 1 << 20;
+constexpr std::size_t fewest_leaves_for_a_thread = 10'000;
 
 struct KeptLeaf {
     Affine place;
@@ -34,6 +37,8 @@ struct Part {
     bool smooth = false; ///< some leaf is curved
     std::vector<KeptLeaf> leaves;
     SlotTable slots; ///< of the leaves' colours
+    Mesh mesh;
+    std::vector<std::uint32_t> leaf_of_triangle;
 };
 
 /// The same for all crushed leaves in one cell of half a thickness, of one size to a factor of 2.
@@ -58,8 +63,16 @@ class Baker {
         place_body();
         gather_leaves();
         if (!baked_.complete) return std::move(baked_);
+        // Shapes and colours have nothing to do with each other, and take about as long.
+        const auto when = numbers_.size() < fewest_leaves_for_a_thread
+                              ? std::launch::deferred
+                              : std::launch::async | std::launch::deferred;
+        const std::future<void> coloured = std::async(when, [this] { colour_leaves(); });
         for (Part& part : parts_)
             build(part);
+        coloured.wait();
+        for (Part& part : parts_)
+            finish(part);
         return std::move(baked_);
     }
 
@@ -74,25 +87,24 @@ class Baker {
     }
 
     void gather_leaves() {
-        std::map<std::int64_t, std::size_t> part_of;
         PlacedSet seen(cut_.nodes[request_.representative].ball.radius, expected_leaves());
-        LeafWalk walk(cut_, symmetry_, request_);
+        LeafWalk walk(cut_, symmetry_, request_, std::span(request_.painters).first(1));
         WalkedLeaf leaf;
         std::size_t triangles = 0;
-        while (walk.next(leaf)) {
+        for (std::uint64_t number = 0; walk.next(leaf); ++number) {
             const double thickness = leaf_thickness(leaf.representative_from_leaf, request_.detail_per_unit);
             const Affine place = thickened(leaf.representative_from_leaf, thickness);
             // What a singular map crushes onto a line or a sheet piles up there: one leaf a thickness will
             // do.
             const Affine mark = thickness > 0 ? crushed_mark(place, thickness) : place;
             if (!seen.insert(static_cast<std::uint32_t>(leaf.kind), mark)) continue;
-            const auto [number, added] = part_of.emplace(part_key(leaf.material), parts_.size());
+            const auto [place_of_part, added] = part_of_.emplace(part_key(leaf.material), parts_.size());
             if (added) add_part(leaf.material);
-            Part& part = parts_[number->second];
+            Part& part = parts_[place_of_part->second];
             const TessellatedPrimitive& coarsest = tessellated(leaf.kind, 0);
             part.smooth = part.smooth || !coarsest.normals.empty();
             part.leaves.push_back({place, leaf.kind});
-            part.slots.add(leaf.colours);
+            numbers_.push_back(number);
             baked_.culled_detail = std::max(baked_.culled_detail, leaf.culled_detail);
             // Of a cube no face may be left where others touch it; it counts when the mesh is built.
             triangles += leaf.kind == PrimitiveKind::cube ? 1 : coarsest.triangles.size();
@@ -100,6 +112,18 @@ class Baker {
                 baked_.complete = false;
                 return;
             }
+        }
+    }
+
+    /// Walks once more, for all painters.
+    void colour_leaves() {
+        LeafWalk walk(cut_, symmetry_, request_, request_.painters);
+        WalkedLeaf leaf;
+        std::size_t next = 0;
+        for (std::uint64_t number = 0; next < numbers_.size() && walk.next(leaf); ++number) {
+            if (number != numbers_[next]) continue;
+            parts_[part_of_.at(part_key(leaf.material))].slots.add(leaf.colours);
+            ++next;
         }
     }
 
@@ -127,13 +151,20 @@ class Baker {
         }
         part.leaves = {};
         builder.finish();
-        if (builder.mesh.triangles.empty()) return;
-        BakedPart result;
-        result.material = part.material;
-        result.mesh = std::move(builder.mesh);
-        paint(result, part.slots, builder.leaf_of_triangle);
-        baked_.triangles += result.mesh.triangles.size();
-        baked_.parts.push_back(std::move(result));
+        part.mesh = std::move(builder.mesh);
+        part.leaf_of_triangle = std::move(builder.leaf_of_triangle);
+        baked_.triangles += part.mesh.triangles.size();
+    }
+
+    void finish(Part& part) {
+        if (part.mesh.triangles.empty()) return;
+        part.mesh.slot_count = part.slots.slot_count();
+        if (part.mesh.slot_count > 1) {
+            part.mesh.slot_of_triangle.reserve(part.leaf_of_triangle.size());
+            for (const std::uint32_t leaf : part.leaf_of_triangle)
+                part.mesh.slot_of_triangle.push_back(part.slots.slot_of(leaf));
+        }
+        baked_.parts.push_back({part.material, std::move(part.mesh), part.slots.take_palettes()});
     }
 
     int fineness(const KeptLeaf& leaf) {
@@ -144,22 +175,14 @@ class Baker {
         return level;
     }
 
-    static void paint(BakedPart& part, SlotTable& slots, const std::vector<std::uint32_t>& leaf_of_triangle) {
-        part.mesh.slot_count = slots.slot_count();
-        if (slots.slot_count() > 1) {
-            part.mesh.slot_of_triangle.reserve(leaf_of_triangle.size());
-            for (const std::uint32_t leaf : leaf_of_triangle)
-                part.mesh.slot_of_triangle.push_back(slots.slot_of(leaf));
-        }
-        part.palettes = slots.take_palettes();
-    }
-
     const CutGraph& cut_;
     const Symmetry& symmetry_;
     const BakeRequest& request_;
     std::size_t max_triangles_;
     Baked baked_;
     std::vector<Part> parts_;
+    std::map<std::int64_t, std::size_t> part_of_; ///< by part_key()
+    std::vector<std::uint64_t> numbers_;          ///< of the leaves that are kept, in the order of the walk
 };
 
 } // namespace

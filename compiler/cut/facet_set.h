@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "compiler/cut/id_table.h"
+#include "compiler/support/id_table.h"
 #include "compiler/support/affine.h"
 
 namespace graftal {

@@ -4,10 +4,11 @@
 
 namespace graftal {
 
-LeafWalk::LeafWalk(const CutGraph& cut, const Symmetry& symmetry, const BakeRequest& request)
+LeafWalk::LeafWalk(const CutGraph& cut, const Symmetry& symmetry, const BakeRequest& request,
+                   std::span<const Painter> painters)
     : cut_(cut), symmetry_(symmetry),
       detail_per_unit_(request.detail_per_unit), visit_{request.representative, request.steps, {}, 1, 0} {
-    for (const Painter& painter : request.painters)
+    for (const Painter& painter : painters)
         paints_.push_back({painter.pair, {}, painter.inherited, request.material});
     stack_.push_back(visit_);
     paint_stack_ = paints_;
@@ -53,27 +54,24 @@ void LeafWalk::pop() {
 void LeafWalk::push_children(bool is_cut, double detail) {
     const auto& edges = followed_edges(cut_.nodes[visit_.shape], is_cut);
     for (std::size_t i = edges.size(); i-- > 0;) {
-        stack_.push_back(child_visit(edges[i], is_cut, detail));
+        fill_child(edges[i], is_cut, detail, stack_.emplace_back());
         for (const Paint& paint : paints_)
-            paint_stack_.push_back(child_paint(paint, i, is_cut));
+            fill_child(paint, i, is_cut, paint_stack_.emplace_back());
     }
 }
 
-LeafWalk::Visit LeafWalk::child_visit(const CutEdge& edge, bool is_cut, double detail) const {
-    Visit child;
+void LeafWalk::fill_child(const CutEdge& edge, bool is_cut, double detail, Visit& child) const {
     child.shape = edge.child;
     child.steps = steps_after(visit_.steps, edge);
     child.representative_from_node = visit_.representative_from_node * edge.node_from_child;
     child.scale = edge.similarity ? visit_.scale * edge.stretch : norm(child.representative_from_node.linear);
     child.culled_detail = is_cut && detail <= 1 ? detail : visit_.culled_detail;
-    return child;
 }
 
-LeafWalk::Paint LeafWalk::child_paint(const Paint& paint, std::size_t edge, bool is_cut) const {
+void LeafWalk::fill_child(const Paint& paint, std::size_t edge, bool is_cut, Paint& child) const {
     const NodePair& pair = symmetry_.pairs[paint.pair];
     const CutNode& colours = cut_.nodes[pair.b];
     const CutEdge& twin = followed_edges(colours, is_cut)[(is_cut ? pair.stop_edge : pair.edge)[edge]];
-    Paint child;
     child.pair = (is_cut ? pair.stop_pair : pair.edge_pair)[edge];
     child.tint = paint.tint * twin.tint;
     child.inherited = is_cut && colours.terminal ? colours.mean.over(paint.inherited) : paint.inherited;
@@ -82,7 +80,6 @@ LeafWalk::Paint LeafWalk::child_paint(const Paint& paint, std::size_t edge, bool
         child.material = twin.material;
         child.inherited = cut_.materials[*twin.material].rgb;
     }
-    return child;
 }
 
 } // namespace graftal

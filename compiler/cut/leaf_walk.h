@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "compiler/cut/bake.h"
@@ -21,32 +22,35 @@ struct WalkedLeaf {
 /// the painters' nodes have them. The order does not depend on the painters.
 class LeafWalk {
   public:
-    LeafWalk(const CutGraph& cut, const Symmetry& symmetry, const BakeRequest& request);
+    /// `painters`: of the request, the first or all.
+    LeafWalk(const CutGraph& cut, const Symmetry& symmetry, const BakeRequest& request,
+             std::span<const Painter> painters);
 
     /// The next leaf, or false at the end. Memory O(depth).
     bool next(WalkedLeaf& leaf);
 
   private:
     struct Visit {
-        NodeId shape;
-        std::uint32_t steps;
+        NodeId shape = 0;
+        std::uint32_t steps = 0;
         Affine representative_from_node;
-        double scale; ///< norm of the linear part
-        double culled_detail;
+        double scale = 1; ///< norm of the linear part
+        double culled_detail = 0;
     };
     /// What one painter makes of a visit.
     struct Paint {
-        std::uint32_t pair;
+        std::uint32_t pair = 0;
         PathTint tint;
-        Rgb inherited;
+        Rgb inherited{0.0};
         std::optional<MaterialId> material;
     };
 
     const CutNode& colours_of(const Paint& paint) const { return cut_.nodes[symmetry_.pairs[paint.pair].b]; }
     void pop();
     void push_children(bool is_cut, double detail);
-    Visit child_visit(const CutEdge& edge, bool is_cut, double detail) const;
-    Paint child_paint(const Paint& paint, std::size_t edge, bool is_cut) const;
+    // Where they lie: to build them elsewhere and to copy them would take twice the time.
+    void fill_child(const CutEdge& edge, bool is_cut, double detail, Visit& child) const;
+    void fill_child(const Paint& paint, std::size_t edge, bool is_cut, Paint& child) const;
 
     const CutGraph& cut_;
     const Symmetry& symmetry_;

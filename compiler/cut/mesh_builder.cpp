@@ -1,6 +1,7 @@
 #include "compiler/cut/mesh_builder.h"
 
 #include <array>
+#include <utility>
 
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
@@ -15,19 +16,28 @@ namespace {
 /// The cube's.
 constexpr std::size_t most_flat_vertices = 8;
 /// So many facets are compared with each other before they are compared with all.
-constexpr std::size_t most_latest_facets = 8192;
+constexpr std::size_t most_latest_facets = 16384;
+
+using FacetCorners = std::array<std::uint32_t, 4>; ///< a triangle's last is Facet::no_corner
 
 /// The facets of a flat primitive, counter-clockwise seen from outside, over the corners that tessellated()
 /// has; four-cornered ones are cut from the first to the third corner, as there.
-std::vector<std::vector<std::uint32_t>> facets_of(PrimitiveKind kind) {
-    if (kind == PrimitiveKind::triangle) return {{0, 1, 2}};
-    std::vector<std::vector<std::uint32_t>> quads;
+std::vector<FacetCorners> facets_of(PrimitiveKind kind) {
+    if (kind == PrimitiveKind::triangle) return {{0, 1, 2, Facet::no_corner}};
+    std::vector<FacetCorners> quads;
     for (std::uint32_t axis = 0; axis < 3; ++axis) {
         const std::uint32_t u = 1u << (axis + 1) % 3, v = 1u << (axis + 2) % 3, w = 1u << axis;
         quads.push_back({w, w | u, w | u | v, w | v});
         quads.push_back({0, v, u | v, u});
     }
     return quads;
+}
+
+/// The same, seen in a mirror.
+std::vector<FacetCorners> turned_over(std::vector<FacetCorners> facets) {
+    for (FacetCorners& c : facets)
+        std::swap(c[1], c[c[3] == Facet::no_corner ? 2 : 3]);
+    return facets;
 }
 
 } // namespace
@@ -78,22 +88,21 @@ void MeshBuilder::add_facets(PrimitiveKind kind, const Affine& body_from_leaf, b
 
 void MeshBuilder::add_flat(PrimitiveKind kind, const Affine& body_from_leaf, bool mirrored,
                            std::uint32_t leaf) {
-    static const auto triangle_facets = facets_of(PrimitiveKind::triangle);
-    static const auto cube_facets = facets_of(PrimitiveKind::cube);
+    static const std::array triangle_facets = {facets_of(PrimitiveKind::triangle),
+                                               turned_over(facets_of(PrimitiveKind::triangle))};
+    static const std::array cube_facets = {facets_of(PrimitiveKind::cube),
+                                           turned_over(facets_of(PrimitiveKind::cube))};
     const bool solid = kind == PrimitiveKind::cube;
     const TessellatedPrimitive& shape = tessellated(kind, 0);
     std::array<std::uint32_t, most_flat_vertices> index;
     GRAFTAL_CHECK(shape.vertices.size() <= index.size(), name_of(kind));
     for (std::size_t i = 0; i < shape.vertices.size(); ++i)
         index[i] = latest_.vertex(body_from_leaf(shape.vertices[i]));
-    for (const auto& corners : solid ? cube_facets : triangle_facets) {
-        Facet facet{.corners = {Facet::no_corner, Facet::no_corner, Facet::no_corner, Facet::no_corner},
-                    .leaf = leaf,
-                    .solid = solid};
-        for (std::size_t i = 0; i < corners.size(); ++i)
-            facet.corners[mirrored ? (corners.size() - i) % corners.size() : i] = index[corners[i]];
-        latest_.add(facet);
-    }
+    for (const FacetCorners& c : (solid ? cube_facets : triangle_facets)[mirrored])
+        latest_.add({.corners = {index[c[0]], index[c[1]], index[c[2]],
+                                 c[3] == Facet::no_corner ? Facet::no_corner : index[c[3]]},
+                     .leaf = leaf,
+                     .solid = solid});
     if (latest_.facets().size() > most_latest_facets) latest_.move_to(all_);
 }
 

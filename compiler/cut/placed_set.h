@@ -3,10 +3,10 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-
-#include <tsl/robin_set.h>
+#include <vector>
 
 #include "compiler/support/affine.h"
+#include "compiler/support/id_table.h"
 
 namespace graftal {
 
@@ -21,13 +21,18 @@ class PlacedSet {
     bool insert(std::uint32_t thing, const Affine& place);
 
   private:
+    /// Two hashes, with other multipliers.
     using Digest = std::array<std::uint64_t, 2>;
-    struct First {
-        std::size_t operator()(const Digest& digest) const { return digest[0]; }
-    };
+
+    void extend(Digest& digest, double value) const;
 
     double unit_;
-    tsl::robin_set<Digest, First> seen_;
+    // What was asked last: neighbours often differ by their translations alone.
+    std::uint32_t last_thing_ = UINT32_MAX;
+    Mat3 last_linear_{0.0};
+    Digest last_digest_{}; ///< of both
+    std::vector<Digest> digests_;
+    IdTable ids_;
 };
 
 } // namespace graftal

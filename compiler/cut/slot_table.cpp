@@ -8,6 +8,7 @@ namespace graftal {
 
 void SlotTable::reserve(std::size_t leaves) {
     slot_of_leaf_.reserve(leaves);
+    slot_ids_.reserve(leaves);
     for (Palette& palette : palettes_)
         palette.reserve(leaves);
 }

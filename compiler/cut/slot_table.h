@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "compiler/cut/cut.h"
-#include "compiler/cut/id_table.h"
+#include "compiler/support/id_table.h"
 
 namespace graftal {
 

@@ -1,6 +1,7 @@
 #include "compiler/emit/povray_textures.h"
 
 #include <algorithm>
+#include <functional>
 #include <utility>
 
 #include <fmt/format.h>
@@ -117,11 +118,11 @@ std::uint32_t PovrayTextures::texture_of(const PlacementGroup& group) {
                   "emit_povray: a group without colours");
     text_.clear();
     append_layered(text_, group);
-    if (const auto known = texture_by_text_.find(text_); known != texture_by_text_.end())
-        return known->second;
-    const auto index = static_cast<std::uint32_t>(textures_.size());
-    textures_.push_back(text_);
-    texture_by_text_.emplace(textures_.back(), index);
+    const auto next = static_cast<std::uint32_t>(textures_.size());
+    const std::uint32_t index =
+        texture_ids_.find_or_add(std::hash<std::string>()(text_), next,
+                                 [&](std::uint32_t other) { return textures_[other] == text_; });
+    if (index == next) textures_.push_back(text_);
     return index;
 }
 

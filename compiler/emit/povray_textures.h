@@ -5,15 +5,13 @@
 #include <map>
 #include <optional>
 #include <string>
-#include <string_view>
 #include <unordered_map>
 #include <vector>
-
-#include <tsl/robin_map.h>
 
 #include "compiler/cut/cut.h"
 #include "compiler/emit/emit_povray.h"
 #include "compiler/emit/povray_names.h"
+#include "compiler/support/id_table.h"
 
 namespace graftal {
 
@@ -60,8 +58,8 @@ class PovrayTextures {
     std::map<std::uint32_t, std::string> palettes_; ///< by index in the cut: the declared name
     FinishNames last_finish_;
     std::deque<std::string> textures_;
-    tsl::robin_map<std::string_view, std::uint32_t> texture_by_text_; ///< into textures_
-    std::string text_;                                                ///< of the texture under way
+    IdTable texture_ids_;
+    std::string text_; ///< of the texture under way
     double least_transmit_ = 1;
 };
 

@@ -1,7 +1,7 @@
-#include "compiler/cut/id_table.h"
+#include "compiler/support/id_table.h"
 
 #include <algorithm>
-#include <utility>
+#include <bit>
 
 namespace graftal {
 
@@ -10,9 +10,18 @@ void IdTable::clear() {
     size_ = 0;
 }
 
-void IdTable::grow() {
+void IdTable::reserve(std::size_t count) {
+    const std::size_t slots = count + count / 3 + 1;
+    if (slots > slots_.size()) grow(slots);
+}
+
+void IdTable::grow(std::size_t least) {
     constexpr std::size_t fewest = 64;
-    std::vector<Slot> old = std::exchange(slots_, std::vector<Slot>(std::max(fewest, 2 * slots_.size())));
+    std::vector<Slot> old;
+    old.swap(slots_);
+    const std::size_t count = std::bit_ceil(std::max(fewest, least));
+    slots_.reserve(count);
+    slots_.resize(count);
     mask_ = slots_.size() - 1;
     for (const Slot& slot : old) {
         if (slot.id == none) continue;

@@ -16,7 +16,7 @@ class IdTable {
     /// is then in the table.
     template<typename Same>
     std::uint32_t find_or_add(std::uint64_t hash, std::uint32_t next, const Same& same) {
-        if (4 * (size_ + 1) > 3 * slots_.size()) grow();
+        if (4 * (size_ + 1) > 3 * slots_.size()) grow(2 * slots_.size());
         const auto mark = static_cast<std::uint32_t>(hash >> 32);
         for (std::size_t at = mark & mask_;; at = (at + 1) & mask_) {
             Slot& slot = slots_[at];
@@ -29,6 +29,8 @@ class IdTable {
         }
     }
 
+    /// Makes room for so many.
+    void reserve(std::size_t count);
     /// Forgets all, but keeps its room.
     void clear();
 
@@ -38,7 +40,7 @@ class IdTable {
         std::uint32_t id = none;
     };
 
-    void grow();
+    void grow(std::size_t least);
 
     std::vector<Slot> slots_; ///< a power of two of them
     std::size_t mask_ = 0;

@@ -39,16 +39,17 @@ bool underflows(std::string_view text) {
 
 class Lexer {
   public:
-    Lexer(std::string_view text, FileId file, Diagnostics& diagnostics)
-        : text_(text), file_(file), diagnostics_(diagnostics) {}
+    Lexer(const SourceMap& sources, Span range, Diagnostics& diagnostics)
+        : text_(sources.text(range.file).substr(0, range.end)), file_(range.file), begin_(range.begin),
+          diagnostics_(diagnostics), at_(range.begin) {}
 
     std::vector<Token> run() {
-        if (text_.starts_with("\xEF\xBB\xBF")) at_ = 3;
+        if (begin_ == 0 && text_.starts_with("\xEF\xBB\xBF")) at_ = 3;
         while (skip_blanks() && tokens_.size() < max_tokens && !diagnostics_.full())
             lex_token();
         if (tokens_.size() >= max_tokens)
             diagnostics_.error(span_from(at_), fmt::format("the model has more than {} words", max_tokens));
-        const std::size_t end = tokens_.empty() ? 0 : tokens_.back().span.end;
+        const std::size_t end = tokens_.empty() ? begin_ : tokens_.back().span.end;
         at_ = end;
         add(TokenKind::end, end);
         return std::move(tokens_);
@@ -183,9 +184,10 @@ class Lexer {
 
     std::string_view text_;
     FileId file_;
+    std::size_t begin_;
     Diagnostics& diagnostics_;
     std::vector<Token> tokens_;
-    std::size_t at_ = 0;
+    std::size_t at_;
     std::size_t last_stray_end_ = 0;
     bool first_on_line_ = true;
     bool space_before_ = true;
@@ -194,7 +196,12 @@ class Lexer {
 } // namespace
 
 std::vector<Token> lex(const SourceMap& sources, FileId file, Diagnostics& diagnostics) {
-    return Lexer(sources.text(file), file, diagnostics).run();
+    const auto size = static_cast<std::uint32_t>(sources.text(file).size());
+    return Lexer(sources, Span{file, 0, size}, diagnostics).run();
+}
+
+std::vector<Token> lex_range(const SourceMap& sources, Span range, Diagnostics& diagnostics) {
+    return Lexer(sources, range, diagnostics).run();
 }
 
 } // namespace graftal

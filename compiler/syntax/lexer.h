@@ -11,7 +11,7 @@ namespace graftal {
 
 enum class TokenKind : std::uint8_t { name, number, string, symbol, end };
 
-/// One token of `.inst` and `.rifs`. Names are [A-Za-z_][A-Za-z0-9_]* with inner dots (`leaf.llr`); numbers
+/// One token. Names are [A-Za-z_][A-Za-z0-9_]* with inner dots (`leaf.llr`); numbers
 /// are decimal (`2`, `.16`, `1e-3`); strings are in double quotes without escapes; symbols are one
 /// character, or one of `-> == != <= >= && ||`.
 struct Token {
@@ -31,5 +31,8 @@ struct Token {
 /// Bytes that start no token, unclosed strings and comments, and numbers that overflow are errors; lexing
 /// goes on after them. O(text).
 std::vector<Token> lex(const SourceMap& sources, FileId file, Diagnostics& diagnostics);
+
+/// The same for a part of a file, with spans in the file, as if nothing stood around it.
+std::vector<Token> lex_range(const SourceMap& sources, Span range, Diagnostics& diagnostics);
 
 }  // namespace graftal

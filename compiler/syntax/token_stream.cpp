@@ -31,8 +31,8 @@ std::string shown(std::string_view text) {
 
 } // namespace
 
-TokenStream::TokenStream(std::vector<Token> tokens, Diagnostics& diagnostics)
-    : tokens_(std::move(tokens)), diagnostics_(diagnostics) {
+TokenStream::TokenStream(std::vector<Token> tokens, Diagnostics& diagnostics, std::string_view end_name)
+    : tokens_(std::move(tokens)), diagnostics_(diagnostics), end_name_(end_name) {
     GRAFTAL_CHECK(!tokens_.empty() && tokens_.back().kind == TokenKind::end, "tokens without an end");
     check_nesting();
 }
@@ -92,7 +92,7 @@ std::string TokenStream::found() const {
     const Token& token = peek();
     switch (token.kind) {
     case TokenKind::end:
-        return "the end of the file";
+        return std::string(end_name_);
     case TokenKind::string:
         return fmt::format("the string \"{}\"", shown(token.text));
     default:

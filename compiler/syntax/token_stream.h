@@ -19,8 +19,9 @@ class TokenStream {
   public:
     static constexpr std::size_t max_nesting = 256;
 
-    /// `tokens` as lex() gives them.
-    TokenStream(std::vector<Token> tokens, Diagnostics& diagnostics);
+    /// `tokens` as lex() or lex_range() gives them; `end_name` is what messages call their end.
+    TokenStream(std::vector<Token> tokens, Diagnostics& diagnostics,
+                std::string_view end_name = "the end of the file");
 
     /// The token `ahead` places after the next one; past the end, the `end` token.
     const Token& peek(std::size_t ahead = 0) const;
@@ -64,6 +65,7 @@ class TokenStream {
 
     std::vector<Token> tokens_;
     Diagnostics& diagnostics_;
+    std::string_view end_name_;
     std::size_t at_ = 0;
 };
 

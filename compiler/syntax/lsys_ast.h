@@ -1,0 +1,114 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include "compiler/support/source.h"
+#include "compiler/syntax/expression.h"
+#include "compiler/syntax/scene_statements.h"
+
+// The tree of a `.lsys` file (docs/language.md). Texts are views of the source, which outlives the tree.
+
+namespace graftal {
+
+/// More modules than this in the strings, predecessors, contexts and lists of one file are refused while
+/// parsing.
+inline constexpr std::size_t max_lsys_modules = 100'000;
+/// The same for the words of their parameters, conditions and probabilities.
+inline constexpr std::size_t max_lsys_words = 4'000'000;
+/// Brackets and braces of a string nest at most this deep.
+inline constexpr std::size_t max_lsys_nesting = 256;
+/// Declared names of modules have at most this many characters.
+inline constexpr std::size_t max_lsys_symbol = 64;
+
+struct LsysName {
+    std::string_view text;
+    Span span;
+};
+
+/// A module as axioms and successors write it: one character, a declared name, a directive `@x`, or `~` with
+/// the name of a model. Brackets and braces are modules too.
+struct LsysModule {
+    std::string_view symbol;
+    std::vector<Expression> parameters;
+    std::string_view model; ///< of `~`
+    Span span;              ///< with the parameters
+};
+
+/// Brackets and braces are balanced.
+struct LsysString {
+    std::vector<LsysModule> modules;
+    Span span; ///< of the keyword or arrow before it
+};
+
+/// A module as predecessors and contexts write it: its parameters are names.
+struct LsysFormal {
+    std::string_view symbol;
+    std::vector<LsysName> parameters;
+    Span span;
+};
+
+/// `label : left < predecessor > right : condition -> successor : probability`.
+struct LsysProduction {
+    LsysName label;                ///< an empty text if there is none
+    std::vector<LsysFormal> left;  ///< has no brackets
+    LsysFormal predecessor;        ///< neither a bracket nor a brace
+    std::vector<LsysFormal> right; ///< brackets are balanced
+    std::optional<Expression> condition;
+    LsysString successor;
+    std::optional<Expression> probability;
+    Span span; ///< from the label or the first module to the arrow
+};
+
+/// `angle`, `step`, `width` or `seed`.
+struct LsysValue {
+    Expression value;
+    Span span; ///< of the keyword
+};
+
+struct LsysSteps {
+    std::optional<Expression> value; ///< nothing: `infinite`
+    Span span;                       ///< of the keyword
+};
+
+/// `ignore` or `consider`: which symbols contexts look past, or at.
+struct LsysContextFilter {
+    bool consider = false;
+    std::vector<LsysName> symbols; ///< each once
+    Span span;                     ///< of the keyword
+};
+
+struct LsysBlock {
+    LsysName name;
+    bool is_main = false;
+    std::vector<SceneStatement> lets; ///< in the order of the text; all of kind `let`
+    std::optional<LsysValue> angle;
+    std::optional<LsysValue> step;
+    std::optional<LsysValue> width;
+    std::optional<LsysValue> seed;
+    std::optional<LsysSteps> steps;
+    std::optional<LsysContextFilter> filter;
+    std::vector<LsysName> modules; ///< declared names, each once
+    std::optional<LsysString> axiom;
+    std::vector<LsysProduction> productions;
+    std::vector<LsysProduction> interpret; ///< without contexts, as are those of `decompose`
+    std::vector<LsysProduction> decompose;
+};
+
+/// `use NAME = "path"`.
+struct LsysUse {
+    LsysName name;
+    std::string_view path;
+    Span path_span;
+};
+
+struct LsysFile {
+    std::vector<LsysUse> uses;
+    std::vector<SceneStatement> statements;
+    std::vector<LsysBlock> blocks;
+};
+
+} // namespace graftal

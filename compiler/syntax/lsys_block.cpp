@@ -1,0 +1,278 @@
+#include "compiler/syntax/lsys_block.h"
+
+#include <algorithm>
+#include <string>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "compiler/syntax/expression_parser.h"
+#include "compiler/syntax/lsys_productions.h"
+
+namespace graftal {
+
+namespace {
+
+class BlockParser {
+  public:
+    BlockParser(LsysText& text, LsysFile& file)
+        : text_(text), scanner_(text.scanner), diagnostics_(text.diagnostics), file_(file) {}
+
+    std::size_t parse(const LsysHeader& header) {
+        block_.is_main = header.is_main;
+        std::size_t at = 0;
+        const bool opened = parse_head(header, at);
+        if (block_.name.text.empty() && !opened) return at;
+        const LsysOutline outline = scanner_.outline(at);
+        parse_statements(outline.statements);
+        if (!outline.closed && opened && !text_.stray_brace_said) report_open(outline.end);
+        if (opened && !axiom_said_)
+            diagnostics_.error(block_.name.span, fmt::format("'lsys {}' has no axiom", block_.name.text))
+                .with_hint("axiom F gives the string that the derivation begins with");
+        file_.blocks.push_back(std::move(block_));
+        return outline.end;
+    }
+
+  private:
+    /// `lsys NAME {`; a block without its '{' is read all the same.
+    bool parse_head(const LsysHeader& header, std::size_t& at) {
+        const Span keyword = scanner_.span(header.keyword);
+        if (header.keyword != "lsys")
+            diagnostics_.error(keyword, fmt::format("expected 'lsys', found '{}'", header.keyword))
+                .with_hint("did you mean 'lsys'?");
+        at = scanner_.skip_blanks(keyword.end);
+        const std::size_t size = scanner_.text().size();
+        const std::string_view name = lsys_name(scanner_.text().substr(at));
+        block_.name = {name, name.empty() ? keyword : scanner_.span(name)};
+        if (name.empty()) scanner_.expected("a name after 'lsys'", at, size, "the end of the file");
+        at = scanner_.skip_blanks(at + name.size());
+        open_ = scanner_.span(at, at + 1);
+        if (scanner_.text().substr(at, 1) == "{") return ++at, true;
+        if (!name.empty())
+            scanner_.expected(fmt::format("'{{' after '{}'", name), at, size, "the end of the file");
+        return false;
+    }
+
+    void report_open(std::size_t end) {
+        const std::string what = fmt::format("'}}' at the end of 'lsys {}'", block_.name.text);
+        scanner_.expected(what, end, scanner_.text().size(), "the end of the file")
+            .with_note(open_, "to close this '{'");
+    }
+
+    /// The declared names first: they say how strings are read.
+    void parse_statements(const std::vector<LsysStatement>& statements) {
+        text_.symbols = {};
+        text_.stray_brace_said = false;
+        const auto declares = [](const LsysStatement& s) {
+            return s.word == "modules" && s.section == LsysSection::block;
+        };
+        for (const LsysStatement& statement : statements)
+            if (declares(statement)) parse_modules(statement);
+        for (const LsysStatement& statement : statements)
+            if (!declares(statement) && !diagnostics_.full()) parse_statement(statement);
+    }
+
+    void parse_statement(const LsysStatement& statement) {
+        const std::string_view word = statement.word;
+        if (statement.section != LsysSection::block && is_lsys_keyword(word))
+            return report_section(statement);
+        if (word == "let") return parse_let(statement);
+        if (word == "angle") return parse_value(statement, block_.angle);
+        if (word == "step") return parse_value(statement, block_.step);
+        if (word == "width") return parse_value(statement, block_.width);
+        if (word == "seed") return parse_value(statement, block_.seed);
+        if (word == "steps") return parse_steps(statement);
+        if (word == "ignore" || word == "consider") return parse_filter(statement);
+        if (word == "axiom") return parse_axiom(statement);
+        if (text_of(statement).find("->") == std::string_view::npos) return parse_other(statement);
+        std::optional<LsysProduction> production = parse_lsys_production(statement, text_);
+        if (production) productions(statement.section).push_back(std::move(*production));
+    }
+
+    std::vector<LsysProduction>& productions(LsysSection section) {
+        return section == LsysSection::block       ? block_.productions
+               : section == LsysSection::interpret ? block_.interpret
+                                                   : block_.decompose;
+    }
+
+    std::string_view text_of(const LsysStatement& statement) const {
+        return scanner_.text().substr(statement.begin, statement.end - statement.begin);
+    }
+
+    /// What follows the statement's word and its colon, as tokens.
+    TokenStream values(const LsysStatement& statement) {
+        TokenStream stream =
+            text_.tokens(statement.begin + statement.word.size(), statement.end, lsys_line_end);
+        stream.accept(":");
+        return stream;
+    }
+
+    /// The same as a string of modules.
+    LsysStringReader string(const LsysStatement& statement) {
+        LsysStringReader reader(text_, statement.begin + statement.word.size(), statement.end);
+        reader.accept(':');
+        return reader;
+    }
+
+    bool report_duplicate(const LsysStatement& statement, Span first) {
+        diagnostics_.error(scanner_.span(statement.word), fmt::format("duplicate '{}'", statement.word))
+            .with_note(first, "first given here");
+        return true;
+    }
+
+    void parse_let(const LsysStatement& statement) {
+        TokenStream stream = text_.tokens(statement.begin, statement.end, lsys_line_end);
+        const std::size_t before = diagnostics_.error_count();
+        if (at_scene_statement(stream)) parse_scene_statement(stream, block_.lets);
+        if (diagnostics_.error_count() == before) text_.finish(stream);
+    }
+
+    void parse_value(const LsysStatement& statement, std::optional<LsysValue>& value) {
+        TokenStream stream = values(statement);
+        std::optional<Expression> expression = parse_expression(stream);
+        if (!expression || !text_.finish(stream)) return;
+        const Span keyword = scanner_.span(statement.word);
+        if (value)
+            report_duplicate(statement, value->span);
+        else
+            value = LsysValue{std::move(*expression), keyword};
+    }
+
+    void parse_steps(const LsysStatement& statement) {
+        TokenStream stream = values(statement);
+        LsysSteps steps{std::nullopt, scanner_.span(statement.word)};
+        if (!stream.accept("infinite")) {
+            steps.value = parse_expression(stream);
+            if (!steps.value) return;
+        }
+        if (!text_.finish(stream)) return;
+        if (block_.steps)
+            report_duplicate(statement, block_.steps->span);
+        else
+            block_.steps = std::move(steps);
+    }
+
+    void parse_filter(const LsysStatement& statement) {
+        LsysStringReader reader = string(statement);
+        LsysContextFilter filter{statement.word == "consider", {}, scanner_.span(statement.word)};
+        if (!reader.read_symbols(filter.symbols) || !finish_string(reader)) return;
+        if (filter.symbols.empty()) {
+            reader.expected(fmt::format("symbols after '{}'", statement.word));
+        } else if (!block_.filter) {
+            block_.filter = std::move(filter);
+        } else if (block_.filter->consider == filter.consider) {
+            report_duplicate(statement, block_.filter->span);
+        } else {
+            diagnostics_.error(filter.span, "a block has either 'ignore' or 'consider'")
+                .with_note(block_.filter->span, "the other is given here");
+        }
+    }
+
+    void parse_axiom(const LsysStatement& statement) {
+        const bool again = std::exchange(axiom_said_, true);
+        LsysStringReader reader = string(statement);
+        LsysString axiom{{}, scanner_.span(statement.word)};
+        if (!reader.read_modules(axiom.modules) || !finish_string(reader)) return;
+        if (axiom.modules.empty())
+            reader.expected("a module string after 'axiom'");
+        else if (block_.axiom)
+            report_duplicate(statement, block_.axiom->span);
+        else if (!again)
+            block_.axiom = std::move(axiom);
+    }
+
+    bool finish_string(LsysStringReader& reader) {
+        if (reader.at_end()) return true;
+        reader.expected("a module or the end of the line");
+        return false;
+    }
+
+    void parse_modules(const LsysStatement& statement) {
+        TokenStream stream = values(statement);
+        do {
+            const std::optional<Token> name = stream.expect_name("the name of a module");
+            if (!name) return;
+            declare({name->text, name->span});
+        } while (stream.accept(",") || stream.at_name());
+        text_.finish(stream);
+    }
+
+    void declare(LsysName name) {
+        if (is_lsys_keyword(name.text) || name.text == "lsys" || name.text == "main") {
+            diagnostics_.error(name.span,
+                               fmt::format("'{}' is a word of the language and no module's name", name.text));
+        } else if (name.text.find('.') != std::string_view::npos) {
+            diagnostics_.error(name.span, "the name of a module has no dots");
+        } else if (name.text.size() > max_lsys_symbol) {
+            diagnostics_.error(name.span,
+                               fmt::format("names of modules have at most {} characters", max_lsys_symbol));
+        } else if (!text_.symbols.add(name.text)) {
+            const auto first = std::find_if(block_.modules.begin(), block_.modules.end(),
+                                            [&](const LsysName& other) { return other.text == name.text; });
+            diagnostics_.error(name.span, fmt::format("duplicate module '{}'", name.text))
+                .with_note(first->span, "first declared here");
+        } else {
+            block_.modules.push_back(name);
+        }
+    }
+
+    void report_section(const LsysStatement& statement) {
+        const char* section = statement.section == LsysSection::interpret ? "interpret" : "decompose";
+        diagnostics_
+            .error(scanner_.span(statement.word),
+                   fmt::format("only productions stand in '{}', not '{}'", section, statement.word))
+            .with_hint("close it with '}' before");
+        axiom_said_ |= statement.word == "axiom";
+    }
+
+    /// A statement without arrow that is none of the block's.
+    void parse_other(const LsysStatement& statement) {
+        const std::string_view word = statement.word;
+        TokenStream stream(
+            word == "use" || is_scene_word(word)
+                ? lex_range(text_.sources, scanner_.span(statement.begin, statement.end), diagnostics_)
+                : std::vector<Token>(1),
+            diagnostics_, lsys_line_end);
+        if (!stream.at_end()) return parse_misplaced(stream, word);
+        const Span span = word.empty() ? scanner_.span(statement.begin, statement.end) : scanner_.span(word);
+        const std::string hint = did_you_mean(word, lsys_keywords());
+        if (hint.empty())
+            diagnostics_.error(span, "this is neither a statement nor a production")
+                .with_hint("a production has an arrow: A -> B");
+        else
+            diagnostics_.error(span, fmt::format("unknown statement '{}'", word)).with_hint(hint);
+        axiom_said_ |= hint.find("'axiom'") != std::string::npos;
+    }
+
+    static bool is_scene_word(std::string_view word) {
+        const std::vector<std::string>& words = scene_keywords();
+        return std::find(words.begin(), words.end(), word) != words.end();
+    }
+
+    void parse_misplaced(TokenStream& stream, std::string_view word) {
+        diagnostics_
+            .error(stream.peek().span,
+                   fmt::format("'{}' stands outside the braces of 'lsys {}'", word, block_.name.text))
+            .with_hint("close the block with '}' before it");
+        if (word == "use")
+            parse_lsys_use(stream, file_);
+        else
+            parse_scene_statement(stream, file_.statements);
+    }
+
+    LsysText& text_;
+    const LsysScanner& scanner_;
+    Diagnostics& diagnostics_;
+    LsysFile& file_;
+    LsysBlock block_;
+    Span open_;
+    bool axiom_said_ = false; ///< there, or reported
+};
+
+} // namespace
+
+std::size_t parse_lsys_block(const LsysHeader& header, LsysText& text, LsysFile& file) {
+    return BlockParser(text, file).parse(header);
+}
+
+} // namespace graftal

@@ -29,6 +29,16 @@ class IdTable {
         }
     }
 
+    /// The same without adding: `none` if there is none.
+    template<typename Same> std::uint32_t find(std::uint64_t hash, const Same& same) const {
+        if (slots_.empty()) return none;
+        const auto mark = static_cast<std::uint32_t>(hash >> 32);
+        for (std::size_t at = mark & mask_;; at = (at + 1) & mask_) {
+            const Slot& slot = slots_[at];
+            if (slot.id == none || (slot.mark == mark && same(slot.id))) return slot.id;
+        }
+    }
+
     /// Makes room for so many.
     void reserve(std::size_t count);
     /// Forgets all, but keeps its room.

@@ -1,91 +1,18 @@
 #include "compiler/syntax/expression.h"
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
 #include <span>
-#include <utility>
 
 #include <fmt/format.h>
 
-#include "compiler/support/check.h"
 #include "compiler/support/number.h"
+#include "compiler/syntax/expression_functions.h"
 
 namespace graftal {
 
 namespace {
-
-/// Sine of an angle in degrees, exact at multiples of 30 and 90 where the value is 0, 1/2 or 1.
-double sin_deg(double degrees) {
-    const double turn = std::remainder(degrees, 360.0);
-    const double acute = std::abs(turn) > 90 ? 180 - std::abs(turn) : std::abs(turn);
-    double value = std::sin(acute * std::numbers::pi / 180);
-    if (acute == 30) value = 0.5;
-    if (acute == 90) value = 1;
-    return turn < 0 ? -value : value;
-}
-
-double cos_deg(double degrees) {
-    return sin_deg(90 - std::abs(std::remainder(degrees, 360.0)));
-}
-double to_deg(double radians) {
-    return radians * 180 / std::numbers::pi;
-}
-double sign(double x) {
-    return x > 0 ? 1 : x < 0 ? -1 : 0;
-}
-
-using Arguments = std::span<const double>;
-
-struct Function {
-    const char* name;
-    std::size_t arity;
-    double (*apply)(Arguments);
-};
-
-constexpr std::array functions = {
-    Function{"sin", 1, [](Arguments a) { return sin_deg(a[0]); }},
-    Function{"cos", 1, [](Arguments a) { return cos_deg(a[0]); }},
-    Function{"tan", 1, [](Arguments a) { return sin_deg(a[0]) / cos_deg(a[0]); }},
-    Function{"asin", 1, [](Arguments a) { return to_deg(std::asin(a[0])); }},
-    Function{"acos", 1, [](Arguments a) { return to_deg(std::acos(a[0])); }},
-    Function{"atan", 1, [](Arguments a) { return to_deg(std::atan(a[0])); }},
-    Function{"atan2", 2, [](Arguments a) { return to_deg(std::atan2(a[0], a[1])); }},
-    Function{"sqrt", 1, [](Arguments a) { return std::sqrt(a[0]); }},
-    Function{"exp", 1, [](Arguments a) { return std::exp(a[0]); }},
-    Function{"log", 1, [](Arguments a) { return std::log(a[0]); }},
-    Function{"floor", 1, [](Arguments a) { return std::floor(a[0]); }},
-    Function{"ceil", 1, [](Arguments a) { return std::ceil(a[0]); }},
-    Function{"abs", 1, [](Arguments a) { return std::abs(a[0]); }},
-    Function{"sign", 1, [](Arguments a) { return sign(a[0]); }},
-    Function{"min", 2, [](Arguments a) { return std::min(a[0], a[1]); }},
-    Function{"max", 2, [](Arguments a) { return std::max(a[0], a[1]); }},
-    Function{"mod", 2, [](Arguments a) { return std::fmod(a[0], a[1]); }},
-    Function{"pow", 2, [](Arguments a) { return std::pow(a[0], a[1]); }},
-};
-
-const Function* function_named(std::string_view name) {
-    const auto found =
-        std::find_if(functions.begin(), functions.end(), [&](const Function& f) { return name == f.name; });
-    return found == functions.end() ? nullptr : &*found;
-}
-
-double apply_binary(std::string_view op, double a, double b) {
-    if (op == "+") return a + b;
-    if (op == "-") return a - b;
-    if (op == "*") return a * b;
-    if (op == "/") return a / b;
-    if (op == "%") return std::fmod(a, b);
-    if (op == "^") return std::pow(a, b);
-    if (op == "==") return a == b;
-    if (op == "!=") return a != b;
-    if (op == "<") return a < b;
-    if (op == "<=") return a <= b;
-    if (op == ">") return a > b;
-    GRAFTAL_CHECK(op == ">=", "unknown operator in an expression");
-    return a >= b;
-}
 
 class Evaluator {
   public:
@@ -114,7 +41,7 @@ class Evaluator {
         if (const auto found = environment_.find(e.text); found != environment_.end()) return found->second;
         if (e.text == "pi") return std::numbers::pi;
         Diagnostic& error = diagnostics_.error(e.span, fmt::format("unknown name '{}'", e.text));
-        if (function_named(e.text)) {
+        if (expression_function(e.text)) {
             error.with_hint(fmt::format("'{}' is a function and needs its arguments in parentheses", e.text));
             return std::nullopt;
         }
@@ -126,10 +53,10 @@ class Evaluator {
     }
 
     std::optional<double> call(const Expression& e) {
-        const Function* function = function_named(e.text);
+        const ExpressionFunction* function = expression_function(e.text);
         if (!function) {
             std::vector<std::string> candidates;
-            for (const Function& known : functions)
+            for (const ExpressionFunction& known : expression_functions())
                 candidates.push_back(known.name);
             diagnostics_.error(e.span, fmt::format("unknown function '{}'", e.text))
                 .with_hint(did_you_mean(e.text, candidates));
@@ -147,7 +74,7 @@ class Evaluator {
             if (!argument) return std::nullopt;
             arguments[i] = *argument;
         }
-        const Arguments used(arguments.data(), function->arity);
+        const std::span<const double> used(arguments.data(), function->arity);
         if (e.text == "mod" && arguments[1] == 0) return division_by_zero(e);
         const std::string_view separator = function->arity == 2 ? ", " : "";
         return finite(function->apply(used), e, [&] {
@@ -171,7 +98,7 @@ class Evaluator {
         if (!right) return std::nullopt;
         if (e.text == "&&" || e.text == "||") return static_cast<double>(*right != 0);
         if ((e.text == "/" || e.text == "%") && *right == 0) return division_by_zero(e);
-        return finite(apply_binary(e.text, *left, *right), e,
+        return finite(apply_binary(binary_operator(e.text), *left, *right), e,
                       [&] { return fmt::format("{} {} {}", shortest(*left), e.text, shortest(*right)); });
     }
 

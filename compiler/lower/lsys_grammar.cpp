@@ -1,0 +1,253 @@
+#include "compiler/lower/lsys_grammar.h"
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <set>
+#include <unordered_map>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "compiler/support/number.h"
+
+namespace graftal {
+
+namespace {
+
+constexpr std::size_t most_symbols = 0xFFFF;
+constexpr double largest_seed = 9007199254740992.0; // 2^53
+
+class GrammarBuilder {
+  public:
+    GrammarBuilder(const LsysBlock& block, Environment lets, Diagnostics& diagnostics)
+        : block_(block), diagnostics_(diagnostics), errors_before_(diagnostics.error_count()) {
+        grammar_.source = &block;
+        grammar_.lets = std::move(lets);
+    }
+
+    std::optional<LsysGrammar> run() && {
+        add_settings();
+        if (block_.axiom) grammar_.axiom = templates(*block_.axiom, {});
+        add_rules(block_.productions, RuleKind::produce);
+        add_rules(block_.decompose, RuleKind::decompose);
+        add_rules(block_.interpret, RuleKind::interpret);
+        add_filter();
+        for (auto& rules : grammar_.rules_of)
+            rules.resize(grammar_.symbols.size());
+        prefer_contexts();
+        check_symbols();
+        if (diagnostics_.error_count() > errors_before_) return std::nullopt;
+        return std::move(grammar_);
+    }
+
+  private:
+    template<typename Predicate>
+    std::optional<double> setting(const std::optional<LsysValue>& value, const Predicate& good,
+                                  std::string_view name, std::string_view demand) {
+        if (!value) return std::nullopt;
+        return checked(value->value, good, name, demand);
+    }
+
+    template<typename Predicate>
+    std::optional<double> checked(const Expression& expression, const Predicate& good, std::string_view name,
+                                  std::string_view demand) {
+        const std::optional<double> number = evaluate(expression, grammar_.lets, diagnostics_);
+        if (!number || good(*number)) return number;
+        diagnostics_.error(expression.span, fmt::format("'{}' must {}, not {}", name, demand, shortest(*number)));
+        return std::nullopt;
+    }
+
+    void add_settings() {
+        const auto any = [](double) { return true; };
+        const auto positive = [](double x) { return x > 0; };
+        grammar_.angle_deg = setting(block_.angle, any, "angle", "").value_or(grammar_.angle_deg);
+        grammar_.step = setting(block_.step, positive, "step", "be positive").value_or(grammar_.step);
+        grammar_.width = setting(block_.width, positive, "width", "be positive");
+        const auto seed = setting(
+            block_.seed, [](double x) { return x >= 0 && x <= largest_seed && x == std::floor(x); }, "seed",
+            "be a whole number from 0 to 2^53");
+        grammar_.seed = static_cast<std::uint64_t>(seed.value_or(0));
+        if (!block_.steps) return;
+        grammar_.infinite = !block_.steps->value;
+        if (grammar_.infinite) return;
+        const auto steps = checked(
+            *block_.steps->value,
+            [](double x) { return x >= 0 && x <= max_derivation_steps && x == std::floor(x); }, "steps",
+            fmt::format("be a whole number from 0 to {}, or infinite", max_derivation_steps));
+        if (steps) grammar_.steps = static_cast<unsigned>(*steps);
+    }
+
+    SymbolId symbol(std::string_view name, Span span) {
+        const auto [known, fresh] = ids_.try_emplace(std::string(name), static_cast<SymbolId>(ids_.size()));
+        if (!fresh) return known->second;
+        if (grammar_.symbols.size() == most_symbols)
+            diagnostics_.error(span, fmt::format("a block has at most {} different symbols", most_symbols));
+        grammar_.symbols.push_back(known->first);
+        grammar_.commands.push_back(turtle_command(name));
+        return known->second;
+    }
+
+    SymbolId symbol(const LsysModule& module) {
+        if (module.symbol != "~") return symbol(module.symbol, module.span);
+        return symbol(fmt::format("~{}", module.model), module.span);
+    }
+
+    std::vector<LsysTemplate> templates(const LsysString& string, const std::vector<std::string_view>& variables) {
+        std::vector<LsysTemplate> result;
+        result.reserve(string.modules.size());
+        for (const LsysModule& module : string.modules) {
+            LsysTemplate& added = result.emplace_back();
+            added.symbol = symbol(module);
+            uses_.push_back({added.symbol, module.parameters.size(), module.span});
+            for (const Expression& parameter : module.parameters)
+                if (auto code = ExpressionCode::compile(parameter, grammar_.lets, variables, diagnostics_))
+                    added.parameters.push_back(std::move(*code));
+        }
+        return result;
+    }
+
+    LsysPattern pattern(const LsysFormal& formal, LsysRule& rule) {
+        for (const LsysName& name : formal.parameters) {
+            if (std::ranges::find(rule.variables, name.text) != rule.variables.end())
+                diagnostics_.error(name.span, fmt::format("duplicate parameter '{}'", name.text))
+                    .with_hint("the parameters of a production and its contexts have different names");
+            rule.variables.push_back(name.text);
+        }
+        return {symbol(formal.symbol, formal.span), static_cast<std::uint16_t>(formal.parameters.size())};
+    }
+
+    void add_rules(const std::vector<LsysProduction>& productions, RuleKind kind) {
+        for (const LsysProduction& production : productions) {
+            if (diagnostics_.full()) return;
+            add_rule(production, kind);
+        }
+    }
+
+    void add_rule(const LsysProduction& production, RuleKind kind) {
+        LsysRule rule;
+        rule.source = &production;
+        rule.predecessor = pattern(production.predecessor, rule);
+        for (const LsysFormal& formal : production.left)
+            rule.left.push_back(pattern(formal, rule));
+        for (const LsysFormal& formal : production.right)
+            rule.right.push_back(pattern(formal, rule));
+        rule.condition = code(production.condition, rule);
+        rule.probability = code(production.probability, rule);
+        rule.successor = templates(production.successor, rule.variables);
+        grammar_.has_context |= rule.has_context();
+        grammar_.is_stochastic |= rule.probability.has_value();
+        auto& of_kind = grammar_.rules_of[static_cast<std::size_t>(kind)];
+        if (of_kind.size() <= rule.predecessor.symbol) of_kind.resize(rule.predecessor.symbol + 1u);
+        of_kind[rule.predecessor.symbol].push_back(static_cast<std::uint32_t>(grammar_.rules.size()));
+        grammar_.rules.push_back(std::move(rule));
+    }
+
+    std::optional<ExpressionCode> code(const std::optional<Expression>& expression, const LsysRule& rule) {
+        if (!expression) return std::nullopt;
+        return ExpressionCode::compile(*expression, grammar_.lets, rule.variables, diagnostics_);
+    }
+
+    void add_filter() {
+        std::set<SymbolId> named;
+        if (block_.filter)
+            for (const LsysName& name : block_.filter->symbols)
+                named.insert(symbol(name.text, name.span));
+        const bool consider = block_.filter && block_.filter->consider;
+        grammar_.ignored.resize(grammar_.symbols.size());
+        for (SymbolId id = 0; id < grammar_.symbols.size(); ++id)
+            grammar_.ignored[id] = block_.filter && named.contains(id) != consider;
+    }
+
+    void prefer_contexts() {
+        for (auto& rules : grammar_.rules_of)
+            for (auto& of_symbol : rules)
+                std::ranges::stable_partition(
+                    of_symbol, [&](std::uint32_t id) { return grammar_.rules[id].has_context(); });
+    }
+
+    bool is_rewritten(SymbolId id) const {
+        return std::ranges::any_of(grammar_.rules_of,
+                                   [&](const auto& rules) { return !rules[id].empty(); });
+    }
+
+    bool is_rewritten(SymbolId id, std::size_t arity) const {
+        return std::ranges::any_of(grammar_.rules_of, [&](const auto& rules) {
+            return std::ranges::any_of(rules[id], [&](std::uint32_t rule) {
+                return grammar_.rules[rule].predecessor.arity == arity;
+            });
+        });
+    }
+
+    std::set<SymbolId> symbols_of_contexts() const {
+        std::set<SymbolId> result;
+        for (const LsysRule& rule : grammar_.rules)
+            for (const auto* context : {&rule.left, &rule.right})
+                for (const LsysPattern& pattern : *context)
+                    result.insert(pattern.symbol);
+        return result;
+    }
+
+    /// Each symbol, and each number of parameters of it, is spoken of once.
+    void check_symbols() {
+        const std::set<SymbolId> seen_by_contexts = symbols_of_contexts();
+        std::set<std::pair<SymbolId, std::size_t>> checked;
+        for (const Use& use : uses_) {
+            const bool rewritten = is_rewritten(use.symbol);
+            if (grammar_.commands[use.symbol] != TurtleCommand::none) continue;
+            if (!checked.emplace(use.symbol, rewritten ? use.arity : 0).second) continue;
+            const std::string& name = grammar_.symbols[use.symbol];
+            if (rewritten) {
+                if (!is_rewritten(use.symbol, use.arity)) warn_of_arity(use, name);
+            } else if (!is_letter(name)) {
+                diagnostics_.error(use.span, fmt::format("'{}' means nothing to the turtle", name))
+                    .with_hint("letters stand for modules; docs/language.md lists the turtle's symbols");
+            } else if (!seen_by_contexts.contains(use.symbol) && !is_declared(name)) {
+                diagnostics_
+                    .warning(use.span, fmt::format("'{}' has no production and draws nothing", name))
+                    .with_hint(fmt::format("'modules {}' says that this is meant", name));
+            }
+        }
+    }
+
+    struct Use {
+        SymbolId symbol;
+        std::size_t arity;
+        Span span;
+    };
+
+    void warn_of_arity(const Use& use, const std::string& name) {
+        std::set<std::size_t> known;
+        for (const auto& rules : grammar_.rules_of)
+            for (const std::uint32_t rule : rules[use.symbol])
+                known.insert(grammar_.rules[rule].predecessor.arity);
+        const auto count = [](std::size_t n) {
+            return fmt::format("{} parameter{}", n == 0 ? "no" : std::to_string(n), n == 1 ? "" : "s");
+        };
+        diagnostics_.warning(use.span, fmt::format("no production rewrites '{}' with {}", name, count(use.arity)))
+            .with_hint(fmt::format("its productions have {}", count(*known.begin())));
+    }
+
+    static bool is_letter(const std::string& name) {
+        return std::isalnum(static_cast<unsigned char>(name.front())) || name.front() == '_';
+    }
+
+    bool is_declared(std::string_view name) const {
+        return std::ranges::any_of(block_.modules, [&](const LsysName& m) { return m.text == name; });
+    }
+
+    const LsysBlock& block_;
+    Diagnostics& diagnostics_;
+    std::size_t errors_before_;
+    LsysGrammar grammar_;
+    std::unordered_map<std::string, SymbolId> ids_;
+    std::vector<Use> uses_; ///< in axiom and successors
+};
+
+} // namespace
+
+std::optional<LsysGrammar> build_grammar(const LsysBlock& block, Environment lets, Diagnostics& diagnostics) {
+    return GrammarBuilder(block, std::move(lets), diagnostics).run();
+}
+
+} // namespace graftal

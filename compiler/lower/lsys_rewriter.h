@@ -1,0 +1,77 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "compiler/lower/lsys_grammar.h"
+#include "compiler/lower/module_table.h"
+
+namespace graftal {
+
+/// What a module may become, and with which probability.
+struct Alternative {
+    double probability = 1;
+    ModuleString successor;
+};
+
+/// The different modules of one derivation may not be more.
+inline constexpr std::size_t max_distinct_modules = 20'000'000;
+
+/// Applies the productions of a grammar to single modules; each module is rewritten once and then known.
+class LsysRewriter {
+  public:
+    /// All must outlive this.
+    LsysRewriter(const LsysGrammar& grammar, Diagnostics& diagnostics)
+        : grammar_(grammar), diagnostics_(diagnostics) {}
+
+    const LsysGrammar& grammar() const { return grammar_; }
+    ModuleTable& modules() { return modules_; }
+    const ModuleTable& modules() const { return modules_; }
+
+    /// The modules of the axiom; nothing after an error.
+    std::optional<ModuleString> axiom();
+
+    /// The alternatives of a module without regard to contexts: productions that have some are passed over.
+    /// Their probabilities sum to 1; none: no production applies, and the module stays. Null after an error
+    /// (a division by zero, probabilities that do not sum to 1); reported once. Valid until the next call.
+    const std::vector<Alternative>* alternatives(RuleKind kind, ModuleId module);
+
+    /// Whether alternatives() would give any, or an error.
+    bool is_rewritten(RuleKind kind, ModuleId module);
+
+    /// The same for one rule and the values of its variables, those of the contexts included. Nothing if its
+    /// condition is false, or after an error.
+    bool condition_holds(const LsysRule& rule, std::span<const double> values);
+    /// Adds the rule's successor to `string`; false after an error.
+    bool append_successor(const LsysRule& rule, std::span<const double> values, ModuleString& string);
+    /// 1 for a rule without.
+    std::optional<double> probability(const LsysRule& rule, std::span<const double> values);
+
+    bool failed() const { return failed_; }
+
+  private:
+    static constexpr std::uint32_t unknown = UINT32_MAX;
+    static constexpr std::uint32_t none = UINT32_MAX - 1;
+    static constexpr std::uint32_t error = UINT32_MAX - 2;
+
+    std::uint32_t find(RuleKind kind, ModuleId module);
+    std::uint32_t compute(RuleKind kind, ModuleId module);
+    bool collect(const std::vector<std::uint32_t>& rules, ModuleId module, std::vector<Alternative>& found);
+    bool normalise(std::vector<Alternative>& found, const LsysRule& first);
+    std::optional<double> value(const ExpressionCode& code, const LsysRule& rule, std::span<const double> values);
+    bool append(const std::vector<LsysTemplate>& templates, const LsysRule* rule, std::span<const double> values,
+                ModuleString& string);
+
+    const LsysGrammar& grammar_;
+    Diagnostics& diagnostics_;
+    ModuleTable modules_;
+    std::array<std::vector<std::uint32_t>, rule_kind_count> known_; ///< by module, into alternatives_
+    std::vector<std::vector<Alternative>> alternatives_;
+    std::vector<double> arguments_;
+    bool failed_ = false;
+};
+
+} // namespace graftal

@@ -1,0 +1,158 @@
+#include "compiler/syntax/expression_code.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <string>
+
+namespace graftal {
+
+namespace {
+
+/// Stands for "no value"; values are finite.
+constexpr double failed = std::numeric_limits<double>::quiet_NaN();
+
+} // namespace
+
+class ExpressionCode::Compiler {
+  public:
+    Compiler(ExpressionCode& code, const Environment& constants, std::span<const std::string_view> variables,
+             Diagnostics& diagnostics)
+        : code_(code), constants_(constants), variables_(variables), diagnostics_(diagnostics) {}
+
+    /// The node of the expression. Recursion is as deep as the tree, which the parser bounds.
+    std::optional<std::uint32_t> add(const Expression& e) {
+        switch (e.kind) {
+        case Expression::Kind::number:
+            return append({.kind = Kind::number, .number = e.number});
+        case Expression::Kind::name:
+            return add_name(e);
+        case Expression::Kind::call:
+            return add_call(e);
+        case Expression::Kind::unary:
+            return add_operands(e, {.kind = e.text == "!" ? Kind::invert : Kind::negate});
+        case Expression::Kind::binary:
+            return add_operands(e, {.kind = Kind::binary, .op = binary_operator(e.text)});
+        }
+        return std::nullopt;
+    }
+
+  private:
+    std::uint32_t append(const Node& node) {
+        code_.nodes_.push_back(node);
+        return static_cast<std::uint32_t>(code_.nodes_.size() - 1);
+    }
+
+    std::optional<std::uint32_t> add_name(const Expression& e) {
+        const auto slot = std::ranges::find(variables_, e.text);
+        if (slot != variables_.end())
+            return append({.kind = Kind::slot, .slot = static_cast<std::uint32_t>(slot - variables_.begin())});
+        if (const std::optional<double> number = evaluate(e, visible_names(e), diagnostics_))
+            return append({.kind = Kind::number, .number = *number});
+        return std::nullopt;
+    }
+
+    /// For the error about an unknown name, those of the variables too.
+    Environment visible_names(const Expression& e) const {
+        Environment names = constants_;
+        if (names.contains(e.text)) return names;
+        for (const std::string_view variable : variables_)
+            names.emplace(variable, 0);
+        return names;
+    }
+
+    std::optional<std::uint32_t> add_call(const Expression& e) {
+        const ExpressionFunction* function = expression_function(e.text);
+        if (!function || e.operands.size() != function->arity) {
+            evaluate(e, constants_, diagnostics_);
+            return std::nullopt;
+        }
+        return add_operands(e, {.kind = Kind::call, .function = function});
+    }
+
+    std::optional<std::uint32_t> add_operands(const Expression& e, Node node) {
+        std::array<std::uint32_t, 2> operands{};
+        bool good = true;
+        for (std::size_t i = 0; i < e.operands.size(); ++i) {
+            const std::optional<std::uint32_t> operand = add(e.operands[i]);
+            operands[i] = operand.value_or(0);
+            good = good && operand;
+        }
+        if (!good) return std::nullopt;
+        node.slot = operands[0];
+        node.second = operands[1];
+        return append(node);
+    }
+
+    ExpressionCode& code_;
+    const Environment& constants_;
+    std::span<const std::string_view> variables_;
+    Diagnostics& diagnostics_;
+};
+
+std::optional<ExpressionCode> ExpressionCode::compile(const Expression& expression,
+                                                      const Environment& constants,
+                                                      std::span<const std::string_view> variables,
+                                                      Diagnostics& diagnostics) {
+    ExpressionCode code(expression);
+    if (!Compiler(code, constants, variables, diagnostics).add(expression)) return std::nullopt;
+    return code;
+}
+
+std::optional<double> ExpressionCode::value(std::span<const double> slots) const {
+    const double result = value(static_cast<std::uint32_t>(nodes_.size() - 1), slots);
+    if (std::isfinite(result)) return result;
+    return std::nullopt;
+}
+
+double ExpressionCode::value(std::uint32_t index, std::span<const double> slots) const {
+    const Node& node = nodes_[index];
+    switch (node.kind) {
+    case Kind::number:
+        return node.number;
+    case Kind::slot:
+        return slots[node.slot];
+    case Kind::negate:
+        return -value(node.slot, slots);
+    case Kind::invert: {
+        const double operand = value(node.slot, slots);
+        return std::isnan(operand) ? failed : static_cast<double>(operand == 0);
+    }
+    case Kind::call:
+        return call(node, slots);
+    case Kind::binary:
+        return binary(node, slots);
+    }
+    return failed;
+}
+
+double ExpressionCode::binary(const Node& node, std::span<const double> slots) const {
+    const double left = value(node.slot, slots);
+    if (!std::isfinite(left)) return failed;
+    if (node.op == BinaryOperator::logical_and && left == 0) return 0;
+    if (node.op == BinaryOperator::logical_or && left != 0) return 1;
+    const double right = value(node.second, slots);
+    if (!std::isfinite(right)) return failed;
+    const bool divides = node.op == BinaryOperator::divide || node.op == BinaryOperator::remainder;
+    if (divides && right == 0) return failed;
+    return apply_binary(node.op, left, right);
+}
+
+double ExpressionCode::call(const Node& node, std::span<const double> slots) const {
+    const std::size_t arity = node.function->arity;
+    const std::array<double, 2> arguments = {value(node.slot, slots),
+                                             arity > 1 ? value(node.second, slots) : 0};
+    const bool finite = std::isfinite(arguments[0]) && std::isfinite(arguments[1]);
+    return finite ? node.function->apply(std::span(arguments).first(arity)) : failed;
+}
+
+void ExpressionCode::report(std::span<const double> slots, const Environment& constants,
+                            std::span<const std::string_view> variables, Diagnostics& diagnostics) const {
+    Environment environment = constants;
+    for (std::size_t i = 0; i < variables.size(); ++i)
+        environment.insert_or_assign(std::string(variables[i]), slots[i]);
+    evaluate(*source_, environment, diagnostics);
+}
+
+} // namespace graftal

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "compiler/support/diagnostics.h"
+#include "compiler/syntax/expression.h"
+#include "compiler/syntax/expression_functions.h"
+
+namespace graftal {
+
+/// An expression whose names were looked up once, for values that are computed often: of a production's
+/// parameters, conditions and probabilities.
+class ExpressionCode {
+  public:
+    /// Names of `variables` are read from the slots of value(), in this order, and hide `constants`. Reports
+    /// unknown names and functions and wrong numbers of arguments, and gives nothing then. `expression` must
+    /// outlive the code.
+    static std::optional<ExpressionCode> compile(const Expression& expression, const Environment& constants,
+                                                 std::span<const std::string_view> variables,
+                                                 Diagnostics& diagnostics);
+
+    /// The value, or nothing where evaluate() reports an error.
+    std::optional<double> value(std::span<const double> slots) const;
+
+    /// Reports why value() gave nothing for these slots.
+    void report(std::span<const double> slots, const Environment& constants,
+                std::span<const std::string_view> variables, Diagnostics& diagnostics) const;
+
+  private:
+    enum class Kind : std::uint8_t { number, slot, call, negate, invert, binary };
+
+    struct Node {
+        Kind kind = Kind::number;
+        BinaryOperator op = BinaryOperator::add;
+        std::uint32_t slot = 0;                        ///< or the first operand
+        std::uint32_t second = 0;                      ///< operand
+        double number = 0;
+        const ExpressionFunction* function = nullptr;
+    };
+
+    class Compiler;
+
+    explicit ExpressionCode(const Expression& source) : source_(&source) {}
+    double value(std::uint32_t node, std::span<const double> slots) const;
+    double binary(const Node& node, std::span<const double> slots) const;
+    double call(const Node& node, std::span<const double> slots) const;
+
+    const Expression* source_;
+    std::vector<Node> nodes_; ///< operands before what they are of; the whole is the last
+};
+
+} // namespace graftal

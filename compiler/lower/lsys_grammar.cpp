@@ -85,6 +85,7 @@ class GrammarBuilder {
             diagnostics_.error(span, fmt::format("a block has at most {} different symbols", most_symbols));
         grammar_.symbols.push_back(known->first);
         grammar_.commands.push_back(turtle_command(name));
+        grammar_.first_uses.push_back(span);
         return known->second;
     }
 

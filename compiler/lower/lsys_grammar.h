@@ -57,6 +57,7 @@ struct LsysGrammar {
     Environment lets;
     std::vector<std::string> symbols; ///< as strings write them; a model is `~NAME`
     std::vector<TurtleCommand> commands; ///< of the symbols
+    std::vector<Span> first_uses;        ///< of the symbols
     std::vector<LsysTemplate> axiom;
     std::vector<LsysRule> rules;
     /// The rules that may rewrite a symbol, of one kind, in the order in which they are tried: those with

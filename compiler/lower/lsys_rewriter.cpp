@@ -72,7 +72,7 @@ bool LsysRewriter::collect(const std::vector<std::uint32_t>& rules, ModuleId mod
             continue;
         }
         const std::optional<double> chance = probability(rule, values);
-        Alternative alternative{chance.value_or(0), {}};
+        Alternative alternative{&rule, chance.value_or(0), {}};
         if (!chance || !append_successor(rule, values, alternative.successor)) return false;
         found.push_back(std::move(alternative));
         if (!rule.probability) return true;

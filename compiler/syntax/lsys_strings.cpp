@@ -165,7 +165,7 @@ bool LsysStringReader::take_room(const Raw& raw) {
     if (text_.modules_left > 0) {
         if (--text_.modules_left > 0) return true;
         text_.diagnostics.error(
-            raw.span, fmt::format("the strings have more than {} modules in all", max_lsys_modules - 1));
+            raw.span, fmt::format("the strings have more than {} modules in all", max_lsys_modules));
     }
     at_ = end_;
     return false;

@@ -1,0 +1,197 @@
+#include "compiler/lower/lsys_composer.h"
+
+#include <algorithm>
+#include <cctype>
+#include <utility>
+
+#include <fmt/format.h>
+
+namespace graftal {
+
+namespace {
+
+/// Rules of one kind may follow each other so often without a step between them.
+constexpr unsigned most_repeated = 1000;
+
+bool depends_on_directions(const LsysGrammar& grammar) {
+    return std::ranges::any_of(grammar.commands, [](TurtleCommand command) {
+        return command == TurtleCommand::level || command == TurtleCommand::tropism;
+    });
+}
+
+} // namespace
+
+LsysComposer::LsysComposer(LsysRewriter& rewriter, TurtleContext& turtle, ObjectPool& pool,
+                           const std::map<SymbolId, ObjectId>& models, std::size_t max_parts)
+    : rewriter_(rewriter), context_(turtle), pool_(pool), models_(models), max_parts_(max_parts),
+      uses_directions_(depends_on_directions(rewriter.grammar())) {}
+
+std::optional<TurtlePart> LsysComposer::compose(unsigned steps, const TurtleState& start) {
+    const std::optional<ModuleString> axiom = rewriter_.axiom();
+    if (!axiom) return std::nullopt;
+    const Span span = rewriter_.grammar().source->axiom->span;
+    tasks_.push_back({.start = start,
+                      .string = &*axiom,
+                      .string_stage = stage_before(steps),
+                      .span = span,
+                      .turtle = Turtle(context_, start)});
+    if (!run_tasks()) return std::nullopt;
+    TurtlePart part = std::move(tasks_.back().turtle).finish();
+    tasks_.pop_back();
+    return part;
+}
+
+/// Until the axiom is done.
+bool LsysComposer::run_tasks() {
+    while (true) {
+        const std::size_t depth = tasks_.size();
+        if (!advance(tasks_.back())) return false;
+        if (tasks_.size() > depth) continue;
+        if (depth == 1) return true;
+        complete_task();
+    }
+}
+
+LsysComposer::Stage LsysComposer::stage_before(unsigned steps) const {
+    const auto& rules = rewriter_.grammar().rules_of[static_cast<std::size_t>(RuleKind::decompose)];
+    const bool decomposes = std::ranges::any_of(rules, [](const auto& of_symbol) { return !of_symbol.empty(); });
+    return 2 * steps + (decomposes ? 1 : 0);
+}
+
+/// False after an error.
+bool LsysComposer::choose(RuleKind kind, ModuleId module, Unfolded& result) {
+    if (!rewriter_.is_rewritten(kind, module)) return true;
+    const std::vector<Alternative>* alternatives = rewriter_.alternatives(kind, module);
+    if (!alternatives) return false;
+    result.by = &alternatives->front();
+    result.kind = kind;
+    return true;
+}
+
+bool LsysComposer::unfold(ModuleId module, Stage stage, Unfolded& result) {
+    result = {};
+    if (stage % 2 == 1) {
+        result.stage = stage;
+        if (!choose(RuleKind::decompose, module, result)) return false;
+        if (result.by) return true;
+        --stage;
+    }
+    if (stage > 0) {
+        result.stage = stage_before(stage / 2 - 1);
+        if (!choose(RuleKind::produce, module, result)) return false;
+        if (result.by) return true;
+        // What no production fits now, none will fit later.
+    }
+    result.stage = 0;
+    return choose(RuleKind::interpret, module, result);
+}
+
+/// Goes on until the string ends, or a part is missing, whose task is then the last.
+bool LsysComposer::advance(Task& task) {
+    for (; task.at < task.string->size() && !task.turtle.finished(); ++task.at) {
+        const ModuleId module = (*task.string)[task.at];
+        Unfolded unfolded;
+        if (!unfold(module, task.string_stage, unfolded)) return false;
+        if (!unfolded.by || task.turtle.passing_over()) {
+            if (!draw(task, module)) return false;
+            continue;
+        }
+        const Stage stage = unfolded.kind == RuleKind::interpret ? 0 : task.string_stage;
+        const TurtleState state = state_of(task.turtle);
+        const TurtlePart* part = find(module, stage, state);
+        if (!part) return start_task(module, stage, state, unfolded);
+        task.turtle.append(*part);
+    }
+    return true;
+}
+
+bool LsysComposer::draw(Task& task, ModuleId module) {
+    const SymbolId symbol = rewriter_.modules().symbol(module);
+    const auto model = models_.find(symbol);
+    return task.turtle.run(rewriter_.grammar().commands[symbol], rewriter_.modules().parameters(module),
+                           model == models_.end() ? std::nullopt : std::optional(model->second), task.span);
+}
+
+bool LsysComposer::start_task(ModuleId module, Stage stage, const TurtleState& start, const Unfolded& unfolded) {
+    const bool repeated = unfolded.stage == stage;
+    const unsigned count = repeated ? tasks_.back().repeated + 1 : 0;
+    const std::string& name = rewriter_.grammar().symbols[rewriter_.modules().symbol(module)];
+    const Span span = unfolded.by->rule->source->span;
+    if (count > most_repeated) {
+        context_.diagnostics
+            .error(span, fmt::format("the {} of '{}' does not end",
+                                     stage == 0 ? "interpretation" : "decomposition", name))
+            .with_hint("these productions are applied again and again until none fits: a condition must end it");
+        return false;
+    }
+    if (parts_.size() + tasks_.size() > max_parts_) {
+        context_.diagnostics
+            .error(span, fmt::format("the model has more than {} different parts", max_parts_))
+            .with_hint("parameters that change without end make every part another one");
+        return false;
+    }
+    tasks_.push_back({.module = module,
+                      .stage = stage,
+                      .start = start,
+                      .string = &unfolded.by->successor,
+                      .string_stage = unfolded.stage,
+                      .interprets = unfolded.kind == RuleKind::interpret,
+                      .span = span,
+                      .turtle = Turtle(context_, start),
+                      .repeated = count});
+    return true;
+}
+
+/// Makes the last task a known part.
+void LsysComposer::complete_task() {
+    Task task = std::move(tasks_.back());
+    tasks_.pop_back();
+    TurtlePart part = std::move(task.turtle).finish();
+    if (task.interprets) part.modules = 1;
+    part.instances = pool_.share(std::move(part.instances), name_of_part(task), task.span);
+    const std::uint64_t kind_hash = mixed(task.module, task.stage);
+    const std::uint32_t kind =
+        kind_ids_.find_or_add(kind_hash, static_cast<std::uint32_t>(kinds_.size()), [&](std::uint32_t id) {
+            return kinds_[id].module == task.module && kinds_[id].stage == task.stage;
+        });
+    if (kind == kinds_.size()) kinds_.push_back({task.module, task.stage, {}});
+    auto& reads = kinds_[kind].reads;
+    if (std::ranges::find(reads, part.reads) == reads.end()) reads.push_back(part.reads);
+    part_ids_.find_or_add(mixed(kind, hash(task.start, part.reads)), static_cast<std::uint32_t>(parts_.size()),
+                          [](std::uint32_t) { return false; });
+    parts_.push_back({kind, task.start, std::move(part)});
+}
+
+const TurtlePart* LsysComposer::find(ModuleId module, Stage stage, const TurtleState& start) const {
+    const std::uint32_t kind = kind_ids_.find(mixed(module, stage), [&](std::uint32_t id) {
+        return kinds_[id].module == module && kinds_[id].stage == stage;
+    });
+    if (kind == IdTable::none) return nullptr;
+    for (const TurtleStateMask reads : kinds_[kind].reads) {
+        const std::uint32_t part = part_ids_.find(mixed(kind, hash(start, reads)), [&](std::uint32_t id) {
+            const KnownPart& known = parts_[id];
+            return known.kind == kind && known.part.reads == reads && equal(known.start, start, reads);
+        });
+        if (part != IdTable::none) return &parts_[part].part;
+    }
+    return nullptr;
+}
+
+TurtleState LsysComposer::state_of(const Turtle& turtle) {
+    TurtleState state = turtle.state();
+    if (!uses_directions_) return state;
+    state.tropism = directions_.representative(state.tropism);
+    state.vertical = directions_.representative(state.vertical);
+    return state;
+}
+
+/// `A_5` for module A with five steps left.
+std::string LsysComposer::name_of_part(const Task& task) const {
+    std::string name;
+    for (const char c : rewriter_.grammar().symbols[rewriter_.modules().symbol(task.module)])
+        if (std::isalnum(static_cast<unsigned char>(c)) || c == '_') name += c;
+    if (name.empty() || std::isdigit(static_cast<unsigned char>(name.front()))) name = "module" + name;
+    return fmt::format("{}_{}", name, task.stage / 2);
+}
+
+} // namespace graftal

@@ -1,0 +1,96 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "compiler/lower/lsys_rewriter.h"
+#include "compiler/lower/object_pool.h"
+#include "compiler/lower/turtle.h"
+#include "compiler/lower/turtle_state.h"
+#include "compiler/support/id_table.h"
+
+namespace graftal {
+
+/// Compiles a derivation without deriving it (Hart 1992, section 4, made automatic): what a module becomes
+/// depends on the module, the steps that are left, and as much of the incoming state of the turtle as its
+/// subtree reads. So each such *part* is composed once, out of the parts of its successor, and costs are
+/// O(parts), not O(length of the word).
+class LsysComposer {
+  public:
+    /// All must outlive this. `models`: the roots of what `~NAME` places, by symbol.
+    LsysComposer(LsysRewriter& rewriter, TurtleContext& turtle, ObjectPool& pool,
+                 const std::map<SymbolId, ObjectId>& models, std::size_t max_parts);
+
+    /// The part that the axiom becomes after `steps` steps; nothing after an error in the turtle's diagnostics.
+    std::optional<TurtlePart> compose(unsigned steps, const TurtleState& start);
+
+    std::size_t part_count() const { return parts_.size(); }
+
+  private:
+    /// 0: being drawn; 2k: before a step, of k that are left; 2k + 1: being decomposed before that.
+    using Stage = std::uint32_t;
+
+    /// What is drawn in place of a module.
+    struct Unfolded {
+        const Alternative* by = nullptr; ///< null: drawn as it is
+        RuleKind kind = RuleKind::produce;
+        Stage stage = 0; ///< of the successor
+    };
+
+    /// A module's string under way.
+    struct Task {
+        ModuleId module = 0;
+        Stage stage = 0; ///< of the module
+        TurtleState start;
+        const ModuleString* string = nullptr;
+        Stage string_stage = 0;
+        bool interprets = false; ///< the string is drawn, but not part of the word
+        Span span;               ///< of the production
+        Turtle turtle;
+        std::size_t at = 0;     ///< next in the string
+        unsigned repeated = 0;  ///< parts around this one at the same stage
+    };
+
+    struct PartKind {
+        ModuleId module = 0;
+        Stage stage = 0;
+        std::vector<TurtleStateMask> reads; ///< of the known parts, each once
+    };
+
+    struct KnownPart {
+        std::uint32_t kind = 0;
+        TurtleState start;
+        TurtlePart part;
+    };
+
+    Stage stage_before(unsigned steps) const;
+    bool unfold(ModuleId module, Stage stage, Unfolded& result);
+    bool choose(RuleKind kind, ModuleId module, Unfolded& result);
+    bool run_tasks();
+    bool advance(Task& task);
+    bool draw(Task& task, ModuleId module);
+    bool start_task(ModuleId module, Stage stage, const TurtleState& start, const Unfolded& unfolded);
+    void complete_task();
+    const TurtlePart* find(ModuleId module, Stage stage, const TurtleState& start) const;
+    TurtleState state_of(const Turtle& turtle);
+    std::string name_of_part(const Task& task) const;
+
+    LsysRewriter& rewriter_;
+    TurtleContext& context_;
+    ObjectPool& pool_;
+    const std::map<SymbolId, ObjectId>& models_;
+    std::size_t max_parts_;
+    std::vector<Task> tasks_;
+    std::vector<KnownPart> parts_;
+    IdTable part_ids_;
+    std::vector<PartKind> kinds_;
+    IdTable kind_ids_;
+    DirectionTable directions_;
+    bool uses_directions_ = false;
+};
+
+} // namespace graftal

@@ -1,0 +1,103 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include <boost/multiprecision/cpp_int.hpp>
+
+#include "compiler/lower/turtle_bodies.h"
+#include "compiler/lower/turtle_command.h"
+#include "compiler/lower/turtle_state.h"
+#include "compiler/support/diagnostics.h"
+
+// The turtle (ABOP, sections 1.5 and 1.6, appendix C; docs/language.md, "The turtle").
+
+namespace graftal {
+
+using BigCount = boost::multiprecision::cpp_int;
+
+/// What a string of modules draws, in the frame of the turtle at its start, and how it leaves the turtle.
+struct TurtlePart {
+    std::vector<Instance> instances;
+    std::vector<Vec3> vertices; ///< for the polygon that was open at the start
+    Affine start_from_exit;
+    TurtleState exit;          ///< the members of `writes` only
+    TurtleStateMask reads = 0; ///< before they were written
+    TurtleStateMask writes = 0;
+    bool cut = false; ///< what follows in the branch is cut off
+    BigCount modules = 0;
+    BigCount segments = 0;
+};
+
+/// What all turtles of a model share.
+struct TurtleContext {
+    TurtleBodies& bodies;
+    Diagnostics& diagnostics;
+    double angle_deg = 90;
+    double step = 1;
+    std::size_t max_instances = 4'000'000; ///< of one part, its polygons' vertices too
+};
+
+/// Follows commands and gathers what they draw.
+class Turtle {
+  public:
+    /// `context` must outlive the turtle.
+    Turtle(TurtleContext& context, const TurtleState& start);
+
+    /// Carries out one module; false after an error. `models` of `~` are given by `model`.
+    bool run(TurtleCommand command, std::span<const double> parameters, std::optional<ObjectId> model, Span span);
+
+    /// Places a part whose entry state was state(): draws it, and goes where it leaves the turtle.
+    void append(const TurtlePart& part);
+    /// The same, but the turtle stays as it is: a branch.
+    void append_branch(const TurtlePart& part);
+
+    /// The state of a part that begins here.
+    TurtleState state() const;
+    const Affine& start_from_turtle() const { return start_from_turtle_; }
+    /// True where modules are cut off: run() and append() pass over them, but watch the brackets.
+    bool passing_over() const { return cut_depth_ > 0; }
+    /// True if nothing that follows counts.
+    bool finished() const { return cut_depth_ > 0 && branches_.empty(); }
+
+    /// The part; the turtle is used up.
+    TurtlePart finish() &&;
+
+  private:
+    struct Branch {
+        Affine start_from_turtle;
+        TurtleState state;
+        TurtleStateMask writes;
+    };
+
+    bool pass_over(TurtleCommand command);
+    void move(double length, bool draw, bool record, Span span);
+    void turn(Vec3 axis, double angle_deg);
+    void level();
+    void bend();
+    bool set_width(std::span<const double> parameters, Span span);
+    void set_colour(std::span<const double> parameters, int step);
+    void open_branch();
+    void close_branch();
+    void close_polygon(Span span);
+    void record_vertex();
+    bool within_limits(Span span);
+
+    double read_width() { return note(reads_width), state_.width; }
+    int read_colour() { return note(reads_colour), state_.colour; }
+    void note(TurtleStateMask bits) { part_.reads |= static_cast<TurtleStateMask>(bits & ~writes_); }
+
+    TurtleContext& context_;
+    Affine start_from_turtle_;
+    TurtleState state_; ///< directions in the frame of the start, as they came in
+    TurtleStateMask writes_ = 0;
+    std::vector<Branch> branches_;
+    std::vector<std::vector<Vec3>> polygons_; ///< open ones, by their vertices
+    std::size_t cut_depth_ = 0;               ///< 1 + branches opened since the cut; 0: no cut
+    std::size_t vertex_count_ = 0;
+    TurtlePart part_;
+};
+
+} // namespace graftal

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "compiler/support/affine.h"
+#include "compiler/support/id_table.h"
+
+namespace graftal {
+
+/// What a part of a model may depend on besides the place where it stands: the state of the turtle that
+/// comes in. Directions are given in the frame that the part starts in.
+struct TurtleState {
+    double width = 0;
+    int colour = 0;
+    double elasticity = 0; ///< of tropism
+    Vec3 tropism{0.0};     ///< unit vector that segments bend towards
+    Vec3 vertical{0.0};    ///< unit vector that `$` looks at
+    bool in_polygon = false;
+};
+
+/// The members of a TurtleState, as a set.
+using TurtleStateMask = std::uint8_t;
+enum TurtleStateBit : TurtleStateMask {
+    reads_width = 1,
+    reads_colour = 2,
+    reads_elasticity = 4,
+    reads_tropism = 8,
+    reads_vertical = 16,
+    reads_polygon = 32,
+};
+
+/// True if the members of `mask` are equal.
+bool equal(const TurtleState& a, const TurtleState& b, TurtleStateMask mask);
+/// A hash of the members of `mask`.
+std::uint64_t hash(const TurtleState& state, TurtleStateMask mask);
+
+/// Directions that differ by rounding only, made equal: the first that came stands for all within 1e-11.
+class DirectionTable {
+  public:
+    /// Requires a vector no longer than 1, but for rounding.
+    Vec3 representative(Vec3 direction);
+
+  private:
+    std::vector<Vec3> directions_;
+    IdTable ids_;
+};
+
+} // namespace graftal

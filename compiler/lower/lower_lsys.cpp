@@ -1,7 +1,6 @@
 #include "compiler/lower/lower_lsys.h"
 
 #include <algorithm>
-#include <array>
 #include <deque>
 #include <map>
 #include <string>
@@ -11,44 +10,13 @@
 
 #include "compiler/lower/lower_settings.h"
 #include "compiler/lower/lowering.h"
-#include "compiler/lower/lsys_composer.h"
+#include "compiler/lower/lsys_drawing.h"
 #include "compiler/lower/lsys_grammar.h"
 #include "compiler/syntax/lsys_parser.h"
 
 namespace graftal {
 
 namespace {
-
-constexpr Vec3 up(0, 1, 0);
-/// Of a segment, in steps, where nothing is said.
-constexpr double default_slenderness = 0.1;
-
-struct Paint {
-    const char* name;
-    Rgb rgb;
-};
-
-/// The colours of the indices 0, 1, 2, ... where the model names none.
-constexpr std::array<Paint, 8> default_paints = {{
-    {"wood", {0.30, 0.17, 0.08}},
-    {"leaf", {0.12, 0.33, 0.05}},
-    {"shoot", {0.33, 0.50, 0.10}},
-    {"yellow", {0.85, 0.62, 0.06}},
-    {"red", {0.60, 0.05, 0.04}},
-    {"violet", {0.30, 0.12, 0.45}},
-    {"white", {0.85, 0.82, 0.78}},
-    {"blue", {0.07, 0.18, 0.50}},
-}};
-
-std::vector<Material> default_palette() {
-    std::vector<Material> palette;
-    for (const Paint& paint : default_paints) {
-        Material& material = palette.emplace_back();
-        material.name = paint.name;
-        material.rgb = paint.rgb;
-    }
-    return palette;
-}
 
 class LsysLowering {
   public:
@@ -145,7 +113,7 @@ class LsysLowering {
         block.under_way = true;
         const std::optional<std::map<SymbolId, ObjectId>> models = models_of(*block.grammar);
         const std::optional<unsigned> steps = steps_of(block);
-        if (models && steps) block.root = compose(block, *models, *steps);
+        if (models && steps) block.root = draw(block, *models, *steps);
         block.under_way = false;
         return block.root;
     }
@@ -207,29 +175,20 @@ class LsysLowering {
         return steps;
     }
 
-    std::optional<ObjectId> compose(const Block& block, const std::map<SymbolId, ObjectId>& models,
-                                    unsigned steps) {
-        const LsysGrammar& grammar = *block.grammar;
-        LsysRewriter rewriter(grammar, diagnostics_);
-        TurtleBodies bodies(graph_, default_palette());
-        TurtleContext turtle{bodies, diagnostics_, grammar.angle_deg, grammar.step};
-        LsysComposer composer(rewriter, turtle, pool_, models, lowering_.options.max_objects);
-        TurtleState start;
-        start.width = grammar.width.value_or(default_slenderness * grammar.step);
-        start.tropism = -up;
-        start.vertical = up;
-        std::optional<TurtlePart> part = composer.compose(steps, start);
-        if (!part) return std::nullopt;
-        if (part->instances.empty()) {
-            diagnostics_.error(block.source->name.span,
-                               fmt::format("'lsys {}' draws nothing after {} step{}", block.source->name.text,
-                                           steps, steps == 1 ? "" : "s"));
+    std::optional<ObjectId> draw(const Block& block, const std::map<SymbolId, ObjectId>& models, unsigned steps) {
+        const LsysBlock& source = *block.source;
+        std::optional<LsysDrawing> drawing =
+            draw_lsys(*block.grammar, models, steps, lowering_.options.max_objects, graph_, pool_, diagnostics_);
+        if (!drawing) return std::nullopt;
+        if (drawing->instances.empty()) {
+            diagnostics_.error(source.name.span,
+                               fmt::format("'lsys {}' draws nothing after {} step{}", source.name.text, steps,
+                                           steps == 1 ? "" : "s"));
             return std::nullopt;
         }
-        if (lowering_.at_root_model() && block.source == main_block().source)
-            lowering_.derivation = Derivation{"composed",         steps, part->modules.str(), part->segments.str(),
-                                              composer.part_count(), 0};
-        return add_root(*block.source, std::move(part->instances));
+        if (lowering_.at_root_model() && &block == &main_block())
+            lowering_.derivation = std::move(drawing->derivation);
+        return add_root(source, std::move(drawing->instances));
     }
 
     std::optional<ObjectId> add_root(const LsysBlock& block, std::vector<Instance> instances) {

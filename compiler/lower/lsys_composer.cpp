@@ -148,7 +148,11 @@ void LsysComposer::complete_task() {
     tasks_.pop_back();
     TurtlePart part = std::move(task.turtle).finish();
     if (task.interprets) part.modules = 1;
-    part.instances = pool_.share(std::move(part.instances), name_of_part(task), task.span);
+    std::optional<Instance> line;
+    if (context_.lines && !part.has_bodies)
+        line = context_.bodies.line(part.start_from_exit.translation, task.start.colour, task.span);
+    part.instances =
+        pool_.share(std::move(part.instances), std::move(line), name_of_part(task), task.span);
     const std::uint64_t kind_hash = mixed(task.module, task.stage);
     const std::uint32_t kind =
         kind_ids_.find_or_add(kind_hash, static_cast<std::uint32_t>(kinds_.size()), [&](std::uint32_t id) {

@@ -52,6 +52,12 @@ bool alike(const Instance& a, const Instance& b) {
            alike(a.parent_from_child, b.parent_from_child);
 }
 
+bool alike(const Object& a, const Object& b) {
+    const auto same = [](const Instance& x, const Instance& y) { return alike(x, y); };
+    return std::ranges::equal(a.instances, b.instances, same) &&
+           a.terminal.has_value() == b.terminal.has_value() && (!a.terminal || alike(*a.terminal, *b.terminal));
+}
+
 std::uint64_t hash_of_looks(const std::vector<Instance>& instances) {
     std::uint64_t hash = instances.size();
     for (const Instance& instance : instances) {
@@ -59,6 +65,28 @@ std::uint64_t hash_of_looks(const std::vector<Instance>& instances) {
         hash = mixed(hash, instance.material ? *instance.material + 1ull : 0ull);
     }
     return hash;
+}
+
+double size_of(const std::vector<Instance>& instances) {
+    double size = 0;
+    for (const Instance& instance : instances)
+        size = std::max({size, largest(instance.parent_from_child.linear),
+                         largest(instance.parent_from_child.translation)});
+    return size;
+}
+
+/// A weighted sum of all numbers: lists that are alike have fingerprints closer than tolerance * entries.
+double fingerprint(const std::vector<Instance>& instances) {
+    double sum = 0;
+    std::uint64_t index = 0;
+    for (const Instance& instance : instances)
+        for_each_entry(instance.parent_from_child, [&](double entry) { sum += weight(index++) * entry; });
+    return sum;
+}
+
+void scale_down(Instance& instance, double size) {
+    instance.parent_from_child.linear /= size;
+    instance.parent_from_child.translation /= size;
 }
 
 } // namespace
@@ -70,55 +98,35 @@ bool ObjectPool::worth_an_object(const std::vector<Instance>& instances) const {
            });
 }
 
-double ObjectPool::size_of(const std::vector<Instance>& instances) {
-    double size = 0;
-    for (const Instance& instance : instances)
-        size = std::max({size, largest(instance.parent_from_child.linear),
-                         largest(instance.parent_from_child.translation)});
-    return size;
+std::uint32_t ObjectPool::find(const Object& object, std::uint64_t hash) const {
+    return ids_.find(hash, [&](std::uint32_t id) { return alike(graph_.objects[shared_[id]], object); });
 }
 
-/// A weighted sum of all numbers: lists that are alike have fingerprints closer than tolerance * entries.
-double ObjectPool::fingerprint(const std::vector<Instance>& instances) {
-    double sum = 0;
-    std::uint64_t index = 0;
-    for (const Instance& instance : instances)
-        for_each_entry(instance.parent_from_child, [&](double entry) { sum += weight(index++) * entry; });
-    return sum;
-}
-
-std::uint32_t ObjectPool::find(const std::vector<Instance>& instances, std::uint64_t hash) const {
-    return ids_.find(hash, [&](std::uint32_t id) {
-        return std::ranges::equal(graph_.objects[shared_[id]].instances, instances,
-                                  [](const Instance& a, const Instance& b) { return alike(a, b); });
-    });
-}
-
-std::vector<Instance> ObjectPool::share(std::vector<Instance> instances, std::string_view name, Span span) {
+std::vector<Instance> ObjectPool::share(std::vector<Instance> instances, std::optional<Instance> terminal,
+                                        std::string_view name, Span span) {
     if (!worth_an_object(instances)) return instances;
     const double size = size_of(instances);
-    for (Instance& instance : instances) {
-        instance.parent_from_child.linear /= size;
-        instance.parent_from_child.translation /= size;
-    }
-    const auto place = [&](ObjectId object) {
-        return std::vector{Instance{object, Affine::scale(Vec3(size)), Tint(), std::nullopt, span}};
-    };
-    const std::uint64_t looks = hash_of_looks(instances);
-    const double cell_size = 24 * tolerance * static_cast<double>(instances.size());
-    const auto cell = static_cast<std::int64_t>(std::floor(fingerprint(instances) / cell_size));
-    for (const std::int64_t near : {cell, cell - 1, cell + 1}) {
-        const std::uint32_t known = find(instances, mixed(looks, static_cast<std::uint64_t>(near)));
-        if (known != IdTable::none) return place(shared_[known]);
-    }
     Object object;
-    object.name = unique_name(name);
-    object.instances = std::move(instances);
     object.span = span;
-    ids_.find_or_add(mixed(looks, static_cast<std::uint64_t>(cell)), static_cast<std::uint32_t>(shared_.size()),
-                     [](std::uint32_t) { return false; });
-    shared_.push_back(graph_.add(std::move(object)));
-    return place(shared_.back());
+    object.instances = std::move(instances);
+    object.terminal = std::move(terminal);
+    for (Instance& instance : object.instances)
+        scale_down(instance, size);
+    if (object.terminal) scale_down(*object.terminal, size);
+
+    const std::uint64_t looks = hash_of_looks(object.instances);
+    const double cell_size = 24 * tolerance * static_cast<double>(object.instances.size());
+    const auto cell = static_cast<std::int64_t>(std::floor(fingerprint(object.instances) / cell_size));
+    std::uint32_t id = IdTable::none;
+    for (const std::int64_t near : {cell, cell - 1, cell + 1})
+        if (id == IdTable::none) id = find(object, mixed(looks, static_cast<std::uint64_t>(near)));
+    if (id == IdTable::none) {
+        id = ids_.find_or_add(mixed(looks, static_cast<std::uint64_t>(cell)),
+                              static_cast<std::uint32_t>(shared_.size()), [](std::uint32_t) { return false; });
+        object.name = unique_name(name);
+        shared_.push_back(graph_.add(std::move(object)));
+    }
+    return {Instance{shared_[id], Affine::scale(Vec3(size)), Tint(), std::nullopt, span}};
 }
 
 std::string ObjectPool::unique_name(std::string_view name) {

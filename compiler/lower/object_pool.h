@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <unordered_map>
@@ -21,16 +22,16 @@ class ObjectPool {
 
     /// What stands for the list in the lists of its users: the list itself if it is short, else an instance
     /// of an object, which is named after `name` where it is new. Requires finite maps.
-    std::vector<Instance> share(std::vector<Instance> instances, std::string_view name, Span span);
+    /// `terminal` is drawn in place of the object where it is too small to see.
+    std::vector<Instance> share(std::vector<Instance> instances, std::optional<Instance> terminal,
+                                std::string_view name, Span span);
 
     /// Like `name`, with a number at the end if that name was given before.
     std::string unique_name(std::string_view name);
 
   private:
     bool worth_an_object(const std::vector<Instance>& instances) const;
-    static double size_of(const std::vector<Instance>& instances);
-    static double fingerprint(const std::vector<Instance>& instances);
-    std::uint32_t find(const std::vector<Instance>& instances, std::uint64_t hash) const;
+    std::uint32_t find(const Object& object, std::uint64_t hash) const;
 
     Graph& graph_;
     std::vector<ObjectId> shared_;

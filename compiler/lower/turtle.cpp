@@ -1,5 +1,6 @@
 #include "compiler/lower/turtle.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <utility>
@@ -104,14 +105,17 @@ bool Turtle::run(TurtleCommand command, std::span<const double> parameters, std:
         record_vertex();
         break;
     case TurtleCommand::sphere:
+        part_.has_bodies = true;
         context_.bodies.add_sphere(start_from_turtle_, parameters.empty() ? read_width() : parameters[0],
                                    read_colour(), span, part_.instances);
         break;
     case TurtleCommand::disc:
+        part_.has_bodies = true;
         context_.bodies.add_disc(start_from_turtle_, parameters.empty() ? read_width() : parameters[0],
                                  read_colour(), span, part_.instances);
         break;
     case TurtleCommand::model:
+        part_.has_bodies = true;
         if (model)
             context_.bodies.add_model(*model, start_from_turtle_, first_or(parameters, 1), span, part_.instances);
         break;
@@ -148,6 +152,7 @@ void Turtle::move(double length, bool draw, bool record, Span span) {
         context_.bodies.add_segment(start_from_turtle_, length, read_width(), read_colour(), span,
                                     part_.instances);
     start_from_turtle_ = start_from_turtle_ * Affine::translate(length * ahead);
+    part_.reach = std::max(part_.reach, glm::length(start_from_turtle_.translation));
     if (fills && record) record_vertex();
     if (draw) bend();
 }
@@ -223,6 +228,7 @@ void Turtle::record_vertex() {
 
 void Turtle::close_polygon(Span span) {
     if (polygons_.empty()) return;
+    part_.has_bodies = true;
     context_.bodies.add_polygon(polygons_.back(), read_colour(), span, part_.instances);
     polygons_.pop_back();
 }
@@ -260,6 +266,8 @@ void Turtle::append_branch(const TurtlePart& part) {
         vertices.push_back(start_from_turtle_(vertex));
     }
     vertex_count_ += part.vertices.size();
+    part_.reach = std::max(part_.reach, glm::length(start_from_turtle_.translation) + part.reach);
+    part_.has_bodies = part_.has_bodies || part.has_bodies;
     part_.modules += part.modules;
     part_.segments += part.segments;
 }

@@ -27,6 +27,8 @@ struct TurtlePart {
     TurtleStateMask reads = 0; ///< before they were written
     TurtleStateMask writes = 0;
     bool cut = false; ///< what follows in the branch is cut off
+    double reach = 0; ///< the turtle goes no farther from the start
+    bool has_bodies = false; ///< there are more than segments to see
     BigCount modules = 0;
     BigCount segments = 0;
 };
@@ -37,6 +39,7 @@ struct TurtleContext {
     Diagnostics& diagnostics;
     double angle_deg = 90;
     double step = 1;
+    bool lines = false; ///< segments are strokes of a curve: small parts are drawn as lines
     std::size_t max_instances = 4'000'000; ///< of one part, its polygons' vertices too
 };
 

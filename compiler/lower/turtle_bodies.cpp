@@ -36,11 +36,10 @@ MaterialId TurtleBodies::material(int colour) {
     return *ids_[index];
 }
 
-void TurtleBodies::add(PrimitiveKind kind, const Affine& place, int colour, Span span,
-                       std::vector<Instance>& instances) {
+Instance TurtleBodies::body(PrimitiveKind kind, const Affine& place, int colour, Span span) {
     auto& primitive = primitives_[static_cast<std::size_t>(kind)];
     if (!primitive) primitive = graph_.primitive(kind);
-    instances.push_back({*primitive, place, Tint(), material(colour), span});
+    return {*primitive, place, Tint(), material(colour), span};
 }
 
 void TurtleBodies::add_segment(const Affine& start_from_turtle, double length, double width, int colour, Span span,
@@ -51,6 +50,17 @@ void TurtleBodies::add_segment(const Affine& start_from_turtle, double length, d
         instances);
     const Affine end = start_from_turtle * Affine::translate({0, length, 0});
     add(PrimitiveKind::sphere, end * Affine::scale(Vec3(radius)), colour, span, instances);
+}
+
+std::optional<Instance> TurtleBodies::line(Vec3 end, int colour, Span span) {
+    const double length = glm::length(end);
+    if (!(length > 0)) return std::nullopt;
+    const Vec3 y = end / length;
+    const Vec3 aside = std::abs(y.z) < 0.9 ? Vec3(0, 0, 1) : Vec3(1, 0, 0);
+    const Vec3 x = glm::normalize(glm::cross(y, aside));
+    const double radius = 0.5 * length;
+    return body(PrimitiveKind::cylinder, {Mat3(radius * x, end, radius * glm::cross(x, y)), Vec3(0.0)}, colour,
+                span);
 }
 
 void TurtleBodies::add_sphere(const Affine& start_from_turtle, double diameter, int colour, Span span,

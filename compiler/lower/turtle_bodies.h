@@ -24,6 +24,9 @@ class TurtleBodies {
     /// A cylinder with a ball at its far end, which fills the gap to what goes on from there.
     void add_segment(const Affine& start_from_turtle, double length, double width, int colour, Span span,
                      std::vector<Instance>& instances);
+    /// What stands for a line from the start to `end` where it is too small to see: as thick as it is long,
+    /// so that fine curves stay visible. Nothing if the points are equal.
+    std::optional<Instance> line(Vec3 end, int colour, Span span);
     void add_sphere(const Affine& start_from_turtle, double diameter, int colour, Span span,
                     std::vector<Instance>& instances);
     /// A flat disc about the turtle, in the plane of its heading and its left.
@@ -35,7 +38,10 @@ class TurtleBodies {
 
   private:
     MaterialId material(int colour);
-    void add(PrimitiveKind kind, const Affine& place, int colour, Span span, std::vector<Instance>& instances);
+    Instance body(PrimitiveKind kind, const Affine& place, int colour, Span span);
+    void add(PrimitiveKind kind, const Affine& place, int colour, Span span, std::vector<Instance>& instances) {
+        instances.push_back(body(kind, place, colour, span));
+    }
 
     Graph& graph_;
     std::vector<Material> palette_;                ///< not empty

@@ -4,6 +4,7 @@
 #include <array>
 #include <utility>
 
+#include "compiler/lower/lower_settings.h"
 #include "compiler/lower/lsys_composer.h"
 
 namespace graftal {
@@ -61,7 +62,8 @@ class Drawer {
           rewriter_(grammar, diagnostics) {}
 
     std::optional<LsysDrawing> draw(Graph& graph, ObjectPool& pool) {
-        const bool lines = !grammar_.width && !uses(grammar_, {TurtleCommand::width});
+        if (!choose_palette(graph)) return std::nullopt;
+        const bool lines = is_line_drawing();
         double width = grammar_.width.value_or(thinnest_in_steps * grammar_.step);
         if (lines) {
             // Composed twice: the first time to see how large the figure is.
@@ -78,16 +80,30 @@ class Drawer {
     }
 
   private:
-    std::optional<TurtlePart> compose(Graph& graph, ObjectPool& pool, double width, bool lines) {
+    bool is_line_drawing() const { return !grammar_.width && !uses(grammar_, {TurtleCommand::width}); }
+
+    /// The materials that the block names, else ours.
+    bool choose_palette(const Graph& graph) {
+        for (const LsysName& name : grammar_.source->colors) {
+            const std::optional<MaterialId> id = material_named(name.text, name.span, graph, diagnostics_);
+            if (!id) return false;
+            palette_.push_back(graph.materials[*id]);
+        }
+        if (!palette_.empty()) return true;
         const bool coloured = uses(grammar_, {TurtleCommand::colour_up, TurtleCommand::colour_down,
                                               TurtleCommand::close_polygon});
         const Paint& paint = uses(grammar_, {TurtleCommand::open_branch}) ? stalk_paint : curve_paint;
-        TurtleBodies bodies(graph, lines && !coloured ? palette_of({&paint, 1}) : palette_of(default_paints));
+        palette_ = is_line_drawing() && !coloured ? palette_of({&paint, 1}) : palette_of(default_paints);
+        return true;
+    }
+
+    std::optional<TurtlePart> compose(Graph& graph, ObjectPool& pool, double width, bool lines) {
+        TurtleBodies bodies(graph, palette_);
         TurtleContext turtle{bodies, diagnostics_, grammar_.angle_deg, grammar_.step, lines};
         LsysComposer composer(rewriter_, turtle, pool, models_, max_parts_);
         TurtleState start;
         start.width = width;
-        start.tropism = -up;
+        start.tropism = grammar_.tropism;
         start.vertical = up;
         std::optional<TurtlePart> part = composer.compose(steps_, start);
         part_count_ = composer.part_count();
@@ -100,6 +116,7 @@ class Drawer {
     std::size_t max_parts_;
     Diagnostics& diagnostics_;
     LsysRewriter rewriter_;
+    std::vector<Material> palette_; ///< of the colour indices
     std::size_t part_count_ = 0;
 };
 

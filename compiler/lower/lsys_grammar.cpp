@@ -8,7 +8,9 @@
 #include <utility>
 
 #include <fmt/format.h>
+#include <glm/geometric.hpp>
 
+#include "compiler/lower/lower_transform.h"
 #include "compiler/support/number.h"
 
 namespace graftal {
@@ -68,6 +70,7 @@ class GrammarBuilder {
             block_.seed, [](double x) { return x >= 0 && x <= largest_seed && x == std::floor(x); }, "seed",
             "be a whole number from 0 to 2^53");
         grammar_.seed = static_cast<std::uint64_t>(seed.value_or(0));
+        if (block_.tropism) add_tropism();
         if (!block_.steps) return;
         grammar_.infinite = !block_.steps->value;
         if (grammar_.infinite) return;
@@ -76,6 +79,16 @@ class GrammarBuilder {
             [](double x) { return x >= 0 && x <= max_derivation_steps && x == std::floor(x); }, "steps",
             fmt::format("be a whole number from 0 to {}, or infinite", max_derivation_steps));
         if (steps) grammar_.steps = static_cast<unsigned>(*steps);
+    }
+
+    void add_tropism() {
+        const std::optional<Vec3> direction = lower_vector(block_.tropism->direction, grammar_.lets, diagnostics_);
+        if (!direction) return;
+        const double length = glm::length(*direction);
+        if (length > 0 && std::isfinite(length))
+            grammar_.tropism = *direction / length;
+        else
+            diagnostics_.error(block_.tropism->span, "'tropism' must have a direction");
     }
 
     SymbolId symbol(std::string_view name, Span span) {

@@ -10,6 +10,7 @@
 
 #include "compiler/lower/module_table.h"
 #include "compiler/lower/turtle_command.h"
+#include "compiler/support/affine.h"
 #include "compiler/support/diagnostics.h"
 #include "compiler/syntax/expression_code.h"
 #include "compiler/syntax/lsys_ast.h"
@@ -70,6 +71,7 @@ struct LsysGrammar {
     double angle_deg = 90;
     double step = 1;
     std::optional<double> width; ///< nothing: automatic
+    Vec3 tropism{0, -1, 0};      ///< unit vector that `T` bends towards, in world space
     std::uint64_t seed = 0;
     std::optional<unsigned> steps; ///< nothing: not given, or infinite
     bool infinite = false;

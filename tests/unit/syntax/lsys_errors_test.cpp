@@ -36,12 +36,10 @@ D -> F]])e",
 m.lsys:4:7: error: ']' without '['
     B -> F]
           ^
-m.lsys:5:10: error: expected ']', found '}'
+m.lsys:5:10: error: '}' without '{'
     C -> F[+F}
              ^
-m.lsys:5:7: note: to close this '['
-    C -> F[+F}
-          ^
+    hint: the '}' of a block begins a line
 m.lsys:6:7: error: ']' without '['
     D -> F]]
           ^

@@ -167,7 +167,7 @@ class LsysLowering {
         if (!steps) {
             diagnostics_.error(span, fmt::format("'lsys {}' does not say how many steps to derive",
                                                  block.source->name.text))
-                .with_hint("add 'steps 5' to it, or '--steps 5' to the command");
+                .with_hint(is_root ? "add 'steps 5' to it, or '--steps 5' to the command" : "add 'steps 5' to it");
         } else if (*steps > max_derivation_steps) {
             diagnostics_.error(span, fmt::format("a derivation has at most {} steps", max_derivation_steps));
             return std::nullopt;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <map>
 #include <optional>
 #include <string>
@@ -13,17 +14,20 @@ namespace graftal {
 
 /// How an L-system was compiled.
 struct Derivation {
-    std::string way;               ///< "composed"
+    std::string way;               ///< "composed" part by part, or "derived" and then shared
     std::optional<unsigned> steps; ///< nothing: infinite
     std::string modules;           ///< of the word after these steps: decimal, exact
     std::string segments;          ///< that it draws
     std::size_t parts = 0;         ///< different modules with their steps and states that were composed
+    std::uint32_t variants = 1;    ///< of each random part
+    double drift = 0;              ///< relative standard error of the mean number of segments over the variants
     double error = 0;              ///< bound on the displacement of any point
 };
 
 struct LowerOptions {
     std::map<std::string, double, std::less<>> set; ///< `--set NAME=VALUE`: replaces the value of a `let`
     std::optional<unsigned> steps; ///< derivation steps of an L-system, in place of what the model says
+    std::optional<std::uint64_t> seed; ///< of what is random, in place of what the model says
     std::size_t max_objects = 1'000'000;            ///< a model that enumerates more is an error
 };
 

@@ -177,8 +177,11 @@ class LsysLowering {
 
     std::optional<ObjectId> draw(const Block& block, const std::map<SymbolId, ObjectId>& models, unsigned steps) {
         const LsysBlock& source = *block.source;
+        const LowerOptions& options = lowering_.options;
+        const bool is_root = lowering_.at_root_model() && &block == &main_block();
+        const std::uint64_t seed = lowering_.at_root_model() && options.seed ? *options.seed : block.grammar->seed;
         std::optional<LsysDrawing> drawing =
-            draw_lsys(*block.grammar, models, steps, lowering_.options.max_objects, graph_, pool_, diagnostics_);
+            draw_lsys(*block.grammar, models, {steps, seed, options.max_objects}, graph_, pool_, diagnostics_);
         if (!drawing) return std::nullopt;
         if (drawing->instances.empty()) {
             diagnostics_.error(source.name.span,
@@ -186,7 +189,7 @@ class LsysLowering {
                                            steps == 1 ? "" : "s"));
             return std::nullopt;
         }
-        if (lowering_.at_root_model() && &block == &main_block())
+        if (is_root)
             lowering_.derivation = std::move(drawing->derivation);
         return add_root(source, std::move(drawing->instances));
     }

@@ -22,9 +22,9 @@ bool depends_on_directions(const LsysGrammar& grammar) {
 } // namespace
 
 LsysComposer::LsysComposer(LsysRewriter& rewriter, TurtleContext& turtle, ObjectPool& pool,
-                           const std::map<SymbolId, ObjectId>& models, std::size_t max_parts)
-    : rewriter_(rewriter), context_(turtle), pool_(pool), models_(models), max_parts_(max_parts),
-      uses_directions_(depends_on_directions(rewriter.grammar())) {}
+                           const std::map<SymbolId, ObjectId>& models, Variants variants, std::size_t max_parts)
+    : rewriter_(rewriter), context_(turtle), pool_(pool), models_(models), variants_(variants),
+      max_parts_(max_parts), uses_directions_(depends_on_directions(rewriter.grammar())) {}
 
 std::optional<TurtlePart> LsysComposer::compose(unsigned steps, const TurtleState& start) {
     const std::optional<ModuleString> axiom = rewriter_.axiom();
@@ -59,45 +59,50 @@ LsysComposer::Stage LsysComposer::stage_before(unsigned steps) const {
 }
 
 /// False after an error.
-bool LsysComposer::choose(RuleKind kind, ModuleId module, Unfolded& result) {
+bool LsysComposer::choose(RuleKind kind, ModuleId module, Stage stage, std::uint32_t variant,
+                          Unfolded& result) {
     if (!rewriter_.is_rewritten(kind, module)) return true;
     const std::vector<Alternative>* alternatives = rewriter_.alternatives(kind, module);
     if (!alternatives) return false;
-    result.by = &alternatives->front();
+    result.by = &variants_.choose(*alternatives, variant, module, stage);
     result.kind = kind;
+    result.random = alternatives->size() > 1;
     return true;
 }
 
-bool LsysComposer::unfold(ModuleId module, Stage stage, Unfolded& result) {
+bool LsysComposer::unfold(ModuleId module, Stage stage, std::uint32_t variant, Unfolded& result) {
     result = {};
     if (stage % 2 == 1) {
         result.stage = stage;
-        if (!choose(RuleKind::decompose, module, result)) return false;
+        if (!choose(RuleKind::decompose, module, stage, variant, result)) return false;
         if (result.by) return true;
         --stage;
     }
     if (stage > 0) {
         result.stage = stage_before(stage / 2 - 1);
-        if (!choose(RuleKind::produce, module, result)) return false;
+        if (!choose(RuleKind::produce, module, stage, variant, result)) return false;
         if (result.by) return true;
         // What no production fits now, none will fit later.
     }
     result.stage = 0;
-    return choose(RuleKind::interpret, module, result);
+    return choose(RuleKind::interpret, module, 0, variant, result);
 }
 
 /// Goes on until the string ends, or a part is missing, whose task is then the last.
 bool LsysComposer::advance(Task& task) {
     for (; task.at < task.string->size() && !task.turtle.finished(); ++task.at) {
         const ModuleId module = (*task.string)[task.at];
+        const std::uint32_t variant =
+            variants_.child(task.start.variant, task.module, task.string_stage, task.at);
         Unfolded unfolded;
-        if (!unfold(module, task.string_stage, unfolded)) return false;
+        if (!unfold(module, task.string_stage, variant, unfolded)) return false;
         if (!unfolded.by || task.turtle.passing_over()) {
             if (!draw(task, module)) return false;
             continue;
         }
         const Stage stage = unfolded.kind == RuleKind::interpret ? 0 : task.string_stage;
-        const TurtleState state = state_of(task.turtle);
+        TurtleState state = state_of(task.turtle);
+        state.variant = variant;
         const TurtlePart* part = find(module, stage, state);
         if (!part) return start_task(module, stage, state, unfolded);
         task.turtle.append(*part);
@@ -139,6 +144,7 @@ bool LsysComposer::start_task(ModuleId module, Stage stage, const TurtleState& s
                       .span = span,
                       .turtle = Turtle(context_, start),
                       .repeated = count});
+    if (unfolded.random) tasks_.back().turtle.read_variant();
     return true;
 }
 

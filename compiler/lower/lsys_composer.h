@@ -11,6 +11,7 @@
 #include "compiler/lower/object_pool.h"
 #include "compiler/lower/turtle.h"
 #include "compiler/lower/turtle_state.h"
+#include "compiler/lower/variants.h"
 #include "compiler/support/id_table.h"
 
 namespace graftal {
@@ -18,12 +19,13 @@ namespace graftal {
 /// Compiles a derivation without deriving it (Hart 1992, section 4, made automatic): what a module becomes
 /// depends on the module, the steps that are left, and as much of the incoming state of the turtle as its
 /// subtree reads. So each such *part* is composed once, out of the parts of its successor, and costs are
-/// O(parts), not O(length of the word).
+/// O(parts), not O(length of the word). Where productions are random, the variant of the part (variants.h) counts
+/// as a part of that state.
 class LsysComposer {
   public:
-    /// All must outlive this. `models`: the roots of what `~NAME` places, by symbol.
+    /// All references must outlive this. `models`: the roots of what `~NAME` places, by symbol.
     LsysComposer(LsysRewriter& rewriter, TurtleContext& turtle, ObjectPool& pool,
-                 const std::map<SymbolId, ObjectId>& models, std::size_t max_parts);
+                 const std::map<SymbolId, ObjectId>& models, Variants variants, std::size_t max_parts);
 
     /// The part that the axiom becomes after `steps` steps; nothing after an error in the turtle's diagnostics.
     std::optional<TurtlePart> compose(unsigned steps, const TurtleState& start);
@@ -38,7 +40,8 @@ class LsysComposer {
     struct Unfolded {
         const Alternative* by = nullptr; ///< null: drawn as it is
         RuleKind kind = RuleKind::produce;
-        Stage stage = 0; ///< of the successor
+        Stage stage = 0;     ///< of the successor
+        bool random = false; ///< the variant decided
     };
 
     /// A module's string under way.
@@ -68,8 +71,8 @@ class LsysComposer {
     };
 
     Stage stage_before(unsigned steps) const;
-    bool unfold(ModuleId module, Stage stage, Unfolded& result);
-    bool choose(RuleKind kind, ModuleId module, Unfolded& result);
+    bool unfold(ModuleId module, Stage stage, std::uint32_t variant, Unfolded& result);
+    bool choose(RuleKind kind, ModuleId module, Stage stage, std::uint32_t variant, Unfolded& result);
     bool run_tasks();
     bool advance(Task& task);
     bool draw(Task& task, ModuleId module);
@@ -83,6 +86,7 @@ class LsysComposer {
     TurtleContext& context_;
     ObjectPool& pool_;
     const std::map<SymbolId, ObjectId>& models_;
+    Variants variants_;
     std::size_t max_parts_;
     std::vector<Task> tasks_;
     std::vector<KnownPart> parts_;

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <span>
 #include <utility>
 
 #include "compiler/lower/lower_settings.h"
@@ -54,32 +56,96 @@ bool uses(const LsysGrammar& grammar, std::initializer_list<TurtleCommand> comma
     });
 }
 
+// Of random models.
+constexpr double most_drift = 0.05;
+constexpr std::uint32_t fewest_variants = 16;
+constexpr std::uint32_t most_variants = 4096;
+
 class Drawer {
   public:
-    Drawer(const LsysGrammar& grammar, const std::map<SymbolId, ObjectId>& models, unsigned steps,
-           std::size_t max_parts, Diagnostics& diagnostics)
-        : grammar_(grammar), models_(models), steps_(steps), max_parts_(max_parts), diagnostics_(diagnostics),
-          rewriter_(grammar, diagnostics) {}
+    Drawer(const LsysGrammar& grammar, const std::map<SymbolId, ObjectId>& models, const LsysDrawOptions& options,
+           Diagnostics& diagnostics)
+        : grammar_(grammar), models_(models), options_(options), diagnostics_(diagnostics),
+          rewriter_(grammar, diagnostics), width_(grammar.width.value_or(thinnest_in_steps * grammar.step)) {}
 
     std::optional<LsysDrawing> draw(Graph& graph, ObjectPool& pool) {
-        if (!choose_palette(graph)) return std::nullopt;
-        const bool lines = is_line_drawing();
-        double width = grammar_.width.value_or(thinnest_in_steps * grammar_.step);
-        if (lines) {
-            // Composed twice: the first time to see how large the figure is.
-            Graph scratch = graph;
-            ObjectPool scratch_pool(scratch);
-            const std::optional<TurtlePart> sketch = compose(scratch, scratch_pool, width, false);
-            if (!sketch) return std::nullopt;
-            width = std::clamp(thinnest_in_figure * sketch->reach, width, thickest_in_steps * grammar_.step);
-        }
-        std::optional<TurtlePart> part = compose(graph, pool, width, lines);
+        if (!choose_palette(graph) || !choose_variants(graph) || !choose_width(graph)) return std::nullopt;
+        Composition composition(*this, graph, pool, is_line_drawing());
+        std::optional<TurtlePart> part = composition.variant(0);
         if (!part) return std::nullopt;
-        return LsysDrawing{std::move(part->instances),
-                           {"composed", steps_, part->modules.str(), part->segments.str(), part_count_, 0}};
+        LsysDrawing drawing{std::move(part->instances), {"composed"}};
+        Derivation& derivation = drawing.derivation;
+        derivation.steps = options_.steps;
+        derivation.modules = part->modules.str();
+        derivation.segments = part->segments.str();
+        derivation.parts = composition.composer.part_count();
+        derivation.variants = variants_;
+        derivation.drift = drift_;
+        return drawing;
     }
 
   private:
+    /// One composer with all that it needs.
+    struct Composition {
+        Composition(Drawer& owner, Graph& graph, ObjectPool& pool, bool lines)
+            : drawer(owner), bodies(graph, owner.palette_),
+              turtle{bodies, owner.diagnostics_, owner.grammar_.angle_deg, owner.grammar_.step, lines},
+              composer(owner.rewriter_, turtle, pool, owner.models_,
+                       Variants(owner.options_.seed, owner.variants_), owner.options_.max_parts) {}
+
+        std::optional<TurtlePart> variant(std::uint32_t number) {
+            TurtleState start;
+            start.width = drawer.width_;
+            start.tropism = drawer.grammar_.tropism;
+            start.vertical = up;
+            start.variant = number;
+            return composer.compose(drawer.options_.steps, start);
+        }
+
+        Drawer& drawer;
+        TurtleBodies bodies;
+        TurtleContext turtle;
+        LsysComposer composer;
+    };
+
+    /// Composes a small pool and judges by its variance how many variants it takes.
+    bool choose_variants(const Graph& graph) {
+        if (!grammar_.is_stochastic) return true;
+        variants_ = fewest_variants;
+        Graph scratch = graph;
+        ObjectPool pool(scratch);
+        Composition composition(*this, scratch, pool, false);
+        double sum = 0, squares = 0;
+        for (std::uint32_t i = 0; i < variants_; ++i) {
+            const std::optional<TurtlePart> part = composition.variant(i);
+            if (!part) return false;
+            const double segments = part->segments.convert_to<double>();
+            sum += segments;
+            squares += segments * segments;
+        }
+        const double mean = sum / variants_;
+        // The relative variance of one whole model is at least that of one level, and no more than that of all.
+        const double variance = mean > 0 ? std::max(0.0, squares / variants_ / (mean * mean) - 1) : 0;
+        const double wanted = variance * std::max(1u, options_.steps) / (most_drift * most_drift);
+        const double parts = static_cast<double>(composition.composer.part_count()) / variants_;
+        const double room = 0.5 * static_cast<double>(options_.max_parts) / std::max(parts, 1.0);
+        while (variants_ < wanted && 2 * variants_ <= std::min<double>(room, most_variants))
+            variants_ *= 2;
+        drift_ = std::sqrt(variance * std::max(1u, options_.steps) / variants_);
+        return true;
+    }
+
+    /// Lines as thick as the figure asks: composed once to see how large it is.
+    bool choose_width(const Graph& graph) {
+        if (!is_line_drawing()) return true;
+        Graph scratch = graph;
+        ObjectPool pool(scratch);
+        const std::optional<TurtlePart> sketch = Composition(*this, scratch, pool, false).variant(0);
+        if (!sketch) return false;
+        width_ = std::clamp(thinnest_in_figure * sketch->reach, width_, thickest_in_steps * grammar_.step);
+        return true;
+    }
+
     bool is_line_drawing() const { return !grammar_.width && !uses(grammar_, {TurtleCommand::width}); }
 
     /// The materials that the block names, else ours.
@@ -97,36 +163,23 @@ class Drawer {
         return true;
     }
 
-    std::optional<TurtlePart> compose(Graph& graph, ObjectPool& pool, double width, bool lines) {
-        TurtleBodies bodies(graph, palette_);
-        TurtleContext turtle{bodies, diagnostics_, grammar_.angle_deg, grammar_.step, lines};
-        LsysComposer composer(rewriter_, turtle, pool, models_, max_parts_);
-        TurtleState start;
-        start.width = width;
-        start.tropism = grammar_.tropism;
-        start.vertical = up;
-        std::optional<TurtlePart> part = composer.compose(steps_, start);
-        part_count_ = composer.part_count();
-        return part;
-    }
-
     const LsysGrammar& grammar_;
     const std::map<SymbolId, ObjectId>& models_;
-    unsigned steps_;
-    std::size_t max_parts_;
+    const LsysDrawOptions& options_;
     Diagnostics& diagnostics_;
     LsysRewriter rewriter_;
+    double width_;
+    std::uint32_t variants_ = 1;
+    double drift_ = 0;
     std::vector<Material> palette_; ///< of the colour indices
-    std::size_t part_count_ = 0;
 };
-
 
 } // namespace
 
 std::optional<LsysDrawing> draw_lsys(const LsysGrammar& grammar, const std::map<SymbolId, ObjectId>& models,
-                                     unsigned steps, std::size_t max_parts, Graph& graph, ObjectPool& pool,
+                                     const LsysDrawOptions& options, Graph& graph, ObjectPool& pool,
                                      Diagnostics& diagnostics) {
-    return Drawer(grammar, models, steps, max_parts, diagnostics).draw(graph, pool);
+    return Drawer(grammar, models, options, diagnostics).draw(graph, pool);
 }
 
 } // namespace graftal

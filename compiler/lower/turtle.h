@@ -57,6 +57,9 @@ class Turtle {
     /// The same, but the turtle stays as it is: a branch.
     void append_branch(const TurtlePart& part);
 
+    /// Notes that what is drawn depends on state().variant.
+    void read_variant() { note(reads_variant); }
+
     /// The state of a part that begins here.
     TurtleState state() const;
     const Affine& start_from_turtle() const { return start_from_turtle_; }

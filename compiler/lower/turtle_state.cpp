@@ -26,7 +26,8 @@ bool equal(const TurtleState& a, const TurtleState& b, TurtleStateMask mask) {
            (!(mask & reads_elasticity) || a.elasticity == b.elasticity) &&
            (!(mask & reads_tropism) || a.tropism == b.tropism) &&
            (!(mask & reads_vertical) || a.vertical == b.vertical) &&
-           (!(mask & reads_polygon) || a.in_polygon == b.in_polygon);
+           (!(mask & reads_polygon) || a.in_polygon == b.in_polygon) &&
+           (!(mask & reads_variant) || a.variant == b.variant);
 }
 
 std::uint64_t hash(const TurtleState& state, TurtleStateMask mask) {
@@ -37,6 +38,7 @@ std::uint64_t hash(const TurtleState& state, TurtleStateMask mask) {
     if (mask & reads_tropism) hash = mixed_vector(hash, state.tropism);
     if (mask & reads_vertical) hash = mixed_vector(hash, state.vertical);
     if (mask & reads_polygon) hash = mixed(hash, state.in_polygon);
+    if (mask & reads_variant) hash = mixed(hash, state.variant);
     return hash;
 }
 

@@ -17,6 +17,7 @@ struct TurtleState {
     Vec3 tropism{0.0};     ///< unit vector that segments bend towards
     Vec3 vertical{0.0};    ///< unit vector that `$` looks at
     bool in_polygon = false;
+    std::uint32_t variant = 0; ///< of what is random (lsys_composer.h)
 };
 
 /// The members of a TurtleState, as a set.
@@ -28,6 +29,7 @@ enum TurtleStateBit : TurtleStateMask {
     reads_tropism = 8,
     reads_vertical = 16,
     reads_polygon = 32,
+    reads_variant = 64,
 };
 
 /// True if the members of `mask` are equal.

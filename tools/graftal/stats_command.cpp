@@ -84,6 +84,10 @@ Json stats_json(const AnalysedModel& model, const SourceMap& sources) {
         json["modules"] = derivation->modules;
         json["segments"] = derivation->segments;
         json["compiled"] = {{"way", derivation->way}, {"parts", derivation->parts}};
+        if (derivation->variants > 1) {
+            json["compiled"]["variants"] = derivation->variants;
+            json["compiled"]["drift"] = derivation->drift;
+        }
     }
     return json;
 }

@@ -112,8 +112,8 @@ class LsysLowering {
         }
         block.under_way = true;
         const std::optional<std::map<SymbolId, ObjectId>> models = models_of(*block.grammar);
-        const std::optional<unsigned> steps = steps_of(block);
-        if (models && steps) block.root = draw(block, *models, *steps);
+        std::optional<unsigned> steps;
+        if (find_steps(block, steps) && models) block.root = draw(block, *models, steps);
         block.under_way = false;
         return block.root;
     }
@@ -151,45 +151,45 @@ class LsysLowering {
         return std::nullopt;
     }
 
-    std::optional<unsigned> steps_of(const Block& block) {
-        std::optional<unsigned> steps = block.grammar->steps;
-        Span span = block.source->name.span;
-        if (block.source->steps) span = block.source->steps->span;
-        if (!steps && graph_.settings.steps) steps = graph_.settings.steps;
-        const bool is_root = lowering_.at_root_model() && &block == &main_block();
-        if (is_root && lowering_.options.steps) {
+    bool is_root(const Block& block) { return lowering_.at_root_model() && &block == &main_block(); }
+
+    /// False after an error; no steps are infinitely many.
+    bool find_steps(const Block& block, std::optional<unsigned>& steps) {
+        Span span = block.source->steps ? block.source->steps->span : block.source->name.span;
+        steps = block.grammar->steps;
+        if (is_root(block) && lowering_.options.steps) {
             steps = lowering_.options.steps;
             span = Span();
         } else if (block.grammar->infinite) {
-            diagnostics_.error(span, "'steps infinite' is not possible in this version");
-            return std::nullopt;
+            return true;
         }
-        if (!steps) {
-            diagnostics_.error(span, fmt::format("'lsys {}' does not say how many steps to derive",
-                                                 block.source->name.text))
-                .with_hint(is_root ? "add 'steps 5' to it, or '--steps 5' to the command" : "add 'steps 5' to it");
-        } else if (*steps > max_derivation_steps) {
+        if (!steps) steps = graph_.settings.steps;
+        if (!steps)
+            diagnostics_
+                .error(span, fmt::format("'lsys {}' does not say how many steps to derive", block.source->name.text))
+                .with_hint(is_root(block) ? "add 'steps 5' to it, or '--steps 5' to the command"
+                                          : "add 'steps 5' to it");
+        else if (*steps > max_derivation_steps)
             diagnostics_.error(span, fmt::format("a derivation has at most {} steps", max_derivation_steps));
-            return std::nullopt;
-        }
-        return steps;
+        return steps && *steps <= max_derivation_steps;
     }
 
-    std::optional<ObjectId> draw(const Block& block, const std::map<SymbolId, ObjectId>& models, unsigned steps) {
+    std::optional<ObjectId> draw(const Block& block, const std::map<SymbolId, ObjectId>& models,
+                                 std::optional<unsigned> steps) {
         const LsysBlock& source = *block.source;
         const LowerOptions& options = lowering_.options;
-        const bool is_root = lowering_.at_root_model() && &block == &main_block();
         const std::uint64_t seed = lowering_.at_root_model() && options.seed ? *options.seed : block.grammar->seed;
         std::optional<LsysDrawing> drawing =
             draw_lsys(*block.grammar, models, {steps, seed, options.max_objects}, graph_, pool_, diagnostics_);
         if (!drawing) return std::nullopt;
         if (drawing->instances.empty()) {
             diagnostics_.error(source.name.span,
-                               fmt::format("'lsys {}' draws nothing after {} step{}", source.name.text, steps,
-                                           steps == 1 ? "" : "s"));
+                               fmt::format("'lsys {}' draws nothing{}", source.name.text,
+                                           steps ? fmt::format(" after {} step{}", *steps, *steps == 1 ? "" : "s")
+                                                 : std::string()));
             return std::nullopt;
         }
-        if (is_root)
+        if (is_root(block))
             lowering_.derivation = std::move(drawing->derivation);
         return add_root(source, std::move(drawing->instances));
     }

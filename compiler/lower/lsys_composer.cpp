@@ -1,10 +1,11 @@
 #include "compiler/lower/lsys_composer.h"
 
 #include <algorithm>
-#include <cctype>
+#include <cmath>
 #include <utility>
 
 #include <fmt/format.h>
+#include <glm/geometric.hpp>
 
 namespace graftal {
 
@@ -19,12 +20,22 @@ bool depends_on_directions(const LsysGrammar& grammar) {
     });
 }
 
+/// Turned in the plane of the turtle so that it heads for `exit`, where that lies in the plane.
+Mat3 chord_frame(Vec3 exit) {
+    const double length = glm::length(exit);
+    if (!(length > 0) || std::abs(exit.z) > 1e-9 * length) return Mat3(1.0);
+    const Vec3 y = glm::normalize(Vec3(exit.x, exit.y, 0));
+    return Mat3(Vec3(y.y, -y.x, 0), y, Vec3(0, 0, 1));
+}
+
 } // namespace
 
 LsysComposer::LsysComposer(LsysRewriter& rewriter, TurtleContext& turtle, ObjectPool& pool,
                            const std::map<SymbolId, ObjectId>& models, Variants variants, std::size_t max_parts)
     : rewriter_(rewriter), context_(turtle), pool_(pool), models_(models), variants_(variants),
-      max_parts_(max_parts), uses_directions_(depends_on_directions(rewriter.grammar())) {}
+      max_parts_(max_parts), uses_directions_(depends_on_directions(rewriter.grammar())) {
+    rotations_.representative(Mat3(1.0)); // exactly, for what comes near it
+}
 
 std::optional<TurtlePart> LsysComposer::compose(unsigned steps, const TurtleState& start) {
     const std::optional<ModuleString> axiom = rewriter_.axiom();
@@ -153,12 +164,17 @@ void LsysComposer::complete_task() {
     Task task = std::move(tasks_.back());
     tasks_.pop_back();
     TurtlePart part = std::move(task.turtle).finish();
+    part.start_from_exit.linear = rotations_.representative(part.start_from_exit.linear);
     if (task.interprets) part.modules = 1;
     std::optional<Instance> line;
     if (context_.lines && !part.has_bodies)
         line = context_.bodies.line(part.start_from_exit.translation, task.start.colour, task.span);
+    const Mat3 frame = context_.limit ? chord_frame(part.start_from_exit.translation) : Mat3(1.0);
+    const std::size_t count = part.instances.size();
     part.instances =
-        pool_.share(std::move(part.instances), std::move(line), name_of_part(task), task.span);
+        pool_.share(std::move(part.instances), std::move(line), name_of_part(task), task.span, frame);
+    if (count > 1 && part.instances.size() == 1)
+        origins_.try_emplace(part.instances.front().master, Origin{task.module, task.stage / 2});
     const std::uint64_t kind_hash = mixed(task.module, task.stage);
     const std::uint32_t kind =
         kind_ids_.find_or_add(kind_hash, static_cast<std::uint32_t>(kinds_.size()), [&](std::uint32_t id) {
@@ -197,11 +213,8 @@ TurtleState LsysComposer::state_of(const Turtle& turtle) {
 
 /// `A_5` for module A with five steps left.
 std::string LsysComposer::name_of_part(const Task& task) const {
-    std::string name;
-    for (const char c : rewriter_.grammar().symbols[rewriter_.modules().symbol(task.module)])
-        if (std::isalnum(static_cast<unsigned char>(c)) || c == '_') name += c;
-    if (name.empty() || std::isdigit(static_cast<unsigned char>(name.front()))) name = "module" + name;
-    return fmt::format("{}_{}", name, task.stage / 2);
+    const std::string& symbol = rewriter_.grammar().symbols[rewriter_.modules().symbol(task.module)];
+    return fmt::format("{}_{}", object_name(symbol), task.stage / 2);
 }
 
 } // namespace graftal

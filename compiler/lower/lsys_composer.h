@@ -5,6 +5,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <unordered_map>
 #include <vector>
 
 #include "compiler/lower/lsys_rewriter.h"
@@ -31,6 +32,13 @@ class LsysComposer {
     std::optional<TurtlePart> compose(unsigned steps, const TurtleState& start);
 
     std::size_t part_count() const { return parts_.size(); }
+
+    /// The first part that made an object.
+    struct Origin {
+        ModuleId module = 0;
+        unsigned steps = 0; ///< that were left
+    };
+    const std::unordered_map<ObjectId, Origin>& origins() const { return origins_; }
 
   private:
     /// 0: being drawn; 2k: before a step, of k that are left; 2k + 1: being decomposed before that.
@@ -91,9 +99,11 @@ class LsysComposer {
     std::vector<Task> tasks_;
     std::vector<KnownPart> parts_;
     IdTable part_ids_;
+    std::unordered_map<ObjectId, Origin> origins_;
     std::vector<PartKind> kinds_;
     IdTable kind_ids_;
     DirectionTable directions_;
+    DirectionTable rotations_; ///< of exits
     bool uses_directions_ = false;
 };
 

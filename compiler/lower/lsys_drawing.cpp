@@ -6,8 +6,11 @@
 #include <span>
 #include <utility>
 
+#include <fmt/format.h>
+
 #include "compiler/lower/lower_settings.h"
 #include "compiler/lower/lsys_composer.h"
+#include "compiler/lower/lsys_limit.h"
 
 namespace graftal {
 
@@ -61,6 +64,12 @@ constexpr double most_drift = 0.05;
 constexpr std::uint32_t fewest_variants = 16;
 constexpr std::uint32_t most_variants = 4096;
 
+// Derivations whose levels are looked at for repetition.
+constexpr unsigned first_limit_steps = 24;
+constexpr unsigned last_limit_steps = 192;
+/// With more parts than this no longer derivation is tried.
+constexpr std::size_t most_limit_parts = 1000;
+
 class Drawer {
   public:
     Drawer(const LsysGrammar& grammar, const std::map<SymbolId, ObjectId>& models, const LsysDrawOptions& options,
@@ -69,13 +78,16 @@ class Drawer {
           rewriter_(grammar, diagnostics), width_(grammar.width.value_or(thinnest_in_steps * grammar.step)) {}
 
     std::optional<LsysDrawing> draw(Graph& graph, ObjectPool& pool) {
-        if (!choose_palette(graph) || !choose_variants(graph) || !choose_width(graph)) return std::nullopt;
+        if (!choose_palette(graph)) return std::nullopt;
+        if (!options_.steps) return draw_limit(graph, pool);
+        steps_ = *options_.steps;
+        if (!choose_variants(graph) || !choose_width(graph)) return std::nullopt;
         Composition composition(*this, graph, pool, is_line_drawing());
         std::optional<TurtlePart> part = composition.variant(0);
         if (!part) return std::nullopt;
         LsysDrawing drawing{std::move(part->instances), {"composed"}};
         Derivation& derivation = drawing.derivation;
-        derivation.steps = options_.steps;
+        derivation.steps = steps_;
         derivation.modules = part->modules.str();
         derivation.segments = part->segments.str();
         derivation.parts = composition.composer.part_count();
@@ -99,7 +111,7 @@ class Drawer {
             start.tropism = drawer.grammar_.tropism;
             start.vertical = up;
             start.variant = number;
-            return composer.compose(drawer.options_.steps, start);
+            return composer.compose(drawer.steps_, start);
         }
 
         Drawer& drawer;
@@ -107,6 +119,36 @@ class Drawer {
         TurtleContext turtle;
         LsysComposer composer;
     };
+
+    /// Longer derivations until their levels repeat.
+    std::optional<LsysDrawing> draw_limit(Graph& graph, ObjectPool& pool) {
+        if (grammar_.is_stochastic) {
+            diagnostics_.error(grammar_.source->steps->span, "random productions have no limit")
+                .with_hint("give 'steps N'");
+            return std::nullopt;
+        }
+        for (steps_ = first_limit_steps; steps_ <= last_limit_steps; steps_ *= 2) {
+            Composition composition(*this, graph, pool, is_line_drawing());
+            composition.turtle.limit = true;
+            const std::optional<TurtlePart> part = composition.variant(0);
+            if (!part) return std::nullopt;
+            const std::size_t errors = diagnostics_.error_count();
+            std::optional<std::vector<Instance>> folded = fold_levels(
+                part->instances, steps_, composition.composer.origins(), rewriter_, graph, pool, diagnostics_);
+            if (diagnostics_.error_count() > errors) return std::nullopt;
+            if (!folded && composition.composer.part_count() > most_limit_parts) break;
+            if (!folded) continue;
+            LsysDrawing drawing{std::move(*folded), {"folded"}};
+            drawing.derivation.parts = composition.composer.part_count();
+            return drawing;
+        }
+        diagnostics_
+            .error(grammar_.source->steps->span,
+                   fmt::format("'lsys {}' has no limit that was found: its levels do not repeat",
+                               grammar_.source->name.text))
+            .with_hint("the levels of a limit differ in their size only: all lengths and widths change alike");
+        return std::nullopt;
+    }
 
     /// Composes a small pool and judges by its variance how many variants it takes.
     bool choose_variants(const Graph& graph) {
@@ -126,12 +168,12 @@ class Drawer {
         const double mean = sum / variants_;
         // The relative variance of one whole model is at least that of one level, and no more than that of all.
         const double variance = mean > 0 ? std::max(0.0, squares / variants_ / (mean * mean) - 1) : 0;
-        const double wanted = variance * std::max(1u, options_.steps) / (most_drift * most_drift);
+        const double wanted = variance * std::max(1u, steps_) / (most_drift * most_drift);
         const double parts = static_cast<double>(composition.composer.part_count()) / variants_;
         const double room = 0.5 * static_cast<double>(options_.max_parts) / std::max(parts, 1.0);
         while (variants_ < wanted && 2 * variants_ <= std::min<double>(room, most_variants))
             variants_ *= 2;
-        drift_ = std::sqrt(variance * std::max(1u, options_.steps) / variants_);
+        drift_ = std::sqrt(variance * std::max(1u, steps_) / variants_);
         return true;
     }
 
@@ -169,6 +211,7 @@ class Drawer {
     Diagnostics& diagnostics_;
     LsysRewriter rewriter_;
     double width_;
+    unsigned steps_ = 0;
     std::uint32_t variants_ = 1;
     double drift_ = 0;
     std::vector<Material> palette_; ///< of the colour indices

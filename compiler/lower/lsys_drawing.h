@@ -13,7 +13,7 @@
 namespace graftal {
 
 struct LsysDrawOptions {
-    unsigned steps = 0;
+    std::optional<unsigned> steps; ///< nothing: infinitely many
     std::uint64_t seed = 0;
     std::size_t max_parts = 1'000'000;
 };

@@ -1,10 +1,12 @@
 #include "compiler/lower/object_pool.h"
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <utility>
 
 #include <fmt/format.h>
+#include <glm/matrix.hpp>
 
 namespace graftal {
 
@@ -89,7 +91,26 @@ void scale_down(Instance& instance, double size) {
     instance.parent_from_child.translation /= size;
 }
 
+void turn_back(Instance& instance, const Mat3& frame) {
+    Affine& place = instance.parent_from_child;
+    place = {glm::transpose(frame) * place.linear, glm::transpose(frame) * place.translation};
+}
+
 } // namespace
+
+std::string object_name(std::string_view symbol) {
+    std::string name;
+    for (const char c : symbol)
+        if (std::isalnum(static_cast<unsigned char>(c)) || c == '_') name += c;
+    if (name.empty() || std::isdigit(static_cast<unsigned char>(name.front())))
+        name = "module" + name;
+    return name;
+}
+
+ObjectPool::ObjectPool(Graph& graph) : graph_(graph) {
+    for (int kind = 0; kind < primitive_kind_count; ++kind)
+        names_[name_of(static_cast<PrimitiveKind>(kind))] = 1;
+}
 
 bool ObjectPool::worth_an_object(const std::vector<Instance>& instances) const {
     if (instances.size() <= 1) return false;
@@ -103,8 +124,13 @@ std::uint32_t ObjectPool::find(const Object& object, std::uint64_t hash) const {
 }
 
 std::vector<Instance> ObjectPool::share(std::vector<Instance> instances, std::optional<Instance> terminal,
-                                        std::string_view name, Span span) {
+                                        std::string_view name, Span span, const Mat3& frame) {
     if (!worth_an_object(instances)) return instances;
+    if (frame != Mat3(1.0)) {
+        for (Instance& instance : instances)
+            turn_back(instance, frame);
+        if (terminal) turn_back(*terminal, frame);
+    }
     const double size = size_of(instances);
     Object object;
     object.span = span;
@@ -126,7 +152,7 @@ std::vector<Instance> ObjectPool::share(std::vector<Instance> instances, std::op
         object.name = unique_name(name);
         shared_.push_back(graph_.add(std::move(object)));
     }
-    return {Instance{shared_[id], Affine::scale(Vec3(size)), Tint(), std::nullopt, span}};
+    return {Instance{shared_[id], {size * frame, Vec3(0.0)}, Tint(), std::nullopt, span}};
 }
 
 std::string ObjectPool::unique_name(std::string_view name) {

@@ -149,12 +149,17 @@ void Turtle::move(double length, bool draw, bool record, Span span) {
     const bool fills = !polygons_.empty() || (note(reads_polygon), state_.in_polygon);
     if (draw) ++part_.segments;
     if (draw && !fills)
-        context_.bodies.add_segment(start_from_turtle_, length, read_width(), read_colour(), span,
+        context_.bodies.add_segment(start_from_turtle_, length, line_width(length), read_colour(), span,
                                     part_.instances);
     start_from_turtle_ = start_from_turtle_ * Affine::translate(length * ahead);
     part_.reach = std::max(part_.reach, glm::length(start_from_turtle_.translation));
     if (fills && record) record_vertex();
     if (draw) bend();
+}
+
+double Turtle::line_width(double length) {
+    constexpr double slenderness = 0.05;
+    return context_.limit && context_.lines ? slenderness * std::abs(length) : read_width();
 }
 
 void Turtle::turn(Vec3 axis, double angle_deg) {

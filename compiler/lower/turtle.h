@@ -40,6 +40,8 @@ struct TurtleContext {
     double angle_deg = 90;
     double step = 1;
     bool lines = false; ///< segments are strokes of a curve: small parts are drawn as lines
+    bool limit = false; ///< only proportions count: lines are as thick as their lengths ask, and parts that
+                        ///< differ by a rotation in the plane are made equal
     std::size_t max_instances = 4'000'000; ///< of one part, its polygons' vertices too
 };
 
@@ -91,6 +93,7 @@ class Turtle {
     void record_vertex();
     bool within_limits(Span span);
 
+    double line_width(double length);
     double read_width() { return note(reads_width), state_.width; }
     int read_colour() { return note(reads_colour), state_.colour; }
     void note(TurtleStateMask bits) { part_.reads |= static_cast<TurtleStateMask>(bits & ~writes_); }

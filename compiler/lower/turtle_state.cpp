@@ -1,5 +1,6 @@
 #include "compiler/lower/turtle_state.h"
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 
@@ -9,7 +10,7 @@ namespace graftal {
 
 namespace {
 
-constexpr double same_direction = 1e-11;
+constexpr double tolerance = 1e-11;
 
 std::uint64_t mixed_number(std::uint64_t hash, double number) {
     return mixed(hash, std::bit_cast<std::uint64_t>(number));
@@ -43,19 +44,37 @@ std::uint64_t hash(const TurtleState& state, TurtleStateMask mask) {
 }
 
 Vec3 DirectionTable::representative(Vec3 direction) {
-    // The cell of one coordinate along an axis that no model favours; two directions closer than the
-    // tolerance lie in the same cell or in neighbours.
-    const double along = glm::dot(direction, Vec3(0.48273, 0.71931, 0.49942));
-    const auto cell = static_cast<std::int64_t>(std::floor(along / (4 * same_direction)));
-    const auto same = [&](std::uint32_t id) { return glm::length(directions_[id] - direction) <= same_direction; };
+    return find_or_add(Mat3(direction, Vec3(0.0), Vec3(0.0)))[0];
+}
+
+Mat3 DirectionTable::representative(const Mat3& rotation) {
+    const Vec3 y = glm::normalize(rotation[1]);
+    const Vec3 x = glm::normalize(rotation[0] - glm::dot(rotation[0], y) * y);
+    return find_or_add(Mat3(x, y, glm::cross(x, y)));
+}
+
+const Mat3& DirectionTable::find_or_add(const Mat3& matrix) {
+    // The cell of one number that depends on all entries in a way that no model favours: of two matrices closer
+    // than the tolerance the cells are the same, or neighbours.
+    const Mat3 weights(0.48273, 0.71931, 0.49942, 0.31177, -0.62935, 0.27061, -0.55821, 0.16943, 0.81219);
+    double along = 0;
+    for (int column = 0; column < 3; ++column)
+        along += glm::dot(matrix[column], weights[column]);
+    const auto cell = static_cast<std::int64_t>(std::floor(along / (8 * tolerance)));
+    const auto same = [&](std::uint32_t id) {
+        double gap = 0;
+        for (int column = 0; column < 3; ++column)
+            gap = std::max(gap, glm::length(known_[id][column] - matrix[column]));
+        return gap <= tolerance;
+    };
     for (const std::int64_t near : {cell, cell - 1, cell + 1}) {
         const std::uint32_t known = ids_.find(mixed(0, static_cast<std::uint64_t>(near)), same);
-        if (known != IdTable::none) return directions_[known];
+        if (known != IdTable::none) return known_[known];
     }
-    ids_.find_or_add(mixed(0, static_cast<std::uint64_t>(cell)), static_cast<std::uint32_t>(directions_.size()),
+    ids_.find_or_add(mixed(0, static_cast<std::uint64_t>(cell)), static_cast<std::uint32_t>(known_.size()),
                      [](std::uint32_t) { return false; });
-    directions_.push_back(direction + Vec3(0.0)); // no negative zeros
-    return directions_.back();
+    known_.push_back(matrix + Mat3(0.0)); // no negative zeros
+    return known_.back();
 }
 
 } // namespace graftal

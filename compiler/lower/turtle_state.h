@@ -37,14 +37,20 @@ bool equal(const TurtleState& a, const TurtleState& b, TurtleStateMask mask);
 /// A hash of the members of `mask`.
 std::uint64_t hash(const TurtleState& state, TurtleStateMask mask);
 
-/// Directions that differ by rounding only, made equal: the first that came stands for all within 1e-11.
+/// Directions and rotations that differ by rounding only, made equal: the first that came stands for all within
+/// 1e-11.
 class DirectionTable {
   public:
     /// Requires a vector no longer than 1, but for rounding.
     Vec3 representative(Vec3 direction);
+    /// Requires a rotation, but for rounding, and gives one. Without this the errors of a rotation that is
+    /// composed of seven like itself, level by level, would grow sevenfold a level.
+    Mat3 representative(const Mat3& rotation);
 
   private:
-    std::vector<Vec3> directions_;
+    const Mat3& find_or_add(const Mat3& matrix);
+
+    std::vector<Mat3> known_; ///< a direction is the first column of a matrix of which nothing else is used
     IdTable ids_;
 };
 

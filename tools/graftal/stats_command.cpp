@@ -81,8 +81,9 @@ Json stats_json(const AnalysedModel& model, const SourceMap& sources) {
         {"error", model.derivation ? model.derivation->error : 0},
     };
     if (const std::optional<Derivation>& derivation = model.derivation) {
-        json["modules"] = derivation->modules;
-        json["segments"] = derivation->segments;
+        const bool finite = derivation->steps.has_value();
+        json["modules"] = finite ? Json(derivation->modules) : Json(nullptr);
+        json["segments"] = finite ? Json(derivation->segments) : Json(nullptr);
         json["compiled"] = {{"way", derivation->way}, {"parts", derivation->parts}};
         if (derivation->variants > 1) {
             json["compiled"]["variants"] = derivation->variants;

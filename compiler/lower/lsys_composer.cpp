@@ -20,6 +20,10 @@ bool depends_on_directions(const LsysGrammar& grammar) {
     });
 }
 
+double angle_between(Vec3 a, Vec3 b) {
+    return 2 * std::asin(std::min(1.0, 0.5 * glm::length(a - b)));
+}
+
 /// Turned in the plane of the turtle so that it heads for `exit`, where that lies in the plane.
 Mat3 chord_frame(Vec3 exit) {
     const double length = glm::length(exit);
@@ -31,11 +35,11 @@ Mat3 chord_frame(Vec3 exit) {
 } // namespace
 
 LsysComposer::LsysComposer(LsysRewriter& rewriter, TurtleContext& turtle, ObjectPool& pool,
-                           const std::map<SymbolId, ObjectId>& models, Variants variants, std::size_t max_parts)
+                           const std::map<SymbolId, ObjectId>& models, Variants variants, const LsysLimits& limits)
     : rewriter_(rewriter), context_(turtle), pool_(pool), models_(models), variants_(variants),
-      max_parts_(max_parts), uses_directions_(depends_on_directions(rewriter.grammar())) {
-    rotations_.representative(Mat3(1.0)); // exactly, for what comes near it
-}
+      max_parts_(limits.max_parts), snaps_(limits.snap_angle > 0),
+      directions_(std::max(limits.snap_angle, DirectionTable::rounding)),
+      uses_directions_(depends_on_directions(rewriter.grammar())) {}
 
 std::optional<TurtlePart> LsysComposer::compose(unsigned steps, const TurtleState& start) {
     const std::optional<ModuleString> axiom = rewriter_.axiom();
@@ -112,11 +116,12 @@ bool LsysComposer::advance(Task& task) {
             continue;
         }
         const Stage stage = unfolded.kind == RuleKind::interpret ? 0 : task.string_stage;
-        TurtleState state = state_of(task.turtle);
+        double snap = 0;
+        TurtleState state = state_of(task.turtle, snap);
         state.variant = variant;
         const TurtlePart* part = find(module, stage, state);
         if (!part) return start_task(module, stage, state, unfolded);
-        task.turtle.append(*part);
+        task.turtle.append(*part, snap);
     }
     return true;
 }
@@ -203,11 +208,15 @@ const TurtlePart* LsysComposer::find(ModuleId module, Stage stage, const TurtleS
     return nullptr;
 }
 
-TurtleState LsysComposer::state_of(const Turtle& turtle) {
+/// `snap`: the angle between the directions and those in their place.
+TurtleState LsysComposer::state_of(const Turtle& turtle, double& snap) {
     TurtleState state = turtle.state();
     if (!uses_directions_) return state;
+    const TurtleState exact = state;
     state.tropism = directions_.representative(state.tropism);
     state.vertical = directions_.representative(state.vertical);
+    if (snaps_)
+        snap = std::max(angle_between(exact.tropism, state.tropism), angle_between(exact.vertical, state.vertical));
     return state;
 }
 

@@ -17,6 +17,13 @@
 
 namespace graftal {
 
+struct LsysLimits {
+    std::size_t max_parts = 1'000'000; ///< more are an error
+    /// Directions that `$` and tropism look at are taken for equal within this angle, in radians, when a part is
+    /// looked up; it is then placed exactly. The displacement is bounded in TurtlePart::error.
+    double snap_angle = 0;
+};
+
 /// Compiles a derivation without deriving it (Hart 1992, section 4, made automatic): what a module becomes
 /// depends on the module, the steps that are left, and as much of the incoming state of the turtle as its
 /// subtree reads. So each such *part* is composed once, out of the parts of its successor, and costs are
@@ -26,7 +33,7 @@ class LsysComposer {
   public:
     /// All references must outlive this. `models`: the roots of what `~NAME` places, by symbol.
     LsysComposer(LsysRewriter& rewriter, TurtleContext& turtle, ObjectPool& pool,
-                 const std::map<SymbolId, ObjectId>& models, Variants variants, std::size_t max_parts);
+                 const std::map<SymbolId, ObjectId>& models, Variants variants, const LsysLimits& limits);
 
     /// The part that the axiom becomes after `steps` steps; nothing after an error in the turtle's diagnostics.
     std::optional<TurtlePart> compose(unsigned steps, const TurtleState& start);
@@ -87,7 +94,7 @@ class LsysComposer {
     bool start_task(ModuleId module, Stage stage, const TurtleState& start, const Unfolded& unfolded);
     void complete_task();
     const TurtlePart* find(ModuleId module, Stage stage, const TurtleState& start) const;
-    TurtleState state_of(const Turtle& turtle);
+    TurtleState state_of(const Turtle& turtle, double& snap);
     std::string name_of_part(const Task& task) const;
 
     LsysRewriter& rewriter_;
@@ -96,6 +103,7 @@ class LsysComposer {
     const std::map<SymbolId, ObjectId>& models_;
     Variants variants_;
     std::size_t max_parts_;
+    bool snaps_;
     std::vector<Task> tasks_;
     std::vector<KnownPart> parts_;
     IdTable part_ids_;
@@ -103,7 +111,7 @@ class LsysComposer {
     std::vector<PartKind> kinds_;
     IdTable kind_ids_;
     DirectionTable directions_;
-    DirectionTable rotations_; ///< of exits
+    RotationTable rotations_; ///< of exits
     bool uses_directions_ = false;
 };
 

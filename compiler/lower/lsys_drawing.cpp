@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <span>
 #include <utility>
 
@@ -64,6 +65,9 @@ constexpr double most_drift = 0.05;
 constexpr std::uint32_t fewest_variants = 16;
 constexpr std::uint32_t most_variants = 4096;
 
+/// Models with more parts get by with fewer directions.
+constexpr std::size_t most_exact_parts = 100'000;
+
 // Derivations whose levels are looked at for repetition.
 constexpr unsigned first_limit_steps = 24;
 constexpr unsigned last_limit_steps = 192;
@@ -81,7 +85,7 @@ class Drawer {
         if (!choose_palette(graph)) return std::nullopt;
         if (!options_.steps) return draw_limit(graph, pool);
         steps_ = *options_.steps;
-        if (!choose_variants(graph) || !choose_width(graph)) return std::nullopt;
+        if (!choose_variants(graph) || !choose_snap_angle(graph) || !choose_width(graph)) return std::nullopt;
         Composition composition(*this, graph, pool, is_line_drawing());
         std::optional<TurtlePart> part = composition.variant(0);
         if (!part) return std::nullopt;
@@ -93,6 +97,7 @@ class Drawer {
         derivation.parts = composition.composer.part_count();
         derivation.variants = variants_;
         derivation.drift = drift_;
+        derivation.error = part->error.farthest;
         return drawing;
     }
 
@@ -100,10 +105,13 @@ class Drawer {
     /// One composer with all that it needs.
     struct Composition {
         Composition(Drawer& owner, Graph& graph, ObjectPool& pool, bool lines)
+            : Composition(owner, graph, pool, lines, owner.options_.max_parts, owner.diagnostics_) {}
+        Composition(Drawer& owner, Graph& graph, ObjectPool& pool, bool lines, std::size_t max_parts,
+                    Diagnostics& diagnostics)
             : drawer(owner), bodies(graph, owner.palette_),
-              turtle{bodies, owner.diagnostics_, owner.grammar_.angle_deg, owner.grammar_.step, lines},
+              turtle{bodies, diagnostics, owner.grammar_.angle_deg, owner.grammar_.step, lines},
               composer(owner.rewriter_, turtle, pool, owner.models_,
-                       Variants(owner.options_.seed, owner.variants_), owner.options_.max_parts) {}
+                       Variants(owner.options_.seed, owner.variants_), {max_parts, owner.snap_angle_}) {}
 
         std::optional<TurtlePart> variant(std::uint32_t number) {
             TurtleState start;
@@ -177,6 +185,21 @@ class Drawer {
         return true;
     }
 
+    /// The smallest that keeps the parts few enough.
+    bool choose_snap_angle(const Graph& graph) {
+        if (!uses(grammar_, {TurtleCommand::level, TurtleCommand::tropism})) return true;
+        const std::size_t most_parts = std::min(options_.max_parts, most_exact_parts);
+        for (const double angle_deg : {0.0, 0.125, 0.25, 0.5, 1.0, 2.0, 4.0, 8.0}) {
+            snap_angle_ = angle_deg * std::numbers::pi / 180;
+            Graph scratch = graph;
+            ObjectPool pool(scratch);
+            Diagnostics quiet; // other errors come again when the model itself is composed
+            if (Composition(*this, scratch, pool, false, most_parts, quiet).variant(0)) break;
+            if (rewriter_.failed()) return false;
+        }
+        return true;
+    }
+
     /// Lines as thick as the figure asks: composed once to see how large it is.
     bool choose_width(const Graph& graph) {
         if (!is_line_drawing()) return true;
@@ -214,6 +237,7 @@ class Drawer {
     unsigned steps_ = 0;
     std::uint32_t variants_ = 1;
     double drift_ = 0;
+    double snap_angle_ = 0;
     std::vector<Material> palette_; ///< of the colour indices
 };
 

@@ -153,6 +153,10 @@ void Turtle::move(double length, bool draw, bool record, Span span) {
                                     part_.instances);
     start_from_turtle_ = start_from_turtle_ * Affine::translate(length * ahead);
     part_.reach = std::max(part_.reach, glm::length(start_from_turtle_.translation));
+    for (auto [drift, total] : {std::pair(&error_, &part_.error), std::pair(&sensitivity_, &part_.sensitivity)}) {
+        drift->shift += drift->turn * std::abs(length);
+        total->farthest = std::max(total->farthest, drift->shift);
+    }
     if (fills && record) record_vertex();
     if (draw) bend();
 }
@@ -173,6 +177,8 @@ void Turtle::level() {
     const Vec3 left = glm::cross(state_.vertical, heading);
     constexpr double least_sine = 1e-9;
     if (!(glm::length(left) > least_sine)) return;
+    // The roll turns about the heading by the angle that the vertical turns about it.
+    sensitivity_.turn += (1 + sensitivity_.turn) / glm::length(left);
     const Vec3 x = -glm::normalize(left);
     start_from_turtle_.linear = Mat3(x, heading, glm::cross(x, heading));
 }
@@ -184,6 +190,7 @@ void Turtle::bend() {
     note(reads_tropism);
     const Vec3 axis = glm::cross(start_from_turtle_.linear[1], state_.tropism);
     const double sine = glm::length(axis);
+    sensitivity_.turn += std::abs(state_.elasticity) * (1 + sensitivity_.turn);
     if (!(sine > 0)) return;
     const double angle_deg = state_.elasticity * sine * 180 / std::numbers::pi;
     start_from_turtle_.linear = Affine::rotate(axis, angle_deg).linear * start_from_turtle_.linear;
@@ -210,7 +217,7 @@ void Turtle::set_colour(std::span<const double> parameters, int step) {
 }
 
 void Turtle::open_branch() {
-    branches_.push_back({start_from_turtle_, state_, writes_});
+    branches_.push_back({start_from_turtle_, state_, writes_, error_, sensitivity_});
 }
 
 void Turtle::close_branch() {
@@ -218,6 +225,8 @@ void Turtle::close_branch() {
     start_from_turtle_ = branches_.back().start_from_turtle;
     state_ = branches_.back().state;
     writes_ = branches_.back().writes;
+    error_ = branches_.back().error;
+    sensitivity_ = branches_.back().sensitivity;
     branches_.pop_back();
 }
 
@@ -247,8 +256,14 @@ TurtleState Turtle::state() const {
     return result;
 }
 
-void Turtle::append(const TurtlePart& part) {
-    append_branch(part);
+void Turtle::append(const TurtlePart& part, double snap) {
+    append_branch(part, snap);
+    const double length = glm::length(part.start_from_exit.translation);
+    const double stir = 1 + sensitivity_.turn; // of the part's directions
+    error_ = {error_.turn + part.error.exit_turn + snap * part.sensitivity.exit_turn,
+              error_.at(length) + part.error.exit_shift + snap * part.sensitivity.exit_shift};
+    sensitivity_ = {sensitivity_.turn + stir * part.sensitivity.exit_turn,
+                    sensitivity_.at(length) + stir * part.sensitivity.exit_shift};
     if (part.writes & reads_width) state_.width = part.exit.width;
     if (part.writes & reads_colour) state_.colour = part.exit.colour;
     if (part.writes & reads_elasticity) state_.elasticity = part.exit.elasticity;
@@ -257,7 +272,12 @@ void Turtle::append(const TurtlePart& part) {
     if (part.cut) cut_depth_ = 1;
 }
 
-void Turtle::append_branch(const TurtlePart& part) {
+void Turtle::append_branch(const TurtlePart& part, double snap) {
+    part_.error.farthest =
+        std::max(part_.error.farthest, error_.at(part.reach) + part.error.farthest + snap * part.sensitivity.farthest);
+    part_.sensitivity.farthest =
+        std::max(part_.sensitivity.farthest,
+                 sensitivity_.at(part.reach) + (1 + sensitivity_.turn) * part.sensitivity.farthest);
     TurtleStateMask reads = part.reads;
     // Whether a polygon is open outside of this part does not matter where one was opened inside.
     if (!polygons_.empty()) reads &= static_cast<TurtleStateMask>(~reads_polygon);
@@ -280,6 +300,8 @@ void Turtle::append_branch(const TurtlePart& part) {
 TurtlePart Turtle::finish() && {
     part_.start_from_exit = start_from_turtle_;
     part_.exit = state_;
+    part_.error = {error_.turn, error_.shift, part_.error.farthest};
+    part_.sensitivity = {sensitivity_.turn, sensitivity_.shift, part_.sensitivity.farthest};
     part_.writes = writes_;
     part_.cut = cut_depth_ > 0;
     return std::move(part_);

@@ -18,6 +18,13 @@ namespace graftal {
 
 using BigCount = boost::multiprecision::cpp_int;
 
+/// How far things may lie from where they belong.
+struct Displacement {
+    double exit_turn = 0;  ///< of the exit's orientation, radians
+    double exit_shift = 0; ///< of the exit's position
+    double farthest = 0;   ///< of any point
+};
+
 /// What a string of modules draws, in the frame of the turtle at its start, and how it leaves the turtle.
 struct TurtlePart {
     std::vector<Instance> instances;
@@ -28,6 +35,8 @@ struct TurtlePart {
     TurtleStateMask writes = 0;
     bool cut = false; ///< what follows in the branch is cut off
     double reach = 0; ///< the turtle goes no farther from the start
+    Displacement error;       ///< from directions that were snapped (LsysComposer)
+    Displacement sensitivity; ///< to the directions at the start, per radian, to first order
     bool has_bodies = false; ///< there are more than segments to see
     BigCount modules = 0;
     BigCount segments = 0;
@@ -54,10 +63,11 @@ class Turtle {
     /// Carries out one module; false after an error. `models` of `~` are given by `model`.
     bool run(TurtleCommand command, std::span<const double> parameters, std::optional<ObjectId> model, Span span);
 
-    /// Places a part whose entry state was state(): draws it, and goes where it leaves the turtle.
-    void append(const TurtlePart& part);
+    /// Places a part whose entry state was state(), but for directions that are off by the angle `snap`: draws
+    /// it, and goes where it leaves the turtle.
+    void append(const TurtlePart& part, double snap = 0);
     /// The same, but the turtle stays as it is: a branch.
-    void append_branch(const TurtlePart& part);
+    void append_branch(const TurtlePart& part, double snap = 0);
 
     /// Notes that what is drawn depends on state().variant.
     void read_variant() { note(reads_variant); }
@@ -74,10 +84,19 @@ class Turtle {
     TurtlePart finish() &&;
 
   private:
+    /// How far the turtle itself is off.
+    struct Drift {
+        double turn = 0;
+        double shift = 0;
+
+        double at(double distance) const { return shift + turn * distance; }
+    };
+
     struct Branch {
         Affine start_from_turtle;
         TurtleState state;
         TurtleStateMask writes;
+        Drift error, sensitivity;
     };
 
     bool pass_over(TurtleCommand command);
@@ -102,6 +121,8 @@ class Turtle {
     Affine start_from_turtle_;
     TurtleState state_; ///< directions in the frame of the start, as they came in
     TurtleStateMask writes_ = 0;
+    Drift error_;       ///< from parts before that were snapped
+    Drift sensitivity_; ///< per radian of the directions at the start
     std::vector<Branch> branches_;
     std::vector<std::vector<Vec3>> polygons_; ///< open ones, by their vertices
     std::size_t cut_depth_ = 0;               ///< 1 + branches opened since the cut; 0: no cut

@@ -10,7 +10,7 @@ namespace graftal {
 
 namespace {
 
-constexpr double tolerance = 1e-11;
+constexpr double same_rotation = 1e-11;
 
 std::uint64_t mixed_number(std::uint64_t hash, double number) {
     return mixed(hash, std::bit_cast<std::uint64_t>(number));
@@ -44,28 +44,41 @@ std::uint64_t hash(const TurtleState& state, TurtleStateMask mask) {
 }
 
 Vec3 DirectionTable::representative(Vec3 direction) {
-    return find_or_add(Mat3(direction, Vec3(0.0), Vec3(0.0)))[0];
+    const double cell_size = 4 * tolerance_;
+    const auto cell = [&](double x) { return static_cast<std::int64_t>(std::floor(x / cell_size)); };
+    const auto hash_of = [](std::int64_t x, std::int64_t y, std::int64_t z) {
+        return mixed(mixed(mixed(0, static_cast<std::uint64_t>(x)), static_cast<std::uint64_t>(y)),
+                     static_cast<std::uint64_t>(z));
+    };
+    const auto same = [&](std::uint32_t id) { return glm::length(known_[id] - direction) <= tolerance_; };
+    const Vec3 low = direction - tolerance_, high = direction + tolerance_;
+    for (std::int64_t x = cell(low.x); x <= cell(high.x); ++x)
+        for (std::int64_t y = cell(low.y); y <= cell(high.y); ++y)
+            for (std::int64_t z = cell(low.z); z <= cell(high.z); ++z)
+                if (const std::uint32_t id = ids_.find(hash_of(x, y, z), same); id != IdTable::none)
+                    return known_[id];
+    ids_.find_or_add(hash_of(cell(direction.x), cell(direction.y), cell(direction.z)),
+                     static_cast<std::uint32_t>(known_.size()), [](std::uint32_t) { return false; });
+    known_.push_back(direction + Vec3(0.0)); // no negative zeros
+    return known_.back();
 }
 
-Mat3 DirectionTable::representative(const Mat3& rotation) {
+Mat3 RotationTable::representative(const Mat3& rotation) {
     const Vec3 y = glm::normalize(rotation[1]);
     const Vec3 x = glm::normalize(rotation[0] - glm::dot(rotation[0], y) * y);
-    return find_or_add(Mat3(x, y, glm::cross(x, y)));
-}
-
-const Mat3& DirectionTable::find_or_add(const Mat3& matrix) {
+    const Mat3 clean(x, y, glm::cross(x, y));
     // The cell of one number that depends on all entries in a way that no model favours: of two matrices closer
     // than the tolerance the cells are the same, or neighbours.
     const Mat3 weights(0.48273, 0.71931, 0.49942, 0.31177, -0.62935, 0.27061, -0.55821, 0.16943, 0.81219);
     double along = 0;
     for (int column = 0; column < 3; ++column)
-        along += glm::dot(matrix[column], weights[column]);
-    const auto cell = static_cast<std::int64_t>(std::floor(along / (8 * tolerance)));
+        along += glm::dot(clean[column], weights[column]);
+    const auto cell = static_cast<std::int64_t>(std::floor(along / (8 * same_rotation)));
     const auto same = [&](std::uint32_t id) {
         double gap = 0;
         for (int column = 0; column < 3; ++column)
-            gap = std::max(gap, glm::length(known_[id][column] - matrix[column]));
-        return gap <= tolerance;
+            gap = std::max(gap, glm::length(known_[id][column] - clean[column]));
+        return gap <= same_rotation;
     };
     for (const std::int64_t near : {cell, cell - 1, cell + 1}) {
         const std::uint32_t known = ids_.find(mixed(0, static_cast<std::uint64_t>(near)), same);
@@ -73,7 +86,7 @@ const Mat3& DirectionTable::find_or_add(const Mat3& matrix) {
     }
     ids_.find_or_add(mixed(0, static_cast<std::uint64_t>(cell)), static_cast<std::uint32_t>(known_.size()),
                      [](std::uint32_t) { return false; });
-    known_.push_back(matrix + Mat3(0.0)); // no negative zeros
+    known_.push_back(clean);
     return known_.back();
 }
 

@@ -37,20 +37,35 @@ bool equal(const TurtleState& a, const TurtleState& b, TurtleStateMask mask);
 /// A hash of the members of `mask`.
 std::uint64_t hash(const TurtleState& state, TurtleStateMask mask);
 
-/// Directions and rotations that differ by rounding only, made equal: the first that came stands for all within
-/// 1e-11.
+/// Directions that differ by rounding only, or by a small angle, made equal: the first that came stands for
+/// all within the tolerance.
 class DirectionTable {
   public:
+    static constexpr double rounding = 1e-11;
+
+    /// `tolerance`: a distance between unit vectors, at most 1.
+    explicit DirectionTable(double tolerance = rounding) : tolerance_(tolerance) {}
+
     /// Requires a vector no longer than 1, but for rounding.
     Vec3 representative(Vec3 direction);
-    /// Requires a rotation, but for rounding, and gives one. Without this the errors of a rotation that is
-    /// composed of seven like itself, level by level, would grow sevenfold a level.
+
+  private:
+    double tolerance_;
+    std::vector<Vec3> known_;
+    IdTable ids_; ///< by cells of four tolerances
+};
+
+/// The same for rotations, by rounding only. Without this the errors of a rotation that is composed of seven
+/// like itself, level by level, would grow sevenfold a level.
+class RotationTable {
+  public:
+    RotationTable() { representative(Mat3(1.0)); } // exactly, for what comes near it
+
+    /// Requires a rotation, but for rounding, and gives one.
     Mat3 representative(const Mat3& rotation);
 
   private:
-    const Mat3& find_or_add(const Mat3& matrix);
-
-    std::vector<Mat3> known_; ///< a direction is the first column of a matrix of which nothing else is used
+    std::vector<Mat3> known_;
     IdTable ids_;
 };
 

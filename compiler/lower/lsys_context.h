@@ -60,6 +60,11 @@ class ContextMatcher {
     /// What matches() looks at from now on. Requires what ContextLinks::build() does; the word must stay.
     void look_at(std::span<const ModuleId> word);
 
+    /// The modules next to one towards the root and away from it, as ContextLinks says; `none` for the ids of what
+    /// is not there. Each requires a rule with such a context.
+    ModuleId before(std::uint32_t position) const { return module_at(links_.before(position)); }
+    ModuleId after(std::uint32_t position) const { return module_at(links_.after(position)); }
+
     /// Whether the contexts of a rule of the grammar match around a module that its predecessor matches. If so,
     /// adds the modules that they match to `bound`, in the order of LsysRule::variables. A pattern in brackets
     /// matches the first branch that begins so and lies beyond those that earlier patterns match; branches
@@ -82,6 +87,9 @@ class ContextMatcher {
         std::uint32_t found; ///< or none
     };
 
+    ModuleId module_at(std::uint32_t position) const {
+        return position == ContextLinks::none ? ContextLinks::none : word_[position];
+    }
     Range compile(const std::vector<LsysPattern>& right);
     bool fits(std::uint32_t position, SymbolId symbol, std::uint16_t arity) const;
     bool match_left(const std::vector<LsysPattern>& left, std::uint32_t position, ModuleString& bound) const;

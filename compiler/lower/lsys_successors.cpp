@@ -9,22 +9,34 @@ namespace graftal {
 
 namespace {
 
-constexpr std::size_t most_known_outcomes = 1u << 22;
+constexpr std::size_t most_known_keys = 1u << 22;
 constexpr std::size_t most_kept_modules = 1u << 28; ///< of runs, from one step to the next
+
+template<typename Value> void forget_if_many(ModuleKeys<Value>& keys) {
+    if (keys.size() + keys.module_count() / 8 >= most_known_keys) keys.clear();
+}
 
 } // namespace
 
 LsysSuccessors::LsysSuccessors(LsysRewriter& rewriter, LsysDecomposer& decomposer, Diagnostics& diagnostics)
     : rewriter_(rewriter), decomposer_(decomposer), diagnostics_(diagnostics),
-      contextual_(rewriter.grammar().symbols.size()) {
+      contexts_(rewriter.grammar().symbols.size()) {
     const LsysGrammar& grammar = rewriter.grammar();
     for (const auto& rules : grammar.rules_of[static_cast<std::size_t>(RuleKind::produce)])
-        for (const std::uint32_t id : rules) {
-            const LsysRule& rule = grammar.rules[id];
-            has_context_ |= rule.has_context();
-            is_stochastic_ |= rule.probability.has_value();
-            if (rule.has_context()) contextual_[rule.predecessor.symbol] = true;
-        }
+        for (const std::uint32_t id : rules)
+            look_at(grammar.rules[id]);
+}
+
+void LsysSuccessors::look_at(const LsysRule& rule) {
+    is_stochastic_ |= rule.probability.has_value();
+    if (!rule.has_context()) return;
+    has_context_ = true;
+    Contexts& contexts = contexts_[rule.predecessor.symbol];
+    contexts.has_left |= !rule.left.empty();
+    contexts.has_right |= !rule.right.empty();
+    // A pattern in brackets has three modules at least, or sees whether there is a branch.
+    contexts.sight = std::max(contexts.sight,
+                              rule.left.size() > 1 || rule.right.size() > 1 ? Sight::far : Sight::near);
 }
 
 void LsysSuccessors::trim() {
@@ -32,13 +44,8 @@ void LsysSuccessors::trim() {
     runs_.clear();
     entries_.clear();
     choices_.clear();
-    forget_outcomes();
-}
-
-void LsysSuccessors::forget_outcomes() {
-    known_.clear();
-    bound_modules_.clear();
-    known_ids_.clear();
+    nearby_.clear();
+    outcomes_.clear();
 }
 
 LsysSuccessors::Entry LsysSuccessors::compute(ModuleId module) {
@@ -49,36 +56,65 @@ LsysSuccessors::Entry LsysSuccessors::compute(ModuleId module) {
 
 /// Of a module that contexts decide about: the run that leaves it as it is, with the mark.
 LsysSuccessors::Entry LsysSuccessors::compute_entry(ModuleId module) {
-    const LsysRule* first = nullptr;
-    if (!is_contextual(module)) {
-        const auto found =
-            compete(module, [&](const LsysRule& rule) { return outcome(rule, std::span(&module, 1)); });
-        if (!found) return unknown;
-        first = *found;
-    }
-    if (!first) {
-        const auto run = add_run(std::span(&module, 1), rewriter_.grammar().source->name.span);
-        if (!run) return unknown;
-        return is_contextual(module) ? *run | mark : *run;
-    }
-    if (!first->probability) return competing_.front().run;
-    const auto entry = static_cast<Entry>(choices_.size() | mark);
-    return add_choices(*first, choices_) ? entry : unknown;
+    std::optional<const LsysRule*> first = nullptr;
+    const bool has_contexts = contexts(module).sight != Sight::none;
+    if (!has_contexts)
+        first = compete(module, [&](const LsysRule& rule) { return outcome(rule, std::span(&module, 1)); });
+    if (!first) return unknown;
+    if (*first) return entry_of(*first, 0, choices_);
+    const auto run = add_run(std::span(&module, 1), rewriter_.grammar().source->name.span);
+    if (!run) return unknown;
+    return has_contexts ? *run | mark : *run;
 }
 
-std::optional<RunId> LsysSuccessors::choose_in_context(ModuleId module, Entry entry, std::uint64_t draw,
-                                                       ContextMatcher& matcher, std::uint32_t position) {
-    const auto first = compete(module, [&](const LsysRule& rule) {
+std::optional<RunId> LsysSuccessors::choose(ModuleId module, Entry entry, std::uint64_t draw,
+                                            ContextMatcher& matcher, std::uint32_t position) {
+    const std::vector<Choice>* choices = &choices_;
+    const Sight sight = contexts(module).sight;
+    if (sight == Sight::near) {
+        entry = entry_nearby(module, entry, matcher, position);
+    } else if (sight == Sight::far) {
+        const auto first = compete_in_context(module, matcher, position);
+        chances_.clear();
+        entry = first ? entry_of(*first, entry & ~mark, chances_) : unknown;
+        choices = &chances_;
+    }
+    if (is_run(entry)) return entry;
+    if (entry == unknown) return std::nullopt;
+    const Choice* choice = choices->data() + (entry & ~mark);
+    while (draw > choice->upto)
+        ++choice;
+    return choice->run;
+}
+
+/// The neighbours decide; so each combination of them is tried once.
+LsysSuccessors::Entry LsysSuccessors::entry_nearby(ModuleId module, Entry entry, ContextMatcher& matcher,
+                                                   std::uint32_t position) {
+    const Contexts& seen = contexts(module);
+    const ModuleId key[] = {seen.has_left ? matcher.before(position) : ContextLinks::none, module,
+                            seen.has_right ? matcher.after(position) : ContextLinks::none};
+    forget_if_many(nearby_);
+    Entry& known = nearby_.find_or_add(0, key, unknown);
+    if (known != unknown) return known;
+    const auto first = compete_in_context(module, matcher, position);
+    return known = first ? entry_of(*first, entry & ~mark, choices_) : unknown;
+}
+
+std::optional<const LsysRule*> LsysSuccessors::compete_in_context(ModuleId module, ContextMatcher& matcher,
+                                                                  std::uint32_t position) {
+    return compete(module, [&](const LsysRule& rule) {
         bound_.assign(1, module);
         if (rule.has_context() && !matcher.matches(rule, position, bound_)) return Outcome{};
         return known_outcome(rule, bound_);
     });
-    if (!first) return std::nullopt;
-    if (!*first) return entry & ~mark;
-    if (!(*first)->probability) return competing_.front().run;
-    chances_.clear();
-    if (!add_choices(**first, chances_)) return std::nullopt;
-    return choose(chances_.data(), draw);
+}
+
+/// What the rules in competing_ make of a module that stays if there are none.
+LsysSuccessors::Entry LsysSuccessors::entry_of(const LsysRule* first, RunId stays, std::vector<Choice>& choices) {
+    if (!first) return stays;
+    if (!first->probability) return competing_.front().run;
+    const auto entry = static_cast<Entry>(choices.size() | mark);
+    return add_choices(*first, choices) ? entry : unknown;
 }
 
 /// Leaves what the rules that fit give in competing_.
@@ -111,20 +147,11 @@ bool LsysSuccessors::add_choices(const LsysRule& first, std::vector<Choice>& cho
 }
 
 LsysSuccessors::Outcome LsysSuccessors::known_outcome(const LsysRule& rule, std::span<const ModuleId> bound) {
-    if (known_.size() + bound_modules_.size() / 8 >= most_known_outcomes) forget_outcomes();
-    std::uint64_t hash = mixed(0, static_cast<std::uint64_t>(&rule - rewriter_.grammar().rules.data()));
-    for (const ModuleId module : bound)
-        hash = mixed(hash, module);
-    const auto next = static_cast<std::uint32_t>(known_.size());
-    const std::uint32_t id = known_ids_.find_or_add(hash, next, [&](std::uint32_t other) {
-        return known_[other].rule == &rule &&
-               std::ranges::equal(std::span(bound_modules_).subspan(known_[other].first, known_[other].count), bound);
-    });
-    if (id != next) return known_[id].outcome;
-    known_.push_back({&rule, static_cast<std::uint32_t>(bound_modules_.size()),
-                      static_cast<std::uint32_t>(bound.size()), outcome(rule, bound)});
-    bound_modules_.insert(bound_modules_.end(), bound.begin(), bound.end());
-    return known_.back().outcome;
+    forget_if_many(outcomes_);
+    const auto id = static_cast<std::uint32_t>(&rule - rewriter_.grammar().rules.data());
+    Outcome& known = outcomes_.find_or_add(id, bound, {Fit::error});
+    if (known.fit == Fit::error) known = outcome(rule, bound);
+    return known;
 }
 
 LsysSuccessors::Outcome LsysSuccessors::outcome(const LsysRule& rule, std::span<const ModuleId> bound) {

@@ -8,9 +8,9 @@
 #include "compiler/lower/lsys_context.h"
 #include "compiler/lower/lsys_decompose.h"
 #include "compiler/lower/lsys_rewriter.h"
+#include "compiler/lower/module_keys.h"
 #include "compiler/lower/module_runs.h"
 #include "compiler/support/diagnostics.h"
-#include "compiler/support/id_table.h"
 
 namespace graftal {
 
@@ -43,10 +43,7 @@ class LsysSuccessors {
     /// The run of a module whose entry is none. `draw` is uniform over all 64 bits; `matcher` looks at the word,
     /// which has the module at this position. Nothing after an error.
     std::optional<RunId> choose(ModuleId module, Entry entry, std::uint64_t draw, ContextMatcher& matcher,
-                                std::uint32_t position) {
-        if (is_contextual(module)) return choose_in_context(module, entry, draw, matcher, position);
-        return choose(choices_.data() + (entry & ~mark), draw);
-    }
+                                std::uint32_t position);
 
     const ModuleRuns& runs() const { return runs_; }
 
@@ -65,26 +62,28 @@ class LsysSuccessors {
         double probability = 1;
         RunId run = 0;
     };
-    struct KnownOutcome {
-        const LsysRule* rule;
-        std::uint32_t first; ///< of what it was applied to, in bound_modules_
-        std::uint32_t count;
-        Outcome outcome;
+    /// How far the productions of a symbol look.
+    enum class Sight : std::uint8_t {
+        none, ///< no contexts
+        near, ///< at most one module towards the root and one away from it
+        far,
+    };
+    struct Contexts {
+        Sight sight = Sight::none;
+        bool has_left = false;
+        bool has_right = false;
     };
 
     static constexpr Entry mark = 1u << 31;
 
-    bool is_contextual(ModuleId module) const { return contextual_[rewriter_.modules().symbol(module)]; }
-    static RunId choose(const Choice* choice, std::uint64_t draw) {
-        while (draw > choice->upto)
-            ++choice;
-        return choice->run;
-    }
-
+    const Contexts& contexts(ModuleId module) const { return contexts_[rewriter_.modules().symbol(module)]; }
+    void look_at(const LsysRule& rule);
     Entry compute(ModuleId module);
     Entry compute_entry(ModuleId module);
-    std::optional<RunId> choose_in_context(ModuleId module, Entry entry, std::uint64_t draw,
-                                           ContextMatcher& matcher, std::uint32_t position);
+    Entry entry_nearby(ModuleId module, Entry entry, ContextMatcher& matcher, std::uint32_t position);
+    std::optional<const LsysRule*> compete_in_context(ModuleId module, ContextMatcher& matcher,
+                                                      std::uint32_t position);
+    Entry entry_of(const LsysRule* first, RunId stays, std::vector<Choice>& choices);
     template<typename OutcomeOf>
     std::optional<const LsysRule*> compete(ModuleId module, const OutcomeOf& outcome_of);
     bool add_choices(const LsysRule& first, std::vector<Choice>& choices);
@@ -92,22 +91,20 @@ class LsysSuccessors {
     Outcome outcome(const LsysRule& rule, std::span<const ModuleId> bound);
     std::optional<RunId> add_successor(const ModuleString& successor, const LsysRule& rule);
     std::optional<RunId> add_run(std::span<const ModuleId> run, Span place);
-    void forget_outcomes();
 
     LsysRewriter& rewriter_;
     LsysDecomposer& decomposer_;
     Diagnostics& diagnostics_;
     bool has_context_ = false;
     bool is_stochastic_ = false;
-    std::vector<bool> contextual_; ///< symbols that productions with contexts rewrite
+    std::vector<Contexts> contexts_; ///< of the symbols
 
     ModuleRuns runs_;
     std::vector<Entry> entries_; ///< of the modules
     std::vector<Choice> choices_;
 
-    std::vector<KnownOutcome> known_;
-    ModuleString bound_modules_;
-    IdTable known_ids_;
+    ModuleKeys<Entry> nearby_;   ///< of modules between others, by their symbols
+    ModuleKeys<Outcome> outcomes_; ///< of rules
 
     std::vector<Outcome> competing_;
     std::vector<Choice> chances_;

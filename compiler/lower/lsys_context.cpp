@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "compiler/support/huge_pages.h"
+
 namespace graftal {
 
 namespace {
@@ -16,6 +18,12 @@ bool opens(const LsysGrammar& grammar, const LsysPattern& pattern) {
 
 bool closes(const LsysGrammar& grammar, const LsysPattern& pattern) {
     return grammar.commands[pattern.symbol] == TurtleCommand::close_branch;
+}
+
+void resize(std::vector<std::uint32_t>& links, std::size_t size) {
+    if (size > links.capacity()) links.clear(); // old ones need not be copied
+    reserve_huge(links, size);
+    links.resize(size);
 }
 
 } // namespace
@@ -41,7 +49,7 @@ void ContextLinks::build(const ModuleTable& modules, std::span<const ModuleId> w
 }
 
 void ContextLinks::link_before(const ModuleTable& modules, std::span<const ModuleId> word) {
-    before_.resize(word.size());
+    resize(before_, word.size());
     open_.clear();
     std::uint32_t last = none;
     for (std::uint32_t i = 0; i < word.size(); ++i) {
@@ -59,10 +67,10 @@ void ContextLinks::link_before(const ModuleTable& modules, std::span<const Modul
 }
 
 void ContextLinks::link_after(const ModuleTable& modules, std::span<const ModuleId> word) {
-    after_.resize(word.size());
+    resize(after_, word.size());
     if (has_branches_) {
-        branch_.resize(word.size());
-        next_branch_.resize(word.size());
+        resize(branch_, word.size());
+        resize(next_branch_, word.size());
     }
     open_.clear();
     std::uint32_t next = none;

@@ -10,7 +10,7 @@ namespace graftal {
 namespace {
 
 constexpr std::size_t most_known_keys = 1u << 22;
-constexpr std::size_t most_kept_modules = 1u << 28; ///< of runs, from one step to the next
+constexpr std::size_t most_kept_modules = 1u << 28; ///< of runs, and choices, from one step to the next
 
 template<typename Value> void forget_if_many(ModuleKeys<Value>& keys) {
     if (keys.size() + keys.module_count() / 8 >= most_known_keys) keys.clear();
@@ -40,7 +40,7 @@ void LsysSuccessors::look_at(const LsysRule& rule) {
 }
 
 void LsysSuccessors::trim() {
-    if (runs_.size() <= most_kept_modules) return;
+    if (runs_.size() + choices_.size() <= most_kept_modules) return;
     runs_.clear();
     entries_.clear();
     choices_.clear();

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -44,7 +43,12 @@ Value& ModuleKeys<Value>::find_or_add(std::uint32_t tag, std::span<const ModuleI
     const auto next = static_cast<std::uint32_t>(entries_.size());
     const std::uint32_t id = ids_.find_or_add(hash, next, [&](std::uint32_t other) {
         const Entry& entry = entries_[other];
-        return entry.tag == tag && std::ranges::equal(std::span(modules_).subspan(entry.first, entry.count), modules);
+        if (entry.tag != tag || entry.count != modules.size()) return false;
+        // Lists are short: calling memcmp(), as std::ranges::equal() does, takes longer than comparing.
+        std::size_t same = 0;
+        while (same < modules.size() && modules_[entry.first + same] == modules[same])
+            ++same;
+        return same == modules.size();
     });
     if (id == next) {
         entries_.push_back({tag, static_cast<std::uint32_t>(modules_.size()),

@@ -4,31 +4,24 @@
 
 #include <benchmark/benchmark.h>
 
-#include "compiler/lower/lsys_derive.h"
-#include "tests/unit/syntax/lsys_texts.h"
+#include "tests/unit/lower/lsys_words.h"
 
 namespace graftal {
 namespace {
 
 void derive(benchmark::State& state, const std::string& statements) {
-    testing::ParsedLsys parsed;
-    testing::parse("lsys bench {\n" + statements + "\n}\n", parsed);
-    Environment lets;
-    for (const SceneStatement& statement : parsed.file.blocks.at(0).lets)
-        for (const SceneField& field : statement.fields)
-            lets[field.keyword] = *evaluate(field.values.at(0), lets, parsed.diagnostics);
-    const auto grammar = build_grammar(parsed.file.blocks.at(0), lets, parsed.diagnostics);
-    if (!grammar) return state.SkipWithError(parsed.diagnostics.render(parsed.sources).c_str());
     std::size_t modules = 0;
     std::size_t distinct = 0;
     for (auto _ : state) {
-        LsysRewriter rewriter(*grammar, parsed.diagnostics);
-        LsysDeriver deriver(rewriter, parsed.diagnostics, 1, 200'000'000);
-        const auto word = deriver.derive(static_cast<unsigned>(state.range(0)));
-        if (!word) return state.SkipWithError(parsed.diagnostics.render(parsed.sources).c_str());
+        state.PauseTiming();
+        testing::LsysModel model(statements);
+        state.ResumeTiming();
+        const auto word = model.derive(static_cast<unsigned>(state.range(0)), 1, 200'000'000);
+        if (!word) return state.SkipWithError(model.errors().c_str());
+        state.PauseTiming();
         modules = word->size();
-        distinct = rewriter.modules().size();
-        benchmark::DoNotOptimize(word->data());
+        distinct = model.distinct_modules();
+        state.ResumeTiming();
     }
     state.counters["word"] = static_cast<double>(modules);
     state.counters["distinct"] = static_cast<double>(distinct);

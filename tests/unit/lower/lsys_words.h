@@ -23,7 +23,7 @@ class LsysModel {
             for (const SceneField& field : statement.fields)
                 lets[field.keyword] = evaluate(field.values.at(0), lets, parsed_.diagnostics).value_or(0);
         grammar_ = build_grammar(block, lets, parsed_.diagnostics);
-        if (grammar_) rewriter_.emplace(*grammar_, parsed_.diagnostics);
+        if (grammar_ && !parsed_.diagnostics.has_errors()) rewriter_.emplace(*grammar_, parsed_.diagnostics);
     }
 
     std::optional<ModuleString> derive(unsigned steps, std::uint64_t seed = 0, std::uint64_t most = 100'000'000) {

@@ -55,47 +55,49 @@ std::uint32_t LsysRewriter::compute(RuleKind kind, ModuleId module) {
     return static_cast<std::uint32_t>(alternatives_.size() - 1);
 }
 
-/// The first rule that fits decides: without a probability it is applied; with one, all others that fit and
-/// have one compete.
 bool LsysRewriter::collect(const std::vector<std::uint32_t>& rules, ModuleId module,
                            std::vector<Alternative>& found) {
     const auto parameters = modules_.parameters(module);
     const std::vector<double> values(parameters.begin(), parameters.end());
-    const LsysRule* first = nullptr;
-    for (const std::uint32_t id : rules) {
-        const LsysRule& rule = grammar_.rules[id];
-        if (rule.has_context() || rule.predecessor.arity != values.size()) continue;
-        if (first && !rule.probability) continue;
-        const std::size_t errors = diagnostics_.error_count();
-        if (!condition_holds(rule, values)) {
-            if (diagnostics_.error_count() > errors) return false;
-            continue;
-        }
-        const std::optional<double> chance = probability(rule, values);
-        Alternative alternative{&rule, chance.value_or(0), {}};
-        if (!chance || !append_successor(rule, values, alternative.successor)) return false;
-        found.push_back(std::move(alternative));
-        if (!rule.probability) return true;
-        if (!first) first = &rule;
-    }
-    return !first || normalise(found, *first);
+    const auto first = try_rules(rules, values.size(), [&](const LsysRule& rule) {
+        if (rule.has_context()) return Fit::no;
+        Alternative alternative;
+        const Fit fit = apply(rule, values, alternative);
+        if (fit == Fit::yes) found.push_back(std::move(alternative));
+        return fit;
+    });
+    if (!first) return false;
+    return !*first || !(*first)->probability || normalise(found, **first);
 }
 
 bool LsysRewriter::normalise(std::vector<Alternative>& found, const LsysRule& first) {
     double sum = 0;
     for (const Alternative& alternative : found)
         sum += alternative.probability;
-    if (std::abs(sum - 1) > probability_slack) {
-        diagnostics_
-            .error(first.source->probability->span,
-                   fmt::format("the probabilities of the productions that fit sum to {}, not to 1",
-                               shortest(sum)))
-            .with_note(first.source->span, "this is the first of them");
-        return false;
-    }
+    if (!sums_to_one(sum, first)) return false;
     for (Alternative& alternative : found)
         alternative.probability /= sum;
     return true;
+}
+
+bool LsysRewriter::sums_to_one(double sum, const LsysRule& first) {
+    if (std::abs(sum - 1) <= probability_slack) return true;
+    diagnostics_
+        .error(first.source->probability->span,
+               fmt::format("the probabilities of the productions that fit sum to {}, not to 1", shortest(sum)))
+        .with_note(first.source->span, "this is the first of them");
+    return false;
+}
+
+Fit LsysRewriter::apply(const LsysRule& rule, std::span<const double> values, Alternative& result) {
+    const std::size_t errors = diagnostics_.error_count();
+    if (!condition_holds(rule, values)) return diagnostics_.error_count() > errors ? Fit::error : Fit::no;
+    const std::optional<double> chance = probability(rule, values);
+    if (!chance) return Fit::error;
+    result.rule = &rule;
+    result.probability = *chance;
+    result.successor.clear();
+    return append_successor(rule, values, result.successor) ? Fit::yes : Fit::error;
 }
 
 bool LsysRewriter::condition_holds(const LsysRule& rule, std::span<const double> values) {

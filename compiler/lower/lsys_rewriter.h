@@ -19,6 +19,9 @@ struct Alternative {
     ModuleString successor;
 };
 
+/// What became of a rule that was tried on a module.
+enum class Fit : std::uint8_t { no, yes, error };
+
 /// The different modules of one derivation may not be more.
 inline constexpr std::size_t max_distinct_modules = 20'000'000;
 
@@ -52,6 +55,19 @@ class LsysRewriter {
     /// 1 for a rule without.
     std::optional<double> probability(const LsysRule& rule, std::span<const double> values);
 
+    /// The three above at once: tries the rule and, if it fits, says what it gives.
+    Fit apply(const LsysRule& rule, std::span<const double> values, Alternative& result);
+
+    /// Calls `apply(rule)`, which gives a Fit, for the rules that may rewrite a module of this many parameters.
+    /// The first that fits decides: without a probability it is applied; with one, all others that fit and
+    /// have one compete. Gives the first that fits, or null; nothing after an error.
+    template<typename Apply>
+    std::optional<const LsysRule*> try_rules(std::span<const std::uint32_t> rules, std::size_t arity,
+                                             const Apply& apply);
+
+    /// Whether the probabilities of competing rules sum to 1 as closely as books print them; reports it if not.
+    bool sums_to_one(double sum, const LsysRule& first);
+
     bool failed() const { return failed_; }
 
   private:
@@ -75,5 +91,21 @@ class LsysRewriter {
     std::vector<double> arguments_;
     bool failed_ = false;
 };
+
+template<typename Apply>
+std::optional<const LsysRule*> LsysRewriter::try_rules(std::span<const std::uint32_t> rules, std::size_t arity,
+                                                       const Apply& apply) {
+    const LsysRule* first = nullptr;
+    for (const std::uint32_t id : rules) {
+        const LsysRule& rule = grammar_.rules[id];
+        if (rule.predecessor.arity != arity || (first && !rule.probability)) continue;
+        const Fit fit = apply(rule);
+        if (fit == Fit::error) return std::nullopt;
+        if (fit == Fit::no) continue;
+        if (!first) first = &rule;
+        if (!rule.probability) break;
+    }
+    return first;
+}
 
 } // namespace graftal

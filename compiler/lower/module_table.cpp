@@ -8,33 +8,29 @@ namespace graftal {
 
 namespace {
 
-constexpr double relative_cell = 1e-12;
+constexpr double slack = 1e-12;
 
-/// Cells of equal relative size, of both signs: no two numbers of unlike sign share one.
-std::int64_t cell_of(double number) {
-    const auto cell = std::llround(std::log(std::abs(number)) / relative_cell);
-    return 2 * cell + (number < 0 ? 1 : 0);
+/// Cells of numbers whose sizes differ by a ten-thousand-millionth or so, of either sign: seldom has one more
+/// than a number, and seldom is one so near the edge of its cell that its like may lie next door.
+std::uint64_t cell_of(double number) {
+    return std::bit_cast<std::uint64_t>(number) >> 20;
 }
 
 } // namespace
 
 double NumberTable::representative(double number) {
     if (number == 0) return 0;
-    const std::int64_t cell = cell_of(number);
-    // A number near the edge of its cell may have its like next door.
-    for (const std::int64_t step : {std::int64_t{0}, std::int64_t{-2}, std::int64_t{2}}) {
-        const std::int64_t near = cell + step;
-        const std::uint32_t found =
-            ids_.find(mixed(0, static_cast<std::uint64_t>(near)), [&](std::uint32_t id) {
-                return cells_[id] == near && std::abs(numbers_[id] - number) <= relative_cell * std::abs(number);
-            });
+    const std::uint64_t cell = cell_of(number);
+    const auto like = [&](std::uint32_t id) { return std::abs(numbers_[id] - number) <= slack * std::abs(number); };
+    for (const double edge : {number * (1 - slack), number * (1 + slack)}) {
+        if (cell_of(edge) == cell) continue;
+        const std::uint32_t found = ids_.find(mixed(0, cell_of(edge)), like);
         if (found != IdTable::none) return numbers_[found];
     }
-    ids_.find_or_add(mixed(0, static_cast<std::uint64_t>(cell)), static_cast<std::uint32_t>(numbers_.size()),
-                     [](std::uint32_t) { return false; });
-    numbers_.push_back(number);
-    cells_.push_back(cell);
-    return number;
+    const auto next = static_cast<std::uint32_t>(numbers_.size());
+    const std::uint32_t found = ids_.find_or_add(mixed(0, cell), next, like);
+    if (found == next) numbers_.push_back(number);
+    return numbers_[found];
 }
 
 ModuleId ModuleTable::intern(SymbolId symbol, std::span<const double> parameters) {

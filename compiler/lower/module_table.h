@@ -23,7 +23,6 @@ class NumberTable {
 
   private:
     std::vector<double> numbers_;
-    std::vector<std::int64_t> cells_; ///< of the numbers
     IdTable ids_;
 };
 

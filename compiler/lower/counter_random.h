@@ -1,0 +1,31 @@
+#pragma once
+
+#include <cstdint>
+
+namespace graftal {
+
+/// Random numbers that are a function of key and counter alone (Salmon et al. 2011, "Parallel random numbers: as
+/// easy as 1, 2, 3"), so that none depends on which were drawn before, or by whom. They are mixed as in splitmix64
+/// (Steele, Lea and Flood 2014).
+class CounterRandom {
+  public:
+    explicit constexpr CounterRandom(std::uint64_t seed) : key_(mixed(seed)) {}
+
+    /// Uniform over all 64 bits.
+    constexpr std::uint64_t operator()(std::uint64_t counter) const { return mixed(key_ + golden * counter); }
+    /// Another sequence for each counter.
+    constexpr CounterRandom sequence(std::uint64_t counter) const { return CounterRandom((*this)(counter)); }
+
+  private:
+    static constexpr std::uint64_t golden = 0x9E3779B97F4A7C15;
+
+    static constexpr std::uint64_t mixed(std::uint64_t x) {
+        x = (x ^ (x >> 30)) * 0xBF58476D1CE4E5B9;
+        x = (x ^ (x >> 27)) * 0x94D049BB133111EB;
+        return x ^ (x >> 31);
+    }
+
+    std::uint64_t key_;
+};
+
+} // namespace graftal

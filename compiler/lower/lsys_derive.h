@@ -1,0 +1,62 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "compiler/lower/counter_random.h"
+#include "compiler/lower/lsys_context.h"
+#include "compiler/lower/lsys_decompose.h"
+#include "compiler/lower/lsys_rewriter.h"
+#include "compiler/lower/lsys_successors.h"
+#include "compiler/support/diagnostics.h"
+
+// The derivation of words, module by module. Semantics: Prusinkiewicz and Lindenmayer, The Algorithmic Beauty of
+// Plants, chapter 1.
+
+namespace graftal {
+
+/// Words are never longer: their positions are numbered with 32 bits.
+inline constexpr std::uint64_t max_word_modules = 4'000'000'000;
+
+/// Derives the words of a grammar. In each step all modules are replaced at once, by the first production that
+/// fits, contexts before others, or by chance; a module that none fits stays. The axiom and the result of each
+/// step are decomposed, and lose what stands behind a `%` in its branch.
+class LsysDeriver {
+  public:
+    /// Both must outlive this. Requires max_modules <= max_word_modules.
+    LsysDeriver(LsysRewriter& rewriter, Diagnostics& diagnostics, std::uint64_t seed, std::uint64_t max_modules);
+
+    /// The word after this many steps; its modules are in the rewriter's table. What a module becomes by chance
+    /// depends on the seed, the step and the module's position alone. Nothing after an error, which is reported
+    /// once; a step whose word would have more than max_modules is an error, found before the word takes memory.
+    /// O(modules of all words), and O(modules * patterns) for contexts.
+    std::optional<ModuleString> derive(unsigned steps);
+
+  private:
+    bool begin();
+    bool step();
+    std::optional<std::uint64_t> count();
+    std::optional<std::uint64_t> choose();
+    void gather(std::uint64_t length);
+    bool decompose();
+    void cut();
+    bool is_short_enough(std::uint64_t length);
+
+    LsysRewriter& rewriter_;
+    Diagnostics& diagnostics_;
+    CounterRandom random_;
+    std::uint64_t max_modules_;
+    LsysDecomposer decomposer_;
+    LsysSuccessors successors_;
+    ContextMatcher matcher_;
+    bool has_cuts_ = false;
+    bool failed_ = false;
+
+    unsigned step_ = 0; ///< 0: the axiom
+    ModuleString word_;
+    ModuleString next_;
+    std::vector<RunId> chosen_; ///< for the modules of word_
+    bool changed_ = false;
+};
+
+} // namespace graftal

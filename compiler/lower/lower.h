@@ -28,6 +28,8 @@ struct LowerOptions {
     std::map<std::string, double, std::less<>> set; ///< `--set NAME=VALUE`: replaces the value of a `let`
     std::optional<unsigned> steps; ///< derivation steps of an L-system, in place of what the model says
     std::optional<std::uint64_t> seed; ///< of what is random, in place of what the model says
+    bool exact = false; ///< L-systems are derived module by module: one honest random tree
+    std::uint64_t max_modules = 50'000'000; ///< of a derived word
     std::size_t max_objects = 1'000'000;            ///< a model that enumerates more is an error
 };
 

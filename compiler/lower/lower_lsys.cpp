@@ -180,7 +180,8 @@ class LsysLowering {
         const LowerOptions& options = lowering_.options;
         const std::uint64_t seed = lowering_.at_root_model() && options.seed ? *options.seed : block.grammar->seed;
         std::optional<LsysDrawing> drawing =
-            draw_lsys(*block.grammar, models, {steps, seed, options.max_objects}, graph_, pool_, diagnostics_);
+            draw_lsys(*block.grammar, models, {steps, seed, options.exact, options.max_modules, options.max_objects},
+                      graph_, pool_, diagnostics_);
         if (!drawing) return std::nullopt;
         if (drawing->instances.empty()) {
             diagnostics_.error(source.name.span,

@@ -44,26 +44,44 @@ LsysComposer::LsysComposer(LsysRewriter& rewriter, TurtleContext& turtle, Object
 std::optional<TurtlePart> LsysComposer::compose(unsigned steps, const TurtleState& start) {
     const std::optional<ModuleString> axiom = rewriter_.axiom();
     if (!axiom) return std::nullopt;
-    const Span span = rewriter_.grammar().source->axiom->span;
-    tasks_.push_back({.start = start,
-                      .string = &*axiom,
-                      .string_stage = stage_before(steps),
-                      .span = span,
-                      .turtle = Turtle(context_, start)});
+    return run_from({.start = start,
+                     .string = &*axiom,
+                     .string_stage = stage_before(steps),
+                     .span = rewriter_.grammar().source->axiom->span,
+                     .turtle = Turtle(context_, start)});
+}
+
+std::optional<TurtlePart> LsysComposer::compose_word(const ModuleString& word, const TurtleState& start) {
+    shares_branches_ = !rewriter_.grammar().polygons_cross_branches;
+    std::optional<TurtlePart> part = run_from({.start = start,
+                                               .string = &word,
+                                               .string_stage = 0,
+                                               .span = rewriter_.grammar().source->axiom->span,
+                                               .turtle = Turtle(context_, start)});
+    shares_branches_ = false;
+    return part;
+}
+
+std::optional<TurtlePart> LsysComposer::run_from(Task first) {
+    tasks_.clear();
+    tasks_.push_back(std::move(first));
     if (!run_tasks()) return std::nullopt;
     TurtlePart part = std::move(tasks_.back().turtle).finish();
     tasks_.pop_back();
     return part;
 }
 
-/// Until the axiom is done.
+/// Until the first task is done.
 bool LsysComposer::run_tasks() {
     while (true) {
         const std::size_t depth = tasks_.size();
         if (!advance(tasks_.back())) return false;
         if (tasks_.size() > depth) continue;
         if (depth == 1) return true;
-        complete_task();
+        if (tasks_.back().is_branch)
+            complete_branch();
+        else
+            complete_task();
     }
 }
 
@@ -105,8 +123,13 @@ bool LsysComposer::unfold(ModuleId module, Stage stage, std::uint32_t variant, U
 
 /// Goes on until the string ends, or a part is missing, whose task is then the last.
 bool LsysComposer::advance(Task& task) {
+    const bool in_word = shares_branches_ && (task.is_branch || tasks_.size() == 1);
     for (; task.at < task.string->size() && !task.turtle.finished(); ++task.at) {
         const ModuleId module = (*task.string)[task.at];
+        if (in_word && !task.turtle.passing_over()) {
+            if (command_of(module) == TurtleCommand::open_branch) return start_branch(), true;
+            if (task.is_branch && command_of(module) == TurtleCommand::close_branch) return true;
+        }
         const std::uint32_t variant =
             variants_.child(task.start.variant, task.module, task.string_stage, task.at);
         Unfolded unfolded;
@@ -126,10 +149,52 @@ bool LsysComposer::advance(Task& task) {
     return true;
 }
 
+TurtleCommand LsysComposer::command_of(ModuleId module) const {
+    return rewriter_.grammar().commands[rewriter_.modules().symbol(module)];
+}
+
+/// At the bracket that the last task has come to.
+void LsysComposer::start_branch() {
+    const Task& parent = tasks_.back();
+    const TurtleState state = parent.turtle.state();
+    Task branch{.start = state,
+                .string = parent.string,
+                .string_stage = 0,
+                .span = parent.span,
+                .turtle = Turtle(context_, state),
+                .at = parent.at + 1,
+                .is_branch = true};
+    tasks_.push_back(std::move(branch));
+}
+
+/// Places the last task, which has come to its end, in the one before.
+void LsysComposer::complete_branch() {
+    Task branch = std::move(tasks_.back());
+    tasks_.pop_back();
+    Task& parent = tasks_.back();
+    // A cut leaves the rest of the branch to be passed over.
+    for (std::size_t open = 0;; ++branch.at) {
+        const TurtleCommand command = command_of((*branch.string)[branch.at]);
+        if (command == TurtleCommand::close_branch && open-- == 0) break;
+        if (command == TurtleCommand::open_branch) ++open;
+    }
+    TurtlePart part = std::move(branch.turtle).finish();
+    part.modules += 2;
+    part.instances = pool_.share(std::move(part.instances), line_for(part, branch), "branch", branch.span);
+    parent.turtle.append_branch(part);
+    parent.at = branch.at + 1;
+}
+
+/// What is drawn in place of a part too small to see.
+std::optional<Instance> LsysComposer::line_for(const TurtlePart& part, const Task& task) {
+    if (!context_.lines || part.has_bodies) return std::nullopt;
+    return context_.bodies.line(part.start_from_exit.translation, task.start.colour, task.span);
+}
+
 bool LsysComposer::draw(Task& task, ModuleId module) {
     const SymbolId symbol = rewriter_.modules().symbol(module);
     const auto model = models_.find(symbol);
-    return task.turtle.run(rewriter_.grammar().commands[symbol], rewriter_.modules().parameters(module),
+    return task.turtle.run(command_of(module), rewriter_.modules().parameters(module),
                            model == models_.end() ? std::nullopt : std::optional(model->second), task.span);
 }
 
@@ -171,9 +236,7 @@ void LsysComposer::complete_task() {
     TurtlePart part = std::move(task.turtle).finish();
     part.start_from_exit.linear = rotations_.representative(part.start_from_exit.linear);
     if (task.interprets) part.modules = 1;
-    std::optional<Instance> line;
-    if (context_.lines && !part.has_bodies)
-        line = context_.bodies.line(part.start_from_exit.translation, task.start.colour, task.span);
+    std::optional<Instance> line = line_for(part, task);
     const Mat3 frame = context_.limit ? chord_frame(part.start_from_exit.translation) : Mat3(1.0);
     const std::size_t count = part.instances.size();
     part.instances =

@@ -38,6 +38,9 @@ class LsysComposer {
     /// The part that the axiom becomes after `steps` steps; nothing after an error in the turtle's diagnostics.
     std::optional<TurtlePart> compose(unsigned steps, const TurtleState& start);
 
+    /// The same for a word that is derived already: branches that are alike are shared.
+    std::optional<TurtlePart> compose_word(const ModuleString& word, const TurtleState& start);
+
     std::size_t part_count() const { return parts_.size(); }
 
     /// The first part that made an object.
@@ -70,6 +73,7 @@ class LsysComposer {
         Span span;               ///< of the production
         Turtle turtle;
         std::size_t at = 0;     ///< next in the string
+        bool is_branch = false; ///< ends at the bracket that closes it
         unsigned repeated = 0;  ///< parts around this one at the same stage
     };
 
@@ -88,10 +92,15 @@ class LsysComposer {
     Stage stage_before(unsigned steps) const;
     bool unfold(ModuleId module, Stage stage, std::uint32_t variant, Unfolded& result);
     bool choose(RuleKind kind, ModuleId module, Stage stage, std::uint32_t variant, Unfolded& result);
+    std::optional<TurtlePart> run_from(Task first);
     bool run_tasks();
     bool advance(Task& task);
     bool draw(Task& task, ModuleId module);
     bool start_task(ModuleId module, Stage stage, const TurtleState& start, const Unfolded& unfolded);
+    TurtleCommand command_of(ModuleId module) const;
+    std::optional<Instance> line_for(const TurtlePart& part, const Task& task);
+    void start_branch();
+    void complete_branch();
     void complete_task();
     const TurtlePart* find(ModuleId module, Stage stage, const TurtleState& start) const;
     TurtleState state_of(const Turtle& turtle, double& snap);
@@ -104,6 +113,7 @@ class LsysComposer {
     Variants variants_;
     std::size_t max_parts_;
     bool snaps_;
+    bool shares_branches_ = false; ///< of the word
     std::vector<Task> tasks_;
     std::vector<KnownPart> parts_;
     IdTable part_ids_;

@@ -11,6 +11,7 @@
 
 #include "compiler/lower/lower_settings.h"
 #include "compiler/lower/lsys_composer.h"
+#include "compiler/lower/lsys_derive.h"
 #include "compiler/lower/lsys_limit.h"
 
 namespace graftal {
@@ -85,11 +86,16 @@ class Drawer {
         if (!choose_palette(graph)) return std::nullopt;
         if (!options_.steps) return draw_limit(graph, pool);
         steps_ = *options_.steps;
-        if (!choose_variants(graph) || !choose_snap_angle(graph) || !choose_width(graph)) return std::nullopt;
+        if (options_.exact || grammar_.has_context) {
+            if (!derive()) return std::nullopt;
+        } else if (!choose_variants(graph) || !choose_snap_angle(graph)) {
+            return std::nullopt;
+        }
+        if (!choose_width(graph)) return std::nullopt;
         Composition composition(*this, graph, pool, is_line_drawing());
         std::optional<TurtlePart> part = composition.variant(0);
         if (!part) return std::nullopt;
-        LsysDrawing drawing{std::move(part->instances), {"composed"}};
+        LsysDrawing drawing{std::move(part->instances), {word_ ? "derived" : "composed"}};
         Derivation& derivation = drawing.derivation;
         derivation.steps = steps_;
         derivation.modules = part->modules.str();
@@ -119,7 +125,8 @@ class Drawer {
             start.tropism = drawer.grammar_.tropism;
             start.vertical = up;
             start.variant = number;
-            return composer.compose(drawer.steps_, start);
+            return drawer.word_ ? composer.compose_word(*drawer.word_, start)
+                                : composer.compose(drawer.steps_, start);
         }
 
         Drawer& drawer;
@@ -128,10 +135,18 @@ class Drawer {
         LsysComposer composer;
     };
 
+    bool derive() {
+        word_ = LsysDeriver(rewriter_, diagnostics_, options_.seed, options_.max_modules).derive(steps_);
+        return word_.has_value();
+    }
+
     /// Longer derivations until their levels repeat.
     std::optional<LsysDrawing> draw_limit(Graph& graph, ObjectPool& pool) {
-        if (grammar_.is_stochastic) {
-            diagnostics_.error(grammar_.source->steps->span, "random productions have no limit")
+        if (grammar_.is_stochastic || grammar_.has_context) {
+            diagnostics_
+                .error(grammar_.source->steps->span,
+                       fmt::format("productions with {} have no limit",
+                                   grammar_.has_context ? "contexts" : "probabilities"))
                 .with_hint("give 'steps N'");
             return std::nullopt;
         }
@@ -233,6 +248,7 @@ class Drawer {
     const LsysDrawOptions& options_;
     Diagnostics& diagnostics_;
     LsysRewriter rewriter_;
+    std::optional<ModuleString> word_; ///< where it is derived
     double width_;
     unsigned steps_ = 0;
     std::uint32_t variants_ = 1;

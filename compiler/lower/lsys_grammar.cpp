@@ -20,6 +20,18 @@ namespace {
 constexpr std::size_t most_symbols = 0xFFFF;
 constexpr double largest_seed = 9007199254740992.0; // 2^53
 
+/// Branches and polygons are balanced, each for itself; together they may not be.
+bool polygons_cross_branches(const LsysString& string) {
+    std::string open;
+    for (const LsysModule& module : string.modules) {
+        if (module.symbol == "[" || module.symbol == "{") open += module.symbol;
+        if (module.symbol != "]" && module.symbol != "}") continue;
+        if (open.empty() || open.back() != (module.symbol == "]" ? '[' : '{')) return true;
+        open.pop_back();
+    }
+    return false;
+}
+
 class GrammarBuilder {
   public:
     GrammarBuilder(const LsysBlock& block, Environment lets, Diagnostics& diagnostics)
@@ -118,6 +130,7 @@ class GrammarBuilder {
                 if (auto code = ExpressionCode::compile(parameter, grammar_.lets, variables, diagnostics_))
                     added.parameters.push_back(std::move(*code));
         }
+        grammar_.polygons_cross_branches |= polygons_cross_branches(string);
         return result;
     }
 

@@ -63,6 +63,8 @@ void add_common(CLI::App& app, Options& options) {
         app, "--seed", "N", "Seed of random models", "a whole number",
         [](const std::string& text) { return parse_whole(text, 0, UINT64_MAX); },
         [&](std::uint64_t seed) { compile.lower.seed = seed; });
+    app.add_flag("--exact", compile.lower.exact,
+                 "Derive L-systems module by module, so that a random one is one honest sample");
     add_value(
         app, "--threads", "N", "Threads to use (default: all processors)", "a whole number from 1 to 512",
         [](const std::string& text) { return parse_whole(text, 1, 512); },

@@ -24,15 +24,14 @@ double angle_between(Vec3 a, Vec3 b) {
     return 2 * std::asin(std::min(1.0, 0.5 * glm::length(a - b)));
 }
 
-/// Turned in the plane of the turtle so that it heads for `exit`, where that lies in the plane.
+} // namespace
+
 Mat3 chord_frame(Vec3 exit) {
     const double length = glm::length(exit);
     if (!(length > 0) || std::abs(exit.z) > 1e-9 * length) return Mat3(1.0);
     const Vec3 y = glm::normalize(Vec3(exit.x, exit.y, 0));
     return Mat3(Vec3(y.y, -y.x, 0), y, Vec3(0, 0, 1));
 }
-
-} // namespace
 
 LsysComposer::LsysComposer(LsysRewriter& rewriter, TurtleContext& turtle, ObjectPool& pool,
                            const std::map<SymbolId, ObjectId>& models, Variants variants, const LsysLimits& limits)

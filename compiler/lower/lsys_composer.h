@@ -17,6 +17,9 @@
 
 namespace graftal {
 
+/// Turned in the plane of the turtle so that it heads for `exit`, where that lies in the plane; else not turned.
+Mat3 chord_frame(Vec3 exit);
+
 struct LsysLimits {
     std::size_t max_parts = 1'000'000; ///< more are an error
     /// Directions that `$` and tropism look at are taken for equal within this angle, in radians, when a part is

@@ -8,6 +8,8 @@
 #include <utility>
 
 #include <fmt/format.h>
+#include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
 
 #include "compiler/lower/lower_settings.h"
 #include "compiler/lower/lsys_composer.h"
@@ -161,6 +163,9 @@ class Drawer {
             if (diagnostics_.error_count() > errors) return std::nullopt;
             if (!folded && composition.composer.part_count() > most_limit_parts) break;
             if (!folded) continue;
+            const Affine limit_from_levels = unit_from(*part, graph);
+            for (Instance& instance : *folded)
+                instance.parent_from_child = limit_from_levels * instance.parent_from_child;
             LsysDrawing drawing{std::move(*folded), {"folded"}};
             drawing.derivation.parts = composition.composer.part_count();
             return drawing;
@@ -171,6 +176,23 @@ class Drawer {
                                grammar_.source->name.text))
             .with_hint("the levels of a limit differ in their size only: all lengths and widths change alike");
         return std::nullopt;
+    }
+
+    /// The limit of figures that grow has no size of its own: the way from its start to its end is made one step
+    /// long, upwards, or, where it comes back, its reach. Others stay as they are.
+    Affine unit_from(const TurtlePart& part, const Graph& graph) {
+        Graph scratch = graph;
+        ObjectPool pool(scratch);
+        steps_ /= 2;
+        const std::optional<TurtlePart> before = Composition(*this, scratch, pool, false).variant(0);
+        steps_ *= 2;
+        constexpr double same = 1e-6;
+        if (!before || std::abs(part.reach - before->reach) <= same * part.reach) return {};
+        const Vec3 chord = part.start_from_exit.translation;
+        const double length = glm::length(chord);
+        const double size = length > same * part.reach ? length : part.reach;
+        const Mat3 frame = length > same * part.reach ? chord_frame(chord) : Mat3(1.0);
+        return {glm::transpose(frame) * (grammar_.step / size), Vec3(0.0)};
     }
 
     /// Composes a small pool and judges by its variance how many variants it takes.

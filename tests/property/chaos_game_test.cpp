@@ -7,14 +7,15 @@
 #include <random>
 #include <vector>
 
-#include <boost/geometry.hpp>
-#include <boost/geometry/index/rtree.hpp>
 #include <gtest/gtest.h>
 
 #include "compiler/compile.h"
+#include "tests/property/nearest.h"
 
 namespace graftal {
 namespace {
+
+using ::graftal::testing::farthest_from;
 
 constexpr int walk_count = 100'000;
 
@@ -81,23 +82,6 @@ std::vector<Vec3> every_nth(const std::vector<Vec3>& points, std::size_t count) 
     return kept;
 }
 
-/// The distance from each of some points to the nearest of others; the largest.
-double farthest_from(const std::vector<Vec3>& others, const std::vector<Vec3>& points) {
-    using Point = boost::geometry::model::point<double, 3, boost::geometry::cs::cartesian>;
-    std::vector<Point> tree_points;
-    tree_points.reserve(others.size());
-    for (const Vec3& p : others)
-        tree_points.emplace_back(p.x, p.y, p.z);
-    const boost::geometry::index::rtree<Point, boost::geometry::index::rstar<16>> tree(tree_points);
-    double farthest = 0;
-    for (const Vec3& p : points) {
-        const Point from(p.x, p.y, p.z);
-        for (auto it = tree.qbegin(boost::geometry::index::nearest(from, 1)); it != tree.qend(); ++it)
-            farthest = std::max(farthest, boost::geometry::distance(from, *it));
-    }
-    return farthest;
-}
-
 std::vector<std::string> recursive_scenes() {
     std::vector<std::string> scenes;
     const std::filesystem::path root = GRAFTAL_SOURCE_DIR;
@@ -109,7 +93,7 @@ std::vector<std::string> recursive_scenes() {
     return scenes;
 }
 
-class ChaosGame : public testing::TestWithParam<std::string> {};
+class ChaosGame : public ::testing::TestWithParam<std::string> {};
 
 // Every part that is culled has a diameter of at most the error and is drawn within its own ball or box, so
 // each point lies within sqrt(3) errors of a corner; drawn corners lie near points up to how densely 10^5
@@ -143,7 +127,7 @@ TEST_P(ChaosGame, PointsAndGeometryAreCloseBothWays) {
                 GetParam().c_str(), error, to_geometry, to_points, ball.radius);
 }
 
-INSTANTIATE_TEST_SUITE_P(Scenes, ChaosGame, testing::ValuesIn(recursive_scenes()), [](const auto& scene) {
+INSTANTIATE_TEST_SUITE_P(Scenes, ChaosGame, ::testing::ValuesIn(recursive_scenes()), [](const auto& scene) {
     std::string name = scene.param;
     std::replace_if(
         name.begin(), name.end(), [](char c) { return !std::isalnum(static_cast<unsigned char>(c)); }, '_');

@@ -121,6 +121,8 @@ std::string random_statements(std::mt19937& random) {
     const auto pick = [&](std::initializer_list<const char*> choices) {
         return std::string(choices.begin()[random() % choices.size()]);
     };
+    // Turned about from the direction that it bends to, a turtle stands on a knife's edge: then rounding decides.
+    const bool bends = random() % 3 == 0;
     const auto string = [&](bool parameters) {
         std::string out;
         std::size_t open = 0;
@@ -129,8 +131,8 @@ std::string random_statements(std::mt19937& random) {
             case 0: out += fmt::format("F({})", number(0.2, 1)); break;
             case 1: out += "[", ++open; break;
             case 2: if (open > 0) out += "]", --open; break;
-            case 3: out += pick({"+", "-", "&", "^", "/", "\\", "|"}); break;
-            case 4: out += pick({"+(17)", "&(31)", "/(137.5)", "$", "!", ";", ",", "!(0.3)", ";(2)", "f", "T(0.2)"}); break;
+            case 3: out += pick({"+", "-", "&", "^", "/", "\\", bends ? "^" : "|"}); break;
+            case 4: out += pick({"+(17)", "&(31)", "/(137.5)", "$", "!", ";", ",", "!(0.3)", ";(2)", "f"}); break;
             case 5: out += parameters ? fmt::format("A(x*{:.2f},y+1)", number(0.5, 0.9)) : "A(1,0)"; break;
             case 6: out += parameters ? fmt::format("B(y,x*{:.2f})", number(0.5, 0.9)) : "B(0,1)"; break;
             default: out += parameters ? "F(x)" : "F"; break;
@@ -138,10 +140,10 @@ std::string random_statements(std::mt19937& random) {
         }
         return out + std::string(open, ']');
     };
-    return fmt::format("width 0.25\nangle {}\ntropism {},-1,0\naxiom F{}\nA(x,y) : y < 3 -> {}\nA(x,y) -> {}\nB(x,y) -> {}\n"
+    return fmt::format("width 0.25\nangle {}\ntropism {},-1,0\naxiom {}F{}\nA(x,y) : y < 3 -> {}\nA(x,y) -> {}\nB(x,y) -> {}\n"
                        "F(x) : x > 0.9 -> F(x/2)F(x/3)",
-                       pick({"90", "60", "25.7", "22.5"}), number(-1, 1), string(false), string(true), string(true),
-                       string(true));
+                       pick({"90", "60", "25.7", "22.5"}), number(-1, 1), bends ? "T(0.1)" : "", string(false), string(true),
+                       string(true), string(true));
 }
 
 TEST(LsysComposer, drawsRandomModels) {

@@ -5,8 +5,6 @@
 
 #include <fmt/format.h>
 
-#include "compiler/support/huge_pages.h"
-
 namespace graftal {
 
 namespace {
@@ -82,7 +80,7 @@ std::optional<std::uint64_t> LsysDeriver::choose() {
     if (successors_.has_context()) matcher_.look_at(word_);
     const CounterRandom random = random_.sequence(step_);
     chosen_.clear();
-    reserve_huge(chosen_, word_.size());
+    chosen_.reserve(word_.size());
     std::uint64_t length = 0;
     for (std::uint32_t i = 0; i < word_.size(); ++i) {
         const LsysSuccessors::Entry entry = successors_.entry(word_[i]);
@@ -98,7 +96,7 @@ std::optional<std::uint64_t> LsysDeriver::choose() {
 
 void LsysDeriver::gather(std::uint64_t length) {
     next_.clear();
-    reserve_huge(next_, length);
+    next_.reserve(length);
     if (successors_.is_plain())
         successors_.runs().append(
             word_.size(), [&](std::size_t i) { return successors_.run(word_[i]); }, next_);

@@ -117,16 +117,20 @@ std::optional<AnalysedModel> analyse_model(const std::string& path, const Compil
     if (!is_pass_or_empty(options.pipeline.stop_after, diagnostics)) return std::nullopt;
     Stages stages(compilation.times);
 
+    AnalysedModel model;
+    model.path = path;
+    LowerOptions lower_options = options.lower;
+    lower_options.steps = options.steps;
     std::optional<Graph> lowered = stages.run("lower", [&] {
-        return lower_model(path, options.lower, compilation.sources, diagnostics, compilation.status);
+        return lower_model(path, lower_options, compilation.sources, diagnostics, compilation.status,
+                           &model.derivation);
     });
     if (!lowered) return std::nullopt;
     check_verified(*lowered, "after lowering");
 
-    AnalysedModel model;
-    model.path = path;
     model.graph = optimise(std::move(*lowered), options.pipeline, compilation.times);
-    model.steps = options.steps ? options.steps : model.graph.settings.steps;
+    // The steps of an L-system are spent already; what it places recurs as its own file says.
+    model.steps = options.steps && !model.derivation ? options.steps : model.graph.settings.steps;
     model.components = stages.run("components", [&] { return strong_components(model.graph); });
     model.contraction =
         stages.run("contraction", [&] { return decide_contraction(model.graph, model.components); });

@@ -40,7 +40,8 @@ struct AnalysedModel {
     Components components;
     Contraction contraction;
     std::vector<ObjectBounds> bounds; ///< empty unless the contraction is proved or acyclic
-    std::optional<unsigned> steps;    ///< from the command line, else from the model
+    std::optional<unsigned> steps;    ///< levels of recursion; from the command line, else from the model
+    std::optional<Derivation> derivation; ///< of an L-system
 };
 
 /// A model ready to emit.

@@ -9,6 +9,7 @@
 #include "compiler/graph/verify.h"
 #include "compiler/lower/check_graph.h"
 #include "compiler/lower/lower_inst.h"
+#include "compiler/lower/lower_lsys.h"
 #include "compiler/lower/lower_rifs.h"
 #include "compiler/lower/lowering.h"
 #include "compiler/support/file.h"
@@ -37,13 +38,14 @@ std::string guessed_language(FileId file, const SourceMap& sources) {
 }
 
 std::optional<Graph> lower_root(FileId file, const LowerOptions& options, SourceMap& sources,
-                                Diagnostics& diagnostics) {
-    Lowering lowering{sources, diagnostics, options, {}, {}, 0};
+                                Diagnostics& diagnostics, std::optional<Derivation>* derivation) {
+    Lowering lowering{sources, diagnostics, options, {}, {}, 0, {}};
     const std::filesystem::path path(sources.name(file));
     lowering.loading.push_back({path.lexically_normal().string(), Span()});
     std::optional<Graph> graph = lower_file(file, Span{file, 0, 0}, lowering);
     if (!graph || diagnostics.has_errors() || !check_graph(*graph, diagnostics)) return std::nullopt;
     check_verified(*graph, "lower");
+    if (derivation) *derivation = std::move(lowering.derivation);
     return graph;
 }
 
@@ -61,26 +63,26 @@ std::optional<Graph> lower_file(FileId file, Span asked_for, Lowering& lowering)
     const std::string language = model_language(file, lowering.sources);
     if (language == "inst") return lower_inst(file, lowering);
     if (language == "rifs") return lower_rifs(file, lowering);
-    if (language == "lsys")
-        lowering.diagnostics.error(asked_for, "no front-end for '.lsys' models in this version");
-    else
-        lowering.diagnostics.error(asked_for, fmt::format("'{}' is no model that is known here", name))
-            .with_hint("the names of models end in .inst or .rifs");
+    if (language == "lsys") return lower_lsys(file, lowering);
+    lowering.diagnostics.error(asked_for, fmt::format("'{}' is no model that is known here", name))
+        .with_hint("the names of models end in .lsys, .rifs or .inst");
     return std::nullopt;
 }
 
 std::optional<Graph> lower_model(const std::string& path, const LowerOptions& options, SourceMap& sources,
-                                 Diagnostics& diagnostics, Status& status) {
+                                 Diagnostics& diagnostics, Status& status,
+                                 std::optional<Derivation>* derivation) {
     std::string text;
     status = read_text(path, text);
     if (!status.ok()) return std::nullopt;
-    return lower_text(path, std::move(text), options, sources, diagnostics);
+    return lower_text(path, std::move(text), options, sources, diagnostics, derivation);
 }
 
 std::optional<Graph> lower_text(const std::string& name, std::string text, const LowerOptions& options,
-                                SourceMap& sources, Diagnostics& diagnostics) {
+                                SourceMap& sources, Diagnostics& diagnostics,
+                                std::optional<Derivation>* derivation) {
     const FileId file = sources.add(name == "-" ? std::string(standard_input) : name, std::move(text));
-    return lower_root(file, options, sources, diagnostics);
+    return lower_root(file, options, sources, diagnostics, derivation);
 }
 
 } // namespace graftal

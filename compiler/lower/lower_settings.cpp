@@ -181,12 +181,14 @@ void check_duplicates(const std::vector<SceneStatement>& statements, Diagnostics
     }
 }
 
-void check_set_names(const Environment& lets, Lowering& lowering) {
+} // namespace
+
+void check_set_names(const Environment& known_lets, Lowering& lowering) {
     std::vector<std::string> known;
-    for (const auto& [name, value] : lets)
+    for (const auto& [name, value] : known_lets)
         known.push_back(name);
     for (const auto& [name, value] : lowering.options.set) {
-        if (!lets.contains(name))
+        if (!known_lets.contains(name))
             lowering.diagnostics.error(Span(), fmt::format("--set {}: the model has no 'let {}'", name, name))
                 .with_hint(did_you_mean(name, known));
         if (!std::isfinite(value))
@@ -194,10 +196,8 @@ void check_set_names(const Environment& lets, Lowering& lowering) {
     }
 }
 
-} // namespace
-
-Environment lower_lets(const std::vector<SceneStatement>& statements, Lowering& lowering) {
-    Environment lets;
+Environment evaluate_lets(const std::vector<SceneStatement>& statements, Environment outer, Lowering& lowering) {
+    Environment lets = std::move(outer);
     std::map<std::string, Span, std::less<>> first;
     for (const SceneStatement& statement : statements) {
         if (statement.kind != Kind::let) continue;
@@ -219,6 +219,11 @@ Environment lower_lets(const std::vector<SceneStatement>& statements, Lowering& 
             lets[let.keyword] = value.value_or(1);
         }
     }
+    return lets;
+}
+
+Environment lower_lets(const std::vector<SceneStatement>& statements, Lowering& lowering) {
+    Environment lets = evaluate_lets(statements, {}, lowering);
     if (lowering.at_root_model()) check_set_names(lets, lowering);
     return lets;
 }

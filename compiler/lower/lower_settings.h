@@ -10,6 +10,11 @@ namespace graftal {
 /// The values of the `let` statements, in the order of the text, with `--set` in place of a value where this
 /// is the root model. Errors: duplicates, unknown names (also of `--set`), values that are not finite.
 Environment lower_lets(const std::vector<SceneStatement>& statements, Lowering& lowering);
+/// The same on top of `outer` values, which they may use and hide, and without the check that `--set` names
+/// are known.
+Environment evaluate_lets(const std::vector<SceneStatement>& statements, Environment outer, Lowering& lowering);
+/// That check: reports names of `--set` that are not among `known`.
+void check_set_names(const Environment& known, Lowering& lowering);
 
 /// Fills `settings` and `materials` of `graph` from all other statements; errors for values out of range and
 /// for duplicates. Material names are then known: use material_named().

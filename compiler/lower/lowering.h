@@ -31,6 +31,7 @@ struct Lowering {
     /// Models already lowered, by path; null after errors. A model used twice is read and reported once.
     std::map<std::string, std::shared_ptr<const Graph>> lowered;
     std::size_t use_count = 0; ///< `use` statements so far, in all files
+    std::optional<Derivation> derivation; ///< of the root model
 
     /// `--set` speaks to the root model only.
     bool at_root_model() const { return loading.size() <= 1; }

@@ -8,7 +8,9 @@
 #include <utility>
 
 #include <fmt/format.h>
+#include <glm/geometric.hpp>
 
+#include "compiler/lower/lower_transform.h"
 #include "compiler/support/number.h"
 
 namespace graftal {
@@ -17,6 +19,18 @@ namespace {
 
 constexpr std::size_t most_symbols = 0xFFFF;
 constexpr double largest_seed = 9007199254740992.0; // 2^53
+
+/// Branches and polygons are balanced, each for itself; together they may not be.
+bool polygons_cross_branches(const LsysString& string) {
+    std::string open;
+    for (const LsysModule& module : string.modules) {
+        if (module.symbol == "[" || module.symbol == "{") open += module.symbol;
+        if (module.symbol != "]" && module.symbol != "}") continue;
+        if (open.empty() || open.back() != (module.symbol == "]" ? '[' : '{')) return true;
+        open.pop_back();
+    }
+    return false;
+}
 
 class GrammarBuilder {
   public:
@@ -68,6 +82,7 @@ class GrammarBuilder {
             block_.seed, [](double x) { return x >= 0 && x <= largest_seed && x == std::floor(x); }, "seed",
             "be a whole number from 0 to 2^53");
         grammar_.seed = static_cast<std::uint64_t>(seed.value_or(0));
+        if (block_.tropism) add_tropism();
         if (!block_.steps) return;
         grammar_.infinite = !block_.steps->value;
         if (grammar_.infinite) return;
@@ -78,6 +93,16 @@ class GrammarBuilder {
         if (steps) grammar_.steps = static_cast<unsigned>(*steps);
     }
 
+    void add_tropism() {
+        const std::optional<Vec3> direction = lower_vector(block_.tropism->direction, grammar_.lets, diagnostics_);
+        if (!direction) return;
+        const double length = glm::length(*direction);
+        if (length > 0 && std::isfinite(length))
+            grammar_.tropism = *direction / length;
+        else
+            diagnostics_.error(block_.tropism->span, "'tropism' must have a direction");
+    }
+
     SymbolId symbol(std::string_view name, Span span) {
         const auto [known, fresh] = ids_.try_emplace(std::string(name), static_cast<SymbolId>(ids_.size()));
         if (!fresh) return known->second;
@@ -85,6 +110,7 @@ class GrammarBuilder {
             diagnostics_.error(span, fmt::format("a block has at most {} different symbols", most_symbols));
         grammar_.symbols.push_back(known->first);
         grammar_.commands.push_back(turtle_command(name));
+        grammar_.first_uses.push_back(span);
         return known->second;
     }
 
@@ -104,6 +130,7 @@ class GrammarBuilder {
                 if (auto code = ExpressionCode::compile(parameter, grammar_.lets, variables, diagnostics_))
                     added.parameters.push_back(std::move(*code));
         }
+        grammar_.polygons_cross_branches |= polygons_cross_branches(string);
         return result;
     }
 

@@ -10,6 +10,7 @@
 
 #include "compiler/lower/module_table.h"
 #include "compiler/lower/turtle_command.h"
+#include "compiler/support/affine.h"
 #include "compiler/support/diagnostics.h"
 #include "compiler/syntax/expression_code.h"
 #include "compiler/syntax/lsys_ast.h"
@@ -57,6 +58,7 @@ struct LsysGrammar {
     Environment lets;
     std::vector<std::string> symbols; ///< as strings write them; a model is `~NAME`
     std::vector<TurtleCommand> commands; ///< of the symbols
+    std::vector<Span> first_uses;        ///< of the symbols
     std::vector<LsysTemplate> axiom;
     std::vector<LsysRule> rules;
     /// The rules that may rewrite a symbol, of one kind, in the order in which they are tried: those with
@@ -65,10 +67,12 @@ struct LsysGrammar {
     std::vector<bool> ignored; ///< symbols that contexts look past
     bool has_context = false;
     bool is_stochastic = false;
+    bool polygons_cross_branches = false; ///< some `{` and its `}` lie in different branches: `[+A{.].C.}`
 
     double angle_deg = 90;
     double step = 1;
     std::optional<double> width; ///< nothing: automatic
+    Vec3 tropism{0, -1, 0};      ///< unit vector that `T` bends towards, in world space
     std::uint64_t seed = 0;
     std::optional<unsigned> steps; ///< nothing: not given, or infinite
     bool infinite = false;

@@ -94,6 +94,7 @@ Fit LsysRewriter::apply(const LsysRule& rule, std::span<const double> values, Al
     if (!condition_holds(rule, values)) return diagnostics_.error_count() > errors ? Fit::error : Fit::no;
     const std::optional<double> chance = probability(rule, values);
     if (!chance) return Fit::error;
+    result.rule = &rule;
     result.probability = *chance;
     result.successor.clear();
     return append_successor(rule, values, result.successor) ? Fit::yes : Fit::error;

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <deque>
 #include <optional>
 #include <span>
 #include <vector>
@@ -13,6 +14,7 @@ namespace graftal {
 
 /// What a module may become, and with which probability.
 struct Alternative {
+    const LsysRule* rule = nullptr;
     double probability = 1;
     ModuleString successor;
 };
@@ -39,7 +41,7 @@ class LsysRewriter {
 
     /// The alternatives of a module without regard to contexts: productions that have some are passed over.
     /// Their probabilities sum to 1; none: no production applies, and the module stays. Null after an error
-    /// (a division by zero, probabilities that do not sum to 1); reported once. Valid until the next call.
+    /// (a division by zero, probabilities that do not sum to 1); reported once. Valid as long as this.
     const std::vector<Alternative>* alternatives(RuleKind kind, ModuleId module);
 
     /// Whether alternatives() would give any, or an error.
@@ -85,7 +87,7 @@ class LsysRewriter {
     Diagnostics& diagnostics_;
     ModuleTable modules_;
     std::array<std::vector<std::uint32_t>, rule_kind_count> known_; ///< by module, into alternatives_
-    std::vector<std::vector<Alternative>> alternatives_;
+    std::deque<std::vector<Alternative>> alternatives_; ///< stay where they are
     std::vector<double> arguments_;
     bool failed_ = false;
 };

@@ -86,8 +86,8 @@ std::vector<Rgb> sample_colours(const Graph& graph) {
     return colours;
 }
 
-Sky automatic_sky(const std::vector<Rgb>& colours, const View& view, bool flat) {
-    if (flat) {
+Sky automatic_sky(const std::vector<Rgb>& colours, const View& view, bool figure) {
+    if (figure) {
         const Rgb paper(0.90, 0.89, 0.86), slate(0.012, 0.015, 0.022);
         const Shades plain = choose(colours, {paper, paper}, {slate, slate});
         return {.zenith = plain.zenith, .horizon = plain.horizon};

@@ -13,6 +13,6 @@ std::vector<Rgb> sample_colours(const Graph& graph);
 /// The background that the model does not name: light where the colours stand out from it, as ink does from
 /// paper, else dark. Plain behind flat models and for parallel rays (which see one direction only); behind
 /// others a gradient over the height of the picture, or from the horizon up where there is ground.
-Sky automatic_sky(const std::vector<Rgb>& colours, const View& view, bool flat);
+Sky automatic_sky(const std::vector<Rgb>& colours, const View& view, bool figure);
 
 } // namespace graftal

@@ -257,12 +257,15 @@ CameraSetting merge(const CameraSetting& model, const CameraSetting& over) {
     return merged;
 }
 
+bool is_figure(const Box& bounds) {
+    return thickness(bounds) <= thin_share && (thickness(bounds) <= flat_share || thinnest_axis(bounds) != 1);
+}
+
 Camera frame_camera(const CameraSetting& setting, const Box& bounds, const Outliner& outliner,
                     ImageSize size) {
     Subject subject(bounds);
     const double aspect = static_cast<double>(size.width) / size.height;
-    const bool figure =
-        thickness(bounds) <= thin_share && (thickness(bounds) <= flat_share || thinnest_axis(bounds) != 1);
+    const bool figure = is_figure(bounds);
     Camera camera;
     Vec3 direction = -automatic_eye_direction(bounds);
     if (setting.location) {

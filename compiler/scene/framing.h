@@ -19,6 +19,9 @@ int thinnest_axis(const Box& bounds);
 /// Extent along the thinnest axis over the largest extent; 0 for a point.
 double thickness(const Box& bounds);
 
+/// True for what is shown face on: models without depth, and upright ones with little.
+bool is_figure(const Box& bounds);
+
 /// `over` taking precedence over `model`, field by field. An angle or a width says which projection is meant.
 CameraSetting merge(const CameraSetting& model, const CameraSetting& over);
 

@@ -107,7 +107,7 @@ View frame(const Graph& graph, const Box& bounds, ImageSize size, const CameraOv
         view.sky.zenith = settings.background->rgb;
         view.sky.horizon = settings.background->horizon.value_or(settings.background->rgb);
     } else {
-        view.sky = automatic_sky(sample_colours(graph), view, flat);
+        view.sky = automatic_sky(sample_colours(graph), view, is_figure(bounds));
     }
     return view;
 }

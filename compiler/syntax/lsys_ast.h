@@ -81,6 +81,12 @@ struct LsysContextFilter {
     Span span;                     ///< of the keyword
 };
 
+/// `tropism x, y, z`
+struct LsysTropism {
+    std::vector<Expression> direction; ///< three
+    Span span;                         ///< of the keyword
+};
+
 struct LsysBlock {
     LsysName name;
     bool is_main = false;
@@ -91,6 +97,8 @@ struct LsysBlock {
     std::optional<LsysValue> seed;
     std::optional<LsysSteps> steps;
     std::optional<LsysContextFilter> filter;
+    std::optional<LsysTropism> tropism;
+    std::vector<LsysName> colors;  ///< materials of the colour indices 0, 1, 2, ...
     std::vector<LsysName> modules; ///< declared names, each once
     std::optional<LsysString> axiom;
     std::vector<LsysProduction> productions;

@@ -84,6 +84,8 @@ class BlockParser {
         if (word == "steps") return parse_steps(statement);
         if (word == "ignore" || word == "consider") return parse_filter(statement);
         if (word == "axiom") return parse_axiom(statement);
+        if (word == "tropism") return parse_tropism(statement);
+        if (word == "colors") return parse_colors(statement);
         if (text_of(statement).find("->") == std::string_view::npos) return parse_other(statement);
         std::optional<LsysProduction> production = parse_lsys_production(statement, text_);
         if (production) productions(statement.section).push_back(std::move(*production));
@@ -185,6 +187,32 @@ class BlockParser {
         if (reader.at_end()) return true;
         reader.expected("a module or the end of the line");
         return false;
+    }
+
+    void parse_tropism(const LsysStatement& statement) {
+        TokenStream stream = values(statement);
+        std::optional<std::vector<Expression>> direction = parse_vector(stream, "'tropism'");
+        if (!direction || !text_.finish(stream)) return;
+        LsysTropism tropism{std::move(*direction), scanner_.span(statement.word)};
+        if (block_.tropism)
+            report_duplicate(statement, block_.tropism->span);
+        else
+            block_.tropism = std::move(tropism);
+    }
+
+    void parse_colors(const LsysStatement& statement) {
+        TokenStream stream = values(statement);
+        std::vector<LsysName> names;
+        do {
+            const std::optional<Token> name = stream.expect_name("the name of a material");
+            if (!name) return;
+            names.push_back({name->text, name->span});
+        } while (stream.accept(",") || stream.at_name());
+        if (!text_.finish(stream)) return;
+        if (block_.colors.empty())
+            block_.colors = std::move(names);
+        else
+            report_duplicate(statement, block_.colors.front().span);
     }
 
     void parse_modules(const LsysStatement& statement) {

@@ -28,8 +28,12 @@ bool is_blank(char c) {
     return c == ' ' || c == '\t' || c == '\r' || c == '\n' || c == '\f' || c == '\v';
 }
 
-char closing(std::string_view open) {
-    return open == "[" ? ']' : '}';
+void report_unopened(std::string_view symbol, Span span, LsysText& text) {
+    Diagnostic& error =
+        text.diagnostics.error(span, fmt::format("'{}' without '{}'", symbol, symbol == "]" ? '[' : '{'));
+    if (symbol != "}") return;
+    error.with_hint("the '}' of a block begins a line");
+    text.stray_brace_said = true;
 }
 
 constexpr const char* probability_hint = "a probability stands behind the successor: A -> B : 0.5";
@@ -165,7 +169,7 @@ bool LsysStringReader::take_room(const Raw& raw) {
     if (text_.modules_left > 0) {
         if (--text_.modules_left > 0) return true;
         text_.diagnostics.error(
-            raw.span, fmt::format("the strings have more than {} modules in all", max_lsys_modules - 1));
+            raw.span, fmt::format("the strings have more than {} modules in all", max_lsys_modules));
     }
     at_ = end_;
     return false;
@@ -313,39 +317,35 @@ std::optional<Expression> LsysStringReader::read_expression(std::size_t end, std
     return std::nullopt;
 }
 
+// Branches and polygons are matched apart from each other: ABOP's cordate leaf, figure 5.6, has `[+A{.].C.}`.
 template<class Module> bool check_lsys_brackets(const std::vector<Module>& modules, LsysText& text) {
-    std::vector<const Module*> open;
+    std::vector<const Module*> branches, polygons;
     for (const Module& module : modules) {
-        if (module.symbol == "[" || module.symbol == "{") {
-            open.push_back(&module);
-            if (open.size() <= max_lsys_nesting) continue;
-            text.diagnostics.error(module.span,
-                                   fmt::format("brackets are nested more than {} deep", max_lsys_nesting));
+        const bool opens = module.symbol == "[" || module.symbol == "{";
+        if (!opens && module.symbol != "]" && module.symbol != "}") continue;
+        const bool is_branch = module.symbol == "[" || module.symbol == "]";
+        std::vector<const Module*>& open = is_branch ? branches : polygons;
+        if (!opens && open.empty()) {
+            report_unopened(module.symbol, module.span, text);
             return false;
         }
-        if (module.symbol != "]" && module.symbol != "}") continue;
-        if (open.empty()) {
-            Diagnostic& error =
-                text.diagnostics.error(module.span, fmt::format("'{}' without '{}'", module.symbol,
-                                                                module.symbol == "]" ? '[' : '{'));
-            if (module.symbol == "}") {
-                error.with_hint("the '}' of a block begins a line");
-                text.stray_brace_said = true;
-            }
-            return false;
+        if (!opens) {
+            open.pop_back();
+            continue;
         }
-        const char expected = closing(open.back()->symbol);
-        if (module.symbol[0] != expected) {
-            text.diagnostics
-                .error(module.span, fmt::format("expected '{}', found '{}'", expected, module.symbol))
-                .with_note(open.back()->span, fmt::format("to close this '{}'", open.back()->symbol));
-            return false;
-        }
-        open.pop_back();
+        open.push_back(&module);
+        if (open.size() <= max_lsys_nesting) continue;
+        text.diagnostics.error(module.span,
+                               fmt::format("brackets are nested more than {} deep", max_lsys_nesting));
+        return false;
     }
-    if (open.empty()) return true;
-    text.diagnostics.error(open.back()->span, fmt::format("this '{}' is not closed", open.back()->symbol));
-    return false;
+    for (const auto* open : {&branches, &polygons}) {
+        if (open->empty()) continue;
+        text.diagnostics.error(open->back()->span,
+                               fmt::format("this '{}' is not closed", open->back()->symbol));
+        return false;
+    }
+    return true;
 }
 
 template bool check_lsys_brackets(const std::vector<LsysModule>& modules, LsysText& text);

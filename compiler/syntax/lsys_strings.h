@@ -32,7 +32,7 @@ struct LsysText {
     const LsysScanner& scanner;
     Diagnostics& diagnostics;
     LsysSymbols symbols;
-    std::size_t modules_left = max_lsys_modules;
+    std::size_t modules_left = max_lsys_modules + 1; ///< 0: too many, which was reported
     std::size_t words_left = max_lsys_words;
     bool stray_brace_said = false; ///< a '}' that may have been meant to close the block was reported
 

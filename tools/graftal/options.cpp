@@ -59,10 +59,12 @@ void add_common(CLI::App& app, Options& options) {
            "--set", set, "Replace the value of a 'let' of the model (may be repeated)")
         ->allow_extra_args(false)
         ->type_name("NAME=VALUE");
-    // No model of this version is random: the number is only checked.
     add_value(
         app, "--seed", "N", "Seed of random models", "a whole number",
-        [](const std::string& text) { return parse_whole(text, 0, UINT64_MAX); }, [](std::uint64_t) {});
+        [](const std::string& text) { return parse_whole(text, 0, UINT64_MAX); },
+        [&](std::uint64_t seed) { compile.lower.seed = seed; });
+    app.add_flag("--exact", compile.lower.exact,
+                 "Derive L-systems module by module, so that a random one is one honest sample");
     add_value(
         app, "--threads", "N", "Threads to use (default: all processors)", "a whole number from 1 to 512",
         [](const std::string& text) { return parse_whole(text, 1, 512); },
@@ -111,7 +113,7 @@ void add_view(CLI::App& app, Options& options) {
 
 void add_model(CLI::App& app, Options& options) {
     const auto set = [&options](const std::string& model) { options.operands = {model}; };
-    app.add_option_function<std::string>("MODEL", set, "Model file (.inst, .rifs), or - for standard input")
+    app.add_option_function<std::string>("MODEL", set, "Model file (.lsys, .rifs, .inst), or - for standard input")
         ->required()
         ->type_name("");
 }

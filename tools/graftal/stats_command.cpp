@@ -67,19 +67,30 @@ Json stats_json(const AnalysedModel& model, const SourceMap& sources) {
         instances += object.instances.size();
     const bool converges =
         model.contraction.verdict == Verdict::proved || model.contraction.verdict == Verdict::acyclic;
-    return {
+    Json json = {
         {"model", model.path},
         {"language", model_language(0, sources)},
         {"objects", graph.objects.size()},
         {"instances", instances},
-        {"steps", or_null(model.steps)},
+        {"steps", or_null(model.derivation ? model.derivation->steps : model.steps)},
         {"leaves", or_null(count_leaves(graph, model.components, model.steps))},
         {"contraction", contraction_json(model)},
         {"dimension", converges ? or_null(similarity_dimension(graph, model.components)) : Json(nullptr)},
         {"bounds", bounds_json(model)},
         {"unbounded", !model.bounds.empty() && model.bounds[graph.root].unbounded},
-        {"error", 0},
+        {"error", model.derivation ? model.derivation->error : 0},
     };
+    if (const std::optional<Derivation>& derivation = model.derivation) {
+        const bool finite = derivation->steps.has_value();
+        json["modules"] = finite ? Json(derivation->modules) : Json(nullptr);
+        json["segments"] = finite ? Json(derivation->segments) : Json(nullptr);
+        json["compiled"] = {{"way", derivation->way}, {"parts", derivation->parts}};
+        if (derivation->variants > 1) {
+            json["compiled"]["variants"] = derivation->variants;
+            json["compiled"]["drift"] = derivation->drift;
+        }
+    }
+    return json;
 }
 
 std::string text_of(const Json& value) {

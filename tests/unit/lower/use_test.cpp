@@ -159,10 +159,10 @@ TEST(Language, follows_the_name_of_the_file) {
     Diagnostics diagnostics;
     EXPECT_FALSE(lower_text("tree.lsys", "lsys tree { }", {}, sources, diagnostics));
     EXPECT_THAT(diagnostics.render(sources),
-                HasSubstr("tree.lsys:1:1: error: no front-end for '.lsys' models in this version"));
+                HasSubstr("tree.lsys:1:6: error: 'lsys tree' has no axiom"));
     Diagnostics unknown;
     EXPECT_FALSE(lower_text("tree.txt", "", {}, sources, unknown));
-    EXPECT_THAT(unknown.render(sources), HasSubstr("hint: the names of models end in .inst or .rifs"));
+    EXPECT_THAT(unknown.render(sources), HasSubstr("hint: the names of models end in .lsys, .rifs or .inst"));
 }
 
 TEST(Language, of_standard_input_follows_its_first_word) {
@@ -172,7 +172,7 @@ TEST(Language, of_standard_input_follows_its_first_word) {
     EXPECT_TRUE(lower_text("-", "let a = 2\nrifs r {\n map m { scale 1/a }\n}", {}, sources, diagnostics))
         << diagnostics.render(sources);
     EXPECT_FALSE(lower_text("-", "let a = 1\nlsys tree { }", {}, sources, diagnostics));
-    EXPECT_THAT(diagnostics.render(sources), HasSubstr("<stdin>:1:1: error: no front-end for '.lsys'"));
+    EXPECT_THAT(diagnostics.render(sources), HasSubstr("<stdin>:2:6: error: 'lsys tree' has no axiom"));
 }
 
 } // namespace

@@ -1,0 +1,292 @@
+#include "compiler/lower/lsys_composer.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include <fmt/format.h>
+#include <glm/geometric.hpp>
+
+namespace graftal {
+
+namespace {
+
+/// Rules of one kind may follow each other so often without a step between them.
+constexpr unsigned most_repeated = 1000;
+
+bool depends_on_directions(const LsysGrammar& grammar) {
+    return std::ranges::any_of(grammar.commands, [](TurtleCommand command) {
+        return command == TurtleCommand::level || command == TurtleCommand::tropism;
+    });
+}
+
+double angle_between(Vec3 a, Vec3 b) {
+    return 2 * std::asin(std::min(1.0, 0.5 * glm::length(a - b)));
+}
+
+/// Turned in the plane of the turtle so that it heads for `exit`, where that lies in the plane.
+Mat3 chord_frame(Vec3 exit) {
+    const double length = glm::length(exit);
+    if (!(length > 0) || std::abs(exit.z) > 1e-9 * length) return Mat3(1.0);
+    const Vec3 y = glm::normalize(Vec3(exit.x, exit.y, 0));
+    return Mat3(Vec3(y.y, -y.x, 0), y, Vec3(0, 0, 1));
+}
+
+} // namespace
+
+LsysComposer::LsysComposer(LsysRewriter& rewriter, TurtleContext& turtle, ObjectPool& pool,
+                           const std::map<SymbolId, ObjectId>& models, Variants variants, const LsysLimits& limits)
+    : rewriter_(rewriter), context_(turtle), pool_(pool), models_(models), variants_(variants),
+      max_parts_(limits.max_parts), snaps_(limits.snap_angle > 0),
+      directions_(std::max(limits.snap_angle, DirectionTable::rounding)),
+      uses_directions_(depends_on_directions(rewriter.grammar())) {}
+
+std::optional<TurtlePart> LsysComposer::compose(unsigned steps, const TurtleState& start) {
+    const std::optional<ModuleString> axiom = rewriter_.axiom();
+    if (!axiom) return std::nullopt;
+    return run_from({.start = start,
+                     .string = &*axiom,
+                     .string_stage = stage_before(steps),
+                     .span = rewriter_.grammar().source->axiom->span,
+                     .turtle = Turtle(context_, start)});
+}
+
+std::optional<TurtlePart> LsysComposer::compose_word(const ModuleString& word, const TurtleState& start) {
+    shares_branches_ = !rewriter_.grammar().polygons_cross_branches;
+    std::optional<TurtlePart> part = run_from({.start = start,
+                                               .string = &word,
+                                               .string_stage = 0,
+                                               .span = rewriter_.grammar().source->axiom->span,
+                                               .turtle = Turtle(context_, start)});
+    shares_branches_ = false;
+    return part;
+}
+
+std::optional<TurtlePart> LsysComposer::run_from(Task first) {
+    tasks_.clear();
+    tasks_.push_back(std::move(first));
+    if (!run_tasks()) return std::nullopt;
+    TurtlePart part = std::move(tasks_.back().turtle).finish();
+    tasks_.pop_back();
+    return part;
+}
+
+/// Until the first task is done.
+bool LsysComposer::run_tasks() {
+    while (true) {
+        const std::size_t depth = tasks_.size();
+        if (!advance(tasks_.back())) return false;
+        if (tasks_.size() > depth) continue;
+        if (depth == 1) return true;
+        if (tasks_.back().is_branch)
+            complete_branch();
+        else
+            complete_task();
+    }
+}
+
+LsysComposer::Stage LsysComposer::stage_before(unsigned steps) const {
+    const auto& rules = rewriter_.grammar().rules_of[static_cast<std::size_t>(RuleKind::decompose)];
+    const bool decomposes = std::ranges::any_of(rules, [](const auto& of_symbol) { return !of_symbol.empty(); });
+    return 2 * steps + (decomposes ? 1 : 0);
+}
+
+/// False after an error.
+bool LsysComposer::choose(RuleKind kind, ModuleId module, Stage stage, std::uint32_t variant,
+                          Unfolded& result) {
+    if (!rewriter_.is_rewritten(kind, module)) return true;
+    const std::vector<Alternative>* alternatives = rewriter_.alternatives(kind, module);
+    if (!alternatives) return false;
+    result.by = &variants_.choose(*alternatives, variant, module, stage);
+    result.kind = kind;
+    result.random = alternatives->size() > 1;
+    return true;
+}
+
+bool LsysComposer::unfold(ModuleId module, Stage stage, std::uint32_t variant, Unfolded& result) {
+    result = {};
+    if (stage % 2 == 1) {
+        result.stage = stage;
+        if (!choose(RuleKind::decompose, module, stage, variant, result)) return false;
+        if (result.by) return true;
+        --stage;
+    }
+    if (stage > 0) {
+        result.stage = stage_before(stage / 2 - 1);
+        if (!choose(RuleKind::produce, module, stage, variant, result)) return false;
+        if (result.by) return true;
+        // What no production fits now, none will fit later.
+    }
+    result.stage = 0;
+    return choose(RuleKind::interpret, module, 0, variant, result);
+}
+
+/// Goes on until the string ends, or a part is missing, whose task is then the last.
+bool LsysComposer::advance(Task& task) {
+    const bool in_word = shares_branches_ && (task.is_branch || tasks_.size() == 1);
+    for (; task.at < task.string->size() && !task.turtle.finished(); ++task.at) {
+        const ModuleId module = (*task.string)[task.at];
+        if (in_word && !task.turtle.passing_over()) {
+            if (command_of(module) == TurtleCommand::open_branch) return start_branch(), true;
+            if (task.is_branch && command_of(module) == TurtleCommand::close_branch) return true;
+        }
+        const std::uint32_t variant =
+            variants_.child(task.start.variant, task.module, task.string_stage, task.at);
+        Unfolded unfolded;
+        if (!unfold(module, task.string_stage, variant, unfolded)) return false;
+        if (!unfolded.by || task.turtle.passing_over()) {
+            if (!draw(task, module)) return false;
+            continue;
+        }
+        const Stage stage = unfolded.kind == RuleKind::interpret ? 0 : task.string_stage;
+        double snap = 0;
+        TurtleState state = state_of(task.turtle, snap);
+        state.variant = variant;
+        const TurtlePart* part = find(module, stage, state);
+        if (!part) return start_task(module, stage, state, unfolded);
+        task.turtle.append(*part, snap);
+    }
+    return true;
+}
+
+TurtleCommand LsysComposer::command_of(ModuleId module) const {
+    return rewriter_.grammar().commands[rewriter_.modules().symbol(module)];
+}
+
+/// At the bracket that the last task has come to.
+void LsysComposer::start_branch() {
+    const Task& parent = tasks_.back();
+    const TurtleState state = parent.turtle.state();
+    Task branch{.start = state,
+                .string = parent.string,
+                .string_stage = 0,
+                .span = parent.span,
+                .turtle = Turtle(context_, state),
+                .at = parent.at + 1,
+                .is_branch = true};
+    tasks_.push_back(std::move(branch));
+}
+
+/// Places the last task, which has come to its end, in the one before.
+void LsysComposer::complete_branch() {
+    Task branch = std::move(tasks_.back());
+    tasks_.pop_back();
+    Task& parent = tasks_.back();
+    // A cut leaves the rest of the branch to be passed over.
+    for (std::size_t open = 0;; ++branch.at) {
+        const TurtleCommand command = command_of((*branch.string)[branch.at]);
+        if (command == TurtleCommand::close_branch && open-- == 0) break;
+        if (command == TurtleCommand::open_branch) ++open;
+    }
+    TurtlePart part = std::move(branch.turtle).finish();
+    part.modules += 2;
+    part.instances = pool_.share(std::move(part.instances), line_for(part, branch), "branch", branch.span);
+    parent.turtle.append_branch(part);
+    parent.at = branch.at + 1;
+}
+
+/// What is drawn in place of a part too small to see.
+std::optional<Instance> LsysComposer::line_for(const TurtlePart& part, const Task& task) {
+    if (!context_.lines || part.has_bodies) return std::nullopt;
+    return context_.bodies.line(part.start_from_exit.translation, task.start.colour, task.span);
+}
+
+bool LsysComposer::draw(Task& task, ModuleId module) {
+    const SymbolId symbol = rewriter_.modules().symbol(module);
+    const auto model = models_.find(symbol);
+    return task.turtle.run(command_of(module), rewriter_.modules().parameters(module),
+                           model == models_.end() ? std::nullopt : std::optional(model->second), task.span);
+}
+
+bool LsysComposer::start_task(ModuleId module, Stage stage, const TurtleState& start, const Unfolded& unfolded) {
+    const bool repeated = unfolded.stage == stage;
+    const unsigned count = repeated ? tasks_.back().repeated + 1 : 0;
+    const std::string& name = rewriter_.grammar().symbols[rewriter_.modules().symbol(module)];
+    const Span span = unfolded.by->rule->source->span;
+    if (count > most_repeated) {
+        context_.diagnostics
+            .error(span, fmt::format("the {} of '{}' does not end",
+                                     stage == 0 ? "interpretation" : "decomposition", name))
+            .with_hint("these productions are applied again and again until none fits: a condition must end it");
+        return false;
+    }
+    if (parts_.size() + tasks_.size() > max_parts_) {
+        context_.diagnostics
+            .error(span, fmt::format("the model has more than {} different parts", max_parts_))
+            .with_hint("parameters that change without end make every part another one");
+        return false;
+    }
+    tasks_.push_back({.module = module,
+                      .stage = stage,
+                      .start = start,
+                      .string = &unfolded.by->successor,
+                      .string_stage = unfolded.stage,
+                      .interprets = unfolded.kind == RuleKind::interpret,
+                      .span = span,
+                      .turtle = Turtle(context_, start),
+                      .repeated = count});
+    if (unfolded.random) tasks_.back().turtle.read_variant();
+    return true;
+}
+
+/// Makes the last task a known part.
+void LsysComposer::complete_task() {
+    Task task = std::move(tasks_.back());
+    tasks_.pop_back();
+    TurtlePart part = std::move(task.turtle).finish();
+    part.start_from_exit.linear = rotations_.representative(part.start_from_exit.linear);
+    if (task.interprets) part.modules = 1;
+    std::optional<Instance> line = line_for(part, task);
+    const Mat3 frame = context_.limit ? chord_frame(part.start_from_exit.translation) : Mat3(1.0);
+    const std::size_t count = part.instances.size();
+    part.instances =
+        pool_.share(std::move(part.instances), std::move(line), name_of_part(task), task.span, frame);
+    if (count > 1 && part.instances.size() == 1)
+        origins_.try_emplace(part.instances.front().master, Origin{task.module, task.stage / 2});
+    const std::uint64_t kind_hash = mixed(task.module, task.stage);
+    const std::uint32_t kind =
+        kind_ids_.find_or_add(kind_hash, static_cast<std::uint32_t>(kinds_.size()), [&](std::uint32_t id) {
+            return kinds_[id].module == task.module && kinds_[id].stage == task.stage;
+        });
+    if (kind == kinds_.size()) kinds_.push_back({task.module, task.stage, {}});
+    auto& reads = kinds_[kind].reads;
+    if (std::ranges::find(reads, part.reads) == reads.end()) reads.push_back(part.reads);
+    part_ids_.find_or_add(mixed(kind, hash(task.start, part.reads)), static_cast<std::uint32_t>(parts_.size()),
+                          [](std::uint32_t) { return false; });
+    parts_.push_back({kind, task.start, std::move(part)});
+}
+
+const TurtlePart* LsysComposer::find(ModuleId module, Stage stage, const TurtleState& start) const {
+    const std::uint32_t kind = kind_ids_.find(mixed(module, stage), [&](std::uint32_t id) {
+        return kinds_[id].module == module && kinds_[id].stage == stage;
+    });
+    if (kind == IdTable::none) return nullptr;
+    for (const TurtleStateMask reads : kinds_[kind].reads) {
+        const std::uint32_t part = part_ids_.find(mixed(kind, hash(start, reads)), [&](std::uint32_t id) {
+            const KnownPart& known = parts_[id];
+            return known.kind == kind && known.part.reads == reads && equal(known.start, start, reads);
+        });
+        if (part != IdTable::none) return &parts_[part].part;
+    }
+    return nullptr;
+}
+
+/// `snap`: the angle between the directions and those in their place.
+TurtleState LsysComposer::state_of(const Turtle& turtle, double& snap) {
+    TurtleState state = turtle.state();
+    if (!uses_directions_) return state;
+    const TurtleState exact = state;
+    state.tropism = directions_.representative(state.tropism);
+    state.vertical = directions_.representative(state.vertical);
+    if (snaps_)
+        snap = std::max(angle_between(exact.tropism, state.tropism), angle_between(exact.vertical, state.vertical));
+    return state;
+}
+
+/// `A_5` for module A with five steps left.
+std::string LsysComposer::name_of_part(const Task& task) const {
+    const std::string& symbol = rewriter_.grammar().symbols[rewriter_.modules().symbol(task.module)];
+    return fmt::format("{}_{}", object_name(symbol), task.stage / 2);
+}
+
+} // namespace graftal

@@ -1,0 +1,128 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <unordered_map>
+#include <vector>
+
+#include "compiler/lower/lsys_rewriter.h"
+#include "compiler/lower/object_pool.h"
+#include "compiler/lower/turtle.h"
+#include "compiler/lower/turtle_state.h"
+#include "compiler/lower/variants.h"
+#include "compiler/support/id_table.h"
+
+namespace graftal {
+
+struct LsysLimits {
+    std::size_t max_parts = 1'000'000; ///< more are an error
+    /// Directions that `$` and tropism look at are taken for equal within this angle, in radians, when a part is
+    /// looked up; it is then placed exactly. The displacement is bounded in TurtlePart::error.
+    double snap_angle = 0;
+};
+
+/// Compiles a derivation without deriving it (Hart 1992, section 4, made automatic): what a module becomes
+/// depends on the module, the steps that are left, and as much of the incoming state of the turtle as its
+/// subtree reads. So each such *part* is composed once, out of the parts of its successor, and costs are
+/// O(parts), not O(length of the word). Where productions are random, the variant of the part (variants.h) counts
+/// as a part of that state.
+class LsysComposer {
+  public:
+    /// All references must outlive this. `models`: the roots of what `~NAME` places, by symbol.
+    LsysComposer(LsysRewriter& rewriter, TurtleContext& turtle, ObjectPool& pool,
+                 const std::map<SymbolId, ObjectId>& models, Variants variants, const LsysLimits& limits);
+
+    /// The part that the axiom becomes after `steps` steps; nothing after an error in the turtle's diagnostics.
+    std::optional<TurtlePart> compose(unsigned steps, const TurtleState& start);
+
+    /// The same for a word that is derived already: branches that are alike are shared.
+    std::optional<TurtlePart> compose_word(const ModuleString& word, const TurtleState& start);
+
+    std::size_t part_count() const { return parts_.size(); }
+
+    /// The first part that made an object.
+    struct Origin {
+        ModuleId module = 0;
+        unsigned steps = 0; ///< that were left
+    };
+    const std::unordered_map<ObjectId, Origin>& origins() const { return origins_; }
+
+  private:
+    /// 0: being drawn; 2k: before a step, of k that are left; 2k + 1: being decomposed before that.
+    using Stage = std::uint32_t;
+
+    /// What is drawn in place of a module.
+    struct Unfolded {
+        const Alternative* by = nullptr; ///< null: drawn as it is
+        RuleKind kind = RuleKind::produce;
+        Stage stage = 0;     ///< of the successor
+        bool random = false; ///< the variant decided
+    };
+
+    /// A module's string under way.
+    struct Task {
+        ModuleId module = 0;
+        Stage stage = 0; ///< of the module
+        TurtleState start;
+        const ModuleString* string = nullptr;
+        Stage string_stage = 0;
+        bool interprets = false; ///< the string is drawn, but not part of the word
+        Span span;               ///< of the production
+        Turtle turtle;
+        std::size_t at = 0;     ///< next in the string
+        bool is_branch = false; ///< ends at the bracket that closes it
+        unsigned repeated = 0;  ///< parts around this one at the same stage
+    };
+
+    struct PartKind {
+        ModuleId module = 0;
+        Stage stage = 0;
+        std::vector<TurtleStateMask> reads; ///< of the known parts, each once
+    };
+
+    struct KnownPart {
+        std::uint32_t kind = 0;
+        TurtleState start;
+        TurtlePart part;
+    };
+
+    Stage stage_before(unsigned steps) const;
+    bool unfold(ModuleId module, Stage stage, std::uint32_t variant, Unfolded& result);
+    bool choose(RuleKind kind, ModuleId module, Stage stage, std::uint32_t variant, Unfolded& result);
+    std::optional<TurtlePart> run_from(Task first);
+    bool run_tasks();
+    bool advance(Task& task);
+    bool draw(Task& task, ModuleId module);
+    bool start_task(ModuleId module, Stage stage, const TurtleState& start, const Unfolded& unfolded);
+    TurtleCommand command_of(ModuleId module) const;
+    std::optional<Instance> line_for(const TurtlePart& part, const Task& task);
+    void start_branch();
+    void complete_branch();
+    void complete_task();
+    const TurtlePart* find(ModuleId module, Stage stage, const TurtleState& start) const;
+    TurtleState state_of(const Turtle& turtle, double& snap);
+    std::string name_of_part(const Task& task) const;
+
+    LsysRewriter& rewriter_;
+    TurtleContext& context_;
+    ObjectPool& pool_;
+    const std::map<SymbolId, ObjectId>& models_;
+    Variants variants_;
+    std::size_t max_parts_;
+    bool snaps_;
+    bool shares_branches_ = false; ///< of the word
+    std::vector<Task> tasks_;
+    std::vector<KnownPart> parts_;
+    IdTable part_ids_;
+    std::unordered_map<ObjectId, Origin> origins_;
+    std::vector<PartKind> kinds_;
+    IdTable kind_ids_;
+    DirectionTable directions_;
+    RotationTable rotations_; ///< of exits
+    bool uses_directions_ = false;
+};
+
+} // namespace graftal

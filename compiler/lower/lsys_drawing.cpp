@@ -1,0 +1,268 @@
+#include "compiler/lower/lsys_drawing.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <span>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "compiler/lower/lower_settings.h"
+#include "compiler/lower/lsys_composer.h"
+#include "compiler/lower/lsys_derive.h"
+#include "compiler/lower/lsys_limit.h"
+
+namespace graftal {
+
+namespace {
+
+constexpr Vec3 up(0, 1, 0);
+// Widths of segments where nothing is said: in steps, but not so thin that a large figure's lines vanish.
+constexpr double thinnest_in_steps = 0.1;
+constexpr double thickest_in_steps = 0.8;
+constexpr double thinnest_in_figure = 1.0 / 400;
+
+struct Paint {
+    const char* name;
+    Rgb rgb;
+};
+
+/// The colours of the indices 0, 1, 2, ... where the model names none.
+constexpr std::array<Paint, 8> default_paints = {{
+    {"wood", {0.30, 0.17, 0.08}},
+    {"leaf", {0.12, 0.33, 0.05}},
+    {"shoot", {0.33, 0.50, 0.10}},
+    {"yellow", {0.85, 0.62, 0.06}},
+    {"red", {0.60, 0.05, 0.04}},
+    {"violet", {0.30, 0.12, 0.45}},
+    {"white", {0.85, 0.82, 0.78}},
+    {"blue", {0.07, 0.18, 0.50}},
+}};
+
+// Of figures that use no colours: light, to stand before a dark background.
+constexpr Paint curve_paint = {"curve", {0.90, 0.62, 0.22}};
+constexpr Paint stalk_paint = {"stalk", {0.50, 0.66, 0.24}};
+
+std::vector<Material> palette_of(std::span<const Paint> paints) {
+    std::vector<Material> palette;
+    for (const Paint& paint : paints) {
+        Material& material = palette.emplace_back();
+        material.name = paint.name;
+        material.rgb = paint.rgb;
+    }
+    return palette;
+}
+
+bool uses(const LsysGrammar& grammar, std::initializer_list<TurtleCommand> commands) {
+    return std::ranges::any_of(grammar.commands, [&](TurtleCommand command) {
+        return std::ranges::find(commands, command) != commands.end();
+    });
+}
+
+// Of random models.
+constexpr double most_drift = 0.05;
+constexpr std::uint32_t fewest_variants = 16;
+constexpr std::uint32_t most_variants = 4096;
+
+/// Models with more parts get by with fewer directions.
+constexpr std::size_t most_exact_parts = 100'000;
+
+// Derivations whose levels are looked at for repetition.
+constexpr unsigned first_limit_steps = 24;
+constexpr unsigned last_limit_steps = 192;
+/// With more parts than this no longer derivation is tried.
+constexpr std::size_t most_limit_parts = 1000;
+
+class Drawer {
+  public:
+    Drawer(const LsysGrammar& grammar, const std::map<SymbolId, ObjectId>& models, const LsysDrawOptions& options,
+           Diagnostics& diagnostics)
+        : grammar_(grammar), models_(models), options_(options), diagnostics_(diagnostics),
+          rewriter_(grammar, diagnostics), width_(grammar.width.value_or(thinnest_in_steps * grammar.step)) {}
+
+    std::optional<LsysDrawing> draw(Graph& graph, ObjectPool& pool) {
+        if (!choose_palette(graph)) return std::nullopt;
+        if (!options_.steps) return draw_limit(graph, pool);
+        steps_ = *options_.steps;
+        if (options_.exact || grammar_.has_context) {
+            if (!derive()) return std::nullopt;
+        } else if (!choose_variants(graph) || !choose_snap_angle(graph)) {
+            return std::nullopt;
+        }
+        if (!choose_width(graph)) return std::nullopt;
+        Composition composition(*this, graph, pool, is_line_drawing());
+        std::optional<TurtlePart> part = composition.variant(0);
+        if (!part) return std::nullopt;
+        LsysDrawing drawing{std::move(part->instances), {word_ ? "derived" : "composed"}};
+        Derivation& derivation = drawing.derivation;
+        derivation.steps = steps_;
+        derivation.modules = part->modules.str();
+        derivation.segments = part->segments.str();
+        derivation.parts = composition.composer.part_count();
+        derivation.variants = variants_;
+        derivation.drift = drift_;
+        derivation.error = part->error.farthest;
+        return drawing;
+    }
+
+  private:
+    /// One composer with all that it needs.
+    struct Composition {
+        Composition(Drawer& owner, Graph& graph, ObjectPool& pool, bool lines)
+            : Composition(owner, graph, pool, lines, owner.options_.max_parts, owner.diagnostics_) {}
+        Composition(Drawer& owner, Graph& graph, ObjectPool& pool, bool lines, std::size_t max_parts,
+                    Diagnostics& diagnostics)
+            : drawer(owner), bodies(graph, owner.palette_),
+              turtle{bodies, diagnostics, owner.grammar_.angle_deg, owner.grammar_.step, lines},
+              composer(owner.rewriter_, turtle, pool, owner.models_,
+                       Variants(owner.options_.seed, owner.variants_), {max_parts, owner.snap_angle_}) {}
+
+        std::optional<TurtlePart> variant(std::uint32_t number) {
+            TurtleState start;
+            start.width = drawer.width_;
+            start.tropism = drawer.grammar_.tropism;
+            start.vertical = up;
+            start.variant = number;
+            return drawer.word_ ? composer.compose_word(*drawer.word_, start)
+                                : composer.compose(drawer.steps_, start);
+        }
+
+        Drawer& drawer;
+        TurtleBodies bodies;
+        TurtleContext turtle;
+        LsysComposer composer;
+    };
+
+    bool derive() {
+        word_ = LsysDeriver(rewriter_, diagnostics_, options_.seed, options_.max_modules).derive(steps_);
+        return word_.has_value();
+    }
+
+    /// Longer derivations until their levels repeat.
+    std::optional<LsysDrawing> draw_limit(Graph& graph, ObjectPool& pool) {
+        if (grammar_.is_stochastic || grammar_.has_context) {
+            diagnostics_
+                .error(grammar_.source->steps->span,
+                       fmt::format("productions with {} have no limit",
+                                   grammar_.has_context ? "contexts" : "probabilities"))
+                .with_hint("give 'steps N'");
+            return std::nullopt;
+        }
+        for (steps_ = first_limit_steps; steps_ <= last_limit_steps; steps_ *= 2) {
+            Composition composition(*this, graph, pool, is_line_drawing());
+            composition.turtle.limit = true;
+            const std::optional<TurtlePart> part = composition.variant(0);
+            if (!part) return std::nullopt;
+            const std::size_t errors = diagnostics_.error_count();
+            std::optional<std::vector<Instance>> folded = fold_levels(
+                part->instances, steps_, composition.composer.origins(), rewriter_, graph, pool, diagnostics_);
+            if (diagnostics_.error_count() > errors) return std::nullopt;
+            if (!folded && composition.composer.part_count() > most_limit_parts) break;
+            if (!folded) continue;
+            LsysDrawing drawing{std::move(*folded), {"folded"}};
+            drawing.derivation.parts = composition.composer.part_count();
+            return drawing;
+        }
+        diagnostics_
+            .error(grammar_.source->steps->span,
+                   fmt::format("'lsys {}' has no limit that was found: its levels do not repeat",
+                               grammar_.source->name.text))
+            .with_hint("the levels of a limit differ in their size only: all lengths and widths change alike");
+        return std::nullopt;
+    }
+
+    /// Composes a small pool and judges by its variance how many variants it takes.
+    bool choose_variants(const Graph& graph) {
+        if (!grammar_.is_stochastic) return true;
+        variants_ = fewest_variants;
+        Graph scratch = graph;
+        ObjectPool pool(scratch);
+        Composition composition(*this, scratch, pool, false);
+        double sum = 0, squares = 0;
+        for (std::uint32_t i = 0; i < variants_; ++i) {
+            const std::optional<TurtlePart> part = composition.variant(i);
+            if (!part) return false;
+            const double segments = part->segments.convert_to<double>();
+            sum += segments;
+            squares += segments * segments;
+        }
+        const double mean = sum / variants_;
+        // The relative variance of one whole model is at least that of one level, and no more than that of all.
+        const double variance = mean > 0 ? std::max(0.0, squares / variants_ / (mean * mean) - 1) : 0;
+        const double wanted = variance * std::max(1u, steps_) / (most_drift * most_drift);
+        const double parts = static_cast<double>(composition.composer.part_count()) / variants_;
+        const double room = 0.5 * static_cast<double>(options_.max_parts) / std::max(parts, 1.0);
+        while (variants_ < wanted && 2 * variants_ <= std::min<double>(room, most_variants))
+            variants_ *= 2;
+        drift_ = std::sqrt(variance * std::max(1u, steps_) / variants_);
+        return true;
+    }
+
+    /// The smallest that keeps the parts few enough.
+    bool choose_snap_angle(const Graph& graph) {
+        if (!uses(grammar_, {TurtleCommand::level, TurtleCommand::tropism})) return true;
+        const std::size_t most_parts = std::min(options_.max_parts, most_exact_parts);
+        for (const double angle_deg : {0.0, 0.125, 0.25, 0.5, 1.0, 2.0, 4.0, 8.0}) {
+            snap_angle_ = angle_deg * std::numbers::pi / 180;
+            Graph scratch = graph;
+            ObjectPool pool(scratch);
+            Diagnostics quiet; // other errors come again when the model itself is composed
+            if (Composition(*this, scratch, pool, false, most_parts, quiet).variant(0)) break;
+            if (rewriter_.failed()) return false;
+        }
+        return true;
+    }
+
+    /// Lines as thick as the figure asks: composed once to see how large it is.
+    bool choose_width(const Graph& graph) {
+        if (!is_line_drawing()) return true;
+        Graph scratch = graph;
+        ObjectPool pool(scratch);
+        const std::optional<TurtlePart> sketch = Composition(*this, scratch, pool, false).variant(0);
+        if (!sketch) return false;
+        width_ = std::clamp(thinnest_in_figure * sketch->reach, width_, thickest_in_steps * grammar_.step);
+        return true;
+    }
+
+    bool is_line_drawing() const { return !grammar_.width && !uses(grammar_, {TurtleCommand::width}); }
+
+    /// The materials that the block names, else ours.
+    bool choose_palette(const Graph& graph) {
+        for (const LsysName& name : grammar_.source->colors) {
+            const std::optional<MaterialId> id = material_named(name.text, name.span, graph, diagnostics_);
+            if (!id) return false;
+            palette_.push_back(graph.materials[*id]);
+        }
+        if (!palette_.empty()) return true;
+        const bool coloured = uses(grammar_, {TurtleCommand::colour_up, TurtleCommand::colour_down,
+                                              TurtleCommand::close_polygon});
+        const Paint& paint = uses(grammar_, {TurtleCommand::open_branch}) ? stalk_paint : curve_paint;
+        palette_ = is_line_drawing() && !coloured ? palette_of({&paint, 1}) : palette_of(default_paints);
+        return true;
+    }
+
+    const LsysGrammar& grammar_;
+    const std::map<SymbolId, ObjectId>& models_;
+    const LsysDrawOptions& options_;
+    Diagnostics& diagnostics_;
+    LsysRewriter rewriter_;
+    std::optional<ModuleString> word_; ///< where it is derived
+    double width_;
+    unsigned steps_ = 0;
+    std::uint32_t variants_ = 1;
+    double drift_ = 0;
+    double snap_angle_ = 0;
+    std::vector<Material> palette_; ///< of the colour indices
+};
+
+} // namespace
+
+std::optional<LsysDrawing> draw_lsys(const LsysGrammar& grammar, const std::map<SymbolId, ObjectId>& models,
+                                     const LsysDrawOptions& options, Graph& graph, ObjectPool& pool,
+                                     Diagnostics& diagnostics) {
+    return Drawer(grammar, models, options, diagnostics).draw(graph, pool);
+}
+
+} // namespace graftal

@@ -1,0 +1,93 @@
+#include "compiler/lower/triangulate.h"
+
+#include <cmath>
+#include <cstddef>
+#include <numeric>
+
+#include <glm/geometric.hpp>
+#include <glm/vec2.hpp>
+
+namespace graftal {
+
+namespace {
+
+using Vec2 = glm::dvec2;
+
+Vec3 newell_normal(std::span<const Vec3> corners) {
+    Vec3 normal(0.0);
+    for (std::size_t i = 0; i < corners.size(); ++i)
+        normal += glm::cross(corners[i] - corners[0], corners[(i + 1) % corners.size()] - corners[0]);
+    return normal;
+}
+
+/// Twice the signed area.
+double turn(Vec2 a, Vec2 b, Vec2 c) {
+    return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
+}
+
+class EarClipper {
+  public:
+    EarClipper(std::span<const Vec3> corners, Vec3 normal) : left_(corners.size()) {
+        const Vec3 n = glm::normalize(normal);
+        const Vec3 aside = std::abs(n.x) < 0.6 ? Vec3(1, 0, 0) : Vec3(0, 1, 0);
+        const Vec3 u = glm::normalize(glm::cross(aside, n)), v = glm::cross(n, u);
+        for (const Vec3& corner : corners)
+            flat_.emplace_back(glm::dot(corner - corners[0], u), glm::dot(corner - corners[0], v));
+        std::iota(left_.begin(), left_.end(), 0u);
+    }
+
+    std::vector<std::array<std::uint32_t, 3>> run() && {
+        std::size_t at = 0, since_ear = 0;
+        while (left_.size() > 3) {
+            // Where nothing is an ear, the polygon crosses itself: then the next corner has to do.
+            if (is_ear(at) || since_ear > left_.size()) {
+                clip(at);
+                since_ear = 0;
+            } else {
+                ++since_ear;
+            }
+            at = (at + 1) % left_.size();
+        }
+        clip(0);
+        return std::move(triangles_);
+    }
+
+  private:
+    std::uint32_t corner(std::size_t at) const { return left_[at % left_.size()]; }
+
+    bool is_ear(std::size_t at) const {
+        const std::uint32_t a = corner(at + left_.size() - 1), b = corner(at), c = corner(at + 1);
+        if (turn(flat_[a], flat_[b], flat_[c]) <= 0) return false;
+        for (const std::uint32_t other : left_)
+            if (other != a && other != b && other != c && holds(a, b, c, flat_[other])) return false;
+        return true;
+    }
+
+    bool holds(std::uint32_t a, std::uint32_t b, std::uint32_t c, Vec2 point) const {
+        // A corner met twice, as where a hole is joined, does not close the ear.
+        if (point == flat_[a] || point == flat_[b] || point == flat_[c]) return false;
+        return turn(flat_[a], flat_[b], point) >= 0 && turn(flat_[b], flat_[c], point) >= 0 &&
+               turn(flat_[c], flat_[a], point) >= 0;
+    }
+
+    void clip(std::size_t at) {
+        const std::array triangle = {corner(at + left_.size() - 1), corner(at), corner(at + 1)};
+        if (turn(flat_[triangle[0]], flat_[triangle[1]], flat_[triangle[2]]) != 0) triangles_.push_back(triangle);
+        left_.erase(left_.begin() + static_cast<std::ptrdiff_t>(at % left_.size()));
+    }
+
+    std::vector<Vec2> flat_;
+    std::vector<std::uint32_t> left_;
+    std::vector<std::array<std::uint32_t, 3>> triangles_;
+};
+
+} // namespace
+
+std::vector<std::array<std::uint32_t, 3>> triangulate(std::span<const Vec3> corners) {
+    if (corners.size() < 3) return {};
+    const Vec3 normal = newell_normal(corners);
+    if (!(glm::length(normal) > 0) || !std::isfinite(glm::length(normal))) return {};
+    return EarClipper(corners, normal).run();
+}
+
+} // namespace graftal

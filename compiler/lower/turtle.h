@@ -1,0 +1,133 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include <boost/multiprecision/cpp_int.hpp>
+
+#include "compiler/lower/turtle_bodies.h"
+#include "compiler/lower/turtle_command.h"
+#include "compiler/lower/turtle_state.h"
+#include "compiler/support/diagnostics.h"
+
+// The turtle (ABOP, sections 1.5 and 1.6, appendix C; docs/language.md, "The turtle").
+
+namespace graftal {
+
+using BigCount = boost::multiprecision::cpp_int;
+
+/// How far things may lie from where they belong.
+struct Displacement {
+    double exit_turn = 0;  ///< of the exit's orientation, radians
+    double exit_shift = 0; ///< of the exit's position
+    double farthest = 0;   ///< of any point
+};
+
+/// What a string of modules draws, in the frame of the turtle at its start, and how it leaves the turtle.
+struct TurtlePart {
+    std::vector<Instance> instances;
+    std::vector<Vec3> vertices; ///< for the polygon that was open at the start
+    Affine start_from_exit;
+    TurtleState exit;          ///< the members of `writes` only
+    TurtleStateMask reads = 0; ///< before they were written
+    TurtleStateMask writes = 0;
+    bool cut = false; ///< what follows in the branch is cut off
+    double reach = 0; ///< the turtle goes no farther from the start
+    Displacement error;       ///< from directions that were snapped (LsysComposer)
+    Displacement sensitivity; ///< to the directions at the start, per radian, to first order
+    bool has_bodies = false; ///< there are more than segments to see
+    BigCount modules = 0;
+    BigCount segments = 0;
+};
+
+/// What all turtles of a model share.
+struct TurtleContext {
+    TurtleBodies& bodies;
+    Diagnostics& diagnostics;
+    double angle_deg = 90;
+    double step = 1;
+    bool lines = false; ///< segments are strokes of a curve: small parts are drawn as lines
+    bool limit = false; ///< only proportions count: lines are as thick as their lengths ask, and parts that
+                        ///< differ by a rotation in the plane are made equal
+    std::size_t max_instances = 4'000'000; ///< of one part, its polygons' vertices too
+};
+
+/// Follows commands and gathers what they draw.
+class Turtle {
+  public:
+    /// `context` must outlive the turtle.
+    Turtle(TurtleContext& context, const TurtleState& start);
+
+    /// Carries out one module; false after an error. `models` of `~` are given by `model`.
+    bool run(TurtleCommand command, std::span<const double> parameters, std::optional<ObjectId> model, Span span);
+
+    /// Places a part whose entry state was state(), but for directions that are off by the angle `snap`: draws
+    /// it, and goes where it leaves the turtle.
+    void append(const TurtlePart& part, double snap = 0);
+    /// The same, but the turtle stays as it is: a branch.
+    void append_branch(const TurtlePart& part, double snap = 0);
+
+    /// Notes that what is drawn depends on state().variant.
+    void read_variant() { note(reads_variant); }
+
+    /// The state of a part that begins here.
+    TurtleState state() const;
+    const Affine& start_from_turtle() const { return start_from_turtle_; }
+    /// True where modules are cut off: run() and append() pass over them, but watch the brackets.
+    bool passing_over() const { return cut_depth_ > 0; }
+    /// True if nothing that follows counts.
+    bool finished() const { return cut_depth_ > 0 && branches_.empty(); }
+
+    /// The part; the turtle is used up.
+    TurtlePart finish() &&;
+
+  private:
+    /// How far the turtle itself is off.
+    struct Drift {
+        double turn = 0;
+        double shift = 0;
+
+        double at(double distance) const { return shift + turn * distance; }
+    };
+
+    struct Branch {
+        Affine start_from_turtle;
+        TurtleState state;
+        TurtleStateMask writes;
+        Drift error, sensitivity;
+    };
+
+    bool pass_over(TurtleCommand command);
+    void move(double length, bool draw, bool record, Span span);
+    void turn(Vec3 axis, double angle_deg);
+    void level();
+    void bend();
+    bool set_width(std::span<const double> parameters, Span span);
+    void set_colour(std::span<const double> parameters, int step);
+    void open_branch();
+    void close_branch();
+    void close_polygon(Span span);
+    void record_vertex();
+    bool within_limits(Span span);
+
+    double line_width(double length);
+    double read_width() { return note(reads_width), state_.width; }
+    int read_colour() { return note(reads_colour), state_.colour; }
+    void note(TurtleStateMask bits) { part_.reads |= static_cast<TurtleStateMask>(bits & ~writes_); }
+
+    TurtleContext& context_;
+    Affine start_from_turtle_;
+    TurtleState state_; ///< directions in the frame of the start, as they came in
+    TurtleStateMask writes_ = 0;
+    Drift error_;       ///< from parts before that were snapped
+    Drift sensitivity_; ///< per radian of the directions at the start
+    std::vector<Branch> branches_;
+    std::vector<std::vector<Vec3>> polygons_; ///< open ones, by their vertices
+    std::size_t cut_depth_ = 0;               ///< 1 + branches opened since the cut; 0: no cut
+    std::size_t vertex_count_ = 0;
+    TurtlePart part_;
+};
+
+} // namespace graftal

@@ -1,0 +1,97 @@
+#include "compiler/lower/turtle_bodies.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include <glm/geometric.hpp>
+
+#include "compiler/lower/triangulate.h"
+
+namespace graftal {
+
+namespace {
+
+/// Of a disc, per diameter.
+constexpr double disc_thickness = 1e-3;
+
+/// Places the canonical triangle on three corners.
+Affine on_corners(Vec3 a, Vec3 b, Vec3 c) {
+    const Vec3 centre = (a + b + c) / 3.0;
+    const Vec3 x = (c - b) / std::numbers::sqrt3, y = a - centre;
+    const Vec3 normal = glm::cross(x, y);
+    return {Mat3(x, y, normal / std::sqrt(glm::length(normal))), centre};
+}
+
+} // namespace
+
+MaterialId TurtleBodies::material(int colour) {
+    const auto size = static_cast<int>(palette_.size());
+    const auto index = static_cast<std::size_t>(((colour % size) + size) % size);
+    if (ids_[index]) return *ids_[index];
+    const auto known = std::ranges::find(graph_.materials, palette_[index].name, &Material::name);
+    ids_[index] = static_cast<MaterialId>(known - graph_.materials.begin());
+    if (known == graph_.materials.end()) graph_.materials.push_back(palette_[index]);
+    return *ids_[index];
+}
+
+Instance TurtleBodies::body(PrimitiveKind kind, const Affine& place, int colour, Span span) {
+    auto& primitive = primitives_[static_cast<std::size_t>(kind)];
+    if (!primitive) primitive = graph_.primitive(kind);
+    return {*primitive, place, Tint(), material(colour), span};
+}
+
+void TurtleBodies::add_segment(const Affine& start_from_turtle, double length, double width, int colour, Span span,
+                               std::vector<Instance>& instances) {
+    if (length == 0 || width == 0) return;
+    const double radius = width / 2;
+    add(PrimitiveKind::cylinder, start_from_turtle * Affine::scale({radius, length, radius}), colour, span,
+        instances);
+    const Affine end = start_from_turtle * Affine::translate({0, length, 0});
+    add(PrimitiveKind::sphere, end * Affine::scale(Vec3(radius)), colour, span, instances);
+}
+
+std::optional<Instance> TurtleBodies::line(Vec3 end, int colour, Span span) {
+    const double length = glm::length(end);
+    if (!(length > 0)) return std::nullopt;
+    const Vec3 y = end / length;
+    const Vec3 aside = std::abs(y.z) < 0.9 ? Vec3(0, 0, 1) : Vec3(1, 0, 0);
+    const Vec3 x = glm::normalize(glm::cross(y, aside));
+    const double radius = 0.5 * length;
+    return body(PrimitiveKind::cylinder, {Mat3(radius * x, end, radius * glm::cross(x, y)), Vec3(0.0)}, colour,
+                span);
+}
+
+void TurtleBodies::add_sphere(const Affine& start_from_turtle, double diameter, int colour, Span span,
+                              std::vector<Instance>& instances) {
+    if (diameter == 0) return;
+    add(PrimitiveKind::sphere, start_from_turtle * Affine::scale(Vec3(diameter / 2)), colour, span, instances);
+}
+
+void TurtleBodies::add_disc(const Affine& start_from_turtle, double diameter, int colour, Span span,
+                            std::vector<Instance>& instances) {
+    if (diameter == 0) return;
+    const Affine upright = start_from_turtle * Affine::rotate({1, 0, 0}, 90);
+    const double thickness = disc_thickness * diameter;
+    add(PrimitiveKind::cylinder,
+        upright * Affine::translate({0, -thickness / 2, 0}) *
+            Affine::scale({diameter / 2, thickness, diameter / 2}),
+        colour, span, instances);
+}
+
+void TurtleBodies::add_polygon(std::span<const Vec3> corners, int colour, Span span,
+                               std::vector<Instance>& instances) {
+    for (const auto& [a, b, c] : triangulate(corners)) {
+        const Affine place = on_corners(corners[a], corners[b], corners[c]);
+        if (is_finite(place)) add(PrimitiveKind::triangle, place, colour, span, instances);
+    }
+}
+
+void TurtleBodies::add_model(ObjectId root, const Affine& start_from_turtle, double scale, Span span,
+                             std::vector<Instance>& instances) {
+    if (scale == 0) return;
+    instances.push_back({root, start_from_turtle * Affine::scale(Vec3(scale)), Tint(), std::nullopt, span});
+}
+
+} // namespace graftal

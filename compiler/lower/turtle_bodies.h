@@ -1,0 +1,52 @@
+#pragma once
+
+#include <array>
+#include <optional>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "compiler/graph/graph.h"
+
+namespace graftal {
+
+
+/// Makes the instances of what a turtle draws. A turtle's frame has x to its right, y ahead, and z up, so that
+/// the canonical cylinder is a segment.
+class TurtleBodies {
+  public:
+    /// Colour index k draws with `palette[k mod size]`. `graph` gets the primitives and materials that are
+    /// used, a material that it has by this name is taken; it must outlive this.
+    TurtleBodies(Graph& graph, std::vector<Material> palette) : graph_(graph), palette_(std::move(palette)) {
+        ids_.resize(palette_.size());
+    }
+
+    /// A cylinder with a ball at its far end, which fills the gap to what goes on from there.
+    void add_segment(const Affine& start_from_turtle, double length, double width, int colour, Span span,
+                     std::vector<Instance>& instances);
+    /// What stands for a line from the start to `end` where it is too small to see: as thick as it is long,
+    /// so that fine curves stay visible. Nothing if the points are equal.
+    std::optional<Instance> line(Vec3 end, int colour, Span span);
+    void add_sphere(const Affine& start_from_turtle, double diameter, int colour, Span span,
+                    std::vector<Instance>& instances);
+    /// A flat disc about the turtle, in the plane of its heading and its left.
+    void add_disc(const Affine& start_from_turtle, double diameter, int colour, Span span,
+                  std::vector<Instance>& instances);
+    void add_polygon(std::span<const Vec3> corners, int colour, Span span, std::vector<Instance>& instances);
+    void add_model(ObjectId root, const Affine& start_from_turtle, double scale, Span span,
+                   std::vector<Instance>& instances);
+
+  private:
+    MaterialId material(int colour);
+    Instance body(PrimitiveKind kind, const Affine& place, int colour, Span span);
+    void add(PrimitiveKind kind, const Affine& place, int colour, Span span, std::vector<Instance>& instances) {
+        instances.push_back(body(kind, place, colour, span));
+    }
+
+    Graph& graph_;
+    std::vector<Material> palette_;                ///< not empty
+    std::vector<std::optional<MaterialId>> ids_; ///< of the palette's materials used so far
+    std::array<std::optional<ObjectId>, primitive_kind_count> primitives_; ///< those used so far
+};
+
+} // namespace graftal

@@ -1,0 +1,72 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "compiler/support/affine.h"
+#include "compiler/support/id_table.h"
+
+namespace graftal {
+
+/// What a part of a model may depend on besides the place where it stands: the state of the turtle that
+/// comes in. Directions are given in the frame that the part starts in.
+struct TurtleState {
+    double width = 0;
+    int colour = 0;
+    double elasticity = 0; ///< of tropism
+    Vec3 tropism{0.0};     ///< unit vector that segments bend towards
+    Vec3 vertical{0.0};    ///< unit vector that `$` looks at
+    bool in_polygon = false;
+    std::uint32_t variant = 0; ///< of what is random (lsys_composer.h)
+};
+
+/// The members of a TurtleState, as a set.
+using TurtleStateMask = std::uint8_t;
+enum TurtleStateBit : TurtleStateMask {
+    reads_width = 1,
+    reads_colour = 2,
+    reads_elasticity = 4,
+    reads_tropism = 8,
+    reads_vertical = 16,
+    reads_polygon = 32,
+    reads_variant = 64,
+};
+
+/// True if the members of `mask` are equal.
+bool equal(const TurtleState& a, const TurtleState& b, TurtleStateMask mask);
+/// A hash of the members of `mask`.
+std::uint64_t hash(const TurtleState& state, TurtleStateMask mask);
+
+/// Directions that differ by rounding only, or by a small angle, made equal: the first that came stands for
+/// all within the tolerance.
+class DirectionTable {
+  public:
+    static constexpr double rounding = 1e-11;
+
+    /// `tolerance`: a distance between unit vectors, at most 1.
+    explicit DirectionTable(double tolerance = rounding) : tolerance_(tolerance) {}
+
+    /// Requires a vector no longer than 1, but for rounding.
+    Vec3 representative(Vec3 direction);
+
+  private:
+    double tolerance_;
+    std::vector<Vec3> known_;
+    IdTable ids_; ///< by cells of four tolerances
+};
+
+/// The same for rotations, by rounding only. Without this the errors of a rotation that is composed of seven
+/// like itself, level by level, would grow sevenfold a level.
+class RotationTable {
+  public:
+    RotationTable() { representative(Mat3(1.0)); } // exactly, for what comes near it
+
+    /// Requires a rotation, but for rounding, and gives one.
+    Mat3 representative(const Mat3& rotation);
+
+  private:
+    std::vector<Mat3> known_;
+    IdTable ids_;
+};
+
+} // namespace graftal

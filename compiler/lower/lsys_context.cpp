@@ -144,7 +144,8 @@ bool ContextMatcher::match_right(Range items, std::uint32_t position, ModuleStri
     for (std::uint32_t at = items.begin; at < items.end;) {
         const Item& item = items_[at];
         if (item.beyond > 0) {
-            branch = find_branch(at, branch == none ? links_.branch(position) : links_.next_branch(branch), bound);
+            branch =
+                find_branch(at, branch == none ? links_.branch(position) : links_.next_branch(branch), bound);
             if (branch == none) return false;
             at = item.beyond;
         } else {

@@ -13,8 +13,9 @@ namespace {
 constexpr std::uint64_t decomposing = UINT64_MAX;
 
 bool cuts(const LsysGrammar& grammar, const std::vector<LsysTemplate>& string) {
-    return std::ranges::any_of(
-        string, [&](const LsysTemplate& module) { return grammar.commands[module.symbol] == TurtleCommand::cut; });
+    return std::ranges::any_of(string, [&](const LsysTemplate& module) {
+        return grammar.commands[module.symbol] == TurtleCommand::cut;
+    });
 }
 
 } // namespace
@@ -116,7 +117,9 @@ bool LsysDeriver::decompose() {
 /// From each `%` to the bracket that closes its branch, or to the end.
 void LsysDeriver::cut() {
     const LsysGrammar& grammar = rewriter_.grammar();
-    const auto command = [&](ModuleId module) { return grammar.commands[rewriter_.modules().symbol(module)]; };
+    const auto command = [&](ModuleId module) {
+        return grammar.commands[rewriter_.modules().symbol(module)];
+    };
     auto kept = word_.begin();
     for (auto at = word_.begin(); at != word_.end(); ++at) {
         *kept++ = *at;

@@ -94,8 +94,8 @@ class LsysRewriter {
 };
 
 template<typename Apply>
-std::optional<const LsysRule*> LsysRewriter::try_rules(std::span<const std::uint32_t> rules, std::size_t arity,
-                                                       const Apply& apply) {
+std::optional<const LsysRule*> LsysRewriter::try_rules(std::span<const std::uint32_t> rules,
+                                                       std::size_t arity, const Apply& apply) {
     const LsysRule* first = nullptr;
     for (const std::uint32_t id : rules) {
         const LsysRule& rule = grammar_.rules[id];

@@ -4,9 +4,9 @@
 
 namespace graftal {
 
-/// Random numbers that are a function of key and counter alone (Salmon et al. 2011, "Parallel random numbers: as
-/// easy as 1, 2, 3"), so that none depends on which were drawn before, or by whom. They are mixed as in splitmix64
-/// (Steele, Lea and Flood 2014).
+/// Random numbers that are a function of key and counter alone (Salmon et al. 2011, "Parallel random numbers:
+/// as easy as 1, 2, 3"), so that none depends on which were drawn before, or by whom. They are mixed as in
+/// splitmix64 (Steele, Lea and Flood 2014).
 class CounterRandom {
   public:
     explicit constexpr CounterRandom(std::uint64_t seed) : key_(mixed(seed)) {}

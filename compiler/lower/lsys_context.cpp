@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include "compiler/support/huge_pages.h"
-
 namespace graftal {
 
 namespace {
@@ -18,12 +16,6 @@ bool opens(const LsysGrammar& grammar, const LsysPattern& pattern) {
 
 bool closes(const LsysGrammar& grammar, const LsysPattern& pattern) {
     return grammar.commands[pattern.symbol] == TurtleCommand::close_branch;
-}
-
-void resize(std::vector<std::uint32_t>& links, std::size_t size) {
-    if (size > links.capacity()) links.clear(); // old ones need not be copied
-    reserve_huge(links, size);
-    links.resize(size);
 }
 
 } // namespace
@@ -49,7 +41,7 @@ void ContextLinks::build(const ModuleTable& modules, std::span<const ModuleId> w
 }
 
 void ContextLinks::link_before(const ModuleTable& modules, std::span<const ModuleId> word) {
-    resize(before_, word.size());
+    before_.resize(word.size());
     open_.clear();
     std::uint32_t last = none;
     for (std::uint32_t i = 0; i < word.size(); ++i) {
@@ -67,10 +59,10 @@ void ContextLinks::link_before(const ModuleTable& modules, std::span<const Modul
 }
 
 void ContextLinks::link_after(const ModuleTable& modules, std::span<const ModuleId> word) {
-    resize(after_, word.size());
+    after_.resize(word.size());
     if (has_branches_) {
-        resize(branch_, word.size());
-        resize(next_branch_, word.size());
+        branch_.resize(word.size());
+        next_branch_.resize(word.size());
     }
     open_.clear();
     std::uint32_t next = none;
@@ -152,7 +144,8 @@ bool ContextMatcher::match_right(Range items, std::uint32_t position, ModuleStri
     for (std::uint32_t at = items.begin; at < items.end;) {
         const Item& item = items_[at];
         if (item.beyond > 0) {
-            branch = find_branch(at, branch == none ? links_.branch(position) : links_.next_branch(branch), bound);
+            branch =
+                find_branch(at, branch == none ? links_.branch(position) : links_.next_branch(branch), bound);
             if (branch == none) return false;
             at = item.beyond;
         } else {

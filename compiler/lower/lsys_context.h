@@ -10,8 +10,8 @@
 #include "compiler/support/id_table.h"
 
 // Contexts of modules in bracketed strings (Prusinkiewicz and Lindenmayer, The Algorithmic Beauty of Plants,
-// section 1.8): a module's left context lies on the path to the root, its right context on the axis away from it
-// and in the branches there.
+// section 1.8): a module's left context lies on the path to the root, its right context on the axis away from
+// it and in the branches there.
 
 namespace graftal {
 
@@ -32,7 +32,8 @@ class ContextLinks {
     /// The neighbour away from the root, on the same axis: past branches and ignored modules. For a `[`, the
     /// first such module of its branch.
     std::uint32_t after(std::uint32_t position) const { return after_[position]; }
-    /// The `[` of the first branch between a module and the one after it. For a `[`, of the first in its branch.
+    /// The `[` of the first branch between a module and the one after it. For a `[`, of the first in its
+    /// branch.
     std::uint32_t branch(std::uint32_t position) const { return branch_[position]; }
     /// From one of these branches to the next, by their `[`.
     std::uint32_t next_branch(std::uint32_t position) const { return next_branch_[position]; }
@@ -60,15 +61,15 @@ class ContextMatcher {
     /// What matches() looks at from now on. Requires what ContextLinks::build() does; the word must stay.
     void look_at(std::span<const ModuleId> word);
 
-    /// The modules next to one towards the root and away from it, as ContextLinks says; `none` for the ids of what
-    /// is not there. Each requires a rule with such a context.
+    /// The modules next to one towards the root and away from it, as ContextLinks says; `none` for the ids of
+    /// what is not there. Each requires a rule with such a context.
     ModuleId before(std::uint32_t position) const { return module_at(links_.before(position)); }
     ModuleId after(std::uint32_t position) const { return module_at(links_.after(position)); }
 
-    /// Whether the contexts of a rule of the grammar match around a module that its predecessor matches. If so,
-    /// adds the modules that they match to `bound`, in the order of LsysRule::variables. A pattern in brackets
-    /// matches the first branch that begins so and lies beyond those that earlier patterns match; branches
-    /// without a pattern are passed over. For all modules of a word together O(word * pattern).
+    /// Whether the contexts of a rule of the grammar match around a module that its predecessor matches. If
+    /// so, adds the modules that they match to `bound`, in the order of LsysRule::variables. A pattern in
+    /// brackets matches the first branch that begins so and lies beyond those that earlier patterns match;
+    /// branches without a pattern are passed over. For all modules of a word together O(word * pattern).
     bool matches(const LsysRule& rule, std::uint32_t position, ModuleString& bound);
 
   private:
@@ -106,7 +107,8 @@ class ContextMatcher {
     std::vector<Range> right_; ///< of the rules, in items_
     std::vector<Item> items_;
     std::span<const ModuleId> word_;
-    /// What find_branch() found, of modules that are ignored themselves: many such may look at the same branches.
+    /// What find_branch() found, of modules that are ignored themselves: many such may look at the same
+    /// branches.
     std::vector<KnownBranch> known_;
     IdTable known_ids_;
     bool remember_ = false;

@@ -59,7 +59,8 @@ bool LsysDecomposer::run(ModuleId module, const CounterRandom& random, ModuleStr
         if (depth == max_decomposition_depth || ++applied_ > max_modules_)
             return refuse(module, "does not end");
         const ModuleString& successor = choose(*alternatives, random(draws++)).successor;
-        if (out.size() + pending_.size() + successor.size() > max_modules_) return refuse(module, "is too long");
+        if (out.size() + pending_.size() + successor.size() > max_modules_)
+            return refuse(module, "is too long");
         for (auto part = successor.rbegin(); part != successor.rend(); ++part)
             pending_.push_back({*part, depth + 1});
     }
@@ -70,10 +71,12 @@ bool LsysDecomposer::refuse(ModuleId module, const char* what) {
     const LsysGrammar& grammar = rewriter_.grammar();
     const SymbolId symbol = rewriter_.modules().symbol(module);
     const LsysRule& rule = grammar.rules[grammar.candidates(RuleKind::decompose, symbol).front()];
-    diagnostics_.error(rule.source->span, fmt::format("the decomposition of '{}' {}", grammar.symbols[symbol], what))
-        .with_hint(fmt::format("at most {} levels and {} modules are followed; a module that comes back needs a "
-                               "condition that becomes false",
-                               max_decomposition_depth, max_modules_));
+    diagnostics_
+        .error(rule.source->span, fmt::format("the decomposition of '{}' {}", grammar.symbols[symbol], what))
+        .with_hint(
+            fmt::format("at most {} levels and {} modules are followed; a module that comes back needs a "
+                        "condition that becomes false",
+                        max_decomposition_depth, max_modules_));
     return false;
 }
 

@@ -5,8 +5,6 @@
 
 #include <fmt/format.h>
 
-#include "compiler/support/huge_pages.h"
-
 namespace graftal {
 
 namespace {
@@ -15,8 +13,9 @@ namespace {
 constexpr std::uint64_t decomposing = UINT64_MAX;
 
 bool cuts(const LsysGrammar& grammar, const std::vector<LsysTemplate>& string) {
-    return std::ranges::any_of(
-        string, [&](const LsysTemplate& module) { return grammar.commands[module.symbol] == TurtleCommand::cut; });
+    return std::ranges::any_of(string, [&](const LsysTemplate& module) {
+        return grammar.commands[module.symbol] == TurtleCommand::cut;
+    });
 }
 
 } // namespace
@@ -82,7 +81,7 @@ std::optional<std::uint64_t> LsysDeriver::choose() {
     if (successors_.has_context()) matcher_.look_at(word_);
     const CounterRandom random = random_.sequence(step_);
     chosen_.clear();
-    reserve_huge(chosen_, word_.size());
+    chosen_.reserve(word_.size());
     std::uint64_t length = 0;
     for (std::uint32_t i = 0; i < word_.size(); ++i) {
         const LsysSuccessors::Entry entry = successors_.entry(word_[i]);
@@ -98,7 +97,7 @@ std::optional<std::uint64_t> LsysDeriver::choose() {
 
 void LsysDeriver::gather(std::uint64_t length) {
     next_.clear();
-    reserve_huge(next_, length);
+    next_.reserve(length);
     if (successors_.is_plain())
         successors_.runs().append(
             word_.size(), [&](std::size_t i) { return successors_.run(word_[i]); }, next_);
@@ -118,7 +117,9 @@ bool LsysDeriver::decompose() {
 /// From each `%` to the bracket that closes its branch, or to the end.
 void LsysDeriver::cut() {
     const LsysGrammar& grammar = rewriter_.grammar();
-    const auto command = [&](ModuleId module) { return grammar.commands[rewriter_.modules().symbol(module)]; };
+    const auto command = [&](ModuleId module) {
+        return grammar.commands[rewriter_.modules().symbol(module)];
+    };
     auto kept = word_.begin();
     for (auto at = word_.begin(); at != word_.end(); ++at) {
         *kept++ = *at;

@@ -10,26 +10,27 @@
 #include "compiler/lower/lsys_successors.h"
 #include "compiler/support/diagnostics.h"
 
-// The derivation of words, module by module. Semantics: Prusinkiewicz and Lindenmayer, The Algorithmic Beauty of
-// Plants, chapter 1.
+// The derivation of words, module by module. Semantics: Prusinkiewicz and Lindenmayer, The Algorithmic Beauty
+// of Plants, chapter 1.
 
 namespace graftal {
 
 /// Words are never longer: their positions are numbered with 32 bits.
 inline constexpr std::uint64_t max_word_modules = 4'000'000'000;
 
-/// Derives the words of a grammar. In each step all modules are replaced at once, by the first production that
-/// fits, contexts before others, or by chance; a module that none fits stays. The axiom and the result of each
-/// step are decomposed, and lose what stands behind a `%` in its branch.
+/// Derives the words of a grammar. In each step all modules are replaced at once, by the first production
+/// that fits, contexts before others, or by chance; a module that none fits stays. The axiom and the result
+/// of each step are decomposed, and lose what stands behind a `%` in its branch.
 class LsysDeriver {
   public:
     /// Both must outlive this. Requires max_modules <= max_word_modules.
-    LsysDeriver(LsysRewriter& rewriter, Diagnostics& diagnostics, std::uint64_t seed, std::uint64_t max_modules);
+    LsysDeriver(LsysRewriter& rewriter, Diagnostics& diagnostics, std::uint64_t seed,
+                std::uint64_t max_modules);
 
-    /// The word after this many steps; its modules are in the rewriter's table. What a module becomes by chance
-    /// depends on the seed, the step and the module's position alone. Nothing after an error, which is reported
-    /// once; a step whose word would have more than max_modules is an error, found before the word takes memory.
-    /// O(modules of all words), and O(modules * patterns) for contexts.
+    /// The word after this many steps; its modules are in the rewriter's table. What a module becomes by
+    /// chance depends on the seed, the step and the module's position alone. Nothing after an error, which is
+    /// reported once; a step whose word would have more than max_modules is an error, found before the word
+    /// takes memory. O(modules of all words), and O(modules * patterns) for contexts.
     std::optional<ModuleString> derive(unsigned steps);
 
   private:

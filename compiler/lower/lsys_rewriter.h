@@ -58,14 +58,15 @@ class LsysRewriter {
     /// The three above at once: tries the rule and, if it fits, says what it gives.
     Fit apply(const LsysRule& rule, std::span<const double> values, Alternative& result);
 
-    /// Calls `apply(rule)`, which gives a Fit, for the rules that may rewrite a module of this many parameters.
-    /// The first that fits decides: without a probability it is applied; with one, all others that fit and
-    /// have one compete. Gives the first that fits, or null; nothing after an error.
+    /// Calls `apply(rule)`, which gives a Fit, for the rules that may rewrite a module of this many
+    /// parameters. The first that fits decides: without a probability it is applied; with one, all others
+    /// that fit and have one compete. Gives the first that fits, or null; nothing after an error.
     template<typename Apply>
     std::optional<const LsysRule*> try_rules(std::span<const std::uint32_t> rules, std::size_t arity,
                                              const Apply& apply);
 
-    /// Whether the probabilities of competing rules sum to 1 as closely as books print them; reports it if not.
+    /// Whether the probabilities of competing rules sum to 1 as closely as books print them; if not, reports
+    /// it.
     bool sums_to_one(double sum, const LsysRule& first);
 
     bool failed() const { return failed_; }
@@ -93,8 +94,8 @@ class LsysRewriter {
 };
 
 template<typename Apply>
-std::optional<const LsysRule*> LsysRewriter::try_rules(std::span<const std::uint32_t> rules, std::size_t arity,
-                                                       const Apply& apply) {
+std::optional<const LsysRule*> LsysRewriter::try_rules(std::span<const std::uint32_t> rules,
+                                                       std::size_t arity, const Apply& apply) {
     const LsysRule* first = nullptr;
     for (const std::uint32_t id : rules) {
         const LsysRule& rule = grammar_.rules[id];

@@ -35,8 +35,8 @@ void LsysSuccessors::look_at(const LsysRule& rule) {
     contexts.has_left |= !rule.left.empty();
     contexts.has_right |= !rule.right.empty();
     // A pattern in brackets has three modules at least, or sees whether there is a branch.
-    contexts.sight = std::max(contexts.sight,
-                              rule.left.size() > 1 || rule.right.size() > 1 ? Sight::far : Sight::near);
+    contexts.sight =
+        std::max(contexts.sight, rule.left.size() > 1 || rule.right.size() > 1 ? Sight::far : Sight::near);
 }
 
 void LsysSuccessors::trim() {
@@ -110,7 +110,8 @@ std::optional<const LsysRule*> LsysSuccessors::compete_in_context(ModuleId modul
 }
 
 /// What the rules in competing_ make of a module that stays if there are none.
-LsysSuccessors::Entry LsysSuccessors::entry_of(const LsysRule* first, RunId stays, std::vector<Choice>& choices) {
+LsysSuccessors::Entry LsysSuccessors::entry_of(const LsysRule* first, RunId stays,
+                                               std::vector<Choice>& choices) {
     if (!first) return stays;
     if (!first->probability) return competing_.front().run;
     const auto entry = static_cast<Entry>(choices.size() | mark);

@@ -14,12 +14,12 @@
 
 namespace graftal {
 
-/// What the modules of a derivation become in a step, as runs. Each distinct module is rewritten once, and once
-/// for each combination of modules that the contexts of a production match around it.
+/// What the modules of a derivation become in a step, as runs. Each distinct module is rewritten once, and
+/// once for each combination of modules that the contexts of a production match around it.
 class LsysSuccessors {
   public:
-    /// A RunId; or one with its highest bit set for a module that has none of its own, since contexts or chance
-    /// decide; or `unknown`.
+    /// A RunId; or one with its highest bit set for a module that has none of its own, since contexts or
+    /// chance decide; or `unknown`.
     using Entry = std::uint32_t;
     static constexpr Entry unknown = UINT32_MAX;
     static bool is_run(Entry entry) { return entry < ModuleRuns::most_modules; }
@@ -40,8 +40,8 @@ class LsysSuccessors {
 
     /// The run of a module whose entry is known to be one.
     RunId run(ModuleId module) const { return entries_[module]; }
-    /// The run of a module whose entry is none. `draw` is uniform over all 64 bits; `matcher` looks at the word,
-    /// which has the module at this position. Nothing after an error.
+    /// The run of a module whose entry is none. `draw` is uniform over all 64 bits; `matcher` looks at the
+    /// word, which has the module at this position. Nothing after an error.
     std::optional<RunId> choose(ModuleId module, Entry entry, std::uint64_t draw, ContextMatcher& matcher,
                                 std::uint32_t position);
 
@@ -103,7 +103,7 @@ class LsysSuccessors {
     std::vector<Entry> entries_; ///< of the modules
     std::vector<Choice> choices_;
 
-    ModuleKeys<Entry> nearby_;   ///< of modules between others, by their symbols
+    ModuleKeys<Entry> nearby_;     ///< of modules between others, by their symbols
     ModuleKeys<Outcome> outcomes_; ///< of rules
 
     std::vector<Outcome> competing_;

@@ -13,8 +13,8 @@ namespace graftal {
 /// What was found out about combinations of modules: a `Value` for each tag and list of modules.
 template<typename Value> class ModuleKeys {
   public:
-    /// The value of the combination, for the caller to fill in if it is new; it equals `fresh` then. Valid until
-    /// the next call.
+    /// The value of the combination, for the caller to fill in if it is new; it equals `fresh` then. Valid
+    /// until the next call.
     Value& find_or_add(std::uint32_t tag, std::span<const ModuleId> modules, const Value& fresh);
 
     std::size_t size() const { return entries_.size(); }
@@ -36,7 +36,8 @@ template<typename Value> class ModuleKeys {
 };
 
 template<typename Value>
-Value& ModuleKeys<Value>::find_or_add(std::uint32_t tag, std::span<const ModuleId> modules, const Value& fresh) {
+Value& ModuleKeys<Value>::find_or_add(std::uint32_t tag, std::span<const ModuleId> modules,
+                                      const Value& fresh) {
     std::uint64_t hash = mixed(0, tag);
     for (const ModuleId module : modules)
         hash = mixed(hash, module);

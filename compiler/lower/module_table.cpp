@@ -21,7 +21,9 @@ std::uint64_t cell_of(double number) {
 double NumberTable::representative(double number) {
     if (number == 0) return 0;
     const std::uint64_t cell = cell_of(number);
-    const auto like = [&](std::uint32_t id) { return std::abs(numbers_[id] - number) <= slack * std::abs(number); };
+    const auto like = [&](std::uint32_t id) {
+        return std::abs(numbers_[id] - number) <= slack * std::abs(number);
+    };
     for (const double edge : {number * (1 - slack), number * (1 + slack)}) {
         if (cell_of(edge) == cell) continue;
         const std::uint32_t found = ids_.find(mixed(0, cell_of(edge)), like);

@@ -68,7 +68,7 @@ modules a b
 axiom b[+a[-a]a]aa[-a]
 b < a -> b[-a]a
 b -> a)")
-    ->Arg(30)->Unit(benchmark::kMillisecond);
+    ->Arg(24)->Unit(benchmark::kMillisecond);
 
 } // namespace
 } // namespace graftal

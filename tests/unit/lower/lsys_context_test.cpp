@@ -49,9 +49,12 @@ class PlainMatcher {
     std::optional<std::size_t> parent(std::size_t at) const {
         int closed = 0;
         while (at-- > 0) {
-            if (word_[at] == ']') ++closed;
-            else if (word_[at] == '[') closed -= closed > 0 ? 1 : 0;
-            else if (closed == 0 && !is_ignored(at)) return at;
+            if (word_[at] == ']')
+                ++closed;
+            else if (word_[at] == '[')
+                closed -= closed > 0 ? 1 : 0;
+            else if (closed == 0 && !is_ignored(at))
+                return at;
         }
         return std::nullopt;
     }
@@ -87,8 +90,8 @@ class PlainMatcher {
         return joined(*inside, match_right(close + 1, pattern.substr(end + 1)));
     }
 
-    static std::optional<std::vector<std::size_t>> joined(std::vector<std::size_t> first,
-                                                          const std::optional<std::vector<std::size_t>>& rest) {
+    static std::optional<std::vector<std::size_t>>
+    joined(std::vector<std::size_t> first, const std::optional<std::vector<std::size_t>>& rest) {
         if (!rest) return std::nullopt;
         first.insert(first.end(), rest->begin(), rest->end());
         return first;
@@ -150,7 +153,8 @@ std::string expected(const std::string& word, const PlainRule& rule, std::string
         if (bound)
             for (const std::size_t position : *bound)
                 values.push_back(std::to_string(position));
-        out += bound ? "X" + listed(values) : numbered(word.substr(0, i + 1)).substr(numbered(word.substr(0, i)).size());
+        out += bound ? "X" + listed(values)
+                     : numbered(word.substr(0, i + 1)).substr(numbered(word.substr(0, i)).size());
     }
     return out;
 }
@@ -166,8 +170,8 @@ TEST(LsysContext, randomRulesOnRandomWordsAsAPlainMatcherSays) {
         const std::string predecessor = named(std::string(1, rule.predecessor), names);
         const std::string left = named(rule.left, names);
         const std::string right = named(rule.right, names);
-        const std::string text = fmt::format("modules A B C X\nignore +\naxiom {}\n{}{}{} -> X{}", numbered(word),
-                                             left.empty() ? "" : left + " < ", predecessor,
+        const std::string text = fmt::format("modules A B C X\nignore +\naxiom {}\n{}{}{} -> X{}",
+                                             numbered(word), left.empty() ? "" : left + " < ", predecessor,
                                              right.empty() ? "" : " > " + right, listed(names));
         const std::string after = derived(text, 1);
         ASSERT_EQ(after, expected(word, rule, "+")) << text;
@@ -238,10 +242,8 @@ TEST(LsysContext, parametersOfContexts) {
 
 /// The five bushes of ABOP, figure 1.31, as what `left < F > right` becomes for 000, 001, ... 111.
 const std::vector<std::vector<std::string>> bushes = {
-    {"0", "1[+F1F1]", "1", "1", "0", "1F1", "0", "0"},
-    {"1", "1[-F1F1]", "1", "1", "0", "1F1", "1", "0"},
-    {"0", "1", "0", "1[+F1F1]", "0", "1F1", "0", "0"},
-    {"1", "0", "0", "1F1", "1", "1[+F1F1]", "1", "0"},
+    {"0", "1[+F1F1]", "1", "1", "0", "1F1", "0", "0"}, {"1", "1[-F1F1]", "1", "1", "0", "1F1", "1", "0"},
+    {"0", "1", "0", "1[+F1F1]", "0", "1F1", "0", "0"}, {"1", "0", "0", "1F1", "1", "1[+F1F1]", "1", "0"},
     {"0", "1[-F1F1]", "1", "1", "0", "1F1", "1", "0"},
 };
 
@@ -290,7 +292,8 @@ TEST(LsysContext, hostileWordsTakeLinearTime) {
     EXPECT_GT(run.derive(18).value().size(), 200'000u);
     // Deep brackets.
     const std::string deep = std::string(200, '[') + "D" + std::string(200, ']');
-    testing::LsysModel nested("modules A B D X\naxiom AD\nA < D > [B] -> X\nA < D -> " + deep + "\nB < D -> X\n"
+    testing::LsysModel nested("modules A B D X\naxiom AD\nA < D > [B] -> X\nA < D -> " + deep +
+                              "\nB < D -> X\n"
                               "A > [[[[D]]]]B -> X");
     EXPECT_GT(nested.derive(100).value().size(), 40'000u);
 }

@@ -13,8 +13,8 @@
 namespace graftal {
 namespace {
 
-using ::testing::HasSubstr;
 using testing::derived;
+using ::testing::HasSubstr;
 using testing::LsysModel;
 
 TEST(LsysDeriver, stepsRewriteAllModulesAtOnce) {
@@ -36,12 +36,14 @@ TEST(LsysDeriver, longSuccessors) {
         std::string successor;
         for (std::size_t i = 0; i < length; ++i)
             successor += "FG+-fgL"[i % 7];
-        EXPECT_EQ(derived("modules A L\naxiom ALA\nA -> " + successor, 1), successor + "L" + successor) << length;
+        EXPECT_EQ(derived("modules A L\naxiom ALA\nA -> " + successor, 1), successor + "L" + successor)
+            << length;
     }
 }
 
 /// Pearson's statistic of how often words have each of some symbols.
-double chi_squared(const std::map<std::string, double>& seen, const std::map<std::string, double>& probabilities) {
+double chi_squared(const std::map<std::string, double>& seen,
+                   const std::map<std::string, double>& probabilities) {
     double count = 0;
     for (const auto& [symbol, n] : seen)
         count += n;
@@ -54,7 +56,8 @@ double chi_squared(const std::map<std::string, double>& seen, const std::map<std
     return sum;
 }
 
-std::map<std::string, double> frequencies(const LsysModel& model, const ModuleString& word, std::size_t group) {
+std::map<std::string, double> frequencies(const LsysModel& model, const ModuleString& word,
+                                          std::size_t group) {
     std::map<std::string, double> seen;
     for (std::size_t i = 0; i + group <= word.size(); i += group) {
         std::string symbols;
@@ -162,14 +165,16 @@ TEST(LsysDeriver, endlessDecompositionsAreErrors) {
 }
 
 TEST(LsysDeriver, longWordsAreErrorsBeforeTheyTakeMemory) {
-    EXPECT_EQ(derived("steps 5\naxiom F\nF -> FF", 20, 0, 1000), R"(m.lsys:2:1: error: the derivation has more than 1000 modules after step 10
+    EXPECT_EQ(derived("steps 5\naxiom F\nF -> FF", 20, 0, 1000),
+              R"(m.lsys:2:1: error: the derivation has more than 1000 modules after step 10
     steps 5
     ^~~~~
     hint: fewer steps give a shorter one
 )");
     EXPECT_EQ(derived("axiom F\nF -> FF", 3, 0, 8), "FFFFFFFF");
     EXPECT_THAT(derived("axiom FFF", 0, 0, 2), HasSubstr("more than 2 modules after step 0"));
-    EXPECT_THAT(derived("axiom F\nF -> FF : 1", 20, 0, 1000), HasSubstr("more than 1000 modules after step 10"));
+    EXPECT_THAT(derived("axiom F\nF -> FF : 1", 20, 0, 1000),
+                HasSubstr("more than 1000 modules after step 10"));
     EXPECT_THAT(derived("axiom FFF\nF < F > F -> FFFF", 20, 0, 1000), HasSubstr("more than 1000 modules"));
     // 10^5 modules become 10^10.
     const std::string many(99'000, 'F');
@@ -181,7 +186,8 @@ TEST(LsysDeriver, errorsAreReportedOnce) {
     const std::vector<std::pair<std::string, std::string>> cases = {
         {"axiom A(1)A(1)A(2)\nA(x) : 1/(x-1) > 0 -> F", "division by zero"},
         {"axiom A(1)A(1)A(2)\nA(x) -> F(1/(x-1))", "division by zero"},
-        {"axiom A(1)A(1)A(2)\nA(x) -> F : x - 2\nA(x) -> F : 1", "a probability must not be negative, but is -1"},
+        {"axiom A(1)A(1)A(2)\nA(x) -> F : x - 2\nA(x) -> F : 1",
+         "a probability must not be negative, but is -1"},
         {"axiom A(1)A(1)\nA(x) -> F : 0.5\nA(x) -> FF : 0.4", "sum to 0.9, not to 1"},
         {"axiom A(1)A(1)\nA(x) < A(y) -> F : 0.5\nA(x) -> FF : 0.4", "sum to 0.4, not to 1"},
         {"axiom A(1)A(1)\nA(x) < A(y) -> F : 0.5\nA(x) -> FF : 1", "sum to 1.5, not to 1"},

@@ -15,7 +15,7 @@ struct Fixture {
     std::string name;
     std::string text;
     unsigned steps;
-    std::size_t modules; ///< 0: not published
+    std::size_t modules;  ///< 0: not published
     std::size_t segments; ///< F, and G, l, r where these draw
     std::string drawn = "F";
 };
@@ -89,11 +89,13 @@ std::vector<Fixture> fixtures() {
         {"snowflake", "axiom F--F--F\nF -> F+F--F+F", 4, 1792, 768},
         {"bushes", "axiom Y\nY -> YFX[+Y][-Y]\nX -> X[-FFF]F[+FFF]FX", 6, 8156, 2772},
     };
-    for (const std::string constants : {"r1 = 0.9, r2 = 0.6, a0 = 45, a2 = 45", "r1 = 0.9, r2 = 0.9, a0 = 45, a2 = 45",
-                                        "r1 = 0.9, r2 = 0.8, a0 = 45, a2 = 45", "r1 = 0.9, r2 = 0.7, a0 = 30, a2 = -30"})
+    for (const std::string constants :
+         {"r1 = 0.9, r2 = 0.6, a0 = 45, a2 = 45", "r1 = 0.9, r2 = 0.9, a0 = 45, a2 = 45",
+          "r1 = 0.9, r2 = 0.8, a0 = 45, a2 = 45", "r1 = 0.9, r2 = 0.7, a0 = 30, a2 = -30"})
         all.push_back({"2.6", "let wr = 0.707, " + constants + monopodial, 10, 0, 1023});
-    for (const std::string constants : {"r1 = 0.9, r2 = 0.7, a1 = 5, a2 = 65", "r1 = 0.9, r2 = 0.7, a1 = 10, a2 = 60",
-                                        "r1 = 0.9, r2 = 0.8, a1 = 20, a2 = 50", "r1 = 0.9, r2 = 0.8, a1 = 35, a2 = 35"})
+    for (const std::string constants :
+         {"r1 = 0.9, r2 = 0.7, a1 = 5, a2 = 65", "r1 = 0.9, r2 = 0.7, a1 = 10, a2 = 60",
+          "r1 = 0.9, r2 = 0.8, a1 = 20, a2 = 50", "r1 = 0.9, r2 = 0.8, a1 = 35, a2 = 35"})
         all.push_back({"2.7", "let wr = 0.707, " + constants + sympodial, 10, 0, 1023});
     return all;
 }

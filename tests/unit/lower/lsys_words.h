@@ -26,7 +26,8 @@ class LsysModel {
         if (grammar_ && !parsed_.diagnostics.has_errors()) rewriter_.emplace(*grammar_, parsed_.diagnostics);
     }
 
-    std::optional<ModuleString> derive(unsigned steps, std::uint64_t seed = 0, std::uint64_t most = 100'000'000) {
+    std::optional<ModuleString> derive(unsigned steps, std::uint64_t seed = 0,
+                                       std::uint64_t most = 100'000'000) {
         if (!rewriter_) return std::nullopt;
         return LsysDeriver(*rewriter_, parsed_.diagnostics, seed, most).derive(steps);
     }

@@ -180,10 +180,14 @@ class GrammarBuilder {
         if (block_.filter)
             for (const LsysName& name : block_.filter->symbols)
                 named.insert(symbol(name.text, name.span));
+        const auto is_model = [&](SymbolId id) { return grammar_.symbols[id].starts_with('~'); };
+        const auto is_named = [&](SymbolId id) {
+            return named.contains(id) || (is_model(id) && ids_.contains("~") && named.contains(ids_.at("~")));
+        };
         const bool consider = block_.filter && block_.filter->consider;
         grammar_.ignored.resize(grammar_.symbols.size());
         for (SymbolId id = 0; id < grammar_.symbols.size(); ++id)
-            grammar_.ignored[id] = block_.filter && named.contains(id) != consider;
+            grammar_.ignored[id] = block_.filter && is_named(id) != consider;
     }
 
     void prefer_contexts() {

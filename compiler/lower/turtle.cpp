@@ -93,7 +93,7 @@ bool Turtle::run(TurtleCommand command, std::span<const double> parameters, std:
         close_branch();
         return true;
     case TurtleCommand::cut:
-        cut_depth_ = 1;
+        cut();
         return true;
     case TurtleCommand::open_polygon:
         polygons_.emplace_back();
@@ -216,8 +216,14 @@ void Turtle::set_colour(std::span<const double> parameters, int step) {
     writes_ |= reads_colour;
 }
 
+/// With the rest of the branch go the ends of the polygons begun in it, and so the polygons.
+void Turtle::cut() {
+    cut_depth_ = 1;
+    polygons_.resize(branches_.empty() ? 0 : branches_.back().polygons);
+}
+
 void Turtle::open_branch() {
-    branches_.push_back({start_from_turtle_, state_, writes_, error_, sensitivity_});
+    branches_.push_back({start_from_turtle_, state_, writes_, error_, sensitivity_, polygons_.size()});
 }
 
 void Turtle::close_branch() {
@@ -269,7 +275,7 @@ void Turtle::append(const TurtlePart& part, double snap) {
     if (part.writes & reads_elasticity) state_.elasticity = part.exit.elasticity;
     writes_ |= part.writes;
     start_from_turtle_ = start_from_turtle_ * part.start_from_exit;
-    if (part.cut) cut_depth_ = 1;
+    if (part.cut) cut();
 }
 
 void Turtle::append_branch(const TurtlePart& part, double snap) {

@@ -97,6 +97,7 @@ class Turtle {
         TurtleState state;
         TurtleStateMask writes;
         Drift error, sensitivity;
+        std::size_t polygons = 0; ///< open ones
     };
 
     bool pass_over(TurtleCommand command);
@@ -106,6 +107,7 @@ class Turtle {
     void bend();
     bool set_width(std::span<const double> parameters, Span span);
     void set_colour(std::span<const double> parameters, int step);
+    void cut();
     void open_branch();
     void close_branch();
     void close_polygon(Span span);

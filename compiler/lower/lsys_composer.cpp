@@ -143,7 +143,7 @@ bool LsysComposer::advance(Task& task) {
         state.variant = variant;
         const TurtlePart* part = find(module, stage, state);
         if (!part) return start_task(module, stage, state, unfolded);
-        task.turtle.append(*part, snap);
+        task.turtle.append(*part, task.span, snap);
     }
     return true;
 }
@@ -180,7 +180,7 @@ void LsysComposer::complete_branch() {
     TurtlePart part = std::move(branch.turtle).finish();
     part.modules += 2;
     part.instances = pool_.share(std::move(part.instances), line_for(part, branch), "branch", branch.span);
-    parent.turtle.append_branch(part);
+    parent.turtle.append_branch(part, parent.span);
     parent.at = branch.at + 1;
 }
 
@@ -273,6 +273,10 @@ const TurtlePart* LsysComposer::find(ModuleId module, Stage stage, const TurtleS
 /// `snap`: the angle between the directions and those in their place.
 TurtleState LsysComposer::state_of(const Turtle& turtle, double& snap) {
     TurtleState state = turtle.state();
+    if (state.in_cylinder) {
+        const double length = lengths_.representative(glm::length(state.control_point));
+        if (length > 0) state.control_point = length * ways_.representative(glm::normalize(state.control_point));
+    }
     if (!uses_directions_) return state;
     const TurtleState exact = state;
     state.tropism = directions_.representative(state.tropism);

@@ -18,6 +18,9 @@ namespace graftal {
 
 namespace {
 
+/// They are composed by recursion.
+constexpr unsigned max_block_nesting = 256;
+
 class LsysLowering {
   public:
     LsysLowering(FileId file, Lowering& lowering)
@@ -70,8 +73,13 @@ class LsysLowering {
     /// Also checks the names of blocks and of `--set`.
     void build_grammars() {
         Environment all_lets = lets_;
+        const LsysBlock* main = nullptr;
         for (const LsysBlock& block : tree_.blocks) {
             if (diagnostics_.full()) return;
+            if (main && block.is_main)
+                diagnostics_.error(block.name.span, "a second 'main' block")
+                    .with_note(main->name.span, "the first is here");
+            if (block.is_main) main = &block;
             Block& added = blocks_.emplace_back();
             added.source = &block;
             check_name(block);
@@ -110,10 +118,17 @@ class LsysLowering {
                 .with_hint("a model inside itself is what productions are for");
             return std::nullopt;
         }
+        if (nesting_ == max_block_nesting) {
+            diagnostics_.error(use,
+                               fmt::format("blocks place each other more than {} deep", max_block_nesting));
+            return std::nullopt;
+        }
         block.under_way = true;
+        ++nesting_;
         const std::optional<std::map<SymbolId, ObjectId>> models = models_of(*block.grammar);
         std::optional<unsigned> steps;
         if (find_steps(block, steps) && models) block.root = draw(block, *models, steps);
+        --nesting_;
         block.under_way = false;
         return block.root;
     }
@@ -144,6 +159,8 @@ class LsysLowering {
             known.emplace_back(used);
         for (const auto& [block, place] : names_)
             known.emplace_back(block);
+        for (int kind = 0; kind < primitive_kind_count; ++kind)
+            known.emplace_back(name_of(static_cast<PrimitiveKind>(kind)));
         const std::string hint = did_you_mean(name, known);
         diagnostics_.error(span, fmt::format("'~{}' names no used model and no block of this file", name))
             .with_hint(hint.empty() ? fmt::format("use {} = \"FILE\" at the top of the file makes it one", name)
@@ -222,6 +239,7 @@ class LsysLowering {
     Graph graph_;
     ObjectPool pool_;
     std::deque<Block> blocks_;
+    unsigned nesting_ = 0; ///< blocks under way
     std::map<std::string_view, Use> uses_;
     std::map<std::string_view, Span> names_; ///< of the blocks
 };

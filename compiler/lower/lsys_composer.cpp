@@ -81,6 +81,7 @@ bool LsysComposer::run_tasks() {
             complete_branch();
         else
             complete_task();
+        if (!tasks_.back().turtle.within_limits(tasks_.back().span)) return false;
     }
 }
 
@@ -144,6 +145,7 @@ bool LsysComposer::advance(Task& task) {
         const TurtlePart* part = find(module, stage, state);
         if (!part) return start_task(module, stage, state, unfolded);
         task.turtle.append(*part, task.span, snap);
+        if (!task.turtle.within_limits(task.span)) return false;
     }
     return true;
 }

@@ -51,6 +51,7 @@ class GrammarBuilder {
             rules.resize(grammar_.symbols.size());
         prefer_contexts();
         check_symbols();
+        check_contexts();
         if (diagnostics_.error_count() > errors_before_) return std::nullopt;
         return std::move(grammar_);
     }
@@ -106,8 +107,10 @@ class GrammarBuilder {
     SymbolId symbol(std::string_view name, Span span) {
         const auto [known, fresh] = ids_.try_emplace(std::string(name), static_cast<SymbolId>(ids_.size()));
         if (!fresh) return known->second;
-        if (grammar_.symbols.size() == most_symbols)
+        if (grammar_.symbols.size() == most_symbols) { // more would have no number
             diagnostics_.error(span, fmt::format("a block has at most {} different symbols", most_symbols));
+            return known->second = 0;
+        }
         grammar_.symbols.push_back(known->first);
         grammar_.commands.push_back(turtle_command(name));
         grammar_.first_uses.push_back(span);
@@ -136,10 +139,7 @@ class GrammarBuilder {
 
     LsysPattern pattern(const LsysFormal& formal, LsysRule& rule) {
         for (const LsysName& name : formal.parameters) {
-            if (std::ranges::find(rule.variables, name.text) != rule.variables.end())
-                diagnostics_.error(name.span, fmt::format("duplicate parameter '{}'", name.text))
-                    .with_hint("the parameters of a production and its contexts have different names");
-            rule.variables.push_back(name.text);
+            rule.variables.push_back(name.text); // the parser has seen to it that they differ
         }
         return {symbol(formal.symbol, formal.span), static_cast<std::uint16_t>(formal.parameters.size())};
     }
@@ -193,8 +193,8 @@ class GrammarBuilder {
     void prefer_contexts() {
         for (auto& rules : grammar_.rules_of)
             for (auto& of_symbol : rules)
-                std::ranges::stable_partition(
-                    of_symbol, [&](std::uint32_t id) { return grammar_.rules[id].has_context(); });
+                std::stable_partition(of_symbol.begin(), of_symbol.end(),
+                                      [&](std::uint32_t id) { return grammar_.rules[id].has_context(); });
     }
 
     bool is_rewritten(SymbolId id) const {
@@ -210,18 +210,52 @@ class GrammarBuilder {
         });
     }
 
-    std::set<SymbolId> symbols_of_contexts() const {
-        std::set<SymbolId> result;
+    /// Such a production never fits; it is spoken of once.
+    void check_contexts() {
+        std::set<std::pair<SymbolId, std::size_t>> known;
+        std::set<SymbolId> symbols;
+        for (const Use& use : uses_) {
+            known.emplace(use.symbol, use.arity);
+            symbols.insert(use.symbol);
+        }
+        const auto matches = [&](const LsysPattern& pattern, const LsysFormal& source) {
+            std::string problem;
+            if (grammar_.ignored[pattern.symbol] && !is_bracket(pattern.symbol))
+                problem = fmt::format("contexts look past '{}'", source.symbol);
+            else if (!symbols.contains(pattern.symbol))
+                problem = fmt::format("no axiom or successor has a module '{}'", source.symbol);
+            else if (!known.contains({pattern.symbol, pattern.arity}))
+                problem = fmt::format("no axiom or successor has a module '{}' with {}", source.symbol,
+                                      count(pattern.arity));
+            if (problem.empty()) return true;
+            diagnostics_.warning(source.span, std::move(problem)).with_hint("this context never matches");
+            return false;
+        };
         for (const LsysRule& rule : grammar_.rules)
-            for (const auto* context : {&rule.left, &rule.right})
-                for (const LsysPattern& pattern : *context)
-                    result.insert(pattern.symbol);
-        return result;
+            if (std::ranges::equal(rule.left, rule.source->left, matches))
+                std::ranges::equal(rule.right, rule.source->right, matches);
+    }
+
+    bool is_bracket(SymbolId id) const {
+        return grammar_.commands[id] == TurtleCommand::open_branch ||
+               grammar_.commands[id] == TurtleCommand::close_branch;
+    }
+
+    static std::string count(std::size_t parameters) {
+        return fmt::format("{} parameter{}", parameters == 0 ? "no" : std::to_string(parameters),
+                           parameters == 1 ? "" : "s");
     }
 
     /// Each symbol, and each number of parameters of it, is spoken of once.
     void check_symbols() {
-        const std::set<SymbolId> seen_by_contexts = symbols_of_contexts();
+        std::set<SymbolId> seen_by_contexts;
+        for (const LsysRule& rule : grammar_.rules)
+            for (const auto* context : {&rule.left, &rule.right})
+                for (const LsysPattern& pattern : *context)
+                    seen_by_contexts.insert(pattern.symbol);
+        std::set<std::string_view> declared;
+        for (const LsysName& module : block_.modules)
+            declared.insert(module.text);
         std::set<std::pair<SymbolId, std::size_t>> checked;
         for (const Use& use : uses_) {
             const bool rewritten = is_rewritten(use.symbol);
@@ -233,7 +267,7 @@ class GrammarBuilder {
             } else if (!is_letter(name)) {
                 diagnostics_.error(use.span, fmt::format("'{}' means nothing to the turtle", name))
                     .with_hint("letters stand for modules; docs/language.md lists the turtle's symbols");
-            } else if (!seen_by_contexts.contains(use.symbol) && !is_declared(name)) {
+            } else if (!seen_by_contexts.contains(use.symbol) && !declared.contains(name)) {
                 diagnostics_
                     .warning(use.span, fmt::format("'{}' has no production and draws nothing", name))
                     .with_hint(fmt::format("'modules {}' says that this is meant", name));
@@ -252,19 +286,12 @@ class GrammarBuilder {
         for (const auto& rules : grammar_.rules_of)
             for (const std::uint32_t rule : rules[use.symbol])
                 known.insert(grammar_.rules[rule].predecessor.arity);
-        const auto count = [](std::size_t n) {
-            return fmt::format("{} parameter{}", n == 0 ? "no" : std::to_string(n), n == 1 ? "" : "s");
-        };
         diagnostics_.warning(use.span, fmt::format("no production rewrites '{}' with {}", name, count(use.arity)))
             .with_hint(fmt::format("its productions have {}", count(*known.begin())));
     }
 
     static bool is_letter(const std::string& name) {
         return std::isalnum(static_cast<unsigned char>(name.front())) || name.front() == '_';
-    }
-
-    bool is_declared(std::string_view name) const {
-        return std::ranges::any_of(block_.modules, [&](const LsysName& m) { return m.text == name; });
     }
 
     const LsysBlock& block_;

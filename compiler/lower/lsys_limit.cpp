@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <ranges>
 #include <string_view>
 #include <utility>
 
@@ -41,7 +40,12 @@ bool mentions(const Expression& expression, std::string_view name) {
 bool lasts(const Instance& instance) {
     return largest(instance.parent_from_child.linear) > tolerance;
 }
-const auto lasting = std::views::filter(lasts);
+std::vector<const Instance*> lasting(const std::vector<Instance>& instances) {
+    std::vector<const Instance*> result;
+    for (const Instance& instance : instances)
+        if (lasts(instance)) result.push_back(&instance);
+    return result;
+}
 
 using ClassId = std::uint32_t;
 
@@ -94,7 +98,8 @@ class LevelFolder {
         while (!stack.empty()) {
             const ObjectId object = stack.back();
             stack.pop_back();
-            std::ranges::for_each(graph_.objects[object].instances | lasting, push);
+            for (const Instance* instance : lasting(graph_.objects[object].instances))
+                push(*instance);
         }
         std::ranges::stable_sort(levels_, [](const Level& a, const Level& b) { return a.steps > b.steps; });
         for (std::size_t i = 0; i < levels_.size(); ++i)
@@ -107,8 +112,8 @@ class LevelFolder {
         std::vector<ClassId> refined(levels_.size());
         ClassId next = 0;
         for (std::size_t i = 0; i < levels_.size(); ++i) {
-            const std::size_t count = static_cast<std::size_t>(
-                std::ranges::distance(graph_.objects[levels_[i].object].instances | lasting));
+            const auto count = static_cast<std::size_t>(
+                std::ranges::count_if(graph_.objects[levels_[i].object].instances, lasts));
             auto& known = representatives[{levels_[i].symbol, count}];
             const auto same = std::ranges::find_if(known, [&](std::size_t other) { return agree(i, other); });
             if (same == known.end()) {
@@ -126,8 +131,8 @@ class LevelFolder {
         const Object& y = graph_.objects[levels_[b].object];
         if (x.terminal.has_value() != y.terminal.has_value()) return false;
         if (x.terminal && !agree(*x.terminal, *y.terminal)) return false;
-        const auto same = [&](const Instance& p, const Instance& q) { return agree(p, q); };
-        return std::ranges::equal(x.instances | lasting, y.instances | lasting, same);
+        const auto same = [&](const Instance* p, const Instance* q) { return agree(*p, *q); };
+        return std::ranges::equal(lasting(x.instances), lasting(y.instances), same);
     }
 
     bool agree(const Instance& a, const Instance& b) const {
@@ -160,7 +165,8 @@ class LevelFolder {
             const ObjectId object = stack.back();
             stack.pop_back();
             if (is_deep(levels_[index_.at(object)]) || reached_.size() > most_classes) return false;
-            std::ranges::for_each(graph_.objects[object].instances | lasting, push);
+            for (const Instance* instance : lasting(graph_.objects[object].instances))
+                push(*instance);
         }
         return true;
     }

@@ -15,6 +15,9 @@ namespace {
 constexpr double tolerance = 1e-11;
 /// Lists of so few primitives are written out where they are used.
 constexpr std::size_t most_written_out = 2;
+/// Of lists whose fingerprints do not tell them apart, as where bodies are tiny beside their distances, no
+/// more are compared.
+constexpr std::size_t most_looked_at = 256;
 
 /// Fixed numbers in [-1, 1] that have nothing to do with each other.
 double weight(std::uint64_t index) {
@@ -119,8 +122,12 @@ bool ObjectPool::worth_an_object(const std::vector<Instance>& instances) const {
            });
 }
 
-std::uint32_t ObjectPool::find(const Object& object, std::uint64_t hash) const {
-    return ids_.find(hash, [&](std::uint32_t id) { return alike(graph_.objects[shared_[id]], object); });
+/// `looked`: how many objects were compared so far.
+std::uint32_t ObjectPool::find(const Object& object, std::uint64_t hash, std::size_t& looked) const {
+    const std::uint32_t id = ids_.find(hash, [&](std::uint32_t other) {
+        return ++looked > most_looked_at || alike(graph_.objects[shared_[other]], object);
+    });
+    return looked > most_looked_at ? IdTable::none : id;
 }
 
 std::vector<Instance> ObjectPool::share(std::vector<Instance> instances, std::optional<Instance> terminal,
@@ -144,11 +151,14 @@ std::vector<Instance> ObjectPool::share(std::vector<Instance> instances, std::op
     const double cell_size = 24 * tolerance * static_cast<double>(object.instances.size());
     const auto cell = static_cast<std::int64_t>(std::floor(fingerprint(object.instances) / cell_size));
     std::uint32_t id = IdTable::none;
+    std::size_t looked = 0;
     for (const std::int64_t near : {cell, cell - 1, cell + 1})
-        if (id == IdTable::none) id = find(object, mixed(looks, static_cast<std::uint64_t>(near)));
+        if (id == IdTable::none) id = find(object, mixed(looks, static_cast<std::uint64_t>(near)), looked);
     if (id == IdTable::none) {
-        id = ids_.find_or_add(mixed(looks, static_cast<std::uint64_t>(cell)),
-                              static_cast<std::uint32_t>(shared_.size()), [](std::uint32_t) { return false; });
+        id = static_cast<std::uint32_t>(shared_.size());
+        if (looked <= most_looked_at)
+            ids_.find_or_add(mixed(looks, static_cast<std::uint64_t>(cell)), id,
+                             [](std::uint32_t) { return false; });
         object.name = unique_name(name);
         shared_.push_back(graph_.add(std::move(object)));
     }

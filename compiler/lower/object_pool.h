@@ -35,7 +35,7 @@ class ObjectPool {
 
   private:
     bool worth_an_object(const std::vector<Instance>& instances) const;
-    std::uint32_t find(const Object& object, std::uint64_t hash) const;
+    std::uint32_t find(const Object& object, std::uint64_t hash, std::size_t& looked) const;
 
     Graph& graph_;
     std::vector<ObjectId> shared_;

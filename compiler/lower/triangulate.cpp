@@ -34,14 +34,22 @@ class EarClipper {
         for (const Vec3& corner : corners)
             flat_.emplace_back(glm::dot(corner - corners[0], u), glm::dot(corner - corners[0], v));
         std::iota(left_.begin(), left_.end(), 0u);
+        ears_.resize(left_.size());
+        update_all();
     }
 
     std::vector<std::array<std::uint32_t, 3>> run() && {
         std::size_t at = 0, since_ear = 0;
         while (left_.size() > 3) {
+            if (since_ear > left_.size() && update_all()) since_ear = 0;
             // Where nothing is an ear, the polygon crosses itself: then the next corner has to do.
-            if (is_ear(at) || since_ear > left_.size()) {
+            if (ears_[at] || since_ear > left_.size()) {
                 clip(at);
+                // Of the others none becomes an ear by that (O'Rourke, Computational Geometry in C,
+                // section 1.4), unless the polygon touches itself.
+                update((at + left_.size() - 1) % left_.size());
+                update(at % left_.size());
+                updated_ = false;
                 since_ear = 0;
             } else {
                 ++since_ear;
@@ -54,6 +62,18 @@ class EarClipper {
 
   private:
     std::uint32_t corner(std::size_t at) const { return left_[at % left_.size()]; }
+
+    void update(std::size_t at) { ears_[at] = is_ear(at); }
+
+    /// False if that changes nothing, or would take too long.
+    bool update_all() {
+        const std::size_t work = left_.size() * left_.size();
+        if (updated_ || work > work_left_) return false;
+        work_left_ -= work;
+        for (std::size_t at = 0; at < left_.size(); ++at)
+            update(at);
+        return updated_ = true;
+    }
 
     bool is_ear(std::size_t at) const {
         const std::uint32_t a = corner(at + left_.size() - 1), b = corner(at), c = corner(at + 1);
@@ -73,11 +93,15 @@ class EarClipper {
     void clip(std::size_t at) {
         const std::array triangle = {corner(at + left_.size() - 1), corner(at), corner(at + 1)};
         if (turn(flat_[triangle[0]], flat_[triangle[1]], flat_[triangle[2]]) != 0) triangles_.push_back(triangle);
-        left_.erase(left_.begin() + static_cast<std::ptrdiff_t>(at % left_.size()));
+        left_.erase(left_.begin() + static_cast<std::ptrdiff_t>(at));
+        ears_.erase(ears_.begin() + static_cast<std::ptrdiff_t>(at));
     }
 
     std::vector<Vec2> flat_;
     std::vector<std::uint32_t> left_;
+    std::vector<char> ears_; ///< of left_
+    bool updated_ = false;   ///< since the last corner was clipped
+    std::size_t work_left_ = 200'000'000;
     std::vector<std::array<std::uint32_t, 3>> triangles_;
 };
 

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include <fmt/format.h>
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 
@@ -21,6 +22,13 @@ constexpr double thinning = std::numbers::sqrt2 / 2;
 constexpr Vec3 ahead(0, 1, 0);
 constexpr Vec3 right(1, 0, 0);
 constexpr Vec3 up(0, 0, 1);
+
+/// Squares of lengths must be numbers too.
+constexpr double farthest_place = 1e150;
+/// They are cut into triangles in a time that goes with the square.
+constexpr std::size_t max_polygon_vertices = 10'000;
+/// Parts keep the vertices of those that they leave open.
+constexpr std::size_t max_polygon_nesting = 1000;
 
 double first_or(std::span<const double> parameters, double otherwise) {
     return parameters.empty() ? otherwise : parameters[0];
@@ -97,7 +105,7 @@ bool Turtle::run(TurtleCommand command, std::span<const double> parameters, std:
         return true;
     case TurtleCommand::open_polygon:
         polygons_.emplace_back();
-        return true;
+        break;
     case TurtleCommand::close_polygon:
         close_polygon(read_colour(), span);
         break;
@@ -149,7 +157,18 @@ bool Turtle::within_limits(Span span) {
             span, fmt::format("more than {} parts are drawn in one place", context_.max_instances));
         return false;
     }
-    if (is_finite(start_from_turtle_)) return true;
+    if (longest_polygon_ > max_polygon_vertices) {
+        context_.diagnostics.error(span,
+                                   fmt::format("a polygon has more than {} vertices", max_polygon_vertices));
+        return false;
+    }
+    if (state_.open_polygons + polygons_.size() > max_polygon_nesting) {
+        context_.diagnostics.error(
+            span, fmt::format("more than {} polygons are open in one place", max_polygon_nesting));
+        return false;
+    }
+    const Vec3 place = glm::abs(start_from_turtle_.translation);
+    if (place.x <= farthest_place && place.y <= farthest_place && place.z <= farthest_place) return true;
     context_.diagnostics.error(span, "the turtle goes farther than numbers reach")
         .with_hint("fewer steps, or a 'step' that shrinks with them, keep the model small");
     return false;
@@ -249,12 +268,12 @@ void Turtle::close_branch() {
 
 void Turtle::record_vertex(Vec3 vertex) {
     ++vertex_count_;
-    if (!polygons_.empty()) {
-        polygons_.back().push_back(vertex);
-        return;
-    }
-    note(reads_polygons);
-    if (state_.open_polygons > 0) part_.vertices.push_back(vertex);
+    const bool here = !polygons_.empty();
+    if (!here) note(reads_polygons);
+    if (!here && state_.open_polygons == 0) return;
+    std::vector<Vec3>& vertices = here ? polygons_.back() : part_.vertices;
+    vertices.push_back(vertex);
+    longest_polygon_ = std::max(longest_polygon_, vertices.size());
 }
 
 /// A '}' that closes nothing is passed over.

@@ -76,6 +76,9 @@ class Turtle {
     /// The same, but the turtle stays as it is: a branch.
     void append_branch(const TurtlePart& part, Span span, double snap = 0);
 
+    /// False after an error: to be asked after parts were placed; run() asks by itself.
+    bool within_limits(Span span);
+
     /// Notes that what is drawn depends on state().variant.
     void read_variant() { note(reads_variant); }
 
@@ -122,7 +125,6 @@ class Turtle {
     void append_polygons(const TurtlePart& part, Span span);
     void start_cylinder();
     void add_control_point(Span span);
-    bool within_limits(Span span);
 
     double line_width(double length);
     double read_width() { return note(reads_width), state_.width; }
@@ -139,6 +141,7 @@ class Turtle {
     std::vector<std::vector<Vec3>> polygons_; ///< open ones, by their vertices
     std::size_t cut_depth_ = 0;               ///< 1 + branches opened since the cut; 0: no cut
     std::size_t vertex_count_ = 0;
+    std::size_t longest_polygon_ = 0; ///< by vertices seen here
     TurtlePart part_;
 };
 

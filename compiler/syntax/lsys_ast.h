@@ -21,6 +21,8 @@ inline constexpr std::size_t max_lsys_modules = 100'000;
 inline constexpr std::size_t max_lsys_words = 4'000'000;
 /// Brackets and braces of a string nest at most this deep.
 inline constexpr std::size_t max_lsys_nesting = 256;
+/// More parameters of a module, and more names in one production, are refused.
+inline constexpr std::size_t max_lsys_parameters = 256;
 /// Declared names of modules have at most this many characters.
 inline constexpr std::size_t max_lsys_symbol = 64;
 

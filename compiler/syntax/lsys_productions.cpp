@@ -172,6 +172,12 @@ class ProductionParser {
             for (const LsysFormal& module : *part)
                 add(module, names);
         add(production_.predecessor, names);
+        if (names.size() > max_lsys_parameters) {
+            diagnostics_.error(
+                production_.predecessor.span,
+                fmt::format("a production and its contexts have at most {} parameters", max_lsys_parameters));
+            return false;
+        }
         std::stable_sort(names.begin(), names.end(), [](const LsysName* a, const LsysName* b) {
             return std::pair(a->text, a->span.begin) < std::pair(b->text, b->span.begin);
         });

@@ -274,6 +274,11 @@ bool LsysStringReader::read_parameters(const Raw& raw, std::vector<Expression>& 
         std::optional<Expression> parameter = parse_expression(stream);
         if (!parameter) return false;
         parameters.push_back(std::move(*parameter));
+        if (parameters.size() > max_lsys_parameters) {
+            text_.diagnostics.error(parameters.back().span,
+                                    fmt::format("a module has at most {} parameters", max_lsys_parameters));
+            return false;
+        }
     } while (stream.accept(","));
     if (stream.accept(")")) return true;
     stream.expected("',' or ')'");

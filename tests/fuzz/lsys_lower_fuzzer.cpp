@@ -47,6 +47,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const std::string text(reinterpret_cast<const char*>(data), size);
     const std::string composed = lower_and_check(text, false), derived = lower_and_check(text, true);
     // Where chance has no part, both ways of compiling see one word.
-    GRAFTAL_CHECK(composed.empty() || derived.empty() || composed == derived, "lsys fuzzer: two ways, one word");
+    GRAFTAL_CHECK(composed.empty() || derived.empty() || composed == derived,
+                  "lsys fuzzer: two ways, one word");
     return 0;
 }

@@ -28,7 +28,8 @@ std::vector<Example> examples(const std::string& page, const std::string& langua
     for (std::size_t at = page.find(opening); at != std::string::npos; at = page.find(opening, at)) {
         at += opening.size();
         const std::size_t end = page.find(closing, at);
-        const auto line = 1 + static_cast<std::size_t>(std::count(page.begin(), page.begin() + static_cast<std::ptrdiff_t>(at), '\n'));
+        const auto line = 1 + static_cast<std::size_t>(std::count(
+                                  page.begin(), page.begin() + static_cast<std::ptrdiff_t>(at), '\n'));
         found.push_back({page.substr(at, end - at) + "\n", line});
         at = end;
     }

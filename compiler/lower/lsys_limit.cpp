@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 #include <string_view>
+#include <tuple>
 #include <utility>
 
 #include <fmt/format.h>
@@ -40,11 +41,21 @@ bool mentions(const Expression& expression, std::string_view name) {
 bool lasts(const Instance& instance) {
     return largest(instance.parent_from_child.linear) > tolerance;
 }
-std::vector<const Instance*> lasting(const std::vector<Instance>& instances) {
-    std::vector<const Instance*> result;
+
+template<typename Visit> void for_each_lasting(const std::vector<Instance>& instances, const Visit& visit) {
     for (const Instance& instance : instances)
-        if (lasts(instance)) result.push_back(&instance);
-    return result;
+        if (lasts(instance)) visit(instance);
+}
+
+/// Passes over what does not last.
+template<typename Same> bool equal(const std::vector<Instance>& a, const std::vector<Instance>& b, const Same& same) {
+    auto next = std::ranges::find_if(b, lasts);
+    for (const Instance& instance : a) {
+        if (!lasts(instance)) continue;
+        if (next == b.end() || !same(instance, *next)) return false;
+        next = std::find_if(next + 1, b.end(), lasts);
+    }
+    return next == b.end();
 }
 
 using ClassId = std::uint32_t;
@@ -98,8 +109,7 @@ class LevelFolder {
         while (!stack.empty()) {
             const ObjectId object = stack.back();
             stack.pop_back();
-            for (const Instance* instance : lasting(graph_.objects[object].instances))
-                push(*instance);
+            for_each_lasting(graph_.objects[object].instances, push);
         }
         std::ranges::stable_sort(levels_, [](const Level& a, const Level& b) { return a.steps > b.steps; });
         for (std::size_t i = 0; i < levels_.size(); ++i)
@@ -108,13 +118,13 @@ class LevelFolder {
 
     /// Splits classes whose members' lists differ, given the classes so far.
     void refine() {
-        std::map<std::pair<SymbolId, std::size_t>, std::vector<std::size_t>> representatives;
+        std::map<std::tuple<ClassId, SymbolId, std::size_t>, std::vector<std::size_t>> representatives;
         std::vector<ClassId> refined(levels_.size());
         ClassId next = 0;
         for (std::size_t i = 0; i < levels_.size(); ++i) {
             const auto count = static_cast<std::size_t>(
                 std::ranges::count_if(graph_.objects[levels_[i].object].instances, lasts));
-            auto& known = representatives[{levels_[i].symbol, count}];
+            auto& known = representatives[{classes_[i], levels_[i].symbol, count}];
             const auto same = std::ranges::find_if(known, [&](std::size_t other) { return agree(i, other); });
             if (same == known.end()) {
                 known.push_back(i);
@@ -131,8 +141,8 @@ class LevelFolder {
         const Object& y = graph_.objects[levels_[b].object];
         if (x.terminal.has_value() != y.terminal.has_value()) return false;
         if (x.terminal && !agree(*x.terminal, *y.terminal)) return false;
-        const auto same = [&](const Instance* p, const Instance* q) { return agree(*p, *q); };
-        return std::ranges::equal(lasting(x.instances), lasting(y.instances), same);
+        const auto same = [&](const Instance& p, const Instance& q) { return agree(p, q); };
+        return equal(x.instances, y.instances, same);
     }
 
     bool agree(const Instance& a, const Instance& b) const {
@@ -165,8 +175,7 @@ class LevelFolder {
             const ObjectId object = stack.back();
             stack.pop_back();
             if (is_deep(levels_[index_.at(object)]) || reached_.size() > most_classes) return false;
-            for (const Instance* instance : lasting(graph_.objects[object].instances))
-                push(*instance);
+            for_each_lasting(graph_.objects[object].instances, push);
         }
         return true;
     }

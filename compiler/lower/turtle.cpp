@@ -240,7 +240,9 @@ void Turtle::open_branch() {
 void Turtle::close_branch() {
     if (branches_.empty()) return;
     start_from_turtle_ = branches_.back().start_from_turtle;
+    const std::uint32_t open_polygons = state_.open_polygons; // no branch closes or opens them again
     state_ = branches_.back().state;
+    state_.open_polygons = open_polygons;
     writes_ = branches_.back().writes;
     error_ = branches_.back().error;
     sensitivity_ = branches_.back().sensitivity;

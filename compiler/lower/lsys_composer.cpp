@@ -24,6 +24,13 @@ double angle_between(Vec3 a, Vec3 b) {
     return 2 * std::asin(std::min(1.0, 0.5 * glm::length(a - b)));
 }
 
+void place_piece(Turtle& turtle, ModuleId piece, const TurtlePart& part, double snap) {
+    if (FoldedWord::is_branch(piece))
+        turtle.append_branch(part, snap);
+    else
+        turtle.append(part, snap);
+}
+
 } // namespace
 
 Mat3 chord_frame(Vec3 exit) {
@@ -52,10 +59,10 @@ std::optional<TurtlePart> LsysComposer::compose(unsigned steps, const TurtleStat
 
 std::optional<TurtlePart> LsysComposer::compose_word(const ModuleString& word, const TurtleState& start) {
     const LsysGrammar& grammar = rewriter_.grammar();
-    branches_.reset();
-    if (!grammar.polygons_cross_branches) branches_.emplace(grammar, rewriter_.modules(), word);
+    word_.reset();
+    if (!grammar.polygons_cross_branches) word_.emplace(grammar, rewriter_.modules(), word);
     return run_from({.start = start,
-                     .string = branches_ ? branches_->trunk() : word,
+                     .string = word_ ? word_->trunk() : word,
                      .string_stage = 0,
                      .span = grammar.source->axiom->span,
                      .turtle = Turtle(context_, start)});
@@ -77,8 +84,8 @@ bool LsysComposer::run_tasks() {
         if (!advance(tasks_.back())) return false;
         if (tasks_.size() > depth) continue;
         if (depth == 1) return true;
-        if (LsysBranches::is_branch(tasks_.back().module))
-            complete_branch();
+        if (FoldedWord::is_piece(tasks_.back().module))
+            complete_piece();
         else
             complete_task();
     }
@@ -124,11 +131,8 @@ bool LsysComposer::unfold(ModuleId module, Stage stage, std::uint32_t variant, U
 bool LsysComposer::advance(Task& task) {
     for (; task.at < task.string.size() && !task.turtle.finished(); ++task.at) {
         const ModuleId module = task.string[task.at];
-        if (LsysBranches::is_branch(module)) {
-            double snap = 0;
-            const TurtlePart* part = find(module, 0, state_of(task.turtle, snap));
-            if (!part) return start_branch(module), true;
-            task.turtle.append_branch(*part, snap);
+        if (FoldedWord::is_piece(module)) {
+            if (!draw_piece(task, module)) return true;
             continue;
         }
         const std::uint32_t variant =
@@ -150,29 +154,38 @@ bool LsysComposer::advance(Task& task) {
     return true;
 }
 
-void LsysComposer::start_branch(ModuleId branch) {
-    const Task& parent = tasks_.back();
+/// False if its part is missing, whose task is then the last.
+bool LsysComposer::draw_piece(Task& task, ModuleId piece) {
     double snap = 0;
-    const TurtleState state = state_of(parent.turtle, snap);
-    tasks_.push_back({.module = branch,
+    const TurtleState state = state_of(task.turtle, snap);
+    if (const TurtlePart* part = find(piece, 0, state)) {
+        place_piece(task.turtle, piece, *part, snap);
+        return true;
+    }
+    tasks_.push_back({.module = piece,
                       .start = state,
-                      .string = branches_->branch(branch),
-                      .span = parent.span,
+                      .string = word_->piece(piece),
+                      .span = task.span,
                       .turtle = Turtle(context_, state)});
+    return false;
 }
 
 /// Places the last task, which has come to its end, in the one before.
-void LsysComposer::complete_branch() {
-    Task branch = std::move(tasks_.back());
+void LsysComposer::complete_piece() {
+    Task task = std::move(tasks_.back());
     tasks_.pop_back();
     Task& parent = tasks_.back();
-    TurtlePart part = std::move(branch.turtle).finish();
-    part.modules += 2;
-    part.instances = pool_.share(std::move(part.instances), line_for(part, branch), "branch", branch.span);
-    parent.turtle.append_branch(part);
+    const bool is_branch = FoldedWord::is_branch(task.module);
+    TurtlePart part = std::move(task.turtle).finish();
+    part.start_from_exit.linear = rotations_.representative(part.start_from_exit.linear);
+    if (is_branch) part.modules += 2;
+    std::optional<Instance> line = line_for(part, task);
+    part.instances =
+        pool_.share(std::move(part.instances), std::move(line), is_branch ? "branch" : "run", task.span);
+    place_piece(parent.turtle, task.module, part, 0);
     ++parent.at;
-    // Branches must leave room for parts; they can be drawn again.
-    if (parts_.size() < max_parts_ / 2) remember(branch.module, 0, branch.start, std::move(part));
+    // Pieces must leave room for other parts; they can be drawn again.
+    if (parts_.size() < max_parts_ / 2) remember(task.module, 0, task.start, std::move(part));
 }
 
 /// What is drawn in place of a part too small to see.

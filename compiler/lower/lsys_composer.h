@@ -9,7 +9,7 @@
 #include <unordered_map>
 #include <vector>
 
-#include "compiler/lower/lsys_branches.h"
+#include "compiler/lower/folded_word.h"
 #include "compiler/lower/lsys_rewriter.h"
 #include "compiler/lower/object_pool.h"
 #include "compiler/lower/turtle.h"
@@ -43,8 +43,8 @@ class LsysComposer {
     /// The part that the axiom becomes after `steps` steps; nothing after an error in the turtle's diagnostics.
     std::optional<TurtlePart> compose(unsigned steps, const TurtleState& start);
 
-    /// The same for a word that is derived already: branches that are alike are shared, and those that are
-    /// equal are drawn once.
+    /// The same for a word that is derived already: its pieces (FoldedWord) are drawn once, and shared where
+    /// they are alike.
     std::optional<TurtlePart> compose_word(const ModuleString& word, const TurtleState& start);
 
     std::size_t part_count() const { return parts_.size(); }
@@ -70,7 +70,7 @@ class LsysComposer {
 
     /// A module's string under way.
     struct Task {
-        ModuleId module = 0; ///< or a branch (LsysBranches)
+        ModuleId module = 0; ///< or a piece of the word
         Stage stage = 0;     ///< of the module
         TurtleState start;
         std::span<const ModuleId> string;
@@ -103,8 +103,8 @@ class LsysComposer {
     bool draw(Task& task, ModuleId module);
     bool start_task(ModuleId module, Stage stage, const TurtleState& start, const Unfolded& unfolded);
     std::optional<Instance> line_for(const TurtlePart& part, const Task& task);
-    void start_branch(ModuleId branch);
-    void complete_branch();
+    bool draw_piece(Task& task, ModuleId piece);
+    void complete_piece();
     void complete_task();
     void remember(ModuleId module, Stage stage, const TurtleState& start, TurtlePart part);
     const TurtlePart* find(ModuleId module, Stage stage, const TurtleState& start) const;
@@ -118,7 +118,7 @@ class LsysComposer {
     Variants variants_;
     std::size_t max_parts_;
     bool snaps_;
-    std::optional<LsysBranches> branches_; ///< of the word
+    std::optional<FoldedWord> word_;
     std::vector<Task> tasks_;
     std::vector<KnownPart> parts_;
     IdTable part_ids_;

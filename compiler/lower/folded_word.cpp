@@ -1,6 +1,7 @@
 #include "compiler/lower/folded_word.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "compiler/lower/lsys_rewriter.h"
 
@@ -13,65 +14,82 @@ constexpr std::size_t longest_string = 256;
 constexpr std::size_t shortest_run = 8;
 constexpr std::size_t longest_run = 32;
 
-} // namespace
-
-FoldedWord::FoldedWord(const LsysGrammar& grammar, const ModuleTable& modules, std::span<const ModuleId> word)
-    : grammar_(grammar), modules_(modules),
-      has_polygons_(std::ranges::find(grammar.commands, TurtleCommand::open_polygon) != grammar.commands.end()) {
-    static_assert(max_distinct_modules < run_mark);
-    std::vector<std::size_t> open; // where the branches begin
-    for (const ModuleId module : word) {
-        const TurtleCommand command = command_of(module);
-        if (command == TurtleCommand::open_branch) {
-            open.push_back(trunk_.size());
-        } else if (command == TurtleCommand::close_branch) {
-            cut_into_runs(open.back());
-            const ModuleId branch = number_of(std::span(trunk_).subspan(open.back()), branch_mark);
-            trunk_.resize(open.back());
-            trunk_.push_back(branch);
-            open.pop_back();
-        } else {
-            trunk_.push_back(module);
-        }
-    }
-    cut_into_runs(0);
+/// One multiplication after another would take most of the time.
+std::uint64_t hash_of(std::uint64_t a, std::uint64_t b, std::uint64_t c) {
+    return mixed(0, a * 0xBF58476D1CE4E5B9ull + b * 0x94D049BB133111EBull + c);
 }
 
-/// What follows from `first` on.
-void FoldedWord::cut_into_runs(std::size_t first) {
-    while (trunk_.size() - first > longest_string) {
+} // namespace
+
+FoldedWord::FoldedWord(const LsysGrammar& grammar, const ModuleTable& modules, ModuleString word)
+    : trunk_(std::move(word)) {
+    static_assert(max_distinct_modules < run_mark);
+    if (grammar.polygons_cross_branches) return;
+    if (std::ranges::find(grammar.commands, TurtleCommand::open_polygon) != grammar.commands.end())
+        for (ModuleId module = 0; module < modules.size(); ++module) {
+            const TurtleCommand command = grammar.commands[modules.symbol(module)];
+            opens_polygon_.push_back(command == TurtleCommand::open_polygon);
+            closes_polygon_.push_back(command == TurtleCommand::close_polygon);
+        }
+    fold(grammar.commands, modules);
+    trunk_.shrink_to_fit();
+}
+
+void FoldedWord::fold(const std::vector<TurtleCommand>& commands, const ModuleTable& modules) {
+    std::vector<std::size_t> open; // where the branches begin
+    std::size_t last = 0;
+    for (const ModuleId module : trunk_) {
+        const TurtleCommand command = commands[modules.symbol(module)];
+        if (command == TurtleCommand::open_branch) {
+            open.push_back(last);
+        } else if (command == TurtleCommand::close_branch) {
+            const std::size_t first = open.back();
+            open.pop_back();
+            trunk_[first] = number_of(first, cut_into_runs(first, last), branch_mark);
+            last = first + 1;
+        } else {
+            trunk_[last++] = module;
+        }
+    }
+    trunk_.resize(cut_into_runs(0, last));
+}
+
+/// The new end of what stands from `first` to `last`.
+std::size_t FoldedWord::cut_into_runs(std::size_t first, std::size_t last) {
+    while (last - first > longest_string) {
         std::size_t count = first;
-        for (std::size_t from = first; from < trunk_.size();) {
-            const std::size_t to = end_of_run(from);
-            trunk_[count++] = number_of(std::span(trunk_).subspan(from, to - from), run_mark);
+        for (std::size_t from = first; from < last;) {
+            const std::size_t to = end_of_run(from, last);
+            trunk_[count++] = number_of(from, to, run_mark);
             from = to;
         }
-        trunk_.resize(count);
+        last = count;
     }
+    return last;
 }
 
 /// Of the places in reach, the one where the modules around it have the least hash: whatever came before, soon
 /// the same places are chosen in equal strings. Not inside of a polygon.
-std::size_t FoldedWord::end_of_run(std::size_t first) const {
-    const std::size_t size = trunk_.size();
-    if (size - first <= longest_run) return size;
-    std::size_t end = size;
+std::size_t FoldedWord::end_of_run(std::size_t first, std::size_t last) const {
+    if (last - first <= longest_run) return last;
+    std::size_t end = last;
     std::uint64_t least = UINT64_MAX;
     std::size_t open = 0; // polygons
-    for (std::size_t at = first; at < size && (at - first < longest_run || end == size); ++at) {
+    for (std::size_t at = first; at < last && (at - first < longest_run || end == last); ++at) {
         const ModuleId module = trunk_[at];
         if (open == 0 && at - first >= shortest_run) {
-            const std::uint64_t hash = mixed(mixed(mixed(trunk_[at - 2], trunk_[at - 1]), module), 0);
+            const std::uint64_t hash = hash_of(trunk_[at - 2], trunk_[at - 1], module);
             if (hash < least) least = hash, end = at;
         }
-        if (!has_polygons_ || is_piece(module)) continue;
-        if (command_of(module) == TurtleCommand::open_polygon) ++open;
-        if (command_of(module) == TurtleCommand::close_polygon && open > 0) --open;
+        if (module >= opens_polygon_.size()) continue;
+        if (opens_polygon_[module]) ++open;
+        if (closes_polygon_[module] && open > 0) --open;
     }
     return end;
 }
 
-ModuleId FoldedWord::number_of(std::span<const ModuleId> piece, ModuleId mark) {
+ModuleId FoldedWord::number_of(std::size_t first, std::size_t last, ModuleId mark) {
+    const std::span<const ModuleId> piece = std::span(trunk_).subspan(first, last - first);
     std::uint64_t hash = mark;
     for (const ModuleId module : piece)
         hash = mixed(hash, module);

@@ -17,8 +17,8 @@ namespace graftal {
 /// millions of modules. The number of a piece stands in strings like a module.
 class FoldedWord {
   public:
-    /// Requires balanced brackets, and polygons that end in the branch that they begin in. O(word).
-    FoldedWord(const LsysGrammar& grammar, const ModuleTable& modules, std::span<const ModuleId> word);
+    /// Requires balanced brackets. A word whose polygons cross branches is one piece. O(word), in its place.
+    FoldedWord(const LsysGrammar& grammar, const ModuleTable& modules, ModuleString word);
 
     /// What stands outside of all pieces.
     std::span<const ModuleId> trunk() const { return trunk_; }
@@ -42,15 +42,13 @@ class FoldedWord {
         ModuleId mark = 0;
     };
 
-    TurtleCommand command_of(ModuleId module) const { return grammar_.commands[modules_.symbol(module)]; }
-    void cut_into_runs(std::size_t first);
-    std::size_t end_of_run(std::size_t first) const;
-    ModuleId number_of(std::span<const ModuleId> piece, ModuleId mark);
+    void fold(const std::vector<TurtleCommand>& commands, const ModuleTable& modules);
+    std::size_t cut_into_runs(std::size_t first, std::size_t last);
+    std::size_t end_of_run(std::size_t first, std::size_t last) const;
+    ModuleId number_of(std::size_t first, std::size_t last, ModuleId mark);
 
-    const LsysGrammar& grammar_;
-    const ModuleTable& modules_;
-    bool has_polygons_;
-    ModuleString trunk_; ///< at first followed by what has been read of the open branches
+    std::vector<bool> opens_polygon_, closes_polygon_; ///< of the modules; empty if none does
+    ModuleString trunk_;                               ///< while it is folded, followed by what is not
     ModuleString store_;
     std::vector<Range> ranges_; ///< of the pieces
     IdTable ids_;

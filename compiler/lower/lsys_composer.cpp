@@ -57,14 +57,12 @@ std::optional<TurtlePart> LsysComposer::compose(unsigned steps, const TurtleStat
                      .turtle = Turtle(context_, start)});
 }
 
-std::optional<TurtlePart> LsysComposer::compose_word(const ModuleString& word, const TurtleState& start) {
-    const LsysGrammar& grammar = rewriter_.grammar();
-    word_.reset();
-    if (!grammar.polygons_cross_branches) word_.emplace(grammar, rewriter_.modules(), word);
+std::optional<TurtlePart> LsysComposer::compose_word(const FoldedWord& word, const TurtleState& start) {
+    word_ = &word;
     return run_from({.start = start,
-                     .string = word_ ? word_->trunk() : word,
+                     .string = word.trunk(),
                      .string_stage = 0,
-                     .span = grammar.source->axiom->span,
+                     .span = rewriter_.grammar().source->axiom->span,
                      .turtle = Turtle(context_, start)});
 }
 

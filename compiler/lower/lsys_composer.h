@@ -43,9 +43,9 @@ class LsysComposer {
     /// The part that the axiom becomes after `steps` steps; nothing after an error in the turtle's diagnostics.
     std::optional<TurtlePart> compose(unsigned steps, const TurtleState& start);
 
-    /// The same for a word that is derived already: its pieces (FoldedWord) are drawn once, and shared where
-    /// they are alike.
-    std::optional<TurtlePart> compose_word(const ModuleString& word, const TurtleState& start);
+    /// The same for a word that is derived already: its pieces are drawn once, and shared where they are alike.
+    /// Always the same word, which must outlive this.
+    std::optional<TurtlePart> compose_word(const FoldedWord& word, const TurtleState& start);
 
     std::size_t part_count() const { return parts_.size(); }
 
@@ -118,7 +118,7 @@ class LsysComposer {
     Variants variants_;
     std::size_t max_parts_;
     bool snaps_;
-    std::optional<FoldedWord> word_;
+    const FoldedWord* word_ = nullptr;
     std::vector<Task> tasks_;
     std::vector<KnownPart> parts_;
     IdTable part_ids_;

@@ -11,6 +11,7 @@
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 
+#include "compiler/lower/folded_word.h"
 #include "compiler/lower/lower_settings.h"
 #include "compiler/lower/lsys_composer.h"
 #include "compiler/lower/lsys_derive.h"
@@ -138,7 +139,8 @@ class Drawer {
     };
 
     bool derive() {
-        word_ = LsysDeriver(rewriter_, diagnostics_, options_.seed, options_.max_modules).derive(steps_);
+        auto word = LsysDeriver(rewriter_, diagnostics_, options_.seed, options_.max_modules).derive(steps_);
+        if (word) word_.emplace(grammar_, rewriter_.modules(), std::move(*word));
         return word_.has_value();
     }
 
@@ -270,7 +272,7 @@ class Drawer {
     const LsysDrawOptions& options_;
     Diagnostics& diagnostics_;
     LsysRewriter rewriter_;
-    std::optional<ModuleString> word_; ///< where it is derived
+    std::optional<FoldedWord> word_; ///< where it is derived
     double width_;
     unsigned steps_ = 0;
     std::uint32_t variants_ = 1;

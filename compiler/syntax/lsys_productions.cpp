@@ -98,6 +98,11 @@ class ProductionParser {
             diagnostics_.error(modules[0].span, "a bracket cannot be rewritten");
             return false;
         }
+        if (modules[0].symbol == "%") {
+            diagnostics_.error(modules[0].span, "a cut cannot be rewritten")
+                .with_hint("it has removed the rest of its branch already when its turn would come");
+            return false;
+        }
         production_.predecessor = std::move(modules[0]);
         return true;
     }

@@ -1,0 +1,59 @@
+// Every example of docs/language.md that is marked as a model (```lsys) is a whole file that compiles without a
+// word, for both ways in which a model may be compiled.
+
+#include <algorithm>
+#include <cstddef>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include "compiler/lower/lower.h"
+#include "compiler/support/file.h"
+
+namespace graftal {
+namespace {
+
+struct Example {
+    std::string text;
+    std::size_t line = 0; ///< of its first line in the page
+};
+
+std::vector<Example> examples(const std::string& page, const std::string& language) {
+    const std::string opening = "\n```" + language + "\n", closing = "\n```\n";
+    std::vector<Example> found;
+    for (std::size_t at = page.find(opening); at != std::string::npos; at = page.find(opening, at)) {
+        at += opening.size();
+        const std::size_t end = page.find(closing, at);
+        const auto line = 1 + static_cast<std::size_t>(std::count(page.begin(), page.begin() + static_cast<std::ptrdiff_t>(at), '\n'));
+        found.push_back({page.substr(at, end - at) + "\n", line});
+        at = end;
+    }
+    return found;
+}
+
+TEST(Language, ExamplesCompile) {
+    const std::filesystem::path root = GRAFTAL_SOURCE_DIR;
+    std::string page;
+    ASSERT_TRUE(read_text((root / "docs/language.md").string(), page).ok());
+    const std::vector<Example> found = examples(page, "lsys");
+    EXPECT_GE(found.size(), 20u);
+    for (const Example& example : found)
+        for (const bool exact : {false, true}) {
+            SourceMap sources;
+            Diagnostics diagnostics;
+            LowerOptions options;
+            options.exact = exact;
+            // Beside the models that examples use.
+            const std::string name = (root / "scenes/ifs/example.lsys").string();
+            const std::optional<Graph> graph = lower_text(name, example.text, options, sources, diagnostics);
+            EXPECT_TRUE(graph) << "docs/language.md:" << example.line;
+            EXPECT_EQ(diagnostics.render(sources), "") << "docs/language.md:" << example.line;
+        }
+}
+
+} // namespace
+} // namespace graftal

@@ -148,6 +148,7 @@ bool LsysComposer::advance(Task& task) {
         const TurtlePart* part = find(module, stage, state);
         if (!part) return start_task(module, stage, state, unfolded);
         task.turtle.append(*part, task.span, snap);
+        if (!task.turtle.within_limits(task.span)) return false;
     }
     return true;
 }

@@ -205,10 +205,13 @@ class Drawer {
         ObjectPool pool(scratch);
         Composition composition(*this, scratch, pool, false);
         double sum = 0, squares = 0;
+        int shift = 0;
         for (std::uint32_t i = 0; i < variants_; ++i) {
             const std::optional<TurtlePart> part = composition.variant(i);
             if (!part) return false;
-            const double segments = part->segments.convert_to<double>();
+            // In units of 2^shift, since the counts may be beyond doubles.
+            if (i == 0 && part->segments > 0) shift = std::max(0, static_cast<int>(msb(part->segments)) - 60);
+            const double segments = BigCount(part->segments >> shift).convert_to<double>();
             sum += segments;
             squares += segments * segments;
         }

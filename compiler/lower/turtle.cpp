@@ -6,6 +6,7 @@
 #include <utility>
 
 #include <fmt/format.h>
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 
@@ -149,7 +150,9 @@ bool Turtle::within_limits(Span span) {
             span, fmt::format("more than {} parts are drawn in one place", context_.max_instances));
         return false;
     }
-    if (is_finite(start_from_turtle_)) return true;
+    constexpr double farthest = 1e150; // its square is a number too
+    const Vec3 far = glm::abs(start_from_turtle_.translation);
+    if (std::max({far.x, far.y, far.z}) <= farthest && is_finite(start_from_turtle_)) return true;
     context_.diagnostics.error(span, "the turtle goes farther than numbers reach")
         .with_hint("fewer steps, or a 'step' that shrinks with them, keep the model small");
     return false;

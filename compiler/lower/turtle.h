@@ -79,6 +79,9 @@ class Turtle {
     /// Notes that what is drawn depends on state().variant.
     void read_variant() { note(reads_variant); }
 
+    /// False after the error that there is too much, or that it lies too far; run() looks at it, append() does not.
+    bool within_limits(Span span);
+
     /// The state of a part that begins here.
     TurtleState state() const;
     const Affine& start_from_turtle() const { return start_from_turtle_; }
@@ -122,7 +125,6 @@ class Turtle {
     void append_polygons(const TurtlePart& part, Span span);
     void start_cylinder();
     void add_control_point(Span span);
-    bool within_limits(Span span);
 
     double line_width(double length);
     double read_width() { return note(reads_width), state_.width; }

@@ -107,4 +107,12 @@ bool is_singular(const Affine& a, double relative) {
     return !(sigma.z > relative * sigma.x);
 }
 
+double largest_entry(Vec3 v) {
+    return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
+}
+
+double largest_entry(const Mat3& matrix) {
+    return std::max({largest_entry(matrix[0]), largest_entry(matrix[1]), largest_entry(matrix[2])});
+}
+
 } // namespace graftal

@@ -35,6 +35,10 @@ Affine inverse(const Affine& a);
 /// any scale that doubles hold.
 Vec3 singular_values(const Mat3& linear);
 
+/// The largest absolute value of the entries.
+double largest_entry(const Mat3& matrix);
+double largest_entry(Vec3 v);
+
 /// The largest stretch, |A|_2.
 double norm(const Mat3& linear);
 

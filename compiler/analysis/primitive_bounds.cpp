@@ -33,7 +33,7 @@ std::array<Vec3, 3> triangle_corners() {
 }
 
 Vec3 primitive_support_point(PrimitiveKind kind, Vec3 direction) {
-    switch (kind) {
+    switch (family_of(kind)) {
     case PrimitiveKind::triangle: {
         const auto [top, left, right] = triangle_corners();
         return farther(direction, top, farther(direction, left, right));
@@ -49,6 +49,10 @@ Vec3 primitive_support_point(PrimitiveKind kind, Vec3 direction) {
         return on_circle(direction, direction.y > 0 ? 1 : 0);
     case PrimitiveKind::cone:
         return farther(direction, Vec3(0, 1, 0), on_circle(direction, 0));
+    case PrimitiveKind::frustum: {
+        const Vec3 low = on_circle(direction, 0);
+        return farther(direction, Vec3(0, 1, 0) + top_radius(kind) * low, low);
+    }
     case PrimitiveKind::torus: {
         const double length = glm::length(direction);
         const Vec3 outward = length > 0 ? direction / length : Vec3(1, 0, 0);
@@ -66,7 +70,7 @@ double primitive_support(PrimitiveKind kind, Vec3 direction) {
 }
 
 ObjectBounds primitive_bounds(PrimitiveKind kind) {
-    switch (kind) {
+    switch (family_of(kind)) {
     case PrimitiveKind::triangle:
         return {{{-half_sqrt3, -0.5, 0}, {half_sqrt3, 1, 0}}, {Vec3(0.0), 1}, false};
     case PrimitiveKind::sphere:
@@ -79,6 +83,10 @@ ObjectBounds primitive_bounds(PrimitiveKind kind) {
         return {{{-1, 0, -1}, {1, 1, 1}}, {{0, 0.5, 0}, std::hypot(1.0, 0.5)}, false};
     case PrimitiveKind::cone:
         return {{{-1, 0, -1}, {1, 1, 1}}, {Vec3(0.0), 1}, false};
+    case PrimitiveKind::frustum: { // through the rims of both caps
+        const double middle = top_radius(kind) * top_radius(kind) / 2;
+        return {{{-1, 0, -1}, {1, 1, 1}}, {{0, middle, 0}, std::hypot(1.0, middle)}, false};
+    }
     case PrimitiveKind::torus:
         return {{{-1 - tube, -tube, -1 - tube}, {1 + tube, tube, 1 + tube}}, {Vec3(0.0), 1 + tube}, false};
     }

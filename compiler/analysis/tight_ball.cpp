@@ -104,7 +104,7 @@ class Pieces {
 
     /// Into things whose hull holds it.
     void split_primitive(const Affine& place, PrimitiveKind kind) {
-        switch (kind) {
+        switch (family_of(kind)) {
         case PrimitiveKind::triangle:
             for (const Vec3& corner : triangle_corners())
                 add_point(place(corner));
@@ -121,6 +121,10 @@ class Pieces {
         case PrimitiveKind::cylinder:
             add_disc(place);
             add_disc(place * Affine::translate({0, 1, 0}));
+            return;
+        case PrimitiveKind::frustum:
+            add_disc(place);
+            add_disc(place * Affine::translate({0, 1, 0}) * Affine::scale(Vec3(top_radius(kind))));
             return;
         case PrimitiveKind::cone:
             add_disc(place);

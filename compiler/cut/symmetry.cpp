@@ -83,8 +83,9 @@ bool preserves(PrimitiveKind kind, const Affine& a) {
 std::vector<Vec3> equivariant_centres(const CutGraph& cut) {
     std::vector<Vec3> centre(cut.nodes.size(), Vec3(0.0));
     for (NodeId id = 0; id < cut.nodes.size(); ++id)
-        if (cut.nodes[id].primitive == PrimitiveKind::cylinder ||
-            cut.nodes[id].primitive == PrimitiveKind::cone)
+        if (const auto kind = cut.nodes[id].primitive;
+            kind && (*kind == PrimitiveKind::cylinder || *kind == PrimitiveKind::cone ||
+                     family_of(*kind) == PrimitiveKind::frustum))
             centre[id] = Vec3(0, 0.5, 0);
     for (int sweep = 0; sweep < 200; ++sweep) {
         double change = 0;

@@ -115,20 +115,22 @@ void add_cap(TessellatedPrimitive& mesh, int n, double radius, double y, bool fa
             add(i, i + arc / 2, i + arc);
 }
 
-TessellatedPrimitive make_cylinder(int fineness) {
+/// A cylinder, or a frustum of this radius at the top.
+TessellatedPrimitive make_cylinder(int fineness, double top = 1) {
     TessellatedPrimitive mesh;
     const int n = prism_sides(fineness);
     const double radius = balanced_radius(n);
     for (int i = 0; i < n; ++i)
         for (const double y : {0.0, 1.0})
-            add_vertex(mesh, radius * spoke(i, n) + Vec3(0, y, 0), spoke(i, n));
+            add_vertex(mesh, (y > 0 ? top * radius : radius) * spoke(i, n) + Vec3(0, y, 0),
+                       glm::normalize(spoke(i, n) + Vec3(0, 1 - top, 0)));
     for (int i = 0; i < n; ++i) {
         const auto low = static_cast<std::uint32_t>(2 * i);
         const auto next_low = static_cast<std::uint32_t>(2 * ((i + 1) % n));
         mesh.triangles.push_back({low, next_low, next_low + 1});
         mesh.triangles.push_back({low, next_low + 1, low + 1});
     }
-    add_cap(mesh, n, radius, 1, true);
+    add_cap(mesh, n, top * radius, 1, true);
     add_cap(mesh, n, radius, 0, false);
     return mesh;
 }
@@ -216,7 +218,7 @@ TessellatedPrimitive make_triangle() {
 }
 
 TessellatedPrimitive make(PrimitiveKind kind, int fineness) {
-    switch (kind) {
+    switch (family_of(kind)) {
     case PrimitiveKind::triangle:
         return make_triangle();
     case PrimitiveKind::sphere:
@@ -227,6 +229,8 @@ TessellatedPrimitive make(PrimitiveKind kind, int fineness) {
         return make_cylinder(fineness);
     case PrimitiveKind::cone:
         return make_cone(fineness);
+    case PrimitiveKind::frustum:
+        return make_cylinder(fineness, top_radius(kind));
     case PrimitiveKind::torus:
         return make_torus(fineness);
     case PrimitiveKind::plane:
@@ -236,13 +240,14 @@ TessellatedPrimitive make(PrimitiveKind kind, int fineness) {
 }
 
 double error_of(PrimitiveKind kind, int fineness) {
-    switch (kind) {
+    switch (family_of(kind)) {
     case PrimitiveKind::sphere: {
         const double inner = inner_radius(subdivided_octahedron(fineness));
         return (1 - inner) / (1 + inner);
     }
     case PrimitiveKind::cylinder:
     case PrimitiveKind::cone:
+    case PrimitiveKind::frustum:
         return balanced_error(prism_sides(fineness));
     case PrimitiveKind::torus:
         return torus_error(fineness);
@@ -274,12 +279,13 @@ template<typename Value> class Cache {
 } // namespace
 
 int max_fineness(PrimitiveKind kind) {
-    switch (kind) {
+    switch (family_of(kind)) {
     case PrimitiveKind::sphere:
     case PrimitiveKind::torus:
         return 6;
     case PrimitiveKind::cylinder:
     case PrimitiveKind::cone:
+    case PrimitiveKind::frustum:
         return finest;
     case PrimitiveKind::triangle:
     case PrimitiveKind::cube:

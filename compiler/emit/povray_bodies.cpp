@@ -10,6 +10,7 @@
 #include "compiler/emit/povray_names.h"
 #include "compiler/emit/regular_matrix.h"
 #include "compiler/support/check.h"
+#include "compiler/support/number.h"
 
 namespace graftal {
 
@@ -22,8 +23,8 @@ constexpr double least_literal = 1e-3;
 constexpr double equal_share = 1e-12;
 
 /// SDL of the canonical primitives (graph.h), up to the modifiers.
-std::string_view canonical(PrimitiveKind kind) {
-    switch (kind) {
+std::string canonical(PrimitiveKind kind) {
+    switch (family_of(kind)) {
     case PrimitiveKind::triangle:
         return "triangle { <0,1,0>, <-0.86602540378443865,-0.5,0>, <0.86602540378443865,-0.5,0>";
     case PrimitiveKind::sphere:
@@ -38,6 +39,8 @@ std::string_view canonical(PrimitiveKind kind) {
         return "cone { 0, 1, y, 0";
     case PrimitiveKind::torus:
         return "torus { 1, 0.25";
+    case PrimitiveKind::frustum:
+        return "cone { 0, 1, y, " + shortest(top_radius(kind));
     }
     GRAFTAL_CHECK(false, "emit_povray: unknown primitive");
 }
@@ -87,7 +90,7 @@ bool write_triangle(SdlWriter& out, const Affine& a) {
 /// Writes the primitive without a matrix, up to the modifiers, where that is possible.
 bool write_literal(SdlWriter& out, PrimitiveKind kind, const Affine& a) {
     const Mat3& m = a.linear;
-    switch (kind) {
+    switch (family_of(kind)) {
     case PrimitiveKind::triangle:
         return write_triangle(out, a);
     case PrimitiveKind::sphere:
@@ -112,11 +115,13 @@ bool write_literal(SdlWriter& out, PrimitiveKind kind, const Affine& a) {
         out.number(glm::length(m[0]), digits);
         return true;
     case PrimitiveKind::cone:
+    case PrimitiveKind::frustum:
         if (!keeps_round(m)) return false;
         out << "cone { ";
         out.vector(a.translation, digits) << ", ";
         out.number(glm::length(m[0]), digits) << ", ";
-        out.vector(a.translation + m[1], digits) << ", 0";
+        out.vector(a.translation + m[1], digits) << ", ";
+        out.number(top_radius(kind) * glm::length(m[0]), digits);
         return true;
     case PrimitiveKind::torus:
     case PrimitiveKind::plane:

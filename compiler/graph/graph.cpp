@@ -1,14 +1,26 @@
 #include "compiler/graph/graph.h"
 
 #include <array>
+#include <cmath>
 #include <unordered_map>
+
+#include "compiler/support/number.h"
 
 namespace graftal {
 
 namespace {
 
-constexpr std::array<const char*, primitive_kind_count> primitive_names = {
-    "triangle", "sphere", "cube", "plane", "cylinder", "cone", "torus"};
+const std::array<std::string, primitive_kind_count>& primitive_names() {
+    static const std::array<std::string, primitive_kind_count> names = [] {
+        std::array<std::string, primitive_kind_count> list = {"triangle", "sphere", "cube", "plane",
+                                                               "cylinder", "cone",   "torus"};
+        for (int i = 1; i < frustum_steps; ++i)
+            list[static_cast<std::size_t>(PrimitiveKind::frustum) + static_cast<std::size_t>(i) - 1] =
+                "frustum(" + shortest(static_cast<double>(i) / frustum_steps) + ")";
+        return list;
+    }();
+    return names;
+}
 
 using ObjectsByName = std::unordered_map<std::string_view, const Object*>;
 
@@ -38,13 +50,32 @@ bool equal(const Graph& a, const Object& x, const Graph& b, const Object& y) {
 } // namespace
 
 const char* name_of(PrimitiveKind kind) {
-    return primitive_names[static_cast<std::size_t>(kind)];
+    return primitive_names()[static_cast<std::size_t>(kind)].c_str();
 }
 
 std::optional<PrimitiveKind> primitive_named(std::string_view name) {
-    for (std::size_t i = 0; i < primitive_names.size(); ++i)
-        if (name == primitive_names[i]) return static_cast<PrimitiveKind>(i);
-    return std::nullopt;
+    static const std::unordered_map<std::string_view, PrimitiveKind> kinds = [] {
+        std::unordered_map<std::string_view, PrimitiveKind> map;
+        for (std::size_t i = 0; i < primitive_names().size(); ++i)
+            map.emplace(primitive_names()[i], static_cast<PrimitiveKind>(i));
+        return map;
+    }();
+    const auto found = kinds.find(name);
+    if (found == kinds.end()) return std::nullopt;
+    return found->second;
+}
+
+PrimitiveKind tapered(double top_radius) {
+    const long step = std::lround(top_radius * frustum_steps);
+    if (step <= 0) return PrimitiveKind::cone;
+    if (step >= frustum_steps) return PrimitiveKind::cylinder;
+    return static_cast<PrimitiveKind>(static_cast<long>(PrimitiveKind::frustum) + step - 1);
+}
+
+double top_radius(PrimitiveKind kind) {
+    if (kind < PrimitiveKind::frustum) return kind == PrimitiveKind::cylinder ? 1 : 0;
+    return static_cast<double>(static_cast<int>(kind) - static_cast<int>(PrimitiveKind::frustum) + 1) /
+           frustum_steps;
 }
 
 bool Material::operator==(const Material& other) const {

@@ -39,10 +39,23 @@ namespace graftal {
 ///   cylinder  radius 1 about the y axis, 0 <= y <= 1, capped
 ///   cone      base radius 1 at y = 0, apex at y = 1, capped
 ///   torus     about the y axis, radii 1 and 1/4
-enum class PrimitiveKind : std::uint8_t { triangle, sphere, cube, plane, cylinder, cone, torus };
-inline constexpr int primitive_kind_count = 7;
+///   frustum   what lies between a cylinder and a cone: radius 1 at y = 0, a smaller one at y = 1, capped. Not
+///             affine images of each other, frusta are kinds of their own, one for each k/128 of the base.
+enum class PrimitiveKind : std::uint8_t { triangle, sphere, cube, plane, cylinder, cone, torus, frustum };
+inline constexpr int frustum_steps = 128;
+/// The frusta follow each other from PrimitiveKind::frustum, the most pointed, on.
+inline constexpr int primitive_kind_count = static_cast<int>(PrimitiveKind::frustum) + frustum_steps - 1;
 
-/// The name that `.inst` uses; static storage.
+/// The kind whose radius at y = 1 is nearest, of cone, frusta and cylinder. Requires 0 <= top_radius <= 1.
+PrimitiveKind tapered(double top_radius);
+/// The radius at y = 1 of a cone, frustum or cylinder.
+double top_radius(PrimitiveKind kind);
+/// The kind itself, but PrimitiveKind::frustum for all frusta: for switches.
+inline PrimitiveKind family_of(PrimitiveKind kind) {
+    return kind > PrimitiveKind::frustum ? PrimitiveKind::frustum : kind;
+}
+
+/// The name that `.inst` uses, `frustum(0.5)` for one; static storage.
 const char* name_of(PrimitiveKind kind);
 std::optional<PrimitiveKind> primitive_named(std::string_view name);
 

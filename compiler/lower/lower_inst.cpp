@@ -13,6 +13,7 @@
 #include "compiler/lower/inst_index.h"
 #include "compiler/lower/lower_settings.h"
 #include "compiler/lower/lower_transform.h"
+#include "compiler/support/number.h"
 #include "compiler/syntax/inst_parser.h"
 
 namespace graftal {
@@ -21,6 +22,8 @@ namespace {
 
 /// Words of definitions that are evaluated over all enumerated objects: some seconds of work.
 constexpr std::size_t max_work = 30'000'000;
+
+constexpr std::string_view frustum_name = "frustum";
 
 /// Names that are compared with misspelt ones.
 constexpr std::size_t max_suggestion_work = 100'000;
@@ -146,6 +149,8 @@ class InstLowerer {
             wrong_count(reference, definition->parameters.size()).with_note(definition->span, "defined here");
             return false;
         }
+        if (reference.name == frustum_name && arity == 1) return true;
+        if (reference.name == frustum_name) return wrong_count(reference, 1), false;
         const bool whole = primitive_named(reference.name) || uses_.contains(reference.name);
         if (whole && arity > 0) {
             wrong_count(reference, 0);
@@ -169,8 +174,9 @@ class InstLowerer {
         suggestion_work_ += module_.definitions.size() + by_name_.size();
         if (suggestion_work_ > max_suggestion_work) return;
         std::vector<std::string> known = index_.names();
-        for (int i = 0; i < primitive_kind_count; ++i)
+        for (int i = 0; i < static_cast<int>(PrimitiveKind::frustum); ++i)
             known.emplace_back(name_of(static_cast<PrimitiveKind>(i)));
+        known.emplace_back(frustum_name);
         for (const auto& [use, place] : uses_)
             known.push_back(use);
         for (const auto& [object, id] : by_name_)
@@ -302,6 +308,7 @@ class InstLowerer {
         if (const auto found = by_name_.find(name); found != by_name_.end()) return found->second;
         if (const std::optional<PrimitiveKind> kind = primitive_named(name))
             return by_name_[name] = graph_.primitive(*kind);
+        if (reference.name == frustum_name) return frustum(reference.span, arguments[0]);
         if (const InstDefinition* definition = index_.match(reference.name, arguments, name))
             return add_object(*definition, std::move(arguments), name, reference.span, parent);
         if (const InstDefinition* definition = index_.any(reference.name))
@@ -311,6 +318,14 @@ class InstLowerer {
                 .with_note(definition->span, "defined here");
         else if (by_name_.contains(use_of(reference.name)->first))
             unknown_object(reference.span, name);
+        return std::nullopt;
+    }
+
+    /// The nearest of those that there are.
+    std::optional<ObjectId> frustum(Span span, double radius) {
+        if (radius >= 0 && radius <= 1) return graph_.primitive(tapered(radius));
+        scratch_.error(span, fmt::format("the upper radius of a frustum lies between 0 and 1, not at {}",
+                                         shortest(radius)));
         return std::nullopt;
     }
 

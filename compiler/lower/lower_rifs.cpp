@@ -131,7 +131,7 @@ class RifsLowering {
         if (const auto kind = primitive_named(name.text)) return graph_.primitive(*kind);
         if (const auto use = uses_.find(name.text); use != uses_.end()) return use->second.root;
         std::vector<std::string> known;
-        for (int kind = 0; kind < primitive_kind_count; ++kind)
+        for (int kind = 0; kind < static_cast<int>(PrimitiveKind::frustum); ++kind)
             known.emplace_back(name_of(static_cast<PrimitiveKind>(kind)));
         for (const auto& [used, use] : uses_)
             known.emplace_back(used);

@@ -24,11 +24,11 @@ double angle_between(Vec3 a, Vec3 b) {
     return 2 * std::asin(std::min(1.0, 0.5 * glm::length(a - b)));
 }
 
-void place_piece(Turtle& turtle, ModuleId piece, const TurtlePart& part, double snap) {
+void place_piece(Turtle& turtle, ModuleId piece, const TurtlePart& part, Span span, double snap) {
     if (FoldedWord::is_branch(piece))
-        turtle.append_branch(part, snap);
+        turtle.append_branch(part, span, snap);
     else
-        turtle.append(part, snap);
+        turtle.append(part, span, snap);
 }
 
 } // namespace
@@ -147,7 +147,7 @@ bool LsysComposer::advance(Task& task) {
         state.variant = variant;
         const TurtlePart* part = find(module, stage, state);
         if (!part) return start_task(module, stage, state, unfolded);
-        task.turtle.append(*part, snap);
+        task.turtle.append(*part, task.span, snap);
     }
     return true;
 }
@@ -157,7 +157,7 @@ bool LsysComposer::draw_piece(Task& task, ModuleId piece) {
     double snap = 0;
     const TurtleState state = state_of(task.turtle, snap);
     if (const TurtlePart* part = find(piece, 0, state)) {
-        place_piece(task.turtle, piece, *part, snap);
+        place_piece(task.turtle, piece, *part, task.span, snap);
         return true;
     }
     tasks_.push_back({.module = piece,
@@ -180,7 +180,7 @@ void LsysComposer::complete_piece() {
     std::optional<Instance> line = line_for(part, task);
     part.instances =
         pool_.share(std::move(part.instances), std::move(line), is_branch ? "branch" : "run", task.span);
-    place_piece(parent.turtle, task.module, part, 0);
+    place_piece(parent.turtle, task.module, part, parent.span, 0);
     ++parent.at;
     // Pieces must leave room for other parts; they can be drawn again.
     if (parts_.size() < max_parts_ / 2) remember(task.module, 0, task.start, std::move(part));
@@ -279,6 +279,10 @@ const TurtlePart* LsysComposer::find(ModuleId module, Stage stage, const TurtleS
 /// `snap`: the angle between the directions and those in their place.
 TurtleState LsysComposer::state_of(const Turtle& turtle, double& snap) {
     TurtleState state = turtle.state();
+    if (state.in_cylinder) {
+        const double length = lengths_.representative(glm::length(state.control_point));
+        if (length > 0) state.control_point = length * ways_.representative(glm::normalize(state.control_point));
+    }
     if (!uses_directions_) return state;
     const TurtleState exact = state;
     state.tropism = directions_.representative(state.tropism);

@@ -127,6 +127,9 @@ class LsysComposer {
     IdTable kind_ids_;
     DirectionTable directions_;
     RotationTable rotations_; ///< of exits
+    // Of control points; never snapped.
+    NumberTable lengths_;
+    DirectionTable ways_;
     bool uses_directions_ = false;
 };
 

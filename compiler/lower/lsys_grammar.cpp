@@ -20,7 +20,7 @@ namespace {
 constexpr std::size_t most_symbols = 0xFFFF;
 constexpr double largest_seed = 9007199254740992.0; // 2^53
 
-/// Branches and polygons are balanced, each for itself; together they may not be.
+/// Branches are balanced in every string; polygons need not be.
 bool polygons_cross_branches(const LsysString& string) {
     std::string open;
     for (const LsysModule& module : string.modules) {
@@ -29,7 +29,7 @@ bool polygons_cross_branches(const LsysString& string) {
         if (open.empty() || open.back() != (module.symbol == "]" ? '[' : '{')) return true;
         open.pop_back();
     }
-    return false;
+    return !open.empty();
 }
 
 class GrammarBuilder {

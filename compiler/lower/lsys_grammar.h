@@ -67,7 +67,7 @@ struct LsysGrammar {
     std::vector<bool> ignored; ///< symbols that contexts look past
     bool has_context = false;
     bool is_stochastic = false;
-    bool polygons_cross_branches = false; ///< some `{` and its `}` lie in different branches: `[+A{.].C.}`
+    bool polygons_cross_branches = false; ///< some `{` and its `}` lie in different branches or strings: `[+A{.].C.}`
 
     double angle_deg = 90;
     double step = 1;

@@ -99,10 +99,20 @@ bool Turtle::run(TurtleCommand command, std::span<const double> parameters, std:
         polygons_.emplace_back();
         return true;
     case TurtleCommand::close_polygon:
-        close_polygon(span);
+        close_polygon(read_colour(), span);
         break;
     case TurtleCommand::vertex:
-        record_vertex();
+        record_vertex(start_from_turtle_.translation);
+        break;
+    case TurtleCommand::start_cylinder:
+        start_cylinder();
+        return true;
+    case TurtleCommand::control_point:
+        add_control_point(span);
+        break;
+    case TurtleCommand::end_cylinder:
+        add_control_point(span);
+        state_.in_cylinder = false;
         break;
     case TurtleCommand::sphere:
         part_.has_bodies = true;
@@ -146,9 +156,9 @@ bool Turtle::within_limits(Span span) {
 }
 
 void Turtle::move(double length, bool draw, bool record, Span span) {
-    const bool fills = !polygons_.empty() || (note(reads_polygon), state_.in_polygon);
+    const bool fills = !polygons_.empty() || (note(reads_polygons), state_.open_polygons > 0);
     if (draw) ++part_.segments;
-    if (draw && !fills)
+    if (draw && !fills && !(note(reads_cylinder), state_.in_cylinder))
         context_.bodies.add_segment(start_from_turtle_, length, line_width(length), read_colour(), span,
                                     part_.instances);
     start_from_turtle_ = start_from_turtle_ * Affine::translate(length * ahead);
@@ -157,7 +167,7 @@ void Turtle::move(double length, bool draw, bool record, Span span) {
         drift->shift += drift->turn * std::abs(length);
         total->farthest = std::max(total->farthest, drift->shift);
     }
-    if (fills && record) record_vertex();
+    if (fills && record) record_vertex(start_from_turtle_.translation);
     if (draw) bend();
 }
 
@@ -219,7 +229,8 @@ void Turtle::set_colour(std::span<const double> parameters, int step) {
 /// With the rest of the branch go the ends of the polygons begun in it, and so the polygons.
 void Turtle::cut() {
     cut_depth_ = 1;
-    polygons_.resize(branches_.empty() ? 0 : branches_.back().polygons);
+    const std::size_t before = branches_.empty() ? 0 : branches_.back().polygons;
+    if (polygons_.size() > before) polygons_.resize(before);
 }
 
 void Turtle::open_branch() {
@@ -236,21 +247,61 @@ void Turtle::close_branch() {
     branches_.pop_back();
 }
 
-void Turtle::record_vertex() {
+void Turtle::record_vertex(Vec3 vertex) {
     ++vertex_count_;
     if (!polygons_.empty()) {
-        polygons_.back().push_back(start_from_turtle_.translation);
+        polygons_.back().push_back(vertex);
         return;
     }
-    note(reads_polygon);
-    if (state_.in_polygon) part_.vertices.push_back(start_from_turtle_.translation);
+    note(reads_polygons);
+    if (state_.open_polygons > 0) part_.vertices.push_back(vertex);
 }
 
-void Turtle::close_polygon(Span span) {
-    if (polygons_.empty()) return;
-    part_.has_bodies = true;
-    context_.bodies.add_polygon(polygons_.back(), read_colour(), span, part_.instances);
-    polygons_.pop_back();
+/// A '}' that closes nothing is passed over.
+void Turtle::close_polygon(int colour, Span span) {
+    if (!polygons_.empty()) {
+        part_.has_bodies = true;
+        context_.bodies.add_polygon(polygons_.back(), colour, span, part_.instances);
+        polygons_.pop_back();
+        return;
+    }
+    note(reads_polygons);
+    if (state_.open_polygons == 0) return;
+    --state_.open_polygons;
+    part_.polygon_ends.push_back({std::exchange(part_.vertices, {}), colour});
+}
+
+/// Polygons may begin in one part and end in another, as branches do not.
+void Turtle::append_polygons(const TurtlePart& part, Span span) {
+    const auto record = [&](const std::vector<Vec3>& vertices) {
+        for (const Vec3& vertex : vertices)
+            record_vertex(start_from_turtle_(vertex));
+    };
+    for (const TurtlePart::PolygonEnd& end : part.polygon_ends) {
+        record(end.vertices);
+        close_polygon(end.colour, span);
+    }
+    record(part.vertices);
+    for (const std::vector<Vec3>& polygon : part.polygons) {
+        polygons_.emplace_back();
+        record(polygon);
+    }
+}
+
+void Turtle::start_cylinder() {
+    state_.in_cylinder = true;
+    state_.control_point = start_from_turtle_.translation;
+    state_.control_width = read_width();
+    writes_ |= reads_cylinder;
+}
+
+/// Also of the end: draws the piece of the cylinder that reaches to here.
+void Turtle::add_control_point(Span span) {
+    note(reads_cylinder);
+    if (!state_.in_cylinder) return;
+    context_.bodies.add_taper(start_from_turtle_, state_.control_point, state_.control_width, read_width(),
+                              read_colour(), span, part_.instances);
+    start_cylinder();
 }
 
 TurtleState Turtle::state() const {
@@ -258,12 +309,14 @@ TurtleState Turtle::state() const {
     const Mat3 turtle_from_start = glm::transpose(start_from_turtle_.linear);
     result.tropism = turtle_from_start * state_.tropism;
     result.vertical = turtle_from_start * state_.vertical;
-    result.in_polygon = state_.in_polygon || !polygons_.empty();
+    result.open_polygons = state_.open_polygons + static_cast<std::uint32_t>(polygons_.size());
+    if (state_.in_cylinder)
+        result.control_point = turtle_from_start * (state_.control_point - start_from_turtle_.translation);
     return result;
 }
 
-void Turtle::append(const TurtlePart& part, double snap) {
-    append_branch(part, snap);
+void Turtle::append(const TurtlePart& part, Span span, double snap) {
+    append_branch(part, span, snap);
     const double length = glm::length(part.start_from_exit.translation);
     const double stir = 1 + sensitivity_.turn; // of the part's directions
     error_ = {error_.turn + part.error.exit_turn + snap * part.sensitivity.exit_turn,
@@ -273,30 +326,31 @@ void Turtle::append(const TurtlePart& part, double snap) {
     if (part.writes & reads_width) state_.width = part.exit.width;
     if (part.writes & reads_colour) state_.colour = part.exit.colour;
     if (part.writes & reads_elasticity) state_.elasticity = part.exit.elasticity;
+    if (part.writes & reads_cylinder) {
+        state_.in_cylinder = part.exit.in_cylinder;
+        state_.control_point = start_from_turtle_(part.exit.control_point);
+        state_.control_width = part.exit.control_width;
+    }
     writes_ |= part.writes;
     start_from_turtle_ = start_from_turtle_ * part.start_from_exit;
     if (part.cut) cut();
 }
 
-void Turtle::append_branch(const TurtlePart& part, double snap) {
+void Turtle::append_branch(const TurtlePart& part, Span span, double snap) {
     part_.error.farthest =
         std::max(part_.error.farthest, error_.at(part.reach) + part.error.farthest + snap * part.sensitivity.farthest);
     part_.sensitivity.farthest =
         std::max(part_.sensitivity.farthest,
                  sensitivity_.at(part.reach) + (1 + sensitivity_.turn) * part.sensitivity.farthest);
     TurtleStateMask reads = part.reads;
-    // Whether a polygon is open outside of this part does not matter where one was opened inside.
-    if (!polygons_.empty()) reads &= static_cast<TurtleStateMask>(~reads_polygon);
+    // Whether polygons are open outside of this part does not matter where enough were opened inside.
+    if (polygons_.size() > part.polygon_ends.size()) reads &= static_cast<TurtleStateMask>(~reads_polygons);
     note(reads);
     for (const Instance& instance : part.instances) {
         part_.instances.push_back(instance);
         part_.instances.back().parent_from_child = start_from_turtle_ * instance.parent_from_child;
     }
-    for (const Vec3& vertex : part.vertices) {
-        auto& vertices = polygons_.empty() ? part_.vertices : polygons_.back();
-        vertices.push_back(start_from_turtle_(vertex));
-    }
-    vertex_count_ += part.vertices.size();
+    append_polygons(part, span);
     part_.reach = std::max(part_.reach, glm::length(start_from_turtle_.translation) + part.reach);
     part_.has_bodies = part_.has_bodies || part.has_bodies;
     part_.modules += part.modules;
@@ -306,6 +360,7 @@ void Turtle::append_branch(const TurtlePart& part, double snap) {
 TurtlePart Turtle::finish() && {
     part_.start_from_exit = start_from_turtle_;
     part_.exit = state_;
+    part_.polygons = std::move(polygons_);
     part_.error = {error_.turn, error_.shift, part_.error.farthest};
     part_.sensitivity = {sensitivity_.turn, sensitivity_.shift, part_.sensitivity.farthest};
     part_.writes = writes_;

@@ -28,7 +28,14 @@ struct Displacement {
 /// What a string of modules draws, in the frame of the turtle at its start, and how it leaves the turtle.
 struct TurtlePart {
     std::vector<Instance> instances;
-    std::vector<Vec3> vertices; ///< for the polygon that was open at the start
+    /// The end of a polygon that was open at the start: its last vertices, drawn in this colour.
+    struct PolygonEnd {
+        std::vector<Vec3> vertices;
+        int colour = 0;
+    };
+    std::vector<PolygonEnd> polygon_ends;
+    std::vector<Vec3> vertices;                  ///< for the polygon that is then the innermost
+    std::vector<std::vector<Vec3>> polygons;     ///< left open, with their vertices
     Affine start_from_exit;
     TurtleState exit;          ///< the members of `writes` only
     TurtleStateMask reads = 0; ///< before they were written
@@ -65,9 +72,9 @@ class Turtle {
 
     /// Places a part whose entry state was state(), but for directions that are off by the angle `snap`: draws
     /// it, and goes where it leaves the turtle.
-    void append(const TurtlePart& part, double snap = 0);
+    void append(const TurtlePart& part, Span span, double snap = 0);
     /// The same, but the turtle stays as it is: a branch.
-    void append_branch(const TurtlePart& part, double snap = 0);
+    void append_branch(const TurtlePart& part, Span span, double snap = 0);
 
     /// Notes that what is drawn depends on state().variant.
     void read_variant() { note(reads_variant); }
@@ -110,8 +117,11 @@ class Turtle {
     void cut();
     void open_branch();
     void close_branch();
-    void close_polygon(Span span);
-    void record_vertex();
+    void close_polygon(int colour, Span span);
+    void record_vertex(Vec3 vertex);
+    void append_polygons(const TurtlePart& part, Span span);
+    void start_cylinder();
+    void add_control_point(Span span);
     bool within_limits(Span span);
 
     double line_width(double length);

@@ -52,6 +52,22 @@ void TurtleBodies::add_segment(const Affine& start_from_turtle, double length, d
     add(PrimitiveKind::sphere, end * Affine::scale(Vec3(radius)), colour, span, instances);
 }
 
+void TurtleBodies::add_taper(const Affine& start_from_turtle, Vec3 from, double from_width, double width, int colour,
+                             Span span, std::vector<Instance>& instances) {
+    Vec3 thick = from, thin = start_from_turtle.translation;
+    if (width > from_width) std::swap(thick, thin);
+    const Vec3 y = thin - thick;
+    const double length = glm::length(y), radius = std::max(width, from_width) / 2;
+    if (!(length > 0) || !(radius > 0)) return;
+    // Round it may face anywhere: as the turtle does, so that equal pieces stay equal.
+    Vec3 x = start_from_turtle.linear[0] - glm::dot(start_from_turtle.linear[0], y) / (length * length) * y;
+    if (glm::length(x) < 1e-3) x = start_from_turtle.linear[2] - glm::dot(start_from_turtle.linear[2], y) / (length * length) * y;
+    x = glm::normalize(x);
+    const Mat3 linear(radius * x, y, radius * glm::cross(x, y / length));
+    add(tapered(std::min(width, from_width) / (2 * radius)), {linear, thick}, colour, span, instances);
+    add_sphere(start_from_turtle, width, colour, span, instances);
+}
+
 std::optional<Instance> TurtleBodies::line(Vec3 end, int colour, Span span) {
     const double length = glm::length(end);
     if (!(length > 0)) return std::nullopt;

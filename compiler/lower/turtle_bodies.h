@@ -24,6 +24,10 @@ class TurtleBodies {
     /// A cylinder with a ball at its far end, which fills the gap to what goes on from there.
     void add_segment(const Affine& start_from_turtle, double length, double width, int colour, Span span,
                      std::vector<Instance>& instances);
+    /// A round piece from a point, of this width, to the turtle, of that, with a ball at the turtle. Its taper is
+    /// rounded to 1/128 (graph.h).
+    void add_taper(const Affine& start_from_turtle, Vec3 from, double from_width, double width, int colour, Span span,
+                   std::vector<Instance>& instances);
     /// What stands for a line from the start to `end` where it is too small to see: as thick as it is long,
     /// so that fine curves stay visible. Nothing if the points are equal.
     std::optional<Instance> line(Vec3 end, int colour, Span span);

@@ -10,7 +10,7 @@ namespace {
 
 using enum TurtleCommand;
 
-constexpr std::array<std::pair<std::string_view, TurtleCommand>, 27> commands = {{
+constexpr std::array<std::pair<std::string_view, TurtleCommand>, 30> commands = {{
     {"F", draw},        {"G", draw_unrecorded}, {"f", move},         {"g", move_unrecorded},
     {"+", turn_left},   {"-", turn_right},      {"&", pitch_down},   {"^", pitch_up},
     {"\\", roll_left},  {"/", roll_right},      {"|", turn_back},    {"$", level},
@@ -18,6 +18,7 @@ constexpr std::array<std::pair<std::string_view, TurtleCommand>, 27> commands = 
     {"T", tropism},     {"[", open_branch},     {"]", close_branch}, {"%", cut},
     {"{", open_polygon}, {"}", close_polygon},  {".", vertex},       {"@O", sphere},
     {"@o", disc},       {"@c", disc},           {"~", model},
+    {"@Gs", start_cylinder}, {"@Gc", control_point}, {"@Ge", end_cylinder},
 }};
 
 } // namespace

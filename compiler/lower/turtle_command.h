@@ -33,6 +33,9 @@ enum class TurtleCommand : std::uint8_t {
     sphere,          ///< @O
     disc,            ///< @o and @c
     model,           ///< ~NAME
+    start_cylinder,  ///< @Gs
+    control_point,   ///< @Gc
+    end_cylinder,    ///< @Ge
 };
 
 /// The command of a symbol as strings write it; `none` for what has no meaning.

@@ -27,8 +27,11 @@ bool equal(const TurtleState& a, const TurtleState& b, TurtleStateMask mask) {
            (!(mask & reads_elasticity) || a.elasticity == b.elasticity) &&
            (!(mask & reads_tropism) || a.tropism == b.tropism) &&
            (!(mask & reads_vertical) || a.vertical == b.vertical) &&
-           (!(mask & reads_polygon) || a.in_polygon == b.in_polygon) &&
-           (!(mask & reads_variant) || a.variant == b.variant);
+           (!(mask & reads_polygons) || a.open_polygons == b.open_polygons) &&
+           (!(mask & reads_variant) || a.variant == b.variant) &&
+           (!(mask & reads_cylinder) ||
+            (a.in_cylinder == b.in_cylinder &&
+             (!a.in_cylinder || (a.control_point == b.control_point && a.control_width == b.control_width))));
 }
 
 std::uint64_t hash(const TurtleState& state, TurtleStateMask mask) {
@@ -38,8 +41,12 @@ std::uint64_t hash(const TurtleState& state, TurtleStateMask mask) {
     if (mask & reads_elasticity) hash = mixed_number(hash, state.elasticity);
     if (mask & reads_tropism) hash = mixed_vector(hash, state.tropism);
     if (mask & reads_vertical) hash = mixed_vector(hash, state.vertical);
-    if (mask & reads_polygon) hash = mixed(hash, state.in_polygon);
+    if (mask & reads_polygons) hash = mixed(hash, state.open_polygons);
     if (mask & reads_variant) hash = mixed(hash, state.variant);
+    if (mask & reads_cylinder) {
+        hash = mixed(hash, state.in_cylinder);
+        if (state.in_cylinder) hash = mixed_number(mixed_vector(hash, state.control_point), state.control_width);
+    }
     return hash;
 }
 

@@ -16,20 +16,24 @@ struct TurtleState {
     double elasticity = 0; ///< of tropism
     Vec3 tropism{0.0};     ///< unit vector that segments bend towards
     Vec3 vertical{0.0};    ///< unit vector that `$` looks at
-    bool in_polygon = false;
+    std::uint32_t open_polygons = 0;
+    bool in_cylinder = false;  ///< a generalised one
+    Vec3 control_point{0.0};   ///< its last, in the frame of the start
+    double control_width = 0;
     std::uint32_t variant = 0; ///< of what is random (lsys_composer.h)
 };
 
 /// The members of a TurtleState, as a set.
-using TurtleStateMask = std::uint8_t;
+using TurtleStateMask = std::uint16_t;
 enum TurtleStateBit : TurtleStateMask {
     reads_width = 1,
     reads_colour = 2,
     reads_elasticity = 4,
     reads_tropism = 8,
     reads_vertical = 16,
-    reads_polygon = 32,
+    reads_polygons = 32,
     reads_variant = 64,
+    reads_cylinder = 128,
 };
 
 /// True if the members of `mask` are equal.

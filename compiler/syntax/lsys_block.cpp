@@ -25,6 +25,7 @@ class BlockParser {
         if (block_.name.text.empty() && !opened) return at;
         const LsysOutline outline = scanner_.outline(at);
         parse_statements(outline.statements);
+        text_.check_polygons();
         if (!outline.closed && opened && !text_.stray_brace_said) report_open(outline.end);
         if (opened && !axiom_said_)
             diagnostics_.error(block_.name.span, fmt::format("'lsys {}' has no axiom", block_.name.text))
@@ -63,6 +64,7 @@ class BlockParser {
     void parse_statements(const std::vector<LsysStatement>& statements) {
         text_.symbols = {};
         text_.stray_brace_said = false;
+        text_.open_polygon = text_.closed_polygon = std::nullopt;
         const auto declares = [](const LsysStatement& s) {
             return s.word == "modules" && s.section == LsysSection::block;
         };

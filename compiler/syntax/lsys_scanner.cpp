@@ -85,7 +85,9 @@ class LsysStatementEnd {
         if (next >= scanner_.text_.size() || (!open && !trailing_)) return false;
         if (values_ && braces_ > 0) return !scanner_.at_block(next);
         if (scanner_.at(next) == '\n') return open;
-        if (scanner_.at(next) == '}') return braces_ > 0;
+        // Alone on its line it closes the block: polygons may end in another string.
+        if (scanner_.at(next) == '}')
+            return braces_ > 0 && (squares_ > 0 || scanner_.at(scanner_.skip_spaces(next + 1)) != '\n');
         if (is_lsys_keyword(lsys_name(scanner_.text_.substr(next))) || scanner_.at_block(next)) return false;
         return (production_ && !arrow_) || !scanner_.has_arrow(next);
     }

@@ -28,14 +28,6 @@ bool is_blank(char c) {
     return c == ' ' || c == '\t' || c == '\r' || c == '\n' || c == '\f' || c == '\v';
 }
 
-void report_unopened(std::string_view symbol, Span span, LsysText& text) {
-    Diagnostic& error =
-        text.diagnostics.error(span, fmt::format("'{}' without '{}'", symbol, symbol == "]" ? '[' : '{'));
-    if (symbol != "}") return;
-    error.with_hint("the '}' of a block begins a line");
-    text.stray_brace_said = true;
-}
-
 constexpr const char* probability_hint = "a probability stands behind the successor: A -> B : 0.5";
 
 } // namespace
@@ -50,6 +42,15 @@ std::string_view LsysSymbols::first_of(std::string_view text) const {
     for (; size > 1; --size)
         if (names_.count(text.substr(0, size)) > 0) return text.substr(0, size);
     return name;
+}
+
+void LsysText::check_polygons() {
+    if (closed_polygon && !open_polygon) {
+        diagnostics.error(*closed_polygon, "'}' without '{'").with_hint("the '}' of a block begins a line");
+        stray_brace_said = true;
+    }
+    if (open_polygon && !closed_polygon) diagnostics.error(*open_polygon, "this '{' is not closed");
+    open_polygon = closed_polygon = std::nullopt;
 }
 
 TokenStream LsysText::tokens(std::size_t begin, std::size_t end, std::string_view end_name) {
@@ -317,7 +318,6 @@ std::optional<Expression> LsysStringReader::read_expression(std::size_t end, std
     return std::nullopt;
 }
 
-// Branches and polygons are matched apart from each other: ABOP's cordate leaf, figure 5.6, has `[+A{.].C.}`.
 template<class Module> bool check_lsys_brackets(const std::vector<Module>& modules, LsysText& text) {
     std::vector<const Module*> branches, polygons;
     for (const Module& module : modules) {
@@ -325,27 +325,26 @@ template<class Module> bool check_lsys_brackets(const std::vector<Module>& modul
         if (!opens && module.symbol != "]" && module.symbol != "}") continue;
         const bool is_branch = module.symbol == "[" || module.symbol == "]";
         std::vector<const Module*>& open = is_branch ? branches : polygons;
-        if (!opens && open.empty()) {
-            report_unopened(module.symbol, module.span, text);
+        if (opens) {
+            open.push_back(&module);
+            if (open.size() <= max_lsys_nesting) continue;
+            text.diagnostics.error(module.span,
+                                   fmt::format("brackets are nested more than {} deep", max_lsys_nesting));
             return false;
         }
-        if (!opens) {
+        if (!open.empty()) {
             open.pop_back();
-            continue;
+        } else if (is_branch) {
+            text.diagnostics.error(module.span, "']' without '['");
+            return false;
+        } else if (!text.closed_polygon) {
+            text.closed_polygon = module.span;
         }
-        open.push_back(&module);
-        if (open.size() <= max_lsys_nesting) continue;
-        text.diagnostics.error(module.span,
-                               fmt::format("brackets are nested more than {} deep", max_lsys_nesting));
-        return false;
     }
-    for (const auto* open : {&branches, &polygons}) {
-        if (open->empty()) continue;
-        text.diagnostics.error(open->back()->span,
-                               fmt::format("this '{}' is not closed", open->back()->symbol));
-        return false;
-    }
-    return true;
+    if (!polygons.empty() && !text.open_polygon) text.open_polygon = polygons.back()->span;
+    if (branches.empty()) return true;
+    text.diagnostics.error(branches.back()->span, "this '[' is not closed");
+    return false;
 }
 
 template bool check_lsys_brackets(const std::vector<LsysModule>& modules, LsysText& text);

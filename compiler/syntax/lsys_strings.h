@@ -34,8 +34,14 @@ struct LsysText {
     LsysSymbols symbols;
     std::size_t modules_left = max_lsys_modules + 1; ///< 0: too many, which was reported
     std::size_t words_left = max_lsys_words;
+    /// Polygons may begin in one string of a block and end in another (ABOP, figure 5.8): the first '{' and '}' that
+    /// have no other in their own string.
+    std::optional<Span> open_polygon;
+    std::optional<Span> closed_polygon;
     bool stray_brace_said = false; ///< a '}' that may have been meant to close the block was reported
 
+    /// At the end of a block: reports polygons that never end, or that never began.
+    void check_polygons();
     /// Tokens of a part of the file; `end_name` is what messages call their end.
     TokenStream tokens(std::size_t begin, std::size_t end, std::string_view end_name);
     /// Reports what is left after a statement's values.
@@ -98,7 +104,7 @@ class LsysStringReader {
     bool warned_ = false;
 };
 
-/// Reports brackets and braces that do not match.
+/// Reports square brackets that do not match, and notes braces that have no other.
 template<class Module> bool check_lsys_brackets(const std::vector<Module>& modules, LsysText& text);
 
 } // namespace graftal

@@ -20,7 +20,7 @@ inline Vec3 random_point_of(PrimitiveKind kind, std::mt19937& random) {
     std::uniform_real_distribution<double> unit(0, 1);
     const double angle = 2 * std::numbers::pi * unit(random), s = unit(random), t = unit(random);
     const double half = std::numbers::sqrt3 / 2;
-    switch (kind) {
+    switch (family_of(kind)) {
     case PrimitiveKind::triangle: {
         const double u = std::sqrt(s);
         return (1 - u) * Vec3(0, 1, 0) + u * (1 - t) * Vec3(-half, -.5, 0) + u * t * Vec3(half, -.5, 0);
@@ -35,6 +35,10 @@ inline Vec3 random_point_of(PrimitiveKind kind, std::mt19937& random) {
         return {std::cos(angle), s < .5 ? 0 : 1, std::sin(angle)};
     case PrimitiveKind::cone:
         return {(1 - s) * std::cos(angle), s, (1 - s) * std::sin(angle)};
+    case PrimitiveKind::frustum: {
+        const double r = 1 - s * (1 - top_radius(kind));
+        return {r * std::cos(angle), s, r * std::sin(angle)};
+    }
     case PrimitiveKind::torus: {
         const double around = 2 * std::numbers::pi * s, ring = 1 + .25 * std::cos(around);
         return {ring * std::cos(angle), .25 * std::sin(around), ring * std::sin(angle)};

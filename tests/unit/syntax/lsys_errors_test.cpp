@@ -36,13 +36,16 @@ D -> F]])e",
 m.lsys:4:7: error: ']' without '['
     B -> F]
           ^
+m.lsys:5:7: error: this '[' is not closed
+    C -> F[+F}
+          ^
+m.lsys:6:7: error: ']' without '['
+    D -> F]]
+          ^
 m.lsys:5:10: error: '}' without '{'
     C -> F[+F}
              ^
     hint: the '}' of a block begins a line
-m.lsys:6:7: error: ']' without '['
-    D -> F]]
-          ^
 )e"},
         {R"e(A -> {.F.}})e", R"e(m.lsys:3:11: error: '}' without '{'
     A -> {.F.}}

@@ -29,7 +29,7 @@ function chart_of(chart, title, unit,    e, s, k) {
 BEGIN {
     split("#1f77b4 #d62728 #2ca02c #9467bd #ff7f0e #8c564b", palette)
     most_steps = 25; left = 70; top = 40; width = 360; height = 320
-    low["time"] = -2; high["time"] = 2; least["time"] = 0.01 # the clock's resolution
+    low["time"] = -3; high["time"] = 2; least["time"] = 0.001
     low["peak"] = 0; high["peak"] = 4; least["peak"] = 1
 }
 {

@@ -141,6 +141,7 @@ class Turtle {
     std::vector<std::vector<Vec3>> polygons_; ///< open ones, by their vertices
     std::size_t cut_depth_ = 0;               ///< 1 + branches opened since the cut; 0: no cut
     std::size_t vertex_count_ = 0;
+    std::uint64_t modules_ = 0, segments_ = 0; ///< of run(); not of parts
     TurtlePart part_;
 };
 

@@ -27,13 +27,6 @@ std::pair<double, double> cos_sin_deg(double angle_deg) {
 
 } // namespace
 
-Affine Affine::scale(Vec3 factors) {
-    Mat3 linear(0.0);
-    for (int i = 0; i < 3; ++i)
-        linear[i][i] = factors[i];
-    return {linear, Vec3(0.0)};
-}
-
 Affine Affine::rotate(Vec3 axis, double angle_deg) {
     const double length = glm::length(axis);
     GRAFTAL_CHECK(length > 0, "rotation about a zero axis");

@@ -16,7 +16,9 @@ struct Affine {
     Vec3 operator()(Vec3 point) const { return linear * point + translation; }
     bool operator==(const Affine&) const = default;
 
-    static Affine scale(Vec3 factors);
+    static Affine scale(Vec3 factors) {
+        return {Mat3(factors.x, 0, 0, 0, factors.y, 0, 0, 0, factors.z), Vec3(0.0)};
+    }
     static Affine translate(Vec3 offset) { return {Mat3(1.0), offset}; }
     /// Right-handed rotation about `axis` (need not be of unit length; not zero). Multiples of 90 degrees
     /// about coordinate axes are exact.

@@ -29,8 +29,8 @@ function chart_of(chart, title, unit,    e, s, k) {
 BEGIN {
     split("#1f77b4 #d62728 #2ca02c #9467bd #ff7f0e #8c564b", palette)
     most_steps = 25; left = 70; top = 40; width = 360; height = 320
-    low["time"] = -2; high["time"] = 2; least["time"] = 0.01 # the clock's resolution
-    low["peak"] = 0; high["peak"] = 4; least["peak"] = 1
+    low["time"] = -3; high["time"] = 1; least["time"] = 0.001
+    low["peak"] = 0; high["peak"] = 3; least["peak"] = 1
 }
 {
     ++count
@@ -42,7 +42,7 @@ BEGIN {
 END {
     print "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"920\" height=\"500\" font-family=\"sans-serif\" font-size=\"12\">"
     print "<rect width=\"920\" height=\"500\" fill=\"white\"/>"
-    chart_of("time", "seconds of graftal stats", "s")
+    chart_of("time", "time of graftal stats", "s")
     left = 530
     chart_of("peak", "peak memory", "MiB")
     for (k = 1; k <= known; ++k) {

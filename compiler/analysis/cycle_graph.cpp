@@ -32,14 +32,6 @@ CycleGraph cycle_graph(const Graph& graph, const Components& components,
     return cycle;
 }
 
-double largest_entry(const Mat3& linear) {
-    double largest = 0;
-    for (int column = 0; column < 3; ++column)
-        for (int row = 0; row < 3; ++row)
-            largest = std::max(largest, std::abs(linear[column][row]));
-    return largest;
-}
-
 double similarity_ratio(const Mat3& linear) {
     const double size = largest_entry(linear);
     if (!(size > 0)) return -1;

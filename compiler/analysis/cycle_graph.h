@@ -40,9 +40,6 @@ std::vector<std::uint32_t> places_in_components(const Components& components);
 CycleGraph cycle_graph(const Graph& graph, const Components& components,
                        const std::vector<std::uint32_t>& places, std::uint32_t component);
 
-/// The largest magnitude of an entry.
-double largest_entry(const Mat3& linear);
-
 /// The largest magnitude of an eigenvalue.
 double spectral_radius(const Mat3& linear);
 

@@ -100,9 +100,9 @@ class Cutter {
     /// Twigs, leaves and balls are best spelt out where they are few enough: they are drawn exactly, and
     /// POV-Ray traces them several times as fast as their meshes in boxes that overlap.
     static bool better_flat(const Weights::Weight& whole, double memory) {
-        constexpr double share_of_memory = 0.125;
+        constexpr double share_of_memory = 0.25, share_of_leaves = 0.125;
         return flat_choice(whole).bytes <= share_of_memory * memory &&
-               whole.curved_leaves > 0.5 * whole.leaves;
+               whole.curved_leaves > share_of_leaves * whole.leaves;
     }
 
     Cut finish(Cut cut, double factor, const CutOptions& options) {

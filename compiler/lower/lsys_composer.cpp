@@ -24,6 +24,13 @@ double angle_between(Vec3 a, Vec3 b) {
     return 2 * std::asin(std::min(1.0, 0.5 * glm::length(a - b)));
 }
 
+void place_piece(Turtle& turtle, ModuleId piece, const TurtlePart& part, Span span, double snap) {
+    if (FoldedWord::is_branch(piece))
+        turtle.append_branch(part, span, snap);
+    else
+        turtle.append(part, span, snap);
+}
+
 } // namespace
 
 Mat3 chord_frame(Vec3 exit) {
@@ -44,21 +51,19 @@ std::optional<TurtlePart> LsysComposer::compose(unsigned steps, const TurtleStat
     const std::optional<ModuleString> axiom = rewriter_.axiom();
     if (!axiom) return std::nullopt;
     return run_from({.start = start,
-                     .string = &*axiom,
+                     .string = *axiom,
                      .string_stage = stage_before(steps),
                      .span = rewriter_.grammar().source->axiom->span,
                      .turtle = Turtle(context_, start)});
 }
 
-std::optional<TurtlePart> LsysComposer::compose_word(const ModuleString& word, const TurtleState& start) {
-    shares_branches_ = !rewriter_.grammar().polygons_cross_branches;
-    std::optional<TurtlePart> part = run_from({.start = start,
-                                               .string = &word,
-                                               .string_stage = 0,
-                                               .span = rewriter_.grammar().source->axiom->span,
-                                               .turtle = Turtle(context_, start)});
-    shares_branches_ = false;
-    return part;
+std::optional<TurtlePart> LsysComposer::compose_word(const FoldedWord& word, const TurtleState& start) {
+    word_ = &word;
+    return run_from({.start = start,
+                     .string = word.trunk(),
+                     .string_stage = 0,
+                     .span = rewriter_.grammar().source->axiom->span,
+                     .turtle = Turtle(context_, start)});
 }
 
 std::optional<TurtlePart> LsysComposer::run_from(Task first) {
@@ -77,8 +82,8 @@ bool LsysComposer::run_tasks() {
         if (!advance(tasks_.back())) return false;
         if (tasks_.size() > depth) continue;
         if (depth == 1) return true;
-        if (tasks_.back().is_branch)
-            complete_branch();
+        if (FoldedWord::is_piece(tasks_.back().module))
+            complete_piece();
         else
             complete_task();
         if (!tasks_.back().turtle.within_limits(tasks_.back().span)) return false;
@@ -123,12 +128,11 @@ bool LsysComposer::unfold(ModuleId module, Stage stage, std::uint32_t variant, U
 
 /// Goes on until the string ends, or a part is missing, whose task is then the last.
 bool LsysComposer::advance(Task& task) {
-    const bool in_word = shares_branches_ && (task.is_branch || tasks_.size() == 1);
-    for (; task.at < task.string->size() && !task.turtle.finished(); ++task.at) {
-        const ModuleId module = (*task.string)[task.at];
-        if (in_word && !task.turtle.passing_over()) {
-            if (command_of(module) == TurtleCommand::open_branch) return start_branch(), true;
-            if (task.is_branch && command_of(module) == TurtleCommand::close_branch) return true;
+    for (; task.at < task.string.size() && !task.turtle.finished(); ++task.at) {
+        const ModuleId module = task.string[task.at];
+        if (FoldedWord::is_piece(module)) {
+            if (!draw_piece(task, module)) return true;
+            continue;
         }
         const std::uint32_t variant =
             variants_.child(task.start.variant, task.module, task.string_stage, task.at);
@@ -150,40 +154,38 @@ bool LsysComposer::advance(Task& task) {
     return true;
 }
 
-TurtleCommand LsysComposer::command_of(ModuleId module) const {
-    return rewriter_.grammar().commands[rewriter_.modules().symbol(module)];
-}
-
-/// At the bracket that the last task has come to.
-void LsysComposer::start_branch() {
-    const Task& parent = tasks_.back();
-    const TurtleState state = parent.turtle.state();
-    Task branch{.start = state,
-                .string = parent.string,
-                .string_stage = 0,
-                .span = parent.span,
-                .turtle = Turtle(context_, state),
-                .at = parent.at + 1,
-                .is_branch = true};
-    tasks_.push_back(std::move(branch));
+/// False if its part is missing, whose task is then the last.
+bool LsysComposer::draw_piece(Task& task, ModuleId piece) {
+    double snap = 0;
+    const TurtleState state = state_of(task.turtle, snap);
+    if (const TurtlePart* part = find(piece, 0, state)) {
+        place_piece(task.turtle, piece, *part, task.span, snap);
+        return true;
+    }
+    tasks_.push_back({.module = piece,
+                      .start = state,
+                      .string = word_->piece(piece),
+                      .span = task.span,
+                      .turtle = Turtle(context_, state)});
+    return false;
 }
 
 /// Places the last task, which has come to its end, in the one before.
-void LsysComposer::complete_branch() {
-    Task branch = std::move(tasks_.back());
+void LsysComposer::complete_piece() {
+    Task task = std::move(tasks_.back());
     tasks_.pop_back();
     Task& parent = tasks_.back();
-    // A cut leaves the rest of the branch to be passed over.
-    for (std::size_t open = 0;; ++branch.at) {
-        const TurtleCommand command = command_of((*branch.string)[branch.at]);
-        if (command == TurtleCommand::close_branch && open-- == 0) break;
-        if (command == TurtleCommand::open_branch) ++open;
-    }
-    TurtlePart part = std::move(branch.turtle).finish();
-    part.modules += 2;
-    part.instances = pool_.share(std::move(part.instances), line_for(part, branch), "branch", branch.span);
-    parent.turtle.append_branch(part, parent.span);
-    parent.at = branch.at + 1;
+    const bool is_branch = FoldedWord::is_branch(task.module);
+    TurtlePart part = std::move(task.turtle).finish();
+    part.start_from_exit.linear = rotations_.representative(part.start_from_exit.linear);
+    if (is_branch) part.modules += 2;
+    std::optional<Instance> line = line_for(part, task);
+    part.instances =
+        pool_.share(std::move(part.instances), std::move(line), is_branch ? "branch" : "run", task.span);
+    place_piece(parent.turtle, task.module, part, parent.span, 0);
+    ++parent.at;
+    // Pieces must leave room for other parts; they can be drawn again.
+    if (parts_.size() < max_parts_ / 2) remember(task.module, 0, task.start, std::move(part));
 }
 
 /// What is drawn in place of a part too small to see.
@@ -195,7 +197,7 @@ std::optional<Instance> LsysComposer::line_for(const TurtlePart& part, const Tas
 bool LsysComposer::draw(Task& task, ModuleId module) {
     const SymbolId symbol = rewriter_.modules().symbol(module);
     const auto model = models_.find(symbol);
-    return task.turtle.run(command_of(module), rewriter_.modules().parameters(module),
+    return task.turtle.run(rewriter_.grammar().commands[symbol], rewriter_.modules().parameters(module),
                            model == models_.end() ? std::nullopt : std::optional(model->second), task.span);
 }
 
@@ -220,7 +222,7 @@ bool LsysComposer::start_task(ModuleId module, Stage stage, const TurtleState& s
     tasks_.push_back({.module = module,
                       .stage = stage,
                       .start = start,
-                      .string = &unfolded.by->successor,
+                      .string = unfolded.by->successor,
                       .string_stage = unfolded.stage,
                       .interprets = unfolded.kind == RuleKind::interpret,
                       .span = span,
@@ -244,17 +246,21 @@ void LsysComposer::complete_task() {
         pool_.share(std::move(part.instances), std::move(line), name_of_part(task), task.span, frame);
     if (count > 1 && part.instances.size() == 1)
         origins_.try_emplace(part.instances.front().master, Origin{task.module, task.stage / 2});
-    const std::uint64_t kind_hash = mixed(task.module, task.stage);
+    remember(task.module, task.stage, task.start, std::move(part));
+}
+
+void LsysComposer::remember(ModuleId module, Stage stage, const TurtleState& start, TurtlePart part) {
+    const std::uint64_t kind_hash = mixed(module, stage);
     const std::uint32_t kind =
         kind_ids_.find_or_add(kind_hash, static_cast<std::uint32_t>(kinds_.size()), [&](std::uint32_t id) {
-            return kinds_[id].module == task.module && kinds_[id].stage == task.stage;
+            return kinds_[id].module == module && kinds_[id].stage == stage;
         });
-    if (kind == kinds_.size()) kinds_.push_back({task.module, task.stage, {}});
+    if (kind == kinds_.size()) kinds_.push_back({module, stage, {}});
     auto& reads = kinds_[kind].reads;
     if (std::ranges::find(reads, part.reads) == reads.end()) reads.push_back(part.reads);
-    part_ids_.find_or_add(mixed(kind, hash(task.start, part.reads)), static_cast<std::uint32_t>(parts_.size()),
+    part_ids_.find_or_add(mixed(kind, hash(start, part.reads)), static_cast<std::uint32_t>(parts_.size()),
                           [](std::uint32_t) { return false; });
-    parts_.push_back({kind, task.start, std::move(part)});
+    parts_.push_back({kind, start, std::move(part)});
 }
 
 const TurtlePart* LsysComposer::find(ModuleId module, Stage stage, const TurtleState& start) const {

@@ -4,10 +4,12 @@
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <span>
 #include <string>
 #include <unordered_map>
 #include <vector>
 
+#include "compiler/lower/folded_word.h"
 #include "compiler/lower/lsys_rewriter.h"
 #include "compiler/lower/object_pool.h"
 #include "compiler/lower/turtle.h"
@@ -41,8 +43,9 @@ class LsysComposer {
     /// The part that the axiom becomes after `steps` steps; nothing after an error in the turtle's diagnostics.
     std::optional<TurtlePart> compose(unsigned steps, const TurtleState& start);
 
-    /// The same for a word that is derived already: branches that are alike are shared.
-    std::optional<TurtlePart> compose_word(const ModuleString& word, const TurtleState& start);
+    /// The same for a word that is derived already: its pieces are drawn once, and shared where they are alike.
+    /// Always the same word, which must outlive this.
+    std::optional<TurtlePart> compose_word(const FoldedWord& word, const TurtleState& start);
 
     std::size_t part_count() const { return parts_.size(); }
 
@@ -67,17 +70,16 @@ class LsysComposer {
 
     /// A module's string under way.
     struct Task {
-        ModuleId module = 0;
-        Stage stage = 0; ///< of the module
+        ModuleId module = 0; ///< or a piece of the word
+        Stage stage = 0;     ///< of the module
         TurtleState start;
-        const ModuleString* string = nullptr;
+        std::span<const ModuleId> string;
         Stage string_stage = 0;
         bool interprets = false; ///< the string is drawn, but not part of the word
         Span span;               ///< of the production
         Turtle turtle;
-        std::size_t at = 0;     ///< next in the string
-        bool is_branch = false; ///< ends at the bracket that closes it
-        unsigned repeated = 0;  ///< parts around this one at the same stage
+        std::size_t at = 0;    ///< next in the string
+        unsigned repeated = 0; ///< parts around this one at the same stage
     };
 
     struct PartKind {
@@ -100,11 +102,11 @@ class LsysComposer {
     bool advance(Task& task);
     bool draw(Task& task, ModuleId module);
     bool start_task(ModuleId module, Stage stage, const TurtleState& start, const Unfolded& unfolded);
-    TurtleCommand command_of(ModuleId module) const;
     std::optional<Instance> line_for(const TurtlePart& part, const Task& task);
-    void start_branch();
-    void complete_branch();
+    bool draw_piece(Task& task, ModuleId piece);
+    void complete_piece();
     void complete_task();
+    void remember(ModuleId module, Stage stage, const TurtleState& start, TurtlePart part);
     const TurtlePart* find(ModuleId module, Stage stage, const TurtleState& start) const;
     TurtleState state_of(const Turtle& turtle, double& snap);
     std::string name_of_part(const Task& task) const;
@@ -116,7 +118,7 @@ class LsysComposer {
     Variants variants_;
     std::size_t max_parts_;
     bool snaps_;
-    bool shares_branches_ = false; ///< of the word
+    const FoldedWord* word_ = nullptr;
     std::vector<Task> tasks_;
     std::vector<KnownPart> parts_;
     IdTable part_ids_;

@@ -11,6 +11,7 @@
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 
+#include "compiler/lower/folded_word.h"
 #include "compiler/lower/lower_settings.h"
 #include "compiler/lower/lsys_composer.h"
 #include "compiler/lower/lsys_derive.h"
@@ -138,7 +139,8 @@ class Drawer {
     };
 
     bool derive() {
-        word_ = LsysDeriver(rewriter_, diagnostics_, options_.seed, options_.max_modules).derive(steps_);
+        auto word = LsysDeriver(rewriter_, diagnostics_, options_.seed, options_.max_modules).derive(steps_);
+        if (word) word_.emplace(grammar_, rewriter_.modules(), std::move(*word));
         return word_.has_value();
     }
 
@@ -203,10 +205,13 @@ class Drawer {
         ObjectPool pool(scratch);
         Composition composition(*this, scratch, pool, false);
         double sum = 0, squares = 0;
+        int shift = 0;
         for (std::uint32_t i = 0; i < variants_; ++i) {
             const std::optional<TurtlePart> part = composition.variant(i);
             if (!part) return false;
-            const double segments = part->segments.convert_to<double>();
+            // In units of 2^shift, since the counts may be beyond doubles.
+            if (i == 0 && part->segments > 0) shift = std::max(0, static_cast<int>(msb(part->segments)) - 60);
+            const double segments = BigCount(part->segments >> shift).convert_to<double>();
             sum += segments;
             squares += segments * segments;
         }
@@ -270,7 +275,7 @@ class Drawer {
     const LsysDrawOptions& options_;
     Diagnostics& diagnostics_;
     LsysRewriter rewriter_;
-    std::optional<ModuleString> word_; ///< where it is derived
+    std::optional<FoldedWord> word_; ///< where it is derived
     double width_;
     unsigned steps_ = 0;
     std::uint32_t variants_ = 1;

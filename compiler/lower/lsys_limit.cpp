@@ -17,18 +17,9 @@ constexpr double tolerance = 1e-9;
 /// More classes than this are no limit that a graph could show.
 constexpr std::size_t most_classes = 4096;
 
-double largest(const Mat3& m) {
-    double result = 0;
-    for (int column = 0; column < 3; ++column)
-        for (int row = 0; row < 3; ++row)
-            result = std::max(result, std::abs(m[column][row]));
-    return result;
-}
-
 bool close(const Affine& a, const Affine& b) {
-    const Vec3 gap = a.translation - b.translation;
-    return largest(a.linear - b.linear) <= tolerance * largest(a.linear) &&
-           std::max({std::abs(gap.x), std::abs(gap.y), std::abs(gap.z)}) <= tolerance;
+    return largest_entry(a.linear - b.linear) <= tolerance * largest_entry(a.linear) &&
+           largest_entry(a.translation - b.translation) <= tolerance;
 }
 
 bool mentions(const Expression& expression, std::string_view name) {
@@ -39,7 +30,7 @@ bool mentions(const Expression& expression, std::string_view name) {
 
 /// In the limit, what is smaller than the tolerance is a point.
 bool lasts(const Instance& instance) {
-    return largest(instance.parent_from_child.linear) > tolerance;
+    return largest_entry(instance.parent_from_child.linear) > tolerance;
 }
 
 template<typename Visit> void for_each_lasting(const std::vector<Instance>& instances, const Visit& visit) {

@@ -35,21 +35,9 @@ template<typename Visit> void for_each_entry(const Affine& map, const Visit& vis
         visit(map.translation[row]);
 }
 
-double largest(const Mat3& linear) {
-    double result = 0;
-    for (int column = 0; column < 3; ++column)
-        for (int row = 0; row < 3; ++row)
-            result = std::max(result, std::abs(linear[column][row]));
-    return result;
-}
-
-double largest(const Vec3& v) {
-    return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
-}
-
 bool alike(const Affine& a, const Affine& b) {
-    return largest(a.linear - b.linear) <= tolerance * largest(a.linear) &&
-           largest(a.translation - b.translation) <= tolerance;
+    return largest_entry(a.linear - b.linear) <= tolerance * largest_entry(a.linear) &&
+           largest_entry(a.translation - b.translation) <= tolerance;
 }
 
 bool alike(const Instance& a, const Instance& b) {
@@ -75,8 +63,8 @@ std::uint64_t hash_of_looks(const std::vector<Instance>& instances) {
 double size_of(const std::vector<Instance>& instances) {
     double size = 0;
     for (const Instance& instance : instances)
-        size = std::max({size, largest(instance.parent_from_child.linear),
-                         largest(instance.parent_from_child.translation)});
+        size = std::max({size, largest_entry(instance.parent_from_child.linear),
+                         largest_entry(instance.parent_from_child.translation)});
     return size;
 }
 

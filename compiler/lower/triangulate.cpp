@@ -1,5 +1,6 @@
 #include "compiler/lower/triangulate.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <numeric>
@@ -34,6 +35,12 @@ class EarClipper {
         for (const Vec3& corner : corners)
             flat_.emplace_back(glm::dot(corner - corners[0], u), glm::dot(corner - corners[0], v));
         std::iota(left_.begin(), left_.end(), 0u);
+        double size = 0;
+        for (const Vec2& corner : flat_)
+            size = std::max({size, std::abs(corner.x), std::abs(corner.y)});
+        least_length_ = 1e-9 * size;
+        least_area_ = 1e-9 * size * size;
+        drop_straight_corners();
         ears_.resize(left_.size());
         update_all();
     }
@@ -56,11 +63,30 @@ class EarClipper {
             }
             at = (at + 1) % left_.size();
         }
-        clip(0);
+        if (left_.size() == 3) clip(0);
         return std::move(triangles_);
     }
 
   private:
+    /// Corners that lie between their neighbours, and spikes: what they decide would be decided by rounding.
+    void drop_straight_corners() {
+        std::size_t at = 0, since_drop = 0;
+        while (left_.size() > 2 && since_drop < left_.size()) {
+            if (std::abs(turn_at(at)) <= least_area_) {
+                left_.erase(left_.begin() + static_cast<std::ptrdiff_t>(at));
+                since_drop = 0;
+                at = (at + left_.size() - 1) % left_.size(); // its neighbour may be straight now
+            } else {
+                ++since_drop;
+                at = (at + 1) % left_.size();
+            }
+        }
+    }
+
+    double turn_at(std::size_t at) const {
+        return turn(flat_[corner(at + left_.size() - 1)], flat_[corner(at)], flat_[corner(at + 1)]);
+    }
+
     std::uint32_t corner(std::size_t at) const { return left_[at % left_.size()]; }
 
     void update(std::size_t at) { ears_[at] = is_ear(at); }
@@ -77,26 +103,31 @@ class EarClipper {
 
     bool is_ear(std::size_t at) const {
         const std::uint32_t a = corner(at + left_.size() - 1), b = corner(at), c = corner(at + 1);
-        if (turn(flat_[a], flat_[b], flat_[c]) <= 0) return false;
+        if (turn_at(at) <= least_area_) return false;
         for (const std::uint32_t other : left_)
             if (other != a && other != b && other != c && holds(a, b, c, flat_[other])) return false;
         return true;
     }
 
     bool holds(std::uint32_t a, std::uint32_t b, std::uint32_t c, Vec2 point) const {
+        if (turn(flat_[a], flat_[b], point) < -least_area_ || turn(flat_[b], flat_[c], point) < -least_area_ ||
+            turn(flat_[c], flat_[a], point) < -least_area_)
+            return false;
         // A corner met twice, as where a hole is joined, does not close the ear.
-        if (point == flat_[a] || point == flat_[b] || point == flat_[c]) return false;
-        return turn(flat_[a], flat_[b], point) >= 0 && turn(flat_[b], flat_[c], point) >= 0 &&
-               turn(flat_[c], flat_[a], point) >= 0;
+        for (const std::uint32_t own : {a, b, c})
+            if (glm::distance(point, flat_[own]) <= least_length_) return false;
+        return true;
     }
 
     void clip(std::size_t at) {
         const std::array triangle = {corner(at + left_.size() - 1), corner(at), corner(at + 1)};
-        if (turn(flat_[triangle[0]], flat_[triangle[1]], flat_[triangle[2]]) != 0) triangles_.push_back(triangle);
+        if (std::abs(turn_at(at)) > least_area_) triangles_.push_back(triangle);
         left_.erase(left_.begin() + static_cast<std::ptrdiff_t>(at));
         ears_.erase(ears_.begin() + static_cast<std::ptrdiff_t>(at));
     }
 
+    double least_length_ = 0;
+    double least_area_ = 0; ///< twice it
     std::vector<Vec2> flat_;
     std::vector<std::uint32_t> left_;
     std::vector<char> ears_; ///< of left_

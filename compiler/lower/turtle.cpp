@@ -41,7 +41,7 @@ Turtle::Turtle(TurtleContext& context, const TurtleState& start) : context_(cont
 bool Turtle::run(TurtleCommand command, std::span<const double> parameters, std::optional<ObjectId> model,
                  Span span) {
     if (cut_depth_ > 0) return pass_over(command);
-    ++part_.modules;
+    ++modules_;
     const double angle_deg = first_or(parameters, context_.angle_deg);
     switch (command) {
     case TurtleCommand::none:
@@ -145,7 +145,7 @@ bool Turtle::pass_over(TurtleCommand command) {
     if (command == TurtleCommand::open_branch) {
         ++cut_depth_;
     } else if (command == TurtleCommand::close_branch && --cut_depth_ == 0) {
-        ++part_.modules;
+        ++modules_;
         close_branch();
     }
     return true;
@@ -176,11 +176,11 @@ bool Turtle::within_limits(Span span) {
 
 void Turtle::move(double length, bool draw, bool record, Span span) {
     const bool fills = !polygons_.empty() || (note(reads_polygons), state_.open_polygons > 0);
-    if (draw) ++part_.segments;
+    if (draw) ++segments_;
     if (draw && !fills && !(note(reads_cylinder), state_.in_cylinder))
         context_.bodies.add_segment(start_from_turtle_, length, line_width(length), read_colour(), span,
                                     part_.instances);
-    start_from_turtle_ = start_from_turtle_ * Affine::translate(length * ahead);
+    start_from_turtle_.translation += length * start_from_turtle_.linear[1];
     part_.reach = std::max(part_.reach, glm::length(start_from_turtle_.translation));
     for (auto [drift, total] : {std::pair(&error_, &part_.error), std::pair(&sensitivity_, &part_.sensitivity)}) {
         drift->shift += drift->turn * std::abs(length);
@@ -259,7 +259,9 @@ void Turtle::open_branch() {
 void Turtle::close_branch() {
     if (branches_.empty()) return;
     start_from_turtle_ = branches_.back().start_from_turtle;
+    const std::uint32_t open_polygons = state_.open_polygons; // no branch closes or opens them again
     state_ = branches_.back().state;
+    state_.open_polygons = open_polygons;
     writes_ = branches_.back().writes;
     error_ = branches_.back().error;
     sensitivity_ = branches_.back().sensitivity;
@@ -384,6 +386,8 @@ TurtlePart Turtle::finish() && {
     part_.sensitivity = {sensitivity_.turn, sensitivity_.shift, part_.sensitivity.farthest};
     part_.writes = writes_;
     part_.cut = cut_depth_ > 0;
+    part_.modules += modules_;
+    part_.segments += segments_;
     return std::move(part_);
 }
 

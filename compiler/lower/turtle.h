@@ -76,11 +76,11 @@ class Turtle {
     /// The same, but the turtle stays as it is: a branch.
     void append_branch(const TurtlePart& part, Span span, double snap = 0);
 
-    /// False after an error: to be asked after parts were placed; run() asks by itself.
-    bool within_limits(Span span);
-
     /// Notes that what is drawn depends on state().variant.
     void read_variant() { note(reads_variant); }
+
+    /// False after the error that there is too much, or that it lies too far; run() looks at it, append() does not.
+    bool within_limits(Span span);
 
     /// The state of a part that begins here.
     TurtleState state() const;
@@ -142,6 +142,7 @@ class Turtle {
     std::size_t cut_depth_ = 0;               ///< 1 + branches opened since the cut; 0: no cut
     std::size_t vertex_count_ = 0;
     std::size_t longest_polygon_ = 0; ///< by vertices seen here
+    std::uint64_t modules_ = 0, segments_ = 0; ///< of run(); not of parts
     TurtlePart part_;
 };
 

@@ -7,11 +7,11 @@
 #include <cstdint>
 #include <numeric>
 #include <span>
-#include <unordered_map>
 #include <utility>
 #include <vector>
 
 #include "compiler/passes/rewrite.h"
+#include "compiler/support/id_table.h"
 
 namespace graftal {
 
@@ -23,16 +23,12 @@ using Label = std::uint32_t;
 /// All of an instance but its master, bit by bit.
 using Placement = std::array<std::uint64_t, 17>;
 
-struct PlacementHash {
-    std::size_t operator()(const Placement& placement) const {
-        std::uint64_t hash = 0;
-        for (const std::uint64_t word : placement) {
-            hash = (hash ^ word) * 0x9E3779B97F4A7C15u;
-            hash ^= hash >> 29;
-        }
-        return static_cast<std::size_t>(hash);
-    }
-};
+std::uint64_t hash_of(const Placement& placement) {
+    std::uint64_t hash = 0;
+    for (const std::uint64_t word : placement)
+        hash = mixed(hash, word);
+    return hash;
+}
 
 Placement placement_of(const Instance& instance, bool is_terminal) {
     Placement placement;
@@ -57,12 +53,17 @@ Placement placement_of(const Instance& instance, bool is_terminal) {
 class Labels {
   public:
     Label of(const Instance& instance, bool is_terminal) {
-        return labels_.emplace(placement_of(instance, is_terminal), static_cast<Label>(labels_.size()))
-            .first->second;
+        const Placement placement = placement_of(instance, is_terminal);
+        const auto next = static_cast<Label>(known_.size());
+        const Label label =
+            ids_.find_or_add(hash_of(placement), next, [&](Label known) { return known_[known] == placement; });
+        if (label == next) known_.push_back(placement);
+        return label;
     }
 
   private:
-    std::unordered_map<Placement, Label, PlacementHash> labels_;
+    std::vector<Placement> known_; ///< by label
+    IdTable ids_;
 };
 
 /// The graph as labelled edges, terminals included, to be read against their direction.

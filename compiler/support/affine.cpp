@@ -27,13 +27,6 @@ std::pair<double, double> cos_sin_deg(double angle_deg) {
 
 } // namespace
 
-Affine Affine::scale(Vec3 factors) {
-    Mat3 linear(0.0);
-    for (int i = 0; i < 3; ++i)
-        linear[i][i] = factors[i];
-    return {linear, Vec3(0.0)};
-}
-
 Affine Affine::rotate(Vec3 axis, double angle_deg) {
     const double length = glm::length(axis);
     GRAFTAL_CHECK(length > 0, "rotation about a zero axis");
@@ -105,6 +98,14 @@ bool is_singular(const Affine& a, double relative) {
     if (cube > 1e-270 && std::abs(glm::determinant(a.linear)) > std::max(relative, 1e-9) * cube) return false;
     const Vec3 sigma = singular_values(a.linear);
     return !(sigma.z > relative * sigma.x);
+}
+
+double largest_entry(Vec3 v) {
+    return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
+}
+
+double largest_entry(const Mat3& matrix) {
+    return std::max({largest_entry(matrix[0]), largest_entry(matrix[1]), largest_entry(matrix[2])});
 }
 
 } // namespace graftal

@@ -16,7 +16,9 @@ struct Affine {
     Vec3 operator()(Vec3 point) const { return linear * point + translation; }
     bool operator==(const Affine&) const = default;
 
-    static Affine scale(Vec3 factors);
+    static Affine scale(Vec3 factors) {
+        return {Mat3(factors.x, 0, 0, 0, factors.y, 0, 0, 0, factors.z), Vec3(0.0)};
+    }
     static Affine translate(Vec3 offset) { return {Mat3(1.0), offset}; }
     /// Right-handed rotation about `axis` (need not be of unit length; not zero). Multiples of 90 degrees
     /// about coordinate axes are exact.
@@ -34,6 +36,10 @@ Affine inverse(const Affine& a);
 /// Singular values of the linear part, largest first (one-sided Jacobi; error about 1e-15 of the largest), at
 /// any scale that doubles hold.
 Vec3 singular_values(const Mat3& linear);
+
+/// The largest absolute value of the entries.
+double largest_entry(const Mat3& matrix);
+double largest_entry(Vec3 v);
 
 /// The largest stretch, |A|_2.
 double norm(const Mat3& linear);

@@ -28,9 +28,14 @@ void derive(benchmark::State& state, const std::string& statements) {
     state.SetItemsProcessed(static_cast<std::int64_t>(modules) * state.iterations());
 }
 
-BENCHMARK_CAPTURE(derive, koch, "axiom F--F--F\nF -> F+F--F+F")->Arg(4)->Arg(11)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(derive, koch, "axiom F--F--F\nF -> F+F--F+F")
+    ->Arg(4)->Arg(11)->Arg(12)->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(derive, plant_1_24f, "axiom X\nX -> F-[[X]+X]+F[+FX]-X\nF -> FF")
-    ->Arg(5)->Arg(12)->Unit(benchmark::kMillisecond);
+    ->Arg(5)->Arg(11)->Arg(12)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(derive, tree, R"(modules A
+axiom A(1,0.1)
+A(l,w) -> !(w)F(l)[+(30)A(l*0.8,w*0.7)]-(20)A(l*0.75,w*0.7))")
+    ->Arg(10)->DenseRange(20, 23)->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(derive, monopodial_2_6, R"(let r1 = 0.9, r2 = 0.6, a0 = 45, a2 = 45, d = 137.5, wr = 0.707
 modules A B C
 axiom A(1, 10)

@@ -34,10 +34,10 @@ void expect_small_stray(const std::string& path, const CompileOptions& options,
     EXPECT_GT(difference.hit, 10000u) << "hardly anything was drawn";
 }
 
-/// Memory of which the absolute specification needs more than the eighth up to which it is preferred.
-CompileOptions whole_in_meshes(ImageSize size) {
+/// Memory of which the absolute specification needs more than the quarter up to which it is preferred.
+CompileOptions whole_in_meshes(ImageSize size, std::uint64_t memory_bytes = 90'000'000) {
     CompileOptions options = whole(size);
-    options.cut.memory_bytes = 180'000'000;
+    options.cut.memory_bytes = memory_bytes;
     return options;
 }
 
@@ -48,7 +48,7 @@ TEST(Tessellation, TernaryTreeOfFiveLevels) {
 }
 
 TEST(Tessellation, TernaryTreeOfTenLevels) {
-    expect_small_stray("scenes/hart/ternary_tree.inst", whole_in_meshes({240, 136}), ImageSize{480, 270});
+    expect_small_stray("scenes/hart/ternary_tree.inst", whole_in_meshes({240, 136}, 200'000'000), ImageSize{480, 270});
 }
 
 TEST(Tessellation, Elm) {

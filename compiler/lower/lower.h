@@ -20,23 +20,24 @@ struct Derivation {
     std::string segments;          ///< that it draws
     std::size_t parts = 0;         ///< different modules with their steps and states that were composed
     std::uint32_t variants = 1;    ///< of each random part
-    double drift = 0;              ///< relative standard error of the mean number of segments over the variants
-    double error = 0;              ///< bound on the displacement of any point
+    double drift = 0; ///< relative standard error of the mean number of segments over the variants
+    double error = 0; ///< bound on the displacement of any point
 };
 
 struct LowerOptions {
     std::map<std::string, double, std::less<>> set; ///< `--set NAME=VALUE`: replaces the value of a `let`
-    std::optional<unsigned> steps; ///< derivation steps of an L-system, in place of what the model says
+    std::optional<unsigned> steps;     ///< derivation steps of an L-system, in place of what the model says
     std::optional<std::uint64_t> seed; ///< of what is random, in place of what the model says
-    bool exact = false; ///< L-systems are derived module by module: one honest random tree
+    bool exact = false;                ///< L-systems are derived module by module: one honest random tree
     std::uint64_t max_modules = 50'000'000; ///< of a derived word
-    std::size_t max_objects = 1'000'000;            ///< a model that enumerates more is an error
+    std::size_t max_objects = 1'000'000;    ///< a model that enumerates more is an error
 };
 
 /// Reads a model, and all that it uses, and lowers it to a verified graph. The language follows the file
 /// name (`.inst`, `.rifs`, `.lsys`), for "-" (standard input) the first word of the text. Bad input is
 /// reported to `diagnostics` and gives nothing; a root file that cannot be read gives nothing and a failed
-/// `status`. `derivation` is filled where the model is an L-system. Used files are looked up beside the file that names them.
+/// `status`. `derivation` is filled where the model is an L-system. Used files are looked up beside the file
+/// that names them.
 std::optional<Graph> lower_model(const std::string& path, const LowerOptions& options, SourceMap& sources,
                                  Diagnostics& diagnostics, Status& status,
                                  std::optional<Derivation>* derivation = nullptr);

@@ -63,8 +63,9 @@ class LsysLowering {
                 diagnostics_.error(use.name.span, fmt::format("duplicate use '{}'", use.name.text))
                     .with_note(first->second.span, "first defined here");
             else if (use.name.text.find('.') != std::string_view::npos)
-                diagnostics_.error(use.name.span, fmt::format("the name '{}' of a used model must not have a '.'",
-                                                              use.name.text));
+                diagnostics_.error(
+                    use.name.span,
+                    fmt::format("the name '{}' of a used model must not have a '.'", use.name.text));
             else
                 first->second.root = import_model(graph_, use.path_span, use.name.text, use.path, lowering_);
         }
@@ -163,8 +164,9 @@ class LsysLowering {
             known.emplace_back(name_of(static_cast<PrimitiveKind>(kind)));
         const std::string hint = did_you_mean(name, known);
         diagnostics_.error(span, fmt::format("'~{}' names no used model and no block of this file", name))
-            .with_hint(hint.empty() ? fmt::format("use {} = \"FILE\" at the top of the file makes it one", name)
-                                    : hint);
+            .with_hint(hint.empty()
+                           ? fmt::format("use {} = \"FILE\" at the top of the file makes it one", name)
+                           : hint);
         return std::nullopt;
     }
 
@@ -183,7 +185,8 @@ class LsysLowering {
         if (!steps) steps = graph_.settings.steps;
         if (!steps)
             diagnostics_
-                .error(span, fmt::format("'lsys {}' does not say how many steps to derive", block.source->name.text))
+                .error(span, fmt::format("'lsys {}' does not say how many steps to derive",
+                                         block.source->name.text))
                 .with_hint(is_root(block) ? "add 'steps 5' to it, or '--steps 5' to the command"
                                           : "add 'steps 5' to it");
         else if (*steps > max_derivation_steps)
@@ -195,20 +198,20 @@ class LsysLowering {
                                  std::optional<unsigned> steps) {
         const LsysBlock& source = *block.source;
         const LowerOptions& options = lowering_.options;
-        const std::uint64_t seed = lowering_.at_root_model() && options.seed ? *options.seed : block.grammar->seed;
-        std::optional<LsysDrawing> drawing =
-            draw_lsys(*block.grammar, models, {steps, seed, options.exact, options.max_modules, options.max_objects},
-                      graph_, pool_, diagnostics_);
+        const std::uint64_t seed =
+            lowering_.at_root_model() && options.seed ? *options.seed : block.grammar->seed;
+        std::optional<LsysDrawing> drawing = draw_lsys(
+            *block.grammar, models, {steps, seed, options.exact, options.max_modules, options.max_objects},
+            graph_, pool_, diagnostics_);
         if (!drawing) return std::nullopt;
         if (drawing->instances.empty()) {
-            diagnostics_.error(source.name.span,
-                               fmt::format("'lsys {}' draws nothing{}", source.name.text,
-                                           steps ? fmt::format(" after {} step{}", *steps, *steps == 1 ? "" : "s")
-                                                 : std::string()));
+            diagnostics_.error(source.name.span, fmt::format("'lsys {}' draws nothing{}", source.name.text,
+                                                             steps ? fmt::format(" after {} step{}", *steps,
+                                                                                 *steps == 1 ? "" : "s")
+                                                                   : std::string()));
             return std::nullopt;
         }
-        if (is_root(block))
-            lowering_.derivation = std::move(drawing->derivation);
+        if (is_root(block)) lowering_.derivation = std::move(drawing->derivation);
         return add_root(source, std::move(drawing->instances));
     }
 
@@ -221,7 +224,8 @@ class LsysLowering {
         std::size_t instance_count = 0;
         for (const Object& object : graph_.objects)
             instance_count += object.instances.size();
-        if (!within_limits(graph_.objects.size(), instance_count, block.name.span, lowering_)) return std::nullopt;
+        if (!within_limits(graph_.objects.size(), instance_count, block.name.span, lowering_))
+            return std::nullopt;
         return id;
     }
 

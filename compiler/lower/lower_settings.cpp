@@ -196,7 +196,8 @@ void check_set_names(const Environment& known_lets, Lowering& lowering) {
     }
 }
 
-Environment evaluate_lets(const std::vector<SceneStatement>& statements, Environment outer, Lowering& lowering) {
+Environment evaluate_lets(const std::vector<SceneStatement>& statements, Environment outer,
+                          Lowering& lowering) {
     Environment lets = std::move(outer);
     std::map<std::string, Span, std::less<>> first;
     for (const SceneStatement& statement : statements) {

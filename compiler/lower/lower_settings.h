@@ -12,7 +12,8 @@ namespace graftal {
 Environment lower_lets(const std::vector<SceneStatement>& statements, Lowering& lowering);
 /// The same on top of `outer` values, which they may use and hide, and without the check that `--set` names
 /// are known.
-Environment evaluate_lets(const std::vector<SceneStatement>& statements, Environment outer, Lowering& lowering);
+Environment evaluate_lets(const std::vector<SceneStatement>& statements, Environment outer,
+                          Lowering& lowering);
 /// That check: reports names of `--set` that are not among `known`.
 void check_set_names(const Environment& known, Lowering& lowering);
 

@@ -41,7 +41,8 @@ Mat3 chord_frame(Vec3 exit) {
 }
 
 LsysComposer::LsysComposer(LsysRewriter& rewriter, TurtleContext& turtle, ObjectPool& pool,
-                           const std::map<SymbolId, ObjectId>& models, Variants variants, const LsysLimits& limits)
+                           const std::map<SymbolId, ObjectId>& models, Variants variants,
+                           const LsysLimits& limits)
     : rewriter_(rewriter), context_(turtle), pool_(pool), models_(models), variants_(variants),
       max_parts_(limits.max_parts), snaps_(limits.snap_angle > 0),
       directions_(std::max(limits.snap_angle, DirectionTable::rounding)),
@@ -92,7 +93,8 @@ bool LsysComposer::run_tasks() {
 
 LsysComposer::Stage LsysComposer::stage_before(unsigned steps) const {
     const auto& rules = rewriter_.grammar().rules_of[static_cast<std::size_t>(RuleKind::decompose)];
-    const bool decomposes = std::ranges::any_of(rules, [](const auto& of_symbol) { return !of_symbol.empty(); });
+    const bool decomposes =
+        std::ranges::any_of(rules, [](const auto& of_symbol) { return !of_symbol.empty(); });
     return 2 * steps + (decomposes ? 1 : 0);
 }
 
@@ -201,7 +203,8 @@ bool LsysComposer::draw(Task& task, ModuleId module) {
                            model == models_.end() ? std::nullopt : std::optional(model->second), task.span);
 }
 
-bool LsysComposer::start_task(ModuleId module, Stage stage, const TurtleState& start, const Unfolded& unfolded) {
+bool LsysComposer::start_task(ModuleId module, Stage stage, const TurtleState& start,
+                              const Unfolded& unfolded) {
     const bool repeated = unfolded.stage == stage;
     const unsigned count = repeated ? tasks_.back().repeated + 1 : 0;
     const std::string& name = rewriter_.grammar().symbols[rewriter_.modules().symbol(module)];
@@ -210,7 +213,8 @@ bool LsysComposer::start_task(ModuleId module, Stage stage, const TurtleState& s
         context_.diagnostics
             .error(span, fmt::format("the {} of '{}' does not end",
                                      stage == 0 ? "interpretation" : "decomposition", name))
-            .with_hint("these productions are applied again and again until none fits: a condition must end it");
+            .with_hint(
+                "these productions are applied again and again until none fits: a condition must end it");
         return false;
     }
     if (parts_.size() + tasks_.size() > max_parts_) {
@@ -283,14 +287,16 @@ TurtleState LsysComposer::state_of(const Turtle& turtle, double& snap) {
     TurtleState state = turtle.state();
     if (state.in_cylinder) {
         const double length = lengths_.representative(glm::length(state.control_point));
-        if (length > 0) state.control_point = length * ways_.representative(glm::normalize(state.control_point));
+        if (length > 0)
+            state.control_point = length * ways_.representative(glm::normalize(state.control_point));
     }
     if (!uses_directions_) return state;
     const TurtleState exact = state;
     state.tropism = directions_.representative(state.tropism);
     state.vertical = directions_.representative(state.vertical);
     if (snaps_)
-        snap = std::max(angle_between(exact.tropism, state.tropism), angle_between(exact.vertical, state.vertical));
+        snap = std::max(angle_between(exact.tropism, state.tropism),
+                        angle_between(exact.vertical, state.vertical));
     return state;
 }
 

@@ -19,32 +19,34 @@
 
 namespace graftal {
 
-/// Turned in the plane of the turtle so that it heads for `exit`, where that lies in the plane; else not turned.
+/// Turned in the plane of the turtle so that it heads for `exit`, where that lies in the plane; else not
+/// turned.
 Mat3 chord_frame(Vec3 exit);
 
 struct LsysLimits {
     std::size_t max_parts = 1'000'000; ///< more are an error
-    /// Directions that `$` and tropism look at are taken for equal within this angle, in radians, when a part is
-    /// looked up; it is then placed exactly. The displacement is bounded in TurtlePart::error.
+    /// Directions that `$` and tropism look at are taken for equal within this angle, in radians, when a part
+    /// is looked up; it is then placed exactly. The displacement is bounded in TurtlePart::error.
     double snap_angle = 0;
 };
 
 /// Compiles a derivation without deriving it (Hart 1992, section 4, made automatic): what a module becomes
 /// depends on the module, the steps that are left, and as much of the incoming state of the turtle as its
 /// subtree reads. So each such *part* is composed once, out of the parts of its successor, and costs are
-/// O(parts), not O(length of the word). Where productions are random, the variant of the part (variants.h) counts
-/// as a part of that state.
+/// O(parts), not O(length of the word). Where productions are random, the variant of the part (variants.h)
+/// counts as a part of that state.
 class LsysComposer {
   public:
     /// All references must outlive this. `models`: the roots of what `~NAME` places, by symbol.
     LsysComposer(LsysRewriter& rewriter, TurtleContext& turtle, ObjectPool& pool,
                  const std::map<SymbolId, ObjectId>& models, Variants variants, const LsysLimits& limits);
 
-    /// The part that the axiom becomes after `steps` steps; nothing after an error in the turtle's diagnostics.
+    /// The part that the axiom becomes after `steps` steps; nothing after an error in the turtle's
+    /// diagnostics.
     std::optional<TurtlePart> compose(unsigned steps, const TurtleState& start);
 
-    /// The same for a word that is derived already: its pieces are drawn once, and shared where they are alike.
-    /// Always the same word, which must outlive this.
+    /// The same for a word that is derived already: its pieces are drawn once, and shared where they are
+    /// alike. Always the same word, which must outlive this.
     std::optional<TurtlePart> compose_word(const FoldedWord& word, const TurtleState& start);
 
     std::size_t part_count() const { return parts_.size(); }

@@ -80,8 +80,8 @@ constexpr std::size_t most_limit_parts = 1000;
 
 class Drawer {
   public:
-    Drawer(const LsysGrammar& grammar, const std::map<SymbolId, ObjectId>& models, const LsysDrawOptions& options,
-           Diagnostics& diagnostics)
+    Drawer(const LsysGrammar& grammar, const std::map<SymbolId, ObjectId>& models,
+           const LsysDrawOptions& options, Diagnostics& diagnostics)
         : grammar_(grammar), models_(models), options_(options), diagnostics_(diagnostics),
           rewriter_(grammar, diagnostics), width_(grammar.width.value_or(thinnest_in_steps * grammar.step)) {}
 
@@ -117,8 +117,9 @@ class Drawer {
             : Composition(owner, graph, pool, lines, owner.options_.max_parts, owner.diagnostics_) {}
         Composition(Drawer& owner, Graph& graph, ObjectPool& pool, bool lines, std::size_t max_parts,
                     Diagnostics& diagnostics)
-            : drawer(owner), bodies(graph, owner.palette_),
-              turtle{bodies, diagnostics, owner.grammar_.angle_deg, owner.grammar_.step, lines},
+            : drawer(owner),
+              bodies(graph, owner.palette_), turtle{bodies, diagnostics, owner.grammar_.angle_deg,
+                                                    owner.grammar_.step, lines},
               composer(owner.rewriter_, turtle, pool, owner.models_,
                        Variants(owner.options_.seed, owner.variants_), {max_parts, owner.snap_angle_}) {}
 
@@ -160,8 +161,9 @@ class Drawer {
             const std::optional<TurtlePart> part = composition.variant(0);
             if (!part) return std::nullopt;
             const std::size_t errors = diagnostics_.error_count();
-            std::optional<std::vector<Instance>> folded = fold_levels(
-                part->instances, steps_, composition.composer.origins(), rewriter_, graph, pool, diagnostics_);
+            std::optional<std::vector<Instance>> folded =
+                fold_levels(part->instances, steps_, composition.composer.origins(), rewriter_, graph, pool,
+                            diagnostics_);
             if (diagnostics_.error_count() > errors) return std::nullopt;
             if (!folded && composition.composer.part_count() > most_limit_parts) break;
             if (!folded) continue;
@@ -176,12 +178,13 @@ class Drawer {
             .error(grammar_.source->steps->span,
                    fmt::format("'lsys {}' has no limit that was found: its levels do not repeat",
                                grammar_.source->name.text))
-            .with_hint("the levels of a limit differ in their size only: all lengths and widths change alike");
+            .with_hint(
+                "the levels of a limit differ in their size only: all lengths and widths change alike");
         return std::nullopt;
     }
 
-    /// The limit of figures that grow has no size of its own: the way from its start to its end is made one step
-    /// long, upwards, or, where it comes back, its reach. Others stay as they are.
+    /// The limit of figures that grow has no size of its own: the way from its start to its end is made one
+    /// step long, upwards, or, where it comes back, its reach. Others stay as they are.
     Affine unit_from(const TurtlePart& part, const Graph& graph) {
         Graph scratch = graph;
         ObjectPool pool(scratch);
@@ -216,7 +219,8 @@ class Drawer {
             squares += segments * segments;
         }
         const double mean = sum / variants_;
-        // The relative variance of one whole model is at least that of one level, and no more than that of all.
+        // The relative variance of one whole model is at least that of one level, and no more than that of
+        // all.
         const double variance = mean > 0 ? std::max(0.0, squares / variants_ / (mean * mean) - 1) : 0;
         const double wanted = variance * std::max(1u, steps_) / (most_drift * most_drift);
         const double parts = static_cast<double>(composition.composer.part_count()) / variants_;
@@ -263,8 +267,8 @@ class Drawer {
             palette_.push_back(graph.materials[*id]);
         }
         if (!palette_.empty()) return true;
-        const bool coloured = uses(grammar_, {TurtleCommand::colour_up, TurtleCommand::colour_down,
-                                              TurtleCommand::close_polygon});
+        const bool coloured = uses(
+            grammar_, {TurtleCommand::colour_up, TurtleCommand::colour_down, TurtleCommand::close_polygon});
         const Paint& paint = uses(grammar_, {TurtleCommand::open_branch}) ? stalk_paint : curve_paint;
         palette_ = is_line_drawing() && !coloured ? palette_of({&paint, 1}) : palette_of(default_paints);
         return true;

@@ -15,7 +15,7 @@ namespace graftal {
 struct LsysDrawOptions {
     std::optional<unsigned> steps; ///< nothing: infinitely many
     std::uint64_t seed = 0;
-    bool exact = false;            ///< derive the word, rather than compose parts; so are contexts anyway
+    bool exact = false; ///< derive the word, rather than compose parts; so are contexts anyway
     std::uint64_t max_modules = 50'000'000; ///< of the word
     std::size_t max_parts = 1'000'000;
 };

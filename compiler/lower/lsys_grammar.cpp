@@ -69,7 +69,8 @@ class GrammarBuilder {
                                   std::string_view demand) {
         const std::optional<double> number = evaluate(expression, grammar_.lets, diagnostics_);
         if (!number || good(*number)) return number;
-        diagnostics_.error(expression.span, fmt::format("'{}' must {}, not {}", name, demand, shortest(*number)));
+        diagnostics_.error(expression.span,
+                           fmt::format("'{}' must {}, not {}", name, demand, shortest(*number)));
         return std::nullopt;
     }
 
@@ -95,7 +96,8 @@ class GrammarBuilder {
     }
 
     void add_tropism() {
-        const std::optional<Vec3> direction = lower_vector(block_.tropism->direction, grammar_.lets, diagnostics_);
+        const std::optional<Vec3> direction =
+            lower_vector(block_.tropism->direction, grammar_.lets, diagnostics_);
         if (!direction) return;
         const double length = glm::length(*direction);
         if (length > 0 && std::isfinite(length))
@@ -122,7 +124,8 @@ class GrammarBuilder {
         return symbol(fmt::format("~{}", module.model), module.span);
     }
 
-    std::vector<LsysTemplate> templates(const LsysString& string, const std::vector<std::string_view>& variables) {
+    std::vector<LsysTemplate> templates(const LsysString& string,
+                                        const std::vector<std::string_view>& variables) {
         std::vector<LsysTemplate> result;
         result.reserve(string.modules.size());
         for (const LsysModule& module : string.modules) {
@@ -198,8 +201,7 @@ class GrammarBuilder {
     }
 
     bool is_rewritten(SymbolId id) const {
-        return std::ranges::any_of(grammar_.rules_of,
-                                   [&](const auto& rules) { return !rules[id].empty(); });
+        return std::ranges::any_of(grammar_.rules_of, [&](const auto& rules) { return !rules[id].empty(); });
     }
 
     bool is_rewritten(SymbolId id, std::size_t arity) const {
@@ -268,8 +270,7 @@ class GrammarBuilder {
                 diagnostics_.error(use.span, fmt::format("'{}' means nothing to the turtle", name))
                     .with_hint("letters stand for modules; docs/language.md lists the turtle's symbols");
             } else if (!seen_by_contexts.contains(use.symbol) && !declared.contains(name)) {
-                diagnostics_
-                    .warning(use.span, fmt::format("'{}' has no production and draws nothing", name))
+                diagnostics_.warning(use.span, fmt::format("'{}' has no production and draws nothing", name))
                     .with_hint(fmt::format("'modules {}' says that this is meant", name));
             }
         }
@@ -286,7 +287,8 @@ class GrammarBuilder {
         for (const auto& rules : grammar_.rules_of)
             for (const std::uint32_t rule : rules[use.symbol])
                 known.insert(grammar_.rules[rule].predecessor.arity);
-        diagnostics_.warning(use.span, fmt::format("no production rewrites '{}' with {}", name, count(use.arity)))
+        diagnostics_
+            .warning(use.span, fmt::format("no production rewrites '{}' with {}", name, count(use.arity)))
             .with_hint(fmt::format("its productions have {}", count(*known.begin())));
     }
 

@@ -56,7 +56,7 @@ struct LsysRule {
 struct LsysGrammar {
     const LsysBlock* source = nullptr; ///< must outlive the grammar
     Environment lets;
-    std::vector<std::string> symbols; ///< as strings write them; a model is `~NAME`
+    std::vector<std::string> symbols;    ///< as strings write them; a model is `~NAME`
     std::vector<TurtleCommand> commands; ///< of the symbols
     std::vector<Span> first_uses;        ///< of the symbols
     std::vector<LsysTemplate> axiom;
@@ -67,7 +67,8 @@ struct LsysGrammar {
     std::vector<bool> ignored; ///< symbols that contexts look past
     bool has_context = false;
     bool is_stochastic = false;
-    bool polygons_cross_branches = false; ///< some `{` and its `}` lie in different branches or strings: `[+A{.].C.}`
+    bool polygons_cross_branches =
+        false; ///< some `{` and its `}` lie in different branches or strings: `[+A{.].C.}`
 
     double angle_deg = 90;
     double step = 1;

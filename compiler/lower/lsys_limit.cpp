@@ -39,7 +39,8 @@ template<typename Visit> void for_each_lasting(const std::vector<Instance>& inst
 }
 
 /// Passes over what does not last.
-template<typename Same> bool equal(const std::vector<Instance>& a, const std::vector<Instance>& b, const Same& same) {
+template<typename Same>
+bool equal(const std::vector<Instance>& a, const std::vector<Instance>& b, const Same& same) {
     auto next = std::ranges::find_if(b, lasts);
     for (const Instance& instance : a) {
         if (!lasts(instance)) continue;
@@ -236,10 +237,10 @@ class LevelFolder {
 
 } // namespace
 
-std::optional<std::vector<Instance>> fold_levels(const std::vector<Instance>& instances, unsigned steps,
-                                                 const std::unordered_map<ObjectId, LsysComposer::Origin>& origins,
-                                                 const LsysRewriter& rewriter, Graph& graph, ObjectPool& pool,
-                                                 Diagnostics& diagnostics) {
+std::optional<std::vector<Instance>>
+fold_levels(const std::vector<Instance>& instances, unsigned steps,
+            const std::unordered_map<ObjectId, LsysComposer::Origin>& origins, const LsysRewriter& rewriter,
+            Graph& graph, ObjectPool& pool, Diagnostics& diagnostics) {
     return LevelFolder(steps, origins, rewriter, graph, pool, diagnostics).fold(instances);
 }
 

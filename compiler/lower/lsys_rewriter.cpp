@@ -83,8 +83,9 @@ bool LsysRewriter::normalise(std::vector<Alternative>& found, const LsysRule& fi
 bool LsysRewriter::sums_to_one(double sum, const LsysRule& first) {
     if (std::abs(sum - 1) <= probability_slack) return true;
     diagnostics_
-        .error(first.source->probability->span,
-               fmt::format("the probabilities of the productions that fit sum to {}, not to 1", shortest(sum)))
+        .error(
+            first.source->probability->span,
+            fmt::format("the probabilities of the productions that fit sum to {}, not to 1", shortest(sum)))
         .with_note(first.source->span, "this is the first of them");
     return false;
 }
@@ -115,7 +116,8 @@ std::optional<double> LsysRewriter::probability(const LsysRule& rule, std::span<
     return std::nullopt;
 }
 
-bool LsysRewriter::append_successor(const LsysRule& rule, std::span<const double> values, ModuleString& string) {
+bool LsysRewriter::append_successor(const LsysRule& rule, std::span<const double> values,
+                                    ModuleString& string) {
     return append(rule.successor, &rule, values, string);
 }
 
@@ -144,8 +146,9 @@ bool LsysRewriter::append(const std::vector<LsysTemplate>& templates, const Lsys
         string.push_back(modules_.intern(module.symbol, arguments_));
     }
     if (modules_.size() <= max_distinct_modules) return true;
-    diagnostics_.error(rule ? rule->source->span : grammar_.source->name.span,
-                       fmt::format("more than {} different modules are derived", max_distinct_modules))
+    diagnostics_
+        .error(rule ? rule->source->span : grammar_.source->name.span,
+               fmt::format("more than {} different modules are derived", max_distinct_modules))
         .with_hint("parameters that change without end make every module another one");
     return false;
 }

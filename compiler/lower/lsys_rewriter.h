@@ -80,15 +80,16 @@ class LsysRewriter {
     std::uint32_t compute(RuleKind kind, ModuleId module);
     bool collect(const std::vector<std::uint32_t>& rules, ModuleId module, std::vector<Alternative>& found);
     bool normalise(std::vector<Alternative>& found, const LsysRule& first);
-    std::optional<double> value(const ExpressionCode& code, const LsysRule& rule, std::span<const double> values);
-    bool append(const std::vector<LsysTemplate>& templates, const LsysRule* rule, std::span<const double> values,
-                ModuleString& string);
+    std::optional<double> value(const ExpressionCode& code, const LsysRule& rule,
+                                std::span<const double> values);
+    bool append(const std::vector<LsysTemplate>& templates, const LsysRule* rule,
+                std::span<const double> values, ModuleString& string);
 
     const LsysGrammar& grammar_;
     Diagnostics& diagnostics_;
     ModuleTable modules_;
     std::array<std::vector<std::uint32_t>, rule_kind_count> known_; ///< by module, into alternatives_
-    std::deque<std::vector<Alternative>> alternatives_; ///< stay where they are
+    std::deque<std::vector<Alternative>> alternatives_;             ///< stay where they are
     std::vector<double> arguments_;
     bool failed_ = false;
 };

@@ -48,7 +48,8 @@ bool alike(const Instance& a, const Instance& b) {
 bool alike(const Object& a, const Object& b) {
     const auto same = [](const Instance& x, const Instance& y) { return alike(x, y); };
     return std::ranges::equal(a.instances, b.instances, same) &&
-           a.terminal.has_value() == b.terminal.has_value() && (!a.terminal || alike(*a.terminal, *b.terminal));
+           a.terminal.has_value() == b.terminal.has_value() &&
+           (!a.terminal || alike(*a.terminal, *b.terminal));
 }
 
 std::uint64_t hash_of_looks(const std::vector<Instance>& instances) {
@@ -93,8 +94,7 @@ std::string object_name(std::string_view symbol) {
     std::string name;
     for (const char c : symbol)
         if (std::isalnum(static_cast<unsigned char>(c)) || c == '_') name += c;
-    if (name.empty() || std::isdigit(static_cast<unsigned char>(name.front())))
-        name = "module" + name;
+    if (name.empty() || std::isdigit(static_cast<unsigned char>(name.front()))) name = "module" + name;
     return name;
 }
 
@@ -105,7 +105,8 @@ ObjectPool::ObjectPool(Graph& graph) : graph_(graph) {
 
 bool ObjectPool::worth_an_object(const std::vector<Instance>& instances) const {
     if (instances.size() <= 1) return false;
-    return instances.size() > most_written_out || std::ranges::any_of(instances, [&](const Instance& instance) {
+    return instances.size() > most_written_out ||
+           std::ranges::any_of(instances, [&](const Instance& instance) {
                return !graph_.objects[instance.master].primitive;
            });
 }

@@ -110,8 +110,8 @@ class EarClipper {
     }
 
     bool holds(std::uint32_t a, std::uint32_t b, std::uint32_t c, Vec2 point) const {
-        if (turn(flat_[a], flat_[b], point) < -least_area_ || turn(flat_[b], flat_[c], point) < -least_area_ ||
-            turn(flat_[c], flat_[a], point) < -least_area_)
+        if (turn(flat_[a], flat_[b], point) < -least_area_ ||
+            turn(flat_[b], flat_[c], point) < -least_area_ || turn(flat_[c], flat_[a], point) < -least_area_)
             return false;
         // A corner met twice, as where a hole is joined, does not close the ear.
         for (const std::uint32_t own : {a, b, c})

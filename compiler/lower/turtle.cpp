@@ -135,7 +135,8 @@ bool Turtle::run(TurtleCommand command, std::span<const double> parameters, std:
     case TurtleCommand::model:
         part_.has_bodies = true;
         if (model)
-            context_.bodies.add_model(*model, start_from_turtle_, first_or(parameters, 1), span, part_.instances);
+            context_.bodies.add_model(*model, start_from_turtle_, first_or(parameters, 1), span,
+                                      part_.instances);
         break;
     }
     return within_limits(span);
@@ -182,7 +183,8 @@ void Turtle::move(double length, bool draw, bool record, Span span) {
                                     part_.instances);
     start_from_turtle_.translation += length * start_from_turtle_.linear[1];
     part_.reach = std::max(part_.reach, glm::length(start_from_turtle_.translation));
-    for (auto [drift, total] : {std::pair(&error_, &part_.error), std::pair(&sensitivity_, &part_.sensitivity)}) {
+    for (auto [drift, total] :
+         {std::pair(&error_, &part_.error), std::pair(&sensitivity_, &part_.sensitivity)}) {
         drift->shift += drift->turn * std::abs(length);
         total->farthest = std::max(total->farthest, drift->shift);
     }
@@ -228,7 +230,8 @@ void Turtle::bend() {
 bool Turtle::set_width(std::span<const double> parameters, Span span) {
     const double width = parameters.empty() ? thinning * read_width() : parameters[0];
     if (width < 0) {
-        context_.diagnostics.error(span, fmt::format("a width must not be negative, but is {}", shortest(width)));
+        context_.diagnostics.error(span,
+                                   fmt::format("a width must not be negative, but is {}", shortest(width)));
         return false;
     }
     state_.width = width;
@@ -358,8 +361,8 @@ void Turtle::append(const TurtlePart& part, Span span, double snap) {
 }
 
 void Turtle::append_branch(const TurtlePart& part, Span span, double snap) {
-    part_.error.farthest =
-        std::max(part_.error.farthest, error_.at(part.reach) + part.error.farthest + snap * part.sensitivity.farthest);
+    part_.error.farthest = std::max(part_.error.farthest, error_.at(part.reach) + part.error.farthest +
+                                                              snap * part.sensitivity.farthest);
     part_.sensitivity.farthest =
         std::max(part_.sensitivity.farthest,
                  sensitivity_.at(part.reach) + (1 + sensitivity_.turn) * part.sensitivity.farthest);

@@ -34,17 +34,17 @@ struct TurtlePart {
         int colour = 0;
     };
     std::vector<PolygonEnd> polygon_ends;
-    std::vector<Vec3> vertices;                  ///< for the polygon that is then the innermost
-    std::vector<std::vector<Vec3>> polygons;     ///< left open, with their vertices
+    std::vector<Vec3> vertices;              ///< for the polygon that is then the innermost
+    std::vector<std::vector<Vec3>> polygons; ///< left open, with their vertices
     Affine start_from_exit;
     TurtleState exit;          ///< the members of `writes` only
     TurtleStateMask reads = 0; ///< before they were written
     TurtleStateMask writes = 0;
-    bool cut = false; ///< what follows in the branch is cut off
-    double reach = 0; ///< the turtle goes no farther from the start
+    bool cut = false;         ///< what follows in the branch is cut off
+    double reach = 0;         ///< the turtle goes no farther from the start
     Displacement error;       ///< from directions that were snapped (LsysComposer)
     Displacement sensitivity; ///< to the directions at the start, per radian, to first order
-    bool has_bodies = false; ///< there are more than segments to see
+    bool has_bodies = false;  ///< there are more than segments to see
     BigCount modules = 0;
     BigCount segments = 0;
 };
@@ -68,10 +68,11 @@ class Turtle {
     Turtle(TurtleContext& context, const TurtleState& start);
 
     /// Carries out one module; false after an error. `models` of `~` are given by `model`.
-    bool run(TurtleCommand command, std::span<const double> parameters, std::optional<ObjectId> model, Span span);
+    bool run(TurtleCommand command, std::span<const double> parameters, std::optional<ObjectId> model,
+             Span span);
 
-    /// Places a part whose entry state was state(), but for directions that are off by the angle `snap`: draws
-    /// it, and goes where it leaves the turtle.
+    /// Places a part whose entry state was state(), but for directions that are off by the angle `snap`:
+    /// draws it, and goes where it leaves the turtle.
     void append(const TurtlePart& part, Span span, double snap = 0);
     /// The same, but the turtle stays as it is: a branch.
     void append_branch(const TurtlePart& part, Span span, double snap = 0);
@@ -79,7 +80,8 @@ class Turtle {
     /// Notes that what is drawn depends on state().variant.
     void read_variant() { note(reads_variant); }
 
-    /// False after the error that there is too much, or that it lies too far; run() looks at it, append() does not.
+    /// False after the error that there is too much, or that it lies too far; run() looks at it, append()
+    /// does not.
     bool within_limits(Span span);
 
     /// The state of a part that begins here.
@@ -141,7 +143,7 @@ class Turtle {
     std::vector<std::vector<Vec3>> polygons_; ///< open ones, by their vertices
     std::size_t cut_depth_ = 0;               ///< 1 + branches opened since the cut; 0: no cut
     std::size_t vertex_count_ = 0;
-    std::size_t longest_polygon_ = 0; ///< by vertices seen here
+    std::size_t longest_polygon_ = 0;          ///< by vertices seen here
     std::uint64_t modules_ = 0, segments_ = 0; ///< of run(); not of parts
     TurtlePart part_;
 };

@@ -42,8 +42,8 @@ Instance TurtleBodies::body(PrimitiveKind kind, const Affine& place, int colour,
     return {*primitive, place, Tint(), material(colour), span};
 }
 
-void TurtleBodies::add_segment(const Affine& start_from_turtle, double length, double width, int colour, Span span,
-                               std::vector<Instance>& instances) {
+void TurtleBodies::add_segment(const Affine& start_from_turtle, double length, double width, int colour,
+                               Span span, std::vector<Instance>& instances) {
     if (length == 0 || width == 0) return;
     const double radius = width / 2;
     add(PrimitiveKind::cylinder, start_from_turtle * Affine::scale({radius, length, radius}), colour, span,
@@ -52,8 +52,8 @@ void TurtleBodies::add_segment(const Affine& start_from_turtle, double length, d
     add(PrimitiveKind::sphere, end * Affine::scale(Vec3(radius)), colour, span, instances);
 }
 
-void TurtleBodies::add_taper(const Affine& start_from_turtle, Vec3 from, double from_width, double width, int colour,
-                             Span span, std::vector<Instance>& instances) {
+void TurtleBodies::add_taper(const Affine& start_from_turtle, Vec3 from, double from_width, double width,
+                             int colour, Span span, std::vector<Instance>& instances) {
     Vec3 thick = from, thin = start_from_turtle.translation;
     if (width > from_width) std::swap(thick, thin);
     const Vec3 y = thin - thick;
@@ -61,7 +61,8 @@ void TurtleBodies::add_taper(const Affine& start_from_turtle, Vec3 from, double 
     if (!(length > 0) || !(radius > 0)) return;
     // Round it may face anywhere: as the turtle does, so that equal pieces stay equal.
     Vec3 x = start_from_turtle.linear[0] - glm::dot(start_from_turtle.linear[0], y) / (length * length) * y;
-    if (glm::length(x) < 1e-3) x = start_from_turtle.linear[2] - glm::dot(start_from_turtle.linear[2], y) / (length * length) * y;
+    if (glm::length(x) < 1e-3)
+        x = start_from_turtle.linear[2] - glm::dot(start_from_turtle.linear[2], y) / (length * length) * y;
     x = glm::normalize(x);
     const Mat3 linear(radius * x, y, radius * glm::cross(x, y / length));
     add(tapered(std::min(width, from_width) / (2 * radius)), {linear, thick}, colour, span, instances);
@@ -75,14 +76,15 @@ std::optional<Instance> TurtleBodies::line(Vec3 end, int colour, Span span) {
     const Vec3 aside = std::abs(y.z) < 0.9 ? Vec3(0, 0, 1) : Vec3(1, 0, 0);
     const Vec3 x = glm::normalize(glm::cross(y, aside));
     const double radius = 0.5 * length;
-    return body(PrimitiveKind::cylinder, {Mat3(radius * x, end, radius * glm::cross(x, y)), Vec3(0.0)}, colour,
-                span);
+    return body(PrimitiveKind::cylinder, {Mat3(radius * x, end, radius * glm::cross(x, y)), Vec3(0.0)},
+                colour, span);
 }
 
 void TurtleBodies::add_sphere(const Affine& start_from_turtle, double diameter, int colour, Span span,
                               std::vector<Instance>& instances) {
     if (diameter == 0) return;
-    add(PrimitiveKind::sphere, start_from_turtle * Affine::scale(Vec3(diameter / 2)), colour, span, instances);
+    add(PrimitiveKind::sphere, start_from_turtle * Affine::scale(Vec3(diameter / 2)), colour, span,
+        instances);
 }
 
 void TurtleBodies::add_disc(const Affine& start_from_turtle, double diameter, int colour, Span span,

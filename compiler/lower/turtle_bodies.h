@@ -10,9 +10,8 @@
 
 namespace graftal {
 
-
-/// Makes the instances of what a turtle draws. A turtle's frame has x to its right, y ahead, and z up, so that
-/// the canonical cylinder is a segment.
+/// Makes the instances of what a turtle draws. A turtle's frame has x to its right, y ahead, and z up, so
+/// that the canonical cylinder is a segment.
 class TurtleBodies {
   public:
     /// Colour index k draws with `palette[k mod size]`. `graph` gets the primitives and materials that are
@@ -24,10 +23,10 @@ class TurtleBodies {
     /// A cylinder with a ball at its far end, which fills the gap to what goes on from there.
     void add_segment(const Affine& start_from_turtle, double length, double width, int colour, Span span,
                      std::vector<Instance>& instances);
-    /// A round piece from a point, of this width, to the turtle, of that, with a ball at the turtle. Its taper is
-    /// rounded to 1/128 (graph.h).
-    void add_taper(const Affine& start_from_turtle, Vec3 from, double from_width, double width, int colour, Span span,
-                   std::vector<Instance>& instances);
+    /// A round piece from a point, of this width, to the turtle, of that, with a ball at the turtle. Its
+    /// taper is rounded to 1/128 (graph.h).
+    void add_taper(const Affine& start_from_turtle, Vec3 from, double from_width, double width, int colour,
+                   Span span, std::vector<Instance>& instances);
     /// What stands for a line from the start to `end` where it is too small to see: as thick as it is long,
     /// so that fine curves stay visible. Nothing if the points are equal.
     std::optional<Instance> line(Vec3 end, int colour, Span span);
@@ -43,12 +42,13 @@ class TurtleBodies {
   private:
     MaterialId material(int colour);
     Instance body(PrimitiveKind kind, const Affine& place, int colour, Span span);
-    void add(PrimitiveKind kind, const Affine& place, int colour, Span span, std::vector<Instance>& instances) {
+    void add(PrimitiveKind kind, const Affine& place, int colour, Span span,
+             std::vector<Instance>& instances) {
         instances.push_back(body(kind, place, colour, span));
     }
 
     Graph& graph_;
-    std::vector<Material> palette_;                ///< not empty
+    std::vector<Material> palette_;              ///< not empty
     std::vector<std::optional<MaterialId>> ids_; ///< of the palette's materials used so far
     std::array<std::optional<ObjectId>, primitive_kind_count> primitives_; ///< those used so far
 };

@@ -23,7 +23,8 @@ std::uint64_t mixed_vector(std::uint64_t hash, const Vec3& v) {
 } // namespace
 
 bool equal(const TurtleState& a, const TurtleState& b, TurtleStateMask mask) {
-    return (!(mask & reads_width) || a.width == b.width) && (!(mask & reads_colour) || a.colour == b.colour) &&
+    return (!(mask & reads_width) || a.width == b.width) &&
+           (!(mask & reads_colour) || a.colour == b.colour) &&
            (!(mask & reads_elasticity) || a.elasticity == b.elasticity) &&
            (!(mask & reads_tropism) || a.tropism == b.tropism) &&
            (!(mask & reads_vertical) || a.vertical == b.vertical) &&
@@ -45,7 +46,8 @@ std::uint64_t hash(const TurtleState& state, TurtleStateMask mask) {
     if (mask & reads_variant) hash = mixed(hash, state.variant);
     if (mask & reads_cylinder) {
         hash = mixed(hash, state.in_cylinder);
-        if (state.in_cylinder) hash = mixed_number(mixed_vector(hash, state.control_point), state.control_width);
+        if (state.in_cylinder)
+            hash = mixed_number(mixed_vector(hash, state.control_point), state.control_width);
     }
     return hash;
 }
@@ -74,8 +76,8 @@ Mat3 RotationTable::representative(const Mat3& rotation) {
     const Vec3 y = glm::normalize(rotation[1]);
     const Vec3 x = glm::normalize(rotation[0] - glm::dot(rotation[0], y) * y);
     const Mat3 clean(x, y, glm::cross(x, y));
-    // The cell of one number that depends on all entries in a way that no model favours: of two matrices closer
-    // than the tolerance the cells are the same, or neighbours.
+    // The cell of one number that depends on all entries in a way that no model favours: of two matrices
+    // closer than the tolerance the cells are the same, or neighbours.
     const Mat3 weights(0.48273, 0.71931, 0.49942, 0.31177, -0.62935, 0.27061, -0.55821, 0.16943, 0.81219);
     double along = 0;
     for (int column = 0; column < 3; ++column)

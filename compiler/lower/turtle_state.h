@@ -17,8 +17,8 @@ struct TurtleState {
     Vec3 tropism{0.0};     ///< unit vector that segments bend towards
     Vec3 vertical{0.0};    ///< unit vector that `$` looks at
     std::uint32_t open_polygons = 0;
-    bool in_cylinder = false;  ///< a generalised one
-    Vec3 control_point{0.0};   ///< its last, in the frame of the start
+    bool in_cylinder = false; ///< a generalised one
+    Vec3 control_point{0.0};  ///< its last, in the frame of the start
     double control_width = 0;
     std::uint32_t variant = 0; ///< of what is random (lsys_composer.h)
 };

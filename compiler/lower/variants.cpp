@@ -25,7 +25,8 @@ std::uint32_t Variants::permuted(std::uint32_t variant, std::uint64_t key) const
     const int half = (std::bit_width(mask_) + 1) / 2;
     for (int round = 0; round < 3; ++round) {
         key = scrambled(key);
-        variant = (variant * (static_cast<std::uint32_t>(key) | 1u) + static_cast<std::uint32_t>(key >> 32)) & mask_;
+        variant = (variant * (static_cast<std::uint32_t>(key) | 1u) + static_cast<std::uint32_t>(key >> 32)) &
+                  mask_;
         variant ^= variant >> half;
     }
     return variant;

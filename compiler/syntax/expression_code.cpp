@@ -47,7 +47,8 @@ class ExpressionCode::Compiler {
     std::optional<std::uint32_t> add_name(const Expression& e) {
         const auto slot = std::ranges::find(variables_, e.text);
         if (slot != variables_.end())
-            return append({.kind = Kind::slot, .slot = static_cast<std::uint32_t>(slot - variables_.begin())});
+            return append(
+                {.kind = Kind::slot, .slot = static_cast<std::uint32_t>(slot - variables_.begin())});
         if (const std::optional<double> number = evaluate(e, visible_names(e), diagnostics_))
             return append({.kind = Kind::number, .number = *number});
         return std::nullopt;

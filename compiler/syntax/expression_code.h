@@ -36,8 +36,8 @@ class ExpressionCode {
     struct Node {
         Kind kind = Kind::number;
         BinaryOperator op = BinaryOperator::add;
-        std::uint32_t slot = 0;                        ///< or the first operand
-        std::uint32_t second = 0;                      ///< operand
+        std::uint32_t slot = 0;   ///< or the first operand
+        std::uint32_t second = 0; ///< operand
         double number = 0;
         const ExpressionFunction* function = nullptr;
     };

@@ -55,8 +55,8 @@ constexpr std::array functions = {
     ExpressionFunction{"pow", 2, [](Arguments a) { return std::pow(a[0], a[1]); }},
 };
 
-constexpr std::array<std::string_view, 14> operators = {"+",  "-", "*",  "/", "%",  "^",  "==",
-                                                        "!=", "<", "<=", ">", ">=", "&&", "||"};
+constexpr std::array<std::string_view, 14> operators = {
+    "+", "-", "*", "/", "%", "^", "==", "!=", "<", "<=", ">", ">=", "&&", "||"};
 
 } // namespace
 

@@ -34,8 +34,8 @@ struct LsysText {
     LsysSymbols symbols;
     std::size_t modules_left = max_lsys_modules + 1; ///< 0: too many, which was reported
     std::size_t words_left = max_lsys_words;
-    /// Polygons may begin in one string of a block and end in another (ABOP, figure 5.8): the first '{' and '}' that
-    /// have no other in their own string.
+    /// Polygons may begin in one string of a block and end in another (ABOP, figure 5.8): the first '{' and
+    /// '}' that have no other in their own string.
     std::optional<Span> open_polygon;
     std::optional<Span> closed_polygon;
     bool stray_brace_said = false; ///< a '}' that may have been meant to close the block was reported

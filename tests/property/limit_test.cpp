@@ -1,5 +1,5 @@
-// Limits of L-systems against the iterated function systems that they equal (Prusinkiewicz and Hammel 1994), and
-// against long finite derivations.
+// Limits of L-systems against the iterated function systems that they equal (Prusinkiewicz and Hammel 1994),
+// and against long finite derivations.
 
 #include <cmath>
 #include <string>
@@ -68,7 +68,8 @@ void expect_same(const std::string& lsys, const std::string& rifs, double slack 
     const double there = farthest_from(b.points, a.points), back = farthest_from(a.points, b.points);
     EXPECT_LE(there, error) << lsys;
     EXPECT_LE(back, error) << lsys;
-    std::printf("error %.4g: lsys to rifs %.4g, rifs to lsys %.4g (of radius %.4g)\n", error, there, back, a.radius);
+    std::printf("error %.4g: lsys to rifs %.4g, rifs to lsys %.4g (of radius %.4g)\n", error, there, back,
+                a.radius);
 }
 
 TEST(Limit, Koch) {
@@ -82,14 +83,16 @@ TEST(Limit, Koch) {
 }
 
 TEST(Limit, Dragon) {
-    expect_same("lsys dragon {\nmodules l r\nsteps infinite\naxiom l\nl -> l+r+\nr -> -l-r\ninterpret {\nl -> F\nr -> F\n}\n}",
+    expect_same("lsys dragon {\nmodules l r\nsteps infinite\naxiom l\nl -> l+r+\nr -> -l-r\ninterpret {\nl "
+                "-> F\nr -> F\n}\n}",
                 R"(rifs dragon {
   map a { scale 1/sqrt(2)  rotate z -45 }
   map b { scale 1/sqrt(2)  rotate z -135  translate <0, 1, 0> }
 })");
 }
 
-/// F and G are mirror images, of each other and of their levels before: the limit is that of even numbers of steps.
+/// F and G are mirror images, of each other and of their levels before: the limit is that of even numbers of
+/// steps.
 TEST(Limit, SierpinskiByEdges) {
     expect_same("lsys gasket {\nangle 60\nsteps infinite\naxiom F\nF -> G-F-G\nG -> F+G+F\n}",
                 R"(rifs gasket {
@@ -112,7 +115,8 @@ TEST(Limit, BranchingPlant) {
 }
 
 TEST(Limit, ParametricTree) {
-    expect_same("lsys tree {\nsteps infinite\naxiom A(1,0.0002)\nA(l,w) -> !(w)F(l)[+(30)A(l*0.5,w*0.5)][-(40)A(l*0.6,w*0.6)]\n}",
+    expect_same("lsys tree {\nsteps infinite\naxiom A(1,0.0002)\nA(l,w) -> "
+                "!(w)F(l)[+(30)A(l*0.5,w*0.5)][-(40)A(l*0.6,w*0.6)]\n}",
                 R"(rifs tree {
   map left  { scale 0.5  rotate z 30  translate <0, 1, 0> }
   map right { scale 0.6  rotate z -40  translate <0, 1, 0> }

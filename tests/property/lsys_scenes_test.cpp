@@ -53,7 +53,8 @@ std::optional<Lowered> lower(const std::string& path, unsigned steps, bool exact
     return Lowered{std::move(*graph), *derivation};
 }
 
-/// Polygons that begin in one part and end in another come in another order: sorted along no axis of any model.
+/// Polygons that begin in one part and end in another come in another order: sorted along no axis of any
+/// model.
 void sort(std::vector<std::array<Vec3, 3>>& triangles) {
     const auto along = [](const std::array<Vec3, 3>& t) {
         return glm::dot(t[0] + 1.1 * t[1] + 1.3 * t[2], Vec3(0.48273, 0.71931, 0.49942));

@@ -34,27 +34,41 @@ std::vector<Model> models() {
         {"koch", block("angle 60\naxiom F--F--F\nF -> F+F--F+F"), 5},
         {"islands", block("axiom F+F+F+F\nF -> F+f-FF+F+FF+Ff+FF-f+FF-F-FF-Ff-FFF\nf -> ffffff"), 2},
         {"dragon", block("modules l r\naxiom Fl\nl -> l+rF+\nr -> -Fl-r"), 10},
-        {"gosper", block("modules F_l F_r\nangle 60\naxiom F_l\nF_l -> F_l+F_r++F_r-F_l--F_lF_l-F_r+\n"
-                         "F_r -> -F_l+F_rF_r++F_r+F_l--F_l-F_r\ninterpret {\nF_l -> F\nF_r -> F\n}"), 4},
-        {"hilbert", block("axiom A\nA -> B-F+CFC+F-D&F^D-F+&&CFC+F+B//\nB -> A&F^CFB^F^D^^-F-D^|F^B|FC^F^A//\n"
-                          "C -> |D^|F^B-F+C^F^A&&FA&F^C+F+B^F^D//\nD -> |CFB-F+B|FA&F^A&&FB-F+B|FC//"), 3},
+        {"gosper",
+         block("modules F_l F_r\nangle 60\naxiom F_l\nF_l -> F_l+F_r++F_r-F_l--F_lF_l-F_r+\n"
+               "F_r -> -F_l+F_rF_r++F_r+F_l--F_l-F_r\ninterpret {\nF_l -> F\nF_r -> F\n}"),
+         4},
+        {"hilbert",
+         block("axiom A\nA -> B-F+CFC+F-D&F^D-F+&&CFC+F+B//\nB -> A&F^CFB^F^D^^-F-D^|F^B|FC^F^A//\n"
+               "C -> |D^|F^B-F+C^F^A&&FA&F^C+F+B^F^D//\nD -> |CFB-F+B|FA&F^A&&FB-F+B|FC//"),
+         3},
         {"plant", block("angle 22.5\naxiom X\nX -> F-[[X]+X]+F[+FX]-X\nF -> FF"), 5},
-        {"bush", block("angle 22.5\naxiom A\nA -> [&FL!A]/////'[&FL!A]///////'[&FL!A]\nF -> S/////F\nS -> FL\n"
-                       "L -> ['''^^{-f+f+f-|-f+f+f}]"), 5},
-        {"sympodial", block("axiom A(1,0.1)\nA(l,w) -> !(w)F(l)[&(10)B(l*0.9,w*0.7)]/(180)[&(60)B(l*0.7,w*0.7)]\n"
-                            "B(l,w) -> !(w)F(l)[+(10)$B(l*0.9,w*0.7)][-(60)$B(l*0.7,w*0.7)]"), 8},
-        {"tropism", block("tropism 0.3, -1, 0.2\naxiom T(0.22)!(1)F(2)/(45)A\n"
-                          "A -> !(1.732)F(0.5)[&(19)F(0.5)A]/(95)[&(19)F(0.5)A]/(133)[&(19)F(0.5)A]\n"
-                          "F(l) -> F(l*1.109)\n!(w) -> !(w*1.732)"), 5},
+        {"bush",
+         block("angle 22.5\naxiom A\nA -> [&FL!A]/////'[&FL!A]///////'[&FL!A]\nF -> S/////F\nS -> FL\n"
+               "L -> ['''^^{-f+f+f-|-f+f+f}]"),
+         5},
+        {"sympodial",
+         block("axiom A(1,0.1)\nA(l,w) -> !(w)F(l)[&(10)B(l*0.9,w*0.7)]/(180)[&(60)B(l*0.7,w*0.7)]\n"
+               "B(l,w) -> !(w)F(l)[+(10)$B(l*0.9,w*0.7)][-(60)$B(l*0.7,w*0.7)]"),
+         8},
+        {"tropism",
+         block("tropism 0.3, -1, 0.2\naxiom T(0.22)!(1)F(2)/(45)A\n"
+               "A -> !(1.732)F(0.5)[&(19)F(0.5)A]/(95)[&(19)F(0.5)A]/(133)[&(19)F(0.5)A]\n"
+               "F(l) -> F(l*1.109)\n!(w) -> !(w*1.732)"),
+         5},
         {"stems", block("angle 30\naxiom A\nA -> T(0.3)F$[+A]F[-;(3)!A]T,A"), 5},
-        {"counting", block("axiom A(3,1)\nA(t,l) : t > 0 -> F(l)[+(30)A(t-1,l/2)]A(t-1,l)\n"
-                           "A(t,l) : t <= 0 -> F(l)-(l*10)A(2,l*0.7)"), 7},
+        {"counting",
+         block("axiom A(3,1)\nA(t,l) : t > 0 -> F(l)[+(30)A(t-1,l/2)]A(t-1,l)\n"
+               "A(t,l) : t <= 0 -> F(l)-(l*10)A(2,l*0.7)"),
+         7},
         {"cordate", block("angle 18\naxiom F[A][B]\nA -> [+A{.].C.}\nB -> [-B{.].C.}\nC -> gC"), 7},
-        {"polygons over productions", block("angle 40\naxiom F{A}\nA -> .G[+B{.]f+A\nB -> f.+f.-B}[&{C]\nC -> f-.fC."), 5},
+        {"polygons over productions",
+         block("angle 40\naxiom F{A}\nA -> .G[+B{.]f+A\nB -> f.+f.-B}[&{C]\nC -> f-.fC."), 5},
         {"decomposed", block("axiom A\nA -> I(5)[+A]A\ndecompose I(n) : n > 0 -> F(n)+(n)I(n-1)"), 5},
         {"cut", block("axiom A\nA -> F[+A]F[-A]B\nB -> FF%FA"), 5},
         {"branch that is cut", block("axiom A\nA -> F[+AB]-A\nB -> %"), 6},
-        {"nothing alike", block("axiom A(1)\nA(x) -> F(x)[+(x)A(x*0.93+0.11)]\\(x*7)^(3)F(x/3)A(x*0.81+0.2)"), 8},
+        {"nothing alike", block("axiom A(1)\nA(x) -> F(x)[+(x)A(x*0.93+0.11)]\\(x*7)^(3)F(x/3)A(x*0.81+0.2)"),
+         8},
     };
 }
 
@@ -125,29 +139,47 @@ std::string random_statements(std::mt19937& random) {
     const auto pick = [&](std::initializer_list<const char*> choices) {
         return std::string(choices.begin()[random() % choices.size()]);
     };
-    // Turned about from the direction that it bends to, a turtle stands on a knife's edge: then rounding decides.
+    // Turned about from the direction that it bends to, a turtle stands on a knife's edge: then rounding
+    // decides.
     const bool bends = random() % 3 == 0;
     const auto string = [&](bool parameters) {
         std::string out;
         std::size_t open = 0;
         for (int i = 0; i < 12; ++i) {
             switch (random() % 8) {
-            case 0: out += fmt::format("F({})", number(0.2, 1)); break;
-            case 1: out += "[", ++open; break;
-            case 2: if (open > 0) out += "]", --open; break;
-            case 3: out += pick({"+", "-", "&", "^", "/", "\\", bends ? "^" : "|"}); break;
-            case 4: out += pick({"+(17)", "&(31)", "/(137.5)", "$", "!", ";", ",", "!(0.3)", ";(2)", "f"}); break;
-            case 5: out += parameters ? fmt::format("A(x*{:.2f},y+1)", number(0.5, 0.9)) : "A(1,0)"; break;
-            case 6: out += parameters ? fmt::format("B(y,x*{:.2f})", number(0.5, 0.9)) : "B(0,1)"; break;
-            default: out += parameters ? "F(x)" : "F"; break;
+            case 0:
+                out += fmt::format("F({})", number(0.2, 1));
+                break;
+            case 1:
+                out += "[", ++open;
+                break;
+            case 2:
+                if (open > 0) out += "]", --open;
+                break;
+            case 3:
+                out += pick({"+", "-", "&", "^", "/", "\\", bends ? "^" : "|"});
+                break;
+            case 4:
+                out += pick({"+(17)", "&(31)", "/(137.5)", "$", "!", ";", ",", "!(0.3)", ";(2)", "f"});
+                break;
+            case 5:
+                out += parameters ? fmt::format("A(x*{:.2f},y+1)", number(0.5, 0.9)) : "A(1,0)";
+                break;
+            case 6:
+                out += parameters ? fmt::format("B(y,x*{:.2f})", number(0.5, 0.9)) : "B(0,1)";
+                break;
+            default:
+                out += parameters ? "F(x)" : "F";
+                break;
             }
         }
         return out + std::string(open, ']');
     };
-    return fmt::format("width 0.25\nangle {}\ntropism {},-1,0\naxiom {}F{}\nA(x,y) : y < 3 -> {}\nA(x,y) -> {}\nB(x,y) -> {}\n"
+    return fmt::format("width 0.25\nangle {}\ntropism {},-1,0\naxiom {}F{}\nA(x,y) : y < 3 -> {}\nA(x,y) -> "
+                       "{}\nB(x,y) -> {}\n"
                        "F(x) : x > 0.9 -> F(x/2)F(x/3)",
-                       pick({"90", "60", "25.7", "22.5"}), number(-1, 1), bends ? "T(0.1)" : "", string(false), string(true),
-                       string(true), string(true));
+                       pick({"90", "60", "25.7", "22.5"}), number(-1, 1), bends ? "T(0.1)" : "",
+                       string(false), string(true), string(true), string(true));
 }
 
 TEST(LsysComposer, drawsRandomModels) {
@@ -173,8 +205,9 @@ std::size_t object_count(const std::string& text, unsigned steps) {
 }
 
 TEST(LsysComposer, sharesWhatIsAlikeUpToItsSize) {
-    const std::string sympodial = "axiom A(1,10)\nA(l,w) -> !(w)F(l)[&(5)B(l*0.9,w*0.707)]/(180)[&(65)B(l*0.7,w*0.707)]\n"
-                                  "B(l,w) -> !(w)F(l)[+(5)$B(l*0.9,w*0.707)][-(65)$B(l*0.7,w*0.707)]";
+    const std::string sympodial =
+        "axiom A(1,10)\nA(l,w) -> !(w)F(l)[&(5)B(l*0.9,w*0.707)]/(180)[&(65)B(l*0.7,w*0.707)]\n"
+        "B(l,w) -> !(w)F(l)[+(5)$B(l*0.9,w*0.707)][-(65)$B(l*0.7,w*0.707)]";
     EXPECT_LE(object_count(sympodial, 20), 250u);
     // All widths in proportion, as in a skeleton.
     const std::string skeleton = "axiom A(1)\nA(l) -> !(l)F(l)[&(5)B(l*0.9)]/(180)[&(65)B(l*0.7)]\n"
@@ -185,7 +218,8 @@ TEST(LsysComposer, sharesWhatIsAlikeUpToItsSize) {
 }
 
 /// Kind and place of all bodies, in order.
-void list_bodies(const Graph& graph, ObjectId id, const Affine& place, std::vector<std::pair<PrimitiveKind, Affine>>& out) {
+void list_bodies(const Graph& graph, ObjectId id, const Affine& place,
+                 std::vector<std::pair<PrimitiveKind, Affine>>& out) {
     const Object& object = graph.objects[id];
     if (object.primitive) out.emplace_back(*object.primitive, place);
     for (const Instance& instance : object.instances)
@@ -207,9 +241,12 @@ TEST(LsysComposer, generalisedCylindersTaper) {
     EXPECT_EQ(bodies[4].first, PrimitiveKind::cylinder);
 
     // Over productions and branches: the same as in one string.
-    const CompiledLsys parts("modules A B\naxiom !(1)@GsA(1)\nA(w) -> F!(w/2)B(w/2)[+(30)F@Ge]A(w/2)\nB(w) -> &(10)F@Gc", 3);
-    const CompiledLsys word("modules A\naxiom !(1)@GsF!(0.5)&(10)F@Gc[+(30)F@Ge]F!(0.25)&(10)F@Gc[+(30)F@Ge]F!(0.125)"
-                            "B(0.125)[+(30)F@Ge]A(0.125)\nmodules B", 0);
+    const CompiledLsys parts(
+        "modules A B\naxiom !(1)@GsA(1)\nA(w) -> F!(w/2)B(w/2)[+(30)F@Ge]A(w/2)\nB(w) -> &(10)F@Gc", 3);
+    const CompiledLsys word(
+        "modules A\naxiom !(1)@GsF!(0.5)&(10)F@Gc[+(30)F@Ge]F!(0.25)&(10)F@Gc[+(30)F@Ge]F!(0.125)"
+        "B(0.125)[+(30)F@Ge]A(0.125)\nmodules B",
+        0);
     std::vector<std::pair<PrimitiveKind, Affine>> a, b;
     list_bodies(parts.graph, parts.graph.root, {}, a);
     list_bodies(word.graph, word.graph.root, {}, b);
@@ -224,7 +261,8 @@ TEST(LsysComposer, generalisedCylindersTaper) {
 TEST(LsysComposer, countsAreExactAtAnyDepth) {
     const CompiledLsys koch("angle 60\naxiom F\nF -> F+F--F+F", 200);
     EXPECT_EQ(BigCount(koch.derivation->segments), boost::multiprecision::pow(BigCount(4), 200));
-    const CompiledLsys dragon("modules l r\naxiom l\nl -> l+r+\nr -> -l-r\ninterpret {\nl -> F\nr -> F\n}", 200);
+    const CompiledLsys dragon("modules l r\naxiom l\nl -> l+r+\nr -> -l-r\ninterpret {\nl -> F\nr -> F\n}",
+                              200);
     EXPECT_EQ(BigCount(dragon.derivation->segments), BigCount(1) << 200);
     EXPECT_EQ(BigCount(dragon.derivation->modules), 3 * (BigCount(1) << 200) - 2);
 }
@@ -258,8 +296,9 @@ std::pair<double, double> snapped(const std::string& statements, unsigned steps,
 }
 
 TEST(LsysComposer, snappedDirectionsStayWithinTheBound) {
-    const std::string ternary = "axiom T(0.22)F(2)/(45)A\n"
-                                "A -> F(0.5)[&(19)F(0.5)A]/(95)[&(19)F(0.5)A]/(133)[&(19)F(0.5)A]\nF(l) -> F(l*1.109)";
+    const std::string ternary =
+        "axiom T(0.22)F(2)/(45)A\n"
+        "A -> F(0.5)[&(19)F(0.5)A]/(95)[&(19)F(0.5)A]/(133)[&(19)F(0.5)A]\nF(l) -> F(l*1.109)";
     const std::string levelled = "axiom A(1)\nA(l) -> F(l)[&(5)B(l*0.9)]/(180)[&(65)B(l*0.7)]\n"
                                  "B(l) -> F(l)[+(18)$B(l*0.9)][-(65)$B(l*0.7)]";
     const std::string both = "axiom T(0.1)A(1)\nA(l) -> F(l)[&(15)B(l*0.9)]/(180)[&(65)B(l*0.7)]\n"

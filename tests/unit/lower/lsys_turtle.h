@@ -2,8 +2,8 @@
 
 #include <array>
 #include <cmath>
-#include <span>
 #include <numbers>
+#include <span>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -15,7 +15,8 @@
 #include "compiler/lower/lower.h"
 #include "tests/unit/lower/lsys_words.h"
 
-// A plain turtle over a derived word, by the vectors H, L, U of the book: what all compiled drawings are held to.
+// A plain turtle over a derived word, by the vectors H, L, U of the book: what all compiled drawings are held
+// to.
 
 namespace graftal::testing {
 
@@ -63,29 +64,72 @@ class PlainTurtle {
         const double length = p.empty() ? grammar_.step : p[0];
         if (symbol.starts_with("F_")) return forward(length, true); // as the tests' models interpret it
         switch (symbol.size() == 1 ? symbol[0] : '?') {
-        case 'F': forward(length, true); break;
-        case 'f': forward(length, false); break;
-        case 'G': forward(length, true, false); break;
-        case 'g': forward(length, false, false); break;
-        case '+': rotate(now_.heading, now_.left, angle); break;
-        case '-': rotate(now_.heading, now_.left, -angle); break;
-        case '&': rotate(now_.up, now_.heading, angle); break;
-        case '^': rotate(now_.up, now_.heading, -angle); break;
-        case '\\': rotate(now_.up, now_.left, angle); break;
-        case '/': rotate(now_.up, now_.left, -angle); break;
-        case '|': rotate(now_.heading, now_.left, 180); break;
-        case '$': level(); break;
-        case '!': now_.width = p.empty() ? now_.width / std::sqrt(2.0) : p[0]; break;
+        case 'F':
+            forward(length, true);
+            break;
+        case 'f':
+            forward(length, false);
+            break;
+        case 'G':
+            forward(length, true, false);
+            break;
+        case 'g':
+            forward(length, false, false);
+            break;
+        case '+':
+            rotate(now_.heading, now_.left, angle);
+            break;
+        case '-':
+            rotate(now_.heading, now_.left, -angle);
+            break;
+        case '&':
+            rotate(now_.up, now_.heading, angle);
+            break;
+        case '^':
+            rotate(now_.up, now_.heading, -angle);
+            break;
+        case '\\':
+            rotate(now_.up, now_.left, angle);
+            break;
+        case '/':
+            rotate(now_.up, now_.left, -angle);
+            break;
+        case '|':
+            rotate(now_.heading, now_.left, 180);
+            break;
+        case '$':
+            level();
+            break;
+        case '!':
+            now_.width = p.empty() ? now_.width / std::sqrt(2.0) : p[0];
+            break;
         case '\'':
-        case ';': now_.colour = p.empty() ? now_.colour + 1 : static_cast<int>(p[0]); break;
-        case ',': now_.colour = p.empty() ? now_.colour - 1 : static_cast<int>(p[0]); break;
-        case 'T': now_.elasticity = p.empty() ? 0 : p[0]; break;
-        case '[': stack_.push_back(now_); break;
-        case ']': now_ = stack_.back(), stack_.pop_back(); break;
-        case '{': polygons_.emplace_back(); break;
-        case '.': if (!polygons_.empty()) polygons_.back().push_back(now_.position); break;
-        case '}': figure_.polygons.push_back(polygons_.back()), polygons_.pop_back(); break;
-        default: break;
+        case ';':
+            now_.colour = p.empty() ? now_.colour + 1 : static_cast<int>(p[0]);
+            break;
+        case ',':
+            now_.colour = p.empty() ? now_.colour - 1 : static_cast<int>(p[0]);
+            break;
+        case 'T':
+            now_.elasticity = p.empty() ? 0 : p[0];
+            break;
+        case '[':
+            stack_.push_back(now_);
+            break;
+        case ']':
+            now_ = stack_.back(), stack_.pop_back();
+            break;
+        case '{':
+            polygons_.emplace_back();
+            break;
+        case '.':
+            if (!polygons_.empty()) polygons_.back().push_back(now_.position);
+            break;
+        case '}':
+            figure_.polygons.push_back(polygons_.back()), polygons_.pop_back();
+            break;
+        default:
+            break;
         }
     }
 
@@ -124,7 +168,8 @@ class PlainTurtle {
 };
 
 /// These statements, without models, derived and drawn the plain way.
-inline Figure plain_figure(const std::string& statements, unsigned steps, double width, std::uint64_t seed = 0) {
+inline Figure plain_figure(const std::string& statements, unsigned steps, double width,
+                           std::uint64_t seed = 0) {
     LsysModel model(statements);
     const auto word = model.derive(steps, seed);
     if (!word) throw std::runtime_error(model.errors());

@@ -51,8 +51,8 @@ void expect_alike(const Moments& honest, const Moments& pooled, const std::strin
                               std::sqrt(honest.variance_of_variance() + pooled.variance_of_variance());
     EXPECT_LE(std::abs(z_mean), most_deviations) << what;
     EXPECT_LE(std::abs(z_variance), most_deviations) << what;
-    std::printf("%-24s mean %.4g and %.4g (z %.2f), variance %.4g and %.4g (z %.2f)\n", what.c_str(), honest.mean(),
-                pooled.mean(), z_mean, honest.variance(), pooled.variance(), z_variance);
+    std::printf("%-24s mean %.4g and %.4g (z %.2f), variance %.4g and %.4g (z %.2f)\n", what.c_str(),
+                honest.mean(), pooled.mean(), z_mean, honest.variance(), pooled.variance(), z_variance);
 }
 
 double height(const std::vector<testing::Stroke>& strokes) {
@@ -68,7 +68,8 @@ void compare(const std::string& name, const std::string& statements, unsigned st
     for (int seed = 1; seed <= honest_trees; ++seed) {
         const auto word = model.derive(steps, static_cast<std::uint64_t>(seed));
         ASSERT_TRUE(word) << model.errors();
-        const Figure figure = PlainTurtle(model.rewriter().grammar(), model.rewriter().modules(), 1).draw(*word);
+        const Figure figure =
+            PlainTurtle(model.rewriter().grammar(), model.rewriter().modules(), 1).draw(*word);
         honest_segments.add(static_cast<double>(figure.strokes.size()));
         honest_height.add(height(figure.strokes));
     }
@@ -113,7 +114,8 @@ TEST(LsysVariants, eachChildIsUsedEquallyOften) {
 
 TEST(LsysVariants, alternativesAreDealtOutInProportion) {
     const Variants variants(11, 1024);
-    const std::vector<Alternative> alternatives = {{nullptr, 0.5, {0}}, {nullptr, 0.375, {1}}, {nullptr, 0.125, {2}}};
+    const std::vector<Alternative> alternatives = {
+        {nullptr, 0.5, {0}}, {nullptr, 0.375, {1}}, {nullptr, 0.125, {2}}};
     for (ModuleId module = 0; module < 20; ++module) {
         std::map<ModuleId, int> seen;
         for (std::uint32_t i = 0; i < 1024; ++i)

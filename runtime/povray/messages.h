@@ -56,6 +56,8 @@ class PovrayMessageReader {
     void feed(std::string_view text);
     /// Call at the end of the text; then log() is complete.
     void finish();
+    /// Reports that all is rendered, if that was not said.
+    void complete() { report({PovrayProgress::Stage::rendering, 1.0}); }
     const PovrayLog& log() const { return log_; }
 
   private:

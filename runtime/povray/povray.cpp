@@ -125,7 +125,10 @@ PovrayResult run_povray(const PovrayJob& job) {
     if (!reason.empty()) {
         ::unlink(picture.c_str());
         result.status = Status::failure(reason);
+        return result;
     }
+    // A short trace may end before POV-Ray says how far it is.
+    reader.complete();
     return result;
 }
 

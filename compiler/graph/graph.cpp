@@ -97,6 +97,13 @@ ObjectId Graph::primitive(PrimitiveKind kind) {
     return add(std::move(object));
 }
 
+std::size_t instance_count(const Graph& graph) {
+    std::size_t count = 0;
+    for (const Object& object : graph.objects)
+        count += object.instances.size();
+    return count;
+}
+
 bool equal(const Graph& a, const Graph& b) {
     if (a.objects.size() != b.objects.size() || !(a.settings == b.settings)) return false;
     if (a.materials != b.materials || a.objects[a.root].name != b.objects[b.root].name) return false;

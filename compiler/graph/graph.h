@@ -18,6 +18,7 @@
 // Tints compose along a path from the root by PathTint, parent in front. The material nearest to the
 // primitive wins.
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -91,6 +92,9 @@ struct Graph {
     /// The object for a primitive, made on first use; named after the primitive.
     ObjectId primitive(PrimitiveKind kind);
 };
+
+/// The edges of the graph.
+std::size_t instance_count(const Graph& graph);
 
 /// Equal structure: the same objects, names, instances (in order), transforms to the last bit, tints,
 /// materials, settings and root. Ids may differ, spans do not count.

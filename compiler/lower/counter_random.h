@@ -16,6 +16,11 @@ class CounterRandom {
     /// Another sequence for each counter.
     constexpr CounterRandom sequence(std::uint64_t counter) const { return CounterRandom((*this)(counter)); }
 
+    /// A draw of 64 bits as a number of [0, 1).
+    static constexpr double unit(std::uint64_t draw) { return static_cast<double>(draw >> 11) * 0x1p-53; }
+    /// A number that has nothing to do with those of other x.
+    static constexpr std::uint64_t scrambled(std::uint64_t x) { return mixed(x + golden); }
+
   private:
     static constexpr std::uint64_t golden = 0x9E3779B97F4A7C15;
 

@@ -89,13 +89,6 @@ std::shared_ptr<const Graph> load(Span use_span, const std::string& path, Loweri
     return result;
 }
 
-std::size_t instance_count(const Graph& graph) {
-    std::size_t count = 0;
-    for (const Object& object : graph.objects)
-        count += object.instances.size();
-    return count;
-}
-
 /// Ids of `into` for the materials of `from`, in order.
 std::vector<MaterialId> append_materials(Graph& into, const Graph& from, std::string_view prefix) {
     std::unordered_map<std::string, MaterialId> known;

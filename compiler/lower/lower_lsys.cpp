@@ -221,10 +221,7 @@ class LsysLowering {
         root.instances = std::move(instances);
         root.span = block.name.span;
         const ObjectId id = graph_.add(std::move(root));
-        std::size_t instance_count = 0;
-        for (const Object& object : graph_.objects)
-            instance_count += object.instances.size();
-        if (!within_limits(graph_.objects.size(), instance_count, block.name.span, lowering_))
+        if (!within_limits(graph_.objects.size(), instance_count(graph_), block.name.span, lowering_))
             return std::nullopt;
         return id;
     }

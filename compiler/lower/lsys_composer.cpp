@@ -14,12 +14,6 @@ namespace {
 /// Rules of one kind may follow each other so often without a step between them.
 constexpr unsigned most_repeated = 1000;
 
-bool depends_on_directions(const LsysGrammar& grammar) {
-    return std::ranges::any_of(grammar.commands, [](TurtleCommand command) {
-        return command == TurtleCommand::level || command == TurtleCommand::tropism;
-    });
-}
-
 double angle_between(Vec3 a, Vec3 b) {
     return 2 * std::asin(std::min(1.0, 0.5 * glm::length(a - b)));
 }
@@ -46,7 +40,8 @@ LsysComposer::LsysComposer(LsysRewriter& rewriter, TurtleContext& turtle, Object
     : rewriter_(rewriter), context_(turtle), pool_(pool), models_(models), variants_(variants),
       max_parts_(limits.max_parts), snaps_(limits.snap_angle > 0),
       directions_(std::max(limits.snap_angle, DirectionTable::rounding)),
-      uses_directions_(depends_on_directions(rewriter.grammar())) {}
+      uses_directions_(rewriter.grammar().uses({TurtleCommand::level, TurtleCommand::tropism})),
+      decomposes_(rewriter.grammar().has_rules(RuleKind::decompose)) {}
 
 std::optional<TurtlePart> LsysComposer::compose(unsigned steps, const TurtleState& start) {
     const std::optional<ModuleString> axiom = rewriter_.axiom();
@@ -92,10 +87,7 @@ bool LsysComposer::run_tasks() {
 }
 
 LsysComposer::Stage LsysComposer::stage_before(unsigned steps) const {
-    const auto& rules = rewriter_.grammar().rules_of[static_cast<std::size_t>(RuleKind::decompose)];
-    const bool decomposes =
-        std::ranges::any_of(rules, [](const auto& of_symbol) { return !of_symbol.empty(); });
-    return 2 * steps + (decomposes ? 1 : 0);
+    return 2 * steps + (decomposes_ ? 1 : 0);
 }
 
 /// False after an error.
@@ -262,8 +254,7 @@ void LsysComposer::remember(ModuleId module, Stage stage, const TurtleState& sta
     if (kind == kinds_.size()) kinds_.push_back({module, stage, {}});
     auto& reads = kinds_[kind].reads;
     if (std::ranges::find(reads, part.reads) == reads.end()) reads.push_back(part.reads);
-    part_ids_.find_or_add(mixed(kind, hash(start, part.reads)), static_cast<std::uint32_t>(parts_.size()),
-                          [](std::uint32_t) { return false; });
+    part_ids_.add(mixed(kind, hash(start, part.reads)), static_cast<std::uint32_t>(parts_.size()));
     parts_.push_back({kind, start, std::move(part)});
 }
 

@@ -132,7 +132,8 @@ class LsysComposer {
     // Of control points; never snapped.
     NumberTable lengths_;
     DirectionTable ways_;
-    bool uses_directions_ = false;
+    bool uses_directions_;
+    bool decomposes_;
 };
 
 } // namespace graftal

@@ -194,8 +194,7 @@ std::optional<std::uint32_t> ContextMatcher::known_branch(std::uint32_t item, st
 void ContextMatcher::remember(std::uint32_t item, std::uint32_t from, std::uint32_t to, std::uint32_t found) {
     if (known_.size() > most_known) forget();
     for (std::uint32_t passed = from; passed != to; passed = links_.next_branch(passed)) {
-        known_ids_.find_or_add(mixed(mixed(0, item), passed), static_cast<std::uint32_t>(known_.size()),
-                               [](std::uint32_t) { return false; });
+        known_ids_.add(mixed(mixed(0, item), passed), static_cast<std::uint32_t>(known_.size()));
         known_.push_back({item, passed, found});
     }
 }

@@ -1,27 +1,8 @@
 #include "compiler/lower/lsys_decompose.h"
 
-#include <cmath>
-
 #include <fmt/format.h>
 
 namespace graftal {
-
-namespace {
-
-/// Requires alternatives. One of no probability is not chosen.
-const Alternative& choose(const std::vector<Alternative>& alternatives, std::uint64_t draw) {
-    double left = std::ldexp(static_cast<double>(draw >> 11), -53);
-    const Alternative* chosen = &alternatives.front();
-    for (const Alternative& alternative : alternatives) {
-        if (alternative.probability <= 0) continue;
-        chosen = &alternative;
-        left -= alternative.probability;
-        if (left < 0) break;
-    }
-    return *chosen;
-}
-
-} // namespace
 
 LsysDecomposer::LsysDecomposer(LsysRewriter& rewriter, Diagnostics& diagnostics, std::uint64_t max_modules)
     : rewriter_(rewriter), diagnostics_(diagnostics), max_modules_(max_modules) {
@@ -58,7 +39,8 @@ bool LsysDecomposer::run(ModuleId module, const CounterRandom& random, ModuleStr
         }
         if (depth == max_decomposition_depth || ++applied_ > max_modules_)
             return refuse(module, "does not end");
-        const ModuleString& successor = choose(*alternatives, random(draws++)).successor;
+        const ModuleString& successor =
+            alternative_at(*alternatives, CounterRandom::unit(random(draws++))).successor;
         if (out.size() + pending_.size() + successor.size() > max_modules_)
             return refuse(module, "is too long");
         for (auto part = successor.rbegin(); part != successor.rend(); ++part)

@@ -58,12 +58,6 @@ std::vector<Material> palette_of(std::span<const Paint> paints) {
     return palette;
 }
 
-bool uses(const LsysGrammar& grammar, std::initializer_list<TurtleCommand> commands) {
-    return std::ranges::any_of(grammar.commands, [&](TurtleCommand command) {
-        return std::ranges::find(commands, command) != commands.end();
-    });
-}
-
 // Of random models.
 constexpr double most_drift = 0.05;
 constexpr std::uint32_t fewest_variants = 16;
@@ -183,13 +177,18 @@ class Drawer {
         return std::nullopt;
     }
 
+    /// What would be drawn, without adding it to the graph.
+    std::optional<TurtlePart> sketch(const Graph& graph) {
+        Graph scratch = graph;
+        ObjectPool pool(scratch);
+        return Composition(*this, scratch, pool, false).variant(0);
+    }
+
     /// The limit of figures that grow has no size of its own: the way from its start to its end is made one
     /// step long, upwards, or, where it comes back, its reach. Others stay as they are.
     Affine unit_from(const TurtlePart& part, const Graph& graph) {
-        Graph scratch = graph;
-        ObjectPool pool(scratch);
         steps_ /= 2;
-        const std::optional<TurtlePart> before = Composition(*this, scratch, pool, false).variant(0);
+        const std::optional<TurtlePart> before = sketch(graph);
         steps_ *= 2;
         constexpr double same = 1e-6;
         if (!before || std::abs(part.reach - before->reach) <= same * part.reach) return {};
@@ -233,7 +232,7 @@ class Drawer {
 
     /// The smallest that keeps the parts few enough.
     bool choose_snap_angle(const Graph& graph) {
-        if (!uses(grammar_, {TurtleCommand::level, TurtleCommand::tropism})) return true;
+        if (!grammar_.uses({TurtleCommand::level, TurtleCommand::tropism})) return true;
         const std::size_t most_parts = std::min(options_.max_parts, most_exact_parts);
         for (const double angle_deg : {0.0, 0.125, 0.25, 0.5, 1.0, 2.0, 4.0, 8.0}) {
             snap_angle_ = angle_deg * std::numbers::pi / 180;
@@ -249,15 +248,13 @@ class Drawer {
     /// Lines as thick as the figure asks: composed once to see how large it is.
     bool choose_width(const Graph& graph) {
         if (!is_line_drawing()) return true;
-        Graph scratch = graph;
-        ObjectPool pool(scratch);
-        const std::optional<TurtlePart> sketch = Composition(*this, scratch, pool, false).variant(0);
-        if (!sketch) return false;
-        width_ = std::clamp(thinnest_in_figure * sketch->reach, width_, thickest_in_steps * grammar_.step);
+        const std::optional<TurtlePart> figure = sketch(graph);
+        if (!figure) return false;
+        width_ = std::clamp(thinnest_in_figure * figure->reach, width_, thickest_in_steps * grammar_.step);
         return true;
     }
 
-    bool is_line_drawing() const { return !grammar_.width && !uses(grammar_, {TurtleCommand::width}); }
+    bool is_line_drawing() const { return !grammar_.width && !grammar_.uses({TurtleCommand::width}); }
 
     /// The materials that the block names, else ours.
     bool choose_palette(const Graph& graph) {
@@ -267,9 +264,8 @@ class Drawer {
             palette_.push_back(graph.materials[*id]);
         }
         if (!palette_.empty()) return true;
-        const bool coloured = uses(
-            grammar_, {TurtleCommand::colour_up, TurtleCommand::colour_down, TurtleCommand::close_polygon});
-        const Paint& paint = uses(grammar_, {TurtleCommand::open_branch}) ? stalk_paint : curve_paint;
+        const bool coloured = grammar_.uses({TurtleCommand::colour_up, TurtleCommand::colour_down, TurtleCommand::close_polygon});
+        const Paint& paint = grammar_.uses({TurtleCommand::open_branch}) ? stalk_paint : curve_paint;
         palette_ = is_line_drawing() && !coloured ? palette_of({&paint, 1}) : palette_of(default_paints);
         return true;
     }

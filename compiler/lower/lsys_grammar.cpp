@@ -306,6 +306,16 @@ class GrammarBuilder {
 
 } // namespace
 
+bool LsysGrammar::has_rules(RuleKind kind) const {
+    return std::ranges::any_of(rules_of[static_cast<std::size_t>(kind)],
+                               [](const auto& of_symbol) { return !of_symbol.empty(); });
+}
+
+bool LsysGrammar::uses(std::initializer_list<TurtleCommand> wanted) const {
+    return std::ranges::any_of(
+        commands, [&](TurtleCommand command) { return std::ranges::find(wanted, command) != wanted.end(); });
+}
+
 std::optional<LsysGrammar> build_grammar(const LsysBlock& block, Environment lets, Diagnostics& diagnostics) {
     return GrammarBuilder(block, std::move(lets), diagnostics).run();
 }

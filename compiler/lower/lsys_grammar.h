@@ -3,6 +3,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <initializer_list>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -82,6 +83,9 @@ struct LsysGrammar {
         return rules_of[static_cast<std::size_t>(kind)][symbol];
     }
     bool has_rules(RuleKind kind, SymbolId symbol) const { return !candidates(kind, symbol).empty(); }
+    bool has_rules(RuleKind kind) const;
+    /// Whether some symbol has one of these commands.
+    bool uses(std::initializer_list<TurtleCommand> wanted) const;
 };
 
 /// Derivations of more steps are refused.

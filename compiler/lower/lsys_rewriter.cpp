@@ -17,6 +17,17 @@ constexpr double probability_slack = 0.0101;
 
 } // namespace
 
+const Alternative& alternative_at(const std::vector<Alternative>& alternatives, double share) {
+    const Alternative* chosen = &alternatives.front();
+    for (const Alternative& alternative : alternatives) {
+        if (alternative.probability <= 0) continue;
+        chosen = &alternative;
+        share -= alternative.probability;
+        if (share < 0) break;
+    }
+    return *chosen;
+}
+
 std::optional<ModuleString> LsysRewriter::axiom() {
     ModuleString string;
     if (!append(grammar_.axiom, nullptr, {}, string)) return std::nullopt;

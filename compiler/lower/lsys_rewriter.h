@@ -19,6 +19,10 @@ struct Alternative {
     ModuleString successor;
 };
 
+/// The alternative in which a number of [0, 1) falls, laid end to end by their probabilities. Requires some;
+/// one of no probability is not chosen.
+const Alternative& alternative_at(const std::vector<Alternative>& alternatives, double share);
+
 /// What became of a rule that was tried on a module.
 enum class Fit : std::uint8_t { no, yes, error };
 

@@ -8,6 +8,8 @@
 #include <fmt/format.h>
 #include <glm/matrix.hpp>
 
+#include "compiler/lower/counter_random.h"
+
 namespace graftal {
 
 namespace {
@@ -21,10 +23,7 @@ constexpr std::size_t most_looked_at = 256;
 
 /// Fixed numbers in [-1, 1] that have nothing to do with each other.
 double weight(std::uint64_t index) {
-    std::uint64_t z = (index + 1) * 0x9E3779B97F4A7C15ull;
-    z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9ull;
-    z = (z ^ (z >> 27)) * 0x94D049BB133111EBull;
-    return static_cast<double>(static_cast<std::int64_t>(z ^ (z >> 31))) * 0x1p-63;
+    return static_cast<double>(static_cast<std::int64_t>(CounterRandom(0)(index + 1))) * 0x1p-63;
 }
 
 template<typename Visit> void for_each_entry(const Affine& map, const Visit& visit) {
@@ -145,9 +144,7 @@ std::vector<Instance> ObjectPool::share(std::vector<Instance> instances, std::op
         if (id == IdTable::none) id = find(object, mixed(looks, static_cast<std::uint64_t>(near)), looked);
     if (id == IdTable::none) {
         id = static_cast<std::uint32_t>(shared_.size());
-        if (looked <= most_looked_at)
-            ids_.find_or_add(mixed(looks, static_cast<std::uint64_t>(cell)), id,
-                             [](std::uint32_t) { return false; });
+        if (looked <= most_looked_at) ids_.add(mixed(looks, static_cast<std::uint64_t>(cell)), id);
         object.name = unique_name(name);
         shared_.push_back(graph_.add(std::move(object)));
     }

@@ -66,8 +66,8 @@ Vec3 DirectionTable::representative(Vec3 direction) {
             for (std::int64_t z = cell(low.z); z <= cell(high.z); ++z)
                 if (const std::uint32_t id = ids_.find(hash_of(x, y, z), same); id != IdTable::none)
                     return known_[id];
-    ids_.find_or_add(hash_of(cell(direction.x), cell(direction.y), cell(direction.z)),
-                     static_cast<std::uint32_t>(known_.size()), [](std::uint32_t) { return false; });
+    ids_.add(hash_of(cell(direction.x), cell(direction.y), cell(direction.z)),
+             static_cast<std::uint32_t>(known_.size()));
     known_.push_back(direction + Vec3(0.0)); // no negative zeros
     return known_.back();
 }
@@ -93,8 +93,7 @@ Mat3 RotationTable::representative(const Mat3& rotation) {
         const std::uint32_t known = ids_.find(mixed(0, static_cast<std::uint64_t>(near)), same);
         if (known != IdTable::none) return known_[known];
     }
-    ids_.find_or_add(mixed(0, static_cast<std::uint64_t>(cell)), static_cast<std::uint32_t>(known_.size()),
-                     [](std::uint32_t) { return false; });
+    ids_.add(mixed(0, static_cast<std::uint64_t>(cell)), static_cast<std::uint32_t>(known_.size()));
     known_.push_back(clean);
     return known_.back();
 }

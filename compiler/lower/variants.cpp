@@ -2,17 +2,13 @@
 
 #include <bit>
 
+#include "compiler/lower/counter_random.h"
+
 namespace graftal {
 
 namespace {
 
-/// Splitmix64: keys that differ in a bit give unlike numbers.
-std::uint64_t scrambled(std::uint64_t key) {
-    key += 0x9E3779B97F4A7C15ull;
-    key = (key ^ (key >> 30)) * 0xBF58476D1CE4E5B9ull;
-    key = (key ^ (key >> 27)) * 0x94D049BB133111EBull;
-    return key ^ (key >> 31);
-}
+constexpr auto scrambled = CounterRandom::scrambled;
 
 std::uint64_t key_of(std::uint64_t seed, ModuleId module, std::uint32_t stage, std::uint64_t place) {
     return scrambled(scrambled(scrambled(seed) ^ ((std::uint64_t{module} << 32) | stage)) ^ place);
@@ -41,13 +37,8 @@ const Alternative& Variants::choose(const std::vector<Alternative>& alternatives
                                     ModuleId module, std::uint32_t stage) const {
     constexpr std::uint64_t of_choice = UINT64_MAX; // no place in a string
     const std::uint64_t key = key_of(seed_, module, stage, of_choice);
-    const double inside = static_cast<double>(scrambled(key ^ variant) >> 11) * 0x1p-53;
-    double at = (permuted(variant, key) + inside) / count();
-    for (const Alternative& alternative : alternatives) {
-        at -= alternative.probability;
-        if (at < 0) return alternative;
-    }
-    return alternatives.back();
+    const double inside = CounterRandom::unit(scrambled(key ^ variant));
+    return alternative_at(alternatives, (permuted(variant, key) + inside) / count());
 }
 
 } // namespace graftal

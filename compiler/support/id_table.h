@@ -39,6 +39,11 @@ class IdTable {
         }
     }
 
+    /// Adds a thing, whether or not there is one like it.
+    void add(std::uint64_t hash, std::uint32_t id) {
+        find_or_add(hash, id, [](std::uint32_t) { return false; });
+    }
+
     /// Makes room for so many.
     void reserve(std::size_t count);
     /// Forgets all, but keeps its room.

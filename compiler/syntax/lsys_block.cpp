@@ -118,10 +118,17 @@ class BlockParser {
         return reader;
     }
 
-    bool report_duplicate(const LsysStatement& statement, Span first) {
+    template<typename Value>
+    void set_once(const LsysStatement& statement, std::optional<Value>& known, Value value) {
+        if (known)
+            report_duplicate(statement, known->span);
+        else
+            known = std::move(value);
+    }
+
+    void report_duplicate(const LsysStatement& statement, Span first) {
         diagnostics_.error(scanner_.span(statement.word), fmt::format("duplicate '{}'", statement.word))
             .with_note(first, "first given here");
-        return true;
     }
 
     void parse_let(const LsysStatement& statement) {
@@ -135,11 +142,7 @@ class BlockParser {
         TokenStream stream = values(statement);
         std::optional<Expression> expression = parse_expression(stream);
         if (!expression || !text_.finish(stream)) return;
-        const Span keyword = scanner_.span(statement.word);
-        if (value)
-            report_duplicate(statement, value->span);
-        else
-            value = LsysValue{std::move(*expression), keyword};
+        set_once(statement, value, {std::move(*expression), scanner_.span(statement.word)});
     }
 
     void parse_steps(const LsysStatement& statement) {
@@ -149,11 +152,7 @@ class BlockParser {
             steps.value = parse_expression(stream);
             if (!steps.value) return;
         }
-        if (!text_.finish(stream)) return;
-        if (block_.steps)
-            report_duplicate(statement, block_.steps->span);
-        else
-            block_.steps = std::move(steps);
+        if (text_.finish(stream)) set_once(statement, block_.steps, std::move(steps));
     }
 
     void parse_filter(const LsysStatement& statement) {
@@ -195,11 +194,7 @@ class BlockParser {
         TokenStream stream = values(statement);
         std::optional<std::vector<Expression>> direction = parse_vector(stream, "'tropism'");
         if (!direction || !text_.finish(stream)) return;
-        LsysTropism tropism{std::move(*direction), scanner_.span(statement.word)};
-        if (block_.tropism)
-            report_duplicate(statement, block_.tropism->span);
-        else
-            block_.tropism = std::move(tropism);
+        set_once(statement, block_.tropism, {std::move(*direction), scanner_.span(statement.word)});
     }
 
     void parse_colors(const LsysStatement& statement) {

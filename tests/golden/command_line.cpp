@@ -31,13 +31,13 @@ std::string names_in(const std::string& folder) {
 
 void CommandLine::SetUp() {
     ASSERT_TRUE(directory_.create().ok());
-    std::filesystem::create_directory(directory_.path() + "/work");
+    std::filesystem::create_directory(directory_.path() + "/here");
     std::filesystem::create_directory(directory_.path() + "/tmp");
 }
 
 RunResult CommandLine::shell(const std::string& command) const {
     const std::string& top = directory_.path();
-    const std::string script = "cd '" + top + "/work' && export TMPDIR='" + top + "/tmp' graftal='" +
+    const std::string script = "cd '" + top + "/here' && export TMPDIR='" + top + "/tmp' graftal='" +
                                GRAFTAL_PROGRAM "' && { " + command + "\n} >'" + top + "/out' 2>'" + top +
                                "/err' </dev/null";
     const int wait_status = std::system(script.c_str());
@@ -65,7 +65,7 @@ bool CommandLine::exists(const std::string& name) const {
 }
 
 std::string CommandLine::files() const {
-    return names_in(directory_.path() + "/work");
+    return names_in(directory_.path() + "/here");
 }
 
 std::string CommandLine::temporary_files() const {

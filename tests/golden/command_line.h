@@ -24,7 +24,7 @@ class CommandLine : public testing::Test {
     RunResult graftal(const std::string& arguments) const;
     RunResult shell(const std::string& command) const;
 
-    std::string path(const std::string& name) const { return directory_.path() + "/work/" + name; }
+    std::string path(const std::string& name) const { return directory_.path() + "/here/" + name; }
     void write(const std::string& name, const std::string& text) const;
     std::string read(const std::string& name) const;
     bool exists(const std::string& name) const;

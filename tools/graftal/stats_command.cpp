@@ -62,16 +62,13 @@ Json bounds_json(const AnalysedModel& model) {
 
 Json stats_json(const AnalysedModel& model, const SourceMap& sources) {
     const Graph& graph = model.graph;
-    std::size_t instances = 0;
-    for (const Object& object : graph.objects)
-        instances += object.instances.size();
     const bool converges =
         model.contraction.verdict == Verdict::proved || model.contraction.verdict == Verdict::acyclic;
     Json json = {
         {"model", model.path},
         {"language", model_language(0, sources)},
         {"objects", graph.objects.size()},
-        {"instances", instances},
+        {"instances", instance_count(graph)},
         {"steps", or_null(model.derivation ? model.derivation->steps : model.steps)},
         {"leaves", or_null(count_leaves(graph, model.components, model.steps))},
         {"contraction", contraction_json(model)},

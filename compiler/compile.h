@@ -16,6 +16,7 @@
 #include "compiler/scene/scene.h"
 #include "compiler/support/diagnostics.h"
 #include "compiler/support/source.h"
+#include "compiler/zoom/reroot.h"
 
 namespace graftal {
 
@@ -25,7 +26,8 @@ struct CompileOptions {
     std::optional<unsigned> steps;
     ImageSize size;
     CameraOverride camera;
-    CutOptions cut; ///< its steps are taken from above
+    ZoomRequest zoom;
+    CutOptions cut; ///< its steps and root levels are filled in
 };
 
 struct StageTime {

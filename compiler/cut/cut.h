@@ -25,6 +25,7 @@ struct CutOptions {
     std::optional<double> error_world;       ///< the same as a length in scene units, in place of error_px
     std::optional<unsigned> steps;           ///< levels; nothing: as deep as the error asks for
     std::uint64_t memory_bytes = 2ull << 30; ///< POV-Ray's estimated peak
+    std::vector<unsigned> root_levels; ///< that each of the root's instances uses up; empty: as the graph says
     bool flatten = false;                    ///< every leaf its own placement: the absolute specification
 };
 

@@ -194,7 +194,7 @@ class Finder {
             if (step.index > 0 && step.index <= found.size()) return take(found[step.index - 1]), true;
             if (step.index == 0 && found.size() == 1) return take(found[0]), true;
             if (step.index == 0 && found.size() > 1) return refuse_ambiguous(object, step, found.size());
-            if (object.instances.size() != 1 || passed > graph_.objects.size() || !found.empty())
+            if (object.instances.size() != 1 || passed > graph_.objects.size())
                 return !may_end && refuse_missing(object, step, found.size());
             take(0);
         }

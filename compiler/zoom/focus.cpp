@@ -39,13 +39,39 @@ void pull_up(const Graph& graph, Focus& focus, Vec3 last, std::size_t count) {
         focus.points[i] = instance_of(graph, focus.path.at(i)).parent_from_child(focus.points[i + 1]);
 }
 
+/// By object: whether a path along maps that can be inverted leads on from it for ever.
+std::vector<bool> endless_objects(const Graph& graph) {
+    const std::size_t count = graph.objects.size();
+    std::vector<std::vector<ObjectId>> users(count);
+    std::vector<std::size_t> ways(count, 0); // into objects that are not known to end
+    for (ObjectId id = 0; id < count; ++id)
+        for (const Instance& instance : graph.objects[id].instances)
+            if (!is_singular(instance.parent_from_child)) {
+                users[instance.master].push_back(id);
+                ++ways[id];
+            }
+    std::vector<ObjectId> ending;
+    for (ObjectId id = 0; id < count; ++id)
+        if (ways[id] == 0) ending.push_back(id);
+    while (!ending.empty()) {
+        const ObjectId id = ending.back();
+        ending.pop_back();
+        for (const ObjectId user : users[id])
+            if (--ways[user] == 0) ending.push_back(user);
+    }
+    std::vector<bool> endless;
+    for (const std::size_t left : ways)
+        endless.push_back(left > 0);
+    return endless;
+}
+
 /// Follows a point down, part by part.
 class PointWalk {
   public:
     /// `nearest`: where no part holds the point, the nearest part.
     PointWalk(const Graph& graph, const std::vector<ObjectBounds>& bounds, Vec3 point, bool nearest)
-        : graph_(graph), bounds_(bounds), nearest_(nearest), object_(graph.root), point_(point),
-          error_(epsilon * glm::length(point)) {
+        : graph_(graph), bounds_(bounds), endless_(nearest ? endless_objects(graph) : std::vector<bool>()),
+          nearest_(nearest), object_(graph.root), point_(point), error_(epsilon * glm::length(point)) {
         note();
     }
 
@@ -57,7 +83,8 @@ class PointWalk {
         for (std::uint32_t i = 0; i < instances.size(); ++i) {
             const Ball& ball = bounds_[instances[i].master].ball;
             const bool point_like = !(ball.radius > 0) || graph_.objects[instances[i].master].primitive;
-            if (point_like || is_singular(instances[i].parent_from_child)) continue;
+            const bool dead_end = nearest_ && endless_[object_] && !endless_[instances[i].master];
+            if (point_like || dead_end || is_singular(instances[i].parent_from_child)) continue;
             const Vec3 pulled = inverse(instances[i].parent_from_child)(point_);
             const double enlarged = norm(inverse(instances[i].parent_from_child).linear) * error_;
             const double ratio = std::max(0.0, glm::distance(pulled, ball.centre) - enlarged) / ball.radius;
@@ -117,6 +144,7 @@ class PointWalk {
 
     const Graph& graph_;
     const std::vector<ObjectBounds>& bounds_;
+    std::vector<bool> endless_;
     bool nearest_;
     ObjectId object_;
     Vec3 point_;

@@ -17,7 +17,7 @@ namespace {
 
 /// What lies farther from the focus is left out, in distances of the eye: its shadows and what is seen of it
 /// between the nearer parts.
-constexpr double reach_share = 64;
+constexpr double reach_share = 100;
 /// The same of parallel rays, in half diagonals of the picture; flat models have nothing out of the picture.
 constexpr double parallel_share = 16, flat_reach_share = 1.05;
 /// A map that stretches space so much more one way than another leaves no digits.
@@ -156,14 +156,22 @@ class Rerooter {
                       "give more --steps, or a shorter address");
     }
 
+    /// Nothing while the frame is so large that no digit of the picture is left in it.
+    std::optional<Affine> picture_from_frame(const ZoomScale& scale) const {
+        constexpr double largest = 1e40;
+        std::optional<Affine> map = scale.picture_from_frame();
+        if (map && norm(map->linear) * around_.radius(around_.own()) > largest * reach_) map.reset();
+        return map;
+    }
+
     double stretch(const ZoomScale& scale) const {
-        const std::optional<Affine> map = scale.picture_from_frame();
+        const std::optional<Affine> map = picture_from_frame(scale);
         return map ? norm(map->linear) : std::numeric_limits<double>::infinity();
     }
 
     /// Of the frame: what may be seen in the picture.
     double frame_reach(const ZoomScale& scale) const {
-        const std::optional<Affine> map = scale.picture_from_frame();
+        const std::optional<Affine> map = picture_from_frame(scale);
         return map ? reach_ / std::max(singular_values(map->linear).z, 1e-300) : 0.0;
     }
 
@@ -171,31 +179,37 @@ class Rerooter {
         return stretch(scale) * around_.radius(around_.own()) <= reach_;
     }
 
+    /// Down the path until the object reached is no larger than the picture's reach.
     bool descend(ZoomScale& scale) {
+        using Outcome = Surroundings::Outcome;
         const GraphPath& path = focus_.path;
-        std::size_t& depth = result_.depth;
-        for (; !own_fits(scale) && (path.endless() || depth < path.steps.size()); ++depth) {
-            scale.descend();
-            using Outcome = Surroundings::Outcome;
-            switch (around_.descend(path.at(depth).instance, focus_.at(depth + 1), frame_reach(scale))) {
-            case Outcome::done:
-                break;
-            case Outcome::flat:
-                return refuse_flat(path.at(depth));
-            case Outcome::too_many:
-                return refuse_crowd();
-            case Outcome::no_level:
-                return refuse_depth(around_.own().levels + 1);
-            }
+        while (!own_fits(scale) && (path.endless() || result_.depth < path.steps.size())) {
+            ZoomScale below = scale;
+            below.descend();
+            const GraphStep& step = path.at(result_.depth);
+            const Vec3 focus = focus_.at(result_.depth + 1);
+            const Outcome outcome = around_.descend(step.instance, focus, frame_reach(below));
+            if (outcome == Outcome::flat) return refuse_flat(step);
+            if (outcome == Outcome::too_many) return refuse_crowd();
+            if (outcome == Outcome::no_level && request_.at) return refuse_depth(around_.own().levels + 1);
+            if (outcome == Outcome::no_level) break;
+            scale = below;
+            ++result_.depth;
         }
-        const std::optional<Affine> map = scale.picture_from_frame();
+        return spread(scale);
+    }
+
+    /// Where the path ends before the object reached is small, its parts are.
+    bool spread(const ZoomScale& scale) {
+        const std::optional<Affine> map = picture_from_frame(scale);
         if (!map) return refuse_end();
         const Vec3 sigma = singular_values(map->linear);
         if (sigma.x > worst_condition * sigma.z) return refuse_condition(sigma.x / sigma.z);
         whole_ = own_fits(scale);
-        const double frame_error = std::numeric_limits<double>::epsilon() * around_.radius(around_.own());
-        if (!whole_ && px(sigma.x * std::max(focus_.error, frame_error)) > visible_px) return refuse_end();
-        return whole_ || around_.spread(focus_.at(depth), frame_reach(scale), reach_ / sigma.x) || refuse_crowd();
+        if (whole_) return true;
+        const double rounding = std::numeric_limits<double>::epsilon() * around_.radius(around_.own());
+        if (px(sigma.x * std::max(focus_.error, rounding)) > visible_px) return refuse_end();
+        return around_.spread(focus_.at(result_.depth), frame_reach(scale), reach_ / sigma.x) || refuse_crowd();
     }
 
     bool refuse_flat(const GraphStep& step) {
@@ -283,6 +297,10 @@ class Rerooter {
         if (error_px > visible_px)
             diagnostics_.warning(span(), fmt::format("rounding moves parts around this place by up to {:.2g} px",
                                                      error_px));
+        if (around_.lost() > 0)
+            diagnostics_.warning(span(), fmt::format("{} parts that may touch this place are left out: rounding "
+                                                     "hides where they lie",
+                                                     around_.lost()));
         if (too_large > 0)
             diagnostics_.warning(span(), fmt::format("{} primitives over {} times larger than all that is drawn "
                                                      "are left out",

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
 namespace graftal {
@@ -15,8 +16,10 @@ namespace {
 constexpr double rounding = 16 * std::numeric_limits<double>::epsilon();
 /// Maps that differ by more than this share of the object are never the same.
 constexpr double most_snapped = 1e-7;
-/// Known maps of a pair of objects that are looked at, the first ones.
+/// Known maps that are looked at, of a pair of objects and of all, the first ones.
 constexpr std::size_t most_known = 512;
+/// A piece that rounding has moved by this share of its size is lost.
+constexpr double lost_share = 0.05;
 
 double reach_of(const Affine& a, const Ball& ball) {
     return glm::length(a(ball.centre)) + norm(a.linear) * (glm::length(ball.centre) + ball.radius);
@@ -26,6 +29,22 @@ double reach_of(const Affine& a, const Ball& ball) {
 double difference(const Affine& a, const Affine& b, const Ball& ball) {
     const Affine d{a.linear - b.linear, a.translation - b.translation};
     return glm::length(d(ball.centre)) + norm(d.linear) * std::max(ball.radius, 0.0);
+}
+
+/// From a point to the image of a box: exact if the image is a box, else no more than it is. 0 if the map
+/// flattens the box.
+double distance_to_box(const Affine& map, const Box& box, Vec3 point) {
+    const Mat3& linear = map.linear;
+    const Vec3 lengths(glm::length(linear[0]), glm::length(linear[1]), glm::length(linear[2]));
+    const double least = std::min({lengths.x, lengths.y, lengths.z});
+    if (box.empty() || !(least > 1e-12 * std::max({lengths.x, lengths.y, lengths.z})) || is_singular(map)) return 0;
+    const Vec3 local = inverse(map)(point);
+    const Vec3 outside = glm::max(glm::max(box.min - local, local - box.max), Vec3(0.0));
+    const auto cosine = [&](int i, int j) {
+        return std::abs(glm::dot(linear[i], linear[j])) / (lengths[i] * lengths[j]);
+    };
+    const bool upright = std::max({cosine(0, 1), cosine(0, 2), cosine(1, 2)}) < 1e-9;
+    return upright ? glm::length(outside * lengths) * (1 - 1e-6) : glm::length(outside) * singular_values(linear).z;
 }
 
 } // namespace
@@ -66,7 +85,8 @@ bool Surroundings::in_reach(const NearPiece& piece, Vec3 focus, double reach) co
     if (bounds.unbounded) return true;
     if (bounds.ball.empty()) return false;
     const double distance = glm::distance(piece.frame_from_piece(bounds.ball.centre), focus);
-    return distance <= radius(piece) + reach + piece.error;
+    if (distance > radius(piece) + reach + piece.error) return false;
+    return distance_to_box(piece.frame_from_piece, bounds.box, focus) <= reach + piece.error;
 }
 
 bool Surroundings::divisible(const NearPiece& piece) const {
@@ -77,13 +97,17 @@ bool Surroundings::divisible(const NearPiece& piece) const {
 }
 
 bool Surroundings::keep(NearPiece first, Vec3 focus, double reach, double size,
-                        std::vector<NearPiece>& kept) const {
+                        std::vector<NearPiece>& kept) {
     std::vector<NearPiece> stack;
     stack.push_back(std::move(first));
     while (!stack.empty()) {
         const NearPiece piece = std::move(stack.back());
         stack.pop_back();
         if (!in_reach(piece, focus, reach)) continue;
+        if (piece.error > lost_share * size) {
+            ++lost_;
+            continue;
+        }
         const bool endless_plane = bounds_[piece.object].unbounded && !components_.unending[piece.object];
         if (!divisible(piece) || (radius(piece) <= size && !endless_plane)) {
             if (kept.size() >= most_pieces) return false;
@@ -107,7 +131,7 @@ Surroundings::Outcome Surroundings::descend(std::uint32_t instance, Vec3 focus, 
     const std::optional<NearPiece> next = child(own_, step);
     if (!next) return Outcome::no_level;
     const double enlargement = norm(new_from_old.linear);
-    const double size = std::max(bounds_[step.master].ball.radius, 0.0) * (1 + 1e-6);
+    const double size = std::max(bounds_[step.master].ball.radius * (1 + 1e-6), reach);
     std::vector<NearPiece> kept;
     const auto carry_over = [&](NearPiece piece) {
         piece.frame_from_piece = new_from_old * piece.frame_from_piece;
@@ -143,17 +167,27 @@ bool Surroundings::spread(Vec3 focus, double reach, double size) {
 }
 
 void Surroundings::snap(NearPiece& piece) {
-    std::vector<KnownMap>& known = known_[{own_.object, piece.object}];
+    std::vector<KnownMap>& of_pair = known_of_pair_[{own_.object, piece.object}];
     const Ball& ball = bounds_[piece.object].ball;
     const double most = most_snapped * bounds_[own_.object].ball.radius;
-    for (const KnownMap& map : known) {
-        const double apart = difference(map.frame_from_piece, piece.frame_from_piece, ball);
-        if (apart > std::min(most, 4 * (map.error + piece.error))) continue;
-        piece.frame_from_piece = map.frame_from_piece;
+    const auto snap_to = [&](const KnownMap& map) {
+        const double allowed = std::min(most, 4 * (map.error + piece.error));
+        const Affine& a = map.frame_from_piece;
+        const Affine& b = piece.frame_from_piece;
+        // The cheap look first: most differ by far.
+        if (glm::distance(a(ball.centre), b(ball.centre)) > allowed || difference(a, b, ball) > allowed)
+            return false;
+        piece.frame_from_piece = a;
         piece.error = map.error;
-        return;
-    }
-    if (known.size() < most_known) known.push_back({piece.frame_from_piece, piece.error});
+        return true;
+    };
+    for (const KnownMap& map : of_pair)
+        if (snap_to(map)) return;
+    for (const KnownMap& map : known_)
+        if (snap_to(map)) break;
+    const KnownMap found{piece.frame_from_piece, piece.error};
+    if (of_pair.size() < most_known) of_pair.push_back(found);
+    if (known_.size() < most_known) known_.push_back(found);
 }
 
 /// Sorts, so that equal surroundings come in one order whatever way led there, and drops what coincides.

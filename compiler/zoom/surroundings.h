@@ -24,12 +24,14 @@ struct NearPiece {
 
 /// What lies around an object deep in the unfolding. The descent goes from the root down, instance by
 /// instance; the frame is always that of the object reached, so nothing is ever expressed in coordinates of
-/// the world. What comes within reach is carried along, in pieces no larger than the object itself.
+/// the world. What comes within reach is carried along, in pieces no larger than the
+/// object itself or the reach.
 ///
 /// The maps between an object and its neighbours are f_a^-1 f_b for two addresses a and b of equal size: each
 /// step down enlarges the rounding of the last. Where two parts touch, as the triangles of a gasket do, only
-/// few such maps occur (the neighbour maps of Bandt and Graf 1992). So a map that equals an earlier one of the
-/// same two objects within the rounding of both is taken to be that one, and the rounding starts anew.
+/// few such maps occur (the neighbour maps of Bandt and Graf 1992). So a map that equals an earlier one within the
+/// rounding of both is taken to be that one, and the rounding starts anew. Where none recurs, a neighbour is lost
+/// once rounding hides where it lies.
 class Surroundings {
   public:
     /// `steps`: levels in all; nothing if there is no limit.
@@ -49,7 +51,8 @@ class Surroundings {
 
     const NearPiece& own() const { return own_; }
     const std::vector<NearPiece>& others() const { return others_; }
-    /// Of the balls of pieces, over the frame.
+    std::size_t lost() const { return lost_; }
+    /// Of the ball of a piece, in the frame.
     double radius(const NearPiece& piece) const;
 
     static constexpr std::size_t most_pieces = 20'000;
@@ -64,7 +67,7 @@ class Surroundings {
     bool in_reach(const NearPiece& piece, Vec3 focus, double reach) const;
     bool divisible(const NearPiece& piece) const;
     /// Appends the parts of the piece that are in reach and no larger than `size`.
-    bool keep(NearPiece piece, Vec3 focus, double reach, double size, std::vector<NearPiece>& kept) const;
+    bool keep(NearPiece piece, Vec3 focus, double reach, double size, std::vector<NearPiece>& kept);
     void snap(NearPiece& piece);
     void tidy(std::vector<NearPiece>& pieces, double size) const;
 
@@ -74,7 +77,9 @@ class Surroundings {
     std::optional<unsigned> steps_;
     NearPiece own_;
     std::vector<NearPiece> others_;
-    std::map<std::pair<ObjectId, ObjectId>, std::vector<KnownMap>> known_; ///< by object reached and piece
+    std::map<std::pair<ObjectId, ObjectId>, std::vector<KnownMap>> known_of_pair_; ///< object reached and piece
+    std::vector<KnownMap> known_;
+    std::size_t lost_ = 0;
 };
 
 } // namespace graftal

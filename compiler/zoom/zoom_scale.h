@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -25,20 +26,19 @@ class ZoomScale {
     /// How much larger than in the world lengths are.
     Magnification zoom() const { return zoom_; }
 
-    static constexpr double largest = 1e40;
+    static constexpr double largest = 1e150;
 
   private:
-    ZoomScale(const Graph& graph, const Focus& focus) : graph_(graph), focus_(focus) {}
+    ZoomScale(const Graph& graph, const Focus& focus) : graph_(&graph), focus_(&focus) {}
     void normalise();
 
-    const Graph& graph_;
-    const Focus& focus_;
+    const Graph* graph_;
+    const Focus* focus_;
     Magnification zoom_;
     std::size_t depth_ = 0;
     Mat3 linear_{1.0}; ///< about the focus: times 2^exponent_
     std::int64_t exponent_ = 0;
-    bool about_focus_ = true;
-    std::vector<Affine> from_last_; ///< of the last object: picture_from_frame by steps up from it
+        std::shared_ptr<const std::vector<Affine>> from_last_; ///< picture_from_frame by steps up from the last object
 };
 
 } // namespace graftal

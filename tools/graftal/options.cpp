@@ -123,6 +123,8 @@ void add_view(CLI::App& app, Options& options) {
     add_value(app, "--memory", "BYTES", "Memory that POV-Ray may need; suffixes K M G (default 2G)",
               "a number of bytes such as 512M", parse_bytes,
               [&](std::uint64_t bytes) { compile.cut.memory_bytes = bytes; });
+    app.add_flag("--visible-only", compile.cut.visible_only,
+                 "Leave out what the camera does not see, with the shadows that it would throw");
     app.add_flag("--flatten", compile.cut.flatten,
                  "Spell out every part in its place, without sharing (for comparison)");
 }

@@ -126,7 +126,7 @@ class Unfolding {
         bake.detail_per_unit =
             std::max(bake.detail_per_unit, projection_.detail_per_unit(ball) * piece.scale);
         bake.pixels_per_unit =
-            std::max(bake.pixels_per_unit, projection_.pixels_per_unit(ball) * piece.scale);
+            std::max(bake.pixels_per_unit, projection_.pixels_that_matter(ball) * piece.scale);
 
         Placed thing;
         thing.request = request->second;

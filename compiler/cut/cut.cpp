@@ -91,7 +91,9 @@ class Cutter {
         Piece root;
         root.node = cut_.root;
         root.steps = root_steps(options);
-        Weights weights(cut_, visible_cube_triangles(cut_, symmetry_, root.steps));
+        const Ball whole_ball = world_ball(cut_, root);
+        const double px = projection.pixels_per_unit(whole_ball) / projection.detail_per_unit(whole_ball);
+        Weights weights(cut_, visible_cube_triangles(cut_, symmetry_, root.steps), px);
         const auto memory = static_cast<double>(options.memory_bytes);
         const PieceKind whole{root.node, root.steps, PieceKind::step_of(detail_of(cut_, projection, root))};
         choice_ = options.flatten || better_flat(weights.of(whole), memory)

@@ -7,6 +7,7 @@
 
 #include <glm/geometric.hpp>
 
+#include "compiler/cut/bake.h"
 #include "compiler/cut/tessellate.h"
 
 namespace graftal {
@@ -57,10 +58,14 @@ double Projection::pixels_per_unit(const Ball& ball) const {
     return pixels_per_tangent_ / std::max(depth - ball.radius, near_);
 }
 
+double Projection::pixels_that_matter(const Ball& ball) const {
+    return pixels_per_unit(ball) / (sees(ball) ? 1 : coarser_out_of_sight);
+}
+
 double Projection::detail_per_unit(const Ball& ball) const {
     if (!culls_) return infinity;
-    const double detail = error_world_ > 0 ? 1 / error_world_ : pixels_per_unit(ball) / error_px_;
-    return sees(ball) ? detail : detail / coarser_out_of_sight;
+    if (error_world_ > 0) return 1 / (error_world_ * (sees(ball) ? 1 : coarser_out_of_sight));
+    return pixels_that_matter(ball) / error_px_;
 }
 
 std::int32_t PieceKind::step_of(double detail) {
@@ -90,9 +95,12 @@ PieceKind Weights::normalised(PieceKind kind) const {
     const CutNode& node = cut_.nodes[kind.node];
     if (!node.unending) kind.steps = unlimited_steps;
     if (kind.detail_step != PieceKind::endless_detail) kind.detail_step = std::max(kind.detail_step, -1);
-    if (node.primitive || !node.cullable) {
-        if (!node.unending) kind.detail_step = 0;
-    }
+    if (node.primitive && max_fineness(*node.primitive) > 0 && kind.detail_step != PieceKind::endless_detail)
+        // Their meshes get finer slowly: a few kinds will do.
+        kind.detail_step = (kind.detail_step + PieceKind::steps_an_octave - 1) / PieceKind::steps_an_octave *
+                           PieceKind::steps_an_octave;
+    else if (node.primitive || (!node.cullable && !node.unending && px_ <= 0))
+        kind.detail_step = 0;
     return kind;
 }
 
@@ -115,10 +123,20 @@ PieceKind Weights::child_kind(const PieceKind& parent, const CutEdge& edge) cons
     return normalised(kind);
 }
 
-Weights::Weight Weights::of_primitive(PrimitiveKind kind) const {
+/// What a unit of the primitive measures.
+double Weights::primitive_px(const PieceKind& kind) const {
+    if (kind.detail_step == PieceKind::endless_detail) return 0;
+    const double detail = std::exp2(static_cast<double>(kind.detail_step) / PieceKind::steps_an_octave);
+    return px_ * detail / (2 * cut_.nodes[kind.node].ball.radius);
+}
+
+Weights::Weight Weights::of_primitive(const PieceKind& asked) const {
+    const PrimitiveKind kind = *cut_.nodes[asked.node].primitive;
     if (kind == PrimitiveKind::cube) return {cube_triangles_, 1, 0};
-    const TessellatedPrimitive& coarsest = tessellated(kind, 0);
-    return {static_cast<double>(coarsest.triangles.size()), 1, coarsest.normals.empty() ? 0.0 : 1.0};
+    const double px = primitive_px(asked);
+    const int level = px > 0 ? fineness_for(kind, tessellation_tolerance_px / px) : 0;
+    const TessellatedPrimitive& mesh = tessellated(kind, level);
+    return {static_cast<double>(mesh.triangles.size()), 1, mesh.normals.empty() ? 0.0 : 1.0};
 }
 
 Weights::Weight Weights::of(const PieceKind& asked) {
@@ -154,7 +172,7 @@ Weights::Weight Weights::of(const PieceKind& asked) {
             continue;
         }
         if (node.primitive && *node.primitive != PrimitiveKind::plane)
-            frame.sum = of_primitive(*node.primitive);
+            frame.sum = of_primitive(frame.kind);
         else if (edges.empty())
             frame.sum = proxy;
         known_[frame.kind] = frame.sum;

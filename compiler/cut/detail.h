@@ -19,8 +19,9 @@ class Projection {
 
     /// Pixels that one scene unit measures at the ball's nearest point, at most.
     double pixels_per_unit(const Ball& world_ball) const;
-    /// The detail of one scene unit there; coarser out of the picture, from where only shadows and reflections
-    /// come.
+    /// The same as far as it matters: less out of the picture, from where only shadows and reflections come.
+    double pixels_that_matter(const Ball& world_ball) const;
+    /// The detail of one scene unit there; less out of the picture too.
     double detail_per_unit(const Ball& world_ball) const;
 
     /// False if no point of the ball can be in the picture.
@@ -68,9 +69,10 @@ struct PieceKindHash {
 /// Estimates what an unfolded piece holds, by one memoised sweep: O(kinds reached).
 class Weights {
   public:
-    /// `cube_triangles`: how many of a cube's triangles stay visible in a mesh, on average.
-    explicit Weights(const CutGraph& cut, double cube_triangles = 12)
-        : cut_(cut), cube_triangles_(cube_triangles) {}
+    /// `cube_triangles`: how many of a cube's triangles stay visible in a mesh, on average. `px`: pixels of a
+    /// detail of 1, which decide how finely curved surfaces are meshed; 0: as coarsely as can be.
+    explicit Weights(const CutGraph& cut, double cube_triangles = 12, double px = 0)
+        : cut_(cut), cube_triangles_(cube_triangles), px_(px) {}
 
     struct Weight {
         double triangles = 0;
@@ -95,10 +97,12 @@ class Weights {
     PieceKind child_kind(const PieceKind& parent, const CutEdge& edge) const;
 
   private:
-    Weight of_primitive(PrimitiveKind kind) const;
+    Weight of_primitive(const PieceKind& kind) const;
+    double primitive_px(const PieceKind& kind) const;
 
     const CutGraph& cut_;
     double cube_triangles_;
+    double px_;
     std::unordered_map<PieceKind, Weight, PieceKindHash> known_;
 };
 

@@ -1,8 +1,8 @@
 #include "compiler/zoom/address.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cctype>
+#include <charconv>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -105,7 +105,9 @@ class Parser {
     /// A name with the arguments that stand behind it.
     std::string word() {
         const std::size_t begin = place_;
-        const auto in_name = [](char c) { return std::string_view(".()*#\"").find(c) == std::string_view::npos; };
+        const auto in_name = [](char c) {
+            return std::string_view(".()*#\"").find(c) == std::string_view::npos;
+        };
         while (place_ < text_.size() && in_name(text_[place_]))
             ++place_;
         if (place_ > begin && place_ < text_.size() && text_[place_] == '(')
@@ -132,7 +134,8 @@ class Parser {
 int fit(std::string_view master, std::string_view name) {
     if (name.empty() || master == name) return 3;
     const std::string_view head = master.substr(0, master.find('('));
-    if (const std::size_t dot = head.rfind('.'); dot != std::string_view::npos && master.substr(dot + 1) == name)
+    if (const std::size_t dot = head.rfind('.');
+        dot != std::string_view::npos && master.substr(dot + 1) == name)
         return 2;
     const std::size_t dot = head.rfind('.');
     return head == name || (dot != std::string_view::npos && head.substr(dot + 1) == name) ? 1 : 0;
@@ -203,8 +206,8 @@ class Finder {
     bool refuse_ambiguous(const Object& object, const AddressStep& step, std::size_t count) {
         const std::string name = step.name.empty() ? "part" : step.name;
         diagnostics_
-            .error(object.span,
-                   fmt::format("the address is ambiguous: '{}' has {} instances of '{}'", object.name, count, name))
+            .error(object.span, fmt::format("the address is ambiguous: '{}' has {} instances of '{}'",
+                                            object.name, count, name))
             .with_hint(fmt::format("say which: {0}#1 to {0}#{1}", step.name, count));
         return false;
     }

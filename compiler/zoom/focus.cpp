@@ -31,7 +31,8 @@ Vec3 fixed_point(const Graph& graph, const std::vector<GraphStep>& cycle) {
     return glm::inverse(Mat3(1.0) - round.linear) * round.translation;
 }
 
-/// Fills in the points before the last one, each the image of the next: contracting, so without growing errors.
+/// Fills in the points before the last one, each the image of the next: contracting, so without growing
+/// errors.
 void pull_up(const Graph& graph, Focus& focus, Vec3 last, std::size_t count) {
     focus.points.resize(count + 1);
     focus.points[count] = last;
@@ -130,7 +131,8 @@ class PointWalk {
     void note() {
         const double radius = std::max(bounds_[object_].ball.radius, 0.0);
         for (const Visit& visit : visits_[object_]) {
-            const double allowed = nearest_ ? 1e-9 * radius : std::min(1e-6 * radius, 4 * (visit.error + error_));
+            const double allowed =
+                nearest_ ? 1e-9 * radius : std::min(1e-6 * radius, 4 * (visit.error + error_));
             if (glm::distance(visit.point, point_) > allowed) continue;
             const auto begin = path_.steps.begin() + static_cast<std::ptrdiff_t>(visit.step);
             path_.cycle.assign(begin, path_.steps.end());

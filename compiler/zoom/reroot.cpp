@@ -36,9 +36,8 @@ class Rerooter {
 
     std::optional<Rerooted> run(const std::optional<Vec3>& look_at) {
         if (!find_focus(look_at)) return std::nullopt;
-        ZoomScale scale = request_.zoom
-                              ? ZoomScale::about_focus(model_.graph, focus_, *request_.zoom)
-                              : ZoomScale::of_last_object(model_.graph, focus_);
+        ZoomScale scale = request_.zoom ? ZoomScale::about_focus(model_.graph, focus_, *request_.zoom)
+                                        : ZoomScale::of_last_object(model_.graph, focus_);
         result_.zoom = scale.zoom();
         if (!set_view(look_at) || !descend(scale)) return std::nullopt;
         const Affine picture_from_frame = *scale.picture_from_frame();
@@ -151,8 +150,8 @@ class Rerooter {
     }
 
     bool refuse_depth(unsigned levels) {
-        return refuse(fmt::format("the address is {} levels deep, and --steps ends the model after {}", levels,
-                                  *model_.steps),
+        return refuse(fmt::format("the address is {} levels deep, and --steps ends the model after {}",
+                                  levels, *model_.steps),
                       "give more --steps, or a shorter address");
     }
 
@@ -209,27 +208,31 @@ class Rerooter {
         if (whole_) return true;
         const double rounding = std::numeric_limits<double>::epsilon() * around_.radius(around_.own());
         if (px(sigma.x * std::max(focus_.error, rounding)) > visible_px) return refuse_end();
-        return around_.spread(focus_.at(result_.depth), frame_reach(scale), reach_ / sigma.x) || refuse_crowd();
+        return around_.spread(focus_.at(result_.depth), frame_reach(scale), reach_ / sigma.x) ||
+               refuse_crowd();
     }
 
     bool refuse_flat(const GraphStep& step) {
         const Instance& instance = model_.graph.objects[step.object].instances[step.instance];
-        return refuse(fmt::format("the address leads through '{}', which flattens space: there is no way back "
-                                  "from its frame to the world around it",
-                                  model_.graph.objects[instance.master].name),
-                      "choose an address around it");
+        return refuse(
+            fmt::format("the address leads through '{}', which flattens space: there is no way back "
+                        "from its frame to the world around it",
+                        model_.graph.objects[instance.master].name),
+            "choose an address around it");
     }
 
     bool refuse_crowd() {
-        return refuse(fmt::format("more than {} parts of one size crowd around this place", Surroundings::most_pieces),
-                      "zoom in less, or choose another address");
+        return refuse(
+            fmt::format("more than {} parts of one size crowd around this place", Surroundings::most_pieces),
+            "zoom in less, or choose another address");
     }
 
     bool refuse_condition(double condition) {
-        return refuse(fmt::format("the maps on the way stretch space {:.2g} times more one way than another: no "
-                                  "digits are left for what lies around",
-                                  condition),
-                      "zoom in less, or choose an address along similarities");
+        return refuse(
+            fmt::format("the maps on the way stretch space {:.2g} times more one way than another: no "
+                        "digits are left for what lies around",
+                        condition),
+            "zoom in less, or choose an address along similarities");
     }
 
     /// Where nothing recurs, a place is known to as many digits as a number has.
@@ -280,8 +283,7 @@ class Rerooter {
             error = std::max(error, stretch * piece.error);
         }
         if (root.instances.empty()) return refuse("nothing of the model lies there", "look somewhere else");
-        if (!bounds.box.empty())
-            bounds.ball = {bounds.box.centre(), 0.5 * glm::length(bounds.box.size())};
+        if (!bounds.box.empty()) bounds.ball = {bounds.box.centre(), 0.5 * glm::length(bounds.box.size())};
         graph.root = graph.add(std::move(root));
         result_.bounds.push_back(bounds);
         result_.components = strong_components(graph);
@@ -295,16 +297,18 @@ class Rerooter {
 
     void warn(double error_px, std::size_t too_large) {
         if (error_px > visible_px)
-            diagnostics_.warning(span(), fmt::format("rounding moves parts around this place by up to {:.2g} px",
-                                                     error_px));
+            diagnostics_.warning(
+                span(), fmt::format("rounding moves parts around this place by up to {:.2g} px", error_px));
         if (around_.lost() > 0)
-            diagnostics_.warning(span(), fmt::format("{} parts that may touch this place are left out: rounding "
-                                                     "hides where they lie",
-                                                     around_.lost()));
+            diagnostics_.warning(span(),
+                                 fmt::format("{} parts that may touch this place are left out: rounding "
+                                             "hides where they lie",
+                                             around_.lost()));
         if (too_large > 0)
-            diagnostics_.warning(span(), fmt::format("{} primitives over {} times larger than all that is drawn "
-                                                     "are left out",
-                                                     too_large, largest_primitive));
+            diagnostics_.warning(span(),
+                                 fmt::format("{} primitives over {} times larger than all that is drawn "
+                                             "are left out",
+                                             too_large, largest_primitive));
     }
 
     std::string free_name() const {

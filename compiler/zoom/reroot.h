@@ -33,7 +33,7 @@ struct Rerooted {
     std::vector<ObjectBounds> bounds;
     std::vector<unsigned> root_levels; ///< that the root's instances use up (CutOptions)
     View view;
-    Magnification zoom; ///< how much larger than in the world lengths are
+    Magnification zoom;    ///< how much larger than in the world lengths are
     std::size_t depth = 0; ///< instances from the old root to where the new one begins
 };
 
@@ -45,15 +45,15 @@ struct ZoomModel {
     std::optional<unsigned> steps;
 };
 
-/// The view that shows an object by itself, as if its frame were the world; of the root, the whole model. Of the
-/// levels that the model may have so many are used up.
+/// The view that shows an object by itself, as if its frame were the world; of the root, the whole model. Of
+/// the levels that the model may have so many are used up.
 using FrameObject = std::function<View(ObjectId object, unsigned used_levels)>;
 
-/// With a zoom the camera keeps its direction, angle and distance, and looks at the focus, about which everything
-/// is enlarged. With an address alone the frame of its object becomes the world, and what `frame_object` makes of
-/// it the picture; only the lights stay where the model has them. `look_at`: a point to zoom about. Errors, in
-/// `diagnostics`: an address that does not exist or is deeper than the steps, a point whose digits do not reach
-/// so deep, maps that flatten space more than numbers can follow.
+/// With a zoom the camera keeps its direction, angle and distance, and looks at the focus, about which
+/// everything is enlarged. With an address alone the frame of its object becomes the world, and what
+/// `frame_object` makes of it the picture; only the lights stay where the model has them. `look_at`: a point
+/// to zoom about. Errors, in `diagnostics`: an address that does not exist or is deeper than the steps, a
+/// point whose digits do not reach so deep, maps that flatten space more than numbers can follow.
 std::optional<Rerooted> reroot(const ZoomModel& model, const ZoomRequest& request,
                                const FrameObject& frame_object, const std::optional<Vec3>& look_at,
                                Diagnostics& diagnostics);

@@ -37,14 +37,16 @@ double distance_to_box(const Affine& map, const Box& box, Vec3 point) {
     const Mat3& linear = map.linear;
     const Vec3 lengths(glm::length(linear[0]), glm::length(linear[1]), glm::length(linear[2]));
     const double least = std::min({lengths.x, lengths.y, lengths.z});
-    if (box.empty() || !(least > 1e-12 * std::max({lengths.x, lengths.y, lengths.z})) || is_singular(map)) return 0;
+    if (box.empty() || !(least > 1e-12 * std::max({lengths.x, lengths.y, lengths.z})) || is_singular(map))
+        return 0;
     const Vec3 local = inverse(map)(point);
     const Vec3 outside = glm::max(glm::max(box.min - local, local - box.max), Vec3(0.0));
     const auto cosine = [&](int i, int j) {
         return std::abs(glm::dot(linear[i], linear[j])) / (lengths[i] * lengths[j]);
     };
     const bool upright = std::max({cosine(0, 1), cosine(0, 2), cosine(1, 2)}) < 1e-9;
-    return upright ? glm::length(outside * lengths) * (1 - 1e-6) : glm::length(outside) * singular_values(linear).z;
+    return upright ? glm::length(outside * lengths) * (1 - 1e-6)
+                   : glm::length(outside) * singular_values(linear).z;
 }
 
 } // namespace
@@ -210,7 +212,8 @@ void Surroundings::tidy(std::vector<NearPiece>& pieces, double size) const {
         k.piece = std::move(piece);
         keyed.push_back(std::move(k));
     }
-    std::stable_sort(keyed.begin(), keyed.end(), [](const Keyed& a, const Keyed& b) { return a.key < b.key; });
+    std::stable_sort(keyed.begin(), keyed.end(),
+                     [](const Keyed& a, const Keyed& b) { return a.key < b.key; });
     pieces.clear();
     const auto coincide = [](const NearPiece& a, const NearPiece& b) {
         return a.object == b.object && a.frame_from_piece == b.frame_from_piece && a.levels == b.levels;

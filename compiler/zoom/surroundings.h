@@ -29,9 +29,9 @@ struct NearPiece {
 ///
 /// The maps between an object and its neighbours are f_a^-1 f_b for two addresses a and b of equal size: each
 /// step down enlarges the rounding of the last. Where two parts touch, as the triangles of a gasket do, only
-/// few such maps occur (the neighbour maps of Bandt and Graf 1992). So a map that equals an earlier one within the
-/// rounding of both is taken to be that one, and the rounding starts anew. Where none recurs, a neighbour is lost
-/// once rounding hides where it lies.
+/// few such maps occur (the neighbour maps of Bandt and Graf 1992). So a map that equals an earlier one
+/// within the rounding of both is taken to be that one, and the rounding starts anew. Where none recurs, a
+/// neighbour is lost once rounding hides where it lies.
 class Surroundings {
   public:
     /// `steps`: levels in all; nothing if there is no limit.
@@ -41,8 +41,8 @@ class Surroundings {
     enum class Outcome { done, flat, too_many, no_level };
 
     /// Goes down one instance of the object reached. What has no point within `reach` of `focus` (both in the
-    /// new frame) is left behind. `flat`: the map cannot be inverted; `too_many`: more pieces than `most_pieces`;
-    /// `no_level`: the steps do not lead so deep. Nothing changes then.
+    /// new frame) is left behind. `flat`: the map cannot be inverted; `too_many`: more pieces than
+    /// `most_pieces`; `no_level`: the steps do not lead so deep. Nothing changes then.
     Outcome descend(std::uint32_t instance, Vec3 focus, double reach);
 
     /// Stays where it is, and leaves no piece in reach that is larger than `size` if it has parts; the object
@@ -77,7 +77,8 @@ class Surroundings {
     std::optional<unsigned> steps_;
     NearPiece own_;
     std::vector<NearPiece> others_;
-    std::map<std::pair<ObjectId, ObjectId>, std::vector<KnownMap>> known_of_pair_; ///< object reached and piece
+    std::map<std::pair<ObjectId, ObjectId>, std::vector<KnownMap>>
+        known_of_pair_; ///< object reached and piece
     std::vector<KnownMap> known_;
     std::size_t lost_ = 0;
 };

@@ -38,7 +38,8 @@ class ZoomScale {
     std::size_t depth_ = 0;
     Mat3 linear_{1.0}; ///< about the focus: times 2^exponent_
     std::int64_t exponent_ = 0;
-        std::shared_ptr<const std::vector<Affine>> from_last_; ///< picture_from_frame by steps up from the last object
+    std::shared_ptr<const std::vector<Affine>>
+        from_last_; ///< picture_from_frame by steps up from the last object
 };
 
 } // namespace graftal

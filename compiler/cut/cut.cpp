@@ -7,6 +7,7 @@
 
 #include "compiler/cut/assemble.h"
 #include "compiler/cut/choose.h"
+#include "compiler/cut/coverage.h"
 #include "compiler/cut/cut_graph.h"
 #include "compiler/cut/symmetry.h"
 
@@ -38,7 +39,9 @@ class Cutter {
            const View& view, const CutOptions& options, Diagnostics& diagnostics)
         : graph_(graph), unending_(components.unending[graph.root]), view_(view), options_(options),
           diagnostics_(diagnostics), cut_(prepared(graph, components, bounds)),
-          symmetry_(find_symmetry(cut_)) {}
+          symmetry_(find_symmetry(cut_)) {
+        fit_proxies(cut_, symmetry_);
+    }
 
     std::optional<Cut> run() {
         const bool culls = options_.error_world ? *options_.error_world > 0 : options_.error_px > 0;

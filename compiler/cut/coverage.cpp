@@ -277,9 +277,10 @@ class Fitter {
         for (std::size_t c = 0; c < components.members.size(); ++c) {
             roots_ = components.members[c];
             std::erase_if(roots_, [&](NodeId root) { return !fittable(root); });
+            if (roots_.empty()) continue;
             if (components.cyclic[c])
                 fit_cycle();
-            else if (!roots_.empty())
+            else
                 fit_single(roots_.front());
         }
         weigh_edges();

@@ -28,12 +28,12 @@ struct Effort {
 };
 
 /// Parts of all subtrees together, and the least and most of one.
-constexpr std::size_t all_pieces = 150'000, fewest_pieces = 12, most_pieces = 256;
+constexpr std::size_t all_pieces = 50'000, fewest_pieces = 12, most_pieces = 192;
 /// With more nodes than this, shadows are taken along six directions only.
 constexpr std::size_t many_nodes = 3000;
-constexpr int coarse_grid = 64, fine_grid = 192;
-constexpr std::size_t fine_factor = 16; ///< so many more parts to see what a cycle ends in
-constexpr int most_rounds = 16;
+constexpr int coarse_grid = 64, fine_grid = 128;
+constexpr std::size_t fine_factor = 12; ///< so many more parts to see what a cycle ends in
+constexpr int most_rounds = 10;
 /// No shadow of a proxy is narrower than this share of its widest, so that flat sets have a body.
 constexpr double narrowest_shadow = 0.02;
 /// A half axis may be this much longer than half the node's box: an ellipsoid with a cube's shadow is.
@@ -222,22 +222,27 @@ class EllipsoidFit {
             for (int k = 0; k < 3; ++k)
                 limit[i] += reach_beyond_box * std::abs(axes(k, i)) * box_half[k];
         }
-        const auto scaled = [&](double scale) {
-            Mat3 linear(0.0);
-            for (int i = 0; i < 3; ++i)
-                for (int k = 0; k < 3; ++k)
-                    linear[i][k] = axes(k, i) * std::min(scale * half[i], limit[i]);
-            return linear;
-        };
-        double low = 0, high = 1e3 * std::sqrt(mean / widest);
-        for (int step = 0; step < 60; ++step) {
-            const double middle = 0.5 * (low + high);
+        // Where no axis is held back, areas grow with the square.
+        const double free = std::sqrt(mean / mean_shadow(turned(axes, half)));
+        if (((free * half).array() <= limit.array()).all()) return turned(axes, free * half);
+        const auto scaled = [&](double scale) { return turned(axes, (scale * half).cwiseMin(limit)); };
+        double low = free, high = 1e3 * free;
+        for (int step = 0; step < 40; ++step) {
+            const double middle = std::sqrt(low * high);
             (mean_shadow(scaled(middle)) < mean ? low : high) = middle;
         }
         return scaled(high);
     }
 
   private:
+    static Mat3 turned(const Eigen::Matrix3d& axes, const Eigen::Vector3d& half) {
+        Mat3 linear(0.0);
+        for (int i = 0; i < 3; ++i)
+            for (int k = 0; k < 3; ++k)
+                linear[i][k] = axes(k, i) * half[i];
+        return linear;
+    }
+
     double mean_shadow(const Mat3& linear) const {
         double sum = 0;
         for (const Vec3& direction : directions_)
@@ -351,7 +356,7 @@ class Fitter {
                     std::max(change, std::abs(measured.mean - mean[i]) / std::max(measured.mean, 1e-300));
                 mean[i] = measured.mean;
             }
-            if (change < 0.005) break;
+            if (change < 0.01) break;
         }
         if (grows) fit_together();
     }
@@ -377,7 +382,7 @@ class Fitter {
             return sum;
         };
         double low = 0.5, high = 1.5;
-        for (int step = 0; step < 8; ++step) {
+        for (int step = 0; step < 6; ++step) {
             const double middle = 0.5 * (low + high);
             (together(middle) < limit ? low : high) = middle;
         }

@@ -18,16 +18,29 @@ namespace {
 
 using std::numbers::pi;
 
-/// Twelve sides: their shadow is off by less than a hundredth.
-constexpr int side_fineness = 2;
 constexpr int torus_parts = 12;
+constexpr int prism_sides = 8;
+
+/// A prism or pyramid in place of what is round about the y axis, as long around: the shadows of slender
+/// ones, which are what there are most of, are as wide.
+std::vector<Vec3> round_corners(double top) {
+    const double radius = pi / (prism_sides * std::sin(pi / prism_sides));
+    std::vector<Vec3> corners;
+    for (int i = 0; i < prism_sides; ++i) {
+        const double angle = 2 * pi * i / prism_sides;
+        const Vec3 spoke(radius * std::cos(angle), 0, radius * std::sin(angle));
+        corners.push_back(spoke);
+        if (top > 0) corners.push_back(top * spoke + Vec3(0, 1, 0));
+    }
+    if (!(top > 0)) corners.emplace_back(0, 1, 0);
+    return corners;
+}
 
 /// Convex bodies, given by their corners, whose union is the primitive.
 std::vector<std::vector<Vec3>> make_convex_parts(PrimitiveKind kind) {
-    if (kind != PrimitiveKind::torus) {
-        const int fineness = std::min(side_fineness, max_fineness(kind));
-        return {tessellated(kind, fineness).vertices};
-    }
+    if (kind == PrimitiveKind::cube || kind == PrimitiveKind::triangle)
+        return {tessellated(kind, 0).vertices};
+    if (kind != PrimitiveKind::torus) return {round_corners(top_radius(kind))};
     const std::vector<Vec3>& ring = tessellated(kind, 1).vertices;
     const std::size_t around = ring.size() / torus_parts;
     std::vector<std::vector<Vec3>> parts(torus_parts);
@@ -162,21 +175,34 @@ Shadow::Cover Shadow::draw_hull(std::span<const Vec3> corners, const Affine& pla
     for (std::size_t i = 0; i + 1 < hull_.size(); ++i)
         cover.area += 0.5 * (hull_[i].x * hull_[i + 1].y - hull_[i + 1].x * hull_[i].y);
     cover.area = std::max(cover.area, 0.0);
-    std::size_t right = 0, left = hull_.size() - 1;
-    const auto crossing = [](const Point& a, const Point& b, double y) {
-        return b.y == a.y ? a.x : a.x + (b.x - a.x) * (y - a.y) / (b.y - a.y);
+    fill_hull(top, cover);
+    return cover;
+}
+
+void Shadow::fill_hull(std::size_t top, Cover& cover) {
+    // A side of the hull, followed upwards: x = at y.
+    struct Side {
+        std::size_t at;
+        double x = 0, slope = 0, y = 0;
     };
+    const auto turn_corner = [&](Side& side, std::size_t next) {
+        const Point &a = hull_[side.at], &b = hull_[next];
+        side.x = a.x;
+        side.y = a.y;
+        side.slope = b.y > a.y ? (b.x - a.x) / (b.y - a.y) : 0;
+    };
+    Side right{0}, left{hull_.size() - 1};
+    turn_corner(right, 1);
+    turn_corner(left, left.at - 1);
     const int end = first_row(points_.back().y);
     for (int row = first_row(points_.front().y); row < end; ++row) {
         const double y = row + 0.5;
-        while (right + 1 < top && hull_[right + 1].y < y)
-            ++right;
-        while (left > top + 1 && hull_[left - 1].y < y)
-            --left;
-        cover_row(row, crossing(hull_[left], hull_[left - 1], y), crossing(hull_[right], hull_[right + 1], y),
-                  cover);
+        while (right.at + 1 < top && hull_[right.at + 1].y < y)
+            ++right.at, turn_corner(right, right.at + 1);
+        while (left.at > top + 1 && hull_[left.at - 1].y < y)
+            --left.at, turn_corner(left, left.at - 1);
+        cover_row(row, left.x + left.slope * (y - left.y), right.x + right.slope * (y - right.y), cover);
     }
-    return cover;
 }
 
 } // namespace graftal

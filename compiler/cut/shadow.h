@@ -45,6 +45,7 @@ class Shadow {
 
     Point project(Vec3 point) const;
     Cover draw_hull(std::span<const Vec3> points, const Affine& place);
+    void fill_hull(std::size_t top, Cover& cover);
     void cover_row(int row, double from, double to, Cover& cover);
     int first_row(double y) const;
 

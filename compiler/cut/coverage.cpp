@@ -488,4 +488,11 @@ void fit_proxies(CutGraph& cut, const Symmetry& symmetry) {
     set_mean_colours(cut);
 }
 
+bool is_flat(const CutNode& node) {
+    // The ellipsoid in the box, which is a fiftieth as thick as long at least.
+    const Mat3& linear = node.node_from_proxy.linear;
+    const auto [least, most] = std::minmax({linear[0][0], linear[1][1], linear[2][2]});
+    return least <= 0.021 * most;
+}
+
 } // namespace graftal

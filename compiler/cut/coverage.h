@@ -17,4 +17,7 @@ namespace graftal {
 /// lines stay visible.
 void fit_proxies(CutGraph& cut, const Symmetry& symmetry);
 
+/// Whether the box of a shadowless node is a sheet or a line. Requires fit_proxies().
+bool is_flat(const CutNode& node);
+
 } // namespace graftal

@@ -114,6 +114,7 @@ class Cutter {
         cut.error_px *= unit_px;
         cut.error_asked_px =
             options.error_world ? *options_.error_world * root_pixels_per_unit() : options_.error_px;
+        if (cut.error_px > 0) note_shadowless();
         if (factor > 1)
             diagnostics_
                 .warning(graph_.objects[graph_.root].span,
@@ -122,6 +123,19 @@ class Cutter {
                                      cut.error_asked_px))
                 .with_hint("give more with --memory, or ask for less with --error or --steps");
         return cut;
+    }
+
+    /// How faint a set without area looks depends on how large its parts are drawn. Flat figures and curves
+    /// are drawn as one wants them, in lines as wide as the error.
+    void note_shadowless() {
+        const auto wants_leaf = [](const CutNode& node) {
+            return node.shadowless && node.cullable && node.stop_edges.empty() && !is_flat(node);
+        };
+        if (std::none_of(cut_.nodes.begin(), cut_.nodes.end(), wants_leaf)) return;
+        diagnostics_
+            .note(graph_.objects[graph_.root].span, "some set here has no area (its dimension is at most 2): "
+                                                    "how dense it looks depends on --error")
+            .with_hint("name what its smallest parts look like: a 'terminal'");
     }
 
     double root_pixels_per_unit() const {

@@ -8,11 +8,11 @@
 #include <queue>
 #include <span>
 
-#include <Eigen/Dense>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
 #include "compiler/cut/congruence.h"
+#include "compiler/cut/ellipsoid_fit.h"
 #include "compiler/cut/shadow.h"
 
 namespace graftal {
@@ -29,15 +29,13 @@ struct Effort {
 
 /// Parts of all subtrees together, and the least and most of one.
 constexpr std::size_t all_pieces = 50'000, fewest_pieces = 12, most_pieces = 192;
+/// A node of more instances keeps the ellipsoid in its box: such crowds are hardly culled as a whole.
+constexpr std::size_t most_edges = 10'000;
 /// With more nodes than this, shadows are taken along six directions only.
 constexpr std::size_t many_nodes = 3000;
 constexpr int coarse_grid = 64, fine_grid = 128;
 constexpr std::size_t fine_factor = 12; ///< so many more parts to see what a cycle ends in
 constexpr int most_rounds = 10;
-/// No shadow of a proxy is narrower than this share of its widest, so that flat sets have a body.
-constexpr double narrowest_shadow = 0.02;
-/// A half axis may be this much longer than half the node's box: an ellipsoid with a cube's shadow is.
-constexpr double reach_beyond_box = 1.5;
 
 /// The axes of an icosahedron, then those of a dodecahedron, turned away from the coordinate axes and
 /// towards all sides alike.
@@ -180,80 +178,6 @@ class Measurer {
     std::vector<std::pair<double, std::size_t>> order_;
 };
 
-/// Fits ellipsoids to areas of shadows. The square of an ellipsoid's is a quadratic form of the direction,
-/// pi^2 det(L)^2 d^T (L L^T)^-1 d: this form is fitted, and L follows from it.
-class EllipsoidFit {
-  public:
-    explicit EllipsoidFit(std::span<const Vec3> directions)
-        : directions_(directions.begin(), directions.end()) {
-        Eigen::MatrixXd terms(directions.size(), 6);
-        for (std::size_t i = 0; i < directions.size(); ++i) {
-            const Vec3& d = directions[i];
-            terms.row(static_cast<Eigen::Index>(i)) << d.x * d.x, d.y * d.y, d.z * d.z, 2 * d.x * d.y,
-                2 * d.y * d.z, 2 * d.z * d.x;
-        }
-        solve_ = terms.completeOrthogonalDecomposition().pseudoInverse();
-    }
-
-    Eigen::Matrix3d form(const std::vector<double>& areas) const {
-        Eigen::VectorXd squares(static_cast<Eigen::Index>(areas.size()));
-        for (std::size_t i = 0; i < areas.size(); ++i)
-            squares[static_cast<Eigen::Index>(i)] = areas[i] * areas[i];
-        const Eigen::VectorXd q = solve_ * squares;
-        Eigen::Matrix3d form;
-        form << q[0], q[3], q[5], q[3], q[1], q[4], q[5], q[4], q[2];
-        return form;
-    }
-
-    /// The ellipsoid about the origin of that form, scaled so that its mean shadow is `mean`; no half axis
-    /// reaches beyond `box_half`, where that leaves area enough.
-    Mat3 ellipsoid(const Eigen::Matrix3d& form, double mean, Vec3 box_half) const {
-        const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(form);
-        const Eigen::Matrix3d& axes = solver.eigenvectors();
-        const double widest = std::sqrt(std::max(solver.eigenvalues()[2], 1e-300));
-        Eigen::Vector3d half, limit;
-        for (int i = 0; i < 3; ++i) {
-            const auto shadow = [&](int k) {
-                return std::max(std::sqrt(std::max(solver.eigenvalues()[k % 3], 0.0)),
-                                narrowest_shadow * widest);
-            };
-            half[i] = std::sqrt(shadow(i + 1) * shadow(i + 2) / shadow(i));
-            limit[i] = 0;
-            for (int k = 0; k < 3; ++k)
-                limit[i] += reach_beyond_box * std::abs(axes(k, i)) * box_half[k];
-        }
-        // Where no axis is held back, areas grow with the square.
-        const double free = std::sqrt(mean / mean_shadow(turned(axes, half)));
-        if (((free * half).array() <= limit.array()).all()) return turned(axes, free * half);
-        const auto scaled = [&](double scale) { return turned(axes, (scale * half).cwiseMin(limit)); };
-        double low = free, high = 1e3 * free;
-        for (int step = 0; step < 40; ++step) {
-            const double middle = std::sqrt(low * high);
-            (mean_shadow(scaled(middle)) < mean ? low : high) = middle;
-        }
-        return scaled(high);
-    }
-
-  private:
-    static Mat3 turned(const Eigen::Matrix3d& axes, const Eigen::Vector3d& half) {
-        Mat3 linear(0.0);
-        for (int i = 0; i < 3; ++i)
-            for (int k = 0; k < 3; ++k)
-                linear[i][k] = axes(k, i) * half[i];
-        return linear;
-    }
-
-    double mean_shadow(const Mat3& linear) const {
-        double sum = 0;
-        for (const Vec3& direction : directions_)
-            sum += projected_area({linear, Vec3(0.0)}, direction);
-        return sum / static_cast<double>(directions_.size());
-    }
-
-    std::vector<Vec3> directions_;
-    Eigen::MatrixXd solve_;
-};
-
 /// Fits the groups of congruent nodes, masters first.
 class Fitter {
   public:
@@ -296,7 +220,8 @@ class Fitter {
   private:
     bool fittable(NodeId id) const {
         const CutNode& node = cut_.nodes[id];
-        return !node.primitive && !node.edges.empty() && node.ball.radius > 0;
+        return !node.primitive && !node.edges.empty() && node.edges.size() <= most_edges &&
+               node.ball.radius > 0;
     }
 
     /// One object a group of congruent nodes; an edge where some node of the one leads to one of the other.

@@ -40,12 +40,11 @@ class Cutter {
         : graph_(graph), unending_(components.unending[graph.root]), view_(view), options_(options),
           diagnostics_(diagnostics), cut_(prepared(graph, components, bounds)),
           symmetry_(find_symmetry(cut_)) {
-        fit_proxies(cut_, symmetry_);
+        if (culls() || (unending_ && options_.steps)) fit_proxies(cut_, symmetry_);
     }
 
     std::optional<Cut> run() {
-        const bool culls = options_.error_world ? *options_.error_world > 0 : options_.error_px > 0;
-        if (unending_ && !options_.steps && !culls) return refuse_endless();
+        if (unending_ && !options_.steps && !culls()) return refuse_endless();
         // A coarser error than the whole picture cannot be asked for.
         const double coarsest = 4.0 * std::max(view_.size.width, view_.size.height);
         CutOptions options = options_;
@@ -55,7 +54,7 @@ class Cutter {
             bool too_much = false;
             std::optional<Cut> cut = attempt(options, options_.error_px * factor, too_much);
             if (cut) return finish(std::move(*cut), factor, options);
-            if (!culls) return refuse_size();
+            if (!culls()) return refuse_size();
             if (factor > 1e12) break;
         }
         return refuse_size();
@@ -68,6 +67,8 @@ class Cutter {
         split_into_halves(cut);
         return cut;
     }
+
+    bool culls() const { return options_.error_world ? *options_.error_world > 0 : options_.error_px > 0; }
 
     std::optional<Cut> attempt(const CutOptions& options, double error_px, bool& too_much) {
         const double near = nearest_share * std::max(cut_.nodes[cut_.root].ball.radius, 1e-280);

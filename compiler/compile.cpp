@@ -126,9 +126,8 @@ std::optional<View> zoom_model(AnalysedModel& model, const CompileOptions& optio
                                Diagnostics& diagnostics) {
     std::optional<Vec3> look_at = options.camera.look_at;
     if (!look_at && model.graph.settings.camera) look_at = model.graph.settings.camera->look_at;
-    std::optional<Rerooted> rerooted =
-        reroot({model.graph, model.components, model.bounds, model.steps}, options.zoom,
-               framing_of(model, options), look_at, diagnostics);
+    std::optional<Rerooted> rerooted = reroot({model.graph, model.components, model.bounds, model.steps},
+                                              options.zoom, framing_of(model, options), look_at, diagnostics);
     if (!rerooted) return std::nullopt;
     model.graph = std::move(rerooted->graph);
     model.components = std::move(rerooted->components);

@@ -7,6 +7,7 @@
 
 #include "compiler/cut/assemble.h"
 #include "compiler/cut/choose.h"
+#include "compiler/cut/coverage.h"
 #include "compiler/cut/cut_graph.h"
 #include "compiler/cut/symmetry.h"
 #include "compiler/support/check.h"
@@ -39,11 +40,12 @@ class Cutter {
            const View& view, const CutOptions& options, Diagnostics& diagnostics)
         : graph_(graph), unending_(components.unending[graph.root]), view_(view), options_(options),
           diagnostics_(diagnostics), cut_(prepared(graph, components, bounds, options.root_levels)),
-          symmetry_(find_symmetry(cut_)) {}
+          symmetry_(find_symmetry(cut_)) {
+        if (culls() || (unending_ && options_.steps)) fit_proxies(cut_, symmetry_);
+    }
 
     std::optional<Cut> run() {
-        const bool culls = options_.error_world ? *options_.error_world > 0 : options_.error_px > 0;
-        if (unending_ && !options_.steps && !culls) return refuse_endless();
+        if (unending_ && !options_.steps && !culls()) return refuse_endless();
         // A coarser error than the whole picture cannot be asked for.
         const double coarsest = 4.0 * std::max(view_.size.width, view_.size.height);
         CutOptions options = options_;
@@ -53,7 +55,7 @@ class Cutter {
             bool too_much = false;
             std::optional<Cut> cut = attempt(options, options_.error_px * factor, too_much);
             if (cut) return finish(std::move(*cut), factor, options);
-            if (!culls) return refuse_size();
+            if (!culls()) return refuse_size();
             if (factor > 1e12) break;
         }
         return refuse_size();
@@ -84,6 +86,8 @@ class Cutter {
         if (!options.steps) return unlimited_steps;
         return *options.steps + (options.root_levels.empty() ? 0 : 1);
     }
+
+    bool culls() const { return options_.error_world ? *options_.error_world > 0 : options_.error_px > 0; }
 
     std::optional<Cut> attempt(const CutOptions& options, double error_px, bool& too_much) {
         const double near = nearest_share * std::max(cut_.nodes[cut_.root].ball.radius, 1e-280);
@@ -132,6 +136,7 @@ class Cutter {
         cut.error_px *= unit_px;
         cut.error_asked_px =
             options.error_world ? *options_.error_world * root_pixels_per_unit() : options_.error_px;
+        if (cut.error_px > 0) note_shadowless();
         if (factor > 1)
             diagnostics_
                 .warning(graph_.objects[graph_.root].span,
@@ -140,6 +145,19 @@ class Cutter {
                                      cut.error_asked_px))
                 .with_hint("give more with --memory, or ask for less with --error or --steps");
         return cut;
+    }
+
+    /// How faint a set without area looks depends on how large its parts are drawn. Flat figures and curves
+    /// are drawn as one wants them, in lines as wide as the error.
+    void note_shadowless() {
+        const auto wants_leaf = [](const CutNode& node) {
+            return node.shadowless && node.cullable && node.stop_edges.empty() && !is_flat(node);
+        };
+        if (std::none_of(cut_.nodes.begin(), cut_.nodes.end(), wants_leaf)) return;
+        diagnostics_
+            .note(graph_.objects[graph_.root].span, "some set here has no area (its dimension is at most 2): "
+                                                    "how dense it looks depends on --error")
+            .with_hint("name what its smallest parts look like: a 'terminal'");
     }
 
     double root_pixels_per_unit() const {

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <unordered_map>
+#include <utility>
+#include <vector>
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -206,35 +208,68 @@ class Builder {
     CutGraph cut_;
 };
 
-/// Mean colours by sweeps: exact for ending nodes after one, converging geometrically for the others.
-void set_mean_colours(CutGraph& cut, const std::vector<NodeId>& masters_first) {
+/// Until it is known how much is seen of them, edges weigh as much as the squares that they reach over.
+void weigh_by_reach(CutGraph& cut) {
+    for (CutNode& node : cut.nodes)
+        for (CutEdge& edge : node.edges) {
+            const double reach = edge.stretch * std::max(cut.nodes[edge.child].ball.radius, 1e-9);
+            edge.weight = std::max(reach * reach, 1e-300);
+        }
+}
+
+/// Every node once, and after the nodes it leads to but for those that lead back to it.
+std::vector<NodeId> masters_first(const CutGraph& cut) {
+    std::vector<NodeId> order;
+    std::vector<bool> met(cut.nodes.size(), false);
+    std::vector<std::pair<NodeId, std::size_t>> path;
+    for (NodeId start = 0; start < cut.nodes.size(); ++start) {
+        if (!met[start]) path.emplace_back(start, 0);
+        met[start] = true;
+        while (!path.empty()) {
+            const std::vector<CutEdge>& edges = cut.nodes[path.back().first].edges;
+            if (path.back().second == edges.size()) {
+                order.push_back(path.back().first);
+                path.pop_back();
+                continue;
+            }
+            const NodeId child = edges[path.back().second++].child;
+            if (!met[child]) path.emplace_back(child, 0);
+            met[child] = true;
+        }
+    }
+    return order;
+}
+
+MeanColour mean_of(const CutGraph& cut, const CutNode& node) {
+    MeanColour sum{Rgb(0.0), 0};
+    double weights = 0;
+    for (const CutEdge& edge : node.edges) {
+        MeanColour mean = cut.nodes[edge.child].mean;
+        if (edge.material) mean = {mean.over(cut.materials[*edge.material].rgb), 0};
+        sum.fixed += edge.weight * edge.tint.over(mean.fixed);
+        sum.open += edge.weight * (1 - edge.tint.alpha) * mean.open;
+        weights += edge.weight;
+    }
+    return {sum.fixed / weights, sum.open / weights};
+}
+
+} // namespace
+
+void set_mean_colours(CutGraph& cut) {
     constexpr int sweeps = 48;
+    const std::vector<NodeId> order = masters_first(cut);
     for (int sweep = 0; sweep < sweeps; ++sweep) {
         double change = 0;
-        for (const NodeId id : masters_first) {
+        for (const NodeId id : order) {
             CutNode& node = cut.nodes[id];
-            if (node.primitive) continue;
-            MeanColour sum{Rgb(0.0), 0};
-            double weights = 0;
-            for (const CutEdge& edge : node.edges) {
-                const CutNode& child = cut.nodes[edge.child];
-                MeanColour mean = child.mean;
-                if (edge.material) mean = {mean.over(cut.materials[*edge.material].rgb), 0};
-                const double reach = edge.stretch * std::max(child.ball.radius, 1e-9);
-                const double weight = std::max(reach * reach, 1e-300);
-                sum.fixed += weight * edge.tint.over(mean.fixed);
-                sum.open += weight * (1 - edge.tint.alpha) * mean.open;
-                weights += weight;
-            }
-            const MeanColour mean{sum.fixed / weights, sum.open / weights};
+            if (node.primitive || node.edges.empty()) continue;
+            const MeanColour mean = mean_of(cut, node);
             change = std::max(change, glm::length(mean.fixed - node.mean.fixed));
             node.mean = mean;
         }
         if (change < 1e-7) break;
     }
 }
-
-} // namespace
 
 CutGraph build_cut_graph(const Graph& graph, const Components& components,
                          const std::vector<ObjectBounds>& bounds) {
@@ -252,12 +287,8 @@ CutGraph build_cut_graph(const Graph& graph, const Components& components,
     const Components merged = strong_components(factored);
     CutGraph cut = Builder(factored, merged).build(factor_of, unbounded);
     cut.materials = factored.materials;
-    std::vector<NodeId> masters_first;
-    for (NodeId id = static_cast<NodeId>(factored.objects.size()); id < cut.nodes.size(); ++id)
-        masters_first.push_back(id);
-    for (const auto& members : merged.members)
-        masters_first.insert(masters_first.end(), members.begin(), members.end());
-    set_mean_colours(cut, masters_first);
+    weigh_by_reach(cut);
+    set_mean_colours(cut);
     return cut;
 }
 

@@ -22,6 +22,7 @@ struct CutEdge {
     double stretch = 1;        ///< norm of the linear part
     double volume_stretch = 1; ///< cube root of the determinant; the stretch if that is zero
     bool similarity = false;   ///< then a path's norm is the product of its stretches
+    double weight = 1;         ///< in the node's mean colour
 };
 
 /// What a node's limit looks like from afar, weighted by area: fixed + open * (the colour that it inherits).
@@ -40,11 +41,12 @@ struct CutNode {
     std::vector<CutEdge> stop_edges; ///< drawn in place of the edges where the node is cut; if empty: proxy
     bool terminal = false;           ///< stop_edges holds the terminal, not the ending instances
     bool unending = false;
-    bool unbounded = false; ///< holds a plane: always expanded into placements
-    bool sealed = false;    ///< leads through a singular map: never expanded, POV-Ray could not place it
-    bool cullable = true;   ///< worth a proxy; a handful of primitives is drawn as it is
+    bool unbounded = false;  ///< holds a plane: always expanded into placements
+    bool sealed = false;     ///< leads through a singular map: never expanded, POV-Ray could not place it
+    bool cullable = true;    ///< worth a proxy; a handful of primitives is drawn as it is
+    bool shadowless = false; ///< its limit covers no area: it looks the fainter the deeper it is unfolded
     Ball ball;
-    Affine node_from_proxy; ///< places the unit sphere: the ellipsoid inscribed in the node's box
+    Affine node_from_proxy; ///< places the unit sphere: the ellipsoid in the node's box, until fit_proxies()
     MeanColour mean;
 };
 
@@ -64,6 +66,10 @@ struct CutGraph {
 /// Requires what cut_graph() requires. O(graph).
 CutGraph build_cut_graph(const Graph& graph, const Components& components,
                          const std::vector<ObjectBounds>& bounds);
+
+/// Sets the mean colours anew, by the weights of the edges. Exact for ending nodes, converging geometrically
+/// for the others.
+void set_mean_colours(CutGraph& cut);
 
 /// The edges that a visit follows: all of them, or those of a cut node.
 inline const std::vector<CutEdge>& followed_edges(const CutNode& node, bool cut) {

@@ -43,7 +43,8 @@ Projection::Projection(const View& view, const CutOptions& options, double error
 
 bool Projection::sees(const Ball& ball) const {
     const Vec3 from_eye = ball.centre - camera_.location;
-    const double aside[2] = {std::abs(glm::dot(from_eye, camera_.right)), std::abs(glm::dot(from_eye, camera_.up))};
+    const double aside[2] = {std::abs(glm::dot(from_eye, camera_.right)),
+                             std::abs(glm::dot(from_eye, camera_.up))};
     const double depth = camera_.orthographic ? 1 : glm::dot(from_eye, camera_.direction);
     for (int i = 0; i < 2; ++i)
         if (aside[i] * edges_[i].cosine - depth * edges_[i].sine > ball.radius) return false;
@@ -95,7 +96,9 @@ PieceKind Weights::normalised(PieceKind kind) const {
     const CutNode& node = cut_.nodes[kind.node];
     if (!node.unending) kind.steps = unlimited_steps;
     if (kind.detail_step != PieceKind::endless_detail) kind.detail_step = std::max(kind.detail_step, -1);
-    if (node.primitive && max_fineness(*node.primitive) > 0 && kind.detail_step != PieceKind::endless_detail)
+    const bool curved =
+        node.primitive && *node.primitive != PrimitiveKind::plane && max_fineness(*node.primitive) > 0;
+    if (curved && kind.detail_step != PieceKind::endless_detail)
         // Their meshes get finer slowly: a few kinds will do.
         kind.detail_step = (kind.detail_step + PieceKind::steps_an_octave - 1) / PieceKind::steps_an_octave *
                            PieceKind::steps_an_octave;

@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "compiler/support/id_table.h"
 #include "compiler/support/affine.h"
+#include "compiler/support/id_table.h"
 
 namespace graftal {
 

@@ -88,9 +88,23 @@ double inner_radius(const TessellatedPrimitive& mesh) {
     return least;
 }
 
+double surface(const TessellatedPrimitive& mesh) {
+    double sum = 0;
+    for (const auto& [a, b, c] : mesh.triangles)
+        sum += 0.5 * glm::length(glm::cross(mesh.vertices[b] - mesh.vertices[a],
+                                            mesh.vertices[c] - mesh.vertices[a]));
+    return sum;
+}
+
+/// How far out the corners of a sphere's mesh lie: such that its shadows are as large as the sphere's, over
+/// all directions on average. That of a convex body is a quarter of its surface (Cauchy).
+double corner_radius(const TessellatedPrimitive& inscribed) {
+    return std::sqrt(4 * pi / surface(inscribed));
+}
+
 TessellatedPrimitive make_sphere(int fineness) {
     TessellatedPrimitive mesh = subdivided_octahedron(fineness);
-    const double radius = 2 / (1 + inner_radius(mesh));
+    const double radius = corner_radius(mesh);
     mesh.normals = mesh.vertices;
     for (Vec3& vertex : mesh.vertices)
         vertex *= radius;
@@ -242,8 +256,9 @@ TessellatedPrimitive make(PrimitiveKind kind, int fineness) {
 double error_of(PrimitiveKind kind, int fineness) {
     switch (family_of(kind)) {
     case PrimitiveKind::sphere: {
-        const double inner = inner_radius(subdivided_octahedron(fineness));
-        return (1 - inner) / (1 + inner);
+        const TessellatedPrimitive inscribed = subdivided_octahedron(fineness);
+        const double radius = corner_radius(inscribed);
+        return std::max(radius - 1, 1 - radius * inner_radius(inscribed));
     }
     case PrimitiveKind::cylinder:
     case PrimitiveKind::cone:

@@ -24,9 +24,10 @@ struct TessellatedPrimitive {
 int max_fineness(PrimitiveKind kind);
 
 /// The mesh with 2^fineness times the segments of the coarsest: an octahedron, prisms and pyramids of three
-/// sides, a ring of 6 by 3. Flat sides lie half inside and half outside of the curved surface. Opposite
-/// faces of the cube are cut alike, so that stacked cubes share whole triangles. Cached; safe to call from
-/// many threads. Requires 0 <= fineness <= max_fineness(kind).
+/// sides, a ring of 6 by 3. Flat sides lie half inside and half outside of the curved surface; those of a
+/// sphere so that its mean shadow is the sphere's, a handful of pixels though it be. Opposite faces of the
+/// cube are cut alike, so that stacked cubes share whole triangles. Cached; safe to call from many threads.
+/// Requires 0 <= fineness <= max_fineness(kind).
 const TessellatedPrimitive& tessellated(PrimitiveKind kind, int fineness);
 
 /// The largest distance between the surface and that mesh, either way, in canonical units; 0 if it is exact.

@@ -18,7 +18,7 @@ constexpr double extent = 1000;
 constexpr double largest_extent = 3e4;
 constexpr double largest_part = 2000;
 constexpr double farthest_camera = 5e6;
-constexpr double sun_distance = 4e6;
+constexpr double sun_distance = 1e6;
 /// POV-Ray loses what is closer than about a thousandth (its SMALL_TOLERANCE).
 constexpr double least_length = 0.02;
 
@@ -98,7 +98,8 @@ PovrayUnits choose_units(const Cut& cut, const Camera& camera) {
     if (size == 0) size = camera.orthographic ? camera.width : distance;
     if (size == 0) size = 1;
     const double usual = extent / size;
-    const double most = std::min(largest_extent / size, largest_part / std::max(cut.largest_part, 1e-3 * size));
+    const double most =
+        std::min(largest_extent / size, largest_part / std::max(cut.largest_part, 1e-3 * size));
     const double wanted = std::clamp(least_length / cut.finest, usual, std::max(most, usual));
     units.scale = round_down(std::min(wanted, farthest_camera / std::max(distance, size)));
     if (largest(bounds.centre()) > 2 * size) units.origin = bounds.centre();

@@ -56,6 +56,18 @@ void append_excerpt(std::string& out, const SourceMap& sources, Span span) {
                        std::string(width - 1, '~'));
 }
 
+const char* name_of(Severity severity) {
+    switch (severity) {
+    case Severity::error:
+        return "error";
+    case Severity::warning:
+        return "warning";
+    case Severity::note:
+        break;
+    }
+    return "note";
+}
+
 } // namespace
 
 Diagnostic& Diagnostic::with_hint(std::string text) {
@@ -78,6 +90,10 @@ Diagnostic& Diagnostics::warning(Span span, std::string message) {
     return add(Severity::warning, span, std::move(message));
 }
 
+Diagnostic& Diagnostics::note(Span span, std::string message) {
+    return add(Severity::note, span, std::move(message));
+}
+
 Diagnostic& Diagnostics::add(Severity severity, Span span, std::string message) {
     const std::size_t count = severity == Severity::error ? error_count_ : warning_count_;
     Diagnostic diagnostic{severity, span, std::move(message), {}, {}};
@@ -86,10 +102,11 @@ Diagnostic& Diagnostics::add(Severity severity, Span span, std::string message) 
     return all_.back();
 }
 
-std::string Diagnostics::render(const SourceMap& sources) const {
+std::string Diagnostics::render(const SourceMap& sources, bool quiet) const {
     std::string out;
     for (const Diagnostic& diagnostic : all_) {
-        const char* severity = diagnostic.severity == Severity::error ? "error" : "warning";
+        if (quiet && diagnostic.severity == Severity::note) continue;
+        const char* severity = name_of(diagnostic.severity);
         out += fmt::format("{}: {}: {}\n", place(sources, diagnostic.span), severity, diagnostic.message);
         append_excerpt(out, sources, diagnostic.span);
         if (!diagnostic.hint.empty()) out += fmt::format("    hint: {}\n", diagnostic.hint);

@@ -7,7 +7,7 @@
 
 namespace graftal {
 
-enum class Severity { error, warning };
+enum class Severity { error, warning, note };
 
 /// A second place that a diagnostic points at, e.g. "first defined here".
 struct Note {
@@ -37,6 +37,8 @@ class Diagnostics {
     /// The returned reference is valid until the next call.
     Diagnostic& error(Span span, std::string message);
     Diagnostic& warning(Span span, std::string message);
+    /// Nothing is wrong, but the picture can be better.
+    Diagnostic& note(Span span, std::string message);
 
     bool has_errors() const { return error_count_ > 0; }
     std::size_t error_count() const { return error_count_; }
@@ -45,7 +47,8 @@ class Diagnostics {
     const std::vector<Diagnostic>& all() const { return all_; }
 
     /// The GNU form `file:line:column: error: message`, with the line, a caret, the hint and the notes.
-    std::string render(const SourceMap& sources) const;
+    /// `quiet`: what is of severity note is left out.
+    std::string render(const SourceMap& sources, bool quiet = false) const;
 
   private:
     Diagnostic& add(Severity severity, Span span, std::string message);

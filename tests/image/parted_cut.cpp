@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "compiler/cut/assemble.h"
+#include "compiler/cut/coverage.h"
 
 namespace graftal {
 
@@ -10,6 +11,7 @@ CompiledModel parted_at(const CompiledModel& model, double mesh_triangles) {
     CutGraph cut = build_cut_graph(model.model.graph, model.model.components, model.model.bounds);
     split_into_halves(cut);
     const Symmetry symmetry = find_symmetry(cut);
+    fit_proxies(cut, symmetry);
     const CutOptions options;
     const Projection projection(model.view, options, 0, 1e-5);
     Piece root;

@@ -20,7 +20,7 @@ void complain(std::string_view text) {
 }
 
 int conclude(const Options& options, const Compilation& compilation) {
-    say(compilation.diagnostics.render(compilation.sources));
+    say(compilation.diagnostics.render(compilation.sources, options.quiet));
     if (!compilation.status.ok()) complain(compilation.status.message());
     if (options.time)
         for (const StageTime& time : compilation.times)

@@ -194,6 +194,27 @@ TEST(Cut, ASmallBudgetGivesACoarserPictureAndSaysSo) {
     EXPECT_NE(diagnostics.all()[0].message.find("memory allow an error of"), std::string::npos);
 }
 
+TEST(Cut, ASetWithoutAreaOrLeafIsNoted) {
+    const auto noted = [](Graph graph, bool terminal, double error_px) {
+        if (!terminal)
+            for (Object& object : graph.objects)
+                object.terminal.reset();
+        CutOptions options;
+        options.error_px = error_px;
+        options.steps = error_px > 0 ? std::optional<unsigned>() : 4;
+        Diagnostics diagnostics;
+        EXPECT_TRUE(cut(graph, options, diagnostics).has_value());
+        EXPECT_FALSE(diagnostics.has_errors());
+        EXPECT_EQ(diagnostics.render(SourceMap(), true), "") << "quiet";
+        return diagnostics.all().size() == 1 && diagnostics.all().front().severity == Severity::note;
+    };
+    EXPECT_TRUE(noted(test::gasket(true), false, 4));
+    EXPECT_FALSE(noted(test::gasket(true), false, 0)) << "nothing is culled";
+    EXPECT_FALSE(noted(test::gasket(true), true, 4));
+    EXPECT_FALSE(noted(test::gasket(false), false, 4)) << "flat";
+    EXPECT_FALSE(noted(test::pound_sign(3, false), false, 4)) << "of dimension 2.8";
+}
+
 TEST(Cut, WithoutCullingABudgetThatCannotBeKeptIsRefused) {
     Diagnostics diagnostics;
     EXPECT_FALSE(cut(test::pound_sign(3, false), {.error_px = 0, .steps = 40}, diagnostics).has_value());

@@ -46,6 +46,17 @@ TEST(Diagnostics, ErrorWithLineAndCaret) {
               "             ^~~\n");
 }
 
+TEST(Diagnostics, NotesAreNoErrorsAndQuietLeavesThemOut) {
+    Diagnostics diagnostics;
+    diagnostics.warning({}, "this is strange");
+    diagnostics.note({}, "this could be better").with_hint("like this");
+    EXPECT_FALSE(diagnostics.has_errors());
+    EXPECT_EQ(diagnostics.render(SourceMap()), "graftal: warning: this is strange\n"
+                                               "graftal: note: this could be better\n"
+                                               "    hint: like this\n");
+    EXPECT_EQ(diagnostics.render(SourceMap(), true), "graftal: warning: this is strange\n");
+}
+
 TEST(Diagnostics, HintsAndNotesFollowTheirDiagnostic) {
     SourceMap sources;
     const FileId file = sources.add("m.inst", "a {}\nb {}\na {}\n");

@@ -1,0 +1,423 @@
+#include "compiler/cut/coverage.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <numeric>
+#include <queue>
+#include <span>
+
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+
+#include "compiler/cut/congruence.h"
+#include "compiler/cut/ellipsoid_fit.h"
+#include "compiler/cut/shadow.h"
+
+namespace graftal {
+
+namespace {
+
+using std::numbers::pi;
+
+/// How much is spent on a node.
+struct Effort {
+    std::size_t pieces;
+    int grid;
+};
+
+/// Parts of all subtrees together, and the least and most of one.
+constexpr std::size_t all_pieces = 50'000, fewest_pieces = 12, most_pieces = 192;
+/// A node of more instances keeps the ellipsoid in its box: such crowds are hardly culled as a whole.
+constexpr std::size_t most_edges = 10'000;
+/// With more nodes than this, shadows are taken along six directions only.
+constexpr std::size_t many_nodes = 3000;
+constexpr int coarse_grid = 64, fine_grid = 128;
+constexpr std::size_t fine_factor = 12; ///< so many more parts to see what a cycle ends in
+constexpr int most_rounds = 10;
+
+/// The axes of an icosahedron, then those of a dodecahedron, turned away from the coordinate axes and
+/// towards all sides alike.
+std::vector<Vec3> directions(std::size_t count) {
+    const double g = std::numbers::phi;
+    std::vector<Vec3> axes;
+    for (const double s : {1.0, -1.0}) {
+        axes.insert(axes.end(), {{0, s, g}, {g, 0, s}, {s, g, 0}});
+    }
+    for (const double s : {1.0, -1.0}) {
+        axes.insert(axes.end(), {{s, 1, 1}, {-s, s, -1}});
+        axes.insert(axes.end(), {{0, s / g, g}, {g, 0, s / g}, {s / g, g, 0}});
+    }
+    axes.resize(count);
+    const Affine turn = Affine::rotate({0.36, 0.48, 0.8}, 37);
+    double sign = 1;
+    for (Vec3& axis : axes) {
+        axis = sign * glm::normalize(turn(axis));
+        sign = -sign;
+    }
+    return axes;
+}
+
+/// A subtree's shadow. Areas are in squares of the ball's radius.
+struct Measured {
+    std::vector<double> area; ///< by direction
+    double mean = 0;
+    Vec3 centre{0.0};
+    std::vector<double> seen; ///< by edge
+};
+
+struct Part {
+    NodeId node = 0;
+    Affine place;
+    double scale = 1;
+    std::uint32_t edge = 0; ///< of the subtree's root, that it hangs on
+};
+
+/// Unfolds subtrees, largest parts first, and takes their shadows.
+class Measurer {
+  public:
+    Measurer(const CutGraph& cut, std::size_t direction_count)
+        : cut_(cut), directions_(directions(direction_count)), coarse_(coarse_grid), fine_(fine_grid) {}
+
+    const std::vector<Vec3>& along() const { return directions_; }
+
+    Measured measure(NodeId node, const Effort& effort) {
+        unfold(node, effort.pieces);
+        place_bodies();
+        Measured result;
+        result.seen.assign(cut_.nodes[node].edges.size(), 0);
+        area_of_part_.assign(parts_.size(), 0);
+        Shadow& shadow = effort.grid == coarse_grid ? coarse_ : fine_;
+        const double square = 4.0 / (effort.grid * effort.grid);
+        for (const Vec3& direction : directions_) {
+            shadow.start(direction, cut_.nodes[node].ball);
+            result.area.push_back(square * draw(shadow, result.seen));
+            result.mean += result.area.back() / static_cast<double>(directions_.size());
+        }
+        const double sum = std::accumulate(area_of_part_.begin(), area_of_part_.end(), 0.0);
+        result.centre = cut_.nodes[node].ball.centre;
+        for (std::size_t i = 0; i < parts_.size() && sum > 0; ++i)
+            result.centre += area_of_part_[i] / sum * (bodies_[i].centre - cut_.nodes[node].ball.centre);
+        return result;
+    }
+
+  private:
+    struct Body {
+        PrimitiveKind kind = PrimitiveKind::sphere;
+        Affine place;
+        Vec3 centre{0.0};
+    };
+
+    bool opens(const Part& part) const { return !cut_.nodes[part.node].edges.empty(); }
+
+    void unfold(NodeId root, std::size_t most) {
+        parts_.clear();
+        std::priority_queue<std::pair<double, std::int64_t>> largest;
+        const auto open = [&](const Part& parent, std::size_t reused) {
+            const std::vector<CutEdge>& edges = cut_.nodes[parent.node].edges;
+            for (std::uint32_t i = 0; i < edges.size(); ++i) {
+                const CutEdge& edge = edges[i];
+                Part part{edge.child, parent.place * edge.node_from_child, parent.scale * edge.stretch,
+                          reused == SIZE_MAX ? i : parent.edge};
+                const std::size_t at = i == 0 && reused != SIZE_MAX ? reused : parts_.size();
+                if (at == parts_.size()) parts_.emplace_back();
+                parts_[at] = part;
+                // The earlier of two that are alike first.
+                if (opens(part))
+                    largest.emplace(part.scale * cut_.nodes[part.node].ball.radius,
+                                    -static_cast<std::int64_t>(at));
+            }
+        };
+        open({root, {}, 1, 0}, SIZE_MAX);
+        while (!largest.empty()) {
+            const auto at = static_cast<std::size_t>(-largest.top().second);
+            largest.pop();
+            const Part part = parts_[at];
+            if (parts_.size() + cut_.nodes[part.node].edges.size() <= most + 1) open(part, at);
+        }
+    }
+
+    void place_bodies() {
+        bodies_.clear();
+        for (const Part& part : parts_) {
+            const CutNode& node = cut_.nodes[part.node];
+            const PrimitiveKind kind = node.primitive.value_or(PrimitiveKind::sphere);
+            bodies_.push_back(
+                {kind, node.primitive ? part.place : part.place * node.node_from_proxy,
+                 part.place(node.primitive ? node.ball.centre : node.node_from_proxy.translation)});
+        }
+    }
+
+    /// The area of the union: the sum of the parts' areas, which is exact, times the share of it that the
+    /// grid finds not to overlap. Good for what is much thinner than the grid, too.
+    double draw(Shadow& shadow, std::vector<double>& seen) {
+        order_.clear();
+        for (std::size_t i = 0; i < parts_.size(); ++i)
+            order_.emplace_back(shadow.depth(bodies_[i].centre), i);
+        std::sort(order_.begin(), order_.end());
+        double area = 0, samples = 0, uncovered = 0;
+        for (const auto& [depth, i] : order_) {
+            if (bodies_[i].kind == PrimitiveKind::plane) continue;
+            const Shadow::Cover cover = shadow.draw(bodies_[i].kind, bodies_[i].place);
+            area += cover.area;
+            samples += cover.samples;
+            uncovered += cover.uncovered;
+            area_of_part_[i] += cover.area;
+            seen[parts_[i].edge] += cover.area * (cover.samples > 0 ? cover.uncovered / cover.samples : 0.5);
+        }
+        return samples > 0 ? area * uncovered / samples : area;
+    }
+
+    const CutGraph& cut_;
+    std::vector<Vec3> directions_;
+    Shadow coarse_, fine_;
+    std::vector<Part> parts_;
+    std::vector<Body> bodies_;
+    std::vector<double> area_of_part_;
+    std::vector<std::pair<double, std::size_t>> order_;
+};
+
+/// Fits the groups of congruent nodes, masters first.
+class Fitter {
+  public:
+    Fitter(CutGraph& cut, const Symmetry& symmetry)
+        : cut_(cut), symmetry_(symmetry), congruence_(find_congruence(cut, symmetry)),
+          members_(cut.nodes.size()), seen_(cut.nodes.size()), shadowless_(cut.nodes.size(), false) {
+        for (NodeId id = 0; id < cut.nodes.size(); ++id) {
+            members_[congruence_.root[id]].push_back(id);
+            box_half_.emplace_back();
+            for (int k = 0; k < 3; ++k)
+                box_half_.back()[k] = cut.nodes[id].node_from_proxy.linear[k][k];
+        }
+    }
+
+    void run() {
+        const Components components = components_of_groups();
+        std::size_t groups = 0;
+        for (const auto& members : components.members)
+            groups += members.size();
+        effort_.pieces =
+            std::clamp(all_pieces / std::max<std::size_t>(groups, 1), fewest_pieces, most_pieces);
+        Measurer measurer(cut_, groups > many_nodes ? 6 : 16);
+        measurer_ = &measurer;
+        const EllipsoidFit fit(measurer.along());
+        fit_ = &fit;
+        for (std::size_t c = 0; c < components.members.size(); ++c) {
+            roots_ = components.members[c];
+            std::erase_if(roots_, [&](NodeId root) { return !fittable(root); });
+            if (roots_.empty()) continue;
+            if (components.cyclic[c])
+                fit_cycle();
+            else
+                fit_single(roots_.front());
+        }
+        weigh_edges();
+        for (NodeId id = 0; id < cut_.nodes.size(); ++id)
+            cut_.nodes[id].shadowless = shadowless_[congruence_.root[id]];
+    }
+
+  private:
+    bool fittable(NodeId id) const {
+        const CutNode& node = cut_.nodes[id];
+        return !node.primitive && !node.edges.empty() && node.edges.size() <= most_edges &&
+               node.ball.radius > 0;
+    }
+
+    /// One object a group of congruent nodes; an edge where some node of the one leads to one of the other.
+    Components components_of_groups() const {
+        Graph groups;
+        groups.objects.resize(cut_.nodes.size());
+        groups.root = congruence_.root[cut_.root];
+        for (NodeId id = 0; id < cut_.nodes.size(); ++id) {
+            if (congruence_.root[id] != id) continue;
+            std::vector<NodeId> masters;
+            for (const CutEdge& edge : cut_.nodes[id].edges)
+                masters.push_back(congruence_.root[edge.child]);
+            std::sort(masters.begin(), masters.end());
+            masters.erase(std::unique(masters.begin(), masters.end()), masters.end());
+            for (const NodeId master : masters)
+                groups.objects[id].instances.push_back({master, {}, {}, {}, {}});
+        }
+        Components components = strong_components(groups);
+        for (auto& members : components.members)
+            std::erase_if(members, [&](NodeId id) { return congruence_.root[id] != id; });
+        return components;
+    }
+
+    void fit_single(NodeId root) {
+        if (cut_.nodes[root].unending && !reaches_area(root)) {
+            shadowless_[root] = true;
+            return;
+        }
+        take(root, measurer_->measure(root, effort_), 1);
+    }
+
+    /// Whether something it holds, cycles aside, has a shadow.
+    bool reaches_area(NodeId root) const {
+        for (const CutEdge& edge : cut_.nodes[root].edges) {
+            const NodeId master = congruence_.root[edge.child];
+            if (std::find(roots_.begin(), roots_.end(), master) == roots_.end() && !shadowless_[master])
+                return true;
+        }
+        return false;
+    }
+
+    void fit_cycle() {
+        const bool grows = growth_of_area() > 1 + 1e-6;
+        if (!grows &&
+            std::none_of(roots_.begin(), roots_.end(), [&](NodeId id) { return reaches_area(id); })) {
+            for (const NodeId root : roots_)
+                shadowless_[root] = true;
+            return;
+        }
+        std::vector<double> mean(roots_.size(), 0);
+        for (int round = 0; round < most_rounds; ++round) {
+            double change = 0;
+            for (std::size_t i = 0; i < roots_.size(); ++i) {
+                const Measured measured = measurer_->measure(roots_[i], effort_);
+                take(roots_[i], measured, 1);
+                change =
+                    std::max(change, std::abs(measured.mean - mean[i]) / std::max(measured.mean, 1e-300));
+                mean[i] = measured.mean;
+            }
+            if (change < 0.01) break;
+        }
+        if (grows) fit_together();
+    }
+
+    /// Proxies side by side cover more than one alone would say, they reach into each other's gaps: scaled,
+    /// all alike, so that some hundred of them cover what the limit does.
+    void fit_together() {
+        Effort fine{std::min(fine_factor * effort_.pieces, fine_factor * all_pieces / (8 * roots_.size())),
+                    fine_grid};
+        fine.pieces = std::max(fine.pieces, effort_.pieces);
+        double limit = 0;
+        std::vector<Measured> measured;
+        for (const NodeId root : roots_)
+            measured.push_back(measurer_->measure(root, fine));
+        for (const Measured& m : measured)
+            limit += m.mean;
+        const auto together = [&](double scale) {
+            for (std::size_t i = 0; i < roots_.size(); ++i)
+                take(roots_[i], measured[i], scale);
+            double sum = 0;
+            for (const NodeId root : roots_)
+                sum += measurer_->measure(root, {effort_.pieces, fine_grid}).mean;
+            return sum;
+        };
+        double low = 0.5, high = 1.5;
+        for (int step = 0; step < 6; ++step) {
+            const double middle = 0.5 * (low + high);
+            (together(middle) < limit ? low : high) = middle;
+        }
+        together(0.5 * (low + high));
+    }
+
+    /// The factor by which the sum of the parts' shadows grows, a level, going round the cycle: above 1 for
+    /// dimensions above 2.
+    double growth_of_area() const {
+        std::vector<std::vector<std::pair<std::size_t, double>>> factors(roots_.size());
+        for (std::size_t i = 0; i < roots_.size(); ++i)
+            for (const CutEdge& edge : cut_.nodes[roots_[i]].edges) {
+                const auto at = std::find(roots_.begin(), roots_.end(), congruence_.root[edge.child]);
+                if (at == roots_.end()) continue;
+                const Vec3 s = singular_values(edge.node_from_child.linear);
+                factors[i].emplace_back(at - roots_.begin(), (s.x * s.y + s.y * s.z + s.z * s.x) / 3);
+            }
+        // Of I + M, whose powers converge where those of M may take turns.
+        std::vector<double> area(roots_.size(), 1), next(roots_.size());
+        double growth = 1;
+        for (int step = 0; step < 200; ++step) {
+            for (std::size_t i = 0; i < roots_.size(); ++i) {
+                next[i] = area[i];
+                for (const auto& [child, factor] : factors[i])
+                    next[i] += factor * area[child];
+            }
+            growth = *std::max_element(next.begin(), next.end());
+            for (std::size_t i = 0; i < roots_.size(); ++i)
+                area[i] = next[i] / growth;
+        }
+        return growth - 1;
+    }
+
+    /// Makes what was measured the proxy of the root and of all that are congruent to it.
+    void take(NodeId root, const Measured& measured, double scale) {
+        if (!(measured.mean > 0)) return;
+        const Ball& ball = cut_.nodes[root].ball;
+        Eigen::Matrix3d form = fit_->form(measured.area);
+        Vec3 centre = measured.centre;
+        make_symmetric(congruence_.symmetries[root], form, centre);
+        const Mat3 linear = fit_->ellipsoid(form, measured.mean, box_half_[root] / ball.radius);
+        const Affine proxy{scale * ball.radius * linear, centre};
+        for (const NodeId member : members_[root])
+            cut_.nodes[member].node_from_proxy = congruence_.node_from_root[member] * proxy;
+        seen_[root] = measured.seen;
+    }
+
+    /// The samples of the shadows know nothing of the subtree's symmetries, but meshes rely on them.
+    static void make_symmetric(const std::vector<Affine>& symmetries, Eigen::Matrix3d& form, Vec3& centre) {
+        const int sweeps = symmetries.size() > 16 ? 24 : 96;
+        for (int sweep = 0; sweep < sweeps && !symmetries.empty(); ++sweep)
+            for (const Affine& symmetry : symmetries) {
+                Eigen::Matrix3d turn;
+                for (int column = 0; column < 3; ++column)
+                    for (int row = 0; row < 3; ++row)
+                        turn(row, column) = symmetry.linear[column][row];
+                form = 0.5 * (form + turn * form * turn.transpose()).eval();
+                centre = 0.5 * (centre + symmetry(centre));
+            }
+    }
+
+    /// What was seen of the edges of a root is seen of those that they are paired with.
+    void weigh_edges() {
+        for (const std::uint32_t p : congruence_.order) {
+            const NodePair& pair = symmetry_.pairs[p];
+            std::vector<double>&a = seen_[pair.a], &b = seen_[pair.b];
+            if (a.empty() == b.empty() || pair.edge.size() != std::max(a.size(), b.size())) continue;
+            if (b.empty()) {
+                b.resize(a.size());
+                for (std::size_t i = 0; i < a.size(); ++i)
+                    b[pair.edge[i]] = a[i];
+            } else {
+                a.resize(b.size());
+                for (std::size_t i = 0; i < b.size(); ++i)
+                    a[i] = b[pair.edge[i]];
+            }
+        }
+        for (NodeId id = 0; id < cut_.nodes.size(); ++id) {
+            std::vector<CutEdge>& edges = cut_.nodes[id].edges;
+            if (seen_[id].size() != edges.size()) continue;
+            for (std::size_t i = 0; i < edges.size(); ++i)
+                edges[i].weight = std::max(seen_[id][i], 1e-300);
+        }
+    }
+
+    CutGraph& cut_;
+    const Symmetry& symmetry_;
+    Congruence congruence_;
+    std::vector<std::vector<NodeId>> members_; ///< by root
+    std::vector<Vec3> box_half_;               ///< by node
+    std::vector<std::vector<double>> seen_;    ///< by node, then by edge
+    std::vector<bool> shadowless_;             ///< by root
+    Effort effort_{most_pieces, coarse_grid};
+    std::vector<NodeId> roots_; ///< of the component under way
+    Measurer* measurer_ = nullptr;
+    const EllipsoidFit* fit_ = nullptr;
+};
+
+} // namespace
+
+void fit_proxies(CutGraph& cut, const Symmetry& symmetry) {
+    Fitter(cut, symmetry).run();
+    set_mean_colours(cut);
+}
+
+bool is_flat(const CutNode& node) {
+    // The ellipsoid in the box, which is a fiftieth as thick as long at least.
+    const Mat3& linear = node.node_from_proxy.linear;
+    const auto [least, most] = std::minmax({linear[0][0], linear[1][1], linear[2][2]});
+    return least <= 0.021 * most;
+}
+
+} // namespace graftal

@@ -158,7 +158,9 @@ std::optional<CompiledModel> compile_model(const std::string& path, const Compil
     std::optional<AnalysedModel> model = analyse_model(path, options, compilation);
     if (!model) return std::nullopt;
     Stages stages(compilation.times);
-    View view = stages.run("frame", [&] { return frame_model(*model, options.size, options.camera); });
+    View view = stages.run("frame", [&] {
+        return options.frame ? options.frame(*model) : frame_model(*model, options.size, options.camera);
+    });
     CutOptions cut_options = options.cut;
     cut_options.steps = model->steps;
     std::optional<Cut> cut = stages.run("cut", [&] {

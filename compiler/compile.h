@@ -19,6 +19,8 @@
 
 namespace graftal {
 
+struct AnalysedModel;
+
 struct CompileOptions {
     LowerOptions lower;
     PipelineOptions pipeline;
@@ -26,6 +28,8 @@ struct CompileOptions {
     ImageSize size;
     CameraOverride camera;
     CutOptions cut; ///< its steps are taken from above
+    /// Decides on the view in place of frame_model(): the frames of an animation are framed together.
+    std::function<View(const AnalysedModel&)> frame;
 };
 
 struct StageTime {
@@ -39,8 +43,8 @@ struct AnalysedModel {
     Graph graph;
     Components components;
     Contraction contraction;
-    std::vector<ObjectBounds> bounds; ///< empty unless the contraction is proved or acyclic
-    std::optional<unsigned> steps;    ///< levels of recursion; from the command line, else from the model
+    std::vector<ObjectBounds> bounds;     ///< empty unless the contraction is proved or acyclic
+    std::optional<unsigned> steps;        ///< levels of recursion; from the command line, else from the model
     std::optional<Derivation> derivation; ///< of an L-system
 };
 

@@ -34,9 +34,7 @@ class Turn {
         sine_ = std::sin(rest);
         cosine_ = std::cos(rest);
     }
-    Vec3 operator()(Vec3 v) const {
-        return {cosine_ * v.x + sine_ * v.z, v.y, cosine_ * v.z - sine_ * v.x};
-    }
+    Vec3 operator()(Vec3 v) const { return {cosine_ * v.x + sine_ * v.z, v.y, cosine_ * v.z - sine_ * v.x}; }
 
   private:
     double sine_, cosine_;
@@ -77,7 +75,8 @@ View SharedFraming::view(const AnalysedModel& model, const CameraOverride& camer
 }
 
 Camera SharedFraming::frame(const CameraSetting& setting) const {
-    return frame_camera(setting, bounds_, [this](const auto&) { return outline_; }, size_, turning_);
+    return frame_camera(
+        setting, bounds_, [this](const auto&) { return outline_; }, size_, turning_);
 }
 
 /// What the setting leaves open is as in the first frame.

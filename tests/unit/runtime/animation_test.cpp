@@ -1,9 +1,11 @@
 #include "runtime/image/animation.h"
 
+#include <csignal>
 #include <filesystem>
 #include <fstream>
 
 #include <gmock/gmock.h>
+#include <sys/resource.h>
 
 #include "compiler/support/file.h"
 #include "runtime/image/image.h"
@@ -14,6 +16,7 @@
 namespace graftal {
 namespace {
 
+using testing::AllOf;
 using testing::HasSubstr;
 
 constexpr int width = 40, height = 30;
@@ -204,6 +207,50 @@ TEST_F(AnimationFiles, DigestDependsOnAllThatIsAdded) {
     EXPECT_NE(digest({"a", "b"}), digest({"b", "a"}));
     EXPECT_NE(digest({"ab", ""}), digest({"a", "b"}));
     EXPECT_EQ(digest({}).size(), 16u);
+}
+
+/// While one lives, files cannot grow beyond a size: writing more fails as on a full disk.
+class SmallFiles {
+  public:
+    explicit SmallFiles(rlim_t bytes) : handler_(std::signal(SIGXFSZ, SIG_IGN)) {
+        ::getrlimit(RLIMIT_FSIZE, &before_);
+        const rlimit limit{bytes, before_.rlim_max};
+        ::setrlimit(RLIMIT_FSIZE, &limit);
+    }
+    ~SmallFiles() {
+        ::setrlimit(RLIMIT_FSIZE, &before_);
+        std::signal(SIGXFSZ, handler_);
+    }
+
+  private:
+    rlimit before_;
+    void (*handler_)(int);
+};
+
+/// OpenImageIO's own files take bytes that find no room without a word, and half a picture would be renamed.
+TEST_F(AnimationFiles, NoRoomIsAFailure) {
+    const FrameStore store(directory_.path(), 2);
+    const std::vector<std::string> frames = write_frames(store);
+    const auto all = [](auto) { return true; };
+    const auto write = [&](const std::string& name) {
+        if (name == "a.gif") return write_gif(path(name), frames, {2500}, all);
+        if (name == "a.apng") return write_animated_png(path(name), frames, {2500}, all);
+        return write_image(path(name), picture(1), SampleFormat::srgb8);
+    };
+    for (const std::string name : {"a.png", "a.exr", "a.gif", "a.apng"}) {
+        ASSERT_TRUE(write(name).ok());
+        const auto whole = std::filesystem::file_size(path(name));
+        std::filesystem::remove(path(name));
+        const std::size_t before = file_count();
+        for (const auto bytes : {whole - 1, whole / 2, std::uintmax_t{1}}) {
+            const SmallFiles small(bytes);
+            EXPECT_THAT(write(name).message(), AllOf(HasSubstr("cannot write"), HasSubstr("File too large")))
+                << name << " " << bytes;
+        }
+        EXPECT_EQ(file_count(), before) << name;
+        const SmallFiles enough(whole);
+        EXPECT_TRUE(write(name).ok()) << name;
+    }
 }
 
 } // namespace

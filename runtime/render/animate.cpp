@@ -32,6 +32,18 @@ bool same_model(const CompileOptions& a, const CompileOptions& b) {
     return a.steps == b.steps && a.lower.seed == b.lower.seed && a.lower.set == b.lower.set;
 }
 
+/// Adds up the times of the stages over all frames.
+void add_times(const std::vector<StageTime>& times, std::vector<StageTime>& sums) {
+    for (const StageTime& time : times) {
+        const auto sum = std::find_if(sums.begin(), sums.end(),
+                                      [&](const StageTime& other) { return other.stage == time.stage; });
+        if (sum == sums.end())
+            sums.push_back(time);
+        else
+            sum->seconds += time.seconds;
+    }
+}
+
 class Animation {
   public:
     Animation(const std::string& path, const AnimateOptions& options)
@@ -171,6 +183,7 @@ class Animation {
         };
         const std::optional<RenderReport> report = draw_model(std::move(*model), render, compilation);
         if (!report) return fail(now.name, std::move(compilation));
+        add_times(compilation.times, outcome_.compilation.times);
         outcome_.error_px = std::max(outcome_.error_px, report->error_px);
         outcome_.peak_bytes = std::max(outcome_.peak_bytes, report->peak_bytes);
         return true;
@@ -194,7 +207,8 @@ class Animation {
         return status.ok() || fail("", status);
     }
 
-    void clean_up() const {
+    void clean_up() {
+        if (kind_ == AnimationKind::frames) outcome_.strangers = store_.strangers();
         if (kind_ == AnimationKind::frames || options_.keep_frames)
             store_.tidy();
         else

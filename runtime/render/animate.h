@@ -48,11 +48,12 @@ struct AnimateOptions {
 /// How an animation ended.
 struct AnimationOutcome {
     bool done = false;
-    Compilation compilation; ///< if not done: diagnostics and status of what went wrong
+    Compilation compilation; ///< of what went wrong; if done: the times of all frames together
     std::string frame; ///< if not done: the frame that it went wrong at, e.g. "frame 17 of 60 (--steps 4)"
-    std::size_t drawn = 0; ///< frames
-    std::size_t found = 0; ///< frames that an earlier run had drawn
-    double error_px = 0;   ///< the largest of the frames drawn
+    std::size_t drawn = 0;     ///< frames
+    std::size_t found = 0;     ///< frames that an earlier run had drawn
+    std::size_t strangers = 0; ///< frames of other animations in a directory of frames
+    double error_px = 0;       ///< the largest of the frames drawn
     std::uint64_t peak_bytes = 0;
     double seconds = 0;
 };

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 
+#include "compiler/support/file.h"
 #include "runtime/image/image.h"
 #include "runtime/image/png_chunks.h"
 
@@ -134,6 +135,8 @@ TEST_F(Animate, SweepsRunTogetherWithTheCamera) {
     EXPECT_EQ(differing(frame("b", 1), frame("b", 2)), 0u);
     ASSERT_EQ(graftal("animate -q dust.inst --steps 1..9 --frames 1 -o c" + small).status, 0);
     EXPECT_EQ(files_in("c"), "frame_0001.png\n");
+    const RunResult shorter = graftal("animate dust.inst --steps 2..2 --frames 1 -o b" + small);
+    EXPECT_THAT(shorter.err, HasSubstr("graftal: 'b' holds 1 frame of another animation too\n"));
 }
 
 TEST_F(Animate, GifIsTheDefaultAndQuietIsSilent) {
@@ -281,6 +284,22 @@ TEST_F(Animate, VideosPlay) {
     ASSERT_EQ(shell("ffmpeg -v error -i c.png -vsync passthrough c_%d.png").status, 0);
     for (int i = 1; i <= 2; ++i)
         EXPECT_EQ(differing(picture(fmt::format("c_{}.png", i)), frame("c.frames", i)), 0u) << i;
+}
+
+/// Every command of docs/animate.md works; one small frame of each is enough.
+TEST_F(Animate, CommandsOfThePageWork) {
+    const std::string mark = "\n    graftal animate ";
+    std::string page;
+    ASSERT_TRUE(read_text(source_path("docs/animate.md"), page).ok());
+    ASSERT_EQ(shell("ln -s '" + source_path("scenes") + "' scenes").status, 0);
+    int count = 0;
+    for (std::size_t at = page.find(mark); at != std::string::npos; at = page.find(mark, at + 1), ++count) {
+        const std::size_t begin = at + mark.size();
+        const std::string words = page.substr(begin, page.find('\n', begin) - begin);
+        const RunResult result = graftal("animate -q " + words + " --frames 1" + small + "--error 4");
+        EXPECT_EQ(result.status, 0) << words << "\n" << result.err;
+    }
+    EXPECT_GE(count, 8);
 }
 
 } // namespace

@@ -70,7 +70,11 @@ std::string done_text(const Options& options, const AnimationOutcome& outcome) {
                                    options.animation.rate.per_second());
     if (outcome.found > 0) text += fmt::format("; {} were there already", outcome.found);
     if (outcome.drawn > 0) text += fmt::format("; error at most {:.2g} px", outcome.error_px);
-    return text + fmt::format("; {}\n", duration_text(outcome.seconds));
+    text += fmt::format("; {}\n", duration_text(outcome.seconds));
+    if (outcome.strangers > 0)
+        text += fmt::format("graftal: '{}' holds {} frame{} of another animation too\n", options.output,
+                            outcome.strangers, outcome.strangers == 1 ? "" : "s");
+    return text;
 }
 
 /// What an animation that is not done leaves behind, and how to go on.

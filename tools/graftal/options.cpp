@@ -149,8 +149,9 @@ void add_view(CLI::App& app, Options& options) {
 
 void add_model(CLI::App& app, Options& options) {
     const auto set = [&options](const std::string& model) { options.operands = {model}; };
+    const std::string help = "Model file (.lsys, .rifs, .inst)";
     app.add_option_function<std::string>("MODEL", set,
-                                         "Model file (.lsys, .rifs, .inst), or - for standard input")
+                                         can_sweep(app) ? help : help + ", or - for standard input")
         ->required()
         ->type_name("");
 }
@@ -227,7 +228,8 @@ void add_animate(CLI::App& app, Options& options) {
     add_drawing(app, options);
     app.footer(
         "What is given as A..B runs from A to B over the animation: --steps, --seed, --set NAME=A..B\n"
-        "(NAME=A..B:1 in whole numbers), and the numbers and vectors of --camera. Frames that are done stay in\n"
+        "(NAME=A..B:1 in whole numbers), and the numbers and vectors of --camera. Frames that are done stay "
+        "in\n"
         "NAME.frames until the animation is: after an interruption the same command goes on from there.\n"
         "Examples:\n"
         "  graftal animate scenes/hart/pound_sign.rifs           # once round it: pound_sign.gif\n"

@@ -109,6 +109,38 @@ bool too_large(const Box& box) {
     return !box.empty() && !(std::max({far.x, far.y, far.z}) <= largest_size);
 }
 
+View view_of(const AnalysedModel& model, const CompileOptions& options, bool part) {
+    return options.frame ? options.frame(model, part) : frame_model(model, options.size, options.camera);
+}
+
+/// What frames an object as if it were the model; the camera that the model gives is meant for its root.
+FrameObject framing_of(const AnalysedModel& model, const CompileOptions& options) {
+    return [&](ObjectId object, unsigned used_levels) {
+        if (object == model.graph.root) return view_of(model, options, false);
+        AnalysedModel part = model;
+        part.graph.root = object;
+        part.graph.settings.camera.reset();
+        if (part.steps) *part.steps -= used_levels;
+        return view_of(part, options, true);
+    };
+}
+
+/// Gives the model a new root at the place that the zoom asks for.
+std::optional<View> zoom_model(AnalysedModel& model, const CompileOptions& options, CutOptions& cut,
+                               Diagnostics& diagnostics) {
+    std::optional<Vec3> look_at = options.camera.look_at;
+    if (!look_at && model.graph.settings.camera) look_at = model.graph.settings.camera->look_at;
+    std::optional<Rerooted> rerooted = reroot({model.graph, model.components, model.bounds, model.steps},
+                                              options.zoom, framing_of(model, options), look_at, diagnostics);
+    if (!rerooted) return std::nullopt;
+    model.graph = std::move(rerooted->graph);
+    model.components = std::move(rerooted->components);
+    model.bounds = std::move(rerooted->bounds);
+    cut.root_levels = std::move(rerooted->root_levels);
+    if (cut.error_world) cut.error_world = rerooted->zoom.times(*cut.error_world);
+    return std::move(rerooted->view);
+}
+
 } // namespace
 
 std::optional<AnalysedModel> analyse_model(const std::string& path, const CompileOptions& options,
@@ -128,7 +160,9 @@ std::optional<AnalysedModel> analyse_model(const std::string& path, const Compil
     if (!lowered) return std::nullopt;
     check_verified(*lowered, "after lowering");
 
-    model.graph = optimise(std::move(*lowered), options.pipeline, compilation.times);
+    PipelineOptions pipeline = options.pipeline;
+    pipeline.keep_names |= options.zoom.active();
+    model.graph = optimise(std::move(*lowered), pipeline, compilation.times);
     // The steps of an L-system are spent already; what it places recurs as its own file says.
     model.steps = options.steps && !model.derivation ? options.steps : model.graph.settings.steps;
     model.components = stages.run("components", [&] { return strong_components(model.graph); });
@@ -158,17 +192,19 @@ std::optional<CompiledModel> compile_model(const std::string& path, const Compil
     std::optional<AnalysedModel> model = analyse_model(path, options, compilation);
     if (!model) return std::nullopt;
     Stages stages(compilation.times);
-    View view = stages.run("frame", [&] {
-        return options.frame ? options.frame(*model) : frame_model(*model, options.size, options.camera);
-    });
     CutOptions cut_options = options.cut;
     cut_options.steps = model->steps;
+    std::optional<View> view = stages.run("frame", [&] {
+        return options.zoom.active() ? zoom_model(*model, options, cut_options, compilation.diagnostics)
+                                     : view_of(*model, options, false);
+    });
+    if (!view) return std::nullopt;
     std::optional<Cut> cut = stages.run("cut", [&] {
-        return cut_graph(model->graph, model->components, model->bounds, view, cut_options,
+        return cut_graph(model->graph, model->components, model->bounds, *view, cut_options,
                          compilation.diagnostics);
     });
     if (!cut) return std::nullopt;
-    return CompiledModel{std::move(*model), std::move(view), std::move(*cut)};
+    return CompiledModel{std::move(*model), std::move(*view), std::move(*cut)};
 }
 
 } // namespace graftal

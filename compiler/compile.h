@@ -16,6 +16,7 @@
 #include "compiler/scene/scene.h"
 #include "compiler/support/diagnostics.h"
 #include "compiler/support/source.h"
+#include "compiler/zoom/reroot.h"
 
 namespace graftal {
 
@@ -27,9 +28,11 @@ struct CompileOptions {
     std::optional<unsigned> steps;
     ImageSize size;
     CameraOverride camera;
-    CutOptions cut; ///< its steps are taken from above
-    /// Decides on the view in place of frame_model(): the frames of an animation are framed together.
-    std::function<View(const AnalysedModel&)> frame;
+    ZoomRequest zoom;
+    CutOptions cut; ///< its steps and root levels are filled in
+    /// Decides on the view of a model, or of a part that is looked at by itself, in place of frame_model():
+    /// the frames of an animation are framed together.
+    std::function<View(const AnalysedModel&, bool part)> frame;
 };
 
 struct StageTime {

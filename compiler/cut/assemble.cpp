@@ -63,11 +63,13 @@ class Unfolding {
     std::vector<Placed> placed;
     std::vector<BakeRequest> requests;
     double culled_detail = 0;
+    double finest = std::numeric_limits<double>::infinity();
 
   private:
     void visit(const Piece& piece, std::vector<Piece>& children) {
         children.clear();
         const CutNode& node = cut_.nodes[piece.node];
+        if (!node.unbounded && projection_.drops(world_ball(cut_, piece))) return;
         if (node.primitive)
             return place_primitive(*node.primitive, piece.world_from_node, piece, piece.inherited);
         const double detail = detail_of(cut_, projection_, piece);
@@ -100,6 +102,7 @@ class Unfolding {
         thing.world_from_thing = thickened(
             world_from_primitive, leaf_thickness(world_from_primitive, projection_.detail_per_unit(ball)));
         if (!seen_.insert(static_cast<std::uint32_t>(kind), thing.world_from_thing)) return;
+        note_finest(ball);
         thing.rgb = piece.tint.over(base);
         thing.material = piece.material;
         placed.push_back(thing);
@@ -129,10 +132,16 @@ class Unfolding {
         thing.request = request->second;
         thing.world_from_thing = piece.world_from_node * symmetry_.node_from_representative[piece.node];
         if (!seen_.insert(thing.request + primitive_kind_count, thing.world_from_thing)) return;
+        note_finest(ball);
         thing.painter = painter(request->second, piece);
         thing.tint = piece.tint;
         thing.material = piece.material;
         placed.push_back(thing);
+    }
+
+    void note_finest(const Ball& ball) {
+        if (projection_.culls() && projection_.sees(ball))
+            finest = std::min(finest, 1 / projection_.detail_per_unit(ball));
     }
 
     std::uint32_t painter(std::uint32_t request, const Piece& piece) {
@@ -184,7 +193,7 @@ class Grouping {
             else
                 place(body, world_from_body, palette_id(thing.request, p, thing.painter), thing.tint,
                       material);
-            result_.bounds.include(transformed(world_from_body, box_[body]));
+            include(transformed(world_from_body, box_[body]));
         }
     }
 
@@ -199,6 +208,12 @@ class Grouping {
     static bool share_finish(const Material& a, const Material& b) {
         return a.ambient == b.ambient && a.diffuse == b.diffuse && a.specular == b.specular &&
                a.roughness == b.roughness && a.reflection == b.reflection;
+    }
+
+    void include(const Box& box) {
+        if (box.empty()) return;
+        result_.bounds.include(box);
+        result_.largest_part = std::max(result_.largest_part, largest_entry(box.size()));
     }
 
     static Box box_of(const Mesh& mesh) {
@@ -217,7 +232,7 @@ class Grouping {
         }
         const std::uint32_t body = primitive_body_[kind];
         place(body, thing.world_from_thing, colour(thing.rgb), {}, thing.material);
-        result_.bounds.include(transformed(thing.world_from_thing, box_[body]));
+        include(transformed(thing.world_from_thing, box_[body]));
     }
 
     void place(std::uint32_t body, const Affine& world_from_body, std::uint32_t palette, const PathTint& tint,
@@ -315,6 +330,7 @@ std::optional<Cut> assemble(const CutGraph& cut, const Symmetry& symmetry, const
     Cut result = grouping.take();
     result.error_px = culled_detail;
     result.tessellation_px = tessellation_px;
+    result.finest = unfolding.finest;
     result.leaf_count = choice.leaves;
     result.estimated_bytes = estimated_bytes(result);
     return result;

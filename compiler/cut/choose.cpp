@@ -118,6 +118,7 @@ class Chooser {
     }
 
     void add_piece(const Piece& piece) {
+        if (projection_.drops(world_ball(cut_, piece)) && !cut_.nodes[piece.node].unbounded) return;
         Bucket& bucket = bucket_for(kind_of(piece));
         bucket.count += 1;
         placements_ += 1;

@@ -9,6 +9,7 @@
 #include "compiler/cut/choose.h"
 #include "compiler/cut/cut_graph.h"
 #include "compiler/cut/symmetry.h"
+#include "compiler/support/check.h"
 
 namespace graftal {
 
@@ -37,7 +38,7 @@ class Cutter {
     Cutter(const Graph& graph, const Components& components, const std::vector<ObjectBounds>& bounds,
            const View& view, const CutOptions& options, Diagnostics& diagnostics)
         : graph_(graph), unending_(components.unending[graph.root]), view_(view), options_(options),
-          diagnostics_(diagnostics), cut_(prepared(graph, components, bounds)),
+          diagnostics_(diagnostics), cut_(prepared(graph, components, bounds, options.root_levels)),
           symmetry_(find_symmetry(cut_)) {}
 
     std::optional<Cut> run() {
@@ -60,10 +61,28 @@ class Cutter {
 
   private:
     static CutGraph prepared(const Graph& graph, const Components& components,
-                             const std::vector<ObjectBounds>& bounds) {
+                             const std::vector<ObjectBounds>& bounds,
+                             const std::vector<unsigned>& root_levels) {
         CutGraph cut = build_cut_graph(graph, components, bounds);
+        if (!root_levels.empty()) use_up_levels(cut, root_levels);
         split_into_halves(cut);
         return cut;
+    }
+
+    /// The root counts as a level itself, so that it is never the one that is cut.
+    static void use_up_levels(CutGraph& cut, const std::vector<unsigned>& root_levels) {
+        CutNode root = cut.nodes[cut.root];
+        GRAFTAL_CHECK(root.edges.size() == root_levels.size(), "cut: root levels and instances differ");
+        for (std::size_t i = 0; i < root_levels.size(); ++i)
+            if (root.edges[i].levels > 0) root.edges[i].levels = root_levels[i] + 1;
+        cut.root = static_cast<NodeId>(cut.nodes.size());
+        cut.nodes.push_back(std::move(root));
+    }
+
+    /// Levels of the root.
+    std::uint32_t root_steps(const CutOptions& options) const {
+        if (!options.steps) return unlimited_steps;
+        return *options.steps + (options.root_levels.empty() ? 0 : 1);
     }
 
     std::optional<Cut> attempt(const CutOptions& options, double error_px, bool& too_much) {
@@ -71,7 +90,7 @@ class Cutter {
         const Projection projection(view_, options, error_px, near);
         Piece root;
         root.node = cut_.root;
-        root.steps = options.steps.value_or(unlimited_steps);
+        root.steps = root_steps(options);
         Weights weights(cut_, visible_cube_triangles(cut_, symmetry_, root.steps));
         const auto memory = static_cast<double>(options.memory_bytes);
         const PieceKind whole{root.node, root.steps, PieceKind::step_of(detail_of(cut_, projection, root))};

@@ -7,6 +7,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <string>
 #include <variant>
@@ -25,6 +26,8 @@ struct CutOptions {
     std::optional<double> error_world;       ///< the same as a length in scene units, in place of error_px
     std::optional<unsigned> steps;           ///< levels; nothing: as deep as the error asks for
     std::uint64_t memory_bytes = 2ull << 30; ///< POV-Ray's estimated peak
+    std::vector<unsigned> root_levels; ///< that each of the root's instances uses up; empty: as the graph says
+    bool visible_only = false; ///< drop what is out of the picture, with its shadows and reflections
     bool flatten = false;                    ///< every leaf its own placement: the absolute specification
 };
 
@@ -67,6 +70,8 @@ struct Cut {
     std::vector<Palette> palettes;
     std::vector<PlacementGroup> groups;
     Box bounds;          ///< of what is drawn (planes aside)
+    double largest_part = 0; ///< longest side of the box of one placement
+    double finest = std::numeric_limits<double>::infinity(); ///< least length in it that may be seen
     double error_px = 0; ///< reached: largest projected size of a culled part; 0 if none was culled
     double error_asked_px = 0;
     double tessellation_px = 0; ///< largest distance between a curved surface and its mesh

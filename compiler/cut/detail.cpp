@@ -14,6 +14,8 @@ namespace graftal {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
+/// How much larger parts may be culled that only throw shadows into the picture, or are reflected in it.
+constexpr double coarser_out_of_sight = 8;
 /// A proxy's mesh is an octahedron.
 constexpr Weights::Weight proxy{8, 1, 1};
 constexpr std::size_t max_known_kinds = 4'000'000;
@@ -21,11 +23,31 @@ constexpr std::size_t max_known_kinds = 4'000'000;
 } // namespace
 
 Projection::Projection(const View& view, const CutOptions& options, double error_px, double near)
-    : camera_(view.camera), width_px_(view.size.width),
+    : camera_(view.camera), visible_only_(options.visible_only), width_px_(view.size.width),
       pixels_per_tangent_(0.5 * view.size.width /
                           std::tan(0.5 * view.camera.angle_deg * std::numbers::pi / 180)),
       near_(near), error_px_(error_px), error_world_(options.error_world.value_or(0)),
-      culls_(options.error_world ? *options.error_world > 0 : error_px > 0) {}
+      culls_(options.error_world ? *options.error_world > 0 : error_px > 0) {
+    const double height_share = static_cast<double>(view.size.height) / view.size.width;
+    if (camera_.orthographic) {
+        edges_[0] = {0.5 * camera_.width, 1};
+        edges_[1] = {0.5 * camera_.width * height_share, 1};
+        return;
+    }
+    for (int i = 0; i < 2; ++i) {
+        const double tangent = (i == 0 ? 1 : height_share) * 0.5 * view.size.width / pixels_per_tangent_;
+        edges_[i] = {tangent / std::hypot(1, tangent), 1 / std::hypot(1, tangent)};
+    }
+}
+
+bool Projection::sees(const Ball& ball) const {
+    const Vec3 from_eye = ball.centre - camera_.location;
+    const double aside[2] = {std::abs(glm::dot(from_eye, camera_.right)), std::abs(glm::dot(from_eye, camera_.up))};
+    const double depth = camera_.orthographic ? 1 : glm::dot(from_eye, camera_.direction);
+    for (int i = 0; i < 2; ++i)
+        if (aside[i] * edges_[i].cosine - depth * edges_[i].sine > ball.radius) return false;
+    return camera_.orthographic || depth >= -ball.radius;
+}
 
 double Projection::pixels_per_unit(const Ball& ball) const {
     if (camera_.orthographic) return width_px_ / camera_.width;
@@ -37,7 +59,8 @@ double Projection::pixels_per_unit(const Ball& ball) const {
 
 double Projection::detail_per_unit(const Ball& ball) const {
     if (!culls_) return infinity;
-    return error_world_ > 0 ? 1 / error_world_ : pixels_per_unit(ball) / error_px_;
+    const double detail = error_world_ > 0 ? 1 / error_world_ : pixels_per_unit(ball) / error_px_;
+    return sees(ball) ? detail : detail / coarser_out_of_sight;
 }
 
 std::int32_t PieceKind::step_of(double detail) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <unordered_map>
 #include <vector>
@@ -18,13 +19,25 @@ class Projection {
 
     /// Pixels that one scene unit measures at the ball's nearest point, at most.
     double pixels_per_unit(const Ball& world_ball) const;
-    /// The detail of one scene unit there.
+    /// The detail of one scene unit there; coarser out of the picture, from where only shadows and reflections
+    /// come.
     double detail_per_unit(const Ball& world_ball) const;
+
+    /// False if no point of the ball can be in the picture.
+    bool sees(const Ball& world_ball) const;
+    /// True if the ball is out of the picture, and such parts are to be left out.
+    bool drops(const Ball& world_ball) const { return visible_only_ && !sees(world_ball); }
 
     bool culls() const { return culls_; }
 
   private:
     Camera camera_;
+    bool visible_only_;
+    /// Of half the angle of view, across and up; of parallel rays: half the width or height, and 1.
+    struct Edge {
+        double sine = 0, cosine = 1;
+    };
+    std::array<Edge, 2> edges_;
     int width_px_;
     double pixels_per_tangent_;
     double near_;

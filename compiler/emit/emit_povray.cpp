@@ -182,7 +182,7 @@ bool Emitter::write_include(std::vector<PaletteImage>& pictures) {
 bool emit_povray(const Graph&, const Cut& cut, const View& view, const PovrayOptions& options,
                  const TextSink& sink, std::vector<PaletteImage>& palettes) {
     if (options.include) return Emitter(cut, options, PovrayUnits{}, sink).write_include(palettes);
-    return Emitter(cut, options, choose_units(cut.bounds, view.camera), sink).write_scene(view, palettes);
+    return Emitter(cut, options, choose_units(cut, view.camera), sink).write_scene(view, palettes);
 }
 
 } // namespace graftal

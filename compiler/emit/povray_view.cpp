@@ -15,8 +15,12 @@ namespace {
 
 constexpr int digits = 12;
 constexpr double extent = 1000;
+constexpr double largest_extent = 3e4;
+constexpr double largest_part = 2000;
 constexpr double farthest_camera = 5e6;
-constexpr double sun_distance = 1e6;
+constexpr double sun_distance = 4e6;
+/// POV-Ray loses what is closer than about a thousandth (its SMALL_TOLERANCE).
+constexpr double least_length = 0.02;
 
 /// The largest of 1, 2, 5 times a power of ten that is not above the value.
 double round_down(double value) {
@@ -85,14 +89,18 @@ void write_sky(SdlWriter& out, const Sky& sky) {
 
 } // namespace
 
-PovrayUnits choose_units(const Box& bounds, const Camera& camera) {
+PovrayUnits choose_units(const Cut& cut, const Camera& camera) {
+    const Box& bounds = cut.bounds;
     PovrayUnits units;
     if (bounds.empty()) return units;
     const double distance = largest(camera.location - bounds.centre());
     double size = 2 * largest(0.5 * bounds.max - 0.5 * bounds.min);
     if (size == 0) size = camera.orthographic ? camera.width : distance;
     if (size == 0) size = 1;
-    units.scale = round_down(std::min(extent / size, farthest_camera / std::max(distance, size)));
+    const double usual = extent / size;
+    const double most = std::min(largest_extent / size, largest_part / std::max(cut.largest_part, 1e-3 * size));
+    const double wanted = std::clamp(least_length / cut.finest, usual, std::max(most, usual));
+    units.scale = round_down(std::min(wanted, farthest_camera / std::max(distance, size)));
     if (largest(bounds.centre()) > 2 * size) units.origin = bounds.centre();
     GRAFTAL_CHECK(std::isfinite(units.scale) && units.scale > 0, "emit_povray: a scene beyond all scales");
     return units;

@@ -16,8 +16,8 @@ namespace graftal {
 namespace {
 
 constexpr std::array<Pass, 2> passes = {{
-    {"drop_unreachable", "drops objects and materials that nothing drawn refers to", drop_unreachable},
-    {"merge_equivalent", "merges objects that unfold to the same thing, inside cycles too", merge_equivalent},
+    {"drop_unreachable", "drops objects and materials that nothing drawn refers to", drop_unreachable, true},
+    {"merge_equivalent", "merges objects that unfold to the same thing, inside cycles too", merge_equivalent, false},
 }};
 
 } // namespace
@@ -31,6 +31,7 @@ Graph run_pipeline(Graph graph, const PipelineOptions& options, std::vector<Pass
                                    [&](const Pass& pass) { return options.stop_after == pass.name; });
     GRAFTAL_CHECK(known || options.stop_after.empty(), fmt::format("no pass '{}'", options.stop_after));
     for (const Pass& pass : passes) {
+        if (options.keep_names && !pass.keeps_names) continue;
         const auto begin = std::chrono::steady_clock::now();
         graph = pass.run(std::move(graph));
         check_verified(graph, fmt::format("after pass {}", pass.name));

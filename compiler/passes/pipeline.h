@@ -16,6 +16,7 @@ struct Pass {
     const char* name;    ///< its function, its files, its `--dump-after` name and its test folder
     const char* summary; ///< one line for `--help-passes`
     Graph (*run)(Graph);
+    bool keeps_names; ///< every object that is left has the name and the instances, in order, that it had
 };
 
 /// All passes in the order in which they run.
@@ -28,6 +29,7 @@ struct PassTime {
 
 struct PipelineOptions {
     std::string stop_after;                                    ///< run up to and with this pass; empty: all
+    bool keep_names = false; ///< leave out the passes that do not: addresses are to be found
     std::function<void(const Pass&, const Graph&)> after_each; ///< for --dump-after; may be empty
 };
 

@@ -163,8 +163,8 @@ class Animation {
         AnimationProgress progress{Stage::drawing, frame, options_.frames, seconds_left, {}};
         show(progress);
         Moment now = moment(frame);
-        now.compile.frame = [&](const AnalysedModel& model) {
-            return framing_.view(model, now.compile.camera, now.turn_deg);
+        now.compile.frame = [&](const AnalysedModel& model, bool part) {
+            return part ? view_of_part(model, now) : framing_.view(model, now.compile.camera, now.turn_deg);
         };
         Compilation compilation;
         std::optional<CompiledModel> model = compile_model(path_, now.compile, compilation);
@@ -187,6 +187,14 @@ class Animation {
         outcome_.error_px = std::max(outcome_.error_px, report->error_px);
         outcome_.peak_bytes = std::max(outcome_.peak_bytes, report->peak_bytes);
         return true;
+    }
+
+    /// A part that is looked at by itself (--at) is framed for its own frame; measure() does not know it.
+    View view_of_part(const AnalysedModel& part, const Moment& now) const {
+        SharedFraming framing;
+        framing.include(part);
+        framing.settle(now.compile.camera, now.compile.size, options_.turn_deg != 0);
+        return framing.view(part, now.compile.camera, now.turn_deg);
     }
 
     bool assemble() {

@@ -51,7 +51,7 @@ class Animate : public CommandLine {
     void write_povray(int nth, const std::string& instead) const {
         std::filesystem::create_directory(path("bin"));
         write("bin/povray", fmt::format("#!/bin/sh\necho >>'{0}'\n[ $(wc -l <'{0}') -ne {1} ] || {{ {2}; }}\n"
-                                        "exec /usr/bin/povray \"$@\"\n",
+                                        "PATH=${{PATH#*:}} exec povray \"$@\"\n",
                                         path("bin/calls"), nth, instead));
         shell("chmod +x bin/povray; rm -f bin/calls");
     }

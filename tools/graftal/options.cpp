@@ -131,6 +131,22 @@ void add_view(CLI::App& app, Options& options) {
            "rest is as the model says or automatic")
         ->allow_extra_args(false)
         ->type_name("\"WORDS\"");
+    const auto address = [&compile](const std::string& text) {
+        std::string problem;
+        compile.zoom.at = parse_address(text, problem);
+        if (!compile.zoom.at) throw CLI::ValidationError(fmt::format("--at: '{}': {}", text, problem));
+    };
+    app.add_option_function<std::string>(
+           "--at", address,
+           "Look at the part with this address, from its own frame: names of objects on the way from the root, "
+           "such as up.left.(right.up)*40; X#2 is the second instance of X")
+        ->type_name("ADDRESS")
+        ->take_last();
+    add_value(
+        app, "--zoom", "F",
+        "Enlarge F times, such as 1e100 or 2^330, about the part at --at, else the point looked at",
+        "a number above 0, such as 1e100 or 2^330", Magnification::parse,
+        [&](Magnification zoom) { compile.zoom.zoom = zoom; });
     CLI::Option* pixels = add_value(
         app, "--error", "PX", "Leave out what is smaller than this on the picture (default 0.5; 0: nothing)",
         "a number of pixels, 0 or more", [](const std::string& text) { return parse_at_least(text, 0); },
@@ -143,6 +159,8 @@ void add_view(CLI::App& app, Options& options) {
     add_value(app, "--memory", "BYTES", "Memory that POV-Ray may need; suffixes K M G (default 2G)",
               "a number of bytes such as 512M", parse_bytes,
               [&](std::uint64_t bytes) { compile.cut.memory_bytes = bytes; });
+    app.add_flag("--visible-only", compile.cut.visible_only,
+                 "Leave out what the camera does not see, with the shadows that it would throw");
     app.add_flag("--flatten", compile.cut.flatten,
                  "Spell out every part in its place, without sharing (for comparison)");
 }

@@ -1,0 +1,253 @@
+#include "compiler/zoom/address.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cctype>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+namespace graftal {
+
+namespace {
+
+using Steps = std::vector<AddressStep>;
+
+class Parser {
+  public:
+    Parser(std::string_view text, std::string& problem) : text_(text), problem_(problem) {}
+
+    std::optional<Address> run() {
+        const std::optional<Steps> steps = address(0);
+        if (!steps) return std::nullopt;
+        if (place_ < text_.size()) return fail(fmt::format("unexpected '{}'", text_[place_]));
+        return Address{*steps, cycle_};
+    }
+
+  private:
+    static constexpr int deepest = 100;
+
+    std::nullopt_t fail(std::string problem) {
+        if (problem_.empty()) problem_ = fmt::format("{} at character {}", problem, place_ + 1);
+        return std::nullopt;
+    }
+
+    bool take(char c) {
+        if (place_ >= text_.size() || text_[place_] != c) return false;
+        ++place_;
+        return true;
+    }
+
+    std::optional<Steps> address(int depth) {
+        if (depth > deepest) return fail("brackets too deep");
+        Steps steps;
+        do {
+            if (!cycle_.empty()) return fail("nothing can follow what is repeated for ever");
+            std::optional<Steps> next = part(depth);
+            if (!next) return std::nullopt;
+            if (steps.size() + next->size() > most_address_steps)
+                return fail(fmt::format("more than {} steps", most_address_steps));
+            steps.insert(steps.end(), next->begin(), next->end());
+        } while (take('.'));
+        return steps;
+    }
+
+    std::optional<Steps> part(int depth) {
+        Steps steps;
+        if (take('(')) {
+            std::optional<Steps> inner = address(depth + 1);
+            if (!inner) return std::nullopt;
+            if (!cycle_.empty()) return fail("only the whole end of an address can be repeated for ever");
+            if (!take(')')) return fail("')' expected");
+            steps = std::move(*inner);
+        } else {
+            std::optional<AddressStep> one = step();
+            if (!one) return std::nullopt;
+            steps.push_back(std::move(*one));
+        }
+        if (!take('*')) return steps;
+        if (place_ >= text_.size() || !std::isdigit(static_cast<unsigned char>(text_[place_]))) {
+            if (depth > 0) return fail("only the end of an address can be repeated for ever");
+            cycle_ = std::move(steps);
+            return Steps{};
+        }
+        const std::optional<std::uint32_t> count = number();
+        if (!count || steps.size() * static_cast<std::size_t>(*count) > most_address_steps)
+            return fail(fmt::format("more than {} steps", most_address_steps));
+        Steps all;
+        for (std::uint32_t i = 0; i < *count; ++i)
+            all.insert(all.end(), steps.begin(), steps.end());
+        return all;
+    }
+
+    std::optional<AddressStep> step() {
+        AddressStep step;
+        if (take('"')) {
+            const std::size_t end = text_.find('"', place_);
+            if (end == std::string_view::npos) return fail("the quotation has no end");
+            step.name = text_.substr(place_, end - place_);
+            place_ = end + 1;
+            if (step.name.empty()) return fail("an empty name");
+        } else {
+            step.name = word();
+        }
+        if (take('#')) {
+            const std::optional<std::uint32_t> index = number();
+            if (!index || *index == 0) return fail("a number, 1 or more, expected after '#'");
+            step.index = *index;
+        } else if (step.name.empty()) {
+            return fail(place_ < text_.size() ? fmt::format("a name expected, not '{}'", text_[place_])
+                                              : "a name expected");
+        }
+        return step;
+    }
+
+    /// A name with the arguments that stand behind it.
+    std::string word() {
+        const std::size_t begin = place_;
+        const auto in_name = [](char c) { return std::string_view(".()*#\"").find(c) == std::string_view::npos; };
+        while (place_ < text_.size() && in_name(text_[place_]))
+            ++place_;
+        if (place_ > begin && place_ < text_.size() && text_[place_] == '(')
+            place_ = std::min(text_.find(')', place_), text_.size() - 1) + 1;
+        return std::string(text_.substr(begin, place_ - begin));
+    }
+
+    std::optional<std::uint32_t> number() {
+        std::uint32_t value = 0;
+        const char* const begin = text_.data() + place_;
+        const auto [end, error] = std::from_chars(begin, text_.data() + text_.size(), value);
+        if (error != std::errc()) return std::nullopt;
+        place_ += static_cast<std::size_t>(end - begin);
+        return value;
+    }
+
+    std::string_view text_;
+    std::string& problem_;
+    std::size_t place_ = 0;
+    Steps cycle_;
+};
+
+/// How well a master's name fits, 0 for not at all.
+int fit(std::string_view master, std::string_view name) {
+    if (name.empty() || master == name) return 3;
+    const std::string_view head = master.substr(0, master.find('('));
+    if (const std::size_t dot = head.rfind('.'); dot != std::string_view::npos && master.substr(dot + 1) == name)
+        return 2;
+    const std::size_t dot = head.rfind('.');
+    return head == name || (dot != std::string_view::npos && head.substr(dot + 1) == name) ? 1 : 0;
+}
+
+class Finder {
+  public:
+    Finder(const Graph& graph, Diagnostics& diagnostics)
+        : graph_(graph), diagnostics_(diagnostics), object_(graph.root) {}
+
+    std::optional<GraphPath> run(const Address& address) {
+        for (const AddressStep& step : address.steps)
+            if (!follow(step, false)) return std::nullopt;
+        std::vector<std::pair<ObjectId, std::size_t>> starts; // of the rounds
+        while (!address.cycle.empty()) {
+            const auto same = [&](const auto& start) { return start.first == object_; };
+            const auto again = std::find_if(starts.begin(), starts.end(), same);
+            if (again != starts.end()) {
+                path_.cycle.assign(path_.steps.begin() + static_cast<std::ptrdiff_t>(again->second),
+                                   path_.steps.end());
+                path_.steps.resize(again->second);
+                break;
+            }
+            const bool may_end = !starts.empty();
+            starts.emplace_back(object_, path_.steps.size());
+            for (const AddressStep& step : address.cycle) {
+                if (follow(step, may_end)) continue;
+                if (!may_end) return std::nullopt;
+                return path_;
+            }
+        }
+        return path_;
+    }
+
+  private:
+    /// Instances of the best fit.
+    std::vector<std::uint32_t> fitting(const Object& object, const std::string& name) const {
+        std::vector<std::uint32_t> found;
+        int best = 1;
+        for (std::uint32_t i = 0; i < object.instances.size(); ++i) {
+            const int how_well = fit(graph_.objects[object.instances[i].master].name, name);
+            if (how_well > best) found.clear();
+            best = std::max(best, how_well);
+            if (how_well >= best) found.push_back(i);
+        }
+        return found;
+    }
+
+    void take(std::uint32_t instance) {
+        path_.steps.push_back({object_, instance});
+        object_ = graph_.objects[object_].instances[instance].master;
+    }
+
+    /// Takes one step. False where there is none: an error, unless `may_end`.
+    bool follow(const AddressStep& step, bool may_end) {
+        for (std::size_t passed = 0;; ++passed) {
+            const Object& object = graph_.objects[object_];
+            const std::vector<std::uint32_t> found = fitting(object, step.name);
+            if (step.index > 0 && step.index <= found.size()) return take(found[step.index - 1]), true;
+            if (step.index == 0 && found.size() == 1) return take(found[0]), true;
+            if (step.index == 0 && found.size() > 1) return refuse_ambiguous(object, step, found.size());
+            if (object.instances.size() != 1 || passed > graph_.objects.size())
+                return !may_end && refuse_missing(object, step, found.size());
+            take(0);
+        }
+    }
+
+    bool refuse_ambiguous(const Object& object, const AddressStep& step, std::size_t count) {
+        const std::string name = step.name.empty() ? "part" : step.name;
+        diagnostics_
+            .error(object.span,
+                   fmt::format("the address is ambiguous: '{}' has {} instances of '{}'", object.name, count, name))
+            .with_hint(fmt::format("say which: {0}#1 to {0}#{1}", step.name, count));
+        return false;
+    }
+
+    bool refuse_missing(const Object& object, const AddressStep& step, std::size_t count) {
+        constexpr std::size_t most_names = 12;
+        const std::string wanted =
+            step.index == 0 ? fmt::format("'{}'", step.name) : fmt::format("'{}#{}'", step.name, step.index);
+        Diagnostic& error = diagnostics_.error(
+            object.span, fmt::format("the address does not exist: '{}' has no part {}", object.name, wanted));
+        if (count > 0) {
+            error.with_hint(fmt::format("it has {} that fit", count));
+            return false;
+        }
+        std::vector<std::string> names;
+        for (const Instance& instance : object.instances) {
+            const std::string& name = graph_.objects[instance.master].name;
+            if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+        }
+        if (names.size() > most_names) {
+            names.resize(most_names);
+            names.push_back("...");
+        }
+        error.with_hint(names.empty() ? "it is a primitive and has no parts"
+                                      : fmt::format("its parts are {}", fmt::join(names, ", ")));
+        return false;
+    }
+
+    const Graph& graph_;
+    Diagnostics& diagnostics_;
+    ObjectId object_;
+    GraphPath path_;
+};
+
+} // namespace
+
+std::optional<Address> parse_address(std::string_view text, std::string& problem) {
+    problem.clear();
+    return Parser(text, problem).run();
+}
+
+std::optional<GraphPath> find_path(const Graph& graph, const Address& address, Diagnostics& diagnostics) {
+    return Finder(graph, diagnostics).run(address);
+}
+
+} // namespace graftal

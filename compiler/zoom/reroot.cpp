@@ -1,0 +1,340 @@
+#include "compiler/zoom/reroot.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+#include <glm/geometric.hpp>
+
+#include "compiler/scene/framing.h"
+#include "compiler/zoom/focus.h"
+#include "compiler/zoom/surroundings.h"
+#include "compiler/zoom/zoom_scale.h"
+
+namespace graftal {
+
+namespace {
+
+/// What lies farther from the focus is left out, in distances of the eye: its shadows and what is seen of it
+/// between the nearer parts.
+constexpr double reach_share = 100;
+/// The same of parallel rays, in half diagonals of the picture; flat models have nothing out of the picture.
+constexpr double parallel_share = 16, flat_reach_share = 1.05;
+/// A map that stretches space so much more one way than another leaves no digits.
+constexpr double worst_condition = 1e8;
+/// What rounding may move a part by before it is worth a word.
+constexpr double visible_px = 0.25;
+/// A primitive this much larger than all that is in reach looks like a plane, and POV-Ray loses its place.
+constexpr double largest_primitive = 1e3;
+
+class Rerooter {
+  public:
+    Rerooter(const ZoomModel& model, const ZoomRequest& request, const FrameObject& frame_object,
+             Diagnostics& diagnostics)
+        : model_(model), request_(request), frame_object_(frame_object), diagnostics_(diagnostics),
+          around_(model.graph, model.components, model.bounds, model.steps) {}
+
+    std::optional<Rerooted> run(const std::optional<Vec3>& look_at) {
+        if (!find_focus(look_at)) return std::nullopt;
+        ZoomScale scale = request_.zoom
+                              ? ZoomScale::about_focus(model_.graph, focus_, *request_.zoom)
+                              : ZoomScale::of_last_object(model_.graph, focus_);
+        result_.zoom = scale.zoom();
+        if (!set_view(look_at) || !descend(scale)) return std::nullopt;
+        const Affine picture_from_frame = *scale.picture_from_frame();
+        return place(picture_from_frame) ? std::optional(std::move(result_)) : std::nullopt;
+    }
+
+  private:
+    Span span() const { return model_.graph.objects[model_.graph.root].span; }
+
+    bool refuse(std::string message, std::string hint) {
+        diagnostics_.error(span(), std::move(message)).with_hint(std::move(hint));
+        return false;
+    }
+
+    bool find_focus(const std::optional<Vec3>& look_at) {
+        if (request_.at) {
+            std::optional<GraphPath> path = find_path(model_.graph, *request_.at, diagnostics_);
+            if (!path) return false;
+            if (path->endless() && !request_.zoom)
+                return refuse("an address without an end is a point, and has no frame to look from",
+                              "give the repetition a count, or say how far to go with --zoom F");
+            focus_ = focus_of_path(model_.graph, model_.bounds, std::move(*path));
+        } else if (look_at) {
+            focus_ = focus_at_point(model_.graph, model_.bounds, *look_at);
+        } else {
+            const Box& box = model_.bounds[model_.graph.root].box;
+            focus_ = focus_near_point(model_.graph, model_.bounds, box.empty() ? Vec3(0.0) : box.centre(),
+                                      *request_.zoom);
+        }
+        return true;
+    }
+
+    bool set_view(const std::optional<Vec3>& look_at) {
+        if (request_.zoom) {
+            result_.view = frame_object_(model_.graph.root, 0);
+            turn_to_focus(look_at.value_or(focus_.points.front()));
+        } else if (!look_from_object()) {
+            return false;
+        }
+        const View& view = result_.view;
+        const Vec3 focus = focus_in_picture();
+        const Vec3 from_eye = focus - view.camera.location;
+        if (view.camera.orthographic) {
+            const double aspect = static_cast<double>(view.size.width) / view.size.height;
+            const double half_diagonal = 0.5 * view.camera.width * std::hypot(1, 1 / aspect);
+            const Vec3 aside = from_eye - glm::dot(from_eye, view.camera.direction) * view.camera.direction;
+            const bool flat = thickness(model_.bounds[model_.graph.root].box) <= flat_share;
+            reach_ = glm::length(aside) + half_diagonal * (flat ? flat_reach_share : parallel_share);
+        } else {
+            reach_ = reach_share * glm::length(from_eye);
+        }
+        return true;
+    }
+
+    Vec3 focus_in_picture() const { return request_.zoom ? Vec3(0.0) : focus_.points.back(); }
+
+    /// The picture's origin is the focus now, and the camera looks at it from where it was.
+    void turn_to_focus(Vec3 world_focus) {
+        View& view = result_.view;
+        Camera& camera = view.camera;
+        const double radius = model_.bounds[model_.graph.root].ball.radius;
+        const double depth = glm::dot(world_focus - camera.location, camera.direction);
+        camera.location = -std::max(depth, 1e-3 * radius) * camera.direction;
+        const double zoom = request_.zoom->times(1);
+        for (Light& light : view.lights)
+            if (!light.sun) move(light, zoom * (light.location - world_focus), light.location - world_focus);
+        if (!view.ground) return;
+        const double height = request_.zoom->times(view.ground->height - world_focus.y);
+        if (std::abs(height) <= farthest_ground())
+            view.ground->height = height;
+        else
+            view.ground.reset();
+    }
+
+    /// A light beyond all distances is a sun.
+    void move(Light& light, Vec3 location, Vec3 direction) {
+        const double far = 1e3 * glm::length(result_.view.camera.location);
+        light.sun = !(glm::length(location) <= far);
+        light.location = light.sun ? glm::normalize(direction) : location;
+    }
+
+    double farthest_ground() const { return reach_share * glm::length(result_.view.camera.location); }
+
+    bool look_from_object() {
+        const GraphPath& path = focus_.path;
+        ObjectId object = model_.graph.root;
+        unsigned levels = 0;
+        Mat3 world_from_object(1.0);
+        for (const GraphStep& step : path.steps) {
+            const Instance& instance = model_.graph.objects[step.object].instances[step.instance];
+            object = instance.master;
+            levels += model_.components.unending[object] ? 1 : 0;
+            world_from_object = world_from_object * instance.parent_from_child.linear;
+            const double most = largest_entry(world_from_object);
+            if (most > 0) world_from_object = world_from_object * std::ldexp(1.0, -std::ilogb(most));
+        }
+        if (model_.steps && levels > *model_.steps) return refuse_depth(levels);
+        result_.view = frame_object_(object, levels);
+        if (path.steps.empty() || is_singular({world_from_object, {}})) return true;
+        const Mat3 object_from_world = inverse(Affine{world_from_object, {}}).linear;
+        if (!model_.graph.settings.lights.empty())
+            for (Light& light : result_.view.lights)
+                move(light, Vec3(std::numeric_limits<double>::infinity()),
+                     object_from_world * (light.sun ? light.location : light.location));
+        Sky& sky = result_.view.sky;
+        if (model_.graph.settings.background && sky.zenith != sky.horizon)
+            sky.axis = glm::normalize(object_from_world * sky.axis);
+        result_.view.ground.reset();
+        return true;
+    }
+
+    bool refuse_depth(unsigned levels) {
+        return refuse(fmt::format("the address is {} levels deep, and --steps ends the model after {}", levels,
+                                  *model_.steps),
+                      "give more --steps, or a shorter address");
+    }
+
+    /// Nothing while the frame is so large that no digit of the picture is left in it.
+    std::optional<Affine> picture_from_frame(const ZoomScale& scale) const {
+        constexpr double largest = 1e40;
+        std::optional<Affine> map = scale.picture_from_frame();
+        if (map && norm(map->linear) * around_.radius(around_.own()) > largest * reach_) map.reset();
+        return map;
+    }
+
+    double stretch(const ZoomScale& scale) const {
+        const std::optional<Affine> map = picture_from_frame(scale);
+        return map ? norm(map->linear) : std::numeric_limits<double>::infinity();
+    }
+
+    /// Of the frame: what may be seen in the picture.
+    double frame_reach(const ZoomScale& scale) const {
+        const std::optional<Affine> map = picture_from_frame(scale);
+        return map ? reach_ / std::max(singular_values(map->linear).z, 1e-300) : 0.0;
+    }
+
+    bool own_fits(const ZoomScale& scale) const {
+        return stretch(scale) * around_.radius(around_.own()) <= reach_;
+    }
+
+    /// Down the path until the object reached is no larger than the picture's reach.
+    bool descend(ZoomScale& scale) {
+        using Outcome = Surroundings::Outcome;
+        const GraphPath& path = focus_.path;
+        while (!own_fits(scale) && (path.endless() || result_.depth < path.steps.size())) {
+            ZoomScale below = scale;
+            below.descend();
+            const GraphStep& step = path.at(result_.depth);
+            const Vec3 focus = focus_.at(result_.depth + 1);
+            const Outcome outcome = around_.descend(step.instance, focus, frame_reach(below));
+            if (outcome == Outcome::flat) return refuse_flat(step);
+            if (outcome == Outcome::too_many) return refuse_crowd();
+            if (outcome == Outcome::no_level && request_.at) return refuse_depth(around_.own().levels + 1);
+            if (outcome == Outcome::no_level) break;
+            scale = below;
+            ++result_.depth;
+        }
+        return spread(scale);
+    }
+
+    /// Where the path ends before the object reached is small, its parts are.
+    bool spread(const ZoomScale& scale) {
+        const std::optional<Affine> map = picture_from_frame(scale);
+        if (!map) return refuse_end();
+        const Vec3 sigma = singular_values(map->linear);
+        if (sigma.x > worst_condition * sigma.z) return refuse_condition(sigma.x / sigma.z);
+        whole_ = own_fits(scale);
+        if (whole_) return true;
+        const double rounding = std::numeric_limits<double>::epsilon() * around_.radius(around_.own());
+        if (px(sigma.x * std::max(focus_.error, rounding)) > visible_px) return refuse_end();
+        return around_.spread(focus_.at(result_.depth), frame_reach(scale), reach_ / sigma.x) || refuse_crowd();
+    }
+
+    bool refuse_flat(const GraphStep& step) {
+        const Instance& instance = model_.graph.objects[step.object].instances[step.instance];
+        return refuse(fmt::format("the address leads through '{}', which flattens space: there is no way back "
+                                  "from its frame to the world around it",
+                                  model_.graph.objects[instance.master].name),
+                      "choose an address around it");
+    }
+
+    bool refuse_crowd() {
+        return refuse(fmt::format("more than {} parts of one size crowd around this place", Surroundings::most_pieces),
+                      "zoom in less, or choose another address");
+    }
+
+    bool refuse_condition(double condition) {
+        return refuse(fmt::format("the maps on the way stretch space {:.2g} times more one way than another: no "
+                                  "digits are left for what lies around",
+                                  condition),
+                      "zoom in less, or choose an address along similarities");
+    }
+
+    /// Where nothing recurs, a place is known to as many digits as a number has.
+    bool refuse_end() {
+        if (request_.at)
+            return refuse(fmt::format("the address ends after {} steps, before the zoom does",
+                                      focus_.path.steps.size()),
+                          "make it longer, for instance by a repetition at its end: (a.b)*");
+        return refuse("the zoom needs more digits than the point has",
+                      "give an address in place of the point: --at a.b.(c.d)*");
+    }
+
+    double px(double picture_length) const {
+        return picture_length *
+               result_.view.camera.pixels_per_unit(focus_in_picture(), result_.view.size.width);
+    }
+
+    bool place(const Affine& picture_from_frame) {
+        std::vector<NearPiece> pieces = around_.others();
+        if (whole_) pieces.insert(pieces.begin(), around_.own());
+        const double stretch = norm(picture_from_frame.linear);
+        Graph& graph = result_.graph;
+        graph = model_.graph;
+        result_.bounds = model_.bounds;
+        Object root;
+        root.name = free_name();
+        root.span = span();
+        ObjectBounds bounds;
+        double error = 0;
+        std::size_t too_large = 0;
+        for (const NearPiece& piece : pieces) {
+            const ObjectBounds& of_piece = model_.bounds[piece.object];
+            const bool primitive = graph.objects[piece.object].primitive.has_value() && !of_piece.unbounded;
+            if (primitive && stretch * around_.radius(piece) > largest_primitive * reach_) {
+                ++too_large;
+                continue;
+            }
+            Instance instance;
+            instance.master = piece.object;
+            instance.parent_from_child = picture_from_frame * piece.frame_from_piece;
+            instance.tint = straight(piece.tint);
+            instance.material = piece.material;
+            instance.span = root.span;
+            bounds.box.include(transformed(instance.parent_from_child, of_piece.box));
+            bounds.unbounded = bounds.unbounded || of_piece.unbounded;
+            root.instances.push_back(instance);
+            result_.root_levels.push_back(piece.levels);
+            error = std::max(error, stretch * piece.error);
+        }
+        if (root.instances.empty()) return refuse("nothing of the model lies there", "look somewhere else");
+        if (!bounds.box.empty())
+            bounds.ball = {bounds.box.centre(), 0.5 * glm::length(bounds.box.size())};
+        graph.root = graph.add(std::move(root));
+        result_.bounds.push_back(bounds);
+        result_.components = strong_components(graph);
+        warn(px(error), too_large);
+        return true;
+    }
+
+    static Tint straight(const PathTint& path) {
+        return path.alpha > 0 ? Tint{path.premultiplied / path.alpha, path.alpha} : Tint{};
+    }
+
+    void warn(double error_px, std::size_t too_large) {
+        if (error_px > visible_px)
+            diagnostics_.warning(span(), fmt::format("rounding moves parts around this place by up to {:.2g} px",
+                                                     error_px));
+        if (around_.lost() > 0)
+            diagnostics_.warning(span(), fmt::format("{} parts that may touch this place are left out: rounding "
+                                                     "hides where they lie",
+                                                     around_.lost()));
+        if (too_large > 0)
+            diagnostics_.warning(span(), fmt::format("{} primitives over {} times larger than all that is drawn "
+                                                     "are left out",
+                                                     too_large, largest_primitive));
+    }
+
+    std::string free_name() const {
+        const auto taken = [&](const std::string& name) {
+            return std::any_of(model_.graph.objects.begin(), model_.graph.objects.end(),
+                               [&](const Object& object) { return object.name == name; });
+        };
+        std::string name = "surroundings";
+        for (int i = 2; taken(name); ++i)
+            name = fmt::format("surroundings{}", i);
+        return name;
+    }
+
+    const ZoomModel& model_;
+    const ZoomRequest& request_;
+    const FrameObject& frame_object_;
+    Diagnostics& diagnostics_;
+    Focus focus_;
+    Surroundings around_;
+    double reach_ = 0;
+    bool whole_ = false; ///< the object reached fits into the picture's reach
+    Rerooted result_;
+};
+
+} // namespace
+
+std::optional<Rerooted> reroot(const ZoomModel& model, const ZoomRequest& request,
+                               const FrameObject& frame_object, const std::optional<Vec3>& look_at,
+                               Diagnostics& diagnostics) {
+    return Rerooter(model, request, frame_object, diagnostics).run(look_at);
+}
+
+} // namespace graftal

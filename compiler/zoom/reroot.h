@@ -1,0 +1,61 @@
+#pragma once
+
+// Deep zoom. A picture far inside the unfolding is made of a graph with a new root: the few subtrees that lie
+// around the focus, placed in coordinates of the picture. They are found on the way down an address
+// (surroundings.h), so the magnification has no limit for similarities, and no coordinate passes through the
+// world (Hart and DeFanti's camera in a node's own frame, made a compiler's stage).
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include "compiler/analysis/bounding.h"
+#include "compiler/graph/components.h"
+#include "compiler/graph/graph.h"
+#include "compiler/scene/scene.h"
+#include "compiler/support/diagnostics.h"
+#include "compiler/zoom/address.h"
+#include "compiler/zoom/magnification.h"
+
+namespace graftal {
+
+struct ZoomRequest {
+    std::optional<Address> at;         ///< alone: the camera is relative to this object's frame
+    std::optional<Magnification> zoom; ///< about the address, the point looked at, or the model's middle
+
+    bool active() const { return at || zoom; }
+};
+
+struct Rerooted {
+    Graph graph; ///< the old one with one more object, its root
+    Components components;
+    std::vector<ObjectBounds> bounds;
+    std::vector<unsigned> root_levels; ///< that the root's instances use up (CutOptions)
+    View view;
+    Magnification zoom; ///< how much larger than in the world lengths are
+    std::size_t depth = 0; ///< instances from the old root to where the new one begins
+};
+
+/// What a new root is made from. The graph's names are those of the address: not yet merged.
+struct ZoomModel {
+    const Graph& graph;
+    const Components& components;
+    const std::vector<ObjectBounds>& bounds;
+    std::optional<unsigned> steps;
+};
+
+/// The view that shows an object by itself, as if its frame were the world; of the root, the whole model. Of the
+/// levels that the model may have so many are used up.
+using FrameObject = std::function<View(ObjectId object, unsigned used_levels)>;
+
+/// With a zoom the camera keeps its direction, angle and distance, and looks at the focus, about which everything
+/// is enlarged. With an address alone the frame of its object becomes the world, and what `frame_object` makes of
+/// it the picture; only the lights stay where the model has them. `look_at`: a point to zoom about. Errors, in
+/// `diagnostics`: an address that does not exist or is deeper than the steps, a point whose digits do not reach
+/// so deep, maps that flatten space more than numbers can follow.
+std::optional<Rerooted> reroot(const ZoomModel& model, const ZoomRequest& request,
+                               const FrameObject& frame_object, const std::optional<Vec3>& look_at,
+                               Diagnostics& diagnostics);
+
+} // namespace graftal

@@ -121,10 +121,10 @@ TEST_F(Animate, ValuesOfModelsAreSwept) {
     write("weed.lsys",
           "let a = 20\nlsys weed {\n  angle a\n  steps 3\n  axiom F\n  F -> FF-[-F+F]+[+F-F]\n}\n");
     ASSERT_EQ(graftal("animate -q weed.lsys --set a=10..40 --frames 3 -o weed" + small).status, 0);
-    ASSERT_EQ(graftal("animate -q " + tree + "--set levels=1..3:1 --frames 6 -o tree" + small).status, 0);
+    ASSERT_EQ(graftal("animate -q " + tree + "--set levels=1..2:1 --frames 4 -o tree" + small).status, 0);
     EXPECT_GT(differing(frame("weed", 1), frame("weed", 2)), 10u);
     EXPECT_GT(differing(frame("weed", 2), frame("weed", 3)), 10u);
-    for (const int i : {1, 3, 5})
+    for (const int i : {1, 3})
         EXPECT_EQ(differing(frame("tree", i), frame("tree", i + 1)), 0u)
             << "each whole number has two frames";
     EXPECT_GT(differing(frame("tree", 2), frame("tree", 3)), 10u);

@@ -136,17 +136,16 @@ void add_view(CLI::App& app, Options& options) {
         compile.zoom.at = parse_address(text, problem);
         if (!compile.zoom.at) throw CLI::ValidationError(fmt::format("--at: '{}': {}", text, problem));
     };
-    app.add_option_function<std::string>(
-           "--at", address,
-           "Look at the part with this address, from its own frame: names of objects on the way from the root, "
-           "such as up.left.(right.up)*40; X#2 is the second instance of X")
+    app.add_option_function<std::string>("--at", address,
+                                         "Look at the part with this address, from its own frame: names of "
+                                         "objects on the way from the root, "
+                                         "such as up.left.(right.up)*40; X#2 is the second instance of X")
         ->type_name("ADDRESS")
         ->take_last();
-    add_value(
-        app, "--zoom", "F",
-        "Enlarge F times, such as 1e100 or 2^330, about the part at --at, else the point looked at",
-        "a number above 0, such as 1e100 or 2^330", Magnification::parse,
-        [&](Magnification zoom) { compile.zoom.zoom = zoom; });
+    add_value(app, "--zoom", "F",
+              "Enlarge F times, such as 1e100 or 2^330, about the part at --at, else the point looked at",
+              "a number above 0, such as 1e100 or 2^330", Magnification::parse,
+              [&](Magnification zoom) { compile.zoom.zoom = zoom; });
     CLI::Option* pixels = add_value(
         app, "--error", "PX", "Leave out what is smaller than this on the picture (default 0.5; 0: nothing)",
         "a number of pixels, 0 or more", [](const std::string& text) { return parse_at_least(text, 0); },

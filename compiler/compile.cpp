@@ -109,15 +109,19 @@ bool too_large(const Box& box) {
     return !box.empty() && !(std::max({far.x, far.y, far.z}) <= largest_size);
 }
 
+View view_of(const AnalysedModel& model, const CompileOptions& options, bool part) {
+    return options.frame ? options.frame(model, part) : frame_model(model, options.size, options.camera);
+}
+
 /// What frames an object as if it were the model; the camera that the model gives is meant for its root.
 FrameObject framing_of(const AnalysedModel& model, const CompileOptions& options) {
     return [&](ObjectId object, unsigned used_levels) {
-        if (object == model.graph.root) return frame_model(model, options.size, options.camera);
+        if (object == model.graph.root) return view_of(model, options, false);
         AnalysedModel part = model;
         part.graph.root = object;
         part.graph.settings.camera.reset();
         if (part.steps) *part.steps -= used_levels;
-        return frame_model(part, options.size, options.camera);
+        return view_of(part, options, true);
     };
 }
 
@@ -192,7 +196,7 @@ std::optional<CompiledModel> compile_model(const std::string& path, const Compil
     cut_options.steps = model->steps;
     std::optional<View> view = stages.run("frame", [&] {
         return options.zoom.active() ? zoom_model(*model, options, cut_options, compilation.diagnostics)
-                                     : frame_model(*model, options.size, options.camera);
+                                     : view_of(*model, options, false);
     });
     if (!view) return std::nullopt;
     std::optional<Cut> cut = stages.run("cut", [&] {

@@ -20,6 +20,8 @@
 
 namespace graftal {
 
+struct AnalysedModel;
+
 struct CompileOptions {
     LowerOptions lower;
     PipelineOptions pipeline;
@@ -28,6 +30,9 @@ struct CompileOptions {
     CameraOverride camera;
     ZoomRequest zoom;
     CutOptions cut; ///< its steps and root levels are filled in
+    /// Decides on the view of a model, or of a part that is looked at by itself, in place of frame_model():
+    /// the frames of an animation are framed together.
+    std::function<View(const AnalysedModel&, bool part)> frame;
 };
 
 struct StageTime {
@@ -41,8 +46,8 @@ struct AnalysedModel {
     Graph graph;
     Components components;
     Contraction contraction;
-    std::vector<ObjectBounds> bounds; ///< empty unless the contraction is proved or acyclic
-    std::optional<unsigned> steps;    ///< levels of recursion; from the command line, else from the model
+    std::vector<ObjectBounds> bounds;     ///< empty unless the contraction is proved or acyclic
+    std::optional<unsigned> steps;        ///< levels of recursion; from the command line, else from the model
     std::optional<Derivation> derivation; ///< of an L-system
 };
 

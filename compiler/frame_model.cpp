@@ -1,5 +1,7 @@
 #include "compiler/frame_model.h"
 
+#include <utility>
+
 #include "compiler/cut/unfold.h"
 #include "compiler/scene/outline.h"
 
@@ -33,17 +35,24 @@ Box box_of(const std::vector<Vec3>& points) {
 
 } // namespace
 
-View frame_model(const AnalysedModel& model, ImageSize size, const CameraOverride& camera) {
+Sight sight_of(const AnalysedModel& model) {
     if (model.steps && model.components.unending[model.graph.root]) {
-        const std::vector<Vec3> points = corners_of_levels(model);
-        if (!points.empty())
-            return frame(model.graph, box_of(points), size, camera, [&](const auto&) { return points; });
+        std::vector<Vec3> points = corners_of_levels(model);
+        if (!points.empty()) {
+            const Box box = box_of(points);
+            return {box, [points = std::move(points)](const auto&) { return points; }};
+        }
     }
     const Box& box = model.bounds[model.graph.root].box;
     const Box unit{Vec3(-1.0), Vec3(1.0)}; // stands in for nothing but planes
-    return frame(
-        model.graph, box.empty() ? unit : box, size, camera,
-        [&](const std::vector<Vec3>& directions) { return outline(model.graph, model.bounds, directions); });
+    return {box.empty() ? unit : box, [&model](const std::vector<Vec3>& directions) {
+                return outline(model.graph, model.bounds, directions);
+            }};
+}
+
+View frame_model(const AnalysedModel& model, ImageSize size, const CameraOverride& camera) {
+    const Sight sight = sight_of(model);
+    return frame(model.graph, sight.bounds, size, camera, sight.outliner);
 }
 
 } // namespace graftal

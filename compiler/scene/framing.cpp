@@ -261,8 +261,8 @@ bool is_figure(const Box& bounds) {
     return thickness(bounds) <= thin_share && (thickness(bounds) <= flat_share || thinnest_axis(bounds) != 1);
 }
 
-Camera frame_camera(const CameraSetting& setting, const Box& bounds, const Outliner& outliner,
-                    ImageSize size) {
+Camera frame_camera(const CameraSetting& setting, const Box& bounds, const Outliner& outliner, ImageSize size,
+                    bool turning) {
     Subject subject(bounds);
     const double aspect = static_cast<double>(size.width) / size.height;
     const bool figure = is_figure(bounds);
@@ -276,7 +276,7 @@ Camera frame_camera(const CameraSetting& setting, const Box& bounds, const Outli
     }
     orient(camera, direction, setting.up.value_or(Vec3(0, 1, 0)));
     // Seen face on, the box is exact already.
-    if (outliner && !figure) look_closer(subject, camera, outliner, aspect);
+    if (outliner && (!figure || turning)) look_closer(subject, camera, outliner, aspect);
     if (setting.orthographic || (figure && !setting.location && !setting.angle_deg))
         place_orthographic(camera, setting, subject, aspect);
     else

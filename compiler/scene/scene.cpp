@@ -90,12 +90,18 @@ View frame(const Graph& graph, const Box& bounds, ImageSize size, const CameraOv
            const Outliner& outliner) {
     GRAFTAL_CHECK(!bounds.empty(), "frame: empty bounds");
     GRAFTAL_CHECK(size.width > 0 && size.height > 0, "frame: empty picture");
+    const CameraSetting setting = merge(graph.settings.camera.value_or(CameraSetting{}), camera);
+    return view_through(frame_camera(setting, bounds, outliner, size), graph, bounds, size,
+                        sample_colours(graph));
+}
+
+View view_through(const Camera& camera, const Graph& graph, const Box& bounds, ImageSize size,
+                  const std::vector<Rgb>& colours) {
     const SceneSettings& settings = graph.settings;
     const bool flat = thickness(bounds) <= flat_share;
     View view;
     view.size = size;
-    view.camera =
-        frame_camera(merge(settings.camera.value_or(CameraSetting{}), camera), bounds, outliner, size);
+    view.camera = camera;
     if (settings.ground) view.ground = resolve(*settings.ground, graph.materials);
     if (!settings.lights.empty())
         view.lights = model_lights(settings.lights);
@@ -107,7 +113,7 @@ View frame(const Graph& graph, const Box& bounds, ImageSize size, const CameraOv
         view.sky.zenith = settings.background->rgb;
         view.sky.horizon = settings.background->horizon.value_or(settings.background->rgb);
     } else {
-        view.sky = automatic_sky(sample_colours(graph), view, is_figure(bounds));
+        view.sky = automatic_sky(colours, view, is_figure(bounds));
     }
     return view;
 }

@@ -83,4 +83,9 @@ using CameraOverride = CameraSetting;
 View frame(const Graph& graph, const Box& bounds, ImageSize size, const CameraOverride& camera = {},
            const Outliner& outliner = {});
 
+/// The view through a camera that is settled; the rest is chosen as frame() does it, for a model of these
+/// bounds that shows these colours (backdrop.h).
+View view_through(const Camera& camera, const Graph& graph, const Box& bounds, ImageSize size,
+                  const std::vector<Rgb>& colours);
+
 } // namespace graftal

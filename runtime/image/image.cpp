@@ -8,6 +8,7 @@
 
 #include "compiler/support/check.h"
 #include "compiler/support/file.h"
+#include "runtime/image/animation.h"
 #include "runtime/image/picture_files.h"
 
 namespace graftal {
@@ -77,10 +78,22 @@ Status write_image(const std::string& path, const Image& image, SampleFormat for
                                               : Samples::integer8;
     std::vector<PictureFiles::Tag> tags;
     if (!metadata.software.empty()) tags.push_back({"Software", metadata.software});
+    if (!metadata.stamp.empty()) tags.push_back({stamp_keyword, metadata.stamp});
     if (!metadata.description.empty()) tags.push_back({"ImageDescription", metadata.description});
 
     PendingFile pending(path);
     const std::string error = module().files->write(pending.temporary_path(), image, samples, linear, tags);
+    return error.empty() ? pending.commit() : failure("write", path, error);
+}
+
+Status write_gif(const std::string& path, const std::vector<std::string>& frames, FrameRate rate,
+                 const OnFrame& on_frame) {
+    if (!module().files) return failure("write", path, module().error);
+    const int delay_hundredths = static_cast<int>(100 / rate.per_second() + 0.5);
+    PendingFile pending(path);
+    const std::string error =
+        module().files->write_gif(pending.temporary_path(), frames, delay_hundredths, on_frame);
+    if (error == "interrupted") return Status::failure(error);
     return error.empty() ? pending.commit() : failure("write", path, error);
 }
 

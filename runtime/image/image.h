@@ -33,11 +33,14 @@ enum class SampleFormat {
 struct ImageMetadata {
     std::string software;    ///< tag Software
     std::string description; ///< tag ImageDescription: the command line
+    std::string stamp;       ///< tag graftal:stamp: what a frame of an animation was made from
 };
 
 /// True for names that write_image knows: `.png` and `.exr`, in any case.
 bool is_picture_name(const std::string& path);
 bool is_exr_name(const std::string& path);
+
+inline constexpr const char* stamp_keyword = "graftal:stamp";
 
 /// Reads any format that OpenImageIO knows; refuses pictures of more than 2^29 samples.
 Status read_image(const std::string& path, Image& image);

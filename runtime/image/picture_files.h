@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -21,9 +22,14 @@ struct PictureFiles {
     std::string (*read)(const std::string& path, std::uint64_t most_samples, Image& image);
     std::string (*write)(const std::string& path, const Image& image, Samples samples, bool linear,
                          const std::vector<Tag>& tags);
-    /// 16-bit RGB as PNG, not compressed: as quick to write as it can be. `levels` holds the samples of all pixels.
+    /// 16-bit RGB as PNG, not compressed: as quick to write as it can be. `levels` holds the samples of all
+    /// pixels.
     std::string (*write_levels)(const std::string& path, int width, int height,
                                 const std::vector<std::uint16_t>& levels);
+    /// Pictures of one size as an animated GIF. `on_frame` is called before each; false gives up, with
+    /// "interrupted".
+    std::string (*write_gif)(const std::string& path, const std::vector<std::string>& frames,
+                             int delay_hundredths, const std::function<bool(std::size_t)>& on_frame);
 };
 
 /// The name under which the module exports its `const PictureFiles*`-returning function.

@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <filesystem>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -98,7 +99,12 @@ std::optional<RenderReport> render_model(const std::string& path, const RenderOp
                                          Compilation& compilation) {
     std::optional<CompiledModel> model = compile_model(path, options.compile, compilation);
     if (!model) return std::nullopt;
+    return draw_model(std::move(*model), options, compilation);
+}
 
+std::optional<RenderReport> draw_model(CompiledModel compiled, const RenderOptions& options,
+                                       Compilation& compilation) {
+    std::optional<CompiledModel> model(std::move(compiled));
     const Interruption interruption;
     TemporaryDirectory temporary;
     PovrayJob job = job_for(options);

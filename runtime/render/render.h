@@ -40,4 +40,8 @@ struct RenderReport {
 std::optional<RenderReport> render_model(const std::string& path, const RenderOptions& options,
                                          Compilation& compilation);
 
+/// The second half of render_model: what follows the compiler.
+std::optional<RenderReport> draw_model(CompiledModel model, const RenderOptions& options,
+                                       Compilation& compilation);
+
 } // namespace graftal

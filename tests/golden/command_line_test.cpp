@@ -47,6 +47,26 @@ TEST_F(CommandLine, UsageErrorsAreStatusTwoAndPointAtTheHelp) {
         {"render a.inst --camera 'zoom=2'", "--camera: 'zoom=2' is none of"},
         {"render a.inst -o a.jpg", "graftal: 'a.jpg' ends neither in .png nor in .exr\n"},
         {"render -", "standard input has no name"},
+        {"animate a.inst --frames 0", "--frames: '0' is not a whole number from 1 to 100000"},
+        {"animate a.inst --frames 1000000000", "--frames: '1000000000' is not"},
+        {"animate a.inst --steps 1..x", "'1..x' is not a whole number from 0 to 4000000000, or two as A..B"},
+        {"animate a.inst --steps ..", "--steps: '..' is not"},
+        {"animate a.inst --steps 1..5000000000", "--steps: '1..5000000000' is not"},
+        {"animate a.inst --seed 1..-1", "--seed: '1..-1' is not"},
+        {"animate a.inst --set k=1..", "--set: 'k=1..' is not of the form NAME=NUMBER or NAME=A..B[:STEP]"},
+        {"animate a.inst --set k=1..9:0", "--set: 'k=1..9:0' is not"},
+        {"animate a.inst --set =1..9", "--set: '=1..9' is not"},
+        {"animate a.inst --camera angle=10..200", "--camera: angle must lie between 0 and 180 degrees"},
+        {"animate a.inst --camera location=1,2,3..4,5", "'location=4,5' is not of the form location=X,Y,Z"},
+        {"animate a.inst --camera orthographic=1..2", "is none of"},
+        {"animate a.inst --turn 10..20", "--turn: '10..20' is not"},
+        {"animate a.inst --fps 0", "--fps: '0' is not a number from 0.01 to 240"},
+        {"animate a.inst --fps 60", "--fps: a GIF shows at most 50 frames a second"},
+        {"animate a.inst --ease fast", "--ease: 'fast' is neither linear nor smooth"},
+        {"animate a.inst -o a.mp4 --size 63x48", "a video needs an even width and height, such as 64x48"},
+        {"animate a.inst -o a.jpg", "'a.jpg' ends in none of .gif, .png, .apng, .mp4, .webm"},
+        {"animate -", "give it as a file, not as standard input"},
+        {"render a.inst --steps 1..3", "--steps: '1..3' is not a whole number from 0 to 4000000000\n"},
         {"compile a.inst -o a.png", "'a.png' ends neither in .pov nor in .inc"},
         {"graph a.inst -o a.pdf", "'a.pdf' ends neither in .dot nor in .svg"},
         {"print a.inst --after drop_unreachabel", "did you mean 'drop_unreachable'?"},
@@ -67,7 +87,7 @@ TEST_F(CommandLine, UsageErrorsAreStatusTwoAndPointAtTheHelp) {
 
 TEST_F(CommandLine, HelpGoesToStandardOutput) {
     for (const std::string command :
-         {"", "render ", "compile ", "check ", "stats ", "print ", "graph ", "compare "}) {
+         {"", "render ", "animate ", "compile ", "check ", "stats ", "print ", "graph ", "compare "}) {
         const RunResult result = graftal(command + "--help");
         EXPECT_EQ(result.status, 0) << command;
         EXPECT_THAT(result.out, HasSubstr(command.empty() ? "Exit status" : "xample")) << command;

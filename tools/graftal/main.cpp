@@ -24,6 +24,8 @@ int run(const graftal::Options& options) {
     switch (options.command) {
     case Command::render:
         return graftal::run_render(options);
+    case Command::animate:
+        return graftal::run_animate(options);
     case Command::compile:
         return graftal::run_compile(options);
     case Command::check:

@@ -7,9 +7,11 @@
 #include <fmt/format.h>
 
 #include "compiler/passes/pipeline.h"
+#include "tools/graftal/animate_options.h"
 #include "tools/graftal/commands.h"
 #include "tools/graftal/option_values.h"
 #include "tools/graftal/report.h"
+#include "tools/graftal/sweep_values.h"
 
 namespace graftal {
 
@@ -27,6 +29,30 @@ CLI::Option* add_value(CLI::App& app, const std::string& name, const std::string
     return app.add_option_function<std::string>(name, apply, help)->type_name(value_name)->take_last();
 }
 
+/// Only an animation has values that run from A to B.
+bool can_sweep(const CLI::App& app) {
+    return app.get_name() == "animate";
+}
+
+/// add_value for what an animation may sweep; `read_sweep` reads "A..B".
+template<typename Read, typename ReadSweep, typename Store>
+void add_swept(CLI::App& app, Options& options, const std::string& name, const std::string& value_name,
+               const std::string& help, const std::string& expected, Read read, ReadSweep read_sweep,
+               Store store) {
+    if (!can_sweep(app)) {
+        add_value(app, name, value_name, help, expected, read, store);
+        return;
+    }
+    const auto read_either = [=, &options](const std::string& text) -> std::optional<std::function<void()>> {
+        if (auto value = read(text)) return [=] { store(*value); };
+        if (auto sweep = read_sweep(text))
+            return [=, &options] { add_sweep(options.animation.sweeps, *sweep); };
+        return std::nullopt;
+    };
+    add_value(app, name, value_name + "[.." + value_name + "]", help, expected + ", or two as A..B",
+              read_either, [](const std::function<void()>& set) { set(); });
+}
+
 std::optional<std::string> pass_named(const std::string& text, bool all_allowed) {
     if (all_allowed && text == "all") return text;
     std::vector<std::string> names;
@@ -42,26 +68,34 @@ std::optional<std::string> pass_named(const std::string& text, bool all_allowed)
 void add_common(CLI::App& app, Options& options) {
     CompileOptions& compile = options.compile;
     constexpr std::uint64_t most_steps = 4'000'000'000;
-    add_value(
-        app, "--steps", "N", "Depth: levels of the recursion, derivation steps of an L-system",
+    add_swept(
+        app, options, "--steps", "N", "Depth: levels of the recursion, derivation steps of an L-system",
         "a whole number from 0 to 4000000000",
         [](const std::string& text) { return parse_whole(text, 0, most_steps); },
+        [](const std::string& text) { return parse_steps_sweep(text, most_steps); },
         [&](std::uint64_t steps) { compile.steps = static_cast<unsigned>(steps); });
-    const auto set = [&compile](const std::vector<std::string>& texts) {
+    const bool sweeps = can_sweep(app);
+    const auto set = [&options, &compile, sweeps](const std::vector<std::string>& texts) {
         for (const std::string& text : texts) {
+            if (const auto sweep = sweeps ? parse_setting_sweep(text) : std::nullopt) {
+                add_sweep(options.animation.sweeps, *sweep);
+                continue;
+            }
             const auto setting = parse_setting(text);
             if (!setting)
-                throw CLI::ValidationError(fmt::format("--set: '{}' is not of the form NAME=NUMBER", text));
+                throw CLI::ValidationError(fmt::format("--set: '{}' is not of the form NAME=NUMBER{}", text,
+                                                       sweeps ? " or NAME=A..B[:STEP]" : ""));
+            drop_sweep(options.animation.sweeps, "--set " + setting->first);
             compile.lower.set[setting->first] = setting->second;
         }
     };
     app.add_option_function<std::vector<std::string>>(
            "--set", set, "Replace the value of a 'let' of the model (may be repeated)")
         ->allow_extra_args(false)
-        ->type_name("NAME=VALUE");
-    add_value(
-        app, "--seed", "N", "Seed of random models", "a whole number",
-        [](const std::string& text) { return parse_whole(text, 0, UINT64_MAX); },
+        ->type_name(sweeps ? "NAME=VALUE[..VALUE[:STEP]]" : "NAME=VALUE");
+    add_swept(
+        app, options, "--seed", "N", "Seed of random models", "a whole number",
+        [](const std::string& text) { return parse_whole(text, 0, UINT64_MAX); }, parse_seed_sweep,
         [&](std::uint64_t seed) { compile.lower.seed = seed; });
     app.add_flag("--exact", compile.lower.exact,
                  "Derive L-systems module by module, so that a random one is one honest sample");
@@ -83,9 +117,11 @@ void add_view(CLI::App& app, Options& options) {
     add_value(app, "--size", "WxH", "Size of the picture in pixels (default 1280x720)",
               "a size such as 1280x720, at most 32768 a side", parse_size,
               [&](ImageSize size) { compile.size = size; });
-    const auto camera = [&compile](const std::vector<std::string>& texts) {
+    const auto camera = [&compile, &sweeps = options.animation.sweeps,
+                         swept = can_sweep(app)](const std::vector<std::string>& texts) {
         for (const std::string& text : texts) {
-            const std::string problem = parse_camera(text, compile.camera);
+            const std::string problem = swept ? parse_camera_sweeps(text, compile.camera, sweeps)
+                                              : parse_camera(text, compile.camera);
             if (!problem.empty()) throw CLI::ValidationError("--camera: " + problem);
         }
     };
@@ -130,19 +166,15 @@ void add_view(CLI::App& app, Options& options) {
 
 void add_model(CLI::App& app, Options& options) {
     const auto set = [&options](const std::string& model) { options.operands = {model}; };
+    const std::string help = "Model file (.lsys, .rifs, .inst)";
     app.add_option_function<std::string>("MODEL", set,
-                                         "Model file (.lsys, .rifs, .inst), or - for standard input")
+                                         can_sweep(app) ? help : help + ", or - for standard input")
         ->required()
         ->type_name("");
 }
 
-void add_render(CLI::App& app, Options& options) {
-    add_model(app, options);
-    app.add_option("-o,--output", options.output,
-                   "Picture, .png or .exr (default: MODEL's name + .png, here)")
-        ->type_name("FILE");
-    add_view(app, options);
-    add_common(app, options);
+/// Of the commands that make pictures.
+void add_drawing(CLI::App& app, Options& options) {
     const auto engine = [](const std::string& text) {
         if (text == "native")
             throw CLI::ValidationError("--engine: 'native' is not in this version; the engine is povray");
@@ -159,6 +191,16 @@ void add_render(CLI::App& app, Options& options) {
     app.add_option_function<std::string>(
            "--antialias", antialias, "Smooth edges by up to 2^N x 2^N samples a pixel, or off (default 2)")
         ->type_name("off|N");
+}
+
+void add_render(CLI::App& app, Options& options) {
+    add_model(app, options);
+    app.add_option("-o,--output", options.output,
+                   "Picture, .png or .exr (default: MODEL's name + .png, here)")
+        ->type_name("FILE");
+    add_view(app, options);
+    add_common(app, options);
+    add_drawing(app, options);
     app.add_flag_callback(
         "--linear", [&] { options.format = SampleFormat::linear16; },
         "Write a 16-bit PNG of linear values, for measuring; else 8-bit sRGB");
@@ -170,6 +212,48 @@ void add_render(CLI::App& app, Options& options) {
                "  graftal render tree.inst --camera \"location=0,2,9 look_at=0,1,0 angle=30\"\n"
                "  graftal render gasket.inst --steps 6 --error 0        # six levels, nothing left out\n"
                "  graftal print tree.inst | graftal render - -o tree.png");
+}
+
+void add_animate(CLI::App& app, Options& options) {
+    AnimationOptions& animation = options.animation;
+    add_model(app, options);
+    app.add_option(
+           "-o,--output", options.output,
+           "Animation, .gif, .png (animated), .mp4 or .webm; a name without extension is a directory of "
+           "frames (default: MODEL's name + .gif, here)")
+        ->type_name("FILE");
+    add_value(
+        app, "--frames", "N", "Frames of the animation (default 60)", "a whole number from 1 to 100000",
+        [](const std::string& text) { return parse_whole(text, 1, 100'000); },
+        [&](std::uint64_t frames) { animation.frames = frames; });
+    add_value(app, "--fps", "F", "Frames a second (default 25)", "a number from 0.01 to 240",
+              parse_frame_rate, [&](FrameRate rate) { animation.rate = rate; });
+    add_value(app, "--turn", "DEGREES",
+              "Turn the camera about the model's vertical axis (default: 360 if nothing else moves)",
+              "a number from -36000 to 36000", parse_turn, [&](double turn) { animation.turn_deg = turn; });
+    const auto ease = [&animation](const std::string& text) {
+        if (text != "linear" && text != "smooth")
+            throw CLI::ValidationError(fmt::format("--ease: '{}' is neither linear nor smooth", text));
+        animation.ease = text == "smooth" ? Ease::smooth : Ease::linear;
+    };
+    app.add_option_function<std::string>("--ease", ease,
+                                         "Move evenly, or slowly at both ends (default linear)")
+        ->type_name("linear|smooth");
+    app.add_flag("--keep-frames", animation.keep_frames, "Leave the frames in the directory NAME.frames");
+    add_view(app, options);
+    add_common(app, options);
+    add_drawing(app, options);
+    app.footer(
+        "What is given as A..B runs from A to B over the animation: --steps, --seed, --set NAME=A..B\n"
+        "(NAME=A..B:1 in whole numbers), and the numbers and vectors of --camera. Frames that are done stay "
+        "in\n"
+        "NAME.frames until the animation is: after an interruption the same command goes on from there.\n"
+        "Examples:\n"
+        "  graftal animate scenes/hart/pound_sign.rifs           # once round it: pound_sign.gif\n"
+        "  graftal animate plant.lsys --steps 1..12 --frames 48 --fps 12 -o growth.png\n"
+        "  graftal animate tree.inst --set a=10..30 --turn 90 --ease smooth -o tree.mp4\n"
+        "  graftal animate fern.rifs --camera \"look_at=0,9,0 width=10..0.1\" -o zoom.webm\n"
+        "  graftal animate tree.inst --frames 240 -o frames/     # frames/frame_0001.png and so on");
 }
 
 void add_compile(CLI::App& app, Options& options) {
@@ -252,6 +336,7 @@ struct CommandEntry {
 
 constexpr CommandEntry commands[] = {
     {Command::render, "render", "Make a picture of a model, by POV-Ray", add_render},
+    {Command::animate, "animate", "Make an animation of a model: turning, growing, changing", add_animate},
     {Command::compile, "compile", "Write a model as a POV-Ray scene", add_compile},
     {Command::check, "check", "Read models and say what is wrong with them", add_check},
     {Command::stats, "stats", "Sizes, contraction, dimension and bounds of a model", add_stats},
@@ -298,6 +383,7 @@ std::string complete(Options& options) {
         if (!is_picture_name(options.output))
             return fmt::format("'{}' ends neither in .png nor in .exr", options.output);
     }
+    if (options.command == Command::animate) return complete_animation(options);
     if (options.output.empty()) options.output = "-";
     const bool to_stdout = options.output == "-";
     if (options.command == Command::compile && !to_stdout && extension != ".pov" && extension != ".inc")
@@ -346,6 +432,7 @@ ParsedCommandLine parse_command_line(int argc, const char* const* argv) {
     const std::string problem = complete(options);
     if (!problem.empty()) return {std::nullopt, usage_error(problem, chosen())};
 
+    options.animation.identity = frame_identity(*app.get_subcommands().front());
     std::vector<std::string> words(argv, argv + argc);
     words.front() = "graftal";
     options.command_line = shell_quoted(words);

@@ -5,17 +5,30 @@
 #include <vector>
 
 #include "compiler/compile.h"
+#include "runtime/image/animation.h"
 #include "runtime/image/image.h"
+#include "runtime/render/sweep.h"
 
 namespace graftal {
 
-enum class Command { render, compile, check, stats, print, graph, compare };
+enum class Command { render, animate, compile, check, stats, print, graph, compare };
+
+/// What `animate` takes besides what `render` does.
+struct AnimationOptions {
+    std::size_t frames = 60;
+    FrameRate rate;
+    std::optional<double> turn_deg; ///< nothing: once round where nothing else moves
+    std::vector<Sweep> sweeps;
+    Ease ease = Ease::linear;
+    bool keep_frames = false;
+    std::string identity; ///< the options that change what the frames show, and the version
+};
 
 /// The command line, understood.
 struct Options {
     Command command = Command::render;
     std::vector<std::string> operands; ///< the model or models; for compare the two pictures
-    std::string output;                ///< of render, compile and graph; "-" is standard output
+    std::string output;                ///< of render, animate, compile and graph; "-" is standard output
     CompileOptions compile;
     std::string dump_after; ///< a pass, "all", or ""
     bool time = false;
@@ -25,6 +38,7 @@ struct Options {
     SampleFormat format = SampleFormat::srgb8;
     std::optional<int> antialias = 2;
     std::string keep;
+    AnimationOptions animation;
     bool json = false;
     double threshold = 0;
 

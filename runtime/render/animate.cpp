@@ -1,0 +1,277 @@
+#include "runtime/render/animate.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <filesystem>
+#include <map>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "compiler/frame_animation.h"
+#include "runtime/povray/interruption.h"
+#include "runtime/render/frame_clock.h"
+#include "runtime/render/frame_store.h"
+#include "runtime/render/scene_files.h"
+#include "runtime/render/video.h"
+
+namespace graftal {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+using Stage = AnimationProgress::Stage;
+
+double seconds_since(Clock::time_point begin) {
+    return std::chrono::duration<double>(Clock::now() - begin).count();
+}
+
+/// True if two frames show one model, whatever the camera does.
+bool same_model(const CompileOptions& a, const CompileOptions& b) {
+    return a.steps == b.steps && a.lower.seed == b.lower.seed && a.lower.set == b.lower.set;
+}
+
+/// Adds up the times of the stages over all frames.
+void add_times(const std::vector<StageTime>& times, std::vector<StageTime>& sums) {
+    for (const StageTime& time : times) {
+        const auto sum = std::find_if(sums.begin(), sums.end(),
+                                      [&](const StageTime& other) { return other.stage == time.stage; });
+        if (sum == sums.end())
+            sums.push_back(time);
+        else
+            sum->seconds += time.seconds;
+    }
+}
+
+class Animation {
+  public:
+    Animation(const std::string& path, const AnimateOptions& options)
+        : path_(path), options_(options), kind_(*animation_kind(options.output)),
+          store_(frames_directory(options.output), options.frames) {}
+
+    AnimationOutcome run() {
+        const Interruption interruption;
+        const Clock::time_point begin = Clock::now();
+        outcome_.done = measure() && prepare() && draw() && assemble();
+        if (outcome_.done)
+            clean_up();
+        else
+            store_.discard_if_empty();
+        outcome_.seconds = seconds_since(begin);
+        return std::move(outcome_);
+    }
+
+  private:
+    /// What moves, as it is in a frame.
+    struct Moment {
+        CompileOptions compile;
+        double turn_deg = 0;
+        std::string name; ///< for messages
+    };
+
+    Moment moment(std::size_t frame) const {
+        const std::size_t last = std::max<std::size_t>(options_.frames - 1, 1);
+        const auto at = static_cast<double>(frame);
+        const double t = eased(options_.ease, at / static_cast<double>(last));
+        Moment moment{options_.render.compile, turn(frame), {}};
+        for (const Sweep& sweep : options_.sweeps) {
+            const std::string words = sweep.apply(t, moment.compile);
+            moment.name += (moment.name.empty() ? "" : " ") + words;
+        }
+        moment.name = fmt::format("frame {} of {}{}", frame + 1, options_.frames,
+                                  moment.name.empty() ? "" : " (" + moment.name + ")");
+        return moment;
+    }
+
+    /// Whole turns end where they began, so that the frame after the last would be the first; others end
+    /// where they lead to.
+    double turn(std::size_t frame) const {
+        const bool closed = std::fmod(options_.turn_deg, 360.0) == 0;
+        const std::size_t whole = std::max<std::size_t>(options_.frames - (closed ? 0 : 1), 1);
+        const auto at = static_cast<double>(frame), end = static_cast<double>(whole);
+        // Multiplied first, so that whole turns come out exactly.
+        if (options_.ease == Ease::linear) return options_.turn_deg * at / end;
+        return options_.turn_deg * eased(options_.ease, at / end);
+    }
+
+    /// Analyses the models of all frames.
+    bool measure() {
+        Moment before;
+        for (std::size_t frame = 0; frame < options_.frames; ++frame) {
+            if (Interruption::signal()) return fail("", Status::failure("interrupted"));
+            Moment now = moment(frame);
+            if (frame == 0 || !same_model(before.compile, now.compile)) {
+                show({Stage::measuring, frame, options_.frames, {}, {}});
+                if (!measure_model(now)) return false;
+            }
+            sources_.push_back(model_sources_);
+            before = std::move(now);
+        }
+        framing_.settle(moment(0).compile.camera, options_.render.compile.size, options_.turn_deg != 0);
+        return true;
+    }
+
+    bool measure_model(const Moment& now) {
+        Compilation compilation;
+        const std::optional<AnalysedModel> model = analyse_model(path_, now.compile, compilation);
+        if (!model) return fail(now.name, std::move(compilation));
+        if (options_.on_compiled) options_.on_compiled(compilation);
+        framing_.include(*model);
+        model_sources_ = Digest().add(compilation.sources);
+        all_sources_.add(model_sources_.text());
+        return true;
+    }
+
+    /// Checks what would fail late.
+    bool prepare() {
+        Status status = povray_available();
+        if (status.ok() && kind_ == AnimationKind::video) status = video_available();
+        if (status.ok() && kind_ != AnimationKind::frames) status = check_writable(options_.output);
+        if (status.ok()) status = store_.create();
+        if (status.ok()) status = check_writable(store_.path(0));
+        return status.ok() || fail("", status);
+    }
+
+    /// A frame depends on all models, which are framed together.
+    std::string stamp(std::size_t frame) const {
+        return Digest()
+            .add(options_.identity)
+            .add(all_sources_.text())
+            .add(std::to_string(options_.frames))
+            .add(std::to_string(frame))
+            .text();
+    }
+
+    bool draw() {
+        std::vector<std::size_t> missing;
+        for (std::size_t frame = 0; frame < options_.frames; ++frame)
+            if (!store_.has(frame, stamp(frame))) missing.push_back(frame);
+        outcome_.found = options_.frames - missing.size();
+        FrameClock clock;
+        for (std::size_t i = 0; i < missing.size(); ++i) {
+            const Clock::time_point begin = Clock::now();
+            if (!draw_frame(missing[i], clock.seconds_left(missing.size() - i))) return false;
+            clock.add(seconds_since(begin));
+            ++outcome_.drawn;
+        }
+        return true;
+    }
+
+    bool draw_frame(std::size_t frame, std::optional<double> seconds_left) {
+        if (Interruption::signal()) return fail("", Status::failure("interrupted"));
+        AnimationProgress progress{Stage::drawing, frame, options_.frames, seconds_left, {}};
+        show(progress);
+        Moment now = moment(frame);
+        now.compile.frame = [&](const AnalysedModel& model, bool part) {
+            return part ? view_of_part(model, now) : framing_.view(model, now.compile.camera, now.turn_deg);
+        };
+        Compilation compilation;
+        std::optional<CompiledModel> model = compile_model(path_, now.compile, compilation);
+        if (!model) return fail(now.name, std::move(compilation));
+        if (Digest().add(compilation.sources) != sources_[frame])
+            return fail(now.name, Status::failure("the model was changed meanwhile; start again"));
+        if (options_.on_compiled) options_.on_compiled(compilation);
+
+        RenderOptions render = options_.render;
+        render.compile = now.compile;
+        render.output = store_.path(frame);
+        render.metadata.stamp = stamp(frame);
+        render.on_progress = [&](const PovrayProgress& povray) {
+            progress.povray = povray;
+            show(progress);
+        };
+        const std::optional<RenderReport> report = draw_model(std::move(*model), render, compilation);
+        if (!report) return fail(now.name, std::move(compilation));
+        add_times(compilation.times, outcome_.compilation.times);
+        outcome_.error_px = std::max(outcome_.error_px, report->error_px);
+        outcome_.peak_bytes = std::max(outcome_.peak_bytes, report->peak_bytes);
+        return true;
+    }
+
+    /// A part that is looked at by itself (--at) is framed for its own frame; measure() does not know it.
+    View view_of_part(const AnalysedModel& part, const Moment& now) const {
+        SharedFraming framing;
+        framing.include(part);
+        framing.settle(now.compile.camera, now.compile.size, options_.turn_deg != 0);
+        return framing.view(part, now.compile.camera, now.turn_deg);
+    }
+
+    bool assemble() {
+        if (Interruption::signal()) return fail("", Status::failure("interrupted"));
+        const OnFrame on_frame = [&](std::size_t frame) {
+            show({Stage::assembling, frame, options_.frames, {}, {}});
+            return Interruption::signal() == 0;
+        };
+        Status status;
+        if (kind_ == AnimationKind::animated_png)
+            status = write_animated_png(options_.output, store_.paths(), options_.rate, on_frame);
+        if (kind_ == AnimationKind::gif)
+            status = write_gif(options_.output, store_.paths(), options_.rate, on_frame);
+        if (kind_ == AnimationKind::video) {
+            on_frame(0);
+            status = write_video(options_.output, store_, options_.rate);
+        }
+        return status.ok() || fail("", status);
+    }
+
+    void clean_up() {
+        if (kind_ == AnimationKind::frames) outcome_.strangers = store_.strangers();
+        if (kind_ == AnimationKind::frames || options_.keep_frames)
+            store_.tidy();
+        else
+            store_.remove();
+    }
+
+    void show(const AnimationProgress& progress) const {
+        if (options_.on_progress) options_.on_progress(progress);
+    }
+
+    bool fail(const std::string& frame, Compilation compilation) {
+        outcome_.frame = frame;
+        outcome_.compilation = std::move(compilation);
+        return false;
+    }
+    bool fail(const std::string& frame, const Status& status) {
+        outcome_.compilation.status = status;
+        outcome_.frame = frame;
+        return false;
+    }
+
+    const std::string& path_;
+    const AnimateOptions& options_;
+    AnimationKind kind_;
+    FrameStore store_;
+    SharedFraming framing_;
+    Digest model_sources_;
+    Digest all_sources_;
+    std::vector<Digest> sources_; ///< by frame
+    AnimationOutcome outcome_;
+};
+
+} // namespace
+
+std::optional<AnimationKind> animation_kind(const std::string& output) {
+    const std::filesystem::path path(output);
+    if (output.empty()) return std::nullopt;
+    if (!path.has_filename() || path.extension().empty()) return AnimationKind::frames;
+    static const std::map<std::string, AnimationKind> kinds = {{".gif", AnimationKind::gif},
+                                                               {".png", AnimationKind::animated_png},
+                                                               {".mp4", AnimationKind::video},
+                                                               {".apng", AnimationKind::animated_png},
+                                                               {".webm", AnimationKind::video}};
+    const auto kind = kinds.find(path.extension().string());
+    return kind == kinds.end() ? std::nullopt : std::optional(kind->second);
+}
+
+std::string frames_directory(const std::string& output) {
+    std::filesystem::path path(output);
+    if (*animation_kind(output) != AnimationKind::frames) return path.replace_extension(".frames").string();
+    return path.has_filename() ? output : path.parent_path().string();
+}
+
+AnimationOutcome animate_model(const std::string& path, const AnimateOptions& options) {
+    return Animation(path, options).run();
+}
+
+} // namespace graftal

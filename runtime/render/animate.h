@@ -1,0 +1,67 @@
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "compiler/compile.h"
+#include "runtime/image/animation.h"
+#include "runtime/render/render.h"
+#include "runtime/render/sweep.h"
+
+namespace graftal {
+
+enum class AnimationKind { frames, gif, animated_png, video };
+
+/// By the end of the name: `.gif`; `.png`, `.apng`; `.mp4`, `.webm`; a directory of frames without any or
+/// with a slash. Nothing for other names.
+std::optional<AnimationKind> animation_kind(const std::string& output);
+
+/// Where the frames are while they are made: the output itself, or NAME.frames beside NAME.gif.
+std::string frames_directory(const std::string& output);
+
+struct AnimationProgress {
+    enum class Stage { measuring, drawing, assembling };
+    Stage stage = Stage::measuring;
+    std::size_t frame = 0; ///< from 0
+    std::size_t frames = 0;
+    std::optional<double> seconds_left;   ///< while drawing, once that can be guessed
+    std::optional<PovrayProgress> povray; ///< of this frame
+};
+
+struct AnimateOptions {
+    RenderOptions render; ///< of every frame, but for what moves, the output and the stamp
+    std::string output;   ///< animation_kind(output) is known
+    std::size_t frames = 60;
+    FrameRate rate;
+    double turn_deg = 0; ///< of the camera about the model's vertical axis, over the whole animation
+    std::vector<Sweep> sweeps;
+    Ease ease = Ease::linear;
+    bool keep_frames = false; ///< after they have been assembled
+    std::string identity;     ///< what the frames depend on besides the model: the program and its options
+    std::function<void(const AnimationProgress&)> on_progress;
+    std::function<void(const Compilation&)>
+        on_compiled; ///< after each model that is without errors: warnings
+};
+
+/// How an animation ended.
+struct AnimationOutcome {
+    bool done = false;
+    Compilation compilation; ///< of what went wrong; if done: the times of all frames together
+    std::string frame; ///< if not done: the frame that it went wrong at, e.g. "frame 17 of 60 (--steps 4)"
+    std::size_t drawn = 0;     ///< frames
+    std::size_t found = 0;     ///< frames that an earlier run had drawn
+    std::size_t strangers = 0; ///< frames of other animations in a directory of frames
+    double error_px = 0;       ///< the largest of the frames drawn
+    std::uint64_t peak_bytes = 0;
+    double seconds = 0;
+};
+
+/// Draws the frames that are not there yet and puts them together. All models that are shown are analysed
+/// first: they are framed together, and a value that a model does not take is found before the first frame is
+/// drawn. However it ends, whole frames stay for the next run until the output is there, and the output is
+/// whole or not there. Interruptions as for render_model.
+AnimationOutcome animate_model(const std::string& path, const AnimateOptions& options);
+
+} // namespace graftal

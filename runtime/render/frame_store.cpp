@@ -1,0 +1,126 @@
+#include "runtime/render/frame_store.h"
+
+#include <algorithm>
+#include <cctype>
+#include <filesystem>
+#include <optional>
+
+#include <fmt/format.h>
+
+#include "compiler/support/file.h"
+#include "runtime/image/image.h"
+#include "runtime/image/png_chunks.h"
+
+namespace graftal {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr std::string_view prefix = "frame_", suffix = ".png";
+
+/// The stamp of a whole PNG, or nothing.
+std::optional<std::string> stamp_of(const std::string& path) {
+    std::string text;
+    if (!read_text(path, text, 1u << 30).ok()) return std::nullopt;
+    const std::optional<std::vector<PngChunk>> chunks = png_chunks(text);
+    return chunks ? png_text(*chunks, stamp_keyword) : std::nullopt;
+}
+
+std::vector<std::string> names_in(const std::string& directory) {
+    std::vector<std::string> names;
+    std::error_code error;
+    for (fs::directory_iterator entry(directory, error), end; !error && entry != end; entry.increment(error))
+        names.push_back(entry->path().filename().string());
+    return names;
+}
+
+} // namespace
+
+FrameStore::FrameStore(std::string directory, std::size_t count)
+    : directory_(std::move(directory)), count_(count),
+      digits_(std::max(4, static_cast<int>(std::to_string(count).size()))) {}
+
+Status FrameStore::create() {
+    std::error_code error;
+    made_ = fs::create_directories(directory_, error);
+    if (!error && !fs::is_directory(directory_, error))
+        error = std::make_error_code(std::errc::not_a_directory);
+    if (!error) return {};
+    return Status::failure(fmt::format("cannot make the directory '{}': {}", directory_, error.message()));
+}
+
+std::string FrameStore::name(std::size_t frame) const {
+    return fmt::format("{}{:0{}}{}", prefix, frame + 1, digits_, suffix);
+}
+
+std::vector<std::string> FrameStore::paths() const {
+    std::vector<std::string> paths;
+    for (std::size_t frame = 0; frame < count_; ++frame)
+        paths.push_back(path(frame));
+    return paths;
+}
+
+std::string FrameStore::name_pattern() const {
+    return fmt::format("{}%0{}d{}", prefix, digits_, suffix);
+}
+
+bool FrameStore::has(std::size_t frame, const std::string& stamp) const {
+    return stamp_of(path(frame)) == stamp;
+}
+
+bool FrameStore::is_frame_name(const std::string& name) const {
+    if (!name.starts_with(prefix) || !name.ends_with(suffix)) return false;
+    const std::string number = name.substr(prefix.size(), name.size() - prefix.size() - suffix.size());
+    return number.size() >= 4 &&
+           std::all_of(number.begin(), number.end(), [](unsigned char c) { return std::isdigit(c) != 0; });
+}
+
+void FrameStore::tidy() const {
+    // As PendingFile names them.
+    for (const std::string& name : names_in(directory_))
+        if (name.starts_with("." + std::string(prefix)) && name.ends_with(suffix)) {
+            std::error_code ignored;
+            fs::remove(directory_ + "/" + name, ignored);
+        }
+}
+
+void FrameStore::remove() const {
+    std::error_code ignored;
+    for (const std::string& name : names_in(directory_))
+        if (is_frame_name(name) && stamp_of(directory_ + "/" + name))
+            fs::remove(directory_ + "/" + name, ignored);
+    fs::remove(directory_, ignored); // fails if something else is in it
+}
+
+void FrameStore::discard_if_empty() const {
+    std::error_code ignored;
+    if (made_) fs::remove(directory_, ignored);
+}
+
+std::size_t FrameStore::strangers() const {
+    const std::vector<std::string> names = names_in(directory_);
+    const auto frames = std::count_if(names.begin(), names.end(),
+                                      [this](const std::string& name) { return is_frame_name(name); });
+    return static_cast<std::size_t>(frames) - std::min(count_, static_cast<std::size_t>(frames));
+}
+
+Digest& Digest::add(std::string_view text) {
+    for (std::size_t length = text.size(), i = 0; i < sizeof length; ++i)
+        add_byte(static_cast<unsigned char>(length >> (8 * i)));
+    for (const char c : text)
+        add_byte(static_cast<unsigned char>(c));
+    return *this;
+}
+
+Digest& Digest::add(const SourceMap& sources) {
+    for (FileId file = 0; file < sources.size(); ++file)
+        add(sources.text(file));
+    return *this;
+}
+
+std::string Digest::text() const {
+    return fmt::format("{:016x}", hash_);
+}
+
+} // namespace graftal

@@ -1,0 +1,67 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "compiler/support/source.h"
+#include "compiler/support/status.h"
+
+namespace graftal {
+
+/// The frames of an animation as PNG files in a directory, which outlives the program: what one run has drawn
+/// the next one finds. Each carries a stamp that says what it was made from.
+class FrameStore {
+  public:
+    FrameStore(std::string directory, std::size_t count);
+
+    /// Makes the directory if it is missing.
+    Status create();
+
+    const std::string& directory() const { return directory_; }
+    std::size_t count() const { return count_; }
+    /// Of a frame, from 0: frame_0001.png and so on, with as many digits as the last one needs.
+    std::string name(std::size_t frame) const;
+    std::string path(std::size_t frame) const { return directory_ + "/" + name(frame); }
+    std::vector<std::string> paths() const;
+    /// The names as printf has them, for programs that read numbered pictures.
+    std::string name_pattern() const;
+
+    /// True if the file is a whole PNG with this stamp.
+    bool has(std::size_t frame, const std::string& stamp) const;
+
+    /// Removes what runs that were killed have left half written.
+    void tidy() const;
+    /// Removes all frames that bear a stamp of ours, and the directory if nothing else is in it.
+    void remove() const;
+    /// Takes back an unused create().
+    void discard_if_empty() const;
+    /// Pictures in the directory that are named like frames but are not of this animation.
+    std::size_t strangers() const;
+
+  private:
+    bool is_frame_name(const std::string& name) const;
+
+    std::string directory_;
+    std::size_t count_;
+    int digits_;
+    bool made_ = false; ///< the directory, by us
+};
+
+/// 64 bits of what has been added, as hexadecimal digits: FNV-1a, lengths included.
+class Digest {
+  public:
+    Digest& add(std::string_view text);
+    /// The texts of all files that a compilation has read.
+    Digest& add(const SourceMap& sources);
+    std::string text() const;
+    bool operator==(const Digest&) const = default;
+
+  private:
+    void add_byte(unsigned char byte) { hash_ = (hash_ ^ byte) * 0x100000001b3u; }
+
+    std::uint64_t hash_ = 0xcbf29ce484222325u;
+};
+
+} // namespace graftal

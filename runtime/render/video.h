@@ -1,0 +1,18 @@
+#pragma once
+
+#include <string>
+
+#include "compiler/support/status.h"
+#include "runtime/image/animation.h"
+#include "runtime/render/frame_store.h"
+
+namespace graftal {
+
+/// Fails, with advice, if the program that makes videos is not installed.
+Status video_available();
+
+/// Frames -> `.mp4` (H.264) or `.webm` (VP9), whole or not at all, by the program ffmpeg. Requires frames of
+/// even width and height, which is what both formats have.
+Status write_video(const std::string& path, const FrameStore& frames, FrameRate rate);
+
+} // namespace graftal

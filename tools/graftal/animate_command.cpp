@@ -1,0 +1,106 @@
+#include "runtime/render/animate.h"
+
+#include <set>
+
+#include <fmt/format.h>
+
+#include "runtime/render/frame_clock.h"
+#include "runtime/render/frame_store.h"
+#include "tools/graftal/commands.h"
+#include "tools/graftal/progress_bar.h"
+#include "tools/graftal/report.h"
+
+namespace graftal {
+
+namespace {
+
+std::string progress_text(const AnimationProgress& progress) {
+    const std::string frame = fmt::format("frame {}/{}", progress.frame + 1, progress.frames);
+    switch (progress.stage) {
+    case AnimationProgress::Stage::measuring:
+        return "measuring, " + frame;
+    case AnimationProgress::Stage::assembling:
+        return "putting together, " + frame;
+    case AnimationProgress::Stage::drawing:
+        break;
+    }
+    std::string text = frame;
+    if (progress.seconds_left) text += fmt::format(", {} left", duration_text(*progress.seconds_left));
+    if (progress.povray && progress.povray->fraction &&
+        progress.povray->stage == PovrayProgress::Stage::rendering)
+        text += fmt::format("  {:3.0f} %", 100 * *progress.povray->fraction);
+    return text;
+}
+
+/// What many frames have to say is said once.
+class Warnings {
+  public:
+    explicit Warnings(ProgressBar& bar) : bar_(bar) {}
+    void say_new(const Compilation& compilation) {
+        const std::string text = compilation.diagnostics.render(compilation.sources);
+        if (text.empty() || !said_.insert(text).second) return;
+        bar_.clear();
+        say(text);
+    }
+
+  private:
+    ProgressBar& bar_;
+    std::set<std::string> said_;
+};
+
+AnimateOptions animate_options(const Options& options) {
+    AnimateOptions animate;
+    animate.render.compile = compile_options(options);
+    animate.render.metadata = {"graftal " GRAFTAL_VERSION, options.command_line, {}};
+    animate.render.antialias = options.antialias;
+    animate.render.threads = options.threads;
+    animate.output = options.output;
+    animate.frames = options.animation.frames;
+    animate.rate = options.animation.rate;
+    animate.turn_deg = *options.animation.turn_deg;
+    animate.sweeps = options.animation.sweeps;
+    animate.ease = options.animation.ease;
+    animate.keep_frames = options.animation.keep_frames;
+    animate.identity = options.animation.identity;
+    return animate;
+}
+
+std::string done_text(const Options& options, const AnimationOutcome& outcome) {
+    std::string text = fmt::format("{}: {} frames, {:g} a second", options.output, options.animation.frames,
+                                   options.animation.rate.per_second());
+    if (outcome.found > 0) text += fmt::format("; {} were there already", outcome.found);
+    if (outcome.drawn > 0) text += fmt::format("; error at most {:.2g} px", outcome.error_px);
+    text += fmt::format("; {}\n", duration_text(outcome.seconds));
+    if (outcome.strangers > 0)
+        text += fmt::format("graftal: '{}' holds {} frame{} of another animation too\n", options.output,
+                            outcome.strangers, outcome.strangers == 1 ? "" : "s");
+    return text;
+}
+
+/// What an animation that is not done leaves behind, and how to go on.
+std::string rest_text(const Options& options, const AnimationOutcome& outcome) {
+    const std::size_t there = outcome.drawn + outcome.found;
+    if (there == 0) return {};
+    return fmt::format("graftal: {} of {} frames are in '{}'; the same command goes on from there\n", there,
+                       options.animation.frames, frames_directory(options.output));
+}
+
+} // namespace
+
+int run_animate(const Options& options) {
+    ProgressBar bar(!options.quiet);
+    Warnings warnings(bar);
+    AnimateOptions animate = animate_options(options);
+    animate.on_progress = [&](const AnimationProgress& progress) { bar.show(progress_text(progress)); };
+    animate.on_compiled = [&](const Compilation& compilation) { warnings.say_new(compilation); };
+
+    const AnimationOutcome outcome = animate_model(options.operands.front(), animate);
+    bar.clear();
+    if (!outcome.done && !outcome.frame.empty()) complain("at " + outcome.frame + ":");
+    const int status = conclude(options, outcome.compilation);
+    if (!outcome.done) say(rest_text(options, outcome));
+    if (outcome.done && !options.quiet) say(done_text(options, outcome));
+    return status;
+}
+
+} // namespace graftal

@@ -1,0 +1,45 @@
+#include "tools/graftal/animate_options.h"
+
+#include <filesystem>
+#include <set>
+
+#include <fmt/format.h>
+
+#include "runtime/render/animate.h"
+#include "tools/graftal/option_values.h"
+
+namespace graftal {
+
+std::string complete_animation(Options& options) {
+    AnimationOptions& animation = options.animation;
+    if (options.operands.front() == "-")
+        return "an animation reads its model more than once: give it as a file, not as standard input";
+    if (options.output.empty())
+        options.output = std::filesystem::path(options.operands.front()).stem().string() + ".gif";
+    const std::optional<AnimationKind> kind = animation_kind(options.output);
+    if (!kind)
+        return fmt::format(
+            "'{}' ends in none of .gif, .png, .apng, .mp4, .webm; a directory of frames has no "
+            "extension, or a slash at the end",
+            options.output);
+    if (kind == AnimationKind::gif && animation.rate.hundredths > fastest_gif.hundredths)
+        return fmt::format("--fps: a GIF shows at most {:g} frames a second", fastest_gif.per_second());
+    const ImageSize size = options.compile.size;
+    if (kind == AnimationKind::video && (size.width % 2 != 0 || size.height % 2 != 0))
+        return fmt::format("--size: a video needs an even width and height, such as {}x{}",
+                           size.width + size.width % 2, size.height + size.height % 2);
+    if (!animation.turn_deg) animation.turn_deg = animation.sweeps.empty() ? 360 : 0;
+    return {};
+}
+
+std::string frame_identity(const CLI::App& command) {
+    static const std::set<std::string> harmless = {"MODEL",  "--output", "--fps",        "--keep-frames",
+                                                   "--time", "--quiet",  "--dump-after", "--threads"};
+    std::string text = "graftal " GRAFTAL_VERSION;
+    for (const CLI::Option* option : command.get_options())
+        if (option->count() > 0 && !harmless.contains(option->get_name()))
+            text += "\n" + option->get_name() + " " + shell_quoted(option->results());
+    return text;
+}
+
+} // namespace graftal

@@ -1,0 +1,130 @@
+#include "tools/graftal/sweep_values.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "tools/graftal/option_values.h"
+
+namespace graftal {
+
+namespace {
+
+constexpr std::string_view between = "..";
+
+using WholeRange = std::pair<std::uint64_t, std::uint64_t>;
+
+std::optional<WholeRange> parse_whole_range(std::string_view text, std::uint64_t most) {
+    const auto range = parse_range(text);
+    if (!range) return std::nullopt;
+    const auto from = parse_whole(range->first, 0, most), to = parse_whole(range->second, 0, most);
+    if (!from || !to) return std::nullopt;
+    return WholeRange(*from, *to);
+}
+
+std::string text_of(Vec3 v) {
+    return fmt::format("{:.6g},{:.6g},{:.6g}", v.x, v.y, v.z);
+}
+
+/// One swept word of a camera: `from` and `to` each set the same member.
+Sweep camera_sweep(const std::string& name, const CameraOverride& from, const CameraOverride& to) {
+    const auto apply = [=](double t, CompileOptions& options) {
+        CameraOverride& camera = options.camera;
+        std::string text = "--camera " + name + "=";
+        const auto sweep_vector = [&](auto member) {
+            if (!(from.*member)) return;
+            camera.*member = swept(*(from.*member), *(to.*member), t);
+            text += text_of(*(camera.*member));
+        };
+        for (const auto member : {&CameraOverride::location, &CameraOverride::look_at, &CameraOverride::up})
+            sweep_vector(member);
+        if (from.angle_deg) camera.angle_deg = swept(*from.angle_deg, *to.angle_deg, t);
+        if (from.width) camera.width = swept_by_factor(*from.width, *to.width, t);
+        if (from.angle_deg) text += fmt::format("{:.6g}", *camera.angle_deg);
+        if (from.width) text += fmt::format("{:.6g}", *camera.width);
+        return text;
+    };
+    return {"--camera " + name, apply};
+}
+
+} // namespace
+
+std::optional<std::pair<std::string, std::string>> parse_range(std::string_view text) {
+    const std::size_t at = text.find(between);
+    if (at == std::string_view::npos) return std::nullopt;
+    return std::pair(std::string(text.substr(0, at)), std::string(text.substr(at + between.size())));
+}
+
+std::optional<Sweep> parse_steps_sweep(std::string_view text, std::uint64_t most) {
+    const auto range = parse_whole_range(text, most);
+    if (!range) return std::nullopt;
+    return Sweep{"--steps", [range = *range](double t, CompileOptions& options) {
+                     options.steps = static_cast<unsigned>(swept_whole(range.first, range.second, t));
+                     return fmt::format("--steps {}", *options.steps);
+                 }};
+}
+
+std::optional<Sweep> parse_seed_sweep(std::string_view text) {
+    const auto range = parse_whole_range(text, UINT64_MAX);
+    if (!range) return std::nullopt;
+    return Sweep{"--seed", [range = *range](double t, CompileOptions& options) {
+                     options.lower.seed = swept_whole(range.first, range.second, t);
+                     return fmt::format("--seed {}", *options.lower.seed);
+                 }};
+}
+
+std::optional<Sweep> parse_setting_sweep(std::string_view text) {
+    const auto range = parse_range(text);
+    if (!range) return std::nullopt;
+    const std::size_t colon = std::min(range->second.find(':'), range->second.size());
+    const auto from = parse_setting(range->first);
+    if (!from) return std::nullopt;
+    const auto to = parse_setting(from->first + "=" + range->second.substr(0, colon));
+    if (!to) return std::nullopt;
+    double step = 0;
+    if (colon < range->second.size()) {
+        const auto given = parse_at_least(range->second.substr(colon + 1), 0);
+        if (!given || !(*given > 0)) return std::nullopt;
+        step = *given;
+    }
+    const auto apply = [=, name = from->first, a = from->second, b = to->second](double t,
+                                                                                 CompileOptions& options) {
+        const double value = step > 0 ? swept_by_steps(a, b, step, t) : swept(a, b, t);
+        options.lower.set[name] = value;
+        return fmt::format("--set {}={:.6g}", name, value);
+    };
+    return Sweep{"--set " + from->first, apply};
+}
+
+std::string parse_camera_sweeps(std::string_view text, CameraOverride& camera, std::vector<Sweep>& sweeps) {
+    constexpr std::string_view blanks = " \t\n";
+    while (true) {
+        const std::size_t begin = text.find_first_not_of(blanks);
+        if (begin == std::string_view::npos) return {};
+        text.remove_prefix(begin);
+        const std::string_view word = text.substr(0, text.find_first_of(blanks));
+        text.remove_prefix(word.size());
+        const std::string name(word.substr(0, word.find('=')));
+        const auto range = parse_range(word);
+        CameraOverride from, to;
+        std::string problem = range ? parse_camera(range->first, from) : parse_camera(word, camera);
+        if (range && problem.empty()) problem = parse_camera(name + "=" + range->second, to);
+        if (!problem.empty()) return problem;
+        drop_sweep(sweeps, "--camera " + name);
+        if (range) sweeps.push_back(camera_sweep(name, from, to));
+    }
+}
+
+std::optional<FrameRate> parse_frame_rate(std::string_view text) {
+    const std::optional<double> rate = parse_at_least(text, 0.01);
+    if (!rate || *rate > 240) return std::nullopt;
+    return FrameRate{static_cast<int>(std::lround(100 * *rate))};
+}
+
+std::optional<double> parse_turn(std::string_view text) {
+    const std::optional<double> turn = parse_at_least(text, -36000);
+    return turn && *turn <= 36000 ? turn : std::nullopt;
+}
+
+} // namespace graftal

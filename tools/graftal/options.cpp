@@ -142,9 +142,9 @@ void add_view(CLI::App& app, Options& options) {
                                          "such as up.left.(right.up)*40; X#2 is the second instance of X")
         ->type_name("ADDRESS")
         ->take_last();
-    add_value(app, "--zoom", "F",
+    add_swept(app, options, "--zoom", "F",
               "Enlarge F times, such as 1e100 or 2^330, about the part at --at, else the point looked at",
-              "a number above 0, such as 1e100 or 2^330", Magnification::parse,
+              "a number above 0, such as 1e100 or 2^330", Magnification::parse, parse_zoom_sweep,
               [&](Magnification zoom) { compile.zoom.zoom = zoom; });
     CLI::Option* pixels = add_value(
         app, "--error", "PX", "Leave out what is smaller than this on the picture (default 0.5; 0: nothing)",

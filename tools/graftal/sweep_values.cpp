@@ -97,6 +97,18 @@ std::optional<Sweep> parse_setting_sweep(std::string_view text) {
     return Sweep{"--set " + from->first, apply};
 }
 
+std::optional<Sweep> parse_zoom_sweep(std::string_view text) {
+    const auto range = parse_range(text);
+    if (!range) return std::nullopt;
+    const auto from = Magnification::parse(range->first), to = Magnification::parse(range->second);
+    if (!from || !to) return std::nullopt;
+    return Sweep{"--zoom", [from = from->log2(), to = to->log2()](double t, CompileOptions& options) {
+                     const double log2 = swept(from, to, t);
+                     options.zoom.zoom = Magnification::exp2(log2);
+                     return fmt::format("--zoom 2^{:.6g}", log2);
+                 }};
+}
+
 std::string parse_camera_sweeps(std::string_view text, CameraOverride& camera, std::vector<Sweep>& sweeps) {
     constexpr std::string_view blanks = " \t\n";
     while (true) {

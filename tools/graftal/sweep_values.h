@@ -23,6 +23,9 @@ std::optional<Sweep> parse_seed_sweep(std::string_view text);
 /// "NAME=A..B": the value of a `let`; "NAME=A..B:STEP" runs in steps, each for an equal time.
 std::optional<Sweep> parse_setting_sweep(std::string_view text);
 
+/// "1..1e30": a zoom by equal factors in equal times.
+std::optional<Sweep> parse_zoom_sweep(std::string_view text);
+
 /// The camera's words as parse_camera takes them, any number or vector of which may be "A..B". A width, which
 /// is a magnification, runs by equal factors, all else by equal steps. Returns what is wrong, or "".
 std::string parse_camera_sweeps(std::string_view text, CameraOverride& camera, std::vector<Sweep>& sweeps);

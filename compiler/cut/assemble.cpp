@@ -74,7 +74,7 @@ class Unfolding {
             return place_primitive(*node.primitive, piece.world_from_node, piece, piece.inherited);
         const double detail = detail_of(cut_, projection_, piece);
         const bool cut = is_cut(node, piece.steps, detail);
-        const PieceKind kind = weights_.normalised({piece.node, piece.steps, PieceKind::step_of(detail)});
+        const PieceKind kind = weights_.normalised(kind_of(cut_, projection_, piece));
         if (cut && detail <= 1) culled_detail = std::max(culled_detail, detail);
         if (node.sealed) return place_mesh(piece, kind);
         if (followed_edges(node, cut).empty())
@@ -294,18 +294,6 @@ class Grouping {
     IdTable group_ids_;
 };
 
-std::uint64_t estimated_bytes(const Cut& cut) {
-    double bytes = PovrayCosts::base + PovrayCosts::placement * static_cast<double>(cut.placement_count) +
-                   PovrayCosts::triangle * static_cast<double>(cut.triangle_count) +
-                   PovrayCosts::own_texture * static_cast<double>(cut.groups.size());
-    for (const Palette& palette : cut.palettes)
-        if (palette.size() > 1) bytes += PovrayCosts::slot * static_cast<double>(palette.size());
-    for (const Body& body : cut.bodies)
-        if (const Mesh* mesh = std::get_if<Mesh>(&body.shape))
-            bytes += PovrayCosts::coloured_triangle * static_cast<double>(mesh->slot_of_triangle.size());
-    return static_cast<std::uint64_t>(bytes);
-}
-
 } // namespace
 
 std::optional<Cut> assemble(const CutGraph& cut, const Symmetry& symmetry, const Projection& projection,
@@ -332,7 +320,6 @@ std::optional<Cut> assemble(const CutGraph& cut, const Symmetry& symmetry, const
     result.tessellation_px = tessellation_px;
     result.finest = unfolding.finest;
     result.leaf_count = choice.leaves;
-    result.estimated_bytes = estimated_bytes(result);
     return result;
 }
 

@@ -14,9 +14,10 @@ constexpr double most_leaves = 6000;
 constexpr std::size_t max_sample_triangles = 200'000;
 
 /// A kind of the node with about the right number of leaves, by levels if the model is cut by levels.
-bool find_sample(Weights& weights, NodeId node, bool by_levels, PieceKind& sample) {
+bool find_sample(Weights& weights, const CutGraph& cut, NodeId node, bool by_levels, PieceKind& sample) {
+    const std::int32_t whole = PieceKind::step_of(0.5 / cut.nodes[node].ball.radius);
     for (std::int32_t depth = 1; depth < 64; ++depth) {
-        sample = {node, unlimited_steps, depth * PieceKind::steps_an_octave / 2};
+        sample = {node, unlimited_steps, whole + depth * PieceKind::steps_an_octave / 2};
         if (by_levels) sample = {node, static_cast<std::uint32_t>(depth), PieceKind::endless_detail};
         const double leaves = weights.of(sample).leaves;
         if (leaves > most_leaves) return false;
@@ -37,16 +38,15 @@ double visible_cube_triangles(const CutGraph& cut, const Symmetry& symmetry, std
         const NodeId node = symmetry.representative[edge.child];
         PieceKind sample;
         if (!cut.nodes[node].unending || cut.nodes[node].unbounded ||
-            !find_sample(weights, node, steps != unlimited_steps, sample))
+            !find_sample(weights, cut, node, steps != unlimited_steps, sample))
             continue;
         BakeRequest request;
         request.representative = node;
         request.steps = sample.steps;
         request.detail_per_unit =
-            sample.detail_step == PieceKind::endless_detail
+            sample.unit_step == PieceKind::endless_detail
                 ? std::numeric_limits<double>::infinity()
-                : std::exp2(static_cast<double>(sample.detail_step) / PieceKind::steps_an_octave) /
-                      (2 * cut.nodes[node].ball.radius);
+                : std::exp2(static_cast<double>(sample.unit_step) / PieceKind::steps_an_octave);
         request.painters = {{symmetry.pair[node], Rgb(0.0)}};
         const Baked baked = bake(cut, symmetry, request, max_sample_triangles);
         const double nominal = weights.of(sample).triangles;

@@ -9,6 +9,8 @@
 
 #include <glm/geometric.hpp>
 
+#include "compiler/cut/povray_costs.h"
+
 namespace graftal {
 
 namespace {
@@ -32,7 +34,8 @@ class Chooser {
 
     Choice choose(const Piece& root) {
         add_piece(root);
-        placement_bytes_ = PovrayCosts::placement + (cut_.tinted ? PovrayCosts::own_texture : 0);
+        placement_bytes_ =
+            PovrayCosts::placement + (cut_.tinted ? PovrayCosts::own_texture + PovrayCosts::own_layer : 0);
         Choice best = current(std::numeric_limits<double>::infinity());
         std::size_t splits = 0;
         while (!queue_.empty() && splits < max_splits) {
@@ -54,12 +57,13 @@ class Chooser {
   private:
     struct Entry {
         double weight;
+        double detail_step;
         PieceKind kind;
         bool operator<(const Entry& other) const {
             if (weight != other.weight) return weight < other.weight;
             // What is farthest from its end first: a kind is split once, after all that lead to it.
-            return std::tie(kind.steps, kind.detail_step, kind.node) <
-                   std::tie(other.kind.steps, other.kind.detail_step, other.kind.node);
+            return std::tie(kind.steps, detail_step, kind.node) <
+                   std::tie(other.kind.steps, other.detail_step, other.kind.node);
         }
     };
 
@@ -69,8 +73,7 @@ class Chooser {
     };
 
     PieceKind kind_of(const Piece& piece) const {
-        return weights_.normalised(
-            {piece.node, piece.steps, PieceKind::step_of(detail_of(cut_, projection_, piece))});
+        return weights_.normalised(graftal::kind_of(cut_, projection_, piece));
     }
 
     MeshKind mesh_kind(const PieceKind& kind) const {
@@ -88,7 +91,7 @@ class Chooser {
             if (splits(kind))
                 queue_.push(
                     {cut_.nodes[kind.node].unbounded ? std::numeric_limits<double>::max() : weight.triangles,
-                     kind});
+                     weights_.detail_step(kind), kind});
             if (weight.leaves > 1) add_mesh(mesh_kind(kind), weight.triangles);
         }
         return place->second;
@@ -148,7 +151,7 @@ class Chooser {
 
     Choice current(double threshold) const {
         const double per_triangle =
-            PovrayCosts::triangle + (cut_.tinted ? PovrayCosts::coloured_triangle + PovrayCosts::slot : 0);
+            PovrayCosts::triangle + PovrayCosts::vertex + (cut_.tinted ? PovrayCosts::slot : 0);
         Choice choice;
         choice.threshold = threshold;
         choice.placements = placements_;
@@ -203,6 +206,13 @@ double detail_of(const CutGraph& cut, const Projection& projection, const Piece&
     if (!projection.culls() || cut.nodes[piece.node].unbounded)
         return std::numeric_limits<double>::infinity();
     return 2 * ball.radius * projection.detail_per_unit(ball);
+}
+
+PieceKind kind_of(const CutGraph& cut, const Projection& projection, const Piece& piece) {
+    PieceKind kind{piece.node, piece.steps, PieceKind::endless_detail};
+    if (projection.culls() && !cut.nodes[piece.node].unbounded)
+        kind.unit_step = PieceKind::step_of(piece.scale * projection.detail_per_unit(world_ball(cut, piece)));
+    return kind;
 }
 
 Choice choose_cut(const CutGraph& cut, const Symmetry& symmetry, const Projection& projection,

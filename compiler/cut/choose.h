@@ -9,16 +9,6 @@
 
 namespace graftal {
 
-/// What POV-Ray 3.7 needs, in bytes (measured; docs/povray.md).
-struct PovrayCosts {
-    static constexpr double base = 24e6;
-    static constexpr double placement = 868;
-    static constexpr double own_texture = 830; ///< more, for a placement that shares its texture with none
-    static constexpr double triangle = 236;
-    static constexpr double coloured_triangle = 4; ///< more, for its slot
-    static constexpr double slot = 20;             ///< one colour of a palette
-};
-
 /// A subtree at its place in the world.
 struct Piece {
     NodeId node = 0;
@@ -37,6 +27,9 @@ Piece descend(const CutGraph& cut, const Piece& piece, const CutEdge& edge, bool
 Ball world_ball(const CutGraph& cut, const Piece& piece);
 /// The detail of the piece's diameter.
 double detail_of(const CutGraph& cut, const Projection& projection, const Piece& piece);
+
+/// The kind of the piece as it lies, not normalised.
+PieceKind kind_of(const CutGraph& cut, const Projection& projection, const Piece& piece);
 
 struct Choice {
     double threshold = 0; ///< pieces that weigh more triangles than this become placements of their parts

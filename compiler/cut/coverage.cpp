@@ -28,10 +28,10 @@ struct Effort {
 };
 
 /// Parts of all subtrees together, and the least and most of one.
-constexpr std::size_t all_pieces = 50'000, fewest_pieces = 12, most_pieces = 192;
+constexpr std::size_t all_pieces = 50'000, fewest_pieces = 8, most_pieces = 192;
 /// A node of more instances keeps the ellipsoid in its box: such crowds are hardly culled as a whole.
 constexpr std::size_t most_edges = 10'000;
-/// With more nodes than this, shadows are taken along six directions only.
+/// With more nodes than this, shadows are taken along six directions.
 constexpr std::size_t many_nodes = 3000;
 constexpr int coarse_grid = 64, fine_grid = 128;
 constexpr std::size_t fine_factor = 12; ///< so many more parts to see what a cycle ends in

@@ -9,6 +9,7 @@
 #include "compiler/cut/choose.h"
 #include "compiler/cut/coverage.h"
 #include "compiler/cut/cut_graph.h"
+#include "compiler/cut/povray_costs.h"
 #include "compiler/cut/symmetry.h"
 #include "compiler/support/check.h"
 
@@ -46,19 +47,27 @@ class Cutter {
 
     std::optional<Cut> run() {
         if (unending_ && !options_.steps && !culls()) return refuse_endless();
-        // A coarser error than the whole picture cannot be asked for.
-        const double coarsest = 4.0 * std::max(view_.size.width, view_.size.height);
-        CutOptions options = options_;
-        double factor = 1;
-        for (; options_.error_px * factor <= coarsest || options.error_world; factor *= coarser) {
-            if (options.error_world) options.error_world = *options_.error_world * factor;
-            bool too_much = false;
-            std::optional<Cut> cut = attempt(options, options_.error_px * factor, too_much);
-            if (cut) return finish(std::move(*cut), factor, options);
-            if (!culls()) return refuse_size();
-            if (factor > 1e12) break;
+        if (std::optional<Cut> cut = attempt(0)) return finish(std::move(*cut), 0);
+        if (!culls()) return refuse_size();
+        // The finest that the memory allows: upwards by doubling, then halfway between what fails and what
+        // does not.
+        int fails = 0, next = 1;
+        std::optional<Cut> best;
+        while (!best && fails < coarsest()) {
+            next = std::min(next, coarsest());
+            best = attempt(next);
+            if (!best) fails = next;
+            next *= best ? 1 : 2;
         }
-        return refuse_size();
+        if (!best) return refuse_size();
+        int fits = next;
+        while (fits - fails > 1) {
+            const int half = (fails + fits) / 2;
+            std::optional<Cut> cut = attempt(half);
+            (cut ? fits : fails) = half;
+            if (cut) best = std::move(cut);
+        }
+        return finish(std::move(*best), fits);
     }
 
   private:
@@ -89,7 +98,21 @@ class Cutter {
 
     bool culls() const { return options_.error_world ? *options_.error_world > 0 : options_.error_px > 0; }
 
-    std::optional<Cut> attempt(const CutOptions& options, double error_px, bool& too_much) {
+    /// Steps of the error beyond what the whole picture measures, or a model in any unit.
+    int coarsest() const {
+        if (options_.error_world) return 124;
+        const double picture = 4.0 * std::max(view_.size.width, view_.size.height);
+        return std::max(0, static_cast<int>(std::log(picture / options_.error_px) / std::log(coarser)));
+    }
+
+    /// How much coarser the error is after so many steps.
+    static double factor_after(int steps) { return std::pow(coarser, steps); }
+
+    /// The cut with an error that many steps coarser than asked for; nothing if it takes too much memory.
+    std::optional<Cut> attempt(int coarser_steps) {
+        CutOptions options = options_;
+        const double error_px = options_.error_px * factor_after(coarser_steps);
+        if (options.error_world) options.error_world = *options_.error_world * factor_after(coarser_steps);
         const double near = nearest_share * std::max(cut_.nodes[cut_.root].ball.radius, 1e-280);
         const Projection projection(view_, options, error_px, near);
         Piece root;
@@ -98,29 +121,36 @@ class Cutter {
         const Ball whole_ball = world_ball(cut_, root);
         const double px = projection.pixels_per_unit(whole_ball) / projection.detail_per_unit(whole_ball);
         Weights weights(cut_, visible_cube_triangles(cut_, symmetry_, root.steps), px);
-        const auto memory = static_cast<double>(options.memory_bytes);
-        const PieceKind whole{root.node, root.steps, PieceKind::step_of(detail_of(cut_, projection, root))};
+        const double memory = memory_for_scene();
+        const PieceKind whole = kind_of(cut_, projection, root);
         choice_ = options.flatten || better_flat(weights.of(whole), memory)
                       ? flat_choice(weights.of(whole))
                       : choose_cut(cut_, symmetry_, projection, root, weights);
-        too_much = !(choice_.bytes <= memory);
-        if (too_much) return std::nullopt;
-        const AssemblyLimits limits{static_cast<std::size_t>(memory / PovrayCosts::placement) + 1,
-                                    static_cast<std::size_t>(memory / PovrayCosts::triangle) + 1};
+        if (!(choice_.bytes <= memory)) return std::nullopt;
+        const AssemblyLimits limits{
+            static_cast<std::size_t>(std::max(0.0, memory) / PovrayCosts::least_placement) + 1,
+            static_cast<std::size_t>(std::max(0.0, memory) / PovrayCosts::triangle) + 1};
         std::optional<Cut> cut = assemble(cut_, symmetry_, projection, root, choice_, weights, limits);
-        too_much = !cut || static_cast<double>(cut->estimated_bytes) > memory;
-        if (cut && too_much) choice_.bytes = static_cast<double>(cut->estimated_bytes);
-        if (too_much) return std::nullopt;
-        return cut;
+        if (!cut) return std::nullopt;
+        const double bytes = povray_bytes(*cut);
+        cut->estimated_bytes = static_cast<std::uint64_t>(bytes + picture_bytes());
+        if (bytes <= memory) return cut;
+        choice_.bytes = bytes;
+        return std::nullopt;
     }
 
     static Choice flat_choice(const Weights::Weight& whole) {
         Choice choice;
         choice.leaves = whole.leaves;
         choice.placements = whole.leaves;
-        choice.bytes = PovrayCosts::base + whole.leaves * PovrayCosts::placement;
+        choice.bytes = PovrayCosts::base + whole.flat_bytes;
         return choice;
     }
+
+    double picture_bytes() const {
+        return PovrayCosts::pixel * static_cast<double>(view_.size.width) * view_.size.height;
+    }
+    double memory_for_scene() const { return static_cast<double>(options_.memory_bytes) - picture_bytes(); }
 
     /// Twigs, leaves and balls are best spelt out where they are few enough: they are drawn exactly, and
     /// POV-Ray traces them several times as fast as their meshes in boxes that overlap.
@@ -130,14 +160,13 @@ class Cutter {
                whole.curved_leaves > share_of_leaves * whole.leaves;
     }
 
-    Cut finish(Cut cut, double factor, const CutOptions& options) {
-        const double unit_px =
-            options.error_world ? *options.error_world * root_pixels_per_unit() : options_.error_px * factor;
-        cut.error_px *= unit_px;
+    Cut finish(Cut cut, int coarser_steps) {
         cut.error_asked_px =
-            options.error_world ? *options_.error_world * root_pixels_per_unit() : options_.error_px;
+            options_.error_world ? *options_.error_world * root_pixels_per_unit() : options_.error_px;
+        const double unit_px = cut.error_asked_px * factor_after(coarser_steps);
+        cut.error_px *= unit_px;
         if (cut.error_px > 0) note_shadowless();
-        if (factor > 1)
+        if (coarser_steps > 0)
             diagnostics_
                 .warning(graph_.objects[graph_.root].span,
                          fmt::format("{} of memory allow an error of {:.2f} px, not {:.2f} px",
@@ -177,8 +206,8 @@ class Cutter {
         const auto memory = static_cast<double>(options_.memory_bytes);
         // Where the estimate fitted but what was unfolded did not, nobody knows how much it would have been.
         std::string need;
-        if (std::isfinite(choice_.bytes) && choice_.bytes > memory)
-            need = "about " + readable_bytes(choice_.bytes) + " in POV-Ray, ";
+        if (std::isfinite(choice_.bytes) && choice_.bytes + picture_bytes() > memory)
+            need = "about " + readable_bytes(choice_.bytes + picture_bytes()) + " in POV-Ray, ";
         diagnostics_
             .error(graph_.objects[graph_.root].span,
                    fmt::format("{} leaves need {}more than the {} allowed", readable_count(choice_.leaves),

@@ -8,6 +8,7 @@
 #include <glm/geometric.hpp>
 
 #include "compiler/cut/bake.h"
+#include "compiler/cut/povray_costs.h"
 #include "compiler/cut/tessellate.h"
 
 namespace graftal {
@@ -18,8 +19,15 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 /// How much larger parts may be culled that only throw shadows into the picture, or are reflected in it.
 constexpr double coarser_out_of_sight = 8;
 /// A proxy's mesh is an octahedron.
-constexpr Weights::Weight proxy{8, 1, 1};
+const Weights::Weight proxy{8, 1, 1, PovrayCosts::primitive(PrimitiveKind::sphere) + PovrayCosts::matrix};
 constexpr std::size_t max_known_kinds = 4'000'000;
+/// Details beyond this are not told apart.
+constexpr std::int32_t largest_step = 1 << 24;
+
+/// Steps of a detail, or of a factor.
+double steps_of(double detail) {
+    return std::log2(std::max(detail, 1e-300)) * PieceKind::steps_an_octave;
+}
 
 } // namespace
 
@@ -71,14 +79,13 @@ double Projection::detail_per_unit(const Ball& ball) const {
 
 std::int32_t PieceKind::step_of(double detail) {
     if (!std::isfinite(detail)) return endless_detail;
-    const double step = std::ceil(std::log2(std::max(detail, 1e-300)) * steps_an_octave - 1e-6);
-    return static_cast<std::int32_t>(step);
+    return static_cast<std::int32_t>(std::ceil(steps_of(detail) - 1e-6));
 }
 
 std::size_t PieceKindHash::operator()(const PieceKind& kind) const {
     std::uint64_t h = kind.node;
     h = (h ^ kind.steps) * 0x9E3779B97F4A7C15ull;
-    h = (h ^ (h >> 29) ^ static_cast<std::uint32_t>(kind.detail_step)) * 0xBF58476D1CE4E5B9ull;
+    h = (h ^ (h >> 29) ^ static_cast<std::uint32_t>(kind.unit_step)) * 0xBF58476D1CE4E5B9ull;
     return h ^ (h >> 32);
 }
 
@@ -87,23 +94,35 @@ bool is_cut(const CutNode& node, std::uint32_t steps, double detail) {
     return (node.unending && steps == 0) || (node.cullable && detail <= 1);
 }
 
+Weights::Weights(const CutGraph& cut, double cube_triangles, double px)
+    : cut_(cut), cube_triangles_(cube_triangles), px_(px) {
+    diameter_step_.reserve(cut.nodes.size());
+    for (const CutNode& node : cut.nodes)
+        diameter_step_.push_back(steps_of(2 * node.ball.radius));
+}
+
+double Weights::detail_step(const PieceKind& kind) const {
+    if (kind.unit_step == PieceKind::tiny || kind.unit_step == PieceKind::endless_detail)
+        return kind.unit_step;
+    return kind.unit_step + diameter_step_[kind.node];
+}
+
 bool Weights::is_cut(const PieceKind& kind) const {
-    const double detail = kind.detail_step <= 0 ? 1 : 2;
-    return graftal::is_cut(cut_.nodes[kind.node], kind.steps, detail);
+    return graftal::is_cut(cut_.nodes[kind.node], kind.steps, detail_step(kind) <= 1e-6 ? 1 : 2);
 }
 
 PieceKind Weights::normalised(PieceKind kind) const {
     const CutNode& node = cut_.nodes[kind.node];
     if (!node.unending) kind.steps = unlimited_steps;
-    if (kind.detail_step != PieceKind::endless_detail) kind.detail_step = std::max(kind.detail_step, -1);
-    const bool curved =
-        node.primitive && *node.primitive != PrimitiveKind::plane && max_fineness(*node.primitive) > 0;
-    if (curved && kind.detail_step != PieceKind::endless_detail)
-        // Their meshes get finer slowly: a few kinds will do.
-        kind.detail_step = (kind.detail_step + PieceKind::steps_an_octave - 1) / PieceKind::steps_an_octave *
-                           PieceKind::steps_an_octave;
-    else if (node.primitive || (!node.cullable && !node.unending && px_ <= 0))
-        kind.detail_step = 0;
+    if (kind.unit_step == PieceKind::endless_detail || kind.unit_step == PieceKind::tiny) return kind;
+    if (!node.primitive && detail_step(kind) <= 1e-6) {
+        kind.unit_step = PieceKind::tiny;
+    } else if (node.primitive || (!node.cullable && !node.unending)) {
+        // The size decides how finely curved surfaces are meshed, and that grows slowly: a few kinds will do.
+        const int octave = PieceKind::steps_an_octave;
+        const double rounded = std::ceil(static_cast<double>(kind.unit_step) / octave) * octave;
+        kind.unit_step = px_ > 0 ? static_cast<std::int32_t>(rounded) : 0;
+    }
     return kind;
 }
 
@@ -112,34 +131,28 @@ std::int32_t Weights::mesh_bin(const PieceKind& kind) {
 }
 
 PieceKind Weights::child_kind(const PieceKind& parent, const CutEdge& edge) const {
-    PieceKind kind{edge.child, steps_after(parent.steps, edge), parent.detail_step};
-    if (kind.detail_step != PieceKind::endless_detail) {
+    PieceKind kind{edge.child, steps_after(parent.steps, edge), parent.unit_step};
+    if (kind.unit_step != PieceKind::endless_detail && kind.unit_step != PieceKind::tiny) {
         // Products of stretches end only if every edge contracts; volumes always do.
-        const double ratio = cut_.contractive ? edge.stretch : edge.volume_stretch;
-        const double sizes = std::max(cut_.nodes[edge.child].ball.radius, 1e-300) /
-                             std::max(cut_.nodes[parent.node].ball.radius, 1e-300);
-        const double change = std::log2(std::max(ratio * sizes, 1e-300)) * PieceKind::steps_an_octave;
+        const double change = steps_of(cut_.contractive ? edge.stretch : edge.volume_stretch);
         // Rounded up, so that what is counted is never less than what is unfolded.
-        kind.detail_step += static_cast<std::int32_t>(std::clamp(std::ceil(change - 1e-6), -1e8, 1e8));
-        kind.detail_step = std::min(kind.detail_step, 1 << 20);
+        const double step = kind.unit_step + std::ceil(change - 1e-6);
+        kind.unit_step = static_cast<std::int32_t>(std::clamp<double>(step, -largest_step, largest_step));
     }
     return normalised(kind);
 }
 
-/// What a unit of the primitive measures.
-double Weights::primitive_px(const PieceKind& kind) const {
-    if (kind.detail_step == PieceKind::endless_detail) return 0;
-    const double detail = std::exp2(static_cast<double>(kind.detail_step) / PieceKind::steps_an_octave);
-    return px_ * detail / (2 * cut_.nodes[kind.node].ball.radius);
-}
-
 Weights::Weight Weights::of_primitive(const PieceKind& asked) const {
     const PrimitiveKind kind = *cut_.nodes[asked.node].primitive;
-    if (kind == PrimitiveKind::cube) return {cube_triangles_, 1, 0};
-    const double px = primitive_px(asked);
+    // Leaves are ellipsoids and slabs more often than balls and cubes: they need a matrix.
+    const bool needs_matrix = kind == PrimitiveKind::sphere || kind == PrimitiveKind::cube;
+    const double flat_bytes = PovrayCosts::primitive(kind) + (needs_matrix ? PovrayCosts::matrix : 0);
+    if (kind == PrimitiveKind::cube) return {cube_triangles_, 1, 0, flat_bytes};
+    const double unit = static_cast<double>(asked.unit_step) / PieceKind::steps_an_octave;
+    const double px = asked.unit_step == PieceKind::endless_detail ? 0 : px_ * std::exp2(unit);
     const int level = px > 0 ? fineness_for(kind, tessellation_tolerance_px / px) : 0;
     const TessellatedPrimitive& mesh = tessellated(kind, level);
-    return {static_cast<double>(mesh.triangles.size()), 1, mesh.normals.empty() ? 0.0 : 1.0};
+    return {static_cast<double>(mesh.triangles.size()), 1, mesh.normals.empty() ? 0.0 : 1.0, flat_bytes};
 }
 
 Weights::Weight Weights::of(const PieceKind& asked) {
@@ -165,6 +178,7 @@ Weights::Weight Weights::of(const PieceKind& asked) {
                 frame.sum.triangles += found->second.triangles;
                 frame.sum.leaves += found->second.leaves;
                 frame.sum.curved_leaves += found->second.curved_leaves;
+                frame.sum.flat_bytes += found->second.flat_bytes;
                 ++frame.next_edge;
             } else if (known_.size() < max_known_kinds) {
                 known_.emplace(child, proxy);

@@ -47,17 +47,19 @@ class Projection {
     bool culls_;
 };
 
-/// A node with the levels it has left and the detail of its diameter: what is baked as one mesh. Details are
-/// counted in steps of 2^(1/256).
+/// A node with the levels it has left and the detail of a unit of its frame: what is baked as one mesh.
+/// Details are counted in steps of 2^(1/256). A unit and not the node's diameter: where nothing is scaled on
+/// the way down, as in most L-systems, nothing is rounded then, and a node makes one kind.
 struct PieceKind {
     NodeId node = 0;
     std::uint32_t steps = unlimited_steps;
-    std::int32_t detail_step = endless_detail;
+    std::int32_t unit_step = endless_detail;
 
     static constexpr std::int32_t endless_detail = INT32_MAX;
+    static constexpr std::int32_t tiny = INT32_MIN; ///< small enough to be culled, with all that is in it
     static constexpr int steps_an_octave = 256;
 
-    /// The step of a detail, rounded up. Requires detail > 0.
+    /// The step of a detail, rounded up.
     static std::int32_t step_of(double detail);
     bool operator==(const PieceKind&) const = default;
 };
@@ -71,13 +73,13 @@ class Weights {
   public:
     /// `cube_triangles`: how many of a cube's triangles stay visible in a mesh, on average. `px`: pixels of a
     /// detail of 1, which decide how finely curved surfaces are meshed; 0: as coarsely as can be.
-    explicit Weights(const CutGraph& cut, double cube_triangles = 12, double px = 0)
-        : cut_(cut), cube_triangles_(cube_triangles), px_(px) {}
+    explicit Weights(const CutGraph& cut, double cube_triangles = 12, double px = 0);
 
     struct Weight {
         double triangles = 0;
         double leaves = 0;
         double curved_leaves = 0; ///< those whose meshes only come near them
+        double flat_bytes = 0;    ///< of POV-Ray's memory, where every leaf is a placement of its own
     };
 
     /// Saturates at infinity; kinds that lead back to themselves without losing detail count as one leaf.
@@ -90,6 +92,9 @@ class Weights {
     /// in a strictly self-similar model pieces of one bin unfold alike, in others nearly so.
     std::int32_t mesh_bin(const PieceKind& kind);
 
+    /// The step of the detail of its diameter: what is at most 0 may be culled.
+    double detail_step(const PieceKind& kind) const;
+
     /// True if the kind is drawn by its stop edges or proxy.
     bool is_cut(const PieceKind& kind) const;
 
@@ -98,9 +103,9 @@ class Weights {
 
   private:
     Weight of_primitive(const PieceKind& kind) const;
-    double primitive_px(const PieceKind& kind) const;
 
     const CutGraph& cut_;
+    std::vector<double> diameter_step_; ///< by node
     double cube_triangles_;
     double px_;
     std::unordered_map<PieceKind, Weight, PieceKindHash> known_;

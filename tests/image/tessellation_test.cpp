@@ -35,7 +35,7 @@ void expect_small_stray(const std::string& path, const CompileOptions& options,
 }
 
 /// Memory of which the absolute specification needs more than the quarter up to which it is preferred.
-CompileOptions whole_in_meshes(ImageSize size, std::uint64_t memory_bytes = 90'000'000) {
+CompileOptions whole_in_meshes(ImageSize size, std::uint64_t memory_bytes = 60'000'000) {
     CompileOptions options = whole(size);
     options.cut.memory_bytes = memory_bytes;
     return options;

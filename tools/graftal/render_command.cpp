@@ -48,9 +48,9 @@ int run_render(const Options& options) {
     const int status = conclude(options, compilation);
     if (report && !options.quiet)
         say(fmt::format(
-            "{}: {}; POV-Ray {:.1f} s, peak {}\n", options.output,
+            "{}: {}; POV-Ray {:.1f} s, peak {}, estimated {}\n", options.output,
             cut_text(report->leaf_count, report->placement_count, report->triangle_count, report->error_px),
-            report->povray_seconds, bytes_text(report->peak_bytes)));
+            report->povray_seconds, bytes_text(report->peak_bytes), bytes_text(report->estimated_bytes)));
     return status;
 }
 

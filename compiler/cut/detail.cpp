@@ -19,7 +19,7 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 /// How much larger parts may be culled that only throw shadows into the picture, or are reflected in it.
 constexpr double coarser_out_of_sight = 8;
 /// A proxy's mesh is an octahedron.
-const Weights::Weight proxy{8, 1, 1, PovrayCosts::primitive(PrimitiveKind::sphere) + PovrayCosts::matrix};
+const Weights::Weight proxy{8, 1, 0, PovrayCosts::primitive(PrimitiveKind::sphere) + PovrayCosts::matrix};
 constexpr std::size_t max_known_kinds = 4'000'000;
 /// Details beyond this are not told apart.
 constexpr std::int32_t largest_step = 1 << 24;
@@ -155,6 +155,21 @@ Weights::Weight Weights::of_primitive(const PieceKind& asked) const {
     return {static_cast<double>(mesh.triangles.size()), 1, mesh.normals.empty() ? 0.0 : 1.0, flat_bytes};
 }
 
+/// What a singular map crushes coincides: along a line or in a plane there are about as many different leaves
+/// as it has lengths or squares of half the error (bake.cpp, crushed_mark).
+void Weights::squeeze(const PieceKind& kind, Weight& weight) const {
+    constexpr double leaves_an_error = 4; // in two sizes, halves of the error apart
+    if (kind.unit_step == PieceKind::endless_detail || kind.unit_step == PieceKind::tiny) return;
+    const double lengths = std::max(1.0, std::exp2(detail_step(kind) / PieceKind::steps_an_octave));
+    const Vec3 sigma = singular_values(cut_.nodes[kind.node].edges.front().node_from_child.linear);
+    const bool line = sigma.y <= 1e-9 * sigma.x;
+    const double most = leaves_an_error * lengths * (line ? 1 : lengths);
+    if (!(weight.leaves > most)) return;
+    const double share = most / weight.leaves;
+    for (double* const sum : {&weight.triangles, &weight.leaves, &weight.curved_leaves, &weight.flat_bytes})
+        *sum = std::isfinite(*sum) ? share * *sum : most * 8;
+}
+
 Weights::Weight Weights::of(const PieceKind& asked) {
     struct Frame {
         PieceKind kind;
@@ -192,6 +207,7 @@ Weights::Weight Weights::of(const PieceKind& asked) {
             frame.sum = of_primitive(frame.kind);
         else if (edges.empty())
             frame.sum = proxy;
+        if (node.sealed) squeeze(frame.kind, frame.sum);
         known_[frame.kind] = frame.sum;
         stack.pop_back();
     }

@@ -103,6 +103,7 @@ class Weights {
 
   private:
     Weight of_primitive(const PieceKind& kind) const;
+    void squeeze(const PieceKind& kind, Weight& weight) const;
 
     const CutGraph& cut_;
     std::vector<double> diameter_step_; ///< by node

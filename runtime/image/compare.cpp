@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <vector>
 
 #include "runtime/image/image.h"
 
@@ -42,6 +43,8 @@ ImageDifference compare_images(const Image& a, const Image& b, double threshold)
     const int channels = left.has_alpha() || right.has_alpha() ? 4 : 3;
     result.pixels = static_cast<std::uint64_t>(a.width) * static_cast<std::uint64_t>(a.height);
     double sum = 0, sum_of_squares = 0;
+    std::vector<double> largest_of_pixel;
+    largest_of_pixel.reserve(result.pixels);
     for (std::uint64_t pixel = 0; pixel < result.pixels; ++pixel) {
         double largest = 0;
         for (int channel = 0; channel < channels; ++channel) {
@@ -53,11 +56,16 @@ ImageDifference compare_images(const Image& a, const Image& b, double threshold)
         result.max = std::max(result.max, largest);
         result.over_threshold += largest > threshold;
         result.differing += largest > 0;
+        largest_of_pixel.push_back(largest);
     }
     if (result.pixels == 0) return result;
     const double samples = static_cast<double>(result.pixels) * channels;
     result.mean = sum / samples;
     result.rms = std::sqrt(sum_of_squares / samples);
+    const auto rank =
+        largest_of_pixel.begin() + static_cast<std::ptrdiff_t>((result.pixels * 99 + 99) / 100 - 1);
+    std::nth_element(largest_of_pixel.begin(), rank, largest_of_pixel.end());
+    result.p99 = *rank;
     return result;
 }
 

@@ -57,6 +57,7 @@ Status write_palette(const std::string& path, int width, int height, std::span<c
 /// How far two pictures are apart. Over the samples a_i, b_i, i = 1..N, of all pixels and channels
 /// (a grey picture counts as RGB, a missing alpha as 1), with d_i = |a_i - b_i|:
 ///   max = max d_i,   mean = (1/N) sum d_i,   rms = sqrt((1/N) sum d_i^2).
+/// p99 is the least number that 99 of 100 pixels do not exceed, each by its largest d_i.
 /// Samples that are both NaN, or equal infinities, agree; any other pair with one of them is infinitely
 /// apart.
 struct ImageDifference {
@@ -64,6 +65,7 @@ struct ImageDifference {
     double max = 0;
     double mean = 0;
     double rms = 0;
+    double p99 = 0;
     std::uint64_t over_threshold = 0; ///< pixels with a d_i > threshold
     std::uint64_t differing = 0;      ///< pixels with a d_i > 0
     std::uint64_t pixels = 0;

@@ -126,10 +126,10 @@ TEST_F(Render, CompareMeasuresAndJudges) {
     ASSERT_TRUE(write_image(path("c.png"), Image{1, 2, 1, {0, 1}}, SampleFormat::srgb8).ok());
     const RunResult same = graftal("compare a.png a.png");
     EXPECT_EQ(same.status, 0);
-    EXPECT_EQ(same.out, "max   0\nmean  0\nrms   0\ncount 0 of 2\n");
+    EXPECT_EQ(same.out, "max   0\nmean  0\nrms   0\np99   0\ncount 0 of 2\n");
     const RunResult apart = graftal("compare a.png b.png");
     EXPECT_EQ(apart.status, 1);
-    EXPECT_EQ(apart.out, "max   0.200000003\nmean  0.100000001\nrms   0.141421358\ncount 1 of 2\n");
+    EXPECT_EQ(apart.out, "max   0.200000003\nmean  0.100000001\nrms   0.141421358\np99   0.200000003\ncount 1 of 2\n");
     EXPECT_EQ(graftal("compare a.png b.png --threshold 0.21").status, 0);
     EXPECT_EQ(graftal("compare a.png b.png --threshold 0.19").status, 1);
     const RunResult sizes = graftal("compare a.png c.png --threshold 9");

@@ -20,11 +20,12 @@ int run_compare(const Options& options) {
                              pictures[0].height, options.operands[1], pictures[1].width, pictures[1].height));
         return exit_fault;
     }
-    const int printed =
-        options.quiet ? exit_done
-                      : print_output(fmt::format("max   {:.9g}\nmean  {:.9g}\nrms   {:.9g}\ncount {} of {}\n",
-                                                 difference.max, difference.mean, difference.rms,
-                                                 difference.over_threshold, difference.pixels));
+    const int printed = options.quiet
+                            ? exit_done
+                            : print_output(fmt::format(
+                                  "max   {:.9g}\nmean  {:.9g}\nrms   {:.9g}\np99   {:.9g}\ncount {} of {}\n",
+                                  difference.max, difference.mean, difference.rms, difference.p99,
+                                  difference.over_threshold, difference.pixels));
     if (printed != exit_done) return printed;
     return difference.over_threshold == 0 ? exit_done : exit_fault;
 }

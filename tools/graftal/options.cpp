@@ -321,10 +321,12 @@ void add_compare(CLI::App& app, Options& options) {
         "a number, 0 or more", [](const std::string& text) { return parse_at_least(text, 0); },
         [&](double threshold) { options.threshold = threshold; });
     app.add_flag("-q,--quiet", options.quiet, "No figures; the exit status only");
-    app.footer("Prints max, mean and rms of |a - b| over all samples as they are stored (no colour\n"
-               "conversion), and count, the number of pixels over the threshold. Status 0 if count is 0,\n"
-               "1 if not or if the sizes differ, 3 if a picture cannot be read.\n"
-               "Example:\n  graftal compare before.png after.png --threshold 0.01");
+    app.footer(
+        "Prints max, mean and rms of |a - b| over all samples as they are stored (no colour\n"
+        "conversion), p99, which 99 of 100 pixels do not exceed, and count, the number of pixels over\n"
+        "the threshold. Status 0 if count is 0, 1 if not or if the sizes differ, 3 if a picture cannot\n"
+        "be read.\n"
+        "Example:\n  graftal compare before.png after.png --threshold 0.01");
 }
 
 struct CommandEntry {

@@ -140,6 +140,18 @@ TEST_F(ImageFiles, FailedWriteLeavesNothing) {
     EXPECT_EQ(file_count(), 1u);
 }
 
+TEST(CompareImages, NinetyNineOfAHundredPixels) {
+    const Image a{200, 1, 1, std::vector<float>(200, 0.0f)};
+    Image b = a;
+    EXPECT_EQ(compare_images(a, b).p99, 0);
+    b.pixels[7] = 1;
+    b.pixels[90] = 0.5;
+    EXPECT_EQ(compare_images(a, b).p99, 0) << "two of 200 may be farther apart";
+    b.pixels[199] = 0.25;
+    EXPECT_EQ(compare_images(a, b).p99, 0.25);
+    EXPECT_EQ(compare_images({1, 1, 1, {0}}, {1, 1, 1, {1}}).p99, 1);
+}
+
 TEST(ImageNames, OnlyPngAndExrAreWritten) {
     for (const char* name : {"a.png", "a.PNG", "dir.x/b.exr", ".hidden.Exr"})
         EXPECT_TRUE(is_picture_name(name)) << name;

@@ -21,12 +21,14 @@ std::optional<CompiledModel> compile_path(const std::string& path, const Compile
     return model;
 }
 
-Image picture_of(const std::string& directory, ImageSize size, SampleFormat format) {
+Image picture_of(const std::string& directory, ImageSize size, SampleFormat format,
+                 std::optional<int> antialias = {}) {
     PovrayJob job;
     job.directory = directory;
     job.width = size.width;
     job.height = size.height;
     job.linear16 = format == SampleFormat::linear16;
+    job.antialias = antialias;
     const PovrayResult result = run_povray(job);
     EXPECT_TRUE(result.status.ok()) << result.status.message();
     Image image;
@@ -51,12 +53,12 @@ std::optional<CompiledModel> compile_file(const std::string& path, const Compile
     return compile_path(GRAFTAL_SOURCE_DIR "/" + path, options);
 }
 
-Image draw(const CompiledModel& model, SampleFormat format) {
+Image draw(const CompiledModel& model, SampleFormat format, std::optional<int> antialias) {
     TemporaryDirectory directory;
     EXPECT_TRUE(directory.create().ok());
     const Status status = write_scene(model, directory.path() + "/scene.pov", false, false);
     EXPECT_TRUE(status.ok()) << status.message();
-    return picture_of(directory.path(), model.view.size, format);
+    return picture_of(directory.path(), model.view.size, format, antialias);
 }
 
 Image draw_by_hand(const CompiledModel& model, const std::string& scene, SampleFormat format) {

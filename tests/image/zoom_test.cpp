@@ -1,6 +1,10 @@
 // Deep zooms: a self-similar place looks the same at every period, to the last pixel; and a zoom that doubles
 // can still hold is what moving the camera gives.
 
+#include <cmath>
+#include <cstdlib>
+#include <sstream>
+
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -84,6 +88,59 @@ TEST(Zoom, IsWhatMovingTheCameraGives) {
         RecordProperty("mean", std::to_string(difference.mean));
         EXPECT_LT(difference.mean, 0.004);
     }
+}
+
+/// What frame i shows if it is made of the parts chosen for frame i + 1: the same picture but for what
+/// changed its level. `GRAFTAL_POP=MODEL ADDRESS FROM TO FRAMES` measures a whole animation and prints every
+/// pair (docs/benchmarks/popping.md).
+struct Popping {
+    std::string model = "scenes/ifs/sierpinski_tetrahedron.rifs", address = "(a.b)*";
+    double from = 4, to = 4.2; ///< zoom, as powers of two
+    int frames = 3;
+    bool print = false;
+};
+
+TEST(Zoom, NothingPopsFromFrameToFrame) {
+    Popping p;
+    if (const char* const asked = std::getenv("GRAFTAL_POP")) {
+        std::istringstream words(asked);
+        ASSERT_TRUE(words >> p.model >> p.address >> p.from >> p.to >> p.frames);
+        p.print = true;
+    }
+    const double step = (p.to - p.from) / std::max(1, p.frames - 1);
+    const auto compiled = [&](int frame) {
+        CompileOptions options = zoomed(p.address, "1", {160, 90});
+        options.zoom.zoom = Magnification::exp2(p.from + step * frame);
+        return compile_file(p.model, options);
+    };
+    double worst_mean = 0, worst_p99 = 0, natural = 0;
+    auto here = compiled(0);
+    for (int i = 0; i + 1 < p.frames; ++i) {
+        auto next = compiled(i + 1);
+        ASSERT_TRUE(here && next);
+        const Image picture = draw(*here, SampleFormat::srgb8, 3);
+        const Image next_picture = draw(*next, SampleFormat::srgb8, 3);
+        // The focus is the origin of both.
+        const Affine here_from_next = Affine::scale(Vec3(std::exp2(-step)));
+        CompiledModel swapped = *next;
+        swapped.cut.bounds = transformed(here_from_next, next->cut.bounds);
+        for (PlacementGroup& group : swapped.cut.groups)
+            for (Placement& placement : group.placements)
+                placement.world_from_body = here_from_next * placement.world_from_body;
+        const ImageDifference by_level = compare_images(picture, draw(swapped, SampleFormat::srgb8, 3));
+        const ImageDifference by_motion = compare_images(picture, next_picture);
+        if (p.print)
+            fmt::print("{} {:.3f} {:.3f} {:.1f} {:.3f}\n", i, p.from + step * i, 255 * by_level.mean,
+                       255 * by_level.p99, 255 * by_motion.mean);
+        worst_mean = std::max(worst_mean, by_level.mean);
+        worst_p99 = std::max(worst_p99, by_level.p99);
+        natural = std::max(natural, by_motion.mean);
+        here = std::move(next);
+    }
+    RecordProperty("worst_mean_in_255ths", std::to_string(255 * worst_mean));
+    RecordProperty("worst_p99_in_255ths", std::to_string(255 * worst_p99));
+    EXPECT_LT(worst_mean, p.print ? 1.0 : 0.012);
+    EXPECT_LT(worst_mean, natural);
 }
 
 } // namespace

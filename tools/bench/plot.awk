@@ -31,6 +31,11 @@ function axes(c,    e, s, label) {
     printf "<text x=\"%.1f\" y=\"%d\" text-anchor=\"middle\">%s</text>\n", left[c] + width / 2, top[c] + height + 36,
            x_label[c]
 }
+function polyline(c, s, kind, dashes) {
+    if ((c, s, kind) in line)
+        printf "<polyline points=\"%s\" fill=\"none\" stroke=\"%s\" stroke-width=\"2\"%s/>\n", line[c, s, kind],
+               colour[s], dashes
+}
 BEGIN {
     FS = "\t"
     split("#1f77b4 #d62728 #2ca02c #9467bd #ff7f0e #8c564b #17becf #7f7f7f #bcbd22", palette, " ")
@@ -42,15 +47,18 @@ $1 == "chart" {
     charts[++chart_count] = c
     title[c] = $3; x_label[c] = $4; x_low[c] = $5; x_high[c] = $6; x_step[c] = $7; x_log[c] = $8 == "log"
     y_low[c] = $9; y_high[c] = $10; unit[c] = $11
-    left[c] = 70 + (chart_count - 1) % columns * (width + 100)
+    left[c] = 80 + (chart_count - 1) % columns * (width + 100)
     top[c] = 40 + int((chart_count - 1) / columns) * (height + 90)
 }
 $1 == "point" {
     if (!($3 in colour)) { order[++known] = $3; colour[$3] = palette[known] }
     if ((x_log[$2] ? lg($5) : $5) > x_high[$2] || (x_log[$2] ? lg($5) : $5) < x_low[$2]) next
     place = sprintf("%.1f,%.1f ", at_x($2, $5), at_y($2, $6))
-    if ($4 == "end") { split(place, xy, ","); crosses[$2, $3] = crosses[$2, $3] sprintf("M%.1f %.1fl10 10m0 -10l-10 10", xy[1] - 5, xy[2] - 5) }
-    else line[$2, $3, $4] = line[$2, $3, $4] place
+    if ($4 == "end") {
+        split(place, xy, ",")
+        crosses[$2, $3] = crosses[$2, $3] sprintf("M%.1f %.1fl10 10m0 -10l-10 10", xy[1] - 5, xy[2] - 5)
+    } else
+        line[$2, $3, $4] = line[$2, $3, $4] place
 }
 $1 == "note" { notes[++note_count] = $2 }
 END {
@@ -59,19 +67,16 @@ END {
     total = columns * (width + 100)
     per_row = int((total - 70) / 160)
     legend_rows = int((known + per_row - 1) / per_row)
-    printf "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"%d\" height=\"%d\" font-family=\"sans-serif\" font-size=\"12\">\n",
-           total, below + 24 * (legend_rows + note_count) + 6
+    printf "<svg xmlns=\"http://www.w3.org/2000/svg\" font-family=\"sans-serif\" font-size=\"12\""
+    printf " width=\"%d\" height=\"%d\">\n", total, below + 24 * (legend_rows + note_count) + 6
     print "<rect width=\"100%\" height=\"100%\" fill=\"white\"/>"
     for (i = 1; i <= chart_count; ++i) {
         c = charts[i]
         axes(c)
         for (k = 1; k <= known; ++k) {
             s = order[k]
-            if ((c, s, "solid") in line)
-                printf "<polyline points=\"%s\" fill=\"none\" stroke=\"%s\" stroke-width=\"2\"/>\n", line[c, s, "solid"], colour[s]
-            if ((c, s, "dashed") in line)
-                printf "<polyline points=\"%s\" fill=\"none\" stroke=\"%s\" stroke-width=\"2\" stroke-dasharray=\"5 4\"/>\n",
-                       line[c, s, "dashed"], colour[s]
+            polyline(c, s, "solid", "")
+            polyline(c, s, "dashed", " stroke-dasharray=\"5 4\"")
             if ((c, s) in crosses)
                 printf "<path d=\"%s\" fill=\"none\" stroke=\"%s\" stroke-width=\"2.5\"/>\n", crosses[c, s], colour[s]
         }

@@ -40,7 +40,7 @@ class Cutter {
     Cutter(const Graph& graph, const Components& components, const std::vector<ObjectBounds>& bounds,
            const View& view, const CutOptions& options, Diagnostics& diagnostics)
         : graph_(graph), unending_(components.unending[graph.root]), view_(view), options_(options),
-          diagnostics_(diagnostics), cut_(prepared(graph, components, bounds, options.root_levels)),
+          diagnostics_(diagnostics), cut_(prepared(graph, components, bounds, options)),
           symmetry_(find_symmetry(cut_)) {
         if (culls() || (unending_ && options_.steps)) fit_proxies(cut_, symmetry_);
     }
@@ -72,12 +72,20 @@ class Cutter {
 
   private:
     static CutGraph prepared(const Graph& graph, const Components& components,
-                             const std::vector<ObjectBounds>& bounds,
-                             const std::vector<unsigned>& root_levels) {
+                             const std::vector<ObjectBounds>& bounds, const CutOptions& options) {
         CutGraph cut = build_cut_graph(graph, components, bounds);
-        if (!root_levels.empty()) use_up_levels(cut, root_levels);
+        if (!options.steps) drop_endings(cut);
+        if (!options.root_levels.empty()) use_up_levels(cut, options.root_levels);
         split_into_halves(cut);
         return cut;
+    }
+
+    /// Where levels do not end, objects are cut for their size alone: a proxy then stands for all that is
+    /// left out, and what an object would be drawn by at its last level, a trunk without its twigs, would be
+    /// too little.
+    static void drop_endings(CutGraph& cut) {
+        for (CutNode& node : cut.nodes)
+            if (!node.terminal && !node.sealed) node.stop_edges.clear();
     }
 
     /// The root counts as a level itself, so that it is never the one that is cut.
@@ -155,7 +163,7 @@ class Cutter {
     /// Twigs, leaves and balls are best spelt out where they are few enough: they are drawn exactly, and
     /// POV-Ray traces them several times as fast as their meshes in boxes that overlap.
     static bool better_flat(const Weights::Weight& whole, double memory) {
-        constexpr double share_of_memory = 0.25, share_of_leaves = 0.125;
+        constexpr double share_of_memory = 0.6, share_of_leaves = 0.125;
         return flat_choice(whole).bytes <= share_of_memory * memory &&
                whole.curved_leaves > share_of_leaves * whole.leaves;
     }

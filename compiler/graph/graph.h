@@ -12,7 +12,7 @@
 // unending; the root is level 0. This count does not change when equal objects are merged. Where an unending
 // object is cut (no level left, or too small to see) it is drawn as
 //   1. its terminal, if it has one;
-//   2. else its instances of ending masters (its condensation set, its trunk), if it has any;
+//   2. else, where levels end, its instances of ending masters (its condensation set, its trunk), if it has any;
 //   3. else a proxy: an ellipsoid that covers as much of a picture as the object does.
 //
 // Tints compose along a path from the root by PathTint, parent in front. The material nearest to the

@@ -282,7 +282,9 @@ class Rerooter {
             result_.root_levels.push_back(piece.levels);
             error = std::max(error, stretch * piece.error);
         }
-        if (root.instances.empty()) return refuse("nothing of the model lies there", "look somewhere else");
+        if (root.instances.empty())
+            return refuse("nothing of the model is left there",
+                          "zoom in less, or choose another place with --at or look_at");
         if (!bounds.box.empty()) bounds.ball = {bounds.box.centre(), 0.5 * glm::length(bounds.box.size())};
         graph.root = graph.add(std::move(root));
         result_.bounds.push_back(bounds);

@@ -34,8 +34,8 @@ void expect_small_stray(const std::string& path, const CompileOptions& options,
     EXPECT_GT(difference.hit, 10000u) << "hardly anything was drawn";
 }
 
-/// Memory of which the absolute specification needs more than the quarter up to which it is preferred.
-CompileOptions whole_in_meshes(ImageSize size, std::uint64_t memory_bytes = 60'000'000) {
+/// Memory of which the absolute specification needs more than the share up to which it is preferred.
+CompileOptions whole_in_meshes(ImageSize size, std::uint64_t memory_bytes = 30'000'000) {
     CompileOptions options = whole(size);
     options.cut.memory_bytes = memory_bytes;
     return options;

@@ -52,7 +52,7 @@ TEST(PovrayView, LightsSkyAndGroundFollowTheView) {
     std::string text = scene.text(view);
     EXPECT_THAT(
         text,
-        HasSubstr("light_source { <0,4000000,0> rgb <0.5,0.25,1> parallel point_at <0,0,0> shadowless }"));
+        HasSubstr("light_source { <0,1000000,0> rgb <0.5,0.25,1> parallel point_at <0,0,0> shadowless }"));
     EXPECT_THAT(text, HasSubstr("light_source { <500,1000,1500> rgb <1,1,1> }"));
     EXPECT_THAT(text, HasSubstr("background { rgb <0.1,0.1,0.1> }"));
     EXPECT_THAT(text, HasSubstr("plane { y, -250\n  texture { pigment { rgb <0,1,0> }"));

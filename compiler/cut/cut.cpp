@@ -190,7 +190,11 @@ class Cutter {
         const auto wants_leaf = [](const CutNode& node) {
             return node.shadowless && node.cullable && node.stop_edges.empty() && !is_flat(node);
         };
-        if (std::none_of(cut_.nodes.begin(), cut_.nodes.end(), wants_leaf)) return;
+        bool wanted = false;
+        for (const CutNode& user : cut_.nodes) // the root itself is always drawn whole
+            for (const CutEdge& edge : user.edges)
+                wanted = wanted || wants_leaf(cut_.nodes[edge.child]);
+        if (!wanted) return;
         diagnostics_
             .note(graph_.objects[graph_.root].span, "some set here has no area (its dimension is at most 2): "
                                                     "how dense it looks depends on --error")

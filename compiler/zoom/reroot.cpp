@@ -39,7 +39,7 @@ class Rerooter {
         ZoomScale scale = request_.zoom ? ZoomScale::about_focus(model_.graph, focus_, *request_.zoom)
                                         : ZoomScale::of_last_object(model_.graph, focus_);
         result_.zoom = scale.zoom();
-        if (!set_view(look_at) || !descend(scale)) return std::nullopt;
+        if (!set_view(look_at, scale.picture_from_frame()) || !descend(scale)) return std::nullopt;
         const Affine picture_from_frame = *scale.picture_from_frame();
         return place(picture_from_frame) ? std::optional(std::move(result_)) : std::nullopt;
     }
@@ -70,11 +70,11 @@ class Rerooter {
         return true;
     }
 
-    bool set_view(const std::optional<Vec3>& look_at) {
+    bool set_view(const std::optional<Vec3>& look_at, const std::optional<Affine>& picture_from_root) {
         if (request_.zoom) {
             result_.view = frame_object_(model_.graph.root, 0);
             turn_to_focus(look_at.value_or(focus_.points.front()));
-        } else if (!look_from_object()) {
+        } else if (!look_from_object(picture_from_root)) {
             return false;
         }
         const View& view = result_.view;
@@ -121,7 +121,7 @@ class Rerooter {
 
     double farthest_ground() const { return reach_share * glm::length(result_.view.camera.location); }
 
-    bool look_from_object() {
+    bool look_from_object(const std::optional<Affine>& picture_from_root) {
         const GraphPath& path = focus_.path;
         ObjectId object = model_.graph.root;
         unsigned levels = 0;
@@ -136,17 +136,30 @@ class Rerooter {
         }
         if (model_.steps && levels > *model_.steps) return refuse_depth(levels);
         result_.view = frame_object_(object, levels);
-        if (path.steps.empty() || is_singular({world_from_object, {}})) return true;
-        const Mat3 object_from_world = inverse(Affine{world_from_object, {}}).linear;
-        if (!model_.graph.settings.lights.empty())
-            for (Light& light : result_.view.lights)
-                move(light, Vec3(std::numeric_limits<double>::infinity()),
-                     object_from_world * (light.sun ? light.location : light.location));
-        Sky& sky = result_.view.sky;
-        if (model_.graph.settings.background && sky.zenith != sky.horizon)
-            sky.axis = glm::normalize(object_from_world * sky.axis);
-        result_.view.ground.reset();
+        if (!path.steps.empty() && !is_singular({world_from_object, {}}))
+            keep_surroundings(inverse(Affine{world_from_object, {}}).linear, picture_from_root);
         return true;
+    }
+
+    /// Lights, sky and ground stay where they are in the world. `turn`: directions of the world in the
+    /// picture; `picture_from_root`: nothing where the world is too large to be seen from here.
+    void keep_surroundings(const Mat3& turn, const std::optional<Affine>& picture_from_root) {
+        View& view = result_.view;
+        const Vec3 infinitely_far(std::numeric_limits<double>::infinity());
+        if (!model_.graph.settings.lights.empty())
+            for (Light& light : view.lights) {
+                const Vec3 towards = light.sun ? light.location : light.location - focus_.points.front();
+                const bool near = !light.sun && picture_from_root;
+                move(light, near ? (*picture_from_root)(light.location) : infinitely_far, turn * towards);
+            }
+        if (model_.graph.settings.background && view.sky.zenith != view.sky.horizon)
+            view.sky.axis = glm::normalize(turn * view.sky.axis);
+        if (view.ground && picture_from_root) {
+            // No longer level, it is a plane like others.
+            const Affine world_from_plane = Affine::translate({0, view.ground->height, 0});
+            ground_ = {*picture_from_root * world_from_plane, view.ground->material};
+        }
+        view.ground.reset();
     }
 
     bool refuse_depth(unsigned levels) {
@@ -258,7 +271,7 @@ class Rerooter {
         graph = model_.graph;
         result_.bounds = model_.bounds;
         Object root;
-        root.name = free_name();
+        root.name = free_name("surroundings", graph.objects);
         root.span = span();
         ObjectBounds bounds;
         double error = 0;
@@ -282,6 +295,7 @@ class Rerooter {
             result_.root_levels.push_back(piece.levels);
             error = std::max(error, stretch * piece.error);
         }
+        if (ground_) add_ground(root, bounds);
         if (root.instances.empty())
             return refuse("nothing of the model is left there",
                           "zoom in less, or choose another place with --at or look_at");
@@ -291,6 +305,24 @@ class Rerooter {
         result_.components = strong_components(graph);
         warn(px(error), too_large);
         return true;
+    }
+
+    void add_ground(Object& root, ObjectBounds& bounds) {
+        const Affine& map = ground_->picture_from_plane;
+        const Vec3 normal = glm::normalize(glm::cross(map.linear[2], map.linear[0]));
+        if (!(std::abs(glm::dot(normal, focus_in_picture() - map.translation)) <= reach_)) return;
+        Graph& graph = result_.graph;
+        Instance plane;
+        plane.master = graph.primitive(PrimitiveKind::plane);
+        if (plane.master == result_.bounds.size()) result_.bounds.push_back({{}, {}, true});
+        plane.parent_from_child = map;
+        plane.material = static_cast<MaterialId>(graph.materials.size());
+        plane.span = root.span;
+        graph.materials.push_back(ground_->material);
+        graph.materials.back().name = free_name("ground", graph.materials);
+        bounds.unbounded = true;
+        root.instances.push_back(plane);
+        result_.root_levels.push_back(0);
     }
 
     static Tint straight(const PathTint& path) {
@@ -313,16 +345,20 @@ class Rerooter {
                                              too_large, largest_primitive));
     }
 
-    std::string free_name() const {
-        const auto taken = [&](const std::string& name) {
-            return std::any_of(model_.graph.objects.begin(), model_.graph.objects.end(),
-                               [&](const Object& object) { return object.name == name; });
-        };
-        std::string name = "surroundings";
-        for (int i = 2; taken(name); ++i)
-            name = fmt::format("surroundings{}", i);
+    /// The name, or the name with a number, that none of these has.
+    template<typename Named>
+    static std::string free_name(const std::string& base, const std::vector<Named>& all) {
+        std::string name = base;
+        const auto taken = [&](const Named& other) { return other.name == name; };
+        for (int i = 2; std::any_of(all.begin(), all.end(), taken); ++i)
+            name = fmt::format("{}{}", base, i);
         return name;
     }
+
+    struct GroundPlane {
+        Affine picture_from_plane;
+        Material material;
+    };
 
     const ZoomModel& model_;
     const ZoomRequest& request_;
@@ -331,6 +367,7 @@ class Rerooter {
     Focus focus_;
     Surroundings around_;
     double reach_ = 0;
+    std::optional<GroundPlane> ground_;
     bool whole_ = false; ///< the object reached fits into the picture's reach
     Rerooted result_;
 };

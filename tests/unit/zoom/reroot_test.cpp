@@ -302,5 +302,30 @@ TEST(Reroot, LightsAndGroundFollow) {
     EXPECT_NEAR(zoomed("4").ground->height, 0, 1e-12);
 }
 
+TEST(Reroot, TheGroundStaysInTheWorld) {
+    const Graph graph = corner_maps(triangle, {});
+    const Components components = strong_components(graph);
+    const std::vector<ObjectBounds> bounds = bounds_of(graph);
+    const FrameObject frame = [](ObjectId, unsigned) {
+        View view = face_on(2.5);
+        view.ground = Ground{-0.5, {.name = "grass"}};
+        return view;
+    };
+    Diagnostics diagnostics;
+    ZoomRequest request;
+    std::string problem;
+    // In the frame of the second `left`, half as large and about (-7/8, -1/2) / 2.
+    request.at = parse_address("left.left", problem);
+    const auto rerooted = reroot({graph, components, bounds, {}}, request, frame, {}, diagnostics);
+    ASSERT_TRUE(rerooted);
+    EXPECT_FALSE(rerooted->view.ground);
+    const Instance& plane = rerooted->graph.objects[rerooted->graph.root].instances.back();
+    EXPECT_EQ(rerooted->graph.objects[plane.master].primitive, PrimitiveKind::plane);
+    EXPECT_NEAR(plane.parent_from_child.translation.y, 2 * (-0.5 + 0.25), 1e-12);
+    ASSERT_TRUE(plane.material);
+    EXPECT_EQ(rerooted->graph.materials[*plane.material].name, "ground");
+    EXPECT_EQ(rerooted->bounds.size(), rerooted->graph.objects.size());
+}
+
 } // namespace
 } // namespace graftal

@@ -2,10 +2,13 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <limits>
 #include <map>
 #include <tuple>
 #include <unordered_map>
+
+#include <glm/common.hpp>
 
 #include "compiler/analysis/bounding.h"
 #include "compiler/cut/bake.h"
@@ -235,8 +238,15 @@ class Grouping {
         include(transformed(thing.world_from_thing, box_[body]));
     }
 
-    void place(std::uint32_t body, const Affine& world_from_body, std::uint32_t palette, const PathTint& tint,
-               const std::optional<MaterialId>& material) {
+    /// What no picture shows makes no textures of its own.
+    static PathTint rounded(const PathTint& tint) {
+        constexpr double grain = 1.0 / (1 << 24);
+        return {glm::round(tint.premultiplied / grain) * grain, std::round(tint.alpha / grain) * grain};
+    }
+
+    void place(std::uint32_t body, const Affine& world_from_body, std::uint32_t palette,
+               const PathTint& exact_tint, const std::optional<MaterialId>& material) {
+        const PathTint tint = rounded(exact_tint);
         static const Material plain;
         const Material& finish = material ? cut_.materials[*material] : plain;
         std::uint64_t hash = mixed(0, palette);

@@ -16,7 +16,7 @@ namespace graftal {
 namespace {
 
 /// Beyond this many, pieces are only counted.
-constexpr double max_real_pieces = 4000;
+constexpr double max_real_pieces = 300'000;
 constexpr std::size_t max_splits = 200'000;
 
 /// What one mesh would serve.

@@ -17,7 +17,7 @@ namespace {
 
 /// What lies farther from the focus is left out, in distances of the eye: its shadows and what is seen of it
 /// between the nearer parts.
-constexpr double reach_share = 100;
+constexpr double reach_share = 200;
 /// The same of parallel rays, in half diagonals of the picture; flat models have nothing out of the picture.
 constexpr double parallel_share = 16, flat_reach_share = 1.05;
 /// A map that stretches space so much more one way than another leaves no digits.

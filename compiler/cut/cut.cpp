@@ -47,6 +47,7 @@ class Cutter {
 
     std::optional<Cut> run() {
         if (unending_ && !options_.steps && !culls()) return refuse_endless();
+        cube_triangles_ = visible_cube_triangles(cut_, symmetry_, root_steps(options_));
         if (std::optional<Cut> cut = attempt(0)) return finish(std::move(*cut), 0);
         if (!culls()) return refuse_size();
         // The finest that the memory allows: upwards by doubling, then halfway between what fails and what
@@ -128,7 +129,7 @@ class Cutter {
         root.steps = root_steps(options);
         const Ball whole_ball = world_ball(cut_, root);
         const double px = projection.pixels_per_unit(whole_ball) / projection.detail_per_unit(whole_ball);
-        Weights weights(cut_, visible_cube_triangles(cut_, symmetry_, root.steps), px);
+        Weights weights(cut_, cube_triangles_, px);
         const double memory = memory_for_scene();
         const PieceKind whole = kind_of(cut_, projection, root);
         choice_ = options.flatten || better_flat(weights.of(whole), memory)
@@ -238,6 +239,7 @@ class Cutter {
     Diagnostics& diagnostics_;
     CutGraph cut_;
     Symmetry symmetry_;
+    double cube_triangles_ = 0; ///< visible_cube_triangles(), whatever the error
     Choice choice_;
 };
 

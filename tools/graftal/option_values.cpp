@@ -100,17 +100,22 @@ std::string set_camera_word(std::string_view word, CameraOverride& camera) {
 
 } // namespace
 
-std::string parse_camera(std::string_view text, CameraOverride& camera) {
+std::optional<std::string_view> take_word(std::string_view& text) {
     constexpr std::string_view blanks = " \t\n";
-    while (true) {
-        const std::size_t begin = text.find_first_not_of(blanks);
-        if (begin == std::string_view::npos) return {};
-        text.remove_prefix(begin);
-        const std::string_view word = text.substr(0, text.find_first_of(blanks));
-        const std::string problem = set_camera_word(word, camera);
+    const std::size_t begin = text.find_first_not_of(blanks);
+    if (begin == std::string_view::npos) return std::nullopt;
+    text.remove_prefix(begin);
+    const std::string_view word = text.substr(0, text.find_first_of(blanks));
+    text.remove_prefix(word.size());
+    return word;
+}
+
+std::string parse_camera(std::string_view text, CameraOverride& camera) {
+    while (const std::optional<std::string_view> word = take_word(text)) {
+        const std::string problem = set_camera_word(*word, camera);
         if (!problem.empty()) return problem;
-        text.remove_prefix(word.size());
     }
+    return {};
 }
 
 std::string shell_quoted(const std::vector<std::string>& words) {

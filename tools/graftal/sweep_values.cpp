@@ -110,13 +110,8 @@ std::optional<Sweep> parse_zoom_sweep(std::string_view text) {
 }
 
 std::string parse_camera_sweeps(std::string_view text, CameraOverride& camera, std::vector<Sweep>& sweeps) {
-    constexpr std::string_view blanks = " \t\n";
-    while (true) {
-        const std::size_t begin = text.find_first_not_of(blanks);
-        if (begin == std::string_view::npos) return {};
-        text.remove_prefix(begin);
-        const std::string_view word = text.substr(0, text.find_first_of(blanks));
-        text.remove_prefix(word.size());
+    while (const std::optional<std::string_view> taken = take_word(text)) {
+        const std::string_view word = *taken;
         const std::string name(word.substr(0, word.find('=')));
         const auto range = parse_range(word);
         CameraOverride from, to;
@@ -126,6 +121,7 @@ std::string parse_camera_sweeps(std::string_view text, CameraOverride& camera, s
         drop_sweep(sweeps, "--camera " + name);
         if (range) sweeps.push_back(camera_sweep(name, from, to));
     }
+    return {};
 }
 
 std::optional<FrameRate> parse_frame_rate(std::string_view text) {

@@ -1,0 +1,28 @@
+#pragma once
+
+#include "compiler/graph/settings.h"
+#include "compiler/support/tint.h"
+#include "runtime/trace/ray.h"
+
+namespace graftal {
+
+/// Where a ray meets a surface.
+struct SurfaceHit {
+    double t = 0;
+    Vec3 normal{0, 1, 0};               ///< of unit length, to either side
+    Rgb rgb{0.8};                       ///< opaque, all tints in front
+    const Material* material = nullptr; ///< its finish; its rgb does not count
+};
+
+/// What can be met by rays, in world space. One for each thread: looking may use its memory.
+class Surfaces {
+  public:
+    virtual ~Surfaces() = default;
+
+    /// The first surface within the range, if there is one.
+    virtual bool closest(const Ray& ray, const RayRange& range, SurfaceHit& hit) = 0;
+    /// Whether there is any surface within the range.
+    virtual bool meets_any(const Ray& ray, const RayRange& range) = 0;
+};
+
+} // namespace graftal

@@ -187,24 +187,31 @@ std::optional<AnalysedModel> analyse_model(const std::string& path, const Compil
     return model;
 }
 
-std::optional<CompiledModel> compile_model(const std::string& path, const CompileOptions& options,
-                                           Compilation& compilation) {
+std::optional<ViewedModel> view_model(const std::string& path, const CompileOptions& options,
+                                      Compilation& compilation) {
     std::optional<AnalysedModel> model = analyse_model(path, options, compilation);
     if (!model) return std::nullopt;
-    Stages stages(compilation.times);
     CutOptions cut_options = options.cut;
     cut_options.steps = model->steps;
-    std::optional<View> view = stages.run("frame", [&] {
+    std::optional<View> view = Stages(compilation.times).run("frame", [&] {
         return options.zoom.active() ? zoom_model(*model, options, cut_options, compilation.diagnostics)
                                      : view_of(*model, options, false);
     });
     if (!view) return std::nullopt;
-    std::optional<Cut> cut = stages.run("cut", [&] {
-        return cut_graph(model->graph, model->components, model->bounds, *view, cut_options,
+    return ViewedModel{std::move(*model), std::move(*view), std::move(cut_options)};
+}
+
+std::optional<CompiledModel> compile_model(const std::string& path, const CompileOptions& options,
+                                           Compilation& compilation) {
+    std::optional<ViewedModel> viewed = view_model(path, options, compilation);
+    if (!viewed) return std::nullopt;
+    AnalysedModel& model = viewed->model;
+    std::optional<Cut> cut = Stages(compilation.times).run("cut", [&] {
+        return cut_graph(model.graph, model.components, model.bounds, viewed->view, viewed->cut,
                          compilation.diagnostics);
     });
     if (!cut) return std::nullopt;
-    return CompiledModel{std::move(*model), std::move(*view), std::move(*cut)};
+    return CompiledModel{std::move(model), std::move(viewed->view), std::move(*cut)};
 }
 
 } // namespace graftal

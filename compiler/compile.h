@@ -51,6 +51,13 @@ struct AnalysedModel {
     std::optional<Derivation> derivation; ///< of an L-system
 };
 
+/// A model that is looked at: what every engine starts from.
+struct ViewedModel {
+    AnalysedModel model;
+    View view;
+    CutOptions cut;
+};
+
 /// A model ready to emit.
 struct CompiledModel {
     AnalysedModel model;
@@ -71,7 +78,11 @@ struct Compilation {
 std::optional<AnalysedModel> analyse_model(const std::string& path, const CompileOptions& options,
                                            Compilation& compilation, bool for_report = false);
 
-/// analyse_model, then view and cut.
+/// analyse_model, then the view.
+std::optional<ViewedModel> view_model(const std::string& path, const CompileOptions& options,
+                                      Compilation& compilation);
+
+/// view_model, then the cut.
 std::optional<CompiledModel> compile_model(const std::string& path, const CompileOptions& options,
                                            Compilation& compilation);
 

@@ -10,8 +10,7 @@
 #include "compiler/cut/coverage.h"
 #include "compiler/cut/cut_graph.h"
 #include "compiler/cut/povray_costs.h"
-#include "compiler/cut/symmetry.h"
-#include "compiler/support/check.h"
+#include "compiler/cut/prepare.h"
 
 namespace graftal {
 
@@ -19,8 +18,6 @@ namespace {
 
 /// The error grows by this where the memory does not suffice: a quarter less on each side of a leaf.
 constexpr double coarser = 1.25;
-/// The nearest that the eye is taken to be, in radii of the model.
-constexpr double nearest_share = 1e-5;
 
 std::string readable_count(double count) {
     if (!std::isfinite(count)) return "more than 1e308";
@@ -40,14 +37,12 @@ class Cutter {
     Cutter(const Graph& graph, const Components& components, const std::vector<ObjectBounds>& bounds,
            const View& view, const CutOptions& options, Diagnostics& diagnostics)
         : graph_(graph), unending_(components.unending[graph.root]), view_(view), options_(options),
-          diagnostics_(diagnostics), cut_(prepared(graph, components, bounds, options)),
-          symmetry_(find_symmetry(cut_)) {
-        if (culls() || (unending_ && options_.steps)) fit_proxies(cut_, symmetry_);
-    }
+          diagnostics_(diagnostics), prepared_(prepare_cut(graph, components, bounds, options)),
+          cut_(prepared_.cut), symmetry_(prepared_.symmetry) {}
 
     std::optional<Cut> run() {
         if (unending_ && !options_.steps && !culls()) return refuse_endless();
-        cube_triangles_ = visible_cube_triangles(cut_, symmetry_, root_steps(options_));
+        cube_triangles_ = visible_cube_triangles(cut_, symmetry_, prepared_.root_steps);
         if (std::optional<Cut> cut = attempt(0)) return finish(std::move(*cut), 0);
         if (!culls()) return refuse_size();
         // The finest that the memory allows: upwards by doubling, then halfway between what fails and what
@@ -72,40 +67,7 @@ class Cutter {
     }
 
   private:
-    static CutGraph prepared(const Graph& graph, const Components& components,
-                             const std::vector<ObjectBounds>& bounds, const CutOptions& options) {
-        CutGraph cut = build_cut_graph(graph, components, bounds);
-        if (!options.steps) drop_endings(cut);
-        if (!options.root_levels.empty()) use_up_levels(cut, options.root_levels);
-        split_into_halves(cut);
-        return cut;
-    }
-
-    /// Where levels do not end, objects are cut for their size alone: a proxy then stands for all that is
-    /// left out, and what an object would be drawn by at its last level, a trunk without its twigs, would be
-    /// too little.
-    static void drop_endings(CutGraph& cut) {
-        for (CutNode& node : cut.nodes)
-            if (!node.terminal && !node.sealed) node.stop_edges.clear();
-    }
-
-    /// The root counts as a level itself, so that it is never the one that is cut.
-    static void use_up_levels(CutGraph& cut, const std::vector<unsigned>& root_levels) {
-        CutNode root = cut.nodes[cut.root];
-        GRAFTAL_CHECK(root.edges.size() == root_levels.size(), "cut: root levels and instances differ");
-        for (std::size_t i = 0; i < root_levels.size(); ++i)
-            if (root.edges[i].levels > 0) root.edges[i].levels = root_levels[i] + 1;
-        cut.root = static_cast<NodeId>(cut.nodes.size());
-        cut.nodes.push_back(std::move(root));
-    }
-
-    /// Levels of the root.
-    std::uint32_t root_steps(const CutOptions& options) const {
-        if (!options.steps) return unlimited_steps;
-        return *options.steps + (options.root_levels.empty() ? 0 : 1);
-    }
-
-    bool culls() const { return options_.error_world ? *options_.error_world > 0 : options_.error_px > 0; }
+    bool culls() const { return options_.culls(); }
 
     /// Steps of the error beyond what the whole picture measures, or a model in any unit.
     int coarsest() const {
@@ -122,11 +84,10 @@ class Cutter {
         CutOptions options = options_;
         const double error_px = options_.error_px * factor_after(coarser_steps);
         if (options.error_world) options.error_world = *options_.error_world * factor_after(coarser_steps);
-        const double near = nearest_share * std::max(cut_.nodes[cut_.root].ball.radius, 1e-280);
-        const Projection projection(view_, options, error_px, near);
+        const Projection projection(view_, options, error_px, nearest_to_eye(cut_));
         Piece root;
         root.node = cut_.root;
-        root.steps = root_steps(options);
+        root.steps = prepared_.root_steps;
         const Ball whole_ball = world_ball(cut_, root);
         const double px = projection.pixels_per_unit(whole_ball) / projection.detail_per_unit(whole_ball);
         Weights weights(cut_, cube_triangles_, px);
@@ -203,8 +164,8 @@ class Cutter {
     }
 
     double root_pixels_per_unit() const {
-        const Ball& ball = cut_.nodes[cut_.root].ball;
-        return Projection(view_, options_, 1, 1e-5 * std::max(ball.radius, 1e-280)).pixels_per_unit(ball);
+        return Projection(view_, options_, 1, nearest_to_eye(cut_))
+            .pixels_per_unit(cut_.nodes[cut_.root].ball);
     }
 
     std::nullopt_t refuse_endless() {
@@ -237,8 +198,9 @@ class Cutter {
     const View& view_;
     const CutOptions& options_;
     Diagnostics& diagnostics_;
-    CutGraph cut_;
-    Symmetry symmetry_;
+    const PreparedCut prepared_;
+    const CutGraph& cut_;
+    const Symmetry& symmetry_;
     double cube_triangles_ = 0; ///< visible_cube_triangles(), whatever the error
     Choice choice_;
 };

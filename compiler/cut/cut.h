@@ -30,6 +30,9 @@ struct CutOptions {
         root_levels;           ///< that each of the root's instances uses up; empty: as the graph says
     bool visible_only = false; ///< drop what is out of the picture, with its shadows and reflections
     bool flatten = false;      ///< every leaf its own placement: the absolute specification
+
+    /// Whether anything is culled for its size.
+    bool culls() const { return error_world ? *error_world > 0 : error_px > 0; }
 };
 
 /// A triangle mesh in its own frame, coordinates of order 1. Colours are not part of it: mirror images that

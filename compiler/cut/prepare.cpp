@@ -1,0 +1,52 @@
+#include "compiler/cut/prepare.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "compiler/cut/coverage.h"
+#include "compiler/support/check.h"
+
+namespace graftal {
+
+namespace {
+
+/// Where levels do not end, objects are cut for their size alone: a proxy then stands for all that is left
+/// out, and what an object would be drawn by at its last level, a trunk without its twigs, would be too
+/// little.
+void drop_endings(CutGraph& cut) {
+    for (CutNode& node : cut.nodes)
+        if (!node.terminal && !node.sealed) node.stop_edges.clear();
+}
+
+/// The root counts as a level itself, so that it is never the one that is cut.
+void use_up_levels(CutGraph& cut, const std::vector<unsigned>& root_levels) {
+    CutNode root = cut.nodes[cut.root];
+    GRAFTAL_CHECK(root.edges.size() == root_levels.size(), "cut: root levels and instances differ");
+    for (std::size_t i = 0; i < root_levels.size(); ++i)
+        if (root.edges[i].levels > 0) root.edges[i].levels = root_levels[i] + 1;
+    cut.root = static_cast<NodeId>(cut.nodes.size());
+    cut.nodes.push_back(std::move(root));
+}
+
+} // namespace
+
+PreparedCut prepare_cut(const Graph& graph, const Components& components,
+                        const std::vector<ObjectBounds>& bounds, const CutOptions& options) {
+    PreparedCut prepared;
+    CutGraph& cut = prepared.cut = build_cut_graph(graph, components, bounds);
+    if (!options.steps) drop_endings(cut);
+    if (!options.root_levels.empty()) use_up_levels(cut, options.root_levels);
+    split_into_halves(cut);
+    prepared.symmetry = find_symmetry(cut);
+    if (options.culls() || (components.unending[graph.root] && options.steps))
+        fit_proxies(cut, prepared.symmetry);
+    if (options.steps) prepared.root_steps = *options.steps + (options.root_levels.empty() ? 0 : 1);
+    return prepared;
+}
+
+double nearest_to_eye(const CutGraph& cut) {
+    constexpr double share_of_radius = 1e-5;
+    return share_of_radius * std::max(cut.nodes[cut.root].ball.radius, 1e-280);
+}
+
+} // namespace graftal

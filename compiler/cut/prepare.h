@@ -1,0 +1,24 @@
+#pragma once
+
+#include "compiler/cut/cut.h"
+#include "compiler/cut/cut_graph.h"
+#include "compiler/cut/symmetry.h"
+
+namespace graftal {
+
+/// A graph made ready to be unfolded for a view: what the cut and the tracer unfold alike, so that both draw
+/// the same parts.
+struct PreparedCut {
+    CutGraph cut;
+    Symmetry symmetry;
+    std::uint32_t root_steps = unlimited_steps; ///< levels that the root has
+};
+
+/// Requires what cut_graph() requires. O(graph).
+PreparedCut prepare_cut(const Graph& graph, const Components& components,
+                        const std::vector<ObjectBounds>& bounds, const CutOptions& options);
+
+/// The least distance from the eye that counts (Projection), so that the eye may lie on the model.
+double nearest_to_eye(const CutGraph& cut);
+
+} // namespace graftal

@@ -1,0 +1,184 @@
+#include "runtime/trace/box_tree.h"
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+
+namespace graftal {
+
+namespace {
+
+constexpr float infinity = std::numeric_limits<float>::infinity();
+constexpr int width = 8;
+constexpr int bins = 16;
+/// Deeper than this, halves by number take the place of the heuristic.
+constexpr int deepest_by_area = 32;
+
+struct FloatBox {
+    std::array<float, 3> lower{infinity, infinity, infinity};
+    std::array<float, 3> upper{-infinity, -infinity, -infinity};
+
+    void include(const std::array<float, 3>& low, const std::array<float, 3>& high) {
+        for (std::size_t i = 0; i < 3; ++i) {
+            lower[i] = std::min(lower[i], low[i]);
+            upper[i] = std::max(upper[i], high[i]);
+        }
+    }
+    double half_area() const {
+        if (!(lower[0] <= upper[0])) return 0;
+        const double x = upper[0] - lower[0], y = upper[1] - lower[1], z = upper[2] - lower[2];
+        return x * y + y * z + z * x;
+    }
+};
+
+using Items = std::span<BoxedItem>;
+
+FloatBox box_of(Items items) {
+    FloatBox box;
+    for (const BoxedItem& item : items)
+        box.include(item.lower, item.upper);
+    return box;
+}
+
+float middle(const BoxedItem& item, std::size_t axis) {
+    return 0.5f * item.lower[axis] + 0.5f * item.upper[axis];
+}
+
+struct Split {
+    double cost = std::numeric_limits<double>::infinity();
+    std::size_t axis = 0;
+    int bin = 0; ///< the first of the second half
+};
+
+/// Sorts middles into bins between the least and the greatest along an axis.
+struct Bins {
+    float least = 0, scale = 0;
+
+    Bins(float low, float high) : least(low), scale(bins / (high - low)) {}
+    int operator()(float value) const {
+        return std::clamp(static_cast<int>((value - least) * scale), 0, bins - 1);
+    }
+};
+
+Split best_split(Items items, const FloatBox& middles) {
+    Split best;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        const Bins bin_of(middles.lower[axis], middles.upper[axis]);
+        if (!(middles.upper[axis] > middles.lower[axis]) || !std::isfinite(bin_of.scale)) continue;
+        std::array<FloatBox, bins> box;
+        std::array<double, bins> count{};
+        for (const BoxedItem& item : items) {
+            const auto bin = static_cast<std::size_t>(bin_of(middle(item, axis)));
+            box[bin].include(item.lower, item.upper);
+            ++count[bin];
+        }
+        std::array<double, bins> right_cost{};
+        FloatBox right;
+        double right_count = 0;
+        for (std::size_t bin = bins - 1; bin > 0; --bin) {
+            right.include(box[bin].lower, box[bin].upper);
+            right_count += count[bin];
+            right_cost[bin] = right_count > 0 ? right_count * right.half_area() : infinity;
+        }
+        FloatBox left;
+        double left_count = 0;
+        for (std::size_t bin = 1; bin < bins; ++bin) {
+            left.include(box[bin - 1].lower, box[bin - 1].upper);
+            left_count += count[bin - 1];
+            const double cost = left_count > 0 ? left_count * left.half_area() + right_cost[bin] : infinity;
+            if (cost < best.cost) best = {cost, axis, static_cast<int>(bin)};
+        }
+    }
+    return best;
+}
+
+/// Splits more than one item into two parts that are not empty; returns the size of the first.
+std::size_t split(Items items, int depth) {
+    FloatBox middles;
+    for (const BoxedItem& item : items) {
+        const std::array<float, 3> point{middle(item, 0), middle(item, 1), middle(item, 2)};
+        middles.include(point, point);
+    }
+    if (depth < deepest_by_area) {
+        const Split best = best_split(items, middles);
+        if (best.cost < infinity) {
+            const Bins bin_of(middles.lower[best.axis], middles.upper[best.axis]);
+            const auto part = std::partition(items.begin(), items.end(), [&](const BoxedItem& item) {
+                return bin_of(middle(item, best.axis)) < best.bin;
+            });
+            const auto size = static_cast<std::size_t>(part - items.begin());
+            if (size > 0 && size < items.size()) return size;
+        }
+    }
+    return items.size() / 2; // in one place, or too deep: any halves will do
+}
+
+class Builder {
+  public:
+    explicit Builder(std::vector<BoxNode>& nodes) : nodes_(nodes) {}
+
+    std::uint32_t build(Items items, int depth) {
+        struct Part {
+            Items items;
+            double area;
+        };
+        std::vector<Part> parts = {{items, infinity}};
+        int levels = 0;
+        while (parts.size() < width) {
+            // The largest that can be split: it is the likeliest to be met.
+            auto largest = parts.end();
+            for (auto part = parts.begin(); part != parts.end(); ++part)
+                if (part->items.size() > 1 && (largest == parts.end() || part->area > largest->area))
+                    largest = part;
+            if (largest == parts.end()) break;
+            const Items whole = largest->items;
+            const std::size_t first = split(whole, depth + levels++ / 3);
+            *largest = {whole.first(first), box_of(whole.first(first)).half_area()};
+            parts.push_back({whole.subspan(first), box_of(whole.subspan(first)).half_area()});
+        }
+        const auto number = static_cast<std::uint32_t>(nodes_.size());
+        nodes_.push_back(empty_node());
+        for (std::size_t lane = 0; lane < parts.size(); ++lane) {
+            const Items part = parts[lane].items;
+            const std::uint32_t entry =
+                part.size() == 1 ? part.front().item : build(part, depth + 3) | BoxNode::inner;
+            const FloatBox box = box_of(part);
+            for (std::size_t axis = 0; axis < 3; ++axis) {
+                nodes_[number].lower[axis][lane] = box.lower[axis];
+                nodes_[number].upper[axis][lane] = box.upper[axis];
+            }
+            nodes_[number].entry[lane] = entry;
+        }
+        return number;
+    }
+
+  private:
+    static BoxNode empty_node() {
+        BoxNode node{};
+        for (int axis = 0; axis < 3; ++axis)
+            for (int lane = 0; lane < width; ++lane) {
+                node.lower[axis][lane] = infinity;
+                node.upper[axis][lane] = -infinity;
+            }
+        return node;
+    }
+
+    std::vector<BoxNode>& nodes_;
+};
+
+} // namespace
+
+BoxedItem::BoxedItem(const Box& box, double extent, std::uint32_t number) : item(number) {
+    constexpr double slack = 4e-6;
+    for (int axis = 0; axis < 3; ++axis) {
+        const auto i = static_cast<std::size_t>(axis);
+        lower[i] = std::nextafter(static_cast<float>(box.min[axis] - slack * extent), -infinity);
+        upper[i] = std::nextafter(static_cast<float>(box.max[axis] + slack * extent), infinity);
+    }
+}
+
+std::uint32_t build_box_tree(std::vector<BoxedItem>& items, std::vector<BoxNode>& nodes) {
+    return items.empty() ? no_tree : Builder(nodes).build(items, 0);
+}
+
+} // namespace graftal

@@ -1,0 +1,129 @@
+#include "runtime/trace/drawn_bounds.h"
+
+#include <utility>
+
+#include <glm/matrix.hpp>
+
+#include "compiler/analysis/bounding.h"
+#include "compiler/analysis/contraction.h"
+#include "compiler/graph/components.h"
+
+namespace graftal {
+
+namespace {
+
+/// Edges of graphs with more than this many are bounded by the boxes of their children's boxes, the others by
+/// what they hold.
+constexpr std::size_t most_exact_edges = 5000;
+
+Instance instance_of(const CutEdge& edge) {
+    Instance instance;
+    instance.master = edge.child;
+    instance.parent_from_child = edge.node_from_child;
+    return instance;
+}
+
+std::size_t edge_count(const CutGraph& cut) {
+    std::size_t count = 0;
+    for (const CutNode& node : cut.nodes)
+        count += node.edges.size() + node.stop_edges.size();
+    return count;
+}
+
+/// True if the box of the image is the image of the box.
+bool keeps_axes(const Mat3& m) {
+    for (int column = 0; column < 3; ++column) {
+        int along = 0;
+        for (int row = 0; row < 3; ++row)
+            along += m[column][row] != 0;
+        if (along > 1) return false;
+    }
+    return true;
+}
+
+class Bounder {
+  public:
+    explicit Bounder(const CutGraph& cut) : cut_(cut), exact_(edge_count(cut) <= most_exact_edges) {
+        graph_.root = cut.root;
+        for (const CutNode& node : cut.nodes) {
+            Object object;
+            object.primitive = node.primitive;
+            for (const std::vector<CutEdge>* edges : {&node.edges, &node.stop_edges})
+                for (const CutEdge& edge : *edges)
+                    object.instances.push_back(instance_of(edge));
+            graph_.objects.push_back(std::move(object));
+        }
+        Object sphere;
+        sphere.primitive = PrimitiveKind::sphere;
+        graph_.objects.push_back(std::move(sphere));
+        for (NodeId id = 0; id < cut.nodes.size(); ++id) {
+            const CutNode& node = cut.nodes[id];
+            if (node.primitive || !node.stop_edges.empty() || !(node.cullable || node.unending)) continue;
+            Instance proxy;
+            proxy.master = static_cast<ObjectId>(cut.nodes.size());
+            proxy.parent_from_child = node.node_from_proxy;
+            graph_.objects[id].instances.push_back(proxy);
+        }
+    }
+
+    DrawnBounds run() {
+        const std::size_t nodes = cut_.nodes.size();
+        for (NodeId id = 0; id < nodes; ++id)
+            for (const std::vector<CutEdge>* edges : {&cut_.nodes[id].edges, &cut_.nodes[id].stop_edges})
+                for (const CutEdge& edge : *edges)
+                    if (needs_object(edge)) add_object(edge);
+        const Components components = strong_components(graph_);
+        bounds_ = bound_objects(graph_, components, decide_contraction(graph_, components));
+        DrawnBounds result;
+        std::size_t next = nodes + 1;
+        for (const CutNode& node : cut_.nodes) {
+            result.node.push_back(bounds_[result.node.size()].box);
+            for (const bool stop : {false, true}) {
+                std::vector<Box>& boxes = (stop ? result.stop_edge : result.edge).emplace_back();
+                for (const CutEdge& edge : stop ? node.stop_edges : node.edges)
+                    boxes.push_back(needs_object(edge) ? bounds_[next++].box : box_of(edge));
+            }
+        }
+        return result;
+    }
+
+  private:
+    bool needs_object(const CutEdge& edge) const {
+        return exact_ && !cut_.nodes[edge.child].primitive && !keeps_axes(edge.node_from_child.linear);
+    }
+
+    Box box_of(const CutEdge& edge) const {
+        const auto primitive = cut_.nodes[edge.child].primitive;
+        if (primitive && *primitive != PrimitiveKind::plane) return box_of(*primitive, edge.node_from_child);
+        return transformed(edge.node_from_child, bounds_[edge.child].box);
+    }
+
+    static Box box_of(PrimitiveKind kind, const Affine& place) {
+        const Mat3 rows = glm::transpose(place.linear);
+        Box box;
+        for (int axis = 0; axis < 3; ++axis) {
+            box.min[axis] = place.translation[axis] - primitive_support(kind, -rows[axis]);
+            box.max[axis] = place.translation[axis] + primitive_support(kind, rows[axis]);
+        }
+        return box;
+    }
+
+    void add_object(const CutEdge& edge) {
+        Object object;
+        object.instances.push_back(instance_of(edge));
+        graph_.objects.push_back(std::move(object));
+    }
+
+    const CutGraph& cut_;
+    bool exact_;
+    Graph graph_;
+    std::vector<ObjectBounds> bounds_;
+};
+
+} // namespace
+
+DrawnBounds drawn_bounds(const CutGraph& cut) {
+    return Bounder(cut).run();
+}
+
+} // namespace graftal

@@ -1,0 +1,21 @@
+#pragma once
+
+#include <vector>
+
+#include "compiler/cut/cut_graph.h"
+#include "compiler/support/bounds.h"
+
+namespace graftal {
+
+/// Boxes of all that may be drawn of a prepared graph, however deep it is cut: besides the limit set, the
+/// terminals and the proxies.
+struct DrawnBounds {
+    std::vector<Box> node;                   ///< in the node's frame; empty: nothing but planes
+    std::vector<std::vector<Box>> edge;      ///< by node and edge: the child, in the node's frame
+    std::vector<std::vector<Box>> stop_edge; ///< likewise
+};
+
+/// Requires a graph whose cycles contract. O(graph).
+DrawnBounds drawn_bounds(const CutGraph& cut);
+
+} // namespace graftal

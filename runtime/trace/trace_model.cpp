@@ -1,0 +1,152 @@
+#include "runtime/trace/trace_model.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <utility>
+
+#include <glm/geometric.hpp>
+
+#include "runtime/trace/drawn_bounds.h"
+
+namespace graftal {
+
+namespace {
+
+/// Sizes are kept in here, so that inverses are numbers too.
+constexpr double least_size = 1e-140, largest_size = 1e140;
+
+/// Where the frame of a node lies in the frame that the graph gives it. Scaled by a power of two, so that
+/// maps keep their digits.
+Affine graph_from_frame(const CutNode& node, const Box& box) {
+    if (node.primitive || box.empty()) return {};
+    const Vec3 half = 0.5 * box.max - 0.5 * box.min;
+    const double size = std::clamp(std::max({half.x, half.y, half.z}), least_size, largest_size);
+    return Affine::translate(box.centre()) * Affine::scale(Vec3(std::exp2(std::ceil(std::log2(size)))));
+}
+
+TraceNode::Kind kind_of(const CutNode& node) {
+    if (node.primitive) return TraceNode::Kind::primitive;
+    if (node.unbounded) return TraceNode::Kind::unbounded;
+    return node.sealed ? TraceNode::Kind::mesh : TraceNode::Kind::parts;
+}
+
+/// Fills in nodes, edges and boxes of a model.
+class Builder {
+  public:
+    explicit Builder(TraceModel& model)
+        : model_(model), cut_(model.prepared.cut), bounds_(drawn_bounds(cut_)) {
+        for (NodeId id = 0; id < cut_.nodes.size(); ++id)
+            graph_from_frame_.push_back(graph_from_frame(cut_.nodes[id], bounds_.node[id]));
+    }
+
+    void build() {
+        add_root_edge();
+        for (NodeId id = 0; id < cut_.nodes.size(); ++id)
+            add_node(id);
+    }
+
+  private:
+    void add_root_edge() {
+        TraceEdge edge;
+        edge.child = cut_.root;
+        const Affine& world_from_root = graph_from_frame_[cut_.root];
+        set_map(edge, world_from_root, norm(world_from_root.linear));
+        edge.box = bounds_.node[cut_.root];
+        edge.similarity = true;
+        model_.edges.push_back(edge);
+    }
+
+    void add_node(NodeId id) {
+        const CutNode& source = cut_.nodes[id];
+        const Affine frame_from_graph = inverse(graph_from_frame_[id]);
+        TraceNode node;
+        node.kind = kind_of(source);
+        node.primitive = source.primitive.value_or(PrimitiveKind::sphere);
+        node.unending = source.unending;
+        node.cullable = source.cullable;
+        node.ball_centre = lanes_of(frame_from_graph(source.ball.centre));
+        node.ball_radius = frame_from_graph.linear[0][0] * source.ball.radius;
+        const Affine frame_from_proxy = frame_from_graph * source.node_from_proxy;
+        node.node_from_proxy = LaneMap(frame_from_proxy);
+        if (!is_singular(frame_from_proxy)) node.proxy_from_node = LaneMap(inverse(frame_from_proxy));
+        node.first_edge = static_cast<std::uint32_t>(model_.edges.size());
+        if (node.kind == TraceNode::Kind::parts) {
+            node.tree = add_edges(id, source.edges, bounds_.edge[id]);
+            node.edge_count = static_cast<std::uint32_t>(model_.edges.size()) - node.first_edge;
+            node.stop_tree = add_edges(id, source.stop_edges, bounds_.stop_edge[id]);
+        } else if (node.kind == TraceNode::Kind::unbounded) {
+            add_edges(id, source.edges, bounds_.edge[id]);
+            node.edge_count = static_cast<std::uint32_t>(model_.edges.size()) - node.first_edge;
+        }
+        model_.nodes.push_back(node);
+    }
+
+    std::uint32_t add_edges(NodeId id, const std::vector<CutEdge>& edges, const std::vector<Box>& boxes) {
+        const Affine frame_from_graph = inverse(graph_from_frame_[id]);
+        std::vector<BoxedItem> items;
+        std::map<EdgeKey, std::size_t> met; // parts that coincide are drawn once
+        for (std::size_t i = 0; i < edges.size(); ++i) {
+            const CutEdge& source = edges[i];
+            if (!met.emplace(key_of(source), i).second) continue;
+            TraceEdge edge;
+            edge.child = source.child;
+            edge.levels = source.levels;
+            edge.similarity = source.similarity;
+            edge.source = &source;
+            const double child_size = graph_from_frame_[source.child].linear[0][0];
+            set_map(edge, frame_from_graph * source.node_from_child * graph_from_frame_[source.child],
+                    source.stretch * child_size * frame_from_graph.linear[0][0]);
+            edge.box = transformed(frame_from_graph, boxes[i]);
+            items.emplace_back(edge.box, 1, static_cast<std::uint32_t>(model_.edges.size()));
+            model_.edges.push_back(edge);
+        }
+        if (cut_.nodes[id].unbounded) return no_tree;
+        return build_box_tree(items, model_.boxes);
+    }
+
+    static void set_map(TraceEdge& edge, const Affine& parent_from_child, double stretch) {
+        edge.parent_from_child = LaneMap(parent_from_child);
+        edge.child_from_parent = LaneMap(inverse(parent_from_child));
+        edge.stretch = stretch;
+    }
+
+    using EdgeKey = std::pair<NodeId, std::array<double, 12>>;
+    static EdgeKey key_of(const CutEdge& edge) {
+        EdgeKey key{edge.child, {}};
+        for (int column = 0; column < 4; ++column)
+            for (int row = 0; row < 3; ++row)
+                key.second[static_cast<std::size_t>(3 * column + row)] =
+                    column < 3 ? edge.node_from_child.linear[column][row]
+                               : edge.node_from_child.translation[row];
+        return key;
+    }
+
+    TraceModel& model_;
+    const CutGraph& cut_;
+    DrawnBounds bounds_;
+    std::vector<Affine> graph_from_frame_;
+};
+
+/// What a unit measures at the far end of the model, were it out of the picture.
+double least_detail(const TraceModel& model) {
+    constexpr double out_of_the_picture = 8; // Projection
+    const CutGraph& cut = model.prepared.cut;
+    const Ball& ball = cut.nodes[cut.root].ball;
+    const Camera& camera = model.view.camera;
+    const double reach = glm::distance(ball.centre, camera.location) + 2 * ball.radius;
+    const Ball far{camera.location + reach * camera.direction, 0};
+    return model.projection.detail_per_unit(far) / out_of_the_picture;
+}
+
+} // namespace
+
+TraceModel::TraceModel(PreparedCut ready, const View& seen, const CutOptions& cut_options)
+    : prepared(std::move(ready)), view(seen), options(cut_options),
+      projection(view, options, options.error_px, nearest_to_eye(prepared.cut)) {
+    least_detail_per_unit = least_detail(*this);
+    Builder(*this).build();
+}
+
+} // namespace graftal

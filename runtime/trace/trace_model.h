@@ -1,0 +1,69 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "compiler/cut/detail.h"
+#include "compiler/cut/prepare.h"
+#include "compiler/scene/scene.h"
+#include "runtime/trace/box_tree.h"
+#include "runtime/trace/lanes.h"
+
+namespace graftal {
+
+inline constexpr std::uint32_t no_edge = UINT32_MAX;
+
+/// An instance as rays go through it. Frames are not those of the graph: each node that is a union has one of
+/// its own, in which all that it draws fills the cube [-1, 1]^3 or nearly so. Single precision then suffices
+/// to test boxes, wherever and however large the model is.
+struct TraceEdge {
+    LaneMap parent_from_child;
+    LaneMap child_from_parent;
+    double stretch = 1;      ///< norm of the linear part of parent_from_child
+    Box box;                 ///< of what the child draws, in the parent's frame
+    std::uint32_t child = 0;
+    unsigned levels = 0;
+    bool similarity = false; ///< then a path's norm is the product of its stretches
+    const CutEdge* source = nullptr; ///< tint and material; nothing: the edge to the root
+};
+
+struct TraceNode {
+    enum class Kind : std::uint8_t {
+        primitive,
+        parts,     ///< a union
+        unbounded, ///< a union that holds planes: its edges are tried one after the other
+        mesh,      ///< leads through a singular map: what it holds is baked (CutNode::sealed)
+    };
+
+    Kind kind = Kind::parts;
+    PrimitiveKind primitive = PrimitiveKind::sphere;
+    bool unending = false;
+    bool cullable = true;
+    std::uint32_t tree = no_tree;      ///< of its edges
+    std::uint32_t stop_tree = no_tree; ///< of what is drawn where it is cut; none: its proxy
+    std::uint32_t first_edge = 0;      ///< of its edges, which follow each other
+    std::uint32_t edge_count = 0;
+    Double4 ball_centre{};
+    double ball_radius = 0;
+    LaneMap node_from_proxy; ///< places the unit sphere
+    LaneMap proxy_from_node;
+};
+
+/// A prepared graph made ready for rays, for one view. It is read by many threads.
+struct TraceModel {
+    PreparedCut prepared;
+    View view;
+    CutOptions options;
+    Projection projection;
+    double least_detail_per_unit = 0; ///< of Projection, anywhere on the model
+
+    std::vector<TraceNode> nodes; ///< as prepared.cut.nodes
+    std::vector<TraceEdge> edges; ///< the first leads to the root, from world space
+    std::vector<BoxNode> boxes;
+
+    TraceModel(PreparedCut prepared, const View& view, const CutOptions& options);
+    TraceModel(const TraceModel&) = delete;
+    TraceModel& operator=(const TraceModel&) = delete;
+};
+
+} // namespace graftal

@@ -1,0 +1,84 @@
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <cstdint>
+#include <vector>
+
+#include "runtime/trace/intersect.h"
+#include "runtime/trace/surfaces.h"
+#include "runtime/trace/trace_model.h"
+
+namespace graftal {
+
+/// Which instructions rays are traced by. The results are the same to the last bit.
+enum class Instructions { portable, avx2 };
+
+/// The fastest that this machine has.
+Instructions best_instructions();
+
+/// Takes rays through the graph itself (J. Hart and T. DeFanti, "Efficient Antialiased Rendering of 3-D Linear
+/// Fractals", 1991): depth first, the nearest child first, into each child's frame, and only as deep as the
+/// parts are that the view shows. What is drawn of a node is what the cut draws of it (cut.h), part by part.
+/// Memory O(depth). For one thread.
+class Traversal final : public Surfaces {
+  public:
+    explicit Traversal(const TraceModel& model, Instructions instructions = best_instructions());
+
+    bool closest(const Ray& ray, const RayRange& range, SurfaceHit& hit) override;
+    bool meets_any(const Ray& ray, const RayRange& range) override;
+
+    /// Nodes and primitives that rays went into so far.
+    std::uint64_t visits() const { return visits_; }
+    /// Rays that had to be given up, with what they had met by then: they went into too many parts.
+    std::uint64_t given_up() const { return given_up_; }
+
+  private:
+    struct Kernel; ///< the traversal proper, for all instructions
+
+    /// An object on the way from the root, and the ray in its frame.
+    struct alignas(32) Frame {
+        LaneMap world_from_node;
+        Double4 origin, direction; ///< the ray is origin + (t - base) direction
+        double base = 0;
+        double unit = 1;  ///< of the direction's largest component is 1 in it
+        double scale = 1; ///< norm of world_from_node
+        std::uint32_t edge = 0;
+        std::uint32_t node = 0;
+        std::uint32_t steps = 0;
+        bool cut = false; ///< drawn by its stop edges
+        float margin = 0; ///< by which parts may reach out of their boxes
+        std::array<float, 3> lower_origin{}, upper_origin{}; ///< the origin, with the margin
+        std::array<float, 3> reciprocal{};                   ///< of the direction in these units
+    };
+
+    /// An edge or a node of boxes to go into, and from where on.
+    struct Entry {
+        double t;
+        std::uint32_t entry;
+        std::uint32_t frame;
+    };
+
+    /// The best hit so far.
+    struct Best {
+        double t = 0;
+        bool found = false;
+        Vec3 normal{0.0}; ///< in the leaf's frame
+        LaneMap world_from_leaf;
+        std::uint32_t proxy_node = 0; ///< or no_edge
+    };
+
+    void surface_at_best(SurfaceHit& hit) const;
+
+    const TraceModel& model_;
+    Instructions instructions_;
+    std::vector<Frame> frames_;
+    std::size_t depth_ = 0; ///< frames in use
+    std::vector<Entry> entries_;
+    Best best_;
+    std::vector<std::uint32_t> path_; ///< edges from the root to the best hit, those from cut nodes marked
+    std::uint64_t visits_ = 0;
+    std::uint64_t given_up_ = 0;
+};
+
+} // namespace graftal

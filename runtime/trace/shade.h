@@ -1,27 +1,67 @@
 #pragma once
 
+#include <limits>
+#include <vector>
+
 #include "compiler/scene/scene.h"
 #include "runtime/trace/surfaces.h"
 
 namespace graftal {
 
+/// What POV-Ray leaves out of a picture.
+struct ShaderLimits {
+    /// Surfaces farther away along a ray. POV-Ray 3.7 meets nothing beyond 1e7 of its own units
+    /// (PovrayUnits::scale to one of the model), which shows where the ground ends.
+    double farthest = std::numeric_limits<double>::infinity();
+    /// Reflected rays that would count for less: its adc_bailout.
+    double least_weight = 1.0 / 255;
+};
+
 /// Light, as POV-Ray 3.7 computes it for what graftal emits (compiler/emit): ambient, diffuse and specular
-/// light of suns and point lights with their shadows, mirrors, the ground and the sky.
+/// light of suns and point lights with their shadows, mirrors, the ground and the sky. With the colour c of
+/// the surface, its normal n towards the viewer, the directions v to the viewer and l to a light of colour e,
+/// and h halfway between the two, the light along a ray is
+///     ambient c + sum over the lights that are not shadowed, n.l > 0, of
+///         (diffuse (n.l) c + specular (n.h)^(1/roughness)) e
+///     + reflection * (the light along the mirrored ray);
+/// shadowless lights are not shadowed and have no specular part. A picture shows up to eight surfaces one in
+/// the other; what the last of them mirrors is black. Nothing is clamped. (POV-Ray's trace.cpp: TraceRay,
+/// ComputeLightedTexture, ComputeOneDiffuseLight, ComputeSpecularColour, ComputeReflection, ComputeSky.)
 class Shader {
   public:
-    /// Keeps references to both.
-    Shader(const View& view, Surfaces& surfaces);
+    /// Keeps references to the view and the surfaces.
+    Shader(const View& view, Surfaces& surfaces, const ShaderLimits& limits = {});
 
-    /// The light that comes along the ray, from the front; components may exceed 1. The direction is of unit
-    /// length.
+    /// The light that comes along the ray, from the front; components may exceed 1, and are finite whatever
+    /// is met. The direction is of unit length.
     Rgb radiance(const Ray& ray);
 
     /// What the ray meets first, the ground included; false if that is the sky.
     bool first_hit(const Ray& ray, SurfaceHit& hit);
 
   private:
+    struct Lamp {
+        Vec3 at; ///< of a sun: the unit vector towards it
+        Rgb rgb;
+        bool sun;
+        bool shadowless;
+    };
+    struct Point;
+
+    bool closest(const Ray& ray, RayRange range, SurfaceHit& hit);
+    Point point_of(const Ray& ray, const SurfaceHit& hit) const;
+    Rgb lit(const Point& point);
+    Rgb light_of(const Lamp& lamp, const Point& point, double least);
+    bool shadowed(const Ray& to_light, const RayRange& range);
+    Rgb sky(Vec3 direction) const;
+    double least_distance(Vec3 point, double pixels) const;
+
     const View& view_;
     Surfaces& surfaces_;
+    const ShaderLimits limits_;
+    std::vector<Lamp> lamps_; ///< without those that are black
+    double pixel_;            ///< a pixel's length: of parallel rays in scene units, else at distance 1
+    double sky_slope_;
 };
 
 } // namespace graftal

@@ -1,0 +1,142 @@
+#include "runtime/trace/intersect_torus.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include <glm/geometric.hpp>
+
+// A torus lies where (|x|^2 + R^2 - r^2)^2 = 4 R^2 (x^2 + z^2). With s the distance along the ray from its
+// point nearest to the centre, this is a quartic without a cubic term whose coefficients are of the order of
+// 1, however far away the ray begins. Closed forms of its roots lose digits, or roots, in just the pictures
+// in which tori are seen from a symmetric side. So the roots are isolated instead: between the quartic's
+// extrema it is monotonous, and a bracket with a change of sign holds one root, which Newton's method cannot
+// leave.
+//
+// The extrema need no great care: an error of e in one changes the quartic there by e^2 only, so that half of
+// the digits do.
+
+namespace graftal {
+namespace {
+
+constexpr double ring_radius = 1, tube_radius = 0.25;
+constexpr double bound = ring_radius + tube_radius;
+/// What rounding leaves of the quartic at a root. Twice a point's distance from the surface is about its
+/// value.
+constexpr double noise = 4e-16;
+
+/// s^4 + a s^2 + b s + c.
+struct Quartic {
+    double a, b, c;
+
+    double operator()(double s) const {
+        const double square = s * s;
+        return (square + a) * square + (b * s + c);
+    }
+    double slope(double s) const { return (4 * s * s + 2 * a) * s + b; }
+    double bend(double s) const { return 12 * s * s + 2 * a; }
+};
+
+/// The largest root of s^3 + a s + b, where b <= 0: the only one that is not negative.
+double largest_root(double a, double b) {
+    // If there are three roots, the largest is at most this; else take a bound on the only one.
+    double s = 2 * std::sqrt(std::max(-a, 0.0) / 3);
+    if (27 * b * b > -4 * a * a * a) s = std::sqrt(std::max(-a, 0.0)) + std::cbrt(-b);
+    // To the right of the root the cubic is convex: Newton's method comes down to it and never passes it.
+    for (int step = 0; step < 64; ++step) {
+        const double value = (s * s + a) * s + b, slope = 3 * s * s + a;
+        if (!(value > 0) || !(slope > 0)) break;
+        const double change = value / slope;
+        s -= change;
+        if (change < 1e-7) break;
+    }
+    return s;
+}
+
+/// Where a quartic has its minima and, between two of them, its maximum.
+struct Extrema {
+    std::array<double, 3> at;
+    int count; ///< 1 or 3; the minima are the first and the last
+};
+
+Extrema extrema(const Quartic& quartic) {
+    // Mirrored if need be, the largest of the roots of the derivative is the largest in size too: dividing by
+    // it is stable.
+    const double mirror = quartic.b > 0 ? -1 : 1;
+    const double a = quartic.a / 2;
+    const double largest = largest_root(a, mirror * quartic.b / 4);
+    const double discriminant = -3 * largest * largest - 4 * a;
+    if (!(discriminant > 0)) return {{mirror * largest}, 1};
+    const double least = -(largest + std::sqrt(discriminant)) / 2, middle = -least - largest;
+    if (mirror < 0) return {{-largest, -middle, -least}, 3};
+    return {{least, middle, largest}, 3};
+}
+
+/// The root between two points with values of different signs, the first of which is `below` zero or not.
+/// `minimum` is that one of them at which the quartic has a minimum.
+double root_between(const Quartic& quartic, double least, double most, bool below, double minimum) {
+    // A parabola through the minimum starts near the root, and the nearer the more the ray grazes.
+    const double reach = std::sqrt(-2 * quartic(minimum) / std::max(quartic.bend(minimum), 1e-3));
+    double s = minimum == least ? least + reach : most - reach;
+    if (!(s > least && s < most)) s = (least + most) / 2;
+    for (int step = 0; step < 100; ++step) {
+        const double value = quartic(s);
+        if (std::abs(value) < noise) break;
+        ((value < 0) == below ? least : most) = s;
+        double next = s - value / quartic.slope(s);
+        if (!(next >= least && next <= most)) next = (least + most) / 2;
+        if (std::abs(next - s) < noise) return next;
+        s = next;
+    }
+    return s;
+}
+
+Vec3 normal_at(const Vec3& point) {
+    const double out = std::sqrt(point.x * point.x + point.z * point.z);
+    return glm::normalize(point - Vec3(point.x, 0, point.z) * (ring_radius / out));
+}
+
+} // namespace
+
+bool intersect_torus(const Ray& ray, const RayRange& range, PrimitiveHit& hit) {
+    const double speed = glm::length(ray.direction);
+    const Vec3 along = ray.direction / speed;
+    double middle = -glm::dot(ray.origin, along) / speed;
+    Vec3 point = ray(middle);
+    // Once more: the quartic has no cubic term only as far as the point is the nearest.
+    const double rest = -glm::dot(point, along);
+    middle += rest / speed;
+    point += rest * along;
+    const double away = glm::dot(point, point);
+    if (!(away < bound * bound)) return false;
+    // Past the surface on both sides, so that rounding cannot put an end inside.
+    const double half = std::sqrt(1.1 * bound * bound - away);
+    if (std::abs(point.y) - std::abs(along.y) * half > tube_radius) return false;
+
+    const double k = away + ring_radius * ring_radius - tube_radius * tube_radius;
+    const double four = 4 * ring_radius * ring_radius;
+    const Quartic quartic{2 * k - four * (along.x * along.x + along.z * along.z),
+                          -2 * four * (point.x * along.x + point.z * along.z),
+                          k * k - four * (point.x * point.x + point.z * point.z)};
+    const Extrema turns = extrema(quartic);
+    double least = -half;
+    bool below = false;
+    for (int part = 0; part <= turns.count; ++part) {
+        const double most = part < turns.count ? std::clamp(turns.at[part], least, half) : half;
+        const bool most_below = part < turns.count && quartic(most) < 0;
+        if (below != most_below && middle + most / speed > range.least) {
+            const double s = root_between(quartic, least, most, below, below ? least : most);
+            const double t = middle + s / speed;
+            if (!(t < range.most)) return false;
+            if (t > range.least) {
+                hit = {t, normal_at(point + s * along)};
+                return true;
+            }
+        }
+        least = most;
+        below = most_below;
+    }
+    return false;
+}
+
+} // namespace graftal

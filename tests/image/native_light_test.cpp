@@ -1,0 +1,256 @@
+// The shader's picture lies over POV-Ray's of the same scene, pixel by pixel. What is found along a ray is
+// left to the plainest code there is, so that only rays and light are under test.
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <ostream>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "compiler/emit/povray_view.h"
+#include "runtime/trace/camera_rays.h"
+#include "runtime/trace/shade.h"
+#include "tests/image/brute_force.h"
+#include "tests/image/drawing.h"
+
+namespace graftal {
+namespace {
+
+/// Both round to 16 bits; POV-Ray computes colours in single precision and reads 9 digits of a place.
+constexpr double last_bits = 2.001 / 65535;
+/// A background that no surface shows by chance.
+constexpr Rgb magenta(0.93, 0.07, 0.91);
+const std::string on_magenta = "background: 0.93, 0.07, 0.91\n";
+
+struct LitScene {
+    const char* name;
+    ImageSize size;
+    std::string text;
+    bool plain_background = true; ///< on_magenta: then POV-Ray's picture shows what was hit
+
+    friend std::ostream& operator<<(std::ostream& out, const LitScene& scene) { return out << scene.name; }
+};
+
+const std::string balls_and_blocks = R"(
+    material rough { ambient: 0.2 diffuse: 0.5 specular: 0.6 roughness: 1 }
+    material satin { ambient: 0.05 diffuse: 0.7 specular: 0.5 roughness: 0.05 }
+    material gloss { ambient: 0 diffuse: 0.4 specular: 1 roughness: 0.005 }
+    material glass { ambient: 0.1 diffuse: 0 specular: 1 roughness: 0.0002 }
+    object things {
+        sphere translate: -3, 1, 0 material rough tint: 0.9, 0.3, 0.2, 1
+        sphere translate: -0.6, 1, 0.4 material satin tint: 0.2, 0.8, 0.3, 0.75
+        sphere scale: 1.3, 0.9, 0.8 rotate: z, 25 translate: 2, 1.2, -0.3
+            material gloss tint: 0.1, 0.2, 0.9, 0.5
+        sphere scale: 0.6 translate: 0.8, 2.6, 0.6 material glass
+        cube scale: 0.7 rotate: <1, 2, 0.5>, 40 translate: -2, 3, -1 material gloss
+        cube scale: 0.5, 1.5, 0.4 translate: 3.6, 1.5, 0.8 material satin tint: 0.8, 0.8, 0.1, 1
+    }
+)";
+
+const std::string mirrors = R"(
+    material mirror { ambient: 0.02 diffuse: 0.1 specular: 0.4 roughness: 0.01 reflection: 0.9 }
+    material perfect { ambient: 0.05 diffuse: 0 specular: 0 reflection: 1 }
+    material faint { ambient: 0.1 diffuse: 0.6 reflection: 0.05 }
+    material dust { ambient: 0.1 diffuse: 0.6 reflection: 0.003 }
+    object things {
+        sphere translate: -1.1, 1, 0 material mirror tint: 0.9, 0.3, 0.2, 1
+        sphere translate: 1.1, 1, 0 material perfect
+        sphere translate: 0, 1, 1.95 scale: 0.9 material mirror
+        cube scale: 0.3 translate: 0, 0.3, 2.5 material faint tint: 0.2, 0.8, 0.3, 1
+        cube scale: 3, 2, 0.1 translate: 0, 2, -2 material mirror
+        cube scale: 0.2 translate: 1.6, 0.2, 2.5 material dust
+    }
+)";
+
+const LitScene scenes[] = {
+    {"Perspective", {160, 120}, balls_and_blocks + on_magenta + R"(
+        camera { location: 2, 4, 9 look_at: 0, 1.4, 0 angle: 50 }
+        light { sun: -1, 2, 1.5 color: 0.8, 0.7, 0.6 }
+        light { location: 3, 5, 4 color: 0.3, 0.4, 0.6 }
+        light { sun: 1, 0.3, 1 color: 0.2, 0.1, 0.3 shadowless }
+        light { location: -6, 1, 5 color: 0.15, 0.15, 0.1 shadowless }
+        ground { height: 0 }
+    )"},
+    {"ParallelAndTilted", {120, 170}, balls_and_blocks + on_magenta + R"(
+        camera { orthographic location: 3, 6, 5 look_at: 0.3, 1.4, 0 up: 0.5, 1, -0.2 width: 9 }
+        light { sun: -1, 2, 1.5 color: 0.8, 0.7, 0.6 }
+        light { location: 0.2, 4, 1 color: 0.5, 0.5, 0.5 }
+    )"},
+    {"TiltedAndWide", {200, 90}, balls_and_blocks + on_magenta + R"(
+        camera { location: -2, 0.7, 4 look_at: 0.5, 1.8, 0 up: 1, 2, 0.3 angle: 110 }
+        light { location: 0, 3, 6 color: 1, 1, 1 }
+        ground { height: -0.5 material: satin color: 0.3, 0.5, 0.2 }
+    )"},
+    {"AutomaticLights", {160, 120}, balls_and_blocks + on_magenta},
+    {"AutomaticLightsOnGround",
+     {150, 130},
+     balls_and_blocks + on_magenta + "ground { height: 0 material: rough }"},
+    {"AutomaticSky", {140, 100}, balls_and_blocks, false},
+    {"FlatFigure", {100, 140}, on_magenta + R"(
+        object things {
+            triangle tint: 0.3, 0.6, 0.9, 1
+            triangle scale: 0.5 translate: 0.4, 0.9 tint: 0.9, 0.2, 0.1, 0.5
+        }
+    )"},
+    {"Mirrors", {160, 120}, mirrors + on_magenta + R"(
+        camera { location: 1, 2.5, 7 look_at: 0, 1, 0 angle: 45 }
+        light { sun: 1, 2, 2 color: 0.7, 0.7, 0.7 }
+        light { location: -3, 4, 3 color: 0.5, 0.4, 0.3 }
+        ground { height: 0 material: mirror color: 0.3, 0.3, 0.4 }
+    )"},
+    {"MirrorsUnderASky",
+     {130, 130},
+     mirrors + R"(
+        camera { location: 2, 3, 7 look_at: 0, 1, 0 up: 0.2, 1, 0 angle: 60 }
+        background { zenith: 0.2, 0.4, 0.9 horizon: 0.9, 0.8, 0.7 }
+        light { sun: -1, 2, 2 color: 1, 0.9, 0.8 }
+    )",
+     false},
+    {"ParallelMirrors", {130, 100}, mirrors + on_magenta + R"(
+        camera { orthographic location: 2, 3, 7 look_at: 0, 1, 0 width: 6 }
+        light { sun: -1, 2, 2 }
+        ground { height: 0 material: faint }
+    )"},
+    {"SkyToTheZenith",
+     {151, 101},
+     balls_and_blocks + R"(
+        camera { location: 0, 2, 3 look_at: 0, 5, 3 up: 0.2, 0, -1 angle: 150 }
+        background { zenith: 0.1, 0.3, 0.95 horizon: 1, 0.9, 0.6 }
+        light { sun: 0, 1, 0 }
+    )",
+     false},
+    {"HorizonOfTheGround", {150, 100}, balls_and_blocks + on_magenta + R"(
+        camera { location: 1, 30, 9 look_at: 3, 29.93, 0 up: 0.3, 1, 0 angle: 70 }
+        light { sun: -2, 1, 1 }
+        ground { height: 0 }
+    )"},
+    {"FromBelowTheGround", {150, 100}, balls_and_blocks + on_magenta + R"(
+        camera { location: 1, -3, 9 look_at: 0, 0, 0 angle: 60 }
+        light { sun: -2, -1, 1 color: 0.5, 0.6, 0.7 }
+        light { location: -1, 2, 2 color: 0.7, 0.6, 0.5 }
+        light { location: 1, -2, 3 color: 0.4, 0.4, 0.5 }
+        ground { height: 1 material: gloss }
+    )"},
+    {"SmallAndFarOff", {130, 110}, on_magenta + R"(
+        material gloss { ambient: 0.1 diffuse: 0.5 specular: 0.7 roughness: 0.02 reflection: 0.4 }
+        object things {
+            sphere scale: 0.001 translate: 5, -7, 9 material gloss tint: 0.9, 0.8, 0.6, 1
+            cube scale: 0.0005 rotate: y, 30 translate: 5.0015, -7.0005, 9.0002
+        }
+        camera { location: 5.002, -6.999, 9.004 look_at: 5.0005, -7, 9 angle: 50 }
+        light { location: 5.001, -6.997, 9.003 }
+        light { sun: -1, 2, 0 color: 0.4, 0.4, 0.5 }
+        ground { height: -7.001 material: gloss }
+    )"},
+    {"InsideABallWithPlanes", {150, 100}, on_magenta + R"(
+        material gloss { ambient: 0.1 diffuse: 0.5 specular: 0.7 roughness: 0.02 reflection: 0.2 }
+        object things {
+            sphere scale: 20 material gloss tint: 0.9, 0.8, 0.6, 1
+            plane rotate: x, 20 translate: 0, -2, 0 material gloss tint: 0.2, 0.5, 0.4, 1
+            plane rotate: z, -70 translate: 6, 0, 0 tint: 0.5, 0.2, 0.4, 0.5
+            sphere translate: 0.5, 0.5, -2
+            cube scale: 0.5 translate: -1.5, 2, -1 material gloss
+        }
+        camera { location: 0, 1, 8 look_at: 0, 0, 0 angle: 75 }
+        light { location: 0, 6, 4 color: 0.9, 0.9, 0.9 }
+        light { location: 0.5, 0.5, -2 color: 1, 0, 0 }
+        light { sun: 0, 1, 1 color: 1, 0, 1 }
+    )"},
+};
+
+/// Unlike Image, not rounded to single precision.
+struct NativePicture {
+    std::vector<Rgb> pixels;
+    std::vector<bool> hit;
+};
+
+NativePicture shade(const CompiledModel& model, const std::vector<PixelSample>& samples) {
+    BruteForce surfaces(model.cut);
+    const PovrayUnits units = choose_units(model.cut, model.view.camera);
+    Shader shader(model.view, surfaces, {.farthest = 1e7 / units.scale});
+    const CameraRays rays(model.view);
+    NativePicture picture;
+    for (int y = 0; y < model.view.size.height; ++y)
+        for (int x = 0; x < model.view.size.width; ++x) {
+            Rgb sum(0.0);
+            SurfaceHit hit;
+            for (const PixelSample& sample : samples)
+                sum += sample.weight * shader.radiance(rays.through(x + sample.x, y + sample.y));
+            picture.pixels.push_back(sum);
+            picture.hit.push_back(shader.first_hit(rays.through(x + 0.5, y + 0.5), hit));
+        }
+    return picture;
+}
+
+struct Agreement {
+    double max = 0;
+    double mean = 0;
+    int off = 0;        ///< pixels farther apart than the last bits
+    int other_hits = 0; ///< pixels that are background in one of the pictures
+    int hits = 0;
+};
+
+Agreement compare(const NativePicture& native, const Image& povray) {
+    Agreement agreement;
+    const auto channels = static_cast<std::size_t>(povray.channels);
+    for (std::size_t i = 0; i < native.pixels.size(); ++i) {
+        double farthest = 0, from_magenta = 0;
+        for (int c = 0; c < 3; ++c) {
+            const double theirs = povray.pixels[i * channels + static_cast<std::size_t>(c)];
+            const double apart = std::abs(std::clamp(native.pixels[i][c], 0.0, 1.0) - theirs);
+            agreement.mean += apart / 3 / static_cast<double>(native.pixels.size());
+            farthest = std::max(farthest, apart);
+            from_magenta = std::max(from_magenta, std::abs(theirs - magenta[c]));
+        }
+        agreement.max = std::max(agreement.max, farthest);
+        agreement.off += farthest > last_bits;
+        agreement.hits += native.hit[i];
+        agreement.other_hits += native.hit[i] != (from_magenta > last_bits);
+    }
+    return agreement;
+}
+
+class NativeLight : public testing::TestWithParam<LitScene> {};
+
+TEST_P(NativeLight, IsPovrays) {
+    const LitScene& scene = GetParam();
+    CompileOptions options = whole(scene.size);
+    options.cut.flatten = true;
+    const std::optional<CompiledModel> model = compile_text("lit.inst", scene.text, options);
+    ASSERT_TRUE(model);
+    const NativePicture native = shade(*model, {povray_sample_of_pixel});
+    const Image povray = draw(*model, SampleFormat::linear16);
+    ASSERT_EQ(povray.pixels.size(), native.pixels.size() * static_cast<std::size_t>(povray.channels));
+    const Agreement agreement = compare(native, povray);
+    RecordProperty("max_of_65535", std::to_string(65535 * agreement.max));
+    RecordProperty("mean_of_255", std::to_string(255 * agreement.mean));
+    EXPECT_GT(agreement.hits, scene.size.width * scene.size.height / 40);
+    if (scene.plain_background) {
+        EXPECT_EQ(agreement.other_hits, 0);
+    }
+    EXPECT_EQ(agreement.off, 0) << "by up to " << 65535 * agreement.max << "/65535";
+    EXPECT_LE(255 * agreement.mean, 0.01);
+}
+
+INSTANTIATE_TEST_SUITE_P(Scenes, NativeLight, testing::ValuesIn(scenes),
+                         [](const auto& scene) { return std::string(scene.param.name); });
+
+TEST(NativeLightSamples, ArePovraysOfAnAntialiasedPixel) {
+    const LitScene& scene = scenes[1];
+    CompileOptions options = whole(scene.size);
+    options.cut.flatten = true;
+    const std::optional<CompiledModel> model = compile_text("lit.inst", scene.text, options);
+    ASSERT_TRUE(model);
+    for (const int depth : {1, 2, 3}) {
+        SCOPED_TRACE(depth);
+        const NativePicture native = shade(*model, povray_samples_of_pixel(depth));
+        const Agreement agreement = compare(native, draw(*model, SampleFormat::linear16, depth));
+        EXPECT_EQ(agreement.off, 0) << "by up to " << 65535 * agreement.max << "/65535";
+    }
+}
+
+} // namespace
+} // namespace graftal

@@ -9,23 +9,11 @@
 
 namespace graftal {
 
-/// Pictures in files, by OpenImageIO; image.h is the interface to use. The code lies in a module that
-/// image.cpp loads. Each function returns what went wrong, in words, or "".
+/// Pictures in files other than PNG (png_files.h), by OpenImageIO; image.h is the interface to use. The code
+/// lies in a module that image.cpp loads. Each function returns what went wrong, in words, or "".
 struct PictureFiles {
-    enum class Samples { integer8, integer16, real32 };
-
-    struct Tag {
-        std::string name;
-        std::string value;
-    };
-
     std::string (*read)(const std::string& path, std::uint64_t most_samples, Image& image);
-    std::string (*write)(const std::string& path, const Image& image, Samples samples, bool linear,
-                         const std::vector<Tag>& tags);
-    /// 16-bit RGB as PNG, not compressed: as quick to write as it can be. `levels` holds the samples of all
-    /// pixels.
-    std::string (*write_levels)(const std::string& path, int width, int height,
-                                const std::vector<std::uint16_t>& levels);
+    std::string (*write_exr)(const std::string& path, const Image& image, const ImageMetadata& metadata);
     /// Pictures of one size as an animated GIF. `on_frame` is called before each; false gives up, with
     /// "interrupted".
     std::string (*write_gif)(const std::string& path, const std::vector<std::string>& frames,

@@ -9,7 +9,7 @@
 namespace graftal {
 
 // PNG files taken apart and put together (W3C, Portable Network Graphics, third edition: 5 Datastream
-// structure, which has animated ones too). Pixels stay compressed; what they mean is OpenImageIO's business.
+// structure, which has animated ones too). Pixels stay compressed; what they mean is png_files.h's business.
 
 struct PngChunk {
     std::string_view type; ///< four letters

@@ -105,38 +105,17 @@ std::string read(const std::string& path, std::uint64_t most_samples, Image& ima
     return {};
 }
 
-OIIO::TypeDesc type_of(PictureFiles::Samples samples) {
-    switch (samples) {
-    case PictureFiles::Samples::integer8:
-        return OIIO::TypeDesc::UINT8;
-    case PictureFiles::Samples::integer16:
-        return OIIO::TypeDesc::UINT16;
-    case PictureFiles::Samples::real32:
-        return OIIO::TypeDesc::FLOAT;
-    }
-    return OIIO::TypeDesc::UNKNOWN;
-}
-
-std::string write(const std::string& path, const Image& image, PictureFiles::Samples samples, bool linear,
-                  const std::vector<PictureFiles::Tag>& tags) {
-    OIIO::ImageSpec spec(image.width, image.height, image.channels, type_of(samples));
-    spec.attribute("oiio:ColorSpace", linear ? "Linear" : "sRGB");
-    // PNG keeps alpha straight; to EXR colour belongs to alpha already.
-    if (samples != PictureFiles::Samples::real32) spec.attribute("oiio:UnassociatedAlpha", 1);
-    for (const PictureFiles::Tag& tag : tags)
-        spec.attribute(tag.name, tag.value);
+std::string write_exr(const std::string& path, const Image& image, const ImageMetadata& metadata) {
+    OIIO::ImageSpec spec(image.width, image.height, image.channels, OIIO::TypeDesc::FLOAT);
+    spec.attribute("oiio:ColorSpace", "Linear"); // and colour belongs to alpha already, as EXR has it
+    const auto tag = [&](const char* name, const std::string& value) {
+        if (!value.empty()) spec.attribute(name, value);
+    };
+    tag("Software", metadata.software);
+    tag(stamp_keyword, metadata.stamp);
+    tag("ImageDescription", metadata.description);
     return write_checked(path, [&](OIIO::ImageOutput& output) {
         return output.open(path, spec) && output.write_image(OIIO::TypeDesc::FLOAT, image.pixels.data());
-    });
-}
-
-std::string write_levels(const std::string& path, int width, int height,
-                         const std::vector<std::uint16_t>& levels) {
-    OIIO::ImageSpec spec(width, height, 3, OIIO::TypeDesc::UINT16);
-    spec.attribute("oiio:ColorSpace", "Linear");
-    spec.attribute("png:compressionLevel", 0);
-    return write_checked(path, [&](OIIO::ImageOutput& output) {
-        return output.open(path, spec) && output.write_image(OIIO::TypeDesc::UINT16, levels.data());
     });
 }
 
@@ -181,7 +160,6 @@ extern "C" const graftal::PictureFiles* graftal_picture_files() {
     // Pictures are small; a pool of threads would outlive main(), where leak checkers stumble over it.
     static const bool single_threaded = OIIO::attribute("threads", 1);
     static_cast<void>(single_threaded);
-    static constexpr graftal::PictureFiles files{graftal::read, graftal::write, graftal::write_levels,
-                                                 graftal::write_gif};
+    static constexpr graftal::PictureFiles files{graftal::read, graftal::write_exr, graftal::write_gif};
     return &files;
 }

@@ -7,9 +7,6 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#ifdef __SANITIZE_ADDRESS__
-#include <sanitizer/lsan_interface.h>
-#endif
 
 #include "runtime/povray/temporary_directory.h"
 
@@ -126,10 +123,6 @@ TEST_F(ImageFiles, TruncatedPngIsAFailure) {
     const std::string whole = bytes("a.png");
     std::ofstream(path("b.png"), std::ios::binary) << whole.substr(0, whole.size() / 2);
     Image image;
-#ifdef __SANITIZE_ADDRESS__
-    // OpenImageIO leaves libpng by longjmp, over strings of its own.
-    const __lsan::ScopedDisabler disabler;
-#endif
     EXPECT_FALSE(read_image(path("b.png"), image).ok());
 }
 

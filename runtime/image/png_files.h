@@ -1,0 +1,30 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+
+#include "runtime/image/image.h"
+
+namespace graftal {
+
+// PNG files, by libpng; image.h is the interface to use. Each function returns what went wrong, in words,
+// or "".
+
+/// True if the file begins as a PNG does, whatever its name.
+bool is_png_file(const std::string& path);
+
+/// Reads a PNG of any kind, as Image says; refuses pictures of more than `most_samples`.
+std::string read_png(const std::string& path, std::uint64_t most_samples, Image& image);
+
+/// Samples are clamped to [0, 1] and rounded to the nearest level, halves up; NaN becomes 0. Requires one to
+/// four channels.
+std::string write_png(const std::string& path, const Image& image, SampleFormat format,
+                      const ImageMetadata& metadata);
+
+/// 16-bit RGB of linear values, not compressed: as quick to write as it can be. Requires the levels of all
+/// pixels.
+std::string write_png_levels(const std::string& path, int width, int height,
+                             std::span<const std::uint16_t> levels);
+
+} // namespace graftal

@@ -36,12 +36,10 @@ class Cutter {
   public:
     Cutter(const Graph& graph, const Components& components, const std::vector<ObjectBounds>& bounds,
            const View& view, const CutOptions& options, Diagnostics& diagnostics)
-        : graph_(graph), unending_(components.unending[graph.root]), view_(view), options_(options),
-          diagnostics_(diagnostics), prepared_(prepare_cut(graph, components, bounds, options)),
+        : graph_(graph), view_(view), options_(options), diagnostics_(diagnostics), prepared_(prepare_cut(graph, components, bounds, options)),
           cut_(prepared_.cut), symmetry_(prepared_.symmetry) {}
 
     std::optional<Cut> run() {
-        if (unending_ && !options_.steps && !culls()) return refuse_endless();
         cube_triangles_ = visible_cube_triangles(cut_, symmetry_, prepared_.root_steps);
         if (std::optional<Cut> cut = attempt(0)) return finish(std::move(*cut), 0);
         if (!culls()) return refuse_size();
@@ -168,14 +166,6 @@ class Cutter {
             .pixels_per_unit(cut_.nodes[cut_.root].ball);
     }
 
-    std::nullopt_t refuse_endless() {
-        diagnostics_
-            .error(graph_.objects[graph_.root].span,
-                   "the recursion has no end, and nothing says how deep to draw it")
-            .with_hint("give a depth with --steps N, or a size in pixels with --error");
-        return std::nullopt;
-    }
-
     std::nullopt_t refuse_size() {
         const auto memory = static_cast<double>(options_.memory_bytes);
         // Where the estimate fitted but what was unfolded did not, nobody knows how much it would have been.
@@ -194,7 +184,6 @@ class Cutter {
     }
 
     const Graph& graph_;
-    bool unending_;
     const View& view_;
     const CutOptions& options_;
     Diagnostics& diagnostics_;
@@ -210,6 +199,7 @@ class Cutter {
 std::optional<Cut> cut_graph(const Graph& graph, const Components& components,
                              const std::vector<ObjectBounds>& bounds, const View& view,
                              const CutOptions& options, Diagnostics& diagnostics) {
+    if (refuse_endless(graph, components, options, diagnostics)) return std::nullopt;
     return Cutter(graph, components, bounds, view, options, diagnostics).run();
 }
 

@@ -44,6 +44,16 @@ PreparedCut prepare_cut(const Graph& graph, const Components& components,
     return prepared;
 }
 
+bool refuse_endless(const Graph& graph, const Components& components, const CutOptions& options,
+                    Diagnostics& diagnostics) {
+    if (!components.unending[graph.root] || options.steps || options.culls()) return false;
+    diagnostics
+        .error(graph.objects[graph.root].span,
+               "the recursion has no end, and nothing says how deep to draw it")
+        .with_hint("give a depth with --steps N, or a size in pixels with --error");
+    return true;
+}
+
 double nearest_to_eye(const CutGraph& cut) {
     constexpr double share_of_radius = 1e-5;
     return share_of_radius * std::max(cut.nodes[cut.root].ball.radius, 1e-280);

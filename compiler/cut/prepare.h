@@ -18,6 +18,10 @@ struct PreparedCut {
 PreparedCut prepare_cut(const Graph& graph, const Components& components,
                         const std::vector<ObjectBounds>& bounds, const CutOptions& options);
 
+/// True, after an error, if nothing says how deep the graph is to be unfolded.
+bool refuse_endless(const Graph& graph, const Components& components, const CutOptions& options,
+                    Diagnostics& diagnostics);
+
 /// The least distance from the eye that counts (Projection), so that the eye may lie on the model.
 double nearest_to_eye(const CutGraph& cut);
 

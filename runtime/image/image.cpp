@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 
 #include <dlfcn.h>
 #include <fmt/format.h>
@@ -73,6 +74,12 @@ bool is_exr_name(const std::string& path) {
 
 bool is_picture_name(const std::string& path) {
     return is_exr_name(path) || extension(path) == ".png";
+}
+
+float srgb_encoded(float linear) {
+    if (!(linear > 0)) return 0;
+    if (linear >= 1) return 1;
+    return linear <= 0.0031308f ? 12.92f * linear : 1.055f * std::pow(linear, 1 / 2.4f) - 0.055f;
 }
 
 Status read_image(const std::string& path, Image& image) {

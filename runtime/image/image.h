@@ -42,6 +42,9 @@ bool is_exr_name(const std::string& path);
 
 inline constexpr const char* stamp_keyword = "graftal:stamp";
 
+/// A linear value as sRGB encodes it (IEC 61966-2-1); clamped to [0, 1], 0 for NaN.
+float srgb_encoded(float linear);
+
 /// Reads any format that OpenImageIO knows; refuses pictures of more than 2^29 samples.
 Status read_image(const std::string& path, Image& image);
 

@@ -9,6 +9,8 @@ namespace graftal {
 namespace {
 
 constexpr float infinity = std::numeric_limits<float>::infinity();
+/// Compares false with all: an empty box would be turned inside out by the signs of a ray.
+constexpr float nowhere = std::numeric_limits<float>::quiet_NaN();
 constexpr int width = 8;
 constexpr int bins = 16;
 /// Deeper than this, halves by number take the place of the heuristic.
@@ -157,8 +159,8 @@ class Builder {
         BoxNode node{};
         for (int axis = 0; axis < 3; ++axis)
             for (int lane = 0; lane < width; ++lane) {
-                node.lower[axis][lane] = infinity;
-                node.upper[axis][lane] = -infinity;
+                node.lower[axis][lane] = nowhere;
+                node.upper[axis][lane] = nowhere;
             }
         return node;
     }

@@ -10,7 +10,8 @@
 
 namespace graftal {
 
-/// Eight boxes side by side, each of an item or of another node. Lanes that are not used hold empty boxes.
+/// Eight boxes side by side, each of an item or of another node. Lanes that are not used hold no
+/// numbers: no ray meets them.
 struct BoxNode {
     static constexpr std::uint32_t inner = 1u << 31; ///< marks the number of a node among those of items
 

@@ -99,7 +99,7 @@ class Builder {
             set_map(edge, frame_from_graph * source.node_from_child * graph_from_frame_[source.child],
                     source.stretch * child_size * frame_from_graph.linear[0][0]);
             edge.box = transformed(frame_from_graph, boxes[i]);
-            items.emplace_back(edge.box, 1, static_cast<std::uint32_t>(model_.edges.size()));
+            if (!edge.box.empty()) items.emplace_back(edge.box, 1, static_cast<std::uint32_t>(model_.edges.size()));
             model_.edges.push_back(edge);
         }
         if (cut_.nodes[id].unbounded) return no_tree;

@@ -175,12 +175,15 @@ void add_model(CLI::App& app, Options& options) {
 
 /// Of the commands that make pictures.
 void add_drawing(CLI::App& app, Options& options) {
-    const auto engine = [](const std::string& text) {
-        if (text == "native")
-            throw CLI::ValidationError("--engine: 'native' is not in this version; the engine is povray");
-        if (text != "povray") throw CLI::ValidationError(fmt::format("--engine: '{}' is not povray", text));
+    const auto engine = [&options](const std::string& text) {
+        if (text != "povray" && text != "native")
+            throw CLI::ValidationError(
+                fmt::format("--engine: '{}' is neither povray nor native", text));
+        options.engine = text == "native" ? Engine::native : Engine::povray;
     };
-    app.add_option_function<std::string>("--engine", engine, "What draws: povray")->type_name("NAME");
+    app.add_option_function<std::string>(
+           "--engine", engine, "What draws: povray, or graftal's own tracer, native (default povray)")
+        ->type_name("NAME");
     const auto antialias = [&options](const std::string& text) {
         const auto depth = parse_whole(text, 1, 9);
         if (!depth && text != "off")
@@ -204,6 +207,8 @@ void add_render(CLI::App& app, Options& options) {
     app.add_flag_callback(
         "--linear", [&] { options.format = SampleFormat::linear16; },
         "Write a 16-bit PNG of linear values, for measuring; else 8-bit sRGB");
+    app.add_flag("--progressive", options.progressive,
+                 "With --engine native: write coarse pictures first, each in place of the one before");
     app.add_option("--keep", options.keep, "Leave the scene and its palettes in this directory")
         ->type_name("DIR");
     app.footer("Examples:\n"
@@ -211,7 +216,8 @@ void add_render(CLI::App& app, Options& options) {
                "  graftal render fern.rifs -o fern.exr --size 600x900\n"
                "  graftal render tree.inst --camera \"location=0,2,9 look_at=0,1,0 angle=30\"\n"
                "  graftal render gasket.inst --steps 6 --error 0        # six levels, nothing left out\n"
-               "  graftal print tree.inst | graftal render - -o tree.png");
+               "  graftal print tree.inst | graftal render - -o tree.png\n"
+               "  graftal render fern.rifs --engine native              # the same picture, much sooner");
 }
 
 void add_animate(CLI::App& app, Options& options) {
@@ -384,6 +390,10 @@ std::string complete(Options& options) {
             options.output = std::filesystem::path(options.operands.front()).stem().string() + ".png";
         if (!is_picture_name(options.output))
             return fmt::format("'{}' ends neither in .png nor in .exr", options.output);
+        if (options.progressive && options.engine != Engine::native)
+            return "--progressive needs '--engine native': POV-Ray shows nothing before its picture is done";
+        if (!options.keep.empty() && options.engine == Engine::native)
+            return "--keep: the native engine writes no scene";
     }
     if (options.command == Command::animate) return complete_animation(options);
     if (options.output.empty()) options.output = "-";

@@ -11,6 +11,9 @@
 
 namespace graftal {
 
+/// What draws.
+enum class Engine { povray, native };
+
 enum class Command { render, animate, compile, check, stats, print, graph, compare };
 
 /// What `animate` takes besides what `render` does.
@@ -35,6 +38,8 @@ struct Options {
     bool quiet = false;
     int threads = 0;
 
+    Engine engine = Engine::povray;
+    bool progressive = false;
     SampleFormat format = SampleFormat::srgb8;
     std::optional<int> antialias = 2;
     std::string keep;

@@ -45,8 +45,12 @@ void ProgressBar::show(const std::string& text) {
 }
 
 void ProgressBar::show(const PovrayProgress& progress) {
-    const std::string name = fmt::format("{:<18}", name_of(progress.stage));
-    show(progress.fraction ? name + bar(*progress.fraction) : name + "...");
+    if (progress.fraction) return show(name_of(progress.stage), *progress.fraction);
+    show(fmt::format("{:<18}...", name_of(progress.stage)));
+}
+
+void ProgressBar::show(const std::string& what, double fraction) {
+    show(fmt::format("{:<18}", what) + bar(fraction));
 }
 
 void ProgressBar::clear() {

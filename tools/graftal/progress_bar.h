@@ -17,6 +17,7 @@ class ProgressBar {
     /// Names what is going on, without a measure of it.
     void show(const std::string& text);
     void show(const PovrayProgress& progress);
+    void show(const std::string& what, double fraction);
     /// Takes the line away, so that other text can be printed.
     void clear();
 

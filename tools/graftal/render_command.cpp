@@ -1,6 +1,9 @@
+#include <algorithm>
+
 #include <fmt/format.h>
 
 #include "runtime/povray/interruption.h"
+#include "runtime/render/native.h"
 #include "runtime/render/render.h"
 #include "runtime/render/scene_files.h"
 #include "tools/graftal/commands.h"
@@ -27,10 +30,7 @@ std::string cut_text(double leaves, std::uint64_t placements, std::uint64_t tria
     return text + (error_px > 0 ? fmt::format(", error {:.2g} px", error_px) : ", nothing left out");
 }
 
-} // namespace
-
-int run_render(const Options& options) {
-    ProgressBar bar(!options.quiet);
+RenderOptions render_options(const Options& options) {
     RenderOptions render;
     render.compile = compile_options(options);
     render.output = options.output;
@@ -39,6 +39,42 @@ int run_render(const Options& options) {
     render.antialias = options.antialias;
     render.threads = options.threads;
     render.keep = options.keep;
+    return render;
+}
+
+std::string native_text(const NativeReport& report) {
+    const auto rays = static_cast<double>(report.rays.camera_rays);
+    std::string text = fmt::format("{:.3g} samples a pixel in {:.2f} s, {:.2f} million rays a second",
+                                   report.samples_a_pixel, report.seconds,
+                                   1e-6 * rays / std::max(report.seconds, 1e-9));
+    if (report.pictures > 1)
+        text += fmt::format("; the first of {} pictures after {:.3f} s", report.pictures,
+                            report.first_picture_seconds);
+    if (report.rays.given_up > 0)
+        text += fmt::format("; {} rays met too much and were given up", report.rays.given_up);
+    return text;
+}
+
+int render_by_tracer(const Options& options) {
+    ProgressBar bar(!options.quiet);
+    NativeOptions native{render_options(options), options.progressive, {}};
+    native.on_progress = [&](const NativeProgress& progress) { bar.show("tracing", progress.fraction); };
+    Compilation compilation;
+    bar.show("compiling...");
+    const std::optional<NativeReport> report =
+        render_natively(options.operands.front(), native, compilation);
+    bar.clear();
+    const int status = conclude(options, compilation);
+    if (report && !options.quiet) say(fmt::format("{}: {}\n", options.output, native_text(*report)));
+    return status;
+}
+
+} // namespace
+
+int run_render(const Options& options) {
+    if (options.engine == Engine::native) return render_by_tracer(options);
+    ProgressBar bar(!options.quiet);
+    RenderOptions render = render_options(options);
     render.on_progress = [&](const PovrayProgress& progress) { bar.show(progress); };
 
     Compilation compilation;

@@ -1,0 +1,179 @@
+#include "runtime/render/native.h"
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <utility>
+#include <vector>
+
+#include <tbb/parallel_for.h>
+
+#include "compiler/emit/povray_view.h"
+#include "runtime/povray/interruption.h"
+#include "runtime/render/scene_files.h"
+
+namespace graftal {
+
+namespace {
+
+class Stopwatch {
+  public:
+    double seconds() const {
+        return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+    }
+
+  private:
+    std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+/// Where POV-Ray's pictures end; its units are those of a cut, which nobody makes here.
+ShaderLimits limits_of(const TraceModel& model) {
+    constexpr double farthest_in_povray = 1e7;
+    const Ball& ball = model.prepared.cut.nodes[model.prepared.cut.root].ball;
+    Cut cut;
+    if (ball.radius > 0) {
+        cut.bounds.include(ball.centre - Vec3(ball.radius));
+        cut.bounds.include(ball.centre + Vec3(ball.radius));
+    }
+    ShaderLimits limits;
+    limits.farthest = farthest_in_povray / choose_units(cut, model.view.camera).scale;
+    return limits;
+}
+
+/// From coarse to fine; only the last if it is the only one that is wanted.
+std::vector<Sampling> samplings(const RenderOptions& options, bool progressive) {
+    std::vector<Sampling> all;
+    if (progressive)
+        for (const int block : {8, 4, 2, 1})
+            all.push_back({block, {}});
+    if (options.antialias || !progressive) all.push_back({1, options.antialias});
+    return all;
+}
+
+/// One picture, from the first sample to the last file.
+class Drawing {
+  public:
+    Drawing(const TraceModel& model, const NativeOptions& options)
+        : options_(options), tracer_(model, limits_of(model)), size_(model.view.size) {
+        picture_.width = size_.width;
+        picture_.height = size_.height;
+        picture_.channels = 3;
+        picture_.pixels.resize(3 * pixels());
+        for (const Sampling& sampling : samplings(options.render, options.progressive))
+            work_ += sampling.samples_a_pixel();
+    }
+
+    Status run() {
+        for (const Sampling& sampling : samplings(options_.render, options_.progressive)) {
+            const bool complete = trace(sampling);
+            if (!complete && (!options_.progressive || report_.pictures == 0))
+                return Status::failure("interrupted");
+            if (complete) report_.samples_a_pixel = sampling.samples_a_pixel();
+            const Status status = write();
+            if (!status.ok() || !complete) return complete ? status : Status::failure("interrupted");
+        }
+        return {};
+    }
+
+    NativeReport report() const {
+        NativeReport report = report_;
+        report.rays = tracer_.statistics();
+        return report;
+    }
+
+  private:
+    std::size_t pixels() const {
+        return static_cast<std::size_t>(size_.width) * static_cast<std::size_t>(size_.height);
+    }
+
+    bool trace(const Sampling& sampling) {
+        const Stopwatch watch;
+        std::atomic<bool> cancel = false;
+        std::size_t traced = 0;
+        TraceControl control;
+        control.threads = options_.render.threads;
+        control.cancel = &cancel;
+        control.on_tile = [&](const Tile& tile) {
+            if (Interruption::signal()) cancel = true;
+            traced += static_cast<std::size_t>(tile.width) * static_cast<std::size_t>(tile.height);
+            const double share = static_cast<double>(traced) / static_cast<double>(pixels());
+            tell((done_ + share * sampling.samples_a_pixel()) / work_);
+        };
+        const bool complete = tracer_.trace(sampling, control, picture_);
+        done_ += sampling.samples_a_pixel();
+        report_.seconds += watch.seconds();
+        return complete;
+    }
+
+    void tell(double fraction) const {
+        if (options_.on_progress)
+            options_.on_progress({fraction, report_.pictures ? report_.samples_a_pixel : 0});
+    }
+
+    Status write() {
+        const RenderOptions& render = options_.render;
+        const bool linear = render.format == SampleFormat::linear16 || is_exr_name(render.output);
+        Status status = write_image(render.output, linear ? picture_ : encoded(), render.format,
+                                    render.metadata);
+        if (status.ok() && report_.pictures++ == 0) report_.first_picture_seconds = watch_.seconds();
+        return status;
+    }
+
+    Image encoded() const {
+        Image image = picture_;
+        constexpr std::size_t grain = 4096;
+        tbb::parallel_for(tbb::blocked_range<std::size_t>(0, image.pixels.size(), grain),
+                          [&](const tbb::blocked_range<std::size_t>& range) {
+                              for (std::size_t i = range.begin(); i < range.end(); ++i)
+                                  image.pixels[i] = srgb_encoded(image.pixels[i]);
+                          });
+        return image;
+    }
+
+    const NativeOptions& options_;
+    PictureTracer tracer_;
+    ImageSize size_;
+    Image picture_;
+    NativeReport report_;
+    Stopwatch watch_;
+    double work_ = 0, done_ = 0; ///< samples a pixel
+};
+
+} // namespace
+
+std::optional<NativeReport> render_natively(const std::string& path, const NativeOptions& options,
+                                            Compilation& compilation) {
+    const Stopwatch watch;
+    std::optional<ViewedModel> model = view_model(path, options.render.compile, compilation);
+    if (!model) return std::nullopt;
+    const double before = watch.seconds();
+    std::optional<NativeReport> report = trace_model(std::move(*model), options, compilation);
+    if (report) report->first_picture_seconds += before;
+    return report;
+}
+
+std::optional<NativeReport> trace_model(ViewedModel viewed, const NativeOptions& options,
+                                        Compilation& compilation) {
+    const Interruption interruption;
+    compilation.status = check_writable(options.render.output);
+    if (!compilation.status.ok()) return std::nullopt;
+    const AnalysedModel& analysed = viewed.model;
+    if (refuse_endless(analysed.graph, analysed.components, viewed.cut, compilation.diagnostics))
+        return std::nullopt;
+
+    const Stopwatch watch;
+    const TraceModel model(
+        prepare_cut(analysed.graph, analysed.components, analysed.bounds, viewed.cut), viewed.view,
+        viewed.cut);
+    compilation.times.push_back({"prepare", watch.seconds()});
+    const Stopwatch drawing_watch;
+    Drawing drawing(model, options);
+    compilation.status = drawing.run();
+    compilation.times.push_back({"trace", drawing_watch.seconds()});
+    NativeReport report = drawing.report();
+    report.first_picture_seconds += watch.seconds() - drawing_watch.seconds();
+    if (!compilation.status.ok() && report.pictures == 0) return std::nullopt;
+    return report;
+}
+
+} // namespace graftal

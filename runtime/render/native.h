@@ -1,0 +1,44 @@
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "compiler/compile.h"
+#include "runtime/render/render.h"
+#include "runtime/trace/picture_tracer.h"
+
+namespace graftal {
+
+/// How far a picture is.
+struct NativeProgress {
+    double fraction = 0;        ///< of all rays of the picture as it was asked for
+    double samples_a_pixel = 0; ///< of what is in the file, 0 if there is none yet
+};
+
+struct NativeOptions {
+    RenderOptions render;     ///< of which only what concerns the model, the picture and the threads counts
+    bool progressive = false; ///< write coarse pictures first, each in place of the one before
+    std::function<void(const NativeProgress&)> on_progress;
+};
+
+/// What came of a rendering, for the summary.
+struct NativeReport {
+    TraceStatistics rays;
+    double seconds = 0;               ///< of tracing
+    double first_picture_seconds = 0; ///< from the beginning of the call until a picture was there
+    double samples_a_pixel = 0;       ///< of the picture that is there; where it is cut short, of most of it
+    int pictures = 0;                 ///< written
+};
+
+/// Model file -> picture file, by the traversal of the graph itself. As render_model(); but if it is
+/// progressive, an interruption leaves the best picture so far, and a report of it with the status
+/// "interrupted".
+std::optional<NativeReport> render_natively(const std::string& path, const NativeOptions& options,
+                                            Compilation& compilation);
+
+/// The second half of render_natively(): what follows the view.
+std::optional<NativeReport> trace_model(ViewedModel model, const NativeOptions& options,
+                                        Compilation& compilation);
+
+} // namespace graftal

@@ -1,0 +1,175 @@
+#include "runtime/trace/picture_tracer.h"
+
+#include <algorithm>
+#include <memory>
+#include <mutex>
+#include <vector>
+
+#include <tbb/enumerable_thread_specific.h>
+#include <tbb/global_control.h>
+#include <tbb/info.h>
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
+#include "compiler/support/check.h"
+#include "runtime/trace/camera_rays.h"
+#include "runtime/trace/traversal.h"
+
+namespace graftal {
+
+namespace {
+
+/// Pixels along each side of a tile: enough to share edges of, and some hundred tiles to a picture.
+constexpr int tile_size = 32;
+
+/// Points along each side of a pixel that are its own.
+int steps_of(const Sampling& sampling) {
+    return sampling.antialias ? 1 << (*sampling.antialias - 1) : 1;
+}
+
+/// One thread's tools, and what it keeps for their memory.
+class Worker {
+  public:
+    Worker(const TraceModel& model, const ShaderLimits& limits)
+        : rays_(model.view), traversal_(model), shader_(model.view, traversal_, limits) {}
+
+    void trace(const Sampling& sampling, const Tile& tile, Image& picture) {
+        if (sampling.block > 1 || !sampling.antialias)
+            trace_blocks(sampling.block, tile, picture);
+        else
+            trace_lattice(steps_of(sampling), tile, picture);
+    }
+
+    TraceStatistics statistics() const {
+        return {camera_rays_, traversal_.visits(), traversal_.given_up()};
+    }
+
+  private:
+    Rgb look(double x, double y) {
+        ++camera_rays_;
+        return shader_.radiance(rays_.through(x, y));
+    }
+
+    static void set(Image& picture, int x, int y, const Rgb& rgb) {
+        const std::size_t first = 3 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(picture.width) +
+                                       static_cast<std::size_t>(x));
+        for (int c = 0; c < 3; ++c)
+            picture.pixels[first + static_cast<std::size_t>(c)] = static_cast<float>(rgb[c]);
+    }
+
+    void trace_blocks(int block, const Tile& tile, Image& picture) {
+        for (int y = tile.y; y < tile.y + tile.height; y += block)
+            for (int x = tile.x; x < tile.x + tile.width; x += block) {
+                const int right = std::min(x + block, tile.x + tile.width);
+                const int below = std::min(y + block, tile.y + tile.height);
+                const Rgb rgb = look(0.5 * (x + right), 0.5 * (y + below));
+                for (int j = y; j < below; ++j)
+                    for (int i = x; i < right; ++i)
+                        set(picture, i, j, rgb);
+            }
+    }
+
+    /// Row after row of samples, each added to the pixels that it belongs to: those on an edge to both sides.
+    void trace_lattice(int steps, const Tile& tile, Image& picture) {
+        const auto width = static_cast<std::size_t>(tile.width);
+        sums_.assign(width * static_cast<std::size_t>(tile.height), Rgb(0.0));
+        row_.resize(width);
+        const double weight = 1.0 / (4.0 * steps * steps); // of a corner of one cell
+        for (int j = 0; j <= tile.height * steps; ++j) {
+            trace_row(tile.x, tile.y + static_cast<double>(j) / steps, steps);
+            const int below = j / steps;
+            const bool edge = j % steps == 0;
+            // A cell's upper and lower corners count alike; between two cells of a pixel they count for both.
+            if (below < tile.height) add_row(below, (edge ? 1 : 2) * weight);
+            if (edge && below > 0) add_row(below - 1, weight);
+        }
+        for (int y = 0; y < tile.height; ++y)
+            for (int x = 0; x < tile.width; ++x)
+                set(picture, tile.x + x, tile.y + y,
+                    sums_[static_cast<std::size_t>(y) * width + static_cast<std::size_t>(x)]);
+    }
+
+    /// For each pixel the sum over a row of its samples: 1 for those on its edges, 2 for those between.
+    void trace_row(int left, double y, int steps) {
+        std::fill(row_.begin(), row_.end(), Rgb(0.0));
+        const int count = static_cast<int>(row_.size()) * steps;
+        for (int i = 0; i <= count; ++i) {
+            const Rgb rgb = look(left + static_cast<double>(i) / steps, y);
+            const auto pixel = static_cast<std::size_t>(i / steps);
+            const bool edge = i % steps == 0;
+            if (pixel < row_.size()) row_[pixel] += (edge ? 1.0 : 2.0) * rgb;
+            if (edge && pixel > 0) row_[pixel - 1] += rgb;
+        }
+    }
+
+    void add_row(int y, double weight) {
+        Rgb* const sums = sums_.data() + static_cast<std::size_t>(y) * row_.size();
+        for (std::size_t x = 0; x < row_.size(); ++x)
+            sums[x] += weight * row_[x];
+    }
+
+    CameraRays rays_;
+    Traversal traversal_;
+    Shader shader_;
+    std::uint64_t camera_rays_ = 0;
+    std::vector<Rgb> row_, sums_;
+};
+
+std::vector<Tile> tiles_of(ImageSize size, int block) {
+    const int side = std::max(1, tile_size / block) * block;
+    std::vector<Tile> tiles;
+    for (int y = 0; y < size.height; y += side)
+        for (int x = 0; x < size.width; x += side)
+            tiles.push_back({x, y, std::min(side, size.width - x), std::min(side, size.height - y)});
+    return tiles;
+}
+
+} // namespace
+
+double Sampling::samples_a_pixel() const {
+    const double steps = steps_of(*this);
+    return steps * steps / (static_cast<double>(block) * block);
+}
+
+TraceStatistics& TraceStatistics::operator+=(const TraceStatistics& other) {
+    camera_rays += other.camera_rays;
+    visits += other.visits;
+    given_up += other.given_up;
+    return *this;
+}
+
+PictureTracer::PictureTracer(const TraceModel& model, const ShaderLimits& limits)
+    : model_(model), limits_(limits) {}
+
+bool PictureTracer::trace(const Sampling& sampling, const TraceControl& control, Image& picture) {
+    GRAFTAL_CHECK(picture.channels == 3 && picture.width == model_.view.size.width &&
+                      picture.height == model_.view.size.height,
+                  "trace: a picture of another size");
+    const std::vector<Tile> tiles = tiles_of(model_.view.size, sampling.block);
+    tbb::enumerable_thread_specific<std::unique_ptr<Worker>> workers;
+    std::mutex telling;
+    std::atomic<bool> complete = true;
+    const auto trace_tile = [&](std::size_t number) {
+        if (control.cancel && *control.cancel) {
+            complete = false;
+            return;
+        }
+        std::unique_ptr<Worker>& worker = workers.local();
+        if (!worker) worker = std::make_unique<Worker>(model_, limits_);
+        worker->trace(sampling, tiles[number], picture);
+        if (!control.on_tile) return;
+        const std::lock_guard lock(telling);
+        control.on_tile(tiles[number]);
+    };
+    const int threads = control.threads > 0 ? control.threads : tbb::info::default_concurrency();
+    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
+                                    static_cast<std::size_t>(threads));
+    tbb::task_arena(threads).execute([&] {
+        tbb::parallel_for(std::size_t{0}, tiles.size(), trace_tile, tbb::simple_partitioner());
+    });
+    for (const std::unique_ptr<Worker>& worker : workers)
+        if (worker) statistics_ += worker->statistics();
+    return complete;
+}
+
+} // namespace graftal

@@ -1,0 +1,63 @@
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <functional>
+#include <optional>
+
+#include "runtime/image/image.h"
+#include "runtime/trace/shade.h"
+#include "runtime/trace/trace_model.h"
+
+namespace graftal {
+
+/// A rectangle of pixels.
+struct Tile {
+    int x = 0, y = 0, width = 0, height = 0;
+};
+
+/// How finely a picture is looked at: blocks of pixels that show what their middle does, or samples within
+/// each pixel.
+struct Sampling {
+    int block = 1;                ///< pixels along each side of a block
+    std::optional<int> antialias; ///< with blocks of 1: povray_samples_of_pixel() of this depth, else one
+
+    /// Rays through a pixel, those that neighbours share counted once.
+    double samples_a_pixel() const;
+};
+
+struct TraceStatistics {
+    std::uint64_t camera_rays = 0;
+    std::uint64_t visits = 0;   ///< parts that all rays went into
+    std::uint64_t given_up = 0; ///< rays that met too many parts (Traversal::given_up)
+
+    TraceStatistics& operator+=(const TraceStatistics& other);
+};
+
+struct TraceControl {
+    int threads = 0;                             ///< 0: as many as the machine has
+    const std::atomic<bool>* cancel = nullptr;   ///< once true, no further tile is begun
+    std::function<void(const Tile&)> on_tile;    ///< after each; by one thread at a time
+};
+
+/// Makes pictures of a model by the traversal. The samples are the same, to the last bit, whatever the number
+/// of threads; memory beyond the picture is O(threads * depth).
+class PictureTracer {
+  public:
+    /// Keeps a reference to the model.
+    explicit PictureTracer(const TraceModel& model, const ShaderLimits& limits = {});
+
+    /// Fills the picture: linear light, not clamped. Tiles that a cancelled trace did not come to stay as they
+    /// were; then false. Requires three channels and the size of the view.
+    bool trace(const Sampling& sampling, const TraceControl& control, Image& picture);
+
+    /// Of all traces so far.
+    const TraceStatistics& statistics() const { return statistics_; }
+
+  private:
+    const TraceModel& model_;
+    ShaderLimits limits_;
+    TraceStatistics statistics_;
+};
+
+} // namespace graftal

@@ -139,11 +139,11 @@ std::string error_of(const OracleReport& report) {
 
 void print(const Request& request, const std::string& view, const OracleReport& r) {
     const auto three = [](const Disagreement& d) {
-        return fmt::format("{}\t{}\t{}", d.pixels, d.away, d.untied);
+        return fmt::format("{}\t{}\t{}", d.pixels, d.away, d.untied - d.coinciding);
     };
-    fmt::print("{}\t{}\t{}\t{}\t{}\t{}\t{}\t{}\t{}\t{}\t{}\t{:.4f}\t{:.2f}\n", request.path, view,
+    fmt::print("{}\t{}\t{}\t{}\t{}\t{}\t{}\t{}\t{}\t{}\t{}\t{}\t{:.4f}\t{:.2f}\n", request.path, view,
                r.triangles ? "meshes" : "parts", error_of(r), r.placements, r.pixels, r.hits, three(r.mask),
-               three(r.depth), three(r.colour), r.horizon, r.mean, r.max);
+               three(r.depth), three(r.colour), r.colour.coinciding, r.horizon, r.mean, r.max);
     std::fflush(stdout);
     fmt::print(stderr, "{} {}: {}\n", request.path, view, summary(r));
 }

@@ -18,6 +18,7 @@
 #include "runtime/render/scene_files.h"
 #include "runtime/trace/camera_rays.h"
 #include "runtime/trace/traversal.h"
+#include "tests/image/coincidence.h"
 
 namespace graftal {
 
@@ -40,6 +41,8 @@ class NativeEye {
           shader_(model_.view, traversal_, limits) {
         groundless_.ground.reset();
     }
+
+    Ray ray(double x, double y) const { return rays_.through(x, y); }
 
     Seen look(double x, double y, bool lit) {
         const Ray ray = rays_.through(x, y);
@@ -230,8 +233,9 @@ double apart(const Rgb& a, const Rgb& b) {
 
 class Comparison {
   public:
-    Comparison(OracleReport& report, NativeEye& eye, ImageSize size, double depth_step)
-        : report_(report), eye_(eye), size_(size), depth_step_(depth_step) {}
+    Comparison(OracleReport& report, NativeEye& eye, const Cut& cut, const View& view, double depth_step)
+        : report_(report), eye_(eye), coincidence_(cut), camera_(view.camera), size_(view.size),
+          depth_step_(depth_step) {}
 
     void run() {
         report_.pixels = report_.native.hit.size();
@@ -262,13 +266,17 @@ class Comparison {
         const Shown &povray = report_.povray, &native = report_.native;
         report_.hits += povray.hit[i];
         const bool same = povray.hit[i] == native.hit[i];
-        const auto depths_differ = [&](const Seen& seen) {
-            return std::abs(povray.depth[i] - seen.depth) > 2 * depth_step_;
-        };
+        const double steps = 2 * depth_step_, depth = povray.depth[i];
         if (!same)
             note(report_.mask, x, y, [&](const Seen& seen) { return seen.hit == povray.hit[i]; });
-        else if (povray.hit[i] && depths_differ({true, native.depth[i], {}}))
-            note(report_.depth, x, y, [&](const Seen& seen) { return seen.hit && !depths_differ(seen); });
+        else if (povray.hit[i] && std::abs(depth - native.depth[i]) > steps) {
+            // On a steep surface a little to the side is much farther: what lies between is seen too.
+            double low = native.depth[i], high = low;
+            note(report_.depth, x, y, [&](const Seen& seen) {
+                if (seen.hit) low = std::min(low, seen.depth), high = std::max(high, seen.depth);
+                return low - steps <= depth && depth <= high + steps;
+            });
+        }
         if (povray.lit.pixels.empty()) return 0;
         const Rgb theirs = lit(povray, i), ours = lit(native, i);
         const double most = apart(theirs, ours);
@@ -297,7 +305,18 @@ class Comparison {
                     eye_.look(x + 0.5 + reach * std::cos(turn), y + 0.5 + reach * std::sin(turn), colours)))
                 return;
         }
-        if (disagreement.untied++ < 4) disagreement.examples.push_back({x, y});
+        ++disagreement.untied;
+        if (&disagreement == &report_.colour && coincide(x, y))
+            ++disagreement.coinciding;
+        else if (disagreement.examples.size() < 4)
+            disagreement.examples.push_back({x, y});
+    }
+
+    bool coincide(int x, int y) const {
+        const Ray ray = eye_.ray(x + 0.5, y + 0.5);
+        const double depth =
+            report_.native.depth[index(x, y)] - glm::dot(ray.origin - camera_.location, camera_.direction);
+        return coincidence_.at(ray, depth / glm::dot(ray.direction, camera_.direction));
     }
 
     /// Whether the pixel and all its neighbours are hit, or none of them.
@@ -310,6 +329,8 @@ class Comparison {
 
     OracleReport& report_;
     NativeEye& eye_;
+    Coincidence coincidence_;
+    Camera camera_;
     ImageSize size_;
     double depth_step_;
 };
@@ -331,7 +352,7 @@ std::optional<OracleReport> ask_oracle(const CompiledModel& theirs, const Viewed
     report.povray = shown_by_povray(theirs, range, options, status);
     if (status.ok() && options.lit) status = draw_natively(ours, options.threads, report.native.lit);
     if (!status.ok()) return std::nullopt;
-    Comparison(report, eye, ours.view.size, range.step()).run();
+    Comparison(report, eye, theirs.cut, ours.view, range.step()).run();
     return report;
 }
 
@@ -352,7 +373,8 @@ std::optional<OracleReport> ask_oracle(const std::string& path, const CompileOpt
 
 std::string summary(const OracleReport& report) {
     const auto told = [](const char* of, const Disagreement& d) {
-        std::string text = fmt::format("; {} {} ({} away, {} untied)", of, d.pixels, d.away, d.untied);
+        std::string text = fmt::format("; {} {} ({} away, {} untied, {} coinciding)", of, d.pixels, d.away,
+                                       d.untied, d.coinciding);
         for (const auto& [x, y] : d.examples)
             text += fmt::format(" at {},{}", x, y);
         return text;

@@ -27,7 +27,9 @@ struct Disagreement {
     /// Those that are no ties: the native engine does not say what POV-Ray says anywhere within a thousandth
     /// of a pixel.
     std::size_t untied = 0;
-    std::vector<std::array<int, 2>> examples = {}; ///< the first of those
+    /// Those of these where parts of several colours lie one in the other.
+    std::size_t coinciding = 0;
+    std::vector<std::array<int, 2>> examples = {}; ///< the first that are left
 };
 
 /// How POV-Ray's picture and the native engine's differ. Colours are compared as sRGB encodes them.

@@ -118,7 +118,7 @@ const Question questions[] = {
     {"CubesForPoundSign", "scenes/hart/pound_sign.rifs", plain(6)},
     {"LimitOfATree", "scenes/limits/tree.lsys", plain(4)},
     {"DeepZoom", "scenes/hart/pound_sign.rifs", zoomed("(urf.llf)*", "4^40", 6)},
-    {"AddressAlone", "scenes/hart/ternary_tree_limit.inst", zoomed("tip", "", 3)},
+    {"AddressAlone", "scenes/hart/sierpinski.inst", zoomed("left.up", "", 1)},
     {"EveryPrimitive", "still_life.inst", plain(), 0.1, still_life},
     {"StoppedByLevels", "stopped.inst", stopped_after(4), 0.03, stopped},
 };

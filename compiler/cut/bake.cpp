@@ -115,7 +115,8 @@ class Baker {
         WalkedLeaf leaf;
         std::size_t triangles = 0;
         for (std::uint64_t number = 0; walk.next(leaf); ++number) {
-            const double thickness = leaf_thickness(leaf.representative_from_leaf, request_.detail_per_unit);
+            const double thickness = leaf_thickness(
+                leaf.representative_from_leaf, request_.detail_per_unit, leaf.crushed_length);
             const Affine place = thickened(leaf.representative_from_leaf, thickness);
             // What a singular map crushes onto a line or a sheet piles up there: one leaf a thickness will
             // do.
@@ -213,10 +214,12 @@ class Baker {
 
 } // namespace
 
-double leaf_thickness(const Affine& place, double detail_per_unit) {
+double leaf_thickness(const Affine& place, double detail_per_unit, double crushed_length) {
     if (!is_singular(place, flattest_leaf)) return 0;
     constexpr double thinnest_share = 1e-3;
-    return std::isfinite(detail_per_unit) ? 1 / detail_per_unit : thinnest_share * norm(place.linear);
+    if (!std::isfinite(detail_per_unit)) return thinnest_share * norm(place.linear);
+    const double error = 1 / detail_per_unit;
+    return crushed_length > 0 ? std::min(error, thickest_share * crushed_length) : error;
 }
 
 Affine thickened(const Affine& place, double thickness) {

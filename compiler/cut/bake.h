@@ -50,8 +50,11 @@ Baked bake(const CutGraph& cut, const Symmetry& symmetry, const BakeRequest& req
 
 /// The thickness that a leaf needs where a unit has this detail: 0 unless the map is singular or nearly so
 /// (then POV-Ray would lose it); the error allowed to either side, or a thousandth of its size where nothing
-/// is culled.
-double leaf_thickness(const Affine& place, double detail_per_unit);
+/// is culled. Of what was crushed together with a longer part (`crushed_length` > 0) no more than
+/// `thickest_share` of that: the stems of small fronds are thin.
+double leaf_thickness(const Affine& place, double detail_per_unit, double crushed_length = 0);
+
+inline constexpr double thickest_share = 1.0 / 8;
 
 /// The map with no singular value under `thickness`.
 Affine thickened(const Affine& place, double thickness);

@@ -15,9 +15,6 @@ namespace graftal {
 
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
-/// How much larger parts may be culled that only throw shadows into the picture, or are reflected in it.
-constexpr double coarser_out_of_sight = 8;
 /// A proxy's mesh is an octahedron.
 const Weights::Weight proxy{8, 1, 0, PovrayCosts::primitive(PrimitiveKind::sphere) + PovrayCosts::matrix};
 constexpr std::size_t max_known_kinds = 4'000'000;
@@ -47,34 +44,6 @@ Projection::Projection(const View& view, const CutOptions& options, double error
         const double tangent = (i == 0 ? 1 : height_share) * 0.5 * view.size.width / pixels_per_tangent_;
         edges_[i] = {tangent / std::hypot(1, tangent), 1 / std::hypot(1, tangent)};
     }
-}
-
-bool Projection::sees(const Ball& ball) const {
-    const Vec3 from_eye = ball.centre - camera_.location;
-    const double aside[2] = {std::abs(glm::dot(from_eye, camera_.right)),
-                             std::abs(glm::dot(from_eye, camera_.up))};
-    const double depth = camera_.orthographic ? 1 : glm::dot(from_eye, camera_.direction);
-    for (int i = 0; i < 2; ++i)
-        if (aside[i] * edges_[i].cosine - depth * edges_[i].sine > ball.radius) return false;
-    return camera_.orthographic || depth >= -ball.radius;
-}
-
-double Projection::pixels_per_unit(const Ball& ball) const {
-    if (camera_.orthographic) return width_px_ / camera_.width;
-    const Vec3 from_eye = ball.centre - camera_.location;
-    // Off the axis a length looks larger than its distance says, behind the eye its distance decides.
-    const double depth = std::max(glm::dot(from_eye, camera_.direction), 0.5 * glm::length(from_eye));
-    return pixels_per_tangent_ / std::max(depth - ball.radius, near_);
-}
-
-double Projection::pixels_that_matter(const Ball& ball) const {
-    return pixels_per_unit(ball) / (sees(ball) ? 1 : coarser_out_of_sight);
-}
-
-double Projection::detail_per_unit(const Ball& ball) const {
-    if (!culls_) return infinity;
-    if (error_world_ > 0) return 1 / (error_world_ * (sees(ball) ? 1 : coarser_out_of_sight));
-    return pixels_that_matter(ball) / error_px_;
 }
 
 std::int32_t PieceKind::step_of(double detail) {
@@ -159,8 +128,9 @@ Weights::Weight Weights::of_primitive(const PieceKind& asked) const {
 /// as it has lengths or squares of half the error (bake.cpp, crushed_mark).
 void Weights::squeeze(const PieceKind& kind, Weight& weight) const {
     constexpr double leaves_an_error = 4; // in two sizes, halves of the error apart
+    constexpr double fewest_lengths = 1 / thickest_share;
     if (kind.unit_step == PieceKind::endless_detail || kind.unit_step == PieceKind::tiny) return;
-    const double lengths = std::max(1.0, std::exp2(detail_step(kind) / PieceKind::steps_an_octave));
+    const double lengths = std::max(fewest_lengths, std::exp2(detail_step(kind) / PieceKind::steps_an_octave));
     const Vec3 sigma = singular_values(cut_.nodes[kind.node].edges.front().node_from_child.linear);
     const bool line = sigma.y <= 1e-9 * sigma.x;
     const double most = leaves_an_error * lengths * (line ? 1 : lengths);

@@ -1,9 +1,14 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
+#include <limits>
 #include <unordered_map>
 #include <vector>
+
+#include <glm/geometric.hpp>
 
 #include "compiler/cut/cut.h"
 #include "compiler/cut/cut_graph.h"
@@ -31,6 +36,9 @@ class Projection {
 
     bool culls() const { return culls_; }
 
+    /// How much larger parts may be culled that only throw shadows into the picture, or are reflected in it.
+    static constexpr double coarser_out_of_sight = 8;
+
   private:
     Camera camera_;
     bool visible_only_;
@@ -46,6 +54,36 @@ class Projection {
     double error_world_;
     bool culls_;
 };
+
+// Inlined: the tracer asks for every part that a ray goes into.
+
+inline bool Projection::sees(const Ball& ball) const {
+    const Vec3 from_eye = ball.centre - camera_.location;
+    const double aside[2] = {std::abs(glm::dot(from_eye, camera_.right)),
+                             std::abs(glm::dot(from_eye, camera_.up))};
+    const double depth = camera_.orthographic ? 1 : glm::dot(from_eye, camera_.direction);
+    for (int i = 0; i < 2; ++i)
+        if (aside[i] * edges_[i].cosine - depth * edges_[i].sine > ball.radius) return false;
+    return camera_.orthographic || depth >= -ball.radius;
+}
+
+inline double Projection::pixels_per_unit(const Ball& ball) const {
+    if (camera_.orthographic) return width_px_ / camera_.width;
+    const Vec3 from_eye = ball.centre - camera_.location;
+    // Off the axis a length looks larger than its distance says, behind the eye its distance decides.
+    const double depth = std::max(glm::dot(from_eye, camera_.direction), 0.5 * glm::length(from_eye));
+    return pixels_per_tangent_ / std::max(depth - ball.radius, near_);
+}
+
+inline double Projection::pixels_that_matter(const Ball& ball) const {
+    return pixels_per_unit(ball) / (sees(ball) ? 1 : coarser_out_of_sight);
+}
+
+inline double Projection::detail_per_unit(const Ball& ball) const {
+    if (!culls_) return std::numeric_limits<double>::infinity();
+    if (error_world_ > 0) return 1 / (error_world_ * (sees(ball) ? 1 : coarser_out_of_sight));
+    return pixels_that_matter(ball) / error_px_;
+}
 
 /// A node with the levels it has left and the detail of a unit of its frame: what is baked as one mesh.
 /// Details are counted in steps of 2^(1/256). A unit and not the node's diameter: where nothing is scaled on

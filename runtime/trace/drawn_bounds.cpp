@@ -6,6 +6,7 @@
 
 #include "compiler/analysis/bounding.h"
 #include "compiler/analysis/contraction.h"
+#include "compiler/cut/bake.h"
 #include "compiler/graph/components.h"
 
 namespace graftal {
@@ -53,9 +54,11 @@ class Bounder {
                     object.instances.push_back(instance_of(edge));
             graph_.objects.push_back(std::move(object));
         }
-        Object sphere;
-        sphere.primitive = PrimitiveKind::sphere;
-        graph_.objects.push_back(std::move(sphere));
+        for (const PrimitiveKind kind : {PrimitiveKind::sphere, PrimitiveKind::cube}) {
+            Object primitive;
+            primitive.primitive = kind;
+            graph_.objects.push_back(std::move(primitive));
+        }
         for (NodeId id = 0; id < cut.nodes.size(); ++id) {
             const CutNode& node = cut.nodes[id];
             if (node.primitive || !node.stop_edges.empty() || !(node.cullable || node.unending)) continue;
@@ -72,10 +75,10 @@ class Bounder {
             for (const std::vector<CutEdge>* edges : {&cut_.nodes[id].edges, &cut_.nodes[id].stop_edges})
                 for (const CutEdge& edge : *edges)
                     if (needs_object(edge)) add_object(edge);
-        const Components components = strong_components(graph_);
-        bounds_ = bound_objects(graph_, components, decide_contraction(graph_, components));
+        bound();
+        if (add_thickness()) bound();
         DrawnBounds result;
-        std::size_t next = nodes + 1;
+        std::size_t next = nodes + 2;
         for (const CutNode& node : cut_.nodes) {
             result.node.push_back(bounds_[result.node.size()].box);
             for (const bool stop : {false, true}) {
@@ -88,6 +91,30 @@ class Bounder {
     }
 
   private:
+    void bound() {
+        const Components components = strong_components(graph_);
+        bounds_ = bound_objects(graph_, components, decide_contraction(graph_, components));
+    }
+
+    /// What is crushed is drawn thicker than it is: a box about it stands for that. True if there is any.
+    bool add_thickness() {
+        bool any = false;
+        for (NodeId id = 0; id < cut_.nodes.size(); ++id) {
+            if (!cut_.nodes[id].sealed) continue;
+            const CutEdge& edge = cut_.nodes[id].edges.front();
+            const Box crushed = transformed(edge.node_from_child, bounds_[edge.child].box);
+            if (crushed.empty()) continue;
+            const double thickness = thickest_share * 2 * edge.stretch * cut_.nodes[edge.child].ball.radius;
+            Instance about;
+            about.master = static_cast<ObjectId>(cut_.nodes.size() + 1);
+            about.parent_from_child = Affine::translate(crushed.centre()) *
+                                      Affine::scale(0.5 * crushed.size() + Vec3(thickness));
+            graph_.objects[id].instances.push_back(about);
+            any = true;
+        }
+        return any;
+    }
+
     bool needs_object(const CutEdge& edge) const {
         return exact_ && !cut_.nodes[edge.child].primitive && !keeps_axes(edge.node_from_child.linear);
     }

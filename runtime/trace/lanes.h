@@ -10,6 +10,7 @@
 namespace graftal {
 
 using Double4 = double __attribute__((vector_size(32), aligned(32)));
+using Float4 = float __attribute__((vector_size(16), aligned(16)));
 using Float8 = float __attribute__((vector_size(32), aligned(32)));
 using Int8 = std::int32_t __attribute__((vector_size(32), aligned(32)));
 

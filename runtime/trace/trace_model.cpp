@@ -38,7 +38,7 @@ class Builder {
     explicit Builder(TraceModel& model)
         : model_(model), cut_(model.prepared.cut), bounds_(drawn_bounds(cut_)) {
         for (NodeId id = 0; id < cut_.nodes.size(); ++id)
-            graph_from_frame_.push_back(graph_from_frame(cut_.nodes[id], bounds_.node[id]));
+            model_.graph_from_frame.push_back(graph_from_frame(cut_.nodes[id], bounds_.node[id]));
     }
 
     void build() {
@@ -51,7 +51,7 @@ class Builder {
     void add_root_edge() {
         TraceEdge edge;
         edge.child = cut_.root;
-        const Affine& world_from_root = graph_from_frame_[cut_.root];
+        const Affine& world_from_root = model_.graph_from_frame[cut_.root];
         set_map(edge, world_from_root, norm(world_from_root.linear));
         edge.box = bounds_.node[cut_.root];
         edge.similarity = true;
@@ -60,7 +60,7 @@ class Builder {
 
     void add_node(NodeId id) {
         const CutNode& source = cut_.nodes[id];
-        const Affine frame_from_graph = inverse(graph_from_frame_[id]);
+        const Affine frame_from_graph = inverse(model_.graph_from_frame[id]);
         TraceNode node;
         node.kind = kind_of(source);
         node.primitive = source.primitive.value_or(PrimitiveKind::sphere);
@@ -76,15 +76,19 @@ class Builder {
             node.tree = add_edges(id, source.edges, bounds_.edge[id]);
             node.edge_count = static_cast<std::uint32_t>(model_.edges.size()) - node.first_edge;
             node.stop_tree = add_edges(id, source.stop_edges, bounds_.stop_edge[id]);
+            node.stop_edge_count =
+                static_cast<std::uint32_t>(model_.edges.size()) - node.first_edge - node.edge_count;
         } else if (node.kind == TraceNode::Kind::unbounded) {
             add_edges(id, source.edges, bounds_.edge[id]);
             node.edge_count = static_cast<std::uint32_t>(model_.edges.size()) - node.first_edge;
         }
+        for (std::size_t i = node.first_edge; i < model_.edges.size(); ++i)
+            node.flattest_edge = std::min(node.flattest_edge, model_.edges[i].flatness);
         model_.nodes.push_back(node);
     }
 
     std::uint32_t add_edges(NodeId id, const std::vector<CutEdge>& edges, const std::vector<Box>& boxes) {
-        const Affine frame_from_graph = inverse(graph_from_frame_[id]);
+        const Affine frame_from_graph = inverse(model_.graph_from_frame[id]);
         std::vector<BoxedItem> items;
         std::map<EdgeKey, std::size_t> met; // parts that coincide are drawn once
         for (std::size_t i = 0; i < edges.size(); ++i) {
@@ -95,8 +99,8 @@ class Builder {
             edge.levels = source.levels;
             edge.similarity = source.similarity;
             edge.source = &source;
-            const double child_size = graph_from_frame_[source.child].linear[0][0];
-            set_map(edge, frame_from_graph * source.node_from_child * graph_from_frame_[source.child],
+            const double child_size = model_.graph_from_frame[source.child].linear[0][0];
+            set_map(edge, frame_from_graph * source.node_from_child * model_.graph_from_frame[source.child],
                     source.stretch * child_size * frame_from_graph.linear[0][0]);
             edge.box = transformed(frame_from_graph, boxes[i]);
             if (!edge.box.empty()) items.emplace_back(edge.box, 1, static_cast<std::uint32_t>(model_.edges.size()));
@@ -108,6 +112,8 @@ class Builder {
 
     static void set_map(TraceEdge& edge, const Affine& parent_from_child, double stretch) {
         edge.parent_from_child = LaneMap(parent_from_child);
+        const Vec3 sigma = singular_values(parent_from_child.linear);
+        edge.flatness = sigma.x > 0 ? sigma.z / sigma.x : 0;
         edge.child_from_parent = LaneMap(inverse(parent_from_child));
         edge.stretch = stretch;
     }
@@ -126,25 +132,24 @@ class Builder {
     TraceModel& model_;
     const CutGraph& cut_;
     DrawnBounds bounds_;
-    std::vector<Affine> graph_from_frame_;
 };
 
 /// What a unit measures at the far end of the model, were it out of the picture.
 double least_detail(const TraceModel& model) {
-    constexpr double out_of_the_picture = 8; // Projection
     const CutGraph& cut = model.prepared.cut;
     const Ball& ball = cut.nodes[cut.root].ball;
     const Camera& camera = model.view.camera;
     const double reach = glm::distance(ball.centre, camera.location) + 2 * ball.radius;
     const Ball far{camera.location + reach * camera.direction, 0};
-    return model.projection.detail_per_unit(far) / out_of_the_picture;
+    return model.projection.detail_per_unit(far) / Projection::coarser_out_of_sight;
 }
 
 } // namespace
 
 TraceModel::TraceModel(PreparedCut ready, const View& seen, const CutOptions& cut_options)
     : prepared(std::move(ready)), view(seen), options(cut_options),
-      projection(view, options, options.error_px, nearest_to_eye(prepared.cut)) {
+      projection(view, options, options.error_px, nearest_to_eye(prepared.cut)),
+      meshes(prepared, graph_from_frame) {
     least_detail_per_unit = least_detail(*this);
     Builder(*this).build();
 }

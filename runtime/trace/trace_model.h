@@ -8,6 +8,7 @@
 #include "compiler/scene/scene.h"
 #include "runtime/trace/box_tree.h"
 #include "runtime/trace/lanes.h"
+#include "runtime/trace/mesh_store.h"
 
 namespace graftal {
 
@@ -24,6 +25,7 @@ struct TraceEdge {
     std::uint32_t child = 0;
     unsigned levels = 0;
     bool similarity = false; ///< then a path's norm is the product of its stretches
+    double flatness = 1;     ///< the least stretch, as a share of the largest
     const CutEdge* source = nullptr; ///< tint and material; nothing: the edge to the root
 };
 
@@ -32,7 +34,7 @@ struct TraceNode {
         primitive,
         parts,     ///< a union
         unbounded, ///< a union that holds planes: its edges are tried one after the other
-        mesh,      ///< leads through a singular map: what it holds is baked (CutNode::sealed)
+        mesh,      ///< leads through a singular map: always baked (CutNode::sealed)
     };
 
     Kind kind = Kind::parts;
@@ -41,8 +43,10 @@ struct TraceNode {
     bool cullable = true;
     std::uint32_t tree = no_tree;      ///< of its edges
     std::uint32_t stop_tree = no_tree; ///< of what is drawn where it is cut; none: its proxy
+    double flattest_edge = 1;          ///< least flatness of its edges
     std::uint32_t first_edge = 0;      ///< of its edges, which follow each other
     std::uint32_t edge_count = 0;
+    std::uint32_t stop_edge_count = 0; ///< which follow those
     Double4 ball_centre{};
     double ball_radius = 0;
     LaneMap node_from_proxy; ///< places the unit sphere
@@ -60,6 +64,8 @@ struct TraceModel {
     std::vector<TraceNode> nodes; ///< as prepared.cut.nodes
     std::vector<TraceEdge> edges; ///< the first leads to the root, from world space
     std::vector<BoxNode> boxes;
+    std::vector<Affine> graph_from_frame; ///< by node
+    mutable MeshStore meshes;
 
     TraceModel(PreparedCut prepared, const View& view, const CutOptions& options);
     TraceModel(const TraceModel&) = delete;

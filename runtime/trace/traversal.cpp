@@ -1,6 +1,7 @@
 #include "runtime/trace/traversal.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <utility>
 
@@ -21,7 +22,7 @@ namespace {
 constexpr std::uint32_t from_cut = 1u << 31;
 /// Nodes and primitives that one ray may go into. Sound models need some tens or hundreds; where thousands of
 /// parts coincide, a ray would not come to an end.
-constexpr std::uint64_t most_visits = 1 << 20;
+constexpr std::uint64_t most_visits = 1 << 17;
 /// Parts smaller than this are nothing: their inverse maps would not be numbers.
 constexpr double least_scale = 1e-150;
 
@@ -63,6 +64,15 @@ GRAFTAL_INLINE Float8 splat8(float x) {
     return Float8{x, x, x, x, x, x, x, x};
 }
 
+/// One bit for each lane that is true.
+GRAFTAL_INLINE std::uint32_t bits_of(const Int8& lanes) {
+    Int8 bits = lanes & Int8{1, 2, 4, 8, 16, 32, 64, 128};
+    bits |= __builtin_shufflevector(bits, bits, 4, 5, 6, 7, 0, 1, 2, 3);
+    bits |= __builtin_shufflevector(bits, bits, 2, 3, 0, 1, 6, 7, 4, 5);
+    bits |= __builtin_shufflevector(bits, bits, 1, 0, 3, 2, 5, 4, 7, 6);
+    return static_cast<std::uint32_t>(bits[0]);
+}
+
 /// The range of t in which a ray is within a box; empty where least > most.
 RayRange range_in(const Box& box, const Ray& ray, RayRange range) {
     for (int axis = 0; axis < 3; ++axis) {
@@ -77,6 +87,63 @@ RayRange range_in(const Box& box, const Ray& ray, RayRange range) {
         range.most = std::min(range.most, std::max(a, b));
     }
     return range;
+}
+
+/// norm(), to about 1e-8, and an order of magnitude faster: the root of the largest eigenvalue of A^T A, which
+/// solves a cubic (O. Smith, "Eigenvalues of a symmetric 3x3 matrix", 1961).
+double largest_stretch(const LaneMap& map) {
+    const Vec3 a = vec3_of(map.column[0]), b = vec3_of(map.column[1]), c = vec3_of(map.column[2]);
+    const double aa = glm::dot(a, a), bb = glm::dot(b, b), cc = glm::dot(c, c);
+    const double mean = (aa + bb + cc) / 3;
+    if (!(mean > 1e-250)) return norm(map.affine().linear);
+    // Of the matrix less its mean eigenvalue, in units of that.
+    const double x = aa / mean - 1, y = bb / mean - 1, z = cc / mean - 1;
+    const double xy = glm::dot(a, b) / mean, yz = glm::dot(b, c) / mean, zx = glm::dot(c, a) / mean;
+    const double p2 = (x * x + y * y + z * z + 2 * (xy * xy + yz * yz + zx * zx)) / 6;
+    if (!(p2 > 0)) return std::sqrt(mean);
+    const double p = std::sqrt(p2);
+    const double determinant =
+        x * (y * z - yz * yz) - xy * (xy * z - yz * zx) + zx * (xy * yz - y * zx);
+    const double angle = std::acos(std::clamp(0.5 * determinant / (p2 * p), -1.0, 1.0)) / 3;
+    return std::sqrt(mean * (1 + 2 * p * std::cos(angle)));
+}
+
+/// Pieces whose map is flatter than this are baked (assemble.cpp).
+constexpr double flattest_placement = 1e-5;
+
+bool has_flat_part(const TraceModel& model, const TraceNode& node, const LaneMap& world_from_node, bool cut) {
+    const std::uint32_t first = node.first_edge + (cut ? node.edge_count : 0);
+    const std::uint32_t count = cut ? node.stop_edge_count : node.edge_count;
+    const Affine place = world_from_node.affine();
+    for (std::uint32_t i = first; i < first + count; ++i) {
+        const TraceEdge& edge = model.edges[i];
+        if (!edge.similarity && is_singular(place * edge.parent_from_child.affine(), flattest_placement))
+            return true;
+    }
+    return false;
+}
+
+/// Moeller and Trumbore, "Fast, Minimum Storage Ray/Triangle Intersection", 1997.
+bool intersect_triangle(const TraceMesh::Triangle& triangle, const Ray& ray, const RayRange& range,
+                        PrimitiveHit& hit) {
+    const Vec3 a = triangle.corners[1] - triangle.corners[0], b = triangle.corners[2] - triangle.corners[0];
+    const Vec3 p = glm::cross(ray.direction, b);
+    const double volume = glm::dot(a, p);
+    if (volume == 0) return false;
+    const Vec3 from_corner = ray.origin - triangle.corners[0];
+    const double u = glm::dot(from_corner, p) / volume;
+    const Vec3 q = glm::cross(from_corner, a);
+    const double v = glm::dot(ray.direction, q) / volume;
+    constexpr double rounding = 1e-12;
+    if (!(u >= -rounding && v >= -rounding && u + v <= 1 + rounding)) return false;
+    const double t = glm::dot(b, q) / volume;
+    if (!(t > range.least && t < range.most)) return false;
+    Vec3 normal =
+        (1 - u - v) * triangle.normals[0] + u * triangle.normals[1] + v * triangle.normals[2];
+    if (!(glm::dot(normal, normal) > 0)) normal = glm::cross(a, b);
+    const double length = glm::length(normal);
+    hit = {t, length > 0 ? normal / length : Vec3(0, 1, 0)};
+    return true;
 }
 
 /// The box, larger by what rounding and thickened parts may need.
@@ -95,19 +162,18 @@ struct Traversal::Kernel {
 
     GRAFTAL_INLINE bool run(const Ray& ray) {
         self.depth_ = 0;
-        self.entries_.clear();
+        self.entry_count_ = 0;
         self.best_.found = false;
         self.best_.t = range.most;
         const std::uint64_t limit = self.visits_ + most_visits;
         push_world(ray);
         try_edge(self.frames_.front(), 0);
-        while (!self.entries_.empty()) {
-            const Entry entry = self.entries_.back();
-            self.entries_.pop_back();
+        while (self.entry_count_ > 0) {
+            const Entry entry = self.entries_[--self.entry_count_];
             if (!(entry.t < self.best_.t)) continue;
             self.depth_ = entry.frame + 1;
             if (entry.entry & BoxNode::inner)
-                test_boxes(entry.entry & ~BoxNode::inner, self.frames_[entry.frame], entry.frame);
+                test_boxes(model.boxes, entry.entry & ~BoxNode::inner, entry.frame);
             else
                 enter(entry);
             if (any && self.best_.found) return true;
@@ -134,6 +200,7 @@ struct Traversal::Kernel {
         frame.edge = no_edge;
         frame.steps = model.prepared.root_steps;
         frame.cut = false;
+        frame.flatness = 1;
         frame.margin = 0;
     }
 
@@ -150,7 +217,8 @@ struct Traversal::Kernel {
             if (!(inside.least <= inside.most)) return;
             t = frame.base + inside.least;
         }
-        self.entries_.push_back({t, number, static_cast<std::uint32_t>(self.depth_ - 1)});
+        reserve_entries(1);
+        self.entries_[self.entry_count_++] = {t, number, static_cast<std::uint32_t>(self.depth_ - 1)};
     }
 
     GRAFTAL_INLINE static bool child_is_plane(const TraceNode& node) {
@@ -158,33 +226,38 @@ struct Traversal::Kernel {
     }
 
     /// Sorts the boxes that the ray meets, the nearest last.
-    GRAFTAL_INLINE void test_boxes(std::uint32_t number, const Frame& frame, std::uint32_t frame_number) {
-        const BoxNode& node = model.boxes[number];
-        const double to_local = 1 / frame.unit;
-        const float least = static_cast<float>((range.least - frame.base) * to_local);
+    GRAFTAL_INLINE void test_boxes(const std::vector<BoxNode>& boxes, std::uint32_t number,
+                                   std::uint32_t frame_number) {
+        const BoxNode& node = boxes[number];
+        const Frame& frame = self.frames_[frame_number];
+        const float least = static_cast<float>((range.least - frame.base) * frame.largest);
         // A little more, for what single precision leaves out.
-        const float most = static_cast<float>((self.best_.t - frame.base) * to_local) + 2e-6f;
+        const float most = static_cast<float>((self.best_.t - frame.base) * frame.largest) + 2e-6f;
         Float8 enters = splat8(least), leaves = splat8(most);
         for (int axis = 0; axis < 3; ++axis) {
-            const auto i = static_cast<std::size_t>(axis);
-            const Float8 reciprocal = splat8(frame.reciprocal[i]);
-            const Float8 a = (node.lower[axis] - splat8(frame.lower_origin[i])) * reciprocal;
-            const Float8 b = (node.upper[axis] - splat8(frame.upper_origin[i])) * reciprocal;
+            const Float8 reciprocal = splat8(frame.reciprocal[axis]);
+            const Float8 a = (node.lower[axis] - splat8(frame.lower_origin[axis])) * reciprocal;
+            const Float8 b = (node.upper[axis] - splat8(frame.upper_origin[axis])) * reciprocal;
             enters = greater(enters, lesser(a, b));
             leaves = lesser(leaves, greater(a, b));
         }
-        const Int8 met = enters <= leaves;
-        const std::size_t first = self.entries_.size();
-        for (int lane = 0; lane < 8; ++lane) {
-            if (!met[lane]) continue;
-            const Entry entry{frame.base + static_cast<double>(enters[lane]) * frame.unit,
-                              node.entry[static_cast<std::size_t>(lane)], frame_number};
-            std::size_t place = self.entries_.size();
-            self.entries_.push_back(entry);
-            for (; place > first && self.entries_[place - 1].t < entry.t; --place)
-                self.entries_[place] = self.entries_[place - 1];
-            self.entries_[place] = entry;
+        reserve_entries(8);
+        Entry* const first = self.entries_.data() + self.entry_count_;
+        Entry* end = first;
+        for (std::uint32_t lanes = bits_of(enters <= leaves); lanes != 0; lanes &= lanes - 1) {
+            const auto lane = static_cast<std::size_t>(std::countr_zero(lanes));
+            const Entry entry{frame.base + static_cast<double>(enters[lane]) * frame.unit, node.entry[lane],
+                              frame_number};
+            Entry* place = end++;
+            for (; place > first && place[-1].t < entry.t; --place)
+                *place = place[-1];
+            *place = entry;
         }
+        self.entry_count_ += static_cast<std::size_t>(end - first);
+    }
+
+    GRAFTAL_INLINE void reserve_entries(std::size_t count) {
+        if (self.entry_count_ + count > self.entries_.size()) self.entries_.resize(2 * self.entries_.size());
     }
 
     GRAFTAL_INLINE void enter(const Entry& entry) {
@@ -207,8 +280,9 @@ struct Traversal::Kernel {
         frame.node = edge.child;
         frame.steps = above.steps == unlimited_steps ? above.steps : above.steps - edge.levels;
         frame.scale =
-            edge.similarity ? above.scale * edge.stretch : norm(frame.world_from_node.affine().linear);
+            edge.similarity ? above.scale * edge.stretch : largest_stretch(frame.world_from_node);
         if (!(frame.scale > least_scale)) return;
+        frame.flatness = above.flatness * (edge.similarity ? 1 : edge.flatness);
         frame.cut = is_cut(node, frame);
         const std::uint32_t tree = frame.cut ? node.stop_tree : node.tree;
         if (frame.cut && tree == no_tree) {
@@ -220,22 +294,92 @@ struct Traversal::Kernel {
         frame.origin = origin;
         frame.direction = direction;
         frame.base = entry.t;
+        frame.largest = largest;
         frame.unit = 1 / largest;
-        frame.margin = 0;
+        const auto number = static_cast<std::uint32_t>(self.depth_ - 1);
         if (node.kind == TraceNode::Kind::unbounded) {
+            frame.margin = 0;
             for (std::uint32_t i = 0; i < node.edge_count; ++i)
                 try_edge(frame, node.first_edge + i);
             return;
         }
-        for (int axis = 0; axis < 3; ++axis) {
-            const auto i = static_cast<std::size_t>(axis);
-            const float d = static_cast<float>(direction[axis] * frame.unit);
-            // Far beyond all boxes, but a number: 0 times it is 0.
-            frame.reciprocal[i] = 1 / (std::abs(d) > 1e-18f ? d : std::copysign(1e-18f, d));
-            frame.lower_origin[i] = static_cast<float>(origin[axis]) + frame.margin;
-            frame.upper_origin[i] = static_cast<float>(origin[axis]) - frame.margin;
+        const bool baked = node.kind == TraceNode::Kind::mesh || too_flat(node, frame);
+        frame.margin = baked ? thickness(node, frame) : 0;
+        const Float4 d = __builtin_convertvector(direction * splat(frame.unit), Float4);
+        // Where it is 0 something small: far beyond all boxes, but a number, and 0 times it is 0.
+        constexpr Float4 least = {1e-18f, 1e-18f, 1e-18f, 1e-18f};
+        const Float4 magnitude = d < 0 ? -d : d;
+        frame.reciprocal = 1 / (magnitude > least ? d : least);
+        const Float4 o = __builtin_convertvector(origin, Float4);
+        frame.lower_origin = o + frame.margin;
+        frame.upper_origin = o - frame.margin;
+        if (baked) return meet_mesh(mesh_of(frame), number);
+        if (tree != no_tree) test_boxes(model.boxes, tree, number);
+    }
+
+    GRAFTAL_INLINE Ball world_ball(const TraceNode& node, const Frame& frame) const {
+        return {vec3_of(point_through(frame.world_from_node, node.ball_centre)),
+                frame.scale * node.ball_radius};
+    }
+
+    /// Whether some part could not be placed by itself, it is so flat: the cut bakes the node then
+    /// (assemble.cpp).
+    GRAFTAL_INLINE bool too_flat(const TraceNode& node, const Frame& frame) const {
+        if (frame.flatness * node.flattest_edge > flattest_placement) return false;
+        return has_flat_part(model, node, frame.world_from_node, frame.cut);
+    }
+
+    /// What parts may be thickened by, in the frame (bake.h, leaf_thickness).
+    GRAFTAL_INLINE float thickness(const TraceNode& node, const Frame& frame) const {
+        const double detail = frame.scale * model.projection.detail_per_unit(world_ball(node, frame));
+        return std::isfinite(detail) ? static_cast<float>(1.5 / detail) : 2e-3f;
+    }
+
+    GRAFTAL_INLINE const TraceMesh& mesh_of(const Frame& frame) const {
+        const Ball ball = world_ball(model.nodes[frame.node], frame);
+        return model.meshes.mesh(frame.node, frame.steps,
+                                 frame.scale * model.projection.detail_per_unit(ball),
+                                 frame.scale * model.projection.pixels_that_matter(ball));
+    }
+
+    GRAFTAL_INLINE void meet_mesh(const TraceMesh& mesh, std::uint32_t frame_number) {
+        const std::size_t others = self.entry_count_;
+        if (mesh.tree != no_tree) test_boxes(mesh.boxes, mesh.tree, frame_number);
+        while (self.entry_count_ > others) {
+            const Entry entry = self.entries_[--self.entry_count_];
+            if (!(entry.t < self.best_.t)) continue;
+            if (entry.entry & BoxNode::inner)
+                test_boxes(mesh.boxes, entry.entry & ~BoxNode::inner, frame_number);
+            else
+                meet_triangle(mesh, mesh.triangles[entry.entry], entry);
         }
-        if (tree != no_tree) test_boxes(tree, frame, static_cast<std::uint32_t>(self.depth_ - 1));
+    }
+
+    GRAFTAL_INLINE void meet_triangle(const TraceMesh& mesh, const TraceMesh::Triangle& triangle,
+                                      const Entry& entry) {
+        ++self.visits_;
+        const Frame& frame = self.frames_[entry.frame];
+        const double largest = frame.largest;
+        const Double4 near = frame.origin + splat(entry.t - frame.base) * frame.direction;
+        const Ray ray{vec3_of(near), frame.unit * vec3_of(frame.direction)};
+        const RayRange range_near{(range.least - entry.t) * largest, (self.best_.t - entry.t) * largest};
+        PrimitiveHit hit;
+        if (!intersect_triangle(triangle, ray, range_near, hit)) return;
+        self.best_.t = entry.t + hit.t * frame.unit;
+        self.best_.found = true;
+        if (any) return;
+        self.best_.normal = hit.normal;
+        self.best_.world_from_leaf = frame.world_from_node;
+        self.best_.proxy_node = no_edge;
+        self.best_.mesh_colour = &mesh.colours[triangle.colour];
+        keep_path(entry.frame);
+    }
+
+    /// The edges to a frame's node.
+    GRAFTAL_INLINE void keep_path(std::uint32_t frame_number) {
+        self.path_.clear();
+        for (std::size_t i = 1; i <= frame_number; ++i)
+            self.path_.push_back(self.frames_[i].edge);
     }
 
     /// The rule of the cut (detail.h).
@@ -243,10 +387,9 @@ struct Traversal::Kernel {
         if (node.kind == TraceNode::Kind::unbounded) return false;
         if (node.unending && frame.steps == 0) return true;
         if (!node.cullable) return false;
-        const double radius = frame.scale * node.ball_radius;
-        if (2 * radius * model.least_detail_per_unit > 1) return false;
-        const Ball ball{vec3_of(point_through(frame.world_from_node, node.ball_centre)), radius};
-        return 2 * radius * model.projection.detail_per_unit(ball) <= 1;
+        const double diameter = 2 * frame.scale * node.ball_radius;
+        if (diameter * model.least_detail_per_unit > 1) return false;
+        return diameter * model.projection.detail_per_unit(world_ball(node, frame)) <= 1;
     }
 
     /// Meets a leaf: the child of a frame, or the proxy of the frame's own node.
@@ -262,9 +405,8 @@ struct Traversal::Kernel {
         self.best_.found = true;
         if (any) return;
         self.best_.normal = hit.normal;
-        self.path_.clear();
-        for (std::size_t i = 1; i <= entry.frame; ++i)
-            self.path_.push_back(self.frames_[i].edge);
+        self.best_.mesh_colour = nullptr;
+        keep_path(entry.frame);
         if (proxy) {
             self.path_.push_back(frame.edge);
             compose(frame.world_from_node, node_from_proxy, self.best_.world_from_leaf);
@@ -305,7 +447,7 @@ Instructions best_instructions() {
 Traversal::Traversal(const TraceModel& model, Instructions instructions)
     : model_(model), instructions_(instructions) {
     frames_.resize(16);
-    entries_.reserve(128);
+    entries_.resize(128);
 }
 
 #if defined(__x86_64__)
@@ -356,6 +498,10 @@ void Traversal::surface_at_best(SurfaceHit& hit) const {
             inherited = hit.material->rgb;
         }
         parent = &nodes[edge.child];
+    }
+    if (best_.mesh_colour) {
+        inherited = best_.mesh_colour->fixed + best_.mesh_colour->open * inherited;
+        if (best_.mesh_colour->material) hit.material = &materials[*best_.mesh_colour->material];
     }
     if (best_.proxy_node != no_edge)
         inherited = nodes[best_.proxy_node].mean.over(inherited);

@@ -41,15 +41,17 @@ class Traversal final : public Surfaces {
         LaneMap world_from_node;
         Double4 origin, direction; ///< the ray is origin + (t - base) direction
         double base = 0;
-        double unit = 1;  ///< of the direction's largest component is 1 in it
-        double scale = 1; ///< norm of world_from_node
+        double largest = 1; ///< component of the direction
+        double unit = 1;    ///< 1 / largest: the step of t in which that is 1
+        double scale = 1;    ///< norm of world_from_node
+        double flatness = 1; ///< at most its least stretch, as a share of the largest
         std::uint32_t edge = 0;
         std::uint32_t node = 0;
         std::uint32_t steps = 0;
         bool cut = false; ///< drawn by its stop edges
         float margin = 0; ///< by which parts may reach out of their boxes
-        std::array<float, 3> lower_origin{}, upper_origin{}; ///< the origin, with the margin
-        std::array<float, 3> reciprocal{};                   ///< of the direction in these units
+        Float4 lower_origin, upper_origin; ///< the origin, with the margin
+        Float4 reciprocal;                 ///< of the direction in these units
     };
 
     /// An edge or a node of boxes to go into, and from where on.
@@ -65,7 +67,8 @@ class Traversal final : public Surfaces {
         bool found = false;
         Vec3 normal{0.0}; ///< in the leaf's frame
         LaneMap world_from_leaf;
-        std::uint32_t proxy_node = 0; ///< or no_edge
+        std::uint32_t proxy_node = 0;                 ///< or no_edge
+        const TraceMesh::Colour* mesh_colour = nullptr; ///< of a triangle
     };
 
     void surface_at_best(SurfaceHit& hit) const;
@@ -75,6 +78,7 @@ class Traversal final : public Surfaces {
     std::vector<Frame> frames_;
     std::size_t depth_ = 0; ///< frames in use
     std::vector<Entry> entries_;
+    std::size_t entry_count_ = 0; ///< in use
     Best best_;
     std::vector<std::uint32_t> path_; ///< edges from the root to the best hit, those from cut nodes marked
     std::uint64_t visits_ = 0;

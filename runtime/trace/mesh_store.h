@@ -1,0 +1,64 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <vector>
+
+#include "compiler/cut/prepare.h"
+#include "runtime/trace/box_tree.h"
+
+namespace graftal {
+
+/// The part of the graph below a node as triangles, in the node's own frame (TraceNode).
+struct TraceMesh {
+    struct Triangle {
+        std::array<Vec3, 3> corners;
+        std::array<Vec3, 3> normals; ///< of unit length; all zero: flat
+        std::uint32_t colour = 0;
+    };
+    /// fixed + open * (the colour that the node inherits), without the tints on the way to the node.
+    struct Colour {
+        Rgb fixed{0.0};
+        Rgb open{1.0};
+        std::optional<MaterialId> material; ///< nothing: the one that the node inherits
+    };
+
+    std::vector<Triangle> triangles;
+    std::vector<Colour> colours;
+    std::vector<BoxNode> boxes;
+    std::uint32_t tree = no_tree; ///< its root in `boxes`
+};
+
+/// Bakes what rays cannot be taken into, where they come to it: maps that crush space have no inverse. Baked
+/// as the cut bakes it (bake.h), once for each half octave of sizes. Used by many threads.
+class MeshStore {
+  public:
+    /// Keeps references to all. `graph_from_frame`: by node.
+    MeshStore(const PreparedCut& prepared, const std::vector<Affine>& graph_from_frame);
+
+    /// The node as it is drawn where a unit of its frame has this detail and so many pixels (detail.h). The
+    /// reference stays.
+    const TraceMesh& mesh(NodeId node, std::uint32_t steps, double detail_per_unit, double pixels_per_unit);
+
+  private:
+    struct Key {
+        NodeId node;
+        std::uint32_t steps;
+        int detail; ///< in half octaves
+        int pixels;
+        auto operator<=>(const Key&) const = default;
+    };
+
+    std::unique_ptr<TraceMesh> bake_mesh(const Key& key) const;
+
+    const PreparedCut& prepared_;
+    const std::vector<Affine>& graph_from_frame_;
+    std::mutex mutex_;
+    std::map<Key, std::unique_ptr<TraceMesh>> meshes_;
+};
+
+} // namespace graftal

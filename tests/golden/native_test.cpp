@@ -117,12 +117,14 @@ TEST_F(Native, AgreesWithPovray) {
     }
 }
 
-TEST_F(Native, KeepsWithinAnyMemory) {
+TEST_F(Native, DoesAnyhowWhatPovrayMustBeTold) {
     ASSERT_EQ(render(pound_sign + small + "-q -o a.png").status, 0);
-    const RunResult result = render(pound_sign + small + "-q -o b.png --memory 1M");
-    EXPECT_EQ(result.status, 0);
-    EXPECT_EQ(result.err, "");
-    EXPECT_EQ(differing("a.png", "b.png"), 0u);
+    for (const std::string option : {"--memory 1M", "--flatten"}) {
+        const RunResult result = render(pound_sign + small + "-q -o b.png " + option);
+        EXPECT_EQ(result.status, 0) << option;
+        EXPECT_EQ(result.err, "") << option;
+        EXPECT_EQ(differing("a.png", "b.png"), 0u) << option;
+    }
 }
 
 TEST_F(Native, NeedsNoTemporaryFolder) {

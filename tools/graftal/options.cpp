@@ -155,8 +155,7 @@ void add_view(CLI::App& app, Options& options) {
         [](const std::string& text) { return parse_at_least(text, 0); },
         [&](double error) { compile.cut.error_world = error; })
         ->excludes(pixels);
-    add_value(app, "--memory", "BYTES",
-              "Memory that POV-Ray may need, suffixes K M G (default 2G); the native engine needs little",
+    add_value(app, "--memory", "BYTES", "Memory that POV-Ray may need; suffixes K M G (default 2G)",
               "a number of bytes such as 512M", parse_bytes,
               [&](std::uint64_t bytes) { compile.cut.memory_bytes = bytes; });
     app.add_flag("--visible-only", compile.cut.visible_only,
@@ -192,8 +191,8 @@ void add_drawing(CLI::App& app, Options& options) {
                 fmt::format("--antialias: '{}' is neither 'off' nor a whole number from 1 to 9", text));
         options.antialias = depth ? std::optional(static_cast<int>(*depth)) : std::nullopt;
     };
-    app.add_option_function<std::string>(
-           "--antialias", antialias, "Smooth edges by up to 4^(N-1) samples a pixel, or off (default 2)")
+    app.add_option_function<std::string>("--antialias", antialias,
+                                         "Smooth edges by up to 4^(N-1) samples a pixel, or off (default 2)")
         ->type_name("off|N")
         ->take_last();
 }
@@ -385,17 +384,16 @@ std::string passes_text() {
     return text;
 }
 
-/// What an engine cannot do, or "". What it does anyhow, as to keep within --memory, is fine.
+/// What an engine cannot do, or "". What it does anyhow is fine: the native one has no POV-Ray to take
+/// --memory, and goes into every part in its place, as --flatten wants it.
 std::string refused_by_engine(const Options& options) {
     if (options.engine == Engine::povray)
         return options.progressive
                    ? "--progressive needs '--engine native': POV-Ray shows nothing before its picture is done"
                    : "";
     if (!options.keep.empty()) return "--keep: the native engine writes no scene";
-    if (options.compile.cut.flatten)
-        return "--flatten: the native engine goes into every part in its place, and has nothing to spell out";
     if (options.compile.cut.visible_only)
-        return "--visible-only: the native engine goes only where rays go, and so throws all shadows";
+        return "--visible-only: the native engine follows every ray, and so throws all shadows";
     return {};
 }
 

@@ -1,6 +1,7 @@
 #include "runtime/povray/interruption.h"
 
 #include <array>
+#include <atomic>
 #include <cerrno>
 #include <csignal>
 
@@ -13,7 +14,9 @@ namespace {
 
 constexpr std::array caught_signals = {SIGINT, SIGTERM, SIGHUP};
 
-volatile std::sig_atomic_t last_signal = 0;
+/// Read by all threads that draw.
+std::atomic<int> last_signal = 0;
+static_assert(std::atomic<int>::is_always_lock_free, "a handler may only touch such");
 volatile std::sig_atomic_t wake_write = -1;
 int wake_read = -1;
 int depth = 0;

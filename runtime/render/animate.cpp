@@ -13,6 +13,7 @@
 #include "runtime/povray/interruption.h"
 #include "runtime/render/frame_clock.h"
 #include "runtime/render/frame_store.h"
+#include "runtime/render/native.h"
 #include "runtime/render/scene_files.h"
 #include "runtime/render/video.h"
 
@@ -125,7 +126,7 @@ class Animation {
 
     /// Checks what would fail late.
     bool prepare() {
-        Status status = povray_available();
+        Status status = options_.engine == Engine::povray ? povray_available() : Status();
         if (status.ok() && kind_ == AnimationKind::video) status = video_available();
         if (status.ok() && kind_ != AnimationKind::frames) status = check_writable(options_.output);
         if (status.ok()) status = store_.create();
@@ -160,32 +161,64 @@ class Animation {
 
     bool draw_frame(std::size_t frame, std::optional<double> seconds_left) {
         if (Interruption::signal()) return fail("", Status::failure("interrupted"));
-        AnimationProgress progress{Stage::drawing, frame, options_.frames, seconds_left, {}};
-        show(progress);
+        show({Stage::drawing, frame, options_.frames, seconds_left, {}});
         Moment now = moment(frame);
         now.compile.frame = [&](const AnalysedModel& model, bool part) {
             return part ? view_of_part(model, now) : framing_.view(model, now.compile.camera, now.turn_deg);
         };
-        Compilation compilation;
-        std::optional<CompiledModel> model = compile_model(path_, now.compile, compilation);
-        if (!model) return fail(now.name, std::move(compilation));
-        if (Digest().add(compilation.sources) != sources_[frame])
-            return fail(now.name, Status::failure("the model was changed meanwhile; start again"));
-        if (options_.on_compiled) options_.on_compiled(compilation);
-
         RenderOptions render = options_.render;
         render.compile = now.compile;
         render.output = store_.path(frame);
         render.metadata.stamp = stamp(frame);
+        const auto tell = [&](double fraction) {
+            show({Stage::drawing, frame, options_.frames, seconds_left, fraction});
+        };
+        Compilation compilation;
+        const bool drawn = options_.engine == Engine::native
+                               ? trace_frame(frame, render, tell, compilation)
+                               : draw_frame_by_povray(frame, render, tell, compilation);
+        if (!drawn) return fail(now.name, std::move(compilation));
+        add_times(compilation.times, outcome_.compilation.times);
+        return true;
+    }
+
+    using Tell = std::function<void(double fraction)>;
+
+    bool draw_frame_by_povray(std::size_t frame, RenderOptions& render, const Tell& tell,
+                              Compilation& compilation) {
+        std::optional<CompiledModel> model = compile_model(path_, render.compile, compilation);
+        if (!model || !accept(frame, compilation)) return false;
         render.on_progress = [&](const PovrayProgress& povray) {
-            progress.povray = povray;
-            show(progress);
+            if (povray.stage == PovrayProgress::Stage::rendering && povray.fraction) tell(*povray.fraction);
         };
         const std::optional<RenderReport> report = draw_model(std::move(*model), render, compilation);
-        if (!report) return fail(now.name, std::move(compilation));
-        add_times(compilation.times, outcome_.compilation.times);
+        if (!report) return false;
         outcome_.error_px = std::max(outcome_.error_px, report->error_px);
         outcome_.peak_bytes = std::max(outcome_.peak_bytes, report->peak_bytes);
+        return true;
+    }
+
+    bool trace_frame(std::size_t frame, const RenderOptions& render, const Tell& tell,
+                     Compilation& compilation) {
+        std::optional<ViewedModel> model = view_model(path_, render.compile, compilation);
+        if (!model || !accept(frame, compilation)) return false;
+        NativeOptions native;
+        native.render = render;
+        native.on_progress = [&](const NativeProgress& progress) { tell(progress.fraction); };
+        const std::optional<NativeReport> report = trace_model(std::move(*model), native, compilation);
+        if (!report) return false;
+        outcome_.rays += report->rays;
+        outcome_.trace_seconds += report->seconds;
+        return true;
+    }
+
+    /// Between the compiler and what draws: the model is still the one that was measured.
+    bool accept(std::size_t frame, Compilation& compilation) const {
+        if (Digest().add(compilation.sources) != sources_[frame]) {
+            compilation.status = Status::failure("the model was changed meanwhile; start again");
+            return false;
+        }
+        if (options_.on_compiled) options_.on_compiled(compilation);
         return true;
     }
 

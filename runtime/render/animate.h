@@ -9,6 +9,7 @@
 #include "runtime/image/animation.h"
 #include "runtime/render/render.h"
 #include "runtime/render/sweep.h"
+#include "runtime/trace/picture_tracer.h"
 
 namespace graftal {
 
@@ -26,13 +27,14 @@ struct AnimationProgress {
     Stage stage = Stage::measuring;
     std::size_t frame = 0; ///< from 0
     std::size_t frames = 0;
-    std::optional<double> seconds_left;   ///< while drawing, once that can be guessed
-    std::optional<PovrayProgress> povray; ///< of this frame
+    std::optional<double> seconds_left; ///< while drawing, once that can be guessed
+    std::optional<double> fraction;     ///< of this frame, once its pixels are being drawn
 };
 
 struct AnimateOptions {
     RenderOptions render; ///< of every frame, but for what moves, the output and the stamp
-    std::string output;   ///< animation_kind(output) is known
+    Engine engine = Engine::povray;
+    std::string output; ///< animation_kind(output) is known
     std::size_t frames = 60;
     FrameRate rate;
     double turn_deg = 0; ///< of the camera about the model's vertical axis, over the whole animation
@@ -53,8 +55,10 @@ struct AnimationOutcome {
     std::size_t drawn = 0;     ///< frames
     std::size_t found = 0;     ///< frames that an earlier run had drawn
     std::size_t strangers = 0; ///< frames of other animations in a directory of frames
-    double error_px = 0;       ///< the largest of the frames drawn
+    double error_px = 0;       ///< by POV-Ray: the largest of the frames drawn
     std::uint64_t peak_bytes = 0;
+    TraceStatistics rays; ///< by the native engine: of all frames drawn
+    double trace_seconds = 0;
     double seconds = 0;
 };
 

@@ -1,7 +1,6 @@
 #include "runtime/render/native.h"
 
 #include <algorithm>
-#include <atomic>
 #include <chrono>
 #include <utility>
 #include <vector>
@@ -65,13 +64,15 @@ class Drawing {
 
     Status run() {
         for (const Sampling& sampling : samplings(options_.render, options_.progressive)) {
-            const bool complete = trace(sampling);
-            if (!complete && (!options_.progressive || report_.pictures == 0))
-                return Status::failure("interrupted");
-            if (complete) report_.samples_a_pixel = sampling.samples_a_pixel();
+            const std::size_t traced = trace(sampling);
+            const bool complete = traced == pixels();
+            if (!complete && !worth_leaving()) return interrupted();
             const Status status = write();
-            if (!status.ok() || !complete) return complete ? status : Status::failure("interrupted");
+            if (!status.ok()) return status;
+            note(sampling, traced);
+            if (!complete) return interrupted();
         }
+        report_.finished = true;
         return {};
     }
 
@@ -86,23 +87,36 @@ class Drawing {
         return static_cast<std::size_t>(size_.width) * static_cast<std::size_t>(size_.height);
     }
 
-    bool trace(const Sampling& sampling) {
+    static Status interrupted() { return Status::failure("interrupted"); }
+
+    /// A picture that is cut short is finer than the one that is there.
+    bool worth_leaving() const { return options_.progressive && report_.pictures > 0; }
+
+    void note(const Sampling& sampling, std::size_t traced) {
+        if (traced == pixels()) {
+            report_.samples_a_pixel = sampling.samples_a_pixel();
+            return;
+        }
+        report_.finer_samples_a_pixel = sampling.samples_a_pixel();
+        report_.finer_share = static_cast<double>(traced) / static_cast<double>(pixels());
+    }
+
+    /// Returns the number of pixels that are done, all but for an interruption.
+    std::size_t trace(const Sampling& sampling) {
         const Stopwatch watch;
-        std::atomic<bool> cancel = false;
         std::size_t traced = 0;
         TraceControl control;
         control.threads = options_.render.threads;
-        control.cancel = &cancel;
+        control.cancelled = [] { return Interruption::signal() != 0; };
         control.on_tile = [&](const Tile& tile) {
-            if (Interruption::signal()) cancel = true;
             traced += static_cast<std::size_t>(tile.width) * static_cast<std::size_t>(tile.height);
             const double share = static_cast<double>(traced) / static_cast<double>(pixels());
             tell((done_ + share * sampling.samples_a_pixel()) / work_);
         };
-        const bool complete = tracer_.trace(sampling, control, picture_);
+        tracer_.trace(sampling, control, picture_);
         done_ += sampling.samples_a_pixel();
         report_.seconds += watch.seconds();
-        return complete;
+        return traced;
     }
 
     void tell(double fraction) const {
@@ -113,8 +127,8 @@ class Drawing {
     Status write() {
         const RenderOptions& render = options_.render;
         const bool linear = render.format == SampleFormat::linear16 || is_exr_name(render.output);
-        Status status = write_image(render.output, linear ? picture_ : encoded(), render.format,
-                                    render.metadata);
+        Status status =
+            write_image(render.output, linear ? picture_ : encoded(), render.format, render.metadata);
         if (status.ok() && report_.pictures++ == 0) report_.first_picture_seconds = watch_.seconds();
         return status;
     }
@@ -162,9 +176,8 @@ std::optional<NativeReport> trace_model(ViewedModel viewed, const NativeOptions&
         return std::nullopt;
 
     const Stopwatch watch;
-    const TraceModel model(
-        prepare_cut(analysed.graph, analysed.components, analysed.bounds, viewed.cut), viewed.view,
-        viewed.cut);
+    const TraceModel model(prepare_cut(analysed.graph, analysed.components, analysed.bounds, viewed.cut),
+                           viewed.view, viewed.cut);
     compilation.times.push_back({"prepare", watch.seconds()});
     const Stopwatch drawing_watch;
     Drawing drawing(model, options);

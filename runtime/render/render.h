@@ -10,6 +10,9 @@
 
 namespace graftal {
 
+/// What draws.
+enum class Engine { povray, native };
+
 struct RenderOptions {
     CompileOptions compile;
     std::string output;                        ///< where the picture goes: is_picture_name(output)

@@ -1,6 +1,7 @@
 #include "runtime/trace/picture_tracer.h"
 
 #include <algorithm>
+#include <atomic>
 #include <memory>
 #include <mutex>
 #include <vector>
@@ -30,25 +31,25 @@ int steps_of(const Sampling& sampling) {
 /// One thread's tools, and what it keeps for their memory.
 class Worker {
   public:
-    Worker(const TraceModel& model, const ShaderLimits& limits)
-        : rays_(model.view), traversal_(model), shader_(model.view, traversal_, limits) {}
+    Worker(const TraceModel& model, const ShaderLimits& limits, const std::function<bool()>& cancelled)
+        : rays_(model.view), traversal_(model), shader_(model.view, traversal_, limits),
+          cancelled_(cancelled) {}
 
-    void trace(const Sampling& sampling, const Tile& tile, Image& picture) {
-        if (sampling.block > 1 || !sampling.antialias)
-            trace_blocks(sampling.block, tile, picture);
-        else
-            trace_lattice(steps_of(sampling), tile, picture);
+    /// False if it was cancelled before the last ray.
+    bool trace(const Sampling& sampling, const Tile& tile, Image& picture) {
+        if (sampling.block > 1 || !sampling.antialias) return trace_blocks(sampling.block, tile, picture);
+        return trace_lattice(steps_of(sampling), tile, picture);
     }
 
-    TraceStatistics statistics() const {
-        return {camera_rays_, traversal_.visits(), traversal_.given_up()};
-    }
+    TraceStatistics statistics() const { return {camera_rays_, traversal_.visits(), traversal_.given_up()}; }
 
   private:
     Rgb look(double x, double y) {
         ++camera_rays_;
         return shader_.radiance(rays_.through(x, y));
     }
+
+    bool cancelled() const { return cancelled_ && cancelled_(); }
 
     static void set(Image& picture, int x, int y, const Rgb& rgb) {
         const std::size_t first = 3 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(picture.width) +
@@ -57,9 +58,10 @@ class Worker {
             picture.pixels[first + static_cast<std::size_t>(c)] = static_cast<float>(rgb[c]);
     }
 
-    void trace_blocks(int block, const Tile& tile, Image& picture) {
+    bool trace_blocks(int block, const Tile& tile, Image& picture) {
         for (int y = tile.y; y < tile.y + tile.height; y += block)
             for (int x = tile.x; x < tile.x + tile.width; x += block) {
+                if (cancelled()) return false;
                 const int right = std::min(x + block, tile.x + tile.width);
                 const int below = std::min(y + block, tile.y + tile.height);
                 const Rgb rgb = look(0.5 * (x + right), 0.5 * (y + below));
@@ -67,16 +69,17 @@ class Worker {
                     for (int i = x; i < right; ++i)
                         set(picture, i, j, rgb);
             }
+        return true;
     }
 
     /// Row after row of samples, each added to the pixels that it belongs to: those on an edge to both sides.
-    void trace_lattice(int steps, const Tile& tile, Image& picture) {
+    bool trace_lattice(int steps, const Tile& tile, Image& picture) {
         const auto width = static_cast<std::size_t>(tile.width);
         sums_.assign(width * static_cast<std::size_t>(tile.height), Rgb(0.0));
         row_.resize(width);
         const double weight = 1.0 / (4.0 * steps * steps); // of a corner of one cell
         for (int j = 0; j <= tile.height * steps; ++j) {
-            trace_row(tile.x, tile.y + static_cast<double>(j) / steps, steps);
+            if (!trace_row(tile.x, tile.y + static_cast<double>(j) / steps, steps)) return false;
             const int below = j / steps;
             const bool edge = j % steps == 0;
             // A cell's upper and lower corners count alike; between two cells of a pixel they count for both.
@@ -87,19 +90,22 @@ class Worker {
             for (int x = 0; x < tile.width; ++x)
                 set(picture, tile.x + x, tile.y + y,
                     sums_[static_cast<std::size_t>(y) * width + static_cast<std::size_t>(x)]);
+        return true;
     }
 
     /// For each pixel the sum over a row of its samples: 1 for those on its edges, 2 for those between.
-    void trace_row(int left, double y, int steps) {
+    bool trace_row(int left, double y, int steps) {
         std::fill(row_.begin(), row_.end(), Rgb(0.0));
         const int count = static_cast<int>(row_.size()) * steps;
         for (int i = 0; i <= count; ++i) {
+            if (cancelled()) return false;
             const Rgb rgb = look(left + static_cast<double>(i) / steps, y);
             const auto pixel = static_cast<std::size_t>(i / steps);
             const bool edge = i % steps == 0;
             if (pixel < row_.size()) row_[pixel] += (edge ? 1.0 : 2.0) * rgb;
             if (edge && pixel > 0) row_[pixel - 1] += rgb;
         }
+        return true;
     }
 
     void add_row(int y, double weight) {
@@ -111,6 +117,7 @@ class Worker {
     CameraRays rays_;
     Traversal traversal_;
     Shader shader_;
+    const std::function<bool()>& cancelled_;
     std::uint64_t camera_rays_ = 0;
     std::vector<Rgb> row_, sums_;
 };
@@ -150,13 +157,13 @@ bool PictureTracer::trace(const Sampling& sampling, const TraceControl& control,
     std::mutex telling;
     std::atomic<bool> complete = true;
     const auto trace_tile = [&](std::size_t number) {
-        if (control.cancel && *control.cancel) {
+        if (!complete) return;
+        std::unique_ptr<Worker>& worker = workers.local();
+        if (!worker) worker = std::make_unique<Worker>(model_, limits_, control.cancelled);
+        if (!worker->trace(sampling, tiles[number], picture)) {
             complete = false;
             return;
         }
-        std::unique_ptr<Worker>& worker = workers.local();
-        if (!worker) worker = std::make_unique<Worker>(model_, limits_);
-        worker->trace(sampling, tiles[number], picture);
         if (!control.on_tile) return;
         const std::lock_guard lock(telling);
         control.on_tile(tiles[number]);
@@ -164,9 +171,8 @@ bool PictureTracer::trace(const Sampling& sampling, const TraceControl& control,
     const int threads = control.threads > 0 ? control.threads : tbb::info::default_concurrency();
     const tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
                                     static_cast<std::size_t>(threads));
-    tbb::task_arena(threads).execute([&] {
-        tbb::parallel_for(std::size_t{0}, tiles.size(), trace_tile, tbb::simple_partitioner());
-    });
+    tbb::task_arena(threads).execute(
+        [&] { tbb::parallel_for(std::size_t{0}, tiles.size(), trace_tile, tbb::simple_partitioner()); });
     for (const std::unique_ptr<Worker>& worker : workers)
         if (worker) statistics_ += worker->statistics();
     return complete;

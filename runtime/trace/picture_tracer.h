@@ -1,6 +1,5 @@
 #pragma once
 
-#include <atomic>
 #include <cstdint>
 #include <functional>
 #include <optional>
@@ -35,9 +34,11 @@ struct TraceStatistics {
 };
 
 struct TraceControl {
-    int threads = 0;                             ///< 0: as many as the machine has
-    const std::atomic<bool>* cancel = nullptr;   ///< once true, no further tile is begun
-    std::function<void(const Tile&)> on_tile;    ///< after each; by one thread at a time
+    int threads = 0; ///< 0: as many as the machine has
+    /// Asked before every ray, by all threads at once: one tile may hold millions of rays. Once it says true,
+    /// no further ray is traced.
+    std::function<bool()> cancelled;
+    std::function<void(const Tile&)> on_tile; ///< after each whole one; by one thread at a time
 };
 
 /// Makes pictures of a model by the traversal. The samples are the same, to the last bit, whatever the number
@@ -47,8 +48,8 @@ class PictureTracer {
     /// Keeps a reference to the model.
     explicit PictureTracer(const TraceModel& model, const ShaderLimits& limits = {});
 
-    /// Fills the picture: linear light, not clamped. Tiles that a cancelled trace did not come to stay as they
-    /// were; then false. Requires three channels and the size of the view.
+    /// Fills the picture: linear light, not clamped. Pixels that a cancelled trace did not come to stay as
+    /// they were; then false. Requires three channels and the size of the view.
     bool trace(const Sampling& sampling, const TraceControl& control, Image& picture);
 
     /// Of all traces so far.

@@ -26,9 +26,7 @@ std::string progress_text(const AnimationProgress& progress) {
     }
     std::string text = frame;
     if (progress.seconds_left) text += fmt::format(", {} left", duration_text(*progress.seconds_left));
-    if (progress.povray && progress.povray->fraction &&
-        progress.povray->stage == PovrayProgress::Stage::rendering)
-        text += fmt::format("  {:3.0f} %", 100 * *progress.povray->fraction);
+    if (progress.fraction) text += fmt::format("  {:3.0f} %", 100 * *progress.fraction);
     return text;
 }
 
@@ -54,6 +52,7 @@ AnimateOptions animate_options(const Options& options) {
     animate.render.metadata = {"graftal " GRAFTAL_VERSION, options.command_line, {}};
     animate.render.antialias = options.antialias;
     animate.render.threads = options.threads;
+    animate.engine = options.engine;
     animate.output = options.output;
     animate.frames = options.animation.frames;
     animate.rate = options.animation.rate;
@@ -69,7 +68,10 @@ std::string done_text(const Options& options, const AnimationOutcome& outcome) {
     std::string text = fmt::format("{}: {} frames, {:g} a second", options.output, options.animation.frames,
                                    options.animation.rate.per_second());
     if (outcome.found > 0) text += fmt::format("; {} were there already", outcome.found);
-    if (outcome.drawn > 0) text += fmt::format("; error at most {:.2g} px", outcome.error_px);
+    if (outcome.drawn > 0 && options.engine == Engine::povray)
+        text += fmt::format("; error at most {:.2g} px", outcome.error_px);
+    if (outcome.drawn > 0 && options.engine == Engine::native)
+        text += "; " + rays_text(outcome.rays, outcome.trace_seconds);
     text += fmt::format("; {}\n", duration_text(outcome.seconds));
     if (outcome.strangers > 0)
         text += fmt::format("graftal: '{}' holds {} frame{} of another animation too\n", options.output,

@@ -32,10 +32,12 @@ std::string complete_animation(Options& options) {
     return {};
 }
 
-std::string frame_identity(const CLI::App& command) {
-    static const std::set<std::string> harmless = {"MODEL",  "--output", "--fps",        "--keep-frames",
-                                                   "--time", "--quiet",  "--dump-after", "--threads"};
+std::string frame_identity(const CLI::App& command, Engine engine) {
+    static const std::set<std::string> harmless = {"MODEL",         "--output",  "--fps",
+                                                   "--keep-frames", "--time",    "--quiet",
+                                                   "--dump-after",  "--threads", "--engine"};
     std::string text = "graftal " GRAFTAL_VERSION;
+    if (engine == Engine::native) text += "\n--engine native"; // the other may be named or not
     for (const CLI::Option* option : command.get_options())
         if (option->count() > 0 && !harmless.contains(option->get_name()))
             text += "\n" + option->get_name() + " " + shell_quoted(option->results());

@@ -11,8 +11,8 @@ namespace graftal {
 /// Fills in what `animate` was not told; returns what is wrong with options that are each right, or "".
 std::string complete_animation(Options& options);
 
-/// The version and all options but those that leave the frames as they are. An option that is missing in the
-/// list of those costs frames that are drawn anew; it never lets a wrong one pass.
-std::string frame_identity(const CLI::App& command);
+/// The version, the engine and all options but those that leave the frames as they are. An option that is
+/// missing in the list of those costs frames that are drawn anew; it never lets a wrong one pass.
+std::string frame_identity(const CLI::App& command, Engine engine);
 
 } // namespace graftal

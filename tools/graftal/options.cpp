@@ -177,13 +177,13 @@ void add_model(CLI::App& app, Options& options) {
 void add_drawing(CLI::App& app, Options& options) {
     const auto engine = [&options](const std::string& text) {
         if (text != "povray" && text != "native")
-            throw CLI::ValidationError(
-                fmt::format("--engine: '{}' is neither povray nor native", text));
+            throw CLI::ValidationError(fmt::format("--engine: '{}' is neither povray nor native", text));
         options.engine = text == "native" ? Engine::native : Engine::povray;
     };
     app.add_option_function<std::string>(
-           "--engine", engine, "What draws: povray, or graftal's own tracer, native (default povray)")
-        ->type_name("NAME");
+           "--engine", engine, "What draws: povray, or graftal's own ray tracer, native (default povray)")
+        ->type_name("povray|native")
+        ->take_last();
     const auto antialias = [&options](const std::string& text) {
         const auto depth = parse_whole(text, 1, 9);
         if (!depth && text != "off")
@@ -191,9 +191,10 @@ void add_drawing(CLI::App& app, Options& options) {
                 fmt::format("--antialias: '{}' is neither 'off' nor a whole number from 1 to 9", text));
         options.antialias = depth ? std::optional(static_cast<int>(*depth)) : std::nullopt;
     };
-    app.add_option_function<std::string>(
-           "--antialias", antialias, "Smooth edges by up to 2^N x 2^N samples a pixel, or off (default 2)")
-        ->type_name("off|N");
+    app.add_option_function<std::string>("--antialias", antialias,
+                                         "Smooth edges by up to 4^(N-1) samples a pixel, or off (default 2)")
+        ->type_name("off|N")
+        ->take_last();
 }
 
 void add_render(CLI::App& app, Options& options) {
@@ -208,8 +209,9 @@ void add_render(CLI::App& app, Options& options) {
         "--linear", [&] { options.format = SampleFormat::linear16; },
         "Write a 16-bit PNG of linear values, for measuring; else 8-bit sRGB");
     app.add_flag("--progressive", options.progressive,
-                 "With --engine native: write coarse pictures first, each in place of the one before");
-    app.add_option("--keep", options.keep, "Leave the scene and its palettes in this directory")
+                 "With --engine native: write coarse pictures first, each in place of the one before; "
+                 "Ctrl-C keeps the last");
+    app.add_option("--keep", options.keep, "Leave POV-Ray's scene and its palettes in this directory")
         ->type_name("DIR");
     app.footer("Examples:\n"
                "  graftal render scenes/hart/pound_sign.rifs            # makes pound_sign.png\n"
@@ -217,7 +219,8 @@ void add_render(CLI::App& app, Options& options) {
                "  graftal render tree.inst --camera \"location=0,2,9 look_at=0,1,0 angle=30\"\n"
                "  graftal render gasket.inst --steps 6 --error 0        # six levels, nothing left out\n"
                "  graftal print tree.inst | graftal render - -o tree.png\n"
-               "  graftal render fern.rifs --engine native              # the same picture, much sooner");
+               "  graftal render fern.rifs --engine native              # the same picture, much sooner\n"
+               "  graftal render forest.inst --engine native --progressive --size 1920x1080");
 }
 
 void add_animate(CLI::App& app, Options& options) {
@@ -244,7 +247,8 @@ void add_animate(CLI::App& app, Options& options) {
     };
     app.add_option_function<std::string>("--ease", ease,
                                          "Move evenly, or slowly at both ends (default linear)")
-        ->type_name("linear|smooth");
+        ->type_name("linear|smooth")
+        ->take_last();
     app.add_flag("--keep-frames", animation.keep_frames, "Leave the frames in the directory NAME.frames");
     add_view(app, options);
     add_common(app, options);
@@ -343,7 +347,8 @@ struct CommandEntry {
 };
 
 constexpr CommandEntry commands[] = {
-    {Command::render, "render", "Make a picture of a model, by POV-Ray", add_render},
+    {Command::render, "render", "Make a picture of a model, by POV-Ray or by rays through its graph",
+     add_render},
     {Command::animate, "animate", "Make an animation of a model: turning, growing, changing", add_animate},
     {Command::compile, "compile", "Write a model as a POV-Ray scene", add_compile},
     {Command::check, "check", "Read models and say what is wrong with them", add_check},
@@ -379,8 +384,23 @@ std::string passes_text() {
     return text;
 }
 
+/// What an engine cannot do, or "". What it does anyhow is fine: the native one has no POV-Ray to take
+/// --memory, and goes into every part in its place, as --flatten wants it.
+std::string refused_by_engine(const Options& options) {
+    if (options.engine == Engine::povray)
+        return options.progressive
+                   ? "--progressive needs '--engine native': POV-Ray shows nothing before its picture is done"
+                   : "";
+    if (!options.keep.empty()) return "--keep: the native engine writes no scene";
+    if (options.compile.cut.visible_only)
+        return "--visible-only: the native engine follows every ray, and so throws all shadows";
+    return {};
+}
+
 /// What is wrong with options that are each right, or "".
 std::string complete(Options& options) {
+    const std::string refused = refused_by_engine(options);
+    if (!refused.empty()) return refused;
     const std::string extension = std::filesystem::path(options.output).extension().string();
     const bool from_stdin = options.operands.front() == "-";
     if (options.command == Command::render) {
@@ -390,10 +410,6 @@ std::string complete(Options& options) {
             options.output = std::filesystem::path(options.operands.front()).stem().string() + ".png";
         if (!is_picture_name(options.output))
             return fmt::format("'{}' ends neither in .png nor in .exr", options.output);
-        if (options.progressive && options.engine != Engine::native)
-            return "--progressive needs '--engine native': POV-Ray shows nothing before its picture is done";
-        if (!options.keep.empty() && options.engine == Engine::native)
-            return "--keep: the native engine writes no scene";
     }
     if (options.command == Command::animate) return complete_animation(options);
     if (options.output.empty()) options.output = "-";
@@ -444,7 +460,7 @@ ParsedCommandLine parse_command_line(int argc, const char* const* argv) {
     const std::string problem = complete(options);
     if (!problem.empty()) return {std::nullopt, usage_error(problem, chosen())};
 
-    options.animation.identity = frame_identity(*app.get_subcommands().front());
+    options.animation.identity = frame_identity(*app.get_subcommands().front(), options.engine);
     std::vector<std::string> words(argv, argv + argc);
     words.front() = "graftal";
     options.command_line = shell_quoted(words);

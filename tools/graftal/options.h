@@ -7,12 +7,10 @@
 #include "compiler/compile.h"
 #include "runtime/image/animation.h"
 #include "runtime/image/image.h"
+#include "runtime/render/render.h"
 #include "runtime/render/sweep.h"
 
 namespace graftal {
-
-/// What draws.
-enum class Engine { povray, native };
 
 enum class Command { render, animate, compile, check, stats, print, graph, compare };
 

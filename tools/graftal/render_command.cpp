@@ -1,4 +1,4 @@
-#include <algorithm>
+#include <cmath>
 
 #include <fmt/format.h>
 
@@ -42,27 +42,37 @@ RenderOptions render_options(const Options& options) {
     return render;
 }
 
+/// "4 samples a pixel", "1 sample a pixel", "1 sample for 8x8 pixels"
+std::string samples_text(double a_pixel) {
+    if (a_pixel > 0 && a_pixel < 1) {
+        const double block = std::round(std::sqrt(1 / a_pixel));
+        return fmt::format("1 sample for {0:g}x{0:g} pixels", block);
+    }
+    return fmt::format("{:g} sample{} a pixel", a_pixel, a_pixel == 1 ? "" : "s");
+}
+
 std::string native_text(const NativeReport& report) {
-    const auto rays = static_cast<double>(report.rays.camera_rays);
-    std::string text = fmt::format("{:.3g} samples a pixel in {:.2f} s, {:.2f} million rays a second",
-                                   report.samples_a_pixel, report.seconds,
-                                   1e-6 * rays / std::max(report.seconds, 1e-9));
+    std::string text = report.finished ? "" : "unfinished: ";
+    text += samples_text(report.samples_a_pixel);
+    if (report.finer_share > 0)
+        text += fmt::format(", and in {:.2g} % of it {},", 100 * report.finer_share,
+                            samples_text(report.finer_samples_a_pixel));
+    text += fmt::format(" in {:.2f} s, {}", report.seconds, rays_text(report.rays, report.seconds));
     if (report.pictures > 1)
-        text += fmt::format("; the first of {} pictures after {:.3f} s", report.pictures,
+        text += fmt::format("; the first of {} pictures after {:.2f} s", report.pictures,
                             report.first_picture_seconds);
-    if (report.rays.given_up > 0)
-        text += fmt::format("; {} rays met too much and were given up", report.rays.given_up);
     return text;
 }
 
 int render_by_tracer(const Options& options) {
     ProgressBar bar(!options.quiet);
     NativeOptions native{render_options(options), options.progressive, {}};
-    native.on_progress = [&](const NativeProgress& progress) { bar.show("tracing", progress.fraction); };
+    native.on_progress = [&](const NativeProgress& progress) {
+        bar.show(progress.samples_a_pixel > 0 ? "refining" : "tracing", progress.fraction);
+    };
     Compilation compilation;
     bar.show("compiling...");
-    const std::optional<NativeReport> report =
-        render_natively(options.operands.front(), native, compilation);
+    const std::optional<NativeReport> report = render_natively(options.operands.front(), native, compilation);
     bar.clear();
     const int status = conclude(options, compilation);
     if (report && !options.quiet) say(fmt::format("{}: {}\n", options.output, native_text(*report)));

@@ -1,5 +1,6 @@
 #include "tools/graftal/report.h"
 
+#include <algorithm>
 #include <cstdio>
 
 #include <fmt/format.h>
@@ -35,6 +36,13 @@ int print_output(std::string_view text) {
     if (status.ok()) return exit_done;
     complain(status.message());
     return exit_environment;
+}
+
+std::string rays_text(const TraceStatistics& rays, double seconds) {
+    const double millions = 1e-6 * static_cast<double>(rays.camera_rays) / std::max(seconds, 1e-9);
+    std::string text = fmt::format("{:.3g} million rays a second", millions);
+    if (rays.given_up > 0) text += fmt::format("; {} rays met too much and were given up", rays.given_up);
+    return text;
 }
 
 CompileOptions compile_options(const Options& options) {

@@ -4,6 +4,7 @@
 #include <string_view>
 
 #include "compiler/compile.h"
+#include "runtime/trace/picture_tracer.h"
 #include "tools/graftal/options.h"
 
 namespace graftal {
@@ -20,6 +21,9 @@ int conclude(const Options& options, const Compilation& compilation);
 
 /// Writes to standard output; exit status 0, or 3 with a complaint if it is closed or full.
 int print_output(std::string_view text);
+
+/// "1.76 million rays a second", and what went wrong with some.
+std::string rays_text(const TraceStatistics& rays, double seconds);
 
 /// The options of the compiler with `--dump-after` connected.
 CompileOptions compile_options(const Options& options);

@@ -1,0 +1,281 @@
+// The native engine by the command line: `render` and `animate` without POV-Ray, and the page about it.
+
+#include "tests/golden/command_line.h"
+
+#include <filesystem>
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+
+#include "compiler/support/file.h"
+#include "runtime/image/image.h"
+
+namespace graftal {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::MatchesRegex;
+using testing::StartsWith;
+
+const std::string gasket = "'" + source_path("scenes/hart/sierpinski.inst") + "' ";
+const std::string pound_sign = "'" + source_path("scenes/hart/pound_sign.rifs") + "' ";
+const std::string elm = "'" + source_path("scenes/hart/elm.inst") + "' --steps 4 ";
+const std::string small = " --size 96x54 ";
+
+class Native : public CommandLine {
+  protected:
+    RunResult render(const std::string& arguments) const {
+        // Nothing that it could start is there.
+        return shell("PATH=/nowhere \"$graftal\" render --engine native " + arguments);
+    }
+    Image picture(const std::string& name) const {
+        Image image;
+        const Status status = read_image(path(name), image);
+        EXPECT_TRUE(status.ok()) << status.message();
+        return image;
+    }
+    std::uint64_t differing(const std::string& a, const std::string& b) const {
+        return compare_images(picture(a), picture(b)).differing;
+    }
+    void expect_size(const std::string& name, int width, int height) const {
+        const Image image = picture(name);
+        EXPECT_EQ(image.width, width) << name;
+        EXPECT_EQ(image.height, height) << name;
+    }
+};
+
+TEST_F(Native, MakesAPictureNamedAfterTheModelHere) {
+    const RunResult result = render(gasket + small);
+    EXPECT_EQ(result.status, 0) << result.err;
+    EXPECT_EQ(result.out, "");
+    EXPECT_THAT(result.err, MatchesRegex("sierpinski.png: 4 samples a pixel in [0-9]+\\.[0-9][0-9] s, "
+                                         "[0-9.]+ million rays a second\n"));
+    EXPECT_EQ(files(), "sierpinski.png");
+    EXPECT_EQ(temporary_files(), "");
+    expect_size("sierpinski.png", 96, 54);
+    EXPECT_THAT(read("sierpinski.png"), HasSubstr("render --engine native")) << "says which command made it";
+}
+
+TEST_F(Native, SaysHowManySamplesThereAre) {
+    const struct {
+        const char *options, *samples;
+    } cases[] = {{"--antialias off", ": 1 sample a pixel in "},
+                 {"--antialias 1", ": 1 sample a pixel in "},
+                 {"--antialias 3", ": 16 samples a pixel in "},
+                 {"--antialias 3 --antialias off", ": 1 sample a pixel in "},
+                 {"--antialias 3 --progressive", ": 16 samples a pixel in "},
+                 {"--antialias 3 --progressive", "; the first of 5 pictures after 0."},
+                 {"--antialias off --progressive", "; the first of 4 pictures after 0."}};
+    for (const auto& [options, samples] : cases) {
+        const RunResult result = render(gasket + small + options);
+        EXPECT_EQ(result.status, 0) << options << result.err;
+        EXPECT_THAT(result.err, HasSubstr(samples)) << options;
+    }
+    const RunResult quiet = render(gasket + small + "--quiet --progressive");
+    EXPECT_EQ(quiet.status, 0);
+    EXPECT_EQ(quiet.out + quiet.err, "");
+    EXPECT_THAT(render(gasket + small + "--time").err,
+                AllOf(HasSubstr(" s  frame\n"), HasSubstr(" s  prepare\n"), HasSubstr(" s  trace\n")));
+}
+
+TEST_F(Native, LinearPngAndExrHoldTheSameValues) {
+    ASSERT_EQ(render(gasket + small + "--linear -o a.png").status, 0);
+    ASSERT_EQ(render(gasket + small + "-o a.exr").status, 0);
+    expect_size("a.exr", 96, 54);
+    EXPECT_LE(compare_images(picture("a.png"), picture("a.exr")).max, 1.0 / 65535 + 1e-3)
+        << "16 bits of integer, and of floating point";
+    ASSERT_EQ(render(gasket + small + "-o b.png").status, 0);
+    EXPECT_GT(differing("a.png", "b.png"), 100u) << "not linear";
+}
+
+TEST_F(Native, ReadsTheModelFromStandardInput) {
+    ASSERT_EQ(render(gasket + small + "-o a.png").status, 0);
+    ASSERT_EQ(render("- -o b.png" + small + " <" + gasket).status, 0);
+    EXPECT_EQ(differing("a.png", "b.png"), 0u);
+}
+
+TEST_F(Native, TwoRunsGiveTheSameBytes) {
+    for (const std::string name : {"a", "b"})
+        ASSERT_EQ(shell("mkdir " + name + "; cd " + name +
+                        "; \"$graftal\" render --engine native -q -o a.png " + elm + small)
+                      .status,
+                  0);
+    EXPECT_EQ(read("a/a.png"), read("b/a.png"));
+    for (const std::string threads : {"1", "2", "7"}) {
+        ASSERT_EQ(render(elm + small + "-o c.png --threads " + threads).status, 0);
+        EXPECT_EQ(differing("a/a.png", "c.png"), 0u) << threads;
+    }
+}
+
+TEST_F(Native, AgreesWithPovray) {
+    for (const std::string& model : {gasket, pound_sign, elm}) {
+        ASSERT_EQ(render(model + small + "-q --error 0.1 -o native.png --steps 3").status, 0);
+        ASSERT_EQ(graftal("render " + model + small + "-q --error 0.1 -o povray.png --steps 3").status, 0);
+        const RunResult compared = graftal("compare native.png povray.png --threshold 0.03");
+        EXPECT_EQ(compared.status, 0) << model << compared.out;
+    }
+}
+
+TEST_F(Native, DoesAnyhowWhatPovrayMustBeTold) {
+    ASSERT_EQ(render(pound_sign + small + "-q -o a.png").status, 0);
+    for (const std::string option : {"--memory 1M", "--flatten"}) {
+        const RunResult result = render(pound_sign + small + "-q -o b.png " + option);
+        EXPECT_EQ(result.status, 0) << option;
+        EXPECT_EQ(result.err, "") << option;
+        EXPECT_EQ(differing("a.png", "b.png"), 0u) << option;
+    }
+}
+
+TEST_F(Native, NeedsNoTemporaryFolder) {
+    EXPECT_EQ(shell("TMPDIR=/nowhere \"$graftal\" render --engine native " + gasket + small).status, 0);
+}
+
+TEST_F(Native, FaultyModelIsStatusOneAndTouchesNoFile) {
+    write("bad.inst", "object top {\n    union: nowhere\n}\n");
+    write("dust.inst", "canonical object dust {\n    instance: dust scale: 1.2\n    terminal: sphere\n}\n"
+                       "object all {\n    union: dust\n}\n");
+    write("a.png", "old");
+    const std::string before = files();
+    const struct {
+        std::string arguments, message;
+    } cases[] = {
+        {"bad.inst", "bad.inst:2:12: error: "},
+        {"- <bad.inst", ":2:12: error: "},
+        {"dust.inst", "does not contract"},
+        {gasket + "--error 0", "error: the recursion has no end, and nothing says how deep to draw it"},
+        {gasket + "--error-world 0", "hint: give a depth with --steps N, or a size in pixels with --error"},
+        {gasket + "--at down", "error: the address does not exist"},
+        {gasket + "--set k=1", "error: "},
+    };
+    for (const std::string& progressive : {"", "--progressive "})
+        for (const auto& [arguments, message] : cases) {
+            const RunResult result = render("-o a.png " + progressive + arguments);
+            EXPECT_EQ(result.status, 1) << arguments;
+            EXPECT_THAT(result.err, HasSubstr(message)) << arguments;
+            EXPECT_EQ(result.out, "") << arguments;
+        }
+    EXPECT_EQ(files(), before);
+    EXPECT_EQ(read("a.png"), "old");
+}
+
+TEST_F(Native, NothingIsLeftOutWithoutAnErrorToADepth) {
+    EXPECT_EQ(render(gasket + small + "-q --error 0 --steps 5").status, 0);
+    expect_size("sierpinski.png", 96, 54);
+}
+
+TEST_F(Native, EnvironmentIsStatusThree) {
+    std::filesystem::create_directory(path("folder.png"));
+    std::filesystem::create_directory(path("closed"));
+    for (const std::string& arguments :
+         std::vector<std::string>{"none.inst", gasket + "-o no/such/folder.png", gasket + "-o folder.png",
+                                  gasket + "-o no/such/folder.exr", gasket + "-o /proc/a.png"}) {
+        const RunResult result = render(small + arguments);
+        EXPECT_EQ(result.status, 3) << arguments;
+        EXPECT_THAT(result.err, AllOf(StartsWith("graftal: cannot "), testing::Not(HasSubstr("samples"))))
+            << arguments;
+    }
+    EXPECT_EQ(files(), "closed folder.png");
+}
+
+/// Files of more than some KiB cannot be written.
+TEST_F(Native, NoSpaceIsStatusThreeAndLeavesTheOldPicture) {
+    const auto with_room = [&](int kib, const std::string& arguments) {
+        return shell(
+            fmt::format("trap '' XFSZ; ulimit -f {}; \"$graftal\" render --engine native -o a.png {}",
+                        2 * kib, arguments));
+    };
+    write("a.png", "old");
+    const RunResult none = with_room(1, elm + "--size 320x180");
+    EXPECT_EQ(none.status, 3);
+    EXPECT_EQ(none.err, "graftal: cannot write picture 'a.png': File too large\n");
+    EXPECT_EQ(read("a.png"), "old");
+    EXPECT_EQ(files(), "a.png");
+
+    // The first of the pictures is small, the last is not.
+    const RunResult some = with_room(6, elm + "--size 320x180 --progressive");
+    EXPECT_EQ(some.status, 3);
+    EXPECT_THAT(some.err, StartsWith("graftal: cannot write picture 'a.png': File too large\n"
+                                     "a.png: unfinished: 1 sample for "));
+    EXPECT_EQ(files(), "a.png");
+    expect_size("a.png", 320, 180);
+}
+
+class NativeAnimation : public Native {
+  protected:
+    std::string frame(const std::string& folder, int number) const {
+        return fmt::format("{}/frame_{:04}.png", folder, number);
+    }
+};
+
+TEST_F(NativeAnimation, FramesAgreeWithPovrays) {
+    const std::string turning = pound_sign + "--steps 2 --size 48x36 --antialias off --frames 3 --turn 60 ";
+    const RunResult result =
+        shell("PATH=/nowhere \"$graftal\" animate --engine native -o native/ " + turning);
+    ASSERT_EQ(result.status, 0) << result.err;
+    EXPECT_THAT(result.err,
+                MatchesRegex("native/: 3 frames, 25 a second; [0-9.]+ million rays a second; 0 s\n"));
+    ASSERT_EQ(graftal("animate -q -o povray/ " + turning).status, 0);
+    for (int i = 1; i <= 3; ++i) {
+        const RunResult compared =
+            graftal("compare --threshold 0.03 " + frame("native", i) + " " + frame("povray", i));
+        EXPECT_EQ(compared.status, 0) << i << "\n" << compared.out;
+    }
+    EXPECT_GT(differing(frame("native", 1), frame("native", 2)), 50u);
+}
+
+TEST_F(NativeAnimation, FramesOfOneEngineAreNotTheOthers) {
+    const std::string turning = pound_sign + "--steps 1 --size 48x36 --antialias off --frames 2 -o a ";
+    const auto found = [&](const std::string& options) {
+        const RunResult result = graftal("animate " + turning + options);
+        EXPECT_EQ(result.status, 0) << result.err;
+        const std::size_t at = result.err.find(" were there already");
+        return at == std::string::npos ? 0 : result.err[at - 1] - '0';
+    };
+    EXPECT_EQ(found("--engine native"), 0);
+    EXPECT_EQ(found("--engine native --threads 1"), 2);
+    EXPECT_EQ(found("--engine povray"), 0);
+    EXPECT_EQ(found(""), 2) << "the default";
+    EXPECT_EQ(found("--engine native"), 0);
+}
+
+TEST_F(NativeAnimation, FormsOtherThanFramesAreAssembled) {
+    const std::string growing = "'" + source_path("scenes/abop/fig1_24f.lsys") +
+                                "' --steps 1..3 --frames 3 --size 48x36 --engine native -q ";
+    for (const std::string name : {"a.gif", "a.png"}) {
+        ASSERT_EQ(graftal("animate " + growing + "-o " + name).status, 0);
+        expect_size(name, 48, 36);
+    }
+    EXPECT_EQ(files(), "a.gif a.png");
+    EXPECT_EQ(temporary_files(), "");
+}
+
+TEST_F(NativeAnimation, FaultOfOneFrameNamesIt) {
+    const RunResult result = graftal("animate " + gasket + "--error 0 --engine native --frames 2 -o a/");
+    EXPECT_EQ(result.status, 1);
+    EXPECT_THAT(result.err, AllOf(StartsWith("graftal: at frame 1 of 2:\n"),
+                                  HasSubstr("error: the recursion has no end")));
+    EXPECT_EQ(files(), "");
+}
+
+/// Every command of docs/native.md works; a small picture of each is enough.
+TEST_F(Native, CommandsOfThePageWork) {
+    std::string page;
+    ASSERT_TRUE(read_text(source_path("docs/native.md"), page).ok());
+    ASSERT_EQ(shell("ln -s '" + source_path("scenes") + "' scenes").status, 0);
+    const std::string mark = "\n    graftal ";
+    int count = 0;
+    for (std::size_t at = page.find(mark); at != std::string::npos; at = page.find(mark, at + 1), ++count) {
+        const std::size_t begin = at + mark.size();
+        std::string words = page.substr(begin, page.find('\n', begin) - begin);
+        words.resize(std::min(words.find(" #"), words.size()));
+        if (words.starts_with("animate")) words += " --frames 2";
+        const bool draws = !words.starts_with("compare");
+        const RunResult result = graftal(words + (draws ? " -q --size 48x27 --antialias off --error 2" : ""));
+        EXPECT_EQ(result.status, 0) << words << "\n" << result.err;
+    }
+    EXPECT_GE(count, 6);
+}
+
+} // namespace
+} // namespace graftal

@@ -1,0 +1,237 @@
+// Pictures of the native engine while they are made, and when it is told to stop.
+
+#include "tests/golden/command_line.h"
+
+#include <chrono>
+#include <csignal>
+#include <cstdlib>
+#include <fstream>
+#include <functional>
+#include <thread>
+#include <vector>
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "runtime/image/image.h"
+
+namespace graftal {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::MatchesRegex;
+
+using Clock = std::chrono::steady_clock;
+
+/// A run of graftal in the background, in the folder of the test.
+class BackgroundRun {
+  public:
+    BackgroundRun(const std::string& folder, const std::vector<std::string>& arguments)
+        : messages_(folder + "/../err") {
+        id_ = ::fork();
+        if (id_ == 0) start(folder, arguments);
+    }
+    ~BackgroundRun() {
+        if (id_ <= 0 || ended_) return;
+        ::kill(id_, SIGKILL);
+        wait();
+    }
+    BackgroundRun(const BackgroundRun&) = delete;
+    BackgroundRun& operator=(const BackgroundRun&) = delete;
+
+    bool running() {
+        if (!ended_) note(::waitpid(id_, &wait_status_, WNOHANG));
+        return !ended_;
+    }
+    void send(int signal) const { ::kill(id_, signal); }
+    /// The exit status as a shell has it, negative after a signal that ended the process itself.
+    int wait() {
+        if (!ended_) note(::waitpid(id_, &wait_status_, 0));
+        return WIFEXITED(wait_status_) ? WEXITSTATUS(wait_status_) : -WTERMSIG(wait_status_);
+    }
+    std::string messages() const {
+        std::ifstream file(messages_);
+        return {std::istreambuf_iterator<char>(file), {}};
+    }
+    /// It does not die of the signal, but has a handler: it is drawing.
+    bool catches(int signal) const {
+        std::ifstream status(fmt::format("/proc/{}/status", id_));
+        for (std::string word; status >> word;)
+            if (word == "SigCgt:" && status >> word)
+                return (std::stoull(word, nullptr, 16) >> (signal - 1) & 1) != 0;
+        return false;
+    }
+
+  private:
+    void start(const std::string& folder, const std::vector<std::string>& arguments) const {
+        ::dup2(::open(messages_.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600), STDERR_FILENO);
+        ::signal(SIGINT, SIG_DFL);
+        if (::chdir(folder.c_str()) != 0) ::_exit(125);
+        std::vector<char*> words = {const_cast<char*>("graftal")};
+        for (const std::string& argument : arguments)
+            words.push_back(const_cast<char*>(argument.c_str()));
+        words.push_back(nullptr);
+        ::execv(GRAFTAL_PROGRAM, words.data());
+        ::_exit(126);
+    }
+    void note(pid_t id) { ended_ = id != 0; }
+
+    std::string messages_;
+    pid_t id_ = 0;
+    int wait_status_ = 0;
+    bool ended_ = false;
+};
+
+class Progressive : public CommandLine {
+  protected:
+    BackgroundRun start(const std::string& command, const std::string& output,
+                        std::vector<std::string> more) const {
+        more.insert(more.begin(),
+                    {command, source_path("scenes/forest/forest.inst"), "-o", output, "--engine", "native"});
+        return {path("."), more};
+    }
+    /// Waits until something is so, or the run has ended.
+    static void wait_until(BackgroundRun& run, const std::function<bool()>& so) {
+        while (!so() && run.running())
+            std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    }
+    /// A whole picture, or none if there is no file.
+    Image picture(const std::string& name) const {
+        Image image;
+        if (!exists(name)) return image;
+        const Status status = read_image(path(name), image);
+        EXPECT_TRUE(status.ok()) << status.message();
+        return image;
+    }
+};
+
+/// True if the pixels of each block, counted from the upper left corner, are equal.
+bool is_in_blocks(const Image& image, int side) {
+    for (int y = 0; y < image.height; ++y)
+        for (int x = 0; x < image.width; ++x)
+            for (int c = 0; c < image.channels; ++c) {
+                const auto at = [&](int i, int j) {
+                    return image.pixels[static_cast<std::size_t>((j * image.width + i) * image.channels + c)];
+                };
+                if (at(x, y) != at(x - x % side, y - y % side)) return false;
+            }
+    return true;
+}
+
+/// Pixels along each side of the blocks that a picture is made of.
+int block_of(const Image& image) {
+    for (const int side : {8, 4, 2})
+        if (is_in_blocks(image, side)) return side;
+    return 1;
+}
+
+TEST_F(Progressive, EveryPictureIsWholeAndFinerThanTheLast) {
+    BackgroundRun run = start("render", "a.png", {"--size", "320x180", "--antialias", "1", "--progressive"});
+    std::vector<Image> seen;
+    while (run.running()) {
+        const Image image = picture("a.png");
+        if (image.width == 0) continue;
+        ASSERT_EQ(image.width, 320);
+        ASSERT_EQ(image.height, 180);
+        if (seen.empty() || image.pixels != seen.back().pixels) seen.push_back(image);
+    }
+    EXPECT_EQ(run.wait(), 0) << run.messages();
+    EXPECT_GE(seen.size(), 2u) << "of 5";
+    for (std::size_t i = 1; i < seen.size(); ++i) {
+        EXPECT_LE(block_of(seen[i]), block_of(seen[i - 1]));
+        if (block_of(seen[i - 1]) > 1) EXPECT_LT(block_of(seen[i]), block_of(seen[i - 1]));
+    }
+    EXPECT_EQ(files(), "a.png");
+    EXPECT_EQ(start("render", "b.png", {"--size", "320x180", "--antialias", "1"}).wait(), 0);
+    EXPECT_EQ(compare_images(picture("a.png"), picture("b.png")).differing, 0u)
+        << "the last is what there would have been at once";
+}
+
+TEST_F(Progressive, WithoutSamplesTheLastIsTheSameToo) {
+    for (const std::string size : {"37x23", "8x8", "1x1"}) { // blocks and tiles that are not whole
+        for (const std::string antialias : {"off", "2"}) {
+            ASSERT_EQ(start("render", "a.png", {"--size", size, "--antialias", antialias}).wait(), 0);
+            BackgroundRun run =
+                start("render", "b.png", {"--size", size, "--antialias", antialias, "--progressive"});
+            ASSERT_EQ(run.wait(), 0) << run.messages();
+            EXPECT_EQ(compare_images(picture("a.png"), picture("b.png")).differing, 0u) << size << antialias;
+        }
+    }
+}
+
+TEST_F(Progressive, InterruptionLeavesTheBestPictureSoFar) {
+    for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+        BackgroundRun run =
+            start("render", "a.png", {"--size", "1280x720", "--antialias", "4", "--progressive"});
+        wait_until(run, [&] { return exists("a.png"); });
+        run.send(signal);
+        EXPECT_EQ(run.wait(), 128 + signal);
+        EXPECT_THAT(run.messages(),
+                    AllOf(HasSubstr("graftal: interrupted\na.png: unfinished: 1 sample for "),
+                          MatchesRegex(".* in [0-9]+\\.[0-9][0-9] s, [0-9.e-]+ million rays a second.*")));
+        const Image image = picture("a.png");
+        EXPECT_EQ(image.width, 1280);
+        EXPECT_EQ(image.height, 720);
+        EXPECT_EQ(files(), "a.png");
+        EXPECT_EQ(temporary_files(), "");
+        ASSERT_EQ(shell("rm a.png").status, 0);
+    }
+}
+
+TEST_F(Progressive, InterruptionBeforeAPictureLeavesNothing) {
+    for (const std::string old : {"", "old"}) {
+        if (!old.empty()) write("a.png", old);
+        for (const bool progressive : {false, true}) {
+            // Progressive, it takes seconds to the first; else, minutes.
+            BackgroundRun run = progressive
+                                    ? start("render", "a.png", {"--size", "4000x3000", "--progressive"})
+                                    : start("render", "a.png", {"--antialias", "9"});
+            wait_until(run, [&] { return run.catches(SIGTERM); });
+            run.send(SIGTERM);
+            EXPECT_EQ(run.wait(), 128 + SIGTERM);
+            EXPECT_EQ(run.messages(), "graftal: interrupted\n");
+            EXPECT_EQ(files(), old.empty() ? "" : "a.png");
+            EXPECT_EQ(read("a.png"), old);
+        }
+    }
+}
+
+/// A tile of this picture holds 67 million rays, which are minutes.
+TEST_F(Progressive, InterruptionIsPrompt) {
+    BackgroundRun run = start("render", "a.png", {"--antialias", "9", "--threads", "1"});
+    wait_until(run, [&] { return run.catches(SIGINT); });
+    std::this_thread::sleep_for(std::chrono::milliseconds(300));
+    const Clock::time_point begin = Clock::now();
+    run.send(SIGINT);
+    EXPECT_EQ(run.wait(), 128 + SIGINT);
+    EXPECT_LT(Clock::now() - begin, std::chrono::seconds(2))
+        << "a hundredth of it, on a machine without work";
+}
+
+TEST_F(Progressive, AnimationGoesOnAfterAnInterruption) {
+    const std::vector<std::string> turning = {"--size", "128x72", "--antialias", "off", "--frames", "6"};
+    BackgroundRun run = start("animate", "a/", turning);
+    wait_until(run, [&] { return exists("a/frame_0002.png"); });
+    run.send(SIGINT);
+    EXPECT_EQ(run.wait(), 128 + SIGINT);
+    EXPECT_THAT(run.messages(),
+                AllOf(HasSubstr("graftal: interrupted\n"),
+                      HasSubstr(" of 6 frames are in 'a'; the same command goes on from there\n")));
+    EXPECT_FALSE(exists("a/frame_0006.png"));
+    EXPECT_EQ(shell("ls -A a | grep -v '^frame_000.[.]png$'").out, "") << "no temporary";
+    BackgroundRun rest = start("animate", "a/", turning);
+    EXPECT_EQ(rest.wait(), 0) << rest.messages();
+    EXPECT_THAT(rest.messages(), HasSubstr(" were there already; "));
+    ASSERT_EQ(start("animate", "b/", turning).wait(), 0);
+    for (int i = 1; i <= 6; ++i) {
+        const std::string name = fmt::format("/frame_{:04}.png", i);
+        EXPECT_EQ(compare_images(picture("a" + name), picture("b" + name)).differing, 0u) << i;
+    }
+}
+
+} // namespace
+} // namespace graftal

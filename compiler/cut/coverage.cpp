@@ -130,7 +130,8 @@ class Measurer {
             }
         };
         open({root, {}, 1, 0}, SIZE_MAX);
-        while (!largest.empty()) {
+        // A cycle of single instances would be opened for ever, and never make more parts.
+        for (std::size_t opened = 0; !largest.empty() && opened < 4 * most; ++opened) {
             const auto at = static_cast<std::size_t>(-largest.top().second);
             largest.pop();
             const Part part = parts_[at];

@@ -4,6 +4,7 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <limits>
 #include <mutex>
 #include <numbers>
 
@@ -18,6 +19,7 @@ namespace {
 
 using std::numbers::pi;
 
+constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr int torus_parts = 12;
 constexpr int prism_sides = 8;
 
@@ -95,6 +97,12 @@ Shadow::Point Shadow::project(Vec3 point) const {
             glm::dot(from_centre, up_) * unit_ + 0.5 * size_};
 }
 
+/// False for what is nowhere near the grid, or has no place: all would be a single point but for this.
+bool Shadow::is_near(const Point& point) {
+    constexpr double far = 1e15;
+    return std::abs(point.x) < far && std::abs(point.y) < far;
+}
+
 int Shadow::first_row(double y) const {
     return static_cast<int>(std::ceil(std::clamp(y - 0.5, 0.0, static_cast<double>(size_))));
 }
@@ -105,6 +113,7 @@ void Shadow::cover_row(int row, double from, double to, Cover& cover) {
     const auto sample = [&](double x) {
         return static_cast<int>(std::ceil(std::clamp(x - offset, 0.0, static_cast<double>(size_))));
     };
+    if (!(from < to)) return;
     const int begin = sample(from), end = sample(to);
     if (begin >= end) return;
     std::uint64_t* const words = covered_.data() + static_cast<std::ptrdiff_t>(row) * (size_ / 64);
@@ -125,8 +134,8 @@ Shadow::Cover Shadow::draw_sphere(const Affine& place) {
     const double root = glm::length(glm::cross(across, upward)); // of det S
     Cover cover;
     cover.area = pi * root;
-    if (!(syy > 0) || !(root > 0)) return cover;
     const Point centre = project(place.translation);
+    if (!(syy > 0) || !(root > 0) || !is_near(centre) || !(syy < infinity)) return cover;
     const double half_height = std::sqrt(syy);
     const int end = first_row(centre.y + half_height);
     for (int row = first_row(centre.y - half_height); row < end; ++row) {
@@ -152,8 +161,10 @@ Shadow::Cover Shadow::draw(PrimitiveKind kind, const Affine& place) {
 
 Shadow::Cover Shadow::draw_hull(std::span<const Vec3> corners, const Affine& place) {
     points_.clear();
-    for (const Vec3& corner : corners)
+    for (const Vec3& corner : corners) {
         points_.push_back(project(place(corner)));
+        if (!is_near(points_.back())) return {};
+    }
     std::sort(points_.begin(), points_.end(),
               [](const Point& a, const Point& b) { return a.y != b.y ? a.y < b.y : a.x < b.x; });
     // Andrew's monotone chains, the right one up and the left one down again.

@@ -48,6 +48,7 @@ class Shadow {
     void fill_hull(std::size_t top, Cover& cover);
     void cover_row(int row, double from, double to, Cover& cover);
     int first_row(double y) const;
+    static bool is_near(const Point& point);
 
     int size_;
     std::vector<std::uint64_t> covered_; ///< row by row

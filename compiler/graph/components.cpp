@@ -98,4 +98,27 @@ Components strong_components(const Graph& graph) {
     return Search(graph).run();
 }
 
+std::vector<bool> terminals_that_return(const Graph& graph, const Components& components) {
+    std::vector<bool> returns(graph.objects.size(), false);
+    Graph with_terminals;
+    bool any = false;
+    for (ObjectId id = 0; id < graph.objects.size(); ++id) {
+        const Object& object = graph.objects[id];
+        Object& copy = with_terminals.objects.emplace_back();
+        for (const Instance& instance : object.instances)
+            copy.instances.emplace_back().master = instance.master;
+        if (!object.terminal || components.unending[id]) continue;
+        copy.instances.emplace_back().master = object.terminal->master;
+        any = true;
+    }
+    if (!any) return returns;
+    const Components joined = strong_components(with_terminals);
+    for (ObjectId id = 0; id < graph.objects.size(); ++id) {
+        const std::optional<Instance>& terminal = graph.objects[id].terminal;
+        returns[id] = terminal && !components.unending[id] &&
+                      joined.component_of[id] == joined.component_of[terminal->master];
+    }
+    return returns;
+}
+
 } // namespace graftal

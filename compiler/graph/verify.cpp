@@ -176,10 +176,12 @@ class Verifier {
     void check_cycles() {
         const Components components = strong_components(graph_);
         const std::vector<bool> holds_plane = plane_holders(components);
+        const std::vector<bool> returns = terminals_that_return(graph_, components);
         for (ObjectId id = 0; id < graph_.objects.size(); ++id) {
             const std::optional<Instance>& terminal = graph_.objects[id].terminal;
             if (terminal && components.unending[terminal->master])
                 flaw(id, "the terminal '{}' is unending", graph_.objects[terminal->master].name);
+            if (returns[id]) flaw(id, "the terminal '{}' leads back to it", graph_.objects[terminal->master].name);
             const bool plane = holds_plane[id] || (terminal && holds_plane[terminal->master]);
             if (plane && components.cyclic[components.component_of[id]])
                 flaw(id, "a plane is reached through a cycle");

@@ -32,6 +32,7 @@ std::vector<bool> plane_holders(const Graph& graph, const Components& components
 bool check_graph(const Graph& graph, Diagnostics& diagnostics) {
     const Components components = strong_components(graph);
     const std::vector<bool> holds_plane = plane_holders(graph, components);
+    const std::vector<bool> returns = terminals_that_return(graph, components);
     std::vector<bool> reported(components.members.size(), false);
     bool good = true;
     for (ObjectId id = 0; id < graph.objects.size(); ++id) {
@@ -43,6 +44,13 @@ bool check_graph(const Graph& graph, Diagnostics& diagnostics) {
                        fmt::format("the terminal of '{}' does not end: '{}' contains itself", object.name,
                                    graph.objects[object.terminal->master].name))
                 .with_hint("a terminal is what is drawn where recursion stops");
+            good = false;
+        }
+        if (returns[id]) {
+            diagnostics
+                .error(object.terminal->span,
+                       fmt::format("the terminal of '{}' leads back to it", object.name))
+                .with_hint("a terminal is drawn in place of its object where that is too small to see");
             good = false;
         }
         const bool plane = holds_plane[id] || (object.terminal && holds_plane[object.terminal->master]);

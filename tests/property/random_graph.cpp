@@ -167,6 +167,7 @@ class Generator {
             if (ending.empty() || !choices_.one_in(4)) continue;
             const ObjectId master = ending[choices_.below(static_cast<std::uint32_t>(ending.size()))];
             graph_.objects[id].terminal = instance_of(master);
+            if (terminals_that_return(graph_, components)[id]) graph_.objects[id].terminal.reset();
         }
     }
 

@@ -249,5 +249,24 @@ TEST(Coverage, AMeshedSphereKeepsItsMeanShadow) {
     }
 }
 
+TEST(Coverage, OfACycleOfSingleInstancesEnds) {
+    Graph graph = union_of(PrimitiveKind::sphere, {Affine{}});
+    Object spiral{"spiral", {}, {}, {}, {}};
+    const Affine inwards = Affine::translate({1, 0, 0}) * Affine::scale({0.5, 0.6, 0.7}) *
+                           Affine::rotate({0, 0, 1}, 30);
+    spiral.instances.push_back({static_cast<ObjectId>(graph.objects.size()), inwards, {}, {}, {}});
+    const ObjectId id = graph.add(std::move(spiral));
+    graph.objects[graph.root].instances.push_back({id, {}, {}, {}, {}});
+    EXPECT_GT(fitted(graph).root_shadow(), 1);
+}
+
+TEST(Shadow, OfWhatHasNoPlaceIsNone) {
+    Shadow shadow(64);
+    shadow.start({0, 0, 1}, {Vec3(0.0), 0});
+    const Affine far = Affine::translate({1e300, 0, 0});
+    for (const PrimitiveKind kind : {PrimitiveKind::sphere, PrimitiveKind::cube, PrimitiveKind::torus})
+        EXPECT_EQ(shadow.draw(kind, far).samples, 0) << name_of(kind);
+}
+
 } // namespace
 } // namespace graftal

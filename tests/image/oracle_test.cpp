@@ -1,0 +1,222 @@
+// The native engine against POV-Ray. Of a flattened cut both draw the same parts, so that they must show the
+// same of them through every pixel, but where a ray runs along an edge.
+
+#include <cmath>
+#include <functional>
+#include <ostream>
+#include <string>
+#include <utility>
+
+#include <gtest/gtest.h>
+
+#include "compiler/support/file.h"
+#include "runtime/povray/temporary_directory.h"
+#include "tests/image/oracle.h"
+#include "tests/image/random_model.h"
+
+namespace graftal {
+namespace {
+
+constexpr ImageSize small{160, 120};
+
+CompileOptions plain(double error_px = 0.5) {
+    CompileOptions options;
+    options.size = small;
+    options.cut.error_px = error_px;
+    return options;
+}
+
+CompileOptions seen_from(const CameraSetting& camera, double error_px = 0.5) {
+    CompileOptions options = plain(error_px);
+    options.camera = camera;
+    return options;
+}
+
+CompileOptions zoomed(const std::string& at, const std::string& zoom, double error_px) {
+    CompileOptions options = plain(error_px);
+    std::string problem;
+    options.zoom.at = parse_address(at, problem);
+    EXPECT_EQ(problem, "");
+    if (!zoom.empty()) options.zoom.zoom = Magnification::parse(zoom);
+    return options;
+}
+
+CompileOptions stopped_after(unsigned steps) {
+    CompileOptions options = plain();
+    options.steps = steps;
+    return options;
+}
+
+struct Question {
+    const char* name;
+    std::string path; ///< of a file of the project, or the name of what `text` would be in
+    CompileOptions options;
+    double least_covered = 0.03;
+    std::string text = {};
+
+    friend std::ostream& operator<<(std::ostream& out, const Question& question) {
+        return out << question.name;
+    }
+};
+
+/// Every kind of primitive, stretched too, with tints, materials, a mirror and the ground that takes shadows.
+const std::string still_life = R"(
+    material gloss { color: 0.5, 0.2, 0.1 ambient: 0.1 diffuse: 0.6 specular: 0.7 roughness: 0.02 }
+    material mirror { ambient: 0.02 diffuse: 0.2 specular: 0.4 roughness: 0.01 reflection: 0.7 }
+    object ring { instance: torus scale: 1, 1, 1.2 material: gloss }
+    object things {
+        ring rotate: x, 70 translate: -2, 1, 0 tint: 0.1, 0.4, 0.9, 0.6
+        cone scale: 0.7, 2.3, 0.4 rotate: z, -20 translate: 0, 0, -1 material: gloss
+        frustum(0.4) scale: 0.8, 1.5, 0.8 translate: 1.7, 0, 0.5 tint: 0.3, 0.8, 0.2, 0.4
+        cylinder scale: 0.2, 2, 0.3 rotate: <1, 0, 1>, 50 translate: 0.3, 0.5, 1
+        sphere scale: 1.2 translate: 3.6, 1.2, -1.5 material: mirror
+        cube scale: 0.4 rotate: <1, 2, 3>, 40 translate: -0.5, 0.7, 2 material: mirror tint: 1, 1, 0, 0.5
+        triangle rotate: x, -30 translate: -3.3, 1, -1 tint: 0.9, 0.1, 0.7, 1
+    }
+    camera { location: 2, 4, 9 look_at: 0.4, 1, 0 angle: 45 }
+    light { sun: -1, 2, 1.5 color: 0.8, 0.7, 0.6 }
+    light { location: 3, 5, 4 color: 0.3, 0.4, 0.6 }
+    ground { height: 0 }
+)";
+
+/// A recursion that is stopped by its levels, each stop drawn by a terminal of its own colour.
+const std::string stopped = R"(
+    material leaf { color: 0.2, 0.6, 0.1 }
+    canonical object bud { sphere scale: 0.4, 0.9, 0.4 material: leaf }
+    canonical object branch {
+        cylinder scale: 0.08, 1, 0.08 tint: 0.5, 0.3, 0.1, 0.8
+        branch scale: 0.7 rotate: z, 31 translate: 0, 0.9, 0 tint: 0.9, 0.5, 0.2, 0.1
+        branch scale: 0.6 rotate: z, -44 rotate: y, 70 translate: 0, 0.7, 0
+        terminal bud scale: 0.6 tint: 0.9, 0.9, 0.2, 0.3
+    }
+    object plant { branch }
+)";
+
+const CameraSetting parallel_from_above{.location = Vec3(2.1, 3.3, 1.7),
+                                        .look_at = Vec3(0.0),
+                                        .up = Vec3(0.2, 0, -1),
+                                        .orthographic = true,
+                                        .width = 4.1};
+const CameraSetting inside{
+    .location = Vec3(0.05, 0.02, 0.4), .look_at = Vec3(0.2, -0.1, -1), .angle_deg = 70.0};
+
+const Question questions[] = {
+    {"FlatFigure", "scenes/hart/pound_sign_2d.rifs", plain(1.5)},
+    {"FlatTintedTilesClose", "scenes/tilings/penrose.rifs",
+     seen_from({.location = Vec3(0.1, 0.2, 3),
+                .look_at = Vec3(0.1, 0.2, 0),
+                .up = Vec3(0.3, 1, 0),
+                .orthographic = true,
+                .width = 0.9},
+               2)},
+    {"CurveOfLines", "scenes/abop/fig1_10a.lsys", plain()},
+    {"FrustaAndLeaves", "scenes/abop/fig2_6a.lsys", plain()},
+    {"ManyMaterials", "scenes/abop/fig3_04.lsys", plain()},
+    {"TintedElmCulled", "scenes/hart/elm.inst", plain(3)},
+    {"ProxiesFromInside", "scenes/ifs/menger_sponge.rifs", seen_from(inside, 4)},
+    {"ProxiesInParallel", "scenes/ifs/graph_directed.rifs", seen_from(parallel_from_above, 4)},
+    {"CubesForPoundSign", "scenes/hart/pound_sign.rifs", plain(6)},
+    {"LimitOfATree", "scenes/limits/tree.lsys", plain(4)},
+    {"DeepZoom", "scenes/hart/pound_sign.rifs", zoomed("(urf.llf)*", "4^40", 6)},
+    {"AddressAlone", "scenes/hart/sierpinski.inst", zoomed("left.up", "", 1)},
+    {"EveryPrimitive", "still_life.inst", plain(), 0.1, still_life},
+    {"StoppedByLevels", "stopped.inst", stopped_after(4), 0.03, stopped},
+};
+
+Compilation& expect_compiled(Compilation& compilation, bool compiled) {
+    EXPECT_TRUE(compiled) << compilation.diagnostics.render(compilation.sources)
+                          << compilation.status.message();
+    return compilation;
+}
+
+std::optional<OracleReport> answer_to(const Question& question) {
+    TemporaryDirectory directory;
+    EXPECT_TRUE(directory.create().ok());
+    std::string path = GRAFTAL_SOURCE_DIR "/" + question.path;
+    if (!question.text.empty()) {
+        path = directory.path() + "/" + question.path;
+        EXPECT_TRUE(write_text(path, question.text).ok());
+    }
+    Compilation compilation;
+    std::optional<OracleReport> report = ask_oracle(path, question.options, {}, compilation);
+    expect_compiled(compilation, report.has_value());
+    return report;
+}
+
+void expect_agreement(const OracleReport& report, double least_covered) {
+    testing::Test::RecordProperty("report", summary(report));
+    const auto pixels = static_cast<double>(report.pixels);
+    EXPECT_GT(static_cast<double>(report.hits) / pixels, least_covered) << "hardly anything was drawn";
+    EXPECT_EQ(report.mask.untied, 0u) << summary(report);
+    EXPECT_LE(static_cast<double>(report.mask.pixels) / pixels, 0.0005) << summary(report);
+    EXPECT_EQ(report.depth.untied, 0u) << summary(report);
+    EXPECT_EQ(report.colour.untied, 0u) << summary(report);
+    EXPECT_LE(report.mean, 0.05) << summary(report);
+}
+
+class Oracle : public testing::TestWithParam<Question> {};
+
+TEST_P(Oracle, SeesTheSame) {
+    const std::optional<OracleReport> report = answer_to(GetParam());
+    ASSERT_TRUE(report);
+    expect_agreement(*report, GetParam().least_covered);
+}
+
+INSTANTIATE_TEST_SUITE_P(Scenes, Oracle, testing::ValuesIn(questions),
+                         [](const auto& question) { return std::string(question.param.name); });
+
+void expect_agreement_at_random(const std::string& name, std::string (*text_of)(std::uint64_t)) {
+    for (std::uint64_t seed = 101; seed <= 104; ++seed) {
+        SCOPED_TRACE(seed);
+        // Culled by size in half of them, by levels in the others.
+        CompileOptions options = seed % 2 ? plain(5) : plain(0);
+        if (seed % 2 == 0) options.steps = 3;
+        const std::optional<OracleReport> report = answer_to({"random", name, options, 0, text_of(seed)});
+        ASSERT_TRUE(report);
+        expect_agreement(*report, 0.01);
+    }
+}
+
+TEST(OracleAtRandom, Rifs) {
+    expect_agreement_at_random("random.rifs", random_rifs);
+}
+
+TEST(OracleAtRandom, Inst) {
+    expect_agreement_at_random("random.inst", random_inst);
+}
+
+// What is not the same is seen: here a figure that ends a level earlier, and one that lies elsewhere by a
+// fifth of a pixel.
+TEST(OracleItself, CanSayNo) {
+    Compilation compilation;
+    const std::string path = GRAFTAL_SOURCE_DIR "/scenes/hart/pound_sign.rifs";
+    const auto viewed = [&](unsigned steps) { return view_model(path, stopped_after(steps), compilation); };
+    const std::optional<ViewedModel> ours = viewed(2), coarser = viewed(1);
+    ASSERT_TRUE(ours && coarser);
+    CutOptions flat = ours->cut;
+    flat.flatten = true;
+    const AnalysedModel& model = ours->model;
+    std::optional<Cut> cut =
+        cut_graph(model.graph, model.components, model.bounds, ours->view, flat, compilation.diagnostics);
+    ASSERT_TRUE(cut);
+    CompiledModel theirs{model, ours->view, std::move(*cut)};
+    Status status;
+    const auto ask = [&](const ViewedModel& viewed_model) {
+        return ask_oracle(theirs, viewed_model, {}, status);
+    };
+    const std::optional<OracleReport> same = ask(*ours), other = ask(*coarser);
+    ASSERT_TRUE(same && other);
+    expect_agreement(*same, 0.1);
+    EXPECT_GT(other->mask.untied + other->depth.untied, 100u) << summary(*other);
+    EXPECT_GT(other->colour.untied, 100u) << summary(*other);
+
+    const double pixel = 2 * std::tan(theirs.view.camera.angle_deg * 3.14159 / 360) / small.width;
+    theirs.view.camera.location +=
+        0.2 * pixel * glm::length(theirs.view.camera.location) * theirs.view.camera.right;
+    const std::optional<OracleReport> moved = ask(*ours);
+    ASSERT_TRUE(moved);
+    EXPECT_GT(moved->mask.untied, 10u) << summary(*moved);
+}
+
+} // namespace
+} // namespace graftal

@@ -116,6 +116,7 @@ class Builder {
         edge.flatness = sigma.x > 0 ? sigma.z / sigma.x : 0;
         edge.child_from_parent = LaneMap(inverse(parent_from_child));
         edge.stretch = stretch;
+        edge.growth = 1 / stretch;
     }
 
     using EdgeKey = std::pair<NodeId, std::array<double, 12>>;

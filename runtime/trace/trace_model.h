@@ -21,6 +21,7 @@ struct TraceEdge {
     LaneMap parent_from_child;
     LaneMap child_from_parent;
     double stretch = 1;      ///< norm of the linear part of parent_from_child
+    double growth = 1;       ///< 1 / stretch
     Box box;                 ///< of what the child draws, in the parent's frame
     std::uint32_t child = 0;
     unsigned levels = 0;

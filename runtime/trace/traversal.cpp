@@ -65,12 +65,19 @@ GRAFTAL_INLINE Float8 splat8(float x) {
 }
 
 /// One bit for each lane that is true.
-GRAFTAL_INLINE std::uint32_t bits_of(const Int8& lanes) {
-    Int8 bits = lanes & Int8{1, 2, 4, 8, 16, 32, 64, 128};
-    bits |= __builtin_shufflevector(bits, bits, 4, 5, 6, 7, 0, 1, 2, 3);
-    bits |= __builtin_shufflevector(bits, bits, 2, 3, 0, 1, 6, 7, 4, 5);
-    bits |= __builtin_shufflevector(bits, bits, 1, 0, 3, 2, 5, 4, 7, 6);
-    return static_cast<std::uint32_t>(bits[0]);
+template<Instructions instructions> GRAFTAL_INLINE std::uint32_t bits_of(const Int8& lanes) {
+#if defined(__x86_64__)
+    if constexpr (instructions == Instructions::avx2) {
+        std::uint32_t bits;
+        // An intrinsic could not be inlined from here: only the caller is compiled for AVX2.
+        __asm__("vmovmskps %1, %0" : "=r"(bits) : "x"(lanes));
+        return bits;
+    }
+#endif
+    std::uint32_t bits = 0;
+    for (int lane = 0; lane < 8; ++lane)
+        bits |= static_cast<std::uint32_t>(lanes[lane] & 1) << lane;
+    return bits;
 }
 
 /// The range of t in which a ray is within a box; empty where least > most.
@@ -154,7 +161,7 @@ Box enlarged(const Box& box, double margin) {
 
 } // namespace
 
-struct Traversal::Kernel {
+template<Instructions instructions> struct Traversal::Kernel {
     Traversal& self;
     const TraceModel& model;
     const RayRange range;
@@ -195,6 +202,8 @@ struct Traversal::Kernel {
         frame.world_from_node = LaneMap();
         frame.origin = lanes_of(ray.origin);
         frame.direction = lanes_of(ray.direction);
+        frame.largest = largest_component(frame.direction);
+        frame.unit = 1 / frame.largest;
         frame.base = 0;
         frame.scale = 1;
         frame.edge = no_edge;
@@ -244,7 +253,7 @@ struct Traversal::Kernel {
         reserve_entries(8);
         Entry* const first = self.entries_.data() + self.entry_count_;
         Entry* end = first;
-        for (std::uint32_t lanes = bits_of(enters <= leaves); lanes != 0; lanes &= lanes - 1) {
+        for (std::uint32_t lanes = bits_of<instructions>(enters <= leaves); lanes != 0; lanes &= lanes - 1) {
             const auto lane = static_cast<std::size_t>(std::countr_zero(lanes));
             const Entry entry{frame.base + static_cast<double>(enters[lane]) * frame.unit, node.entry[lane],
                               frame_number};
@@ -268,11 +277,18 @@ struct Traversal::Kernel {
         const Double4 near = parent.origin + splat(entry.t - parent.base) * parent.direction;
         const Double4 origin = point_through(edge.child_from_parent, near);
         const Double4 direction = direction_through(edge.child_from_parent, parent.direction);
-        const double largest = largest_component(direction);
-        if (!(largest > 0 && largest < 1 / least_scale)) return;
+        double largest;
+        if (edge.similarity) {
+            // The direction grows as much as the map shrinks; to compute its length anew would take longer.
+            largest = parent.largest * edge.growth;
+        } else {
+            largest = largest_component(direction);
+            if (!(largest > 0 && largest < 1 / least_scale)) return;
+        }
         if (node.kind == TraceNode::Kind::primitive)
             return meet(node.primitive, parent, entry, LaneMap(), false, origin, direction, largest);
 
+        const double parent_unit = parent.unit;
         Frame& frame = push();
         const Frame& above = self.frames_[entry.frame]; // may have moved
         compose(above.world_from_node, edge.parent_from_child, frame.world_from_node);
@@ -295,7 +311,7 @@ struct Traversal::Kernel {
         frame.direction = direction;
         frame.base = entry.t;
         frame.largest = largest;
-        frame.unit = 1 / largest;
+        frame.unit = edge.similarity ? parent_unit * edge.stretch : 1 / largest;
         const auto number = static_cast<std::uint32_t>(self.depth_ - 1);
         if (node.kind == TraceNode::Kind::unbounded) {
             frame.margin = 0;
@@ -458,27 +474,30 @@ Traversal::Traversal(const TraceModel& model, Instructions instructions)
 
 namespace {
 
-template<typename Kernel> bool run_portable(Kernel& kernel, const Ray& ray) {
+template<typename Kernel> bool run_portable(Kernel&& kernel, const Ray& ray) {
     return kernel.run(ray);
 }
 
-template<typename Kernel> GRAFTAL_AVX2 bool run_avx2(Kernel& kernel, const Ray& ray) {
+template<typename Kernel> GRAFTAL_AVX2 bool run_avx2(Kernel&& kernel, const Ray& ray) {
     return kernel.run(ray);
 }
 
 } // namespace
 
+bool Traversal::run(const Ray& ray, const RayRange& range, bool any) {
+    if (instructions_ == Instructions::avx2)
+        return run_avx2(Kernel<Instructions::avx2>{*this, model_, range, any}, ray);
+    return run_portable(Kernel<Instructions::portable>{*this, model_, range, any}, ray);
+}
+
 bool Traversal::closest(const Ray& ray, const RayRange& range, SurfaceHit& hit) {
-    Kernel kernel{*this, model_, range, false};
-    const bool found =
-        instructions_ == Instructions::avx2 ? run_avx2(kernel, ray) : run_portable(kernel, ray);
-    if (found) surface_at_best(hit);
-    return found;
+    if (!run(ray, range, false)) return false;
+    surface_at_best(hit);
+    return true;
 }
 
 bool Traversal::meets_any(const Ray& ray, const RayRange& range) {
-    Kernel kernel{*this, model_, range, true};
-    return instructions_ == Instructions::avx2 ? run_avx2(kernel, ray) : run_portable(kernel, ray);
+    return run(ray, range, true);
 }
 
 void Traversal::surface_at_best(SurfaceHit& hit) const {

@@ -34,15 +34,15 @@ class Traversal final : public Surfaces {
     std::uint64_t given_up() const { return given_up_; }
 
   private:
-    struct Kernel; ///< the traversal proper, for all instructions
+    template<Instructions instructions> struct Kernel; ///< the traversal proper
 
     /// An object on the way from the root, and the ray in its frame.
     struct alignas(32) Frame {
         LaneMap world_from_node;
         Double4 origin, direction; ///< the ray is origin + (t - base) direction
         double base = 0;
-        double largest = 1; ///< component of the direction
-        double unit = 1;    ///< 1 / largest: the step of t in which that is 1
+        double largest = 1; ///< component of the direction, or within a small factor of it
+        double unit = 1;    ///< 1 / largest: the step of t in which that is about 1
         double scale = 1;    ///< norm of world_from_node
         double flatness = 1; ///< at most its least stretch, as a share of the largest
         std::uint32_t edge = 0;
@@ -71,6 +71,7 @@ class Traversal final : public Surfaces {
         const TraceMesh::Colour* mesh_colour = nullptr; ///< of a triangle
     };
 
+    bool run(const Ray& ray, const RayRange& range, bool any);
     void surface_at_best(SurfaceHit& hit) const;
 
     const TraceModel& model_;

@@ -1,0 +1,186 @@
+// Camera rays a second, on one thread: by the traversal of the graph, and by Embree on the same parts spelt out as
+// one mesh. See tools/bench/tracer.
+//   tracer_bench graph MODEL STEPS ERROR_PX       STEPS: a number, or - for as deep as the error asks
+//   tracer_bench mesh MODEL STEPS
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include <embree3/rtcore.h>
+
+#include "compiler/compile.h"
+#include "compiler/cut/choose.h"
+#include "compiler/cut/tessellate.h"
+#include "runtime/trace/camera_rays.h"
+#include "runtime/trace/traversal.h"
+
+namespace graftal {
+namespace {
+
+constexpr ImageSize size{640, 480};
+constexpr int repeats = 5;
+
+double now() {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+double peak_mib() {
+    std::ifstream status("/proc/self/status");
+    for (std::string line; std::getline(status, line);)
+        if (line.rfind("VmHWM:", 0) == 0) return std::strtod(line.c_str() + 6, nullptr) / 1024;
+    return 0;
+}
+
+std::unique_ptr<TraceModel> load(const std::string& path, const std::string& steps, double error_px) {
+    CompileOptions options;
+    options.size = size;
+    options.cut.error_px = error_px;
+    if (steps != "-") options.steps = static_cast<unsigned>(std::stoul(steps));
+    Compilation compilation;
+    const auto viewed = view_model(path, options, compilation);
+    if (!viewed) {
+        std::fputs(compilation.diagnostics.render(compilation.sources).c_str(), stderr);
+        std::exit(1);
+    }
+    const AnalysedModel& model = viewed->model;
+    return std::make_unique<TraceModel>(
+        prepare_cut(model.graph, model.components, model.bounds, viewed->cut), viewed->view, viewed->cut);
+}
+
+std::vector<Ray> camera_rays(const View& view) {
+    const CameraRays through(view);
+    std::vector<Ray> rays;
+    for (int y = 0; y < size.height; ++y)
+        for (int x = 0; x < size.width; ++x)
+            rays.push_back(through.through(x + 0.5, y + 0.5));
+    return rays;
+}
+
+/// Prints the best of some runs; `trace` counts hits.
+template<typename Trace> void measure(const std::vector<Ray>& rays, const Trace& trace) {
+    double best = 1e300;
+    std::size_t hits = 0;
+    for (int i = 0; i < repeats; ++i) {
+        const double start = now();
+        hits = trace();
+        best = std::min(best, now() - start);
+    }
+    std::printf(" %.3f Mrays/s, %zu hits, peak %.1f MiB\n", 1e-6 * static_cast<double>(rays.size()) / best,
+                hits, peak_mib());
+}
+
+void graph(const TraceModel& model) {
+    const std::vector<Ray> rays = camera_rays(model.view);
+    Traversal traversal(model);
+    measure(rays, [&] {
+        std::size_t hits = 0;
+        SurfaceHit hit;
+        for (const Ray& ray : rays)
+            hits += traversal.closest(ray, {}, hit);
+        return hits;
+    });
+    std::printf("visits a ray: %.2f\n", static_cast<double>(traversal.visits()) /
+                                            (repeats * static_cast<double>(rays.size())));
+}
+
+/// All leaves as triangles; curved ones as coarsely as can be.
+struct Flat {
+    std::vector<float> vertices;
+    std::vector<unsigned> corners;
+};
+
+Flat flatten(const TraceModel& model) {
+    const CutGraph& cut = model.prepared.cut;
+    Flat flat;
+    Piece root;
+    root.node = cut.root;
+    root.steps = model.prepared.root_steps;
+    std::vector<Piece> stack = {root};
+    const auto add = [&](PrimitiveKind kind, const Affine& place) {
+        const TessellatedPrimitive& mesh = tessellated(kind, 0);
+        const auto first = static_cast<unsigned>(flat.vertices.size() / 3);
+        for (const Vec3& vertex : mesh.vertices)
+            for (int i = 0; i < 3; ++i)
+                flat.vertices.push_back(static_cast<float>(place(vertex)[i]));
+        for (const auto& triangle : mesh.triangles)
+            for (const std::uint32_t corner : triangle)
+                flat.corners.push_back(first + corner);
+    };
+    while (!stack.empty()) {
+        const Piece piece = stack.back();
+        stack.pop_back();
+        const CutNode& node = cut.nodes[piece.node];
+        const bool is_cut = graftal::is_cut(node, piece.steps, detail_of(cut, model.projection, piece));
+        if (node.primitive)
+            add(*node.primitive, piece.world_from_node);
+        else if (followed_edges(node, is_cut).empty())
+            add(PrimitiveKind::sphere, piece.world_from_node * node.node_from_proxy);
+        else
+            for (const CutEdge& edge : followed_edges(node, is_cut))
+                stack.push_back(descend(cut, piece, edge, is_cut));
+    }
+    return flat;
+}
+
+void mesh(const TraceModel& model) {
+    const std::vector<Ray> rays = camera_rays(model.view);
+    Flat flat = flatten(model);
+    flat.vertices.push_back(0); // Embree reads a little beyond
+    const double start = now();
+    const RTCDevice device = rtcNewDevice("threads=2");
+    const RTCScene scene = rtcNewScene(device);
+    const RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
+    rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, flat.vertices.data(), 0,
+                               3 * sizeof(float), flat.vertices.size() / 3);
+    rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, flat.corners.data(), 0,
+                               3 * sizeof(unsigned), flat.corners.size() / 3);
+    rtcCommitGeometry(geometry);
+    rtcAttachGeometry(scene, geometry);
+    rtcReleaseGeometry(geometry);
+    rtcCommitScene(scene);
+    std::printf("%zu triangles, built in %.2f s:", flat.corners.size() / 3, now() - start);
+    measure(rays, [&] {
+        RTCIntersectContext context;
+        rtcInitIntersectContext(&context);
+        context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+        std::size_t hits = 0;
+        for (const Ray& ray : rays) {
+            RTCRayHit query{};
+            query.ray.org_x = static_cast<float>(ray.origin.x);
+            query.ray.org_y = static_cast<float>(ray.origin.y);
+            query.ray.org_z = static_cast<float>(ray.origin.z);
+            query.ray.dir_x = static_cast<float>(ray.direction.x);
+            query.ray.dir_y = static_cast<float>(ray.direction.y);
+            query.ray.dir_z = static_cast<float>(ray.direction.z);
+            query.ray.tfar = INFINITY;
+            query.ray.mask = UINT32_MAX;
+            query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+            rtcIntersect1(scene, &context, &query);
+            hits += query.hit.geomID != RTC_INVALID_GEOMETRY_ID;
+        }
+        return hits;
+    });
+    rtcReleaseScene(scene);
+    rtcReleaseDevice(device);
+}
+
+} // namespace
+} // namespace graftal
+
+int main(int argc, char** argv) {
+    const std::string mode = argc > 3 ? argv[1] : "";
+    if (mode == "graph" && argc == 5) {
+        graftal::graph(*graftal::load(argv[2], argv[3], std::strtod(argv[4], nullptr)));
+    } else if (mode == "mesh" && argc == 4) {
+        graftal::mesh(*graftal::load(argv[2], argv[3], 0));
+    } else {
+        std::fputs("usage: tracer_bench graph MODEL STEPS ERROR_PX | mesh MODEL STEPS\n", stderr);
+        return 2;
+    }
+}

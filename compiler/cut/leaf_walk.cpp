@@ -67,8 +67,9 @@ void LeafWalk::fill_child(const CutEdge& edge, bool is_cut, double detail, Visit
     child.representative_from_node = visit_.representative_from_node * edge.node_from_child;
     child.scale = edge.similarity ? visit_.scale * edge.stretch : norm(child.representative_from_node.linear);
     child.culled_detail = is_cut && detail <= 1 ? detail : visit_.culled_detail;
-    child.crushed_length =
-        cut_.nodes[visit_.shape].sealed ? 2 * child.scale * cut_.nodes[edge.child].ball.radius : visit_.crushed_length;
+    child.crushed_length = visit_.crushed_length;
+    if (child.crushed_length == 0 && cut_.nodes[visit_.shape].sealed)
+        child.crushed_length = 2 * child.scale * cut_.nodes[edge.child].ball.radius;
 }
 
 void LeafWalk::fill_child(const Paint& paint, std::size_t edge, bool is_cut, Paint& child) const {

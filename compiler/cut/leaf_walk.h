@@ -16,7 +16,7 @@ struct WalkedLeaf {
     std::vector<Rgb> colours;           ///< by painter; opaque, all tints of the walk in front
     std::optional<MaterialId> material; ///< by the first painter
     double culled_detail = 0;           ///< > 0: it stands for a part of that detail
-    double crushed_length = 0;          ///< > 0: of the part that a singular map last crushed, and it with it
+    double crushed_length = 0;          ///< > 0: of the part that a singular map crushed, and it with it
 };
 
 /// Visits the leaves of a baked subtree in one fixed order: geometry as the representative has it, colours as

@@ -116,7 +116,8 @@ class Finder {
         std::map<std::tuple<std::size_t, long long, long long>, std::vector<NodeId>> representatives;
         for (NodeId id = 0; id < count; ++id) {
             auto& bucket = representatives[signature(id)];
-            if (std::none_of(bucket.begin(), bucket.end(), [&](NodeId other) { return joins(other, id); })) {
+            // Without checks left nothing joins, and the buckets may be long.
+            if (checks_ >= max_checks || std::none_of(bucket.begin(), bucket.end(), [&](NodeId other) { return joins(other, id); })) {
                 bucket.push_back(id);
                 result_.representative[id] = id;
                 result_.pair[id] = identity_pair(id);

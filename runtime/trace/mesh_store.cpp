@@ -14,16 +14,21 @@ namespace {
 
 /// More than fits on any picture: what is crushed coincides, and is drawn once.
 constexpr std::size_t most_triangles = 2'000'000;
+/// Thinner than this share of its diameter no part is drawn: what is crushed has to be unfolded first, and
+/// coincides only then.
+constexpr double thinnest_share = 1.0 / 512;
 constexpr int endless = 1 << 20;
-constexpr int steps_an_octave = 2;
+/// How many octaves of sizes share a mesh.
+constexpr double detail_step = 0.5, pixel_step = 1;
 
-int half_octaves(double value) {
+/// Rounded up to steps.
+int steps_of(double value, double octaves) {
     if (!std::isfinite(value)) return endless;
-    return static_cast<int>(std::ceil(steps_an_octave * std::log2(std::max(value, 1e-300))));
+    return static_cast<int>(std::ceil(std::log2(std::max(value, 1e-300)) / octaves));
 }
 
-double value_of(int half_octaves) {
-    return half_octaves == endless ? INFINITY : std::exp2(static_cast<double>(half_octaves) / steps_an_octave);
+double value_of(int steps, double octaves) {
+    return steps == endless ? INFINITY : std::exp2(steps * octaves);
 }
 
 /// Adds one part of a bake; its two palettes are what a node shows that inherits black and white.
@@ -58,8 +63,13 @@ const TraceMesh& MeshStore::mesh(NodeId node, std::uint32_t steps, double detail
     const CutNode& source = prepared_.cut.nodes[node];
     // From the units of the frame to those of the graph.
     const double unit = graph_from_frame_[node].linear[0][0];
-    const Key key{node, source.unending ? steps : unlimited_steps, half_octaves(detail_per_unit / unit),
-                  half_octaves(pixels_per_unit / unit)};
+    if (std::isfinite(detail_per_unit)) {
+        const double finest = unit / (2 * source.ball.radius * thinnest_share);
+        detail_per_unit = std::min(detail_per_unit, finest);
+        pixels_per_unit = std::min(pixels_per_unit, finest);
+    }
+    const Key key{node, source.unending ? steps : unlimited_steps, steps_of(detail_per_unit / unit, detail_step),
+                  steps_of(pixels_per_unit / unit, pixel_step)};
     const std::lock_guard lock(mutex_);
     std::unique_ptr<TraceMesh>& mesh = meshes_[key];
     if (!mesh) mesh = bake_mesh(key);
@@ -71,8 +81,8 @@ std::unique_ptr<TraceMesh> MeshStore::bake_mesh(const Key& key) const {
     BakeRequest request;
     request.representative = symmetry.representative[key.node];
     request.steps = key.steps;
-    request.detail_per_unit = value_of(key.detail);
-    request.pixels_per_unit = value_of(key.pixels);
+    request.detail_per_unit = value_of(key.detail, detail_step);
+    request.pixels_per_unit = value_of(key.pixels, pixel_step);
     const std::uint32_t pair = symmetry.pair[key.node];
     request.painters = {{pair, Rgb(0.0)}, {pair, Rgb(1.0)}};
     Baked baked = bake(prepared_.cut, symmetry, request, most_triangles);

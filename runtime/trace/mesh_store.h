@@ -48,8 +48,8 @@ class MeshStore {
     struct Key {
         NodeId node;
         std::uint32_t steps;
-        int detail; ///< in half octaves
-        int pixels;
+        int detail; ///< in steps, on a logarithmic scale,
+        int pixels; ///< as these
         auto operator<=>(const Key&) const = default;
     };
 

@@ -234,8 +234,8 @@ double apart(const Rgb& a, const Rgb& b) {
 class Comparison {
   public:
     Comparison(OracleReport& report, NativeEye& eye, const Cut& cut, const View& view, double depth_step)
-        : report_(report), eye_(eye), coincidence_(cut), camera_(view.camera), size_(view.size),
-          depth_step_(depth_step) {}
+        : report_(report), eye_(eye), coincidence_(cut), camera_(view.camera),
+          grounded_(view.ground.has_value()), size_(view.size), depth_step_(depth_step) {}
 
     void run() {
         report_.pixels = report_.native.hit.size();
@@ -270,18 +270,19 @@ class Comparison {
         if (!same)
             note(report_.mask, x, y, [&](const Seen& seen) { return seen.hit == povray.hit[i]; });
         else if (povray.hit[i] && std::abs(depth - native.depth[i]) > steps) {
-            // On a steep surface a little to the side is much farther: what lies between is seen too.
+            // On a steep surface a little to the side is much farther: what lies between is seen too. At a
+            // silhouette the surface is as steep as can be.
             double low = native.depth[i], high = low;
             note(report_.depth, x, y, [&](const Seen& seen) {
-                if (seen.hit) low = std::min(low, seen.depth), high = std::max(high, seen.depth);
-                return low - steps <= depth && depth <= high + steps;
+                low = std::min(low, seen.depth), high = std::max(high, seen.depth);
+                return !seen.hit || (low - steps <= depth && depth <= high + steps);
             });
         }
         if (povray.lit.pixels.empty()) return 0;
         const Rgb theirs = lit(povray, i), ours = lit(native, i);
         const double most = apart(theirs, ours);
         const auto agrees = [&](const Seen& seen) { return apart(theirs, seen.lit) <= 1; };
-        if (most > 1 && agrees(eye_.look(x + 0.5, y + 0.5, true))) {
+        if (grounded_ && most > 1 && agrees(eye_.look(x + 0.5, y + 0.5, true))) {
             ++report_.horizon;
             return 0;
         }
@@ -297,7 +298,10 @@ class Comparison {
         constexpr double tie_px = 1e-3;
         ++disagreement.pixels;
         disagreement.away += uniform(report_.povray, x, y) || uniform(report_.native, x, y);
-        for (int direction = 0; direction < 16; ++direction) {
+        // Where so much is left there is another reason than ties.
+        constexpr std::size_t enough = 1000;
+        const bool seek = disagreement.untied - disagreement.coinciding < enough;
+        for (int direction = 0; seek && direction < 16; ++direction) {
             const double turn = direction * std::numbers::pi / 8 + 0.1;
             const double reach = direction % 2 ? tie_px : 0.1 * tie_px;
             const bool colours = &disagreement == &report_.colour;
@@ -306,7 +310,7 @@ class Comparison {
                 return;
         }
         ++disagreement.untied;
-        if (&disagreement == &report_.colour && coincide(x, y))
+        if (seek && &disagreement == &report_.colour && coincide(x, y))
             ++disagreement.coinciding;
         else if (disagreement.examples.size() < 4)
             disagreement.examples.push_back({x, y});
@@ -331,6 +335,7 @@ class Comparison {
     NativeEye& eye_;
     Coincidence coincidence_;
     Camera camera_;
+    bool grounded_;
     ImageSize size_;
     double depth_step_;
 };

@@ -121,18 +121,8 @@ class Bounder {
 
     Box box_of(const CutEdge& edge) const {
         const auto primitive = cut_.nodes[edge.child].primitive;
-        if (primitive && *primitive != PrimitiveKind::plane) return box_of(*primitive, edge.node_from_child);
+        if (primitive && *primitive != PrimitiveKind::plane) return box_of_image(*primitive, edge.node_from_child);
         return transformed(edge.node_from_child, bounds_[edge.child].box);
-    }
-
-    static Box box_of(PrimitiveKind kind, const Affine& place) {
-        const Mat3 rows = glm::transpose(place.linear);
-        Box box;
-        for (int axis = 0; axis < 3; ++axis) {
-            box.min[axis] = place.translation[axis] - primitive_support(kind, -rows[axis]);
-            box.max[axis] = place.translation[axis] + primitive_support(kind, rows[axis]);
-        }
-        return box;
     }
 
     void add_object(const CutEdge& edge) {
@@ -148,6 +138,16 @@ class Bounder {
 };
 
 } // namespace
+
+Box box_of_image(PrimitiveKind kind, const Affine& place) {
+    const Mat3 rows = glm::transpose(place.linear);
+    Box box;
+    for (int axis = 0; axis < 3; ++axis) {
+        box.min[axis] = place.translation[axis] - primitive_support(kind, -rows[axis]);
+        box.max[axis] = place.translation[axis] + primitive_support(kind, rows[axis]);
+    }
+    return box;
+}
 
 DrawnBounds drawn_bounds(const CutGraph& cut) {
     return Bounder(cut).run();

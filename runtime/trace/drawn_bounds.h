@@ -15,6 +15,9 @@ struct DrawnBounds {
     std::vector<std::vector<Box>> stop_edge; ///< likewise
 };
 
+/// The box of an image of a primitive, exact. Not for planes.
+Box box_of_image(PrimitiveKind kind, const Affine& place);
+
 /// Requires a graph whose cycles contract. O(graph).
 DrawnBounds drawn_bounds(const CutGraph& cut);
 

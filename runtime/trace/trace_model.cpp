@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <map>
+#include <set>
 #include <utility>
 
 #include <glm/geometric.hpp>
@@ -90,24 +90,70 @@ class Builder {
     std::uint32_t add_edges(NodeId id, const std::vector<CutEdge>& edges, const std::vector<Box>& boxes) {
         const Affine frame_from_graph = inverse(model_.graph_from_frame[id]);
         std::vector<BoxedItem> items;
-        std::map<EdgeKey, std::size_t> met; // parts that coincide are drawn once
-        for (std::size_t i = 0; i < edges.size(); ++i) {
-            const CutEdge& source = edges[i];
-            if (!met.emplace(key_of(source), i).second) continue;
+        std::set<EdgeKey> met; // parts that coincide are drawn once
+        for (const Part& part : parts_of(edges, boxes)) {
+            if (!met.insert(key_of(part.edge)).second) continue;
             TraceEdge edge;
-            edge.child = source.child;
-            edge.levels = source.levels;
-            edge.similarity = source.similarity;
-            edge.source = &source;
-            const double child_size = model_.graph_from_frame[source.child].linear[0][0];
-            set_map(edge, frame_from_graph * source.node_from_child * model_.graph_from_frame[source.child],
-                    source.stretch * child_size * frame_from_graph.linear[0][0]);
-            edge.box = transformed(frame_from_graph, boxes[i]);
-            if (!edge.box.empty()) items.emplace_back(edge.box, 1, static_cast<std::uint32_t>(model_.edges.size()));
+            edge.child = part.edge.child;
+            edge.levels = part.edge.levels;
+            edge.similarity = part.edge.similarity;
+            edge.tint = part.edge.tint;
+            edge.material = part.edge.material;
+            const Affine& graph_from_child = model_.graph_from_frame[edge.child];
+            set_map(edge, frame_from_graph * part.edge.node_from_child * graph_from_child,
+                    part.edge.stretch * graph_from_child.linear[0][0] * frame_from_graph.linear[0][0]);
+            edge.box = transformed(frame_from_graph, part.box);
+            const auto number = static_cast<std::uint32_t>(model_.edges.size());
+            if (!edge.box.empty()) items.emplace_back(edge.box, 1, number);
             model_.edges.push_back(edge);
         }
-        if (cut_.nodes[id].unbounded) return no_tree;
-        return build_box_tree(items, model_.boxes);
+        return cut_.nodes[id].unbounded ? no_tree : build_box_tree(items, model_.boxes);
+    }
+
+    /// An instance and the box of what it draws, in the frame that the graph gives the node.
+    struct Part {
+        CutEdge edge;
+        Box box;
+    };
+
+    /// The instances, with the primitives of small groups in place of the groups: a box more to test is
+    /// sooner done than a frame more to enter.
+    std::vector<Part> parts_of(const std::vector<CutEdge>& edges, const std::vector<Box>& boxes) const {
+        constexpr std::size_t most_parts = 4096;
+        std::vector<Part> parts;
+        for (std::size_t i = 0; i < edges.size(); ++i) {
+            if (is_small_group(edges[i].child) && parts.size() + edges.size() < most_parts)
+                add_group(edges[i], parts);
+            else
+                parts.push_back({edges[i], boxes[i]});
+        }
+        return parts;
+    }
+
+    /// A handful of primitives, which is never cut.
+    bool is_small_group(NodeId id) const {
+        const CutNode& node = cut_.nodes[id];
+        return !node.primitive && !node.unending && !node.unbounded && !node.sealed && !node.cullable;
+    }
+
+    void add_group(const CutEdge& group, std::vector<Part>& parts) const {
+        for (const CutEdge& member : cut_.nodes[group.child].edges) {
+            CutEdge edge = member;
+            edge.node_from_child = group.node_from_child * member.node_from_child;
+            edge.tint = group.tint * member.tint;
+            if (!edge.material) edge.material = group.material;
+            edge.similarity = group.similarity && member.similarity;
+            edge.stretch =
+                edge.similarity ? group.stretch * member.stretch : norm(edge.node_from_child.linear);
+            edge.levels = group.levels + member.levels;
+            const auto primitive = cut_.nodes[edge.child].primitive;
+            if (primitive)
+                parts.push_back({edge, box_of_image(*primitive, edge.node_from_child)});
+            else if (is_small_group(edge.child))
+                add_group(edge, parts);
+            else
+                parts.push_back({edge, transformed(edge.node_from_child, bounds_.node[edge.child])});
+        }
     }
 
     static void set_map(TraceEdge& edge, const Affine& parent_from_child, double stretch) {

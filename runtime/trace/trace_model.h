@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "compiler/cut/detail.h"
@@ -27,7 +28,8 @@ struct TraceEdge {
     unsigned levels = 0;
     bool similarity = false; ///< then a path's norm is the product of its stretches
     double flatness = 1;     ///< the least stretch, as a share of the largest
-    const CutEdge* source = nullptr; ///< tint and material; nothing: the edge to the root
+    PathTint tint;
+    std::optional<MaterialId> material;
 };
 
 struct TraceNode {

@@ -330,6 +330,11 @@ template<Instructions instructions> struct Traversal::Kernel {
         frame.lower_origin = o + frame.margin;
         frame.upper_origin = o - frame.margin;
         if (baked) return meet_mesh(mesh_of(frame), number);
+        if (frame.cut && node.stop_edge_count == 1) { // about as large as the node: no box to test
+            reserve_entries(1);
+            self.entries_[self.entry_count_++] = {entry.t, node.first_edge + node.edge_count, number};
+            return;
+        }
         if (tree != no_tree) test_boxes(model.boxes, tree, number);
     }
 
@@ -511,9 +516,9 @@ void Traversal::surface_at_best(SurfaceHit& hit) const {
     for (const std::uint32_t step : path_) {
         const TraceEdge& edge = model_.edges[step & ~from_cut];
         if (parent && (step & from_cut) && parent->terminal) inherited = parent->mean.over(inherited);
-        if (edge.source) tint = tint * edge.source->tint;
-        if (edge.source && edge.source->material) {
-            hit.material = &materials[*edge.source->material];
+        tint = tint * edge.tint;
+        if (edge.material) {
+            hit.material = &materials[*edge.material];
             inherited = hit.material->rgb;
         }
         parent = &nodes[edge.child];

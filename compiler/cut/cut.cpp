@@ -133,7 +133,7 @@ class Cutter {
             options_.error_world ? *options_.error_world * root_pixels_per_unit() : options_.error_px;
         const double unit_px = cut.error_asked_px * factor_after(coarser_steps);
         cut.error_px *= unit_px;
-        if (cut.error_px > 0) note_shadowless();
+        if (cut.error_px > 0) note_shadowless(cut_, graph_, diagnostics_);
         if (coarser_steps > 0)
             diagnostics_
                 .warning(graph_.objects[graph_.root].span,
@@ -142,23 +142,6 @@ class Cutter {
                                      cut.error_asked_px))
                 .with_hint("give more with --memory, or ask for less with --error or --steps");
         return cut;
-    }
-
-    /// How faint a set without area looks depends on how large its parts are drawn. Flat figures and curves
-    /// are drawn as one wants them, in lines as wide as the error.
-    void note_shadowless() {
-        const auto wants_leaf = [](const CutNode& node) {
-            return node.shadowless && node.cullable && node.stop_edges.empty() && !is_flat(node);
-        };
-        bool wanted = false;
-        for (const CutNode& user : cut_.nodes) // the root itself is always drawn whole
-            for (const CutEdge& edge : user.edges)
-                wanted = wanted || wants_leaf(cut_.nodes[edge.child]);
-        if (!wanted) return;
-        diagnostics_
-            .note(graph_.objects[graph_.root].span, "some set here has no area (its dimension is at most 2): "
-                                                    "how dense it looks depends on --error")
-            .with_hint("name what its smallest parts look like: a 'terminal'");
     }
 
     double root_pixels_per_unit() const {

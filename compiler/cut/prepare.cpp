@@ -54,6 +54,21 @@ bool refuse_endless(const Graph& graph, const Components& components, const CutO
     return true;
 }
 
+void note_shadowless(const CutGraph& cut, const Graph& graph, Diagnostics& diagnostics) {
+    const auto wants_leaf = [](const CutNode& node) {
+        return node.shadowless && node.cullable && node.stop_edges.empty() && !is_flat(node);
+    };
+    bool wanted = false;
+    for (const CutNode& user : cut.nodes) // the root itself is always drawn whole
+        for (const CutEdge& edge : user.edges)
+            wanted = wanted || wants_leaf(cut.nodes[edge.child]);
+    if (!wanted) return;
+    diagnostics
+        .note(graph.objects[graph.root].span, "some set here has no area (its dimension is at most 2): "
+                                              "how dense it looks depends on --error")
+        .with_hint("name what its smallest parts look like: a 'terminal'");
+}
+
 double nearest_to_eye(const CutGraph& cut) {
     constexpr double share_of_radius = 1e-5;
     return share_of_radius * std::max(cut.nodes[cut.root].ball.radius, 1e-280);

@@ -22,6 +22,10 @@ PreparedCut prepare_cut(const Graph& graph, const Components& components,
 bool refuse_endless(const Graph& graph, const Components& components, const CutOptions& options,
                     Diagnostics& diagnostics);
 
+/// Notes that how faint a set without area looks depends on how large its parts are drawn. For models of which
+/// something is culled. Flat figures and curves are drawn as one wants them, in lines as wide as the error.
+void note_shadowless(const CutGraph& cut, const Graph& graph, Diagnostics& diagnostics);
+
 /// The least distance from the eye that counts (Projection), so that the eye may lie on the model.
 double nearest_to_eye(const CutGraph& cut);
 

@@ -179,6 +179,8 @@ std::optional<NativeReport> trace_model(ViewedModel viewed, const NativeOptions&
     const TraceModel model(prepare_cut(analysed.graph, analysed.components, analysed.bounds, viewed.cut),
                            viewed.view, viewed.cut);
     compilation.times.push_back({"prepare", watch.seconds()});
+    if (viewed.cut.culls() && !viewed.cut.steps)
+        note_shadowless(model.prepared.cut, analysed.graph, compilation.diagnostics);
     const Stopwatch drawing_watch;
     Drawing drawing(model, options);
     compilation.status = drawing.run();

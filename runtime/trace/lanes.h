@@ -3,6 +3,8 @@
 // Short vectors of the compiler's own kind (GCC and Clang): operations on them become AVX2 in functions that
 // ask for it and pairs of SSE2 operations elsewhere, with the same results to the last bit.
 
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
 
 #include "compiler/support/affine.h"
@@ -14,8 +16,11 @@ using Float4 = float __attribute__((vector_size(16), aligned(16)));
 using Float8 = float __attribute__((vector_size(32), aligned(32)));
 using Int8 = std::int32_t __attribute__((vector_size(32), aligned(32)));
 
-/// Three lanes and a 0. Inlined everywhere: how vectors are passed depends on the instructions.
-inline __attribute__((always_inline)) Double4 lanes_of(const Vec3& v) {
+/// For functions that take or give vectors: how these are passed depends on the instructions.
+#define GRAFTAL_INLINE inline __attribute__((always_inline))
+
+/// Three lanes and a 0.
+GRAFTAL_INLINE Double4 lanes_of(const Vec3& v) {
     return Double4{v.x, v.y, v.z, 0};
 }
 
@@ -38,5 +43,43 @@ struct LaneMap {
         return a;
     }
 };
+
+GRAFTAL_INLINE Double4 splat(double x) {
+    return Double4{x, x, x, x};
+}
+
+GRAFTAL_INLINE Double4 direction_through(const LaneMap& map, const Double4& v) {
+    return map.column[0] * splat(v[0]) + map.column[1] * splat(v[1]) + map.column[2] * splat(v[2]);
+}
+
+GRAFTAL_INLINE Double4 point_through(const LaneMap& map, const Double4& p) {
+    return direction_through(map, p) + map.translation;
+}
+
+GRAFTAL_INLINE void compose(const LaneMap& a, const LaneMap& b, LaneMap& product) {
+    for (int i = 0; i < 3; ++i)
+        product.column[i] = direction_through(a, b.column[i]);
+    product.translation = point_through(a, b.translation);
+}
+
+GRAFTAL_INLINE double largest_component(const Double4& v) {
+    return std::max(std::max(std::abs(v[0]), std::abs(v[1])), std::abs(v[2]));
+}
+
+GRAFTAL_INLINE Vec3 vec3_of(const Double4& v) {
+    return {v[0], v[1], v[2]};
+}
+
+GRAFTAL_INLINE Float8 lesser(const Float8& a, const Float8& b) {
+    return a < b ? a : b;
+}
+
+GRAFTAL_INLINE Float8 greater(const Float8& a, const Float8& b) {
+    return a > b ? a : b;
+}
+
+GRAFTAL_INLINE Float8 splat8(float x) {
+    return Float8{x, x, x, x, x, x, x, x};
+}
 
 } // namespace graftal

@@ -55,14 +55,13 @@ void add_part(const BakedPart& part, const Affine& frame_from_body, TraceMesh& m
 
 } // namespace
 
-MeshStore::MeshStore(const PreparedCut& prepared, const std::vector<Affine>& graph_from_frame)
-    : prepared_(prepared), graph_from_frame_(graph_from_frame) {}
+MeshStore::MeshStore(const PreparedCut& prepared) : prepared_(prepared) {}
 
-const TraceMesh& MeshStore::mesh(NodeId node, std::uint32_t steps, double detail_per_unit,
-                                 double pixels_per_unit) {
+const TraceMesh& MeshStore::mesh(NodeId node, const Affine& graph_from_frame, std::uint32_t steps,
+                                 double detail_per_unit, double pixels_per_unit) {
     const CutNode& source = prepared_.cut.nodes[node];
     // From the units of the frame to those of the graph.
-    const double unit = graph_from_frame_[node].linear[0][0];
+    const double unit = graph_from_frame.linear[0][0];
     if (std::isfinite(detail_per_unit)) {
         const double finest = unit / (2 * source.ball.radius * thinnest_share);
         detail_per_unit = std::min(detail_per_unit, finest);
@@ -72,11 +71,11 @@ const TraceMesh& MeshStore::mesh(NodeId node, std::uint32_t steps, double detail
                   steps_of(pixels_per_unit / unit, pixel_step)};
     const std::lock_guard lock(mutex_);
     std::unique_ptr<TraceMesh>& mesh = meshes_[key];
-    if (!mesh) mesh = bake_mesh(key);
+    if (!mesh) mesh = bake_mesh(key, graph_from_frame);
     return *mesh;
 }
 
-std::unique_ptr<TraceMesh> MeshStore::bake_mesh(const Key& key) const {
+std::unique_ptr<TraceMesh> MeshStore::bake_mesh(const Key& key, const Affine& graph_from_frame) const {
     const Symmetry& symmetry = prepared_.symmetry;
     BakeRequest request;
     request.representative = symmetry.representative[key.node];
@@ -89,7 +88,7 @@ std::unique_ptr<TraceMesh> MeshStore::bake_mesh(const Key& key) const {
     // Coarser, until it fits.
     for (; !baked.complete && std::isfinite(request.detail_per_unit); request.detail_per_unit /= 2)
         baked = bake(prepared_.cut, symmetry, request, most_triangles);
-    const Affine frame_from_body = inverse(graph_from_frame_[key.node]) *
+    const Affine frame_from_body = inverse(graph_from_frame) *
                                    symmetry.node_from_representative[key.node] * baked.representative_from_body;
     auto mesh = std::make_unique<TraceMesh>();
     for (const BakedPart& part : baked.parts)

@@ -37,12 +37,14 @@ struct TraceMesh {
 /// as the cut bakes it (bake.h), once for each half octave of sizes. Used by many threads.
 class MeshStore {
   public:
-    /// Keeps references to all. `graph_from_frame`: by node.
-    MeshStore(const PreparedCut& prepared, const std::vector<Affine>& graph_from_frame);
+    /// Keeps a reference.
+    explicit MeshStore(const PreparedCut& prepared);
 
-    /// The node as it is drawn where a unit of its frame has this detail and so many pixels (detail.h). The
-    /// reference stays.
-    const TraceMesh& mesh(NodeId node, std::uint32_t steps, double detail_per_unit, double pixels_per_unit);
+    /// The node, in its frame, as it is drawn where a unit of that has this detail and so many pixels
+    /// (detail.h). The same node, with as many steps, is always asked for in the same frame. The reference
+    /// stays.
+    const TraceMesh& mesh(NodeId node, const Affine& graph_from_frame, std::uint32_t steps,
+                          double detail_per_unit, double pixels_per_unit);
 
   private:
     struct Key {
@@ -53,10 +55,9 @@ class MeshStore {
         auto operator<=>(const Key&) const = default;
     };
 
-    std::unique_ptr<TraceMesh> bake_mesh(const Key& key) const;
+    std::unique_ptr<TraceMesh> bake_mesh(const Key& key, const Affine& graph_from_frame) const;
 
     const PreparedCut& prepared_;
-    const std::vector<Affine>& graph_from_frame_;
     std::mutex mutex_;
     std::map<Key, std::unique_ptr<TraceMesh>> meshes_;
 };

@@ -36,7 +36,7 @@ TraceNode::Kind kind_of(const CutNode& node) {
 class Builder {
   public:
     explicit Builder(TraceModel& model)
-        : model_(model), cut_(model.prepared.cut), bounds_(drawn_bounds(cut_)) {
+        : model_(model), cut_(model.layers.cut), bounds_(drawn_bounds(cut_)) {
         for (NodeId id = 0; id < cut_.nodes.size(); ++id)
             model_.graph_from_frame.push_back(graph_from_frame(cut_.nodes[id], bounds_.node[id]));
     }
@@ -194,9 +194,10 @@ double least_detail(const TraceModel& model) {
 } // namespace
 
 TraceModel::TraceModel(PreparedCut ready, const View& seen, const CutOptions& cut_options)
-    : prepared(std::move(ready)), view(seen), options(cut_options),
+    : prepared(std::move(ready)), layers(layered(prepared.cut, prepared.root_steps)), view(seen),
+      options(cut_options),
       projection(view, options, options.error_px, nearest_to_eye(prepared.cut)),
-      meshes(prepared, graph_from_frame) {
+      meshes(prepared) {
     least_detail_per_unit = least_detail(*this);
     Builder(*this).build();
 }

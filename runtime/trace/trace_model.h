@@ -9,6 +9,7 @@
 #include "compiler/scene/scene.h"
 #include "runtime/trace/box_tree.h"
 #include "runtime/trace/lanes.h"
+#include "runtime/trace/layers.h"
 #include "runtime/trace/mesh_store.h"
 
 namespace graftal {
@@ -59,16 +60,20 @@ struct TraceNode {
 /// A prepared graph made ready for rays, for one view. It is read by many threads.
 struct TraceModel {
     PreparedCut prepared;
+    LayeredGraph layers; ///< of prepared.cut
     View view;
     CutOptions options;
     Projection projection;
     double least_detail_per_unit = 0; ///< of Projection, anywhere on the model
 
-    std::vector<TraceNode> nodes; ///< as prepared.cut.nodes
+    std::vector<TraceNode> nodes; ///< as layers.cut.nodes
     std::vector<TraceEdge> edges; ///< the first leads to the root, from world space
     std::vector<BoxNode> boxes;
     std::vector<Affine> graph_from_frame; ///< by node
     mutable MeshStore meshes;
+
+    /// The node as the cut has it.
+    const CutNode& source(std::uint32_t node) const { return prepared.cut.nodes[layers.source[node]]; }
 
     TraceModel(PreparedCut prepared, const View& view, const CutOptions& options);
     TraceModel(const TraceModel&) = delete;

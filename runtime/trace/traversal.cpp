@@ -9,11 +9,6 @@
 
 #include "compiler/support/check.h"
 
-// Functions that take vectors by value are all inlined, so that no two parts can differ in how they pass them.
-#pragma GCC diagnostic ignored "-Wpsabi"
-
-#define GRAFTAL_INLINE inline __attribute__((always_inline))
-
 namespace graftal {
 
 namespace {
@@ -25,44 +20,6 @@ constexpr std::uint32_t from_cut = 1u << 31;
 constexpr std::uint64_t most_visits = 1 << 17;
 /// Parts smaller than this are nothing: their inverse maps would not be numbers.
 constexpr double least_scale = 1e-150;
-
-GRAFTAL_INLINE Double4 splat(double x) {
-    return Double4{x, x, x, x};
-}
-
-GRAFTAL_INLINE Double4 direction_through(const LaneMap& map, const Double4& v) {
-    return map.column[0] * splat(v[0]) + map.column[1] * splat(v[1]) + map.column[2] * splat(v[2]);
-}
-
-GRAFTAL_INLINE Double4 point_through(const LaneMap& map, const Double4& p) {
-    return direction_through(map, p) + map.translation;
-}
-
-GRAFTAL_INLINE void compose(const LaneMap& a, const LaneMap& b, LaneMap& product) {
-    for (int i = 0; i < 3; ++i)
-        product.column[i] = direction_through(a, b.column[i]);
-    product.translation = point_through(a, b.translation);
-}
-
-GRAFTAL_INLINE double largest_component(const Double4& v) {
-    return std::max(std::max(std::abs(v[0]), std::abs(v[1])), std::abs(v[2]));
-}
-
-GRAFTAL_INLINE Vec3 vec3_of(const Double4& v) {
-    return {v[0], v[1], v[2]};
-}
-
-GRAFTAL_INLINE Float8 lesser(const Float8& a, const Float8& b) {
-    return a < b ? a : b;
-}
-
-GRAFTAL_INLINE Float8 greater(const Float8& a, const Float8& b) {
-    return a > b ? a : b;
-}
-
-GRAFTAL_INLINE Float8 splat8(float x) {
-    return Float8{x, x, x, x, x, x, x, x};
-}
 
 /// One bit for each lane that is true.
 template<Instructions instructions> GRAFTAL_INLINE std::uint32_t bits_of(const Int8& lanes) {
@@ -358,7 +315,7 @@ template<Instructions instructions> struct Traversal::Kernel {
 
     GRAFTAL_INLINE const TraceMesh& mesh_of(const Frame& frame) const {
         const Ball ball = world_ball(model.nodes[frame.node], frame);
-        return model.meshes.mesh(frame.node, frame.steps,
+        return model.meshes.mesh(model.layers.source[frame.node], model.graph_from_frame[frame.node], frame.steps,
                                  frame.scale * model.projection.detail_per_unit(ball),
                                  frame.scale * model.projection.pixels_that_matter(ball));
     }
@@ -508,7 +465,6 @@ bool Traversal::meets_any(const Ray& ray, const RayRange& range) {
 void Traversal::surface_at_best(SurfaceHit& hit) const {
     static const Material plain;
     const std::vector<Material>& materials = model_.prepared.cut.materials;
-    const std::vector<CutNode>& nodes = model_.prepared.cut.nodes;
     PathTint tint;
     Rgb inherited = plain.rgb;
     hit.material = &plain;
@@ -521,14 +477,14 @@ void Traversal::surface_at_best(SurfaceHit& hit) const {
             hit.material = &materials[*edge.material];
             inherited = hit.material->rgb;
         }
-        parent = &nodes[edge.child];
+        parent = &model_.source(edge.child);
     }
     if (best_.mesh_colour) {
         inherited = best_.mesh_colour->fixed + best_.mesh_colour->open * inherited;
         if (best_.mesh_colour->material) hit.material = &materials[*best_.mesh_colour->material];
     }
     if (best_.proxy_node != no_edge)
-        inherited = nodes[best_.proxy_node].mean.over(inherited);
+        inherited = model_.source(best_.proxy_node).mean.over(inherited);
     hit.t = best_.t;
     hit.rgb = tint.over(inherited);
     hit.normal = transformed_normal(best_.world_from_leaf, best_.normal);

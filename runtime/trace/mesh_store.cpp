@@ -57,8 +57,8 @@ void add_part(const BakedPart& part, const Affine& frame_from_body, TraceMesh& m
 
 MeshStore::MeshStore(const PreparedCut& prepared) : prepared_(prepared) {}
 
-const TraceMesh& MeshStore::mesh(NodeId node, const Affine& graph_from_frame, std::uint32_t steps,
-                                 double detail_per_unit, double pixels_per_unit) {
+MeshStore::Key MeshStore::key(NodeId node, const Affine& graph_from_frame, std::uint32_t steps,
+                              double detail_per_unit, double pixels_per_unit) const {
     const CutNode& source = prepared_.cut.nodes[node];
     // From the units of the frame to those of the graph.
     const double unit = graph_from_frame.linear[0][0];
@@ -67,12 +67,17 @@ const TraceMesh& MeshStore::mesh(NodeId node, const Affine& graph_from_frame, st
         detail_per_unit = std::min(detail_per_unit, finest);
         pixels_per_unit = std::min(pixels_per_unit, finest);
     }
-    const Key key{node, source.unending ? steps : unlimited_steps, steps_of(detail_per_unit / unit, detail_step),
-                  steps_of(pixels_per_unit / unit, pixel_step)};
-    const std::lock_guard lock(mutex_);
-    std::unique_ptr<TraceMesh>& mesh = meshes_[key];
-    if (!mesh) mesh = bake_mesh(key, graph_from_frame);
-    return *mesh;
+    return {node, source.unending ? steps : unlimited_steps, steps_of(detail_per_unit / unit, detail_step),
+            steps_of(pixels_per_unit / unit, pixel_step)};
+}
+
+const TraceMesh& MeshStore::mesh(const Key& key, const Affine& graph_from_frame) {
+    std::unique_lock lock(mutex_);
+    Entry& entry = meshes_[key];
+    lock.unlock();
+    // Others may bake other meshes meanwhile.
+    std::call_once(entry.baked, [&] { entry.mesh = bake_mesh(key, graph_from_frame); });
+    return *entry.mesh;
 }
 
 std::unique_ptr<TraceMesh> MeshStore::bake_mesh(const Key& key, const Affine& graph_from_frame) const {

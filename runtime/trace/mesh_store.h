@@ -40,26 +40,34 @@ class MeshStore {
     /// Keeps a reference.
     explicit MeshStore(const PreparedCut& prepared);
 
-    /// The node, in its frame, as it is drawn where a unit of that has this detail and so many pixels
-    /// (detail.h). The same node, with as many steps, is always asked for in the same frame. The reference
-    /// stays.
-    const TraceMesh& mesh(NodeId node, const Affine& graph_from_frame, std::uint32_t steps,
-                          double detail_per_unit, double pixels_per_unit);
+    /// What one mesh serves.
+    struct Key {
+        NodeId node = 0;
+        std::uint32_t steps = 0;
+        int detail = 0; ///< in steps, on a logarithmic scale,
+        int pixels = 0; ///< as these
+        auto operator<=>(const Key&) const = default;
+    };
+
+    /// The node as it is drawn where a unit of its frame has this detail and so many pixels (detail.h).
+    Key key(NodeId node, const Affine& graph_from_frame, std::uint32_t steps, double detail_per_unit,
+            double pixels_per_unit) const;
+
+    /// The node in its frame. The same node, with as many steps, is always asked for in the same frame. The
+    /// reference stays.
+    const TraceMesh& mesh(const Key& key, const Affine& graph_from_frame);
 
   private:
-    struct Key {
-        NodeId node;
-        std::uint32_t steps;
-        int detail; ///< in steps, on a logarithmic scale,
-        int pixels; ///< as these
-        auto operator<=>(const Key&) const = default;
+    struct Entry {
+        std::once_flag baked;
+        std::unique_ptr<TraceMesh> mesh;
     };
 
     std::unique_ptr<TraceMesh> bake_mesh(const Key& key, const Affine& graph_from_frame) const;
 
     const PreparedCut& prepared_;
     std::mutex mutex_;
-    std::map<Key, std::unique_ptr<TraceMesh>> meshes_;
+    std::map<Key, Entry> meshes_;
 };
 
 } // namespace graftal

@@ -286,7 +286,7 @@ template<Instructions instructions> struct Traversal::Kernel {
         const Float4 o = __builtin_convertvector(origin, Float4);
         frame.lower_origin = o + frame.margin;
         frame.upper_origin = o - frame.margin;
-        if (baked) return meet_mesh(mesh_of(frame), number);
+        if (baked) return meet_mesh(self.mesh_of(frame), number);
         if (frame.cut && node.stop_edge_count == 1) { // about as large as the node: no box to test
             reserve_entries(1);
             self.entries_[self.entry_count_++] = {entry.t, node.first_edge + node.edge_count, number};
@@ -311,13 +311,6 @@ template<Instructions instructions> struct Traversal::Kernel {
     GRAFTAL_INLINE float thickness(const TraceNode& node, const Frame& frame) const {
         const double detail = frame.scale * model.projection.detail_per_unit(world_ball(node, frame));
         return std::isfinite(detail) ? static_cast<float>(1.5 / detail) : 2e-3f;
-    }
-
-    GRAFTAL_INLINE const TraceMesh& mesh_of(const Frame& frame) const {
-        const Ball ball = world_ball(model.nodes[frame.node], frame);
-        return model.meshes.mesh(model.layers.source[frame.node], model.graph_from_frame[frame.node], frame.steps,
-                                 frame.scale * model.projection.detail_per_unit(ball),
-                                 frame.scale * model.projection.pixels_that_matter(ball));
     }
 
     GRAFTAL_INLINE void meet_mesh(const TraceMesh& mesh, std::uint32_t frame_number) {
@@ -460,6 +453,25 @@ bool Traversal::closest(const Ray& ray, const RayRange& range, SurfaceHit& hit) 
 
 bool Traversal::meets_any(const Ray& ray, const RayRange& range) {
     return run(ray, range, true);
+}
+
+const TraceMesh& Traversal::mesh_of(const Frame& frame) {
+    const TraceNode& node = model_.nodes[frame.node];
+    const Affine world_from_node = frame.world_from_node.affine();
+    const Ball ball{world_from_node(vec3_of(node.ball_centre)), frame.scale * node.ball_radius};
+    const Affine& graph_from_frame = model_.graph_from_frame[frame.node];
+    const MeshStore::Key key =
+        model_.meshes.key(model_.layers.source[frame.node], graph_from_frame, frame.steps,
+                          frame.scale * model_.projection.detail_per_unit(ball),
+                          frame.scale * model_.projection.pixels_that_matter(ball));
+    const auto hash = static_cast<std::size_t>(key.detail) * 31 + static_cast<std::size_t>(key.pixels) * 7 +
+                      key.node * 13 + key.steps;
+    auto& [known, mesh] = meshes_[hash % meshes_.size()];
+    if (!mesh || known != key) {
+        mesh = &model_.meshes.mesh(key, graph_from_frame);
+        known = key;
+    }
+    return *mesh;
 }
 
 void Traversal::surface_at_best(SurfaceHit& hit) const {

@@ -3,6 +3,7 @@
 #include <array>
 #include <atomic>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "runtime/trace/intersect.h"
@@ -71,6 +72,7 @@ class Traversal final : public Surfaces {
         const TraceMesh::Colour* mesh_colour = nullptr; ///< of a triangle
     };
 
+    const TraceMesh& mesh_of(const Frame& frame);
     bool run(const Ray& ray, const RayRange& range, bool any);
     void surface_at_best(SurfaceHit& hit) const;
 
@@ -81,6 +83,8 @@ class Traversal final : public Surfaces {
     std::vector<Entry> entries_;
     std::size_t entry_count_ = 0; ///< in use
     Best best_;
+    /// Meshes asked for lately, by a hash of their keys: the store has to be locked.
+    std::array<std::pair<MeshStore::Key, const TraceMesh*>, 64> meshes_{};
     std::vector<std::uint32_t> path_; ///< edges from the root to the best hit, those from cut nodes marked
     std::uint64_t visits_ = 0;
     std::uint64_t given_up_ = 0;

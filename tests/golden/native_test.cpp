@@ -148,7 +148,7 @@ TEST_F(Native, FaultyModelIsStatusOneAndTouchesNoFile) {
         {gasket + "--at down", "error: the address does not exist"},
         {gasket + "--set k=1", "error: "},
     };
-    for (const std::string& progressive : {"", "--progressive "})
+    for (const std::string progressive : {"", "--progressive "})
         for (const auto& [arguments, message] : cases) {
             const RunResult result = render("-o a.png " + progressive + arguments);
             EXPECT_EQ(result.status, 1) << arguments;

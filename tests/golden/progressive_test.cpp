@@ -143,7 +143,9 @@ TEST_F(Progressive, EveryPictureIsWholeAndFinerThanTheLast) {
     EXPECT_GE(seen.size(), 2u) << "of 5";
     for (std::size_t i = 1; i < seen.size(); ++i) {
         EXPECT_LE(block_of(seen[i]), block_of(seen[i - 1]));
-        if (block_of(seen[i - 1]) > 1) EXPECT_LT(block_of(seen[i]), block_of(seen[i - 1]));
+        if (block_of(seen[i - 1]) > 1) {
+            EXPECT_LT(block_of(seen[i]), block_of(seen[i - 1]));
+        }
     }
     EXPECT_EQ(files(), "a.png");
     EXPECT_EQ(start("render", "b.png", {"--size", "320x180", "--antialias", "1"}).wait(), 0);

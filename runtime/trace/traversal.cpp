@@ -23,10 +23,11 @@ constexpr double least_scale = 1e-150;
 
 /// One bit for each lane that is true.
 template<Instructions instructions> GRAFTAL_INLINE std::uint32_t bits_of(const Int8& lanes) {
-#if defined(__x86_64__)
+#if defined(__x86_64__) && !defined(__clang__)
     if constexpr (instructions == Instructions::avx2) {
         std::uint32_t bits;
-        // An intrinsic could not be inlined from here: only the caller is compiled for AVX2.
+        // An intrinsic could not be inlined from here: only the caller is compiled for AVX2. Clang looks at
+        // the operands before it inlines.
         __asm__("vmovmskps %1, %0" : "=r"(bits) : "x"(lanes));
         return bits;
     }

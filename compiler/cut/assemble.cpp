@@ -19,9 +19,6 @@ namespace graftal {
 
 namespace {
 
-/// Pieces whose map is flatter than this are not placed by POV-Ray but baked into a neighbour above.
-constexpr double flattest_placement = 1e-5;
-
 /// One thing at its place, before the meshes exist.
 struct Placed {
     static constexpr std::uint32_t no_request = UINT32_MAX;

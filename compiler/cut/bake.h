@@ -59,6 +59,9 @@ inline constexpr double thickest_share = 1.0 / 8;
 /// The map with no singular value under `thickness`.
 Affine thickened(const Affine& place, double thickness);
 
+/// Pieces whose map is flatter than this are not placed but baked into a neighbour above.
+inline constexpr double flattest_placement = 1e-5;
+
 /// What curved surfaces may be off by, and the fineness that follows for a primitive of this size.
 inline constexpr double tessellation_tolerance_px = 0.2;
 

@@ -1,7 +1,6 @@
 #include "runtime/render/native.h"
 
 #include <algorithm>
-#include <chrono>
 #include <utility>
 #include <vector>
 
@@ -10,20 +9,11 @@
 #include "compiler/emit/povray_view.h"
 #include "runtime/povray/interruption.h"
 #include "runtime/render/scene_files.h"
+#include "runtime/render/stopwatch.h"
 
 namespace graftal {
 
 namespace {
-
-class Stopwatch {
-  public:
-    double seconds() const {
-        return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
-    }
-
-  private:
-    std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
-};
 
 /// Where POV-Ray's pictures end; its units are those of a cut, which nobody makes here.
 ShaderLimits limits_of(const TraceModel& model) {
@@ -53,17 +43,17 @@ std::vector<Sampling> samplings(const RenderOptions& options, bool progressive) 
 class Drawing {
   public:
     Drawing(const TraceModel& model, const NativeOptions& options)
-        : options_(options), tracer_(model, limits_of(model)), size_(model.view.size) {
+        : options_(options), samplings_(samplings(options.render, options.progressive)), tracer_(model, limits_of(model)), size_(model.view.size) {
         picture_.width = size_.width;
         picture_.height = size_.height;
         picture_.channels = 3;
         picture_.pixels.resize(3 * pixels());
-        for (const Sampling& sampling : samplings(options.render, options.progressive))
+        for (const Sampling& sampling : samplings_)
             work_ += sampling.samples_a_pixel();
     }
 
     Status run() {
-        for (const Sampling& sampling : samplings(options_.render, options_.progressive)) {
+        for (const Sampling& sampling : samplings_) {
             const std::size_t traced = trace(sampling);
             const bool complete = traced == pixels();
             if (!complete && !worth_leaving()) return interrupted();
@@ -145,6 +135,7 @@ class Drawing {
     }
 
     const NativeOptions& options_;
+    const std::vector<Sampling> samplings_;
     PictureTracer tracer_;
     ImageSize size_;
     Image picture_;

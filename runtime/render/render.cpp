@@ -1,6 +1,5 @@
 #include "runtime/render/render.h"
 
-#include <chrono>
 #include <filesystem>
 #include <utility>
 
@@ -9,20 +8,11 @@
 #include "runtime/povray/interruption.h"
 #include "runtime/povray/temporary_directory.h"
 #include "runtime/render/scene_files.h"
+#include "runtime/render/stopwatch.h"
 
 namespace graftal {
 
 namespace {
-
-class Stopwatch {
-  public:
-    double seconds() const {
-        return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
-    }
-
-  private:
-    std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
-};
 
 /// Where the scene goes: the directory to keep, or a temporary one.
 Status choose_directory(const std::string& keep, TemporaryDirectory& temporary, std::string& directory) {

@@ -10,6 +10,7 @@
 
 #include "compiler/cut/prepare.h"
 #include "runtime/trace/box_tree.h"
+#include "runtime/trace/intersect.h"
 
 namespace graftal {
 
@@ -32,6 +33,10 @@ struct TraceMesh {
     std::vector<BoxNode> boxes;
     std::uint32_t tree = no_tree; ///< its root in `boxes`
 };
+
+/// Meets a triangle from either side, as intersect() of intersect.h does a primitive (T. Moeller and B. Trumbore,
+/// "Fast, Minimum Storage Ray/Triangle Intersection", 1997).
+bool intersect(const TraceMesh::Triangle& triangle, const Ray& ray, const RayRange& range, PrimitiveHit& hit);
 
 /// Bakes what rays cannot be taken into, where they come to it: maps that crush space have no inverse. Baked
 /// as the cut bakes it (bake.h), once for each half octave of sizes. Used by many threads.

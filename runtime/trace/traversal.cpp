@@ -7,7 +7,7 @@
 
 #include <glm/geometric.hpp>
 
-#include "compiler/support/check.h"
+#include "compiler/cut/bake.h"
 
 namespace graftal {
 
@@ -73,9 +73,6 @@ double largest_stretch(const LaneMap& map) {
     return std::sqrt(mean * (1 + 2 * p * std::cos(angle)));
 }
 
-/// Pieces whose map is flatter than this are baked (assemble.cpp).
-constexpr double flattest_placement = 1e-5;
-
 bool has_flat_part(const TraceModel& model, const TraceNode& node, const LaneMap& world_from_node, bool cut) {
     const std::uint32_t first = node.first_edge + (cut ? node.edge_count : 0);
     const std::uint32_t count = cut ? node.stop_edge_count : node.edge_count;
@@ -86,29 +83,6 @@ bool has_flat_part(const TraceModel& model, const TraceNode& node, const LaneMap
             return true;
     }
     return false;
-}
-
-/// Moeller and Trumbore, "Fast, Minimum Storage Ray/Triangle Intersection", 1997.
-bool intersect_triangle(const TraceMesh::Triangle& triangle, const Ray& ray, const RayRange& range,
-                        PrimitiveHit& hit) {
-    const Vec3 a = triangle.corners[1] - triangle.corners[0], b = triangle.corners[2] - triangle.corners[0];
-    const Vec3 p = glm::cross(ray.direction, b);
-    const double volume = glm::dot(a, p);
-    if (volume == 0) return false;
-    const Vec3 from_corner = ray.origin - triangle.corners[0];
-    const double u = glm::dot(from_corner, p) / volume;
-    const Vec3 q = glm::cross(from_corner, a);
-    const double v = glm::dot(ray.direction, q) / volume;
-    constexpr double rounding = 1e-12;
-    if (!(u >= -rounding && v >= -rounding && u + v <= 1 + rounding)) return false;
-    const double t = glm::dot(b, q) / volume;
-    if (!(t > range.least && t < range.most)) return false;
-    Vec3 normal =
-        (1 - u - v) * triangle.normals[0] + u * triangle.normals[1] + v * triangle.normals[2];
-    if (!(glm::dot(normal, normal) > 0)) normal = glm::cross(a, b);
-    const double length = glm::length(normal);
-    hit = {t, length > 0 ? normal / length : Vec3(0, 1, 0)};
-    return true;
 }
 
 /// The box, larger by what rounding and thickened parts may need.
@@ -336,7 +310,7 @@ template<Instructions instructions> struct Traversal::Kernel {
         const Ray ray{vec3_of(near), frame.unit * vec3_of(frame.direction)};
         const RayRange range_near{(range.least - entry.t) * largest, (self.best_.t - entry.t) * largest};
         PrimitiveHit hit;
-        if (!intersect_triangle(triangle, ray, range_near, hit)) return;
+        if (!intersect(triangle, ray, range_near, hit)) return;
         self.best_.t = entry.t + hit.t * frame.unit;
         self.best_.found = true;
         if (any) return;

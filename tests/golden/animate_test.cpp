@@ -33,12 +33,6 @@ const std::string dust = "let k = 0.5\n"
 
 class Animate : public CommandLine {
   protected:
-    Image picture(const std::string& name) const {
-        Image image;
-        const Status status = read_image(path(name), image);
-        EXPECT_TRUE(status.ok()) << status.message();
-        return image;
-    }
     Image frame(const std::string& folder, int number) const {
         return picture(fmt::format("{}/frame_{:04}.png", folder, number));
     }

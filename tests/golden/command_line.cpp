@@ -76,4 +76,24 @@ std::string source_path(const std::string& name) {
     return std::string(GRAFTAL_SOURCE_DIR "/") + name;
 }
 
+Image CommandLine::picture(const std::string& name) const {
+    Image image;
+    const Status status = read_image(path(name), image);
+    EXPECT_TRUE(status.ok()) << status.message();
+    return image;
+}
+
+std::vector<std::string> CommandLine::commands_of(const std::string& page) const {
+    const std::string text = contents(source_path(page));
+    EXPECT_NE(text, "") << page;
+    EXPECT_EQ(shell("ln -s '" + source_path("scenes") + "' scenes").status, 0);
+    const std::string mark = "\n    graftal ";
+    std::vector<std::string> commands;
+    for (std::size_t at = text.find(mark); at != std::string::npos; at = text.find(mark, at + 1)) {
+        const std::size_t begin = at + mark.size();
+        commands.push_back(text.substr(begin, text.find('\n', begin) - begin));
+    }
+    return commands;
+}
+
 } // namespace graftal

@@ -1,9 +1,11 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include <gtest/gtest.h>
 
+#include "runtime/image/image.h"
 #include "runtime/povray/temporary_directory.h"
 
 namespace graftal {
@@ -28,6 +30,11 @@ class CommandLine : public testing::Test {
     void write(const std::string& name, const std::string& text) const;
     std::string read(const std::string& name) const;
     bool exists(const std::string& name) const;
+    /// A picture, which must be one.
+    Image picture(const std::string& name) const;
+    /// What follows "graftal" in the commands of a page of docs/, which are set off by four blanks; the project's
+    /// scenes/ are made to stand in the working folder.
+    std::vector<std::string> commands_of(const std::string& page) const;
     /// The names in the working folder, sorted, separated by blanks.
     std::string files() const;
     /// The same of the folder for temporary files.

@@ -7,7 +7,6 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 
-#include "compiler/support/file.h"
 #include "runtime/image/image.h"
 
 namespace graftal {
@@ -28,12 +27,6 @@ class Native : public CommandLine {
     RunResult render(const std::string& arguments) const {
         // Nothing that it could start is there.
         return shell("PATH=/nowhere \"$graftal\" render --engine native " + arguments);
-    }
-    Image picture(const std::string& name) const {
-        Image image;
-        const Status status = read_image(path(name), image);
-        EXPECT_TRUE(status.ok()) << status.message();
-        return image;
     }
     std::uint64_t differing(const std::string& a, const std::string& b) const {
         return compare_images(picture(a), picture(b)).differing;
@@ -260,21 +253,15 @@ TEST_F(NativeAnimation, FaultOfOneFrameNamesIt) {
 
 /// Every command of docs/native.md works; a small picture of each is enough.
 TEST_F(Native, CommandsOfThePageWork) {
-    std::string page;
-    ASSERT_TRUE(read_text(source_path("docs/native.md"), page).ok());
-    ASSERT_EQ(shell("ln -s '" + source_path("scenes") + "' scenes").status, 0);
-    const std::string mark = "\n    graftal ";
-    int count = 0;
-    for (std::size_t at = page.find(mark); at != std::string::npos; at = page.find(mark, at + 1), ++count) {
-        const std::size_t begin = at + mark.size();
-        std::string words = page.substr(begin, page.find('\n', begin) - begin);
+    const std::vector<std::string> commands = commands_of("docs/native.md");
+    for (std::string words : commands) {
         words.resize(std::min(words.find(" #"), words.size()));
         if (words.starts_with("animate")) words += " --frames 2";
         const bool draws = !words.starts_with("compare");
         const RunResult result = graftal(words + (draws ? " -q --size 48x27 --antialias off --error 2" : ""));
         EXPECT_EQ(result.status, 0) << words << "\n" << result.err;
     }
-    EXPECT_GE(count, 6);
+    EXPECT_GE(commands.size(), 6u);
 }
 
 } // namespace

@@ -23,15 +23,7 @@ const std::string gasket = "'" + source_path("scenes/hart/sierpinski.inst") + "'
 const std::string pound_sign = "'" + source_path("scenes/hart/pound_sign.rifs") + "'";
 const std::string small = " --size 96x54 ";
 
-class Render : public CommandLine {
-  protected:
-    Image picture(const std::string& name) const {
-        Image image;
-        const Status status = read_image(path(name), image);
-        EXPECT_TRUE(status.ok()) << status.message();
-        return image;
-    }
-};
+class Render : public CommandLine {};
 
 TEST_F(Render, MakesAPictureNamedAfterTheModelHere) {
     const RunResult result = graftal("render " + gasket + small);

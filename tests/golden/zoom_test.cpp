@@ -7,7 +7,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "compiler/support/file.h"
 #include "tests/golden/command_line.h"
 
 namespace graftal {
@@ -20,20 +19,14 @@ const std::string gasket = "'" + source_path("scenes/hart/sierpinski.inst") + "'
 class Zoom : public CommandLine {};
 
 TEST_F(Zoom, CommandsOfThePageWork) {
-    std::string page;
-    ASSERT_TRUE(read_text(source_path("docs/zoom.md"), page).ok());
-    ASSERT_EQ(shell("ln -s '" + source_path("scenes") + "' scenes").status, 0);
-    const std::string mark = "\n    graftal ";
-    int count = 0;
-    for (std::size_t at = page.find(mark); at != std::string::npos; at = page.find(mark, at + 1), ++count) {
-        const std::size_t begin = at + mark.size();
-        std::string words = page.substr(begin, page.find('\n', begin) - begin);
+    const std::vector<std::string> commands = commands_of("docs/zoom.md");
+    for (std::string words : commands) {
         if (words.starts_with("animate")) words += " --frames 2";
         const RunResult result = graftal(words + " -q --size 48x27 --antialias off --error 2");
         EXPECT_EQ(result.status, 0) << words << "\n" << result.err;
         EXPECT_EQ(result.err, "") << words;
     }
-    EXPECT_GE(count, 6);
+    EXPECT_GE(commands.size(), 6u);
 }
 
 TEST_F(Zoom, WrongAddressesAndFactors) {

@@ -305,14 +305,15 @@ class Grouping {
 
 std::optional<Cut> assemble(const CutGraph& cut, const Symmetry& symmetry, const Projection& projection,
                             const Piece& root, const Choice& choice, Weights& weights,
-                            const AssemblyLimits& limits) {
+                            bool limit_normals, const AssemblyLimits& limits) {
     Unfolding unfolding(cut, symmetry, projection, choice, weights);
     if (!unfolding.run(root, limits.max_placements)) return std::nullopt;
     std::vector<Baked> baked;
     std::size_t triangles = 0;
     double culled_detail = unfolding.culled_detail;
     double tessellation_px = 0;
-    for (const BakeRequest& request : unfolding.requests) {
+    for (BakeRequest& request : unfolding.requests) {
+        request.limit_normals = limit_normals;
         baked.push_back(bake(cut, symmetry, request, limits.max_triangles - triangles));
         triangles += baked.back().triangles;
         if (!baked.back().complete || triangles > limits.max_triangles) return std::nullopt;

@@ -17,6 +17,6 @@ struct AssemblyLimits {
 /// which keeps neighbours together. Nothing if a limit is passed on the way.
 std::optional<Cut> assemble(const CutGraph& cut, const Symmetry& symmetry, const Projection& projection,
                             const Piece& root, const Choice& choice, Weights& weights,
-                            const AssemblyLimits& limits);
+                            bool limit_normals, const AssemblyLimits& limits);
 
 } // namespace graftal

@@ -31,6 +31,7 @@ constexpr std::size_t fewest_leaves_for_a_thread = 10'000;
 struct KeptLeaf {
     Affine place;
     PrimitiveKind kind = PrimitiveKind::sphere;
+    NormalField normals;
 };
 
 /// The leaves of one finish.
@@ -127,7 +128,7 @@ class Baker {
             Part& part = parts_[place_of_part->second];
             const TessellatedPrimitive& coarsest = tessellated(leaf.kind, 0);
             part.smooth = part.smooth || !coarsest.normals.empty();
-            part.leaves.push_back({place, leaf.kind});
+            part.leaves.push_back({place, leaf.kind, leaf.normals});
             numbers_.push_back(number);
             baked_.culled_detail = std::max(baked_.culled_detail, leaf.culled_detail);
             // Of a cube no face may be left where others touch it; it counts when the mesh is built.
@@ -170,7 +171,9 @@ class Baker {
             const int level = fineness(leaf);
             Affine place = body_from_representative * leaf.place;
             if (leaf.kind == PrimitiveKind::sphere && level == 0) place = place * spread_turn(number);
-            builder.add(leaf.kind, level, place, number);
+            builder.add(leaf.kind, level, place, number,
+                        leaf.normals.seen_from(baked_.representative_from_body.linear[0][0],
+                                               baked_.representative_from_body.translation));
             if (baked_.triangles + builder.triangle_count() > 4 * max_triangles_) {
                 baked_.complete = false;
                 return;

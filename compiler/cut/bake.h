@@ -25,6 +25,7 @@ struct BakeRequest {
     std::optional<MaterialId> material; ///< the finish of what names no material
     std::vector<Painter> painters;
     double expected_leaves = 0; ///< about; what is known of it saves memory
+    bool limit_normals = false; ///< of proxies, where nothing was crushed
 };
 
 /// The triangles of one finish, and what each painter's colours are.

@@ -98,7 +98,8 @@ class Cutter {
         const AssemblyLimits limits{
             static_cast<std::size_t>(std::max(0.0, memory) / PovrayCosts::least_placement) + 1,
             static_cast<std::size_t>(std::max(0.0, memory) / PovrayCosts::triangle) + 1};
-        std::optional<Cut> cut = assemble(cut_, symmetry_, projection, root, choice_, weights, limits);
+        std::optional<Cut> cut = assemble(cut_, symmetry_, projection, root, choice_, weights,
+                                          options.limit_normals(), limits);
         if (!cut) return std::nullopt;
         const double bytes = povray_bytes(*cut);
         cut->estimated_bytes = static_cast<std::uint64_t>(bytes + picture_bytes());

@@ -33,6 +33,8 @@ struct CutOptions {
 
     /// Whether anything is culled for its size.
     bool culls() const { return error_world ? *error_world > 0 : error_px > 0; }
+    /// Whether proxies show the limit's normals (limit_normal.h), or their own.
+    bool limit_normals() const { return !flatten; }
 };
 
 /// A triangle mesh in its own frame, coordinates of order 1. Colours are not part of it: mirror images that

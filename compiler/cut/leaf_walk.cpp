@@ -7,7 +7,8 @@ namespace graftal {
 LeafWalk::LeafWalk(const CutGraph& cut, const Symmetry& symmetry, const BakeRequest& request,
                    std::span<const Painter> painters)
     : cut_(cut), symmetry_(symmetry),
-      detail_per_unit_(request.detail_per_unit), visit_{request.representative, request.steps, {}, 1, 0} {
+      detail_per_unit_(request.detail_per_unit), limit_normals_(request.limit_normals),
+      visit_{request.representative, request.steps, {}, 1, 0} {
     for (const Painter& painter : painters)
         paints_.push_back({painter.pair, {}, painter.inherited, request.material});
     stack_.push_back(visit_);
@@ -22,6 +23,7 @@ bool LeafWalk::next(WalkedLeaf& leaf) {
         leaf.culled_detail = visit_.culled_detail;
         leaf.crushed_length = visit_.crushed_length;
         leaf.colours.clear();
+        leaf.normals = {};
         if (shape.primitive) {
             leaf.kind = *shape.primitive;
             leaf.representative_from_leaf = visit_.representative_from_node;
@@ -37,8 +39,10 @@ bool LeafWalk::next(WalkedLeaf& leaf) {
             for (const Paint& paint : paints_)
                 leaf.colours.push_back(paint.tint.over(colours_of(paint).mean.over(paint.inherited)));
             leaf.culled_detail = detail <= 1 ? detail : 0;
+            leaf.normals = normals();
             return true;
         }
+        enter_ball(shape);
         push_children(cut, detail);
     }
     return false;
@@ -50,6 +54,23 @@ void LeafWalk::pop() {
     const auto begin = paint_stack_.end() - static_cast<std::ptrdiff_t>(paints_.size());
     std::copy(begin, paint_stack_.end(), paints_.begin());
     paint_stack_.erase(begin, paint_stack_.end());
+}
+
+void LeafWalk::enter_ball(const CutNode& shape) {
+    if (!limit_normals_ || !shape.unending) return;
+    balls_.resize(visit_.depth++);
+    balls_.push_back(
+        {visit_.representative_from_node(shape.ball.centre), visit_.scale * shape.ball.radius});
+}
+
+NormalField LeafWalk::normals() const {
+    NormalField field;
+    if (visit_.crushed_length > 0) return field;
+    for (std::uint32_t level = 1; level <= limit_normal_levels && level <= visit_.depth; ++level) {
+        const Ball& ball = balls_[visit_.depth - level];
+        field.add(static_cast<int>(level), ball.centre, ball.radius);
+    }
+    return field;
 }
 
 void LeafWalk::push_children(bool is_cut, double detail) {
@@ -66,6 +87,7 @@ void LeafWalk::fill_child(const CutEdge& edge, bool is_cut, double detail, Visit
     child.steps = steps_after(visit_.steps, edge);
     child.representative_from_node = visit_.representative_from_node * edge.node_from_child;
     child.scale = edge.similarity ? visit_.scale * edge.stretch : norm(child.representative_from_node.linear);
+    child.depth = visit_.depth;
     child.culled_detail = is_cut && detail <= 1 ? detail : visit_.culled_detail;
     child.crushed_length = visit_.crushed_length;
     if (child.crushed_length == 0 && cut_.nodes[visit_.shape].sealed)

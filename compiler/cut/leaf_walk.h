@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "compiler/cut/bake.h"
+#include "compiler/cut/limit_normal.h"
 
 namespace graftal {
 
@@ -17,6 +18,7 @@ struct WalkedLeaf {
     std::optional<MaterialId> material; ///< by the first painter
     double culled_detail = 0;           ///< > 0: it stands for a part of that detail
     double crushed_length = 0;          ///< > 0: of the part that a singular map crushed, and it with it
+    NormalField normals;                ///< of a proxy, in the representative's frame, if asked for
 };
 
 /// Visits the leaves of a baked subtree in one fixed order: geometry as the representative has it, colours as
@@ -38,6 +40,7 @@ class LeafWalk {
         double scale = 1; ///< norm of the linear part
         double culled_detail = 0;
         double crushed_length = 0;
+        std::uint32_t depth = 0; ///< unending nodes above it
     };
     /// What one painter makes of a visit.
     struct Paint {
@@ -49,6 +52,8 @@ class LeafWalk {
 
     const CutNode& colours_of(const Paint& paint) const { return cut_.nodes[symmetry_.pairs[paint.pair].b]; }
     void pop();
+    void enter_ball(const CutNode& shape);
+    NormalField normals() const;
     void push_children(bool is_cut, double detail);
     // Where they lie: to build them elsewhere and to copy them would take twice the time.
     void fill_child(const CutEdge& edge, bool is_cut, double detail, Visit& child) const;
@@ -57,9 +62,11 @@ class LeafWalk {
     const CutGraph& cut_;
     const Symmetry& symmetry_;
     double detail_per_unit_;
+    bool limit_normals_;
     std::vector<Visit> stack_;
     std::vector<Paint> paint_stack_; ///< as many for each visit as there are painters
     Visit visit_;                    ///< the last one popped
+    std::vector<Ball> balls_;        ///< of the unending nodes above it, from the root on
     std::vector<Paint> paints_;
 };
 

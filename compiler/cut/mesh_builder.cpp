@@ -40,14 +40,21 @@ std::vector<FacetCorners> turned_over(std::vector<FacetCorners> facets) {
     return facets;
 }
 
+/// Of unit length, where the sum has a direction.
+Vec3 unit_or(Vec3 sum, Vec3 otherwise) {
+    const double length = glm::length(sum);
+    return length > 1e-6 ? sum / length : otherwise;
+}
+
 } // namespace
 
-void MeshBuilder::add(PrimitiveKind kind, int fineness, const Affine& body_from_leaf, std::uint32_t leaf) {
+void MeshBuilder::add(PrimitiveKind kind, int fineness, const Affine& body_from_leaf, std::uint32_t leaf,
+                      const NormalField& normals) {
     const bool mirrored = glm::determinant(body_from_leaf.linear) < 0;
     const bool curved = !tessellated(kind, fineness).normals.empty();
     GRAFTAL_CHECK(smooth_ || !curved, "curved primitive in a flat mesh");
     if (curved)
-        add_smooth(kind, fineness, body_from_leaf, leaf);
+        add_smooth(kind, fineness, body_from_leaf, leaf, normals);
     else if (smooth_)
         add_facets(kind, body_from_leaf, mirrored, leaf);
     else
@@ -55,13 +62,14 @@ void MeshBuilder::add(PrimitiveKind kind, int fineness, const Affine& body_from_
 }
 
 void MeshBuilder::add_smooth(PrimitiveKind kind, int fineness, const Affine& body_from_leaf,
-                             std::uint32_t leaf) {
+                             std::uint32_t leaf, const NormalField& normals) {
     const TessellatedPrimitive& shape = tessellated(kind, fineness);
     const Mat3 normal_map = glm::transpose(glm::inverse(body_from_leaf.linear));
     const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
     for (std::size_t i = 0; i < shape.vertices.size(); ++i) {
         mesh.vertices.push_back(body_from_leaf(shape.vertices[i]));
-        mesh.normals.push_back(glm::normalize(normal_map * shape.normals[i]));
+        const Vec3 own = glm::normalize(normal_map * shape.normals[i]);
+        mesh.normals.push_back(unit_or(own + normals.at(mesh.vertices.back()), own));
     }
     for (const auto& t : shape.triangles)
         push({first + t[0], first + t[1], first + t[2]}, leaf);

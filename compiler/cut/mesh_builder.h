@@ -7,6 +7,7 @@
 
 #include "compiler/cut/cut.h"
 #include "compiler/cut/facet_set.h"
+#include "compiler/cut/limit_normal.h"
 
 namespace graftal {
 
@@ -19,7 +20,9 @@ class MeshBuilder {
     explicit MeshBuilder(bool smooth) : smooth_(smooth) {}
 
     /// Adds a primitive, meshed at the fineness, placed by a regular map. `leaf` is the caller's number.
-    void add(PrimitiveKind kind, int fineness, const Affine& body_from_leaf, std::uint32_t leaf);
+    /// What is curved has its own normals, with the field's added to them.
+    void add(PrimitiveKind kind, int fineness, const Affine& body_from_leaf, std::uint32_t leaf,
+             const NormalField& normals = {});
 
     /// Makes the triangles of the faces that are seen. Call once, after the last add().
     void finish();
@@ -31,7 +34,8 @@ class MeshBuilder {
     std::vector<std::uint32_t> leaf_of_triangle;
 
   private:
-    void add_smooth(PrimitiveKind kind, int fineness, const Affine& body_from_leaf, std::uint32_t leaf);
+    void add_smooth(PrimitiveKind kind, int fineness, const Affine& body_from_leaf, std::uint32_t leaf,
+                    const NormalField& normals);
     void add_facets(PrimitiveKind kind, const Affine& body_from_leaf, bool mirrored, std::uint32_t leaf);
     void add_flat(PrimitiveKind kind, const Affine& body_from_leaf, bool mirrored, std::uint32_t leaf);
     void push(const std::array<std::uint32_t, 3>& corners, std::uint32_t leaf);

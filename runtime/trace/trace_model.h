@@ -15,6 +15,8 @@
 namespace graftal {
 
 inline constexpr std::uint32_t no_edge = UINT32_MAX;
+/// Marks an edge of a path that starts at a cut node.
+inline constexpr std::uint32_t from_cut = 1u << 31;
 
 /// An instance as rays go through it. Frames are not those of the graph: each node that is a union has one of
 /// its own, in which all that it draws fills the cube [-1, 1]^3 or nearly so. Single precision then suffices

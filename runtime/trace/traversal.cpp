@@ -8,13 +8,12 @@
 #include <glm/geometric.hpp>
 
 #include "compiler/cut/bake.h"
+#include "runtime/trace/surface_normal.h"
 
 namespace graftal {
 
 namespace {
 
-/// Marks an edge of a path that starts at a cut node.
-constexpr std::uint32_t from_cut = 1u << 31;
 /// Nodes and primitives that one ray may go into. Sound models need some tens or hundreds; where thousands of
 /// parts coincide, a ray would not come to an end.
 constexpr std::uint64_t most_visits = 1 << 17;
@@ -366,23 +365,6 @@ template<Instructions instructions> struct Traversal::Kernel {
     }
 };
 
-namespace {
-
-/// The normal of the image of a surface, of unit length.
-Vec3 transformed_normal(const LaneMap& map, Vec3 normal) {
-    Mat3 m = map.affine().linear;
-    const double largest = largest_entry(m);
-    m /= largest;
-    // The cofactors are the inverse transposed, but for the determinant.
-    const Vec3 n = normal.x * glm::cross(m[1], m[2]) + normal.y * glm::cross(m[2], m[0]) +
-                   normal.z * glm::cross(m[0], m[1]);
-    const double length = glm::length(n);
-    if (!(length > 0)) return normal;
-    return (glm::dot(m[0], glm::cross(m[1], m[2])) < 0 ? -1.0 : 1.0) / length * n;
-}
-
-} // namespace
-
 Instructions best_instructions() {
 #if defined(__x86_64__)
     if (__builtin_cpu_supports("avx2")) return Instructions::avx2;
@@ -474,7 +456,9 @@ void Traversal::surface_at_best(SurfaceHit& hit) const {
         inherited = model_.source(best_.proxy_node).mean.over(inherited);
     hit.t = best_.t;
     hit.rgb = tint.over(inherited);
-    hit.normal = transformed_normal(best_.world_from_leaf, best_.normal);
+    hit.normal = best_.proxy_node != no_edge && model_.options.limit_normals()
+                     ? limit_normal(model_, path_, best_.proxy_node, best_.normal)
+                     : transformed_normal(best_.world_from_leaf, best_.normal);
 }
 
 } // namespace graftal

@@ -148,7 +148,8 @@ Status draw_depths(CompiledModel model, const DepthRange& range, int threads, Im
 std::optional<Cut> cut_for_povray(ViewedModel& viewed, const OracleOptions& options,
                                   Diagnostics& diagnostics) {
     CutOptions cut_options = viewed.cut;
-    cut_options.flatten = options.flatten;
+    // Where every part is spelt out it shows its own normal, and not the limit's.
+    viewed.cut.flatten = cut_options.flatten = options.flatten;
     cut_options.memory_bytes = options.memory_bytes;
     const AnalysedModel& model = viewed.model;
     Diagnostics found;

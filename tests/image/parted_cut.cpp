@@ -21,7 +21,7 @@ CompiledModel parted_at(const CompiledModel& model, double mesh_triangles) {
     Choice choice;
     choice.threshold = mesh_triangles;
     std::optional<Cut> result =
-        assemble(cut, symmetry, projection, root, choice, weights, {1'000'000, 4'000'000});
+        assemble(cut, symmetry, projection, root, choice, weights, false, {1'000'000, 4'000'000});
     EXPECT_TRUE(result.has_value());
     CompiledModel parted = model;
     if (result) parted.cut = std::move(*result);

@@ -1,0 +1,44 @@
+#include "runtime/trace/surface_normal.h"
+
+#include <glm/geometric.hpp>
+
+#include "compiler/cut/limit_normal.h"
+
+namespace graftal {
+
+Vec3 transformed_normal(const LaneMap& map, Vec3 normal) {
+    Mat3 m = map.affine().linear;
+    const double largest = largest_entry(m);
+    m /= largest;
+    // The cofactors are the inverse transposed, but for the determinant.
+    const Vec3 n = normal.x * glm::cross(m[1], m[2]) + normal.y * glm::cross(m[2], m[0]) +
+                   normal.z * glm::cross(m[0], m[1]);
+    const double length = glm::length(n);
+    if (!(length > 0)) return normal;
+    return (glm::dot(m[0], glm::cross(m[1], m[2])) < 0 ? -1.0 : 1.0) / length * n;
+}
+
+Vec3 limit_normal(const TraceModel& model, std::span<const std::uint32_t> path, std::uint32_t node,
+                  Vec3 point) {
+    const LaneMap& node_from_proxy = model.nodes[node].node_from_proxy;
+    Vec3 at = node_from_proxy.affine()(point);
+    Vec3 sum = transformed_normal(node_from_proxy, point);
+    int level = 0;
+    double weight = 1;
+    for (std::size_t i = path.size(); i-- > 0;) {
+        const TraceEdge& edge = model.edges[path[i] & ~from_cut];
+        const double length = glm::length(sum);
+        if (!(length > 0)) return transformed_normal(node_from_proxy, point);
+        sum = length * transformed_normal(edge.parent_from_child, sum / length);
+        if (i == 0 || level == limit_normal_levels) continue;
+        at = edge.parent_from_child.affine()(at);
+        const TraceNode& parent = model.nodes[model.edges[path[i - 1] & ~from_cut].child];
+        if (!parent.unending) continue;
+        ++level;
+        weight /= limit_normal_ratio;
+        sum += weight / parent.ball_radius * (at - vec3_of(parent.ball_centre));
+    }
+    return glm::normalize(sum);
+}
+
+} // namespace graftal

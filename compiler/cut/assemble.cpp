@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <map>
 #include <tuple>
@@ -12,7 +13,10 @@
 
 #include "compiler/analysis/bounding.h"
 #include "compiler/cut/bake.h"
+#include "compiler/cut/mesh_builder.h"
 #include "compiler/cut/placed_set.h"
+#include "compiler/cut/tessellate.h"
+#include "compiler/cut/texture_space.h"
 #include "compiler/support/id_table.h"
 
 namespace graftal {
@@ -30,10 +34,20 @@ struct Placed {
     PathTint tint;           ///< of a mesh
     Rgb rgb{0.8};            ///< of a primitive, tints in front
     std::optional<MaterialId> material;
+    std::optional<std::uint32_t> textured; ///< one of the primitives with pictures
 };
 
-using RequestKey = std::tuple<NodeId, std::uint32_t, std::int32_t, std::int64_t>;
+/// A primitive as a mesh with a picture round it.
+struct TexturedPrimitive {
+    PrimitiveKind kind = PrimitiveKind::sphere;
+    int fineness = 0;
+    double around = 1, along = 1;
+    auto operator<=>(const TexturedPrimitive&) const = default;
+};
+
 using PainterKey = std::tuple<std::uint32_t, std::uint32_t, std::array<double, 3>>;
+/// Meshes with pictures have one painter each, others any number.
+using RequestKey = std::tuple<NodeId, std::uint32_t, std::int32_t, std::int64_t, std::optional<PainterKey>>;
 
 std::array<double, 3> as_array(const Rgb& rgb) {
     return {rgb.r, rgb.g, rgb.b};
@@ -45,6 +59,7 @@ class Unfolding {
     Unfolding(const CutGraph& cut, const Symmetry& symmetry, const Projection& projection,
               const Choice& choice, Weights& weights)
         : cut_(cut), symmetry_(symmetry), projection_(projection), choice_(choice), weights_(weights),
+          textured_(std::ranges::any_of(cut.materials, [](const Material& m) { return !m.texture.empty(); })),
           seen_(cut.nodes[cut.root].ball.radius) {}
 
     bool run(const Piece& root, std::size_t max_placements) {
@@ -62,6 +77,7 @@ class Unfolding {
 
     std::vector<Placed> placed;
     std::vector<BakeRequest> requests;
+    std::vector<TexturedPrimitive> textured;
     double culled_detail = 0;
     double finest = std::numeric_limits<double>::infinity();
 
@@ -70,6 +86,9 @@ class Unfolding {
         children.clear();
         const CutNode& node = cut_.nodes[piece.node];
         if (!node.unbounded && projection_.drops(world_ball(cut_, piece))) return;
+        if (node.primitive && !node.unbounded && piece.material &&
+            !cut_.materials[*piece.material].texture.empty())
+            return place_textured(*node.primitive, piece);
         if (node.primitive)
             return place_primitive(*node.primitive, piece.world_from_node, piece, piece.inherited);
         const double detail = detail_of(cut_, projection_, piece);
@@ -108,11 +127,32 @@ class Unfolding {
         placed.push_back(thing);
     }
 
+    void place_textured(PrimitiveKind kind, const Piece& piece) {
+        const Ball ball = world_ball(cut_, piece);
+        Placed thing;
+        thing.world_from_thing = thickened(
+            piece.world_from_node, leaf_thickness(piece.world_from_node, projection_.detail_per_unit(ball)));
+        const double px = norm(thing.world_from_thing.linear) * projection_.pixels_that_matter(ball);
+        const TextureSpace space = texture_space(kind, cut_.materials[*piece.material].around, piece.turns);
+        const TexturedPrimitive shape{
+            kind, fineness_for(kind, tessellation_tolerance_px / std::max(px, 1e-300)), space.around,
+            space.along};
+        const auto [place, added] =
+            textured_of_.emplace(shape, static_cast<std::uint32_t>(textured.size()));
+        if (added) textured.push_back(shape);
+        if (!seen_.insert(static_cast<std::uint32_t>(kind), thing.world_from_thing)) return;
+        note_finest(ball);
+        thing.textured = place->second;
+        thing.tint = piece.tint;
+        thing.material = piece.material;
+        placed.push_back(thing);
+    }
+
     void place_mesh(const Piece& piece, const PieceKind& kind) {
         const NodeId representative = symmetry_.representative[piece.node];
         const std::int64_t finish = piece.material ? static_cast<std::int64_t>(*piece.material) : -1;
         const auto [request, added] =
-            request_of_.emplace(RequestKey{representative, kind.steps, weights_.mesh_bin(kind), finish},
+            request_of_.emplace(RequestKey{representative, kind.steps, weights_.mesh_bin(kind), finish, own_painter(piece)},
                                 static_cast<std::uint32_t>(requests.size()));
         if (added) {
             requests.emplace_back();
@@ -144,6 +184,11 @@ class Unfolding {
             finest = std::min(finest, 1 / projection_.detail_per_unit(ball));
     }
 
+    std::optional<PainterKey> own_painter(const Piece& piece) const {
+        if (!textured_) return std::nullopt;
+        return PainterKey{0, symmetry_.pair[piece.node], as_array(piece.inherited)};
+    }
+
     std::uint32_t painter(std::uint32_t request, const Piece& piece) {
         std::vector<Painter>& painters = requests[request].painters;
         const std::uint32_t pair = symmetry_.pair[piece.node];
@@ -158,6 +203,8 @@ class Unfolding {
     const Projection& projection_;
     const Choice& choice_;
     Weights& weights_;
+    const bool textured_; ///< some material has a picture
+    std::map<TexturedPrimitive, std::uint32_t> textured_of_;
     PlacedSet seen_;
     std::map<RequestKey, std::uint32_t> request_of_;
     std::map<PainterKey, std::uint32_t> painter_of_;
@@ -166,8 +213,11 @@ class Unfolding {
 /// Sorts what was placed into bodies, palettes and groups of one texture.
 class Grouping {
   public:
-    Grouping(const CutGraph& cut, const std::vector<BakeRequest>& requests, std::vector<Baked>& baked)
+    Grouping(const CutGraph& cut, const std::vector<BakeRequest>& requests, std::vector<Baked>& baked,
+             const std::vector<TexturedPrimitive>& textured)
         : cut_(cut), baked_(baked) {
+        for (const TexturedPrimitive& shape : textured)
+            add_textured_body(shape);
         for (std::size_t r = 0; r < baked.size(); ++r) {
             first_body_.push_back(static_cast<std::uint32_t>(result_.bodies.size()));
             palette_.emplace_back();
@@ -181,6 +231,7 @@ class Grouping {
     }
 
     void add(const Placed& thing) {
+        if (thing.textured) return add_textured(thing);
         if (thing.request == Placed::no_request) return add_primitive(thing);
         const Baked& baked = baked_[thing.request];
         for (std::uint32_t p = 0; p < baked.parts.size(); ++p) {
@@ -188,7 +239,9 @@ class Grouping {
             const std::uint32_t body = first_body_[thing.request] + p;
             const Affine world_from_body = thing.world_from_thing * baked.representative_from_body;
             const auto& material = baked.parts[p].material;
-            if (palette.size() == 1)
+            if (baked.parts[p].textured)
+                place_picture(body, world_from_body, thing.tint * baked.parts[p].tint, *material);
+            else if (palette.size() == 1)
                 place(body, world_from_body, colour(thing.tint.over(palette[0])), {}, material);
             else
                 place(body, world_from_body, palette_id(thing.request, p, thing.painter), thing.tint,
@@ -207,7 +260,7 @@ class Grouping {
 
     static bool share_finish(const Material& a, const Material& b) {
         return a.ambient == b.ambient && a.diffuse == b.diffuse && a.specular == b.specular &&
-               a.roughness == b.roughness && a.reflection == b.reflection;
+               a.roughness == b.roughness && a.reflection == b.reflection && a.texture == b.texture;
     }
 
     void include(const Box& box) {
@@ -223,6 +276,27 @@ class Grouping {
         return box;
     }
 
+    /// The bodies of primitives with pictures are the first.
+    void add_textured_body(const TexturedPrimitive& shape) {
+        MeshBuilder builder(true);
+        builder.add_textured(shape.kind, shape.fineness, {}, {shape.around, shape.along}, 0);
+        builder.finish();
+        result_.triangle_count += builder.mesh.triangles.size();
+        box_.push_back(box_of(builder.mesh));
+        result_.bodies.push_back({name_of(shape.kind), std::move(builder.mesh)});
+    }
+
+    void add_textured(const Placed& thing) {
+        place_picture(*thing.textured, thing.world_from_thing, thing.tint, *thing.material);
+        include(transformed(thing.world_from_thing, box_[*thing.textured]));
+    }
+
+    void place_picture(std::uint32_t body, const Affine& world_from_body, const PathTint& tint,
+                       MaterialId material) {
+        place_in_group(body, world_from_body, colour(Rgb(1.0)), rounded(tint, texture_tint_grain),
+                       cut_.materials[material]);
+    }
+
     void add_primitive(const Placed& thing) {
         const auto kind = static_cast<std::size_t>(thing.kind);
         if (primitive_body_[kind] == no_palette) {
@@ -236,21 +310,24 @@ class Grouping {
     }
 
     /// What no picture shows makes no textures of its own.
-    static PathTint rounded(const PathTint& tint) {
-        constexpr double grain = 1.0 / (1 << 24);
-        return {glm::round(tint.premultiplied / grain) * grain, std::round(tint.alpha / grain) * grain};
-    }
+    static constexpr double tint_grain = 1.0 / (1 << 24);
 
     void place(std::uint32_t body, const Affine& world_from_body, std::uint32_t palette,
                const PathTint& exact_tint, const std::optional<MaterialId>& material) {
-        const PathTint tint = rounded(exact_tint);
-        static const Material plain;
-        const Material& finish = material ? cut_.materials[*material] : plain;
+        Material finish;
+        if (material) finish = cut_.materials[*material];
+        finish.texture.clear(); // pictures are placed by place_picture()
+        place_in_group(body, world_from_body, palette, rounded(exact_tint, tint_grain), finish);
+    }
+
+    void place_in_group(std::uint32_t body, const Affine& world_from_body, std::uint32_t palette,
+                        const PathTint& tint, const Material& finish) {
         std::uint64_t hash = mixed(0, palette);
         for (const double number :
              {tint.premultiplied.r, tint.premultiplied.g, tint.premultiplied.b, tint.alpha, finish.ambient,
               finish.diffuse, finish.specular, finish.roughness, finish.reflection})
             hash = mixed(hash, std::bit_cast<std::uint64_t>(number));
+        hash = mixed(hash, std::hash<std::string>()(finish.texture));
         const auto next = static_cast<std::uint32_t>(result_.groups.size());
         const std::uint32_t id = group_ids_.find_or_add(hash, next, [&](std::uint32_t other) {
             const PlacementGroup& group = result_.groups[other];
@@ -320,7 +397,7 @@ std::optional<Cut> assemble(const CutGraph& cut, const Symmetry& symmetry, const
         culled_detail = std::max(culled_detail, baked.back().culled_detail);
         tessellation_px = std::max(tessellation_px, baked.back().tessellation_px);
     }
-    Grouping grouping(cut, unfolding.requests, baked);
+    Grouping grouping(cut, unfolding.requests, baked, unfolding.textured);
     for (const Placed& thing : unfolding.placed)
         grouping.add(thing);
     Cut result = grouping.take();

@@ -9,6 +9,7 @@
 #include <span>
 
 #include <Eigen/SVD>
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 
@@ -17,6 +18,8 @@
 #include "compiler/cut/placed_set.h"
 #include "compiler/cut/slot_table.h"
 #include "compiler/cut/tessellate.h"
+#include "compiler/cut/texture_space.h"
+#include "compiler/support/check.h"
 
 namespace graftal {
 
@@ -32,11 +35,22 @@ struct KeptLeaf {
     Affine place;
     PrimitiveKind kind = PrimitiveKind::sphere;
     NormalField normals;
+    double turns = 1;
+};
+
+/// What leaves of one part have in common.
+struct PartKey {
+    std::int64_t material = -1; ///< none: -1
+    bool textured = false;
+    std::array<double, 4> tint{}; ///< of what has a texture
+    auto operator<=>(const PartKey&) const = default;
 };
 
 /// The leaves of one finish.
 struct Part {
     std::optional<MaterialId> material;
+    bool textured = false;
+    PathTint tint;
     bool smooth = false; ///< some leaf is curved
     std::vector<KeptLeaf> leaves;
     SlotTable slots; ///< of the leaves' colours
@@ -71,10 +85,6 @@ Affine spread_turn(std::size_t number) {
         return result;
     }();
     return all[number % turns];
-}
-
-std::int64_t part_key(const std::optional<MaterialId>& material) {
-    return material ? static_cast<std::int64_t>(*material) : -1;
 }
 
 class Baker {
@@ -123,12 +133,12 @@ class Baker {
             // do.
             const Affine mark = thickness > 0 ? crushed_mark(place, thickness) : place;
             if (!seen.insert(static_cast<std::uint32_t>(leaf.kind), mark)) continue;
-            const auto [place_of_part, added] = part_of_.emplace(part_key(leaf.material), parts_.size());
-            if (added) add_part(leaf.material);
+            const auto [place_of_part, added] = part_of_.emplace(key_of(leaf), parts_.size());
+            if (added) add_part(leaf);
             Part& part = parts_[place_of_part->second];
             const TessellatedPrimitive& coarsest = tessellated(leaf.kind, 0);
-            part.smooth = part.smooth || !coarsest.normals.empty();
-            part.leaves.push_back({place, leaf.kind, leaf.normals});
+            part.smooth = part.smooth || part.textured || !coarsest.normals.empty();
+            part.leaves.push_back({place, leaf.kind, leaf.normals, leaf.turns});
             numbers_.push_back(number);
             baked_.culled_detail = std::max(baked_.culled_detail, leaf.culled_detail);
             // Of a cube no face may be left where others touch it; it counts when the mesh is built.
@@ -147,7 +157,7 @@ class Baker {
         std::size_t next = 0;
         for (std::uint64_t number = 0; next < numbers_.size() && walk.next(leaf); ++number) {
             if (number != numbers_[next]) continue;
-            parts_[part_of_.at(part_key(leaf.material))].slots.add(leaf.colours);
+            parts_[part_of_.at(key_of(leaf))].slots.add(leaf.colours);
             ++next;
         }
     }
@@ -156,8 +166,25 @@ class Baker {
         return static_cast<std::size_t>(std::min(request_.expected_leaves, most_expected_leaves));
     }
 
-    void add_part(const std::optional<MaterialId>& material) {
-        parts_.push_back({.material = material, .slots = SlotTable(request_.painters.size())});
+    bool textured(const WalkedLeaf& leaf) const {
+        return !leaf.proxy && leaf.material && !cut_.materials[*leaf.material].texture.empty();
+    }
+
+    PartKey key_of(const WalkedLeaf& leaf) const {
+        PartKey key;
+        if (leaf.material) key.material = static_cast<std::int64_t>(*leaf.material);
+        key.textured = textured(leaf);
+        if (!key.textured) return key;
+        const PathTint tint = rounded(leaf.tint, texture_tint_grain);
+        key.tint = {tint.premultiplied.r, tint.premultiplied.g, tint.premultiplied.b, tint.alpha};
+        return key;
+    }
+
+    void add_part(const WalkedLeaf& leaf) {
+        parts_.push_back({.material = leaf.material,
+                          .textured = textured(leaf),
+                          .tint = rounded(leaf.tint, texture_tint_grain),
+                          .slots = SlotTable(request_.painters.size())});
         if (parts_.size() > 1) return;
         parts_.back().leaves.reserve(expected_leaves());
         parts_.back().slots.reserve(expected_leaves());
@@ -170,14 +197,18 @@ class Baker {
             const KeptLeaf& leaf = part.leaves[number];
             const int level = fineness(leaf);
             Affine place = body_from_representative * leaf.place;
+            if (part.textured) {
+                const double around = cut_.materials[*part.material].around;
+                builder.add_textured(leaf.kind, level, place, texture_space(leaf.kind, around, leaf.turns),
+                                     number);
+                if (too_many(builder)) return;
+                continue;
+            }
             if (leaf.kind == PrimitiveKind::sphere && level == 0) place = place * spread_turn(number);
             builder.add(leaf.kind, level, place, number,
                         leaf.normals.seen_from(baked_.representative_from_body.linear[0][0],
                                                baked_.representative_from_body.translation));
-            if (baked_.triangles + builder.triangle_count() > 4 * max_triangles_) {
-                baked_.complete = false;
-                return;
-            }
+            if (too_many(builder)) return;
         }
         part.leaves = {};
         builder.finish();
@@ -186,15 +217,26 @@ class Baker {
         baked_.triangles += part.mesh.triangles.size();
     }
 
+    bool too_many(const MeshBuilder& builder) {
+        if (baked_.triangles + builder.triangle_count() <= 4 * max_triangles_) return false;
+        baked_.complete = false;
+        return true;
+    }
+
     void finish(Part& part) {
         if (part.mesh.triangles.empty()) return;
+        if (part.textured) {
+            GRAFTAL_CHECK(request_.painters.size() == 1, "bake: a picture has one painter");
+            baked_.parts.push_back({part.material, std::move(part.mesh), {{Rgb(1.0)}}, true, part.tint});
+            return;
+        }
         part.mesh.slot_count = part.slots.slot_count();
         if (part.mesh.slot_count > 1) {
             part.mesh.slot_of_triangle.reserve(part.leaf_of_triangle.size());
             for (const std::uint32_t leaf : part.leaf_of_triangle)
                 part.mesh.slot_of_triangle.push_back(part.slots.slot_of(leaf));
         }
-        baked_.parts.push_back({part.material, std::move(part.mesh), part.slots.take_palettes()});
+        baked_.parts.push_back({part.material, std::move(part.mesh), part.slots.take_palettes(), false, {}});
     }
 
     int fineness(const KeptLeaf& leaf) {
@@ -211,11 +253,15 @@ class Baker {
     std::size_t max_triangles_;
     Baked baked_;
     std::vector<Part> parts_;
-    std::map<std::int64_t, std::size_t> part_of_; ///< by part_key()
+    std::map<PartKey, std::size_t> part_of_;
     std::vector<std::uint64_t> numbers_;          ///< of the leaves that are kept, in the order of the walk
 };
 
 } // namespace
+
+PathTint rounded(const PathTint& tint, double grain) {
+    return {glm::round(tint.premultiplied / grain) * grain, std::round(tint.alpha / grain) * grain};
+}
 
 double leaf_thickness(const Affine& place, double detail_per_unit, double crushed_length) {
     if (!is_singular(place, flattest_leaf)) return 0;

@@ -33,7 +33,13 @@ struct BakedPart {
     std::optional<MaterialId> material;
     Mesh mesh;
     std::vector<Palette> palettes; ///< by painter
+    bool textured = false;         ///< by the material's picture, behind this tint; requires one painter
+    PathTint tint;
 };
+
+/// Tints in front of pictures are told apart no better than this: each is a texture of its own.
+inline constexpr double texture_tint_grain = 1.0 / 64;
+PathTint rounded(const PathTint& tint, double grain);
 
 struct Baked {
     Affine representative_from_body; ///< scaling by a power of two, so that coordinates stay exact

@@ -18,6 +18,7 @@ struct Piece {
     PathTint tint;
     Rgb inherited{0.8};                 ///< the colour that what names no material shows
     std::optional<MaterialId> material; ///< whose finish it shows
+    double turns = 1;                   ///< of a primitive: length_in_turns() of its instance
 };
 
 /// Steps down one edge. What stands for a cut node takes on the node's mean colour.

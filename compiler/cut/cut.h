@@ -42,6 +42,8 @@ struct CutOptions {
 struct Mesh {
     std::vector<Vec3> vertices;
     std::vector<Vec3> normals; ///< empty: flat; else one a vertex, of unit length
+    /// Of what has a texture, one a vertex (texture_space.h); such a mesh has one slot, which does not count.
+    std::vector<std::array<double, 2>> uv;
     std::vector<std::array<std::uint32_t, 3>> triangles;
     std::vector<std::uint32_t> slot_of_triangle; ///< empty if slot_count == 1
     std::uint32_t slot_count = 1;
@@ -63,7 +65,8 @@ struct Placement {
 };
 
 /// Placements that share a texture: a palette, one tint in front of it, and a finish (the material's rgb is
-/// already in the palette). Where the palette has one colour the tint is already in it too.
+/// already in the palette). Where the palette has one colour the tint is already in it too. If the material has
+/// a picture it stands in the palette's place, behind the tint.
 struct PlacementGroup {
     std::uint32_t palette = 0;
     PathTint tint;

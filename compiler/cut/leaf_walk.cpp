@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "compiler/cut/texture_space.h"
+
 namespace graftal {
 
 LeafWalk::LeafWalk(const CutGraph& cut, const Symmetry& symmetry, const BakeRequest& request,
@@ -24,6 +26,9 @@ bool LeafWalk::next(WalkedLeaf& leaf) {
         leaf.crushed_length = visit_.crushed_length;
         leaf.colours.clear();
         leaf.normals = {};
+        leaf.proxy = !shape.primitive;
+        leaf.tint = paints_.front().tint;
+        leaf.turns = visit_.turns;
         if (shape.primitive) {
             leaf.kind = *shape.primitive;
             leaf.representative_from_leaf = visit_.representative_from_node;
@@ -88,6 +93,7 @@ void LeafWalk::fill_child(const CutEdge& edge, bool is_cut, double detail, Visit
     child.representative_from_node = visit_.representative_from_node * edge.node_from_child;
     child.scale = edge.similarity ? visit_.scale * edge.stretch : norm(child.representative_from_node.linear);
     child.depth = visit_.depth;
+    if (cut_.nodes[edge.child].primitive) child.turns = length_in_turns(edge.node_from_child.linear);
     child.culled_detail = is_cut && detail <= 1 ? detail : visit_.culled_detail;
     child.crushed_length = visit_.crushed_length;
     if (child.crushed_length == 0 && cut_.nodes[visit_.shape].sealed)

@@ -19,6 +19,9 @@ struct WalkedLeaf {
     double culled_detail = 0;           ///< > 0: it stands for a part of that detail
     double crushed_length = 0;          ///< > 0: of the part that a singular map crushed, and it with it
     NormalField normals;                ///< of a proxy, in the representative's frame, if asked for
+    bool proxy = false;
+    PathTint tint;                      ///< all tints of the walk, by the first painter
+    double turns = 1;                   ///< length_in_turns() of its instance
 };
 
 /// Visits the leaves of a baked subtree in one fixed order: geometry as the representative has it, colours as
@@ -41,6 +44,7 @@ class LeafWalk {
         double culled_detail = 0;
         double crushed_length = 0;
         std::uint32_t depth = 0; ///< unending nodes above it
+        double turns = 1;        ///< of a primitive
     };
     /// What one painter makes of a visit.
     struct Paint {

@@ -75,6 +75,28 @@ void MeshBuilder::add_smooth(PrimitiveKind kind, int fineness, const Affine& bod
         push({first + t[0], first + t[1], first + t[2]}, leaf);
 }
 
+void MeshBuilder::add_textured(PrimitiveKind kind, int fineness, const Affine& body_from_leaf,
+                               const TextureSpace& space, std::uint32_t leaf) {
+    GRAFTAL_CHECK(smooth_, "texture in a flat mesh");
+    const TessellatedPrimitive& shape = tessellated(kind, fineness);
+    const Mat3 normal_map = glm::transpose(glm::inverse(body_from_leaf.linear));
+    for (const auto& triangle : shape.triangles) {
+        std::array<Vec3, 3> corner;
+        for (std::size_t k = 0; k < 3; ++k)
+            corner[k] = shape.vertices[triangle[k]];
+        for (const auto& uv : texture_coordinates(kind, space, corner))
+            mesh.uv.push_back(uv);
+        const Vec3 facet = glm::cross(corner[1] - corner[0], corner[2] - corner[0]);
+        const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+        for (std::size_t k = 0; k < 3; ++k) {
+            const Vec3 normal = shape.normals.empty() ? facet : shape.normals[triangle[k]];
+            mesh.vertices.push_back(body_from_leaf(corner[k]));
+            mesh.normals.push_back(glm::normalize(normal_map * normal));
+        }
+        push({first, first + 1, first + 2}, leaf);
+    }
+}
+
 void MeshBuilder::add_facets(PrimitiveKind kind, const Affine& body_from_leaf, bool mirrored,
                              std::uint32_t leaf) {
     const TessellatedPrimitive& shape = tessellated(kind, 0);

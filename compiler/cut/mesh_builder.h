@@ -8,6 +8,7 @@
 #include "compiler/cut/cut.h"
 #include "compiler/cut/facet_set.h"
 #include "compiler/cut/limit_normal.h"
+#include "compiler/cut/texture_space.h"
 
 namespace graftal {
 
@@ -23,6 +24,10 @@ class MeshBuilder {
     /// What is curved has its own normals, with the field's added to them.
     void add(PrimitiveKind kind, int fineness, const Affine& body_from_leaf, std::uint32_t leaf,
              const NormalField& normals = {});
+
+    /// The same in a smooth mesh, with texture coordinates; each triangle has corners of its own.
+    void add_textured(PrimitiveKind kind, int fineness, const Affine& body_from_leaf,
+                      const TextureSpace& space, std::uint32_t leaf);
 
     /// Makes the triangles of the faces that are seen. Call once, after the last add().
     void finish();

@@ -15,12 +15,14 @@ namespace graftal {
 /// Receives text piece by piece, so that a scene of gigabytes never lies in memory; returns false to stop.
 using TextSink = std::function<bool(std::string_view)>;
 
-/// A picture that the scene refers to: the palette of a mesh with more colours than a colour_map holds.
+/// A picture that the scene refers to: the palette of a mesh with more colours than a colour_map holds, or the
+/// texture of a material.
 struct PaletteImage {
     std::string file_name; ///< beside the scene; PNG, 16 bit, linear
     int width = 0;
     int height = 0;
     std::span<const Rgb> pixels; ///< row by row, top first, of a palette of the cut; may end early
+    std::string texture = {};    ///< Material::texture: then no palette; RGBA, 8 bit, alpha 0 or 1
 };
 
 struct PovrayOptions {

@@ -70,6 +70,17 @@ void write_uv_vectors(SdlWriter& out, const UsedSlots& used, std::uint32_t slot_
     out << " }\n";
 }
 
+void write_uv_vectors(SdlWriter& out, const std::vector<std::array<double, 2>>& uv) {
+    begin_list(out, "uv_vectors", uv.size());
+    for (std::size_t i = 0; i < uv.size() && !out.stopped(); ++i) {
+        separate(out, i);
+        out << "<";
+        out.number(uv[i][0], uv_digits) << ",";
+        out.number(uv[i][1], uv_digits) << ">";
+    }
+    out << " }\n";
+}
+
 } // namespace
 
 bool declare_mesh(SdlWriter& out, std::string_view name, const Mesh& mesh, bool palette,
@@ -87,6 +98,8 @@ bool declare_mesh(SdlWriter& out, std::string_view name, const Mesh& mesh, bool 
                   "emit_povray: a mesh whose slots are not one a triangle");
     const UsedSlots used(palette ? mesh : Mesh{});
     if (palette) write_uv_vectors(out, used, mesh.slot_count);
+    // Their indices are those of the vertices, which is what POV-Ray takes where there are none.
+    if (!mesh.uv.empty()) write_uv_vectors(out, mesh.uv);
 
     begin_list(out, "face_indices", mesh.triangles.size());
     for (std::size_t i = 0; i < mesh.triangles.size() && !out.stopped(); ++i) {

@@ -113,11 +113,44 @@ void PovrayTextures::append_layered(std::string& text, const PlacementGroup& gro
     end_texture(text, shining);
 }
 
+const std::string& PovrayTextures::picture_name(const std::string& texture) {
+    std::string& name = pictures_[texture];
+    if (name.empty()) name = fmt::format("{}T_{}", prefix_, pictures_.size());
+    return name;
+}
+
+/// The tint over the picture is the weighted mean of a colour and the picture, where there is any of it.
+void PovrayTextures::append_picture(std::string& text, const PlacementGroup& group) {
+    const std::string& name = picture_name(group.material.texture);
+    const PathTint& tint = group.tint;
+    text += fmt::format("texture {{ uv_mapping pigment {{ pigment_pattern {{ {}_shape }} pigment_map {{ "
+                        "[0.5 rgbt 1] [0.5 ",
+                        name);
+    if (tint.alpha <= no_tint) {
+        text += name;
+    } else if (tint.alpha >= 1 - no_tint) {
+        append_rgb(text, tint.premultiplied);
+    } else {
+        text += "average pigment_map { [";
+        append_number(text, 1 - tint.alpha, colour_digits);
+        text += " " + name + "] [";
+        append_number(text, tint.alpha, colour_digits);
+        text += " ";
+        append_rgb(text, tint.premultiplied / tint.alpha);
+        text += "] }";
+    }
+    text += "] }";
+    end_texture(text, finish(group.material, true));
+}
+
 std::uint32_t PovrayTextures::texture_of(const PlacementGroup& group) {
     GRAFTAL_CHECK(group.palette < cut_.palettes.size() && !cut_.palettes[group.palette].empty(),
                   "emit_povray: a group without colours");
     text_.clear();
-    append_layered(text_, group);
+    if (group.material.texture.empty())
+        append_layered(text_, group);
+    else
+        append_picture(text_, group);
     const auto next = static_cast<std::uint32_t>(textures_.size());
     const std::uint32_t index =
         texture_ids_.find_or_add(std::hash<std::string>()(text_), next,
@@ -126,16 +159,27 @@ std::uint32_t PovrayTextures::texture_of(const PlacementGroup& group) {
     return index;
 }
 
+std::string PovrayTextures::file_name(const std::string& name) const {
+    return fmt::format("{}_{}.png", file_stem_, name);
+}
+
 std::string PovrayTextures::declarations(std::vector<PaletteImage>& pictures) const {
     std::string text;
     for (const std::string& declaration : finish_declarations_)
         text += declaration;
     for (const auto& [index, name] : palettes_) {
         const Palette& palette = cut_.palettes[index];
-        const std::string file_name = fmt::format("{}_{}.png", file_stem_, name);
-        text += fmt::format("#declare {} = pigment {{ {} }}\n", name, palette_pigment(palette, file_name));
+        text += fmt::format("#declare {} = pigment {{ {} }}\n", name, palette_pigment(palette, file_name(name)));
         if (PaletteLayout(static_cast<std::uint32_t>(palette.size())).picture())
-            pictures.push_back(palette_image(palette, file_name));
+            pictures.push_back(palette_image(palette, file_name(name)));
+    }
+    for (const auto& [texture, name] : pictures_) {
+        // With use_alpha the pattern is 1 where the picture is clear.
+        text += fmt::format("#declare {0} = pigment {{ image_map {{ png \"{1}\" }} }}\n"
+                            "#declare {0}_shape = pigment {{ image_pattern {{ png \"{1}\" use_alpha }} "
+                            "color_map {{ [0 rgb 1] [1 rgb 0] }} }}\n",
+                            name, file_name(name));
+        pictures.push_back({.file_name = file_name(name), .texture = texture});
     }
     return text;
 }

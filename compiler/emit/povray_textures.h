@@ -43,11 +43,14 @@ class PovrayTextures {
     };
 
     void append_layered(std::string& text, const PlacementGroup& group);
+    void append_picture(std::string& text, const PlacementGroup& group);
     void append_plain(std::string& text, Rgb rgb, const Material& material);
     /// The name of the finish, with or without what shines.
     const std::string& finish(const Material& material, bool shining);
     std::string named_finish(const Material& material, bool shining);
     const std::string& palette_name(std::uint32_t index);
+    const std::string& picture_name(const std::string& texture);
+    std::string file_name(const std::string& name) const;
 
     const Cut& cut_;
     std::string prefix_;
@@ -56,6 +59,7 @@ class PovrayTextures {
     std::unordered_map<std::string, std::string> finish_by_text_;
     std::vector<std::string> finish_declarations_;
     std::map<std::uint32_t, std::string> palettes_; ///< by index in the cut: the declared name
+    std::map<std::string, std::string> pictures_;   ///< likewise, by Material::texture
     FinishNames last_finish_;
     std::deque<std::string> textures_;
     IdTable texture_ids_;

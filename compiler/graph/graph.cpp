@@ -80,7 +80,8 @@ double top_radius(PrimitiveKind kind) {
 
 bool Material::operator==(const Material& other) const {
     return name == other.name && rgb == other.rgb && ambient == other.ambient && diffuse == other.diffuse &&
-           specular == other.specular && roughness == other.roughness && reflection == other.reflection;
+           specular == other.specular && roughness == other.roughness && reflection == other.reflection && texture == other.texture &&
+           around == other.around && coverage == other.coverage;
 }
 
 ObjectId Graph::add(Object object) {

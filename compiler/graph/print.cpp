@@ -53,6 +53,10 @@ class Printer {
         print_numbers("  specular", {material.specular});
         print_numbers("  roughness", {material.roughness});
         print_numbers("  reflection", {material.reflection});
+        if (!material.texture.empty()) {
+            out_ += "  texture: \"" + material.texture + "\"\n";
+            print_numbers("  around", {material.around});
+        }
         out_ += "}\n\n";
     }
 

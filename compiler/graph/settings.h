@@ -19,6 +19,11 @@ struct Material {
     double specular = 0.1;
     double roughness = 0.05;
     double reflection = 0;
+    /// The picture that is wrapped round each primitive in place of rgb (texture_space.h), by the file it is
+    /// read from or the model it is drawn from; empty: none. Where its alpha is below 1/2 there is no surface.
+    std::string texture;
+    double around = 1;   ///< how often it goes round what is round
+    double coverage = 1; ///< share of the picture that is not clear
     Span span;
 
     /// Spans do not count.

@@ -56,18 +56,21 @@ bool check_chain(Span use_span, const std::string& path, Lowering& lowering) {
     return true;
 }
 
-/// The text of a regular file. Others (pipes, devices) could keep a compilation waiting for ever.
-std::optional<std::string> read_used(Span use_span, const std::string& path, Lowering& lowering) {
+Status check_regular(const std::string& path) {
     std::error_code code;
     const std::filesystem::file_status status = std::filesystem::status(path, code);
-    std::string text;
-    Status read;
     if (!std::filesystem::exists(status))
-        read = Status::failure(fmt::format("cannot open '{}': {}", path, std::strerror(ENOENT)));
-    else if (!std::filesystem::is_regular_file(status))
-        read = Status::failure(fmt::format("'{}' is not a regular file", path));
-    else
-        read = read_text(path, text);
+        return Status::failure(fmt::format("cannot open '{}': {}", path, std::strerror(ENOENT)));
+    if (!std::filesystem::is_regular_file(status))
+        return Status::failure(fmt::format("'{}' is not a regular file", path));
+    return {};
+}
+
+/// The text of a regular file.
+std::optional<std::string> read_used(Span use_span, const std::string& path, Lowering& lowering) {
+    std::string text;
+    Status read = check_regular(path);
+    if (read.ok()) read = read_text(path, text);
     if (read.ok()) return text;
     add_chain(lowering.diagnostics.error(use_span, read.message()), lowering);
     return std::nullopt;
@@ -139,6 +142,15 @@ ObjectId append_objects(Graph& into, const Graph& from, std::string_view prefix,
 }
 
 } // namespace
+
+std::optional<std::string> find_beside(Span name_span, std::string_view path, Lowering& lowering) {
+    if (!check_path(name_span, path, lowering)) return std::nullopt;
+    std::string found = path_beside(name_span, path, lowering.sources);
+    const Status regular = check_regular(found);
+    if (regular.ok()) return found;
+    add_chain(lowering.diagnostics.error(name_span, regular.message()), lowering);
+    return std::nullopt;
+}
 
 bool within_limits(std::size_t objects, std::size_t instances, Span span, Lowering& lowering) {
     const std::size_t most_objects = lowering.options.max_objects;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <optional>
 #include <string>
@@ -27,6 +28,9 @@ struct Derivation {
 struct LowerOptions {
     std::map<std::string, double, std::less<>> set; ///< `--set NAME=VALUE`: replaces the value of a `let`
     std::optional<unsigned> steps;     ///< derivation steps of an L-system, in place of what the model says
+    /// Looks at the picture that a material names: the mean of its linear colours, and the share of it that is
+    /// not clear. Without this, textures are taken on trust.
+    std::function<Status(const std::string& path, Rgb& mean, double& coverage)> look_at_texture;
     std::optional<std::uint64_t> seed; ///< of what is random, in place of what the model says
     bool exact = false;                ///< L-systems are derived module by module: one honest random tree
     std::uint64_t max_modules = 50'000'000; ///< of a derived word

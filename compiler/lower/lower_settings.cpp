@@ -17,6 +17,7 @@ namespace {
 using Kind = SceneStatement::Kind;
 
 constexpr double most_steps = 1e9;
+constexpr double most_around = 1000;
 
 /// One statement's fields by name, each evaluated and checked on demand.
 class Fields {
@@ -139,7 +140,29 @@ GroundSetting lower_ground(const Fields& fields) {
     return ground;
 }
 
-Material lower_material(const Fields& fields, const SceneStatement& statement) {
+/// Without a colour of its own the material has the picture's.
+void read_texture(const SceneField& field, bool take_colour, Lowering& lowering, Material& material) {
+    const std::optional<std::string> path = find_beside(field.name_span, field.name, lowering);
+    if (!path) return;
+    material.texture = *path;
+    if (!lowering.options.look_at_texture) return;
+    Rgb mean;
+    const Status status = lowering.options.look_at_texture(*path, mean, material.coverage);
+    if (!status.ok()) lowering.diagnostics.error(field.name_span, status.message());
+    if (take_colour) material.rgb = mean;
+}
+
+/// How the picture lies.
+void lower_texture(const Fields& fields, Lowering& lowering, Material& material) {
+    if (const SceneField* texture = fields.find("texture"))
+        read_texture(*texture, !fields.flag("color"), lowering, material);
+    else if (fields.flag("around"))
+        fields.error("around", "'around' says how often a texture goes round, and there is none");
+    const auto counts = [](double x) { return x >= 1 && x <= most_around && x == std::floor(x); };
+    material.around = fields.number("around", counts, "be a whole number between 1 and 1000").value_or(1);
+}
+
+Material lower_material(const Fields& fields, const SceneStatement& statement, Lowering& lowering) {
     Material material;
     material.name = statement.name;
     material.span = statement.span;
@@ -153,6 +176,7 @@ Material lower_material(const Fields& fields, const SceneStatement& statement) {
             .number(
                 "roughness", [](double x) { return x > 0 && x <= 1; }, "be above 0 and at most 1")
             .value_or(material.roughness);
+    lower_texture(fields, lowering, material);
     return material;
 }
 
@@ -249,7 +273,7 @@ void lower_settings(const std::vector<SceneStatement>& statements, const Environ
             graph.settings.ground = lower_ground(fields);
             break;
         case Kind::material:
-            graph.materials.push_back(lower_material(fields, statement));
+            graph.materials.push_back(lower_material(fields, statement, lowering));
             break;
         case Kind::steps:
             graph.settings.steps = lower_steps(fields);

@@ -41,6 +41,10 @@ struct Lowering {
 /// belong.
 std::optional<Graph> lower_file(FileId file, Span asked_for, Lowering& lowering);
 
+/// The file that a model names, looked up beside the model's own; nothing after an error, if there is none, or
+/// it is no regular file: others (pipes, devices) could keep a compilation waiting for ever.
+std::optional<std::string> find_beside(Span name_span, std::string_view path, Lowering& lowering);
+
 /// Loads `use NAME = "path"`: looked up beside the file that holds `use_span`, lowered, and appended to
 /// `into`: objects as `NAME.object`, primitives shared, materials shared where equal, else renamed to
 /// `NAME.material`; its scene settings do not count. Gives the id of its root, or nothing after an error.

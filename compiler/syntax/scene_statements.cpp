@@ -14,7 +14,7 @@ namespace {
 
 using Kind = SceneStatement::Kind;
 
-enum class Shape { flag, number, vector, color, name };
+enum class Shape { flag, number, vector, color, name, text };
 
 struct FieldRule {
     std::string_view keyword;
@@ -35,7 +35,8 @@ const std::vector<FieldRule>& rules(Kind kind) {
         {"height", Shape::number}, {"color", Shape::color}, {"material", Shape::name}};
     static const std::vector<FieldRule> material = {
         {"color", Shape::color},     {"ambient", Shape::number},   {"diffuse", Shape::number},
-        {"specular", Shape::number}, {"roughness", Shape::number}, {"reflection", Shape::number}};
+        {"specular", Shape::number}, {"roughness", Shape::number}, {"reflection", Shape::number},
+        {"texture", Shape::text},    {"around", Shape::number}};
     static const std::vector<FieldRule> none;
     switch (kind) {
     case Kind::camera:
@@ -193,6 +194,13 @@ class StatementParser {
             if (!name) return false;
             field.name = name->text;
             field.name_span = name->span;
+            break;
+        }
+        case Shape::text: {
+            const std::optional<Token> text = stream_.expect_string("a file name in quotes after " + what);
+            if (!text) return false;
+            field.name = text->text;
+            field.name_span = text->span;
             break;
         }
         }

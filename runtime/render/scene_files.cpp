@@ -14,6 +14,7 @@
 #include "compiler/emit/emit_povray.h"
 #include "compiler/support/file.h"
 #include "runtime/image/image.h"
+#include "runtime/image/texture.h"
 #include "runtime/povray/interruption.h"
 
 namespace graftal {
@@ -33,8 +34,12 @@ Status write_palettes(const std::filesystem::path& folder, const std::vector<Pal
     Status status;
     for (const PaletteImage& palette : palettes) {
         if (!status.ok()) break;
-        status = write_palette((folder / palette.file_name).string(), palette.width, palette.height,
-                               palette.pixels);
+        const std::string path = (folder / palette.file_name).string();
+        if (palette.texture.empty()) {
+            status = write_palette(path, palette.width, palette.height, palette.pixels);
+        } else if (const auto texture = load_texture(palette.texture, status)) {
+            status = write_texture(path, *texture);
+        }
     }
     return status;
 }

@@ -7,6 +7,7 @@
 
 #include "compiler/graph/print.h"
 #include "compiler/support/file.h"
+#include "runtime/image/texture.h"
 #include "runtime/povray/interruption.h"
 #include "tools/graftal/commands.h"
 
@@ -47,6 +48,7 @@ std::string rays_text(const TraceStatistics& rays, double seconds) {
 
 CompileOptions compile_options(const Options& options) {
     CompileOptions compile = options.compile;
+    compile.lower.look_at_texture = look_at_texture;
     if (options.dump_after.empty()) return compile;
     compile.pipeline.after_each = [wanted = options.dump_after](const Pass& pass, const Graph& graph) {
         if (wanted == "all" || wanted == pass.name)

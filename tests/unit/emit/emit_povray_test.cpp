@@ -294,5 +294,27 @@ TEST(EmitPovrayDeathTest, BrokenCutsAreBugs) {
     EXPECT_DEATH(nan.text(), "finite");
 }
 
+// With use_alpha POV-Ray's pattern is 1 where the picture is clear; tests/image looks at what comes of it.
+TEST(EmitPovray, PicturesLieBehindTints) {
+    Scene scene;
+    const std::uint32_t mesh = scene.mesh("bark");
+    std::get<Mesh>(scene.cut.bodies[mesh].shape).uv = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
+    const std::uint32_t white = scene.palette({Rgb(1)});
+    for (const double alpha : {0.0, 0.25, 1.0}) {
+        PlacementGroup& group = scene.group(white, {{mesh, {}}}, {alpha * Rgb(0, 1, 0), alpha});
+        group.material.texture = "any \"picture\".png";
+    }
+    const std::string text = scene.text();
+    EXPECT_THAT(text, HasSubstr("uv_vectors { 4,\n    <0,0>,<1,0>,<1,1>,<0,1> }"));
+    EXPECT_THAT(text, HasSubstr("#declare T_1 = pigment { image_map { png \"model_T_1.png\" } }"));
+    EXPECT_THAT(text, HasSubstr("[0.5 rgbt 1] [0.5 T_1] }"));
+    EXPECT_THAT(text, HasSubstr("[0.5 average pigment_map { [0.75 T_1] [0.25 rgb <0,1,0>] }] }"));
+    EXPECT_THAT(text, HasSubstr("[0.5 rgb <0,1,0>] }"));
+    EXPECT_THAT(text, Not(HasSubstr("any")));
+    ASSERT_EQ(scene.pictures.size(), 1u);
+    EXPECT_EQ(scene.pictures[0].file_name, "model_T_1.png");
+    EXPECT_EQ(scene.pictures[0].texture, "any \"picture\".png");
+}
+
 } // namespace
 } // namespace graftal

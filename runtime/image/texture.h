@@ -1,0 +1,46 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "compiler/support/status.h"
+#include "compiler/support/tint.h"
+
+namespace graftal {
+
+/// A picture that is wrapped round parts of a model, as both engines look it up: the texel that holds a point,
+/// none mixed with its neighbours, and nothing where it is clear. POV-Ray reads it from a PNG of just these
+/// numbers.
+struct Texture {
+    struct Texel {
+        std::array<std::uint8_t, 3> srgb{};
+        bool clear = false; ///< alpha below 1/2
+    };
+
+    int width = 0;
+    int height = 0;
+    std::vector<Texel> texels; ///< row by row, top first
+    Rgb mean{0.0};             ///< linear, of the texels that are not clear
+    double coverage = 0;       ///< their share
+
+    /// The texel at u to the right and v upwards, repeated beyond [0, 1).
+    const Texel& at(double u, double v) const;
+};
+
+/// Linear light of an sRGB level.
+double srgb_decoded(std::uint8_t level);
+
+/// The picture in a file, read once in the life of the process; null after a failure. Samples of EXR files are
+/// linear, all others sRGB.
+std::shared_ptr<const Texture> load_texture(const std::string& path, Status& status);
+
+/// What a compiler asks of it (LowerOptions).
+Status look_at_texture(const std::string& path, Rgb& mean, double& coverage);
+
+/// Writes it as POV-Ray is to read it: PNG, 8 bit, sRGB, alpha 0 or 1.
+Status write_texture(const std::string& path, const Texture& texture);
+
+} // namespace graftal

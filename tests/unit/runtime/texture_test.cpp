@@ -1,0 +1,75 @@
+#include "runtime/image/texture.h"
+
+#include <gtest/gtest.h>
+
+#include "compiler/support/file.h"
+#include "runtime/image/image.h"
+#include "runtime/povray/temporary_directory.h"
+
+namespace graftal {
+namespace {
+
+class TextureFiles : public testing::Test {
+  protected:
+    void SetUp() override { ASSERT_TRUE(directory_.create().ok()); }
+    std::string path(const std::string& name) const { return directory_.path() + "/" + name; }
+
+    TemporaryDirectory directory_;
+};
+
+/// Two by two, the texel at the top right clear.
+Image picture() {
+    return {2, 2, 4, {1, 0, 0, 1, /**/ 1, 1, 1, 0.4f, /**/ 0, 1, 0, 0.6f, /**/ 0, 0, 1, 1}};
+}
+
+TEST_F(TextureFiles, AreReadAsTexelsFromTheBottomLeftOn) {
+    ASSERT_TRUE(write_image(path("a.png"), picture(), SampleFormat::srgb8).ok());
+    Status status;
+    const auto texture = load_texture(path("a.png"), status);
+    ASSERT_TRUE(texture) << status.message();
+    using Level = std::array<std::uint8_t, 3>;
+    EXPECT_EQ(texture->at(0.1, 0.1).srgb, (Level{0, 255, 0}));
+    EXPECT_EQ(texture->at(0.9, 0.1).srgb, (Level{0, 0, 255}));
+    EXPECT_EQ(texture->at(0.1, 0.9).srgb, (Level{255, 0, 0}));
+    EXPECT_TRUE(texture->at(0.9, 0.9).clear);
+    EXPECT_EQ(&texture->at(-0.9, 1.1), &texture->at(0.1, 0.1));
+    EXPECT_EQ(&texture->at(1, -1), &texture->at(0, 0));
+    EXPECT_EQ(&texture->at(-1e-300, 0), &texture->at(0.99, 0));
+    EXPECT_EQ(texture->coverage, 0.75);
+    EXPECT_NEAR(texture->mean.g, 1.0 / 3, 1e-12);
+    EXPECT_EQ(load_texture(path("a.png"), status), texture); // read once
+}
+
+TEST_F(TextureFiles, AreWrittenSoThatTheyReadTheSame) {
+    ASSERT_TRUE(write_image(path("b.png"), picture(), SampleFormat::srgb8).ok());
+    Status status;
+    const auto texture = load_texture(path("b.png"), status);
+    ASSERT_TRUE(texture);
+    ASSERT_TRUE(write_texture(path("c.png"), *texture).ok());
+    const auto again = load_texture(path("c.png"), status);
+    ASSERT_TRUE(again);
+    for (std::size_t i = 0; i < 4; ++i) {
+        EXPECT_EQ(again->texels[i].srgb, texture->texels[i].srgb);
+        EXPECT_EQ(again->texels[i].clear, texture->texels[i].clear);
+    }
+}
+
+TEST_F(TextureFiles, WhatIsNoneIsSaid) {
+    ASSERT_TRUE(write_text(path("d.png"), "no picture").ok());
+    Status status;
+    EXPECT_FALSE(load_texture(path("d.png"), status));
+    EXPECT_FALSE(status.ok());
+    Rgb mean;
+    double coverage = 0;
+    EXPECT_FALSE(look_at_texture(path("nowhere.png"), mean, coverage).ok());
+}
+
+TEST(Srgb, DecodingInvertsEncoding) {
+    for (int level = 0; level < 256; ++level) {
+        const auto linear = static_cast<float>(srgb_decoded(static_cast<std::uint8_t>(level)));
+        EXPECT_NEAR(255 * srgb_encoded(linear), level, 1e-3);
+    }
+}
+
+} // namespace
+} // namespace graftal

@@ -28,6 +28,8 @@ class Projection {
     double pixels_that_matter(const Ball& world_ball) const;
     /// The detail of one scene unit there; less out of the picture too.
     double detail_per_unit(const Ball& world_ball) const;
+    /// No ball within the region has less detail_per_unit().
+    double least_detail_per_unit(const Ball& region) const;
 
     /// False if no point of the ball can be in the picture.
     bool sees(const Ball& world_ball) const;
@@ -77,6 +79,16 @@ inline double Projection::pixels_per_unit(const Ball& ball) const {
 
 inline double Projection::pixels_that_matter(const Ball& ball) const {
     return pixels_per_unit(ball) / (sees(ball) ? 1 : coarser_out_of_sight);
+}
+
+inline double Projection::least_detail_per_unit(const Ball& region) const {
+    if (!culls_) return std::numeric_limits<double>::infinity();
+    const double hidden = sees({region.centre, -region.radius}) ? 1 : coarser_out_of_sight;
+    if (error_world_ > 0) return 1 / (error_world_ * hidden);
+    if (camera_.orthographic) return width_px_ / (camera_.width * error_px_ * hidden);
+    const Vec3 from_eye = region.centre - camera_.location;
+    const double depth = std::max(glm::dot(from_eye, camera_.direction), 0.5 * glm::length(from_eye));
+    return pixels_per_tangent_ / (std::max(depth + region.radius, near_) * error_px_ * hidden);
 }
 
 inline double Projection::detail_per_unit(const Ball& ball) const {

@@ -31,17 +31,6 @@ std::size_t edge_count(const CutGraph& cut) {
     return count;
 }
 
-/// True if the box of the image is the image of the box.
-bool keeps_axes(const Mat3& m) {
-    for (int column = 0; column < 3; ++column) {
-        int along = 0;
-        for (int row = 0; row < 3; ++row)
-            along += m[column][row] != 0;
-        if (along > 1) return false;
-    }
-    return true;
-}
-
 class Bounder {
   public:
     explicit Bounder(const CutGraph& cut) : cut_(cut), exact_(edge_count(cut) <= most_exact_edges) {
@@ -138,6 +127,16 @@ class Bounder {
 };
 
 } // namespace
+
+bool keeps_axes(const Mat3& m) {
+    for (int column = 0; column < 3; ++column) {
+        int along = 0;
+        for (int row = 0; row < 3; ++row)
+            along += m[column][row] != 0;
+        if (along > 1) return false;
+    }
+    return true;
+}
 
 Box box_of_image(PrimitiveKind kind, const Affine& place) {
     const Mat3 rows = glm::transpose(place.linear);

@@ -15,6 +15,9 @@ struct DrawnBounds {
     std::vector<std::vector<Box>> stop_edge; ///< likewise
 };
 
+/// True if the box of the image is the image of the box.
+bool keeps_axes(const Mat3& m);
+
 /// The box of an image of a primitive, exact. Not for planes.
 Box box_of_image(PrimitiveKind kind, const Affine& place);
 

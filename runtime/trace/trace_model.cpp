@@ -9,6 +9,7 @@
 #include <glm/geometric.hpp>
 
 #include "runtime/trace/drawn_bounds.h"
+#include "runtime/trace/unroll.h"
 
 namespace graftal {
 
@@ -200,6 +201,7 @@ TraceModel::TraceModel(PreparedCut ready, const View& seen, const CutOptions& cu
       meshes(prepared) {
     least_detail_per_unit = least_detail(*this);
     Builder(*this).build();
+    add_unrollings(*this);
 }
 
 } // namespace graftal

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -33,6 +34,19 @@ struct TraceEdge {
     double flatness = 1;     ///< the least stretch, as a share of the largest
     PathTint tint;
     std::optional<MaterialId> material;
+    /// Of an unrolling's edges that lead several levels down, which have no tint and material of their own: the way is
+    /// one of its edges or the node's, and then one of that child's.
+    std::uint32_t before = no_edge, last = no_edge;
+};
+
+/// What is some levels below a node, as if it were parts of its own: boxes are sooner tested than frames are entered.
+/// It may take the place of the node's edges where none of the nodes passed over would be cut or baked.
+struct Unrolling {
+    std::uint32_t tree = no_tree;
+    std::uint32_t least_steps = 0;    ///< levels that must be left
+    /// Least diameter of a node passed over that may be culled, in the node's frame.
+    double least_size = std::numeric_limits<double>::infinity();
+    double flattest_edge = 1; ///< the least flatness on the ways
 };
 
 struct TraceNode {
@@ -50,6 +64,9 @@ struct TraceNode {
     std::uint32_t tree = no_tree;      ///< of its edges
     std::uint32_t stop_tree = no_tree; ///< of what is drawn where it is cut; none: its proxy
     double flattest_edge = 1;          ///< least flatness of its edges
+    std::uint32_t first_unrolling = 0; ///< the deepest first
+    std::uint32_t unrolling_count = 0;
+    double reach = 0; ///< from ball_centre; the balls of all nodes that they pass over are within it
     std::uint32_t first_edge = 0;      ///< of its edges, which follow each other
     std::uint32_t edge_count = 0;
     std::uint32_t stop_edge_count = 0; ///< which follow those
@@ -71,6 +88,7 @@ struct TraceModel {
     std::vector<TraceNode> nodes; ///< as layers.cut.nodes
     std::vector<TraceEdge> edges; ///< the first leads to the root, from world space
     std::vector<BoxNode> boxes;
+    std::vector<Unrolling> unrollings;
     std::vector<Affine> graph_from_frame; ///< by node
     mutable MeshStore meshes;
 

@@ -19,6 +19,8 @@ namespace {
 constexpr std::uint64_t most_visits = 1 << 17;
 /// Parts smaller than this are nothing: their inverse maps would not be numbers.
 constexpr double least_scale = 1e-150;
+/// Allows for the rounding of what is a little more than enough.
+constexpr double surely_more = 1 - 1e-6;
 
 /// One bit for each lane that is true.
 template<Instructions instructions> GRAFTAL_INLINE std::uint32_t bits_of(const Int8& lanes) {
@@ -231,8 +233,7 @@ template<Instructions instructions> struct Traversal::Kernel {
         if (!(frame.scale > least_scale)) return;
         frame.flatness = above.flatness * (edge.similarity ? 1 : edge.flatness);
         frame.cut = is_cut(node, frame);
-        const std::uint32_t tree = frame.cut ? node.stop_tree : node.tree;
-        if (frame.cut && tree == no_tree) {
+        if (frame.cut && node.stop_tree == no_tree) {
             const Double4 o = point_through(node.proxy_from_node, origin);
             const Double4 d = direction_through(node.proxy_from_node, direction);
             return meet(PrimitiveKind::sphere, frame, entry, node.node_from_proxy, true, o, d,
@@ -266,12 +267,33 @@ template<Instructions instructions> struct Traversal::Kernel {
             self.entries_[self.entry_count_++] = {entry.t, node.first_edge + node.edge_count, number};
             return;
         }
+        const std::uint32_t tree = frame.cut ? node.stop_tree : tree_of(node, frame);
         if (tree != no_tree) test_boxes(model.boxes, tree, number);
     }
 
     GRAFTAL_INLINE Ball world_ball(const TraceNode& node, const Frame& frame) const {
         return {vec3_of(point_through(frame.world_from_node, node.ball_centre)),
                 frame.scale * node.ball_radius};
+    }
+
+    /// The parts that are farthest down, of those that are drawn for sure if none is cut.
+    GRAFTAL_INLINE std::uint32_t tree_of(const TraceNode& node, const Frame& frame) const {
+        if (node.unrolling_count == 0) return node.tree;
+        double detail = model.least_detail_per_unit;
+        bool known = false;
+        for (std::uint32_t i = 0; i < node.unrolling_count; ++i) {
+            const Unrolling& unrolling = model.unrollings[node.first_unrolling + i];
+            if (frame.steps < unrolling.least_steps) continue;
+            if (!(frame.flatness * unrolling.flattest_edge > flattest_placement)) continue;
+            const double size = surely_more * frame.scale * unrolling.least_size;
+            if (size * detail > 1) return unrolling.tree;
+            if (known) continue;
+            detail = model.projection.least_detail_per_unit(
+                {vec3_of(point_through(frame.world_from_node, node.ball_centre)), frame.scale * node.reach});
+            known = true;
+            if (size * detail > 1) return unrolling.tree;
+        }
+        return node.tree;
     }
 
     /// Whether some part could not be placed by itself, it is so flat: the cut bakes the node then
@@ -324,7 +346,7 @@ template<Instructions instructions> struct Traversal::Kernel {
     GRAFTAL_INLINE void keep_path(std::uint32_t frame_number) {
         self.path_.clear();
         for (std::size_t i = 1; i <= frame_number; ++i)
-            self.path_.push_back(self.frames_[i].edge);
+            self.keep_edge(self.frames_[i].edge);
     }
 
     /// The rule of the cut (detail.h).
@@ -353,11 +375,11 @@ template<Instructions instructions> struct Traversal::Kernel {
         self.best_.mesh_colour = nullptr;
         keep_path(entry.frame);
         if (proxy) {
-            self.path_.push_back(frame.edge);
+            self.keep_edge(frame.edge);
             compose(frame.world_from_node, node_from_proxy, self.best_.world_from_leaf);
             self.best_.proxy_node = frame.node;
         } else {
-            self.path_.push_back(entry.entry | (frame.cut ? from_cut : 0));
+            self.keep_edge(entry.entry | (frame.cut ? from_cut : 0));
             compose(frame.world_from_node, model.edges[entry.entry].parent_from_child,
                     self.best_.world_from_leaf);
             self.best_.proxy_node = no_edge;
@@ -410,6 +432,16 @@ bool Traversal::closest(const Ray& ray, const RayRange& range, SurfaceHit& hit) 
 
 bool Traversal::meets_any(const Ray& ray, const RayRange& range) {
     return run(ray, range, true);
+}
+
+void Traversal::keep_edge(std::uint32_t edge) {
+    const TraceEdge& whole = model_.edges[edge & ~from_cut];
+    if (whole.before == no_edge) {
+        path_.push_back(edge);
+        return;
+    }
+    keep_edge(whole.before);
+    keep_edge(whole.last);
 }
 
 const TraceMesh& Traversal::mesh_of(const Frame& frame) {

@@ -73,6 +73,8 @@ class Traversal final : public Surfaces {
 
     const TraceMesh& mesh_of(const Frame& frame);
     bool run(const Ray& ray, const RayRange& range, bool any);
+    /// Appends an edge to the path; all those that an unrolling's edge stands for.
+    void keep_edge(std::uint32_t edge);
     void surface_at_best(SurfaceHit& hit) const;
 
     const TraceModel& model_;

@@ -1,0 +1,100 @@
+#include "runtime/trace/unroll.h"
+
+#include <random>
+
+#include <gtest/gtest.h>
+
+#include "runtime/trace/traversal.h"
+#include "tests/unit/trace/models.h"
+
+namespace graftal {
+namespace {
+
+using test::empty_graph;
+using test::place;
+using test::traced;
+
+CutOptions options_of(double error_px, std::optional<unsigned> steps = {}) {
+    CutOptions options;
+    options.error_px = error_px;
+    options.steps = steps;
+    return options;
+}
+
+/// The same model, of which every edge is followed by itself.
+std::unique_ptr<TraceModel> traced_plainly(const Graph& graph, const CutOptions& options) {
+    auto model = traced(graph, options);
+    for (TraceNode& node : model->nodes)
+        node.unrolling_count = 0;
+    return model;
+}
+
+/// Compares many rays, and that fewer parts are visited where there are unrollings.
+void expect_same(const Graph& graph, const CutOptions& options) {
+    const auto model = traced(graph, options), plain_model = traced_plainly(graph, options);
+    ASSERT_FALSE(model->unrollings.empty());
+    Traversal traversal(*model), plain(*plain_model);
+    std::mt19937_64 random(11);
+    std::uniform_real_distribution<double> unit(-1, 1);
+    const Vec3& eye = model->view.camera.location;
+    std::size_t hits = 0;
+    for (int i = 0; i < 20'000; ++i) {
+        const Ray ray{eye, {0.5 * unit(random), 0.5 * unit(random), -1}};
+        SurfaceHit a, b;
+        const bool found = plain.closest(ray, {}, b);
+        ASSERT_EQ(traversal.closest(ray, {}, a), found) << i;
+        ASSERT_EQ(traversal.meets_any(ray, {}), found) << i;
+        if (!found) continue;
+        ++hits;
+        ASSERT_NEAR(a.t, b.t, 1e-11 * b.t) << i;
+        ASSERT_LT(glm::distance(a.normal, b.normal), 1e-6) << i;
+        ASSERT_LT(glm::distance(a.rgb, b.rgb), 1e-12) << i;
+        ASSERT_EQ(a.material, b.material);
+    }
+    EXPECT_GT(hits, 100u);
+    EXPECT_LT(traversal.visits(), 2 * plain.visits()); // those twice as many rays
+}
+
+/// A chain of turned and shrunk balls with branches of two colours, some of them squeezed.
+Graph twisted(double squeeze) {
+    Graph graph = empty_graph();
+    const ObjectId ball = graph.primitive(PrimitiveKind::sphere);
+    const ObjectId self = graph.add({"self", {}, {}, {}, {}});
+    const auto turned = [](double angle_deg) {
+        return Affine::translate({0, 1.2, 0}) * Affine::rotate({0.3, 0.1, 1}, angle_deg) * Affine::scale(Vec3(0.6));
+    };
+    place(graph, self, ball, Affine::scale({0.2, 0.7, 0.2}), {{1, 0, 0}, 0.2});
+    place(graph, self, self, turned(40), {{0, 1, 0}, 0.3});
+    place(graph, self, self, turned(-50) * Affine::scale({1, 1, squeeze}), {{0, 0, 1}, 0.1});
+    place(graph, graph.root, self, {});
+    return graph;
+}
+
+TEST(Unroll, DrawsWhatSingleEdgesDraw) {
+    for (const double error_px : {8.0, 1.0, 0.25}) {
+        SCOPED_TRACE(error_px);
+        expect_same(test::tetrahedron(), options_of(error_px));
+        expect_same(twisted(1), options_of(error_px));
+        expect_same(twisted(0.8), options_of(error_px));
+    }
+    for (const unsigned steps : {2u, 5u, 9u}) {
+        SCOPED_TRACE(steps);
+        expect_same(test::tetrahedron(), options_of(0, steps));
+        expect_same(twisted(0.8), options_of(0, steps));
+        expect_same(twisted(0.8), options_of(2, steps));
+    }
+}
+
+TEST(Unroll, StaysSmall) {
+    Graph graph = empty_graph();
+    const ObjectId ball = graph.primitive(PrimitiveKind::sphere);
+    const ObjectId self = graph.add({"self", {}, {}, {}, {}});
+    for (int i = 0; i < 5000; ++i)
+        place(graph, self, i % 2 == 0 ? ball : self, Affine::translate({i, 0, 0}) * Affine::scale(Vec3(0.01)));
+    place(graph, graph.root, self, {});
+    EXPECT_LE(traced(graph, options_of(1))->unrollings.size(), 1u); // the root's one part
+    EXPECT_LE(traced(test::tetrahedron(), options_of(1))->edges.size(), 4000u);
+}
+
+} // namespace
+} // namespace graftal

@@ -146,8 +146,8 @@ class Builder {
                 part.size() == 1 ? part.front().item : build(part, depth + 3) | BoxNode::inner;
             const FloatBox box = box_of(part);
             for (std::size_t axis = 0; axis < 3; ++axis) {
-                nodes_[number].lower[axis][lane] = box.lower[axis];
-                nodes_[number].upper[axis][lane] = box.upper[axis];
+                nodes_[number].side[0][axis][lane] = box.lower[axis];
+                nodes_[number].side[1][axis][lane] = box.upper[axis];
             }
             nodes_[number].entry[lane] = entry;
         }
@@ -159,8 +159,8 @@ class Builder {
         BoxNode node{};
         for (int axis = 0; axis < 3; ++axis)
             for (int lane = 0; lane < width; ++lane) {
-                node.lower[axis][lane] = nowhere;
-                node.upper[axis][lane] = nowhere;
+                node.side[0][axis][lane] = nowhere;
+                node.side[1][axis][lane] = nowhere;
             }
         return node;
     }

@@ -15,8 +15,7 @@ namespace graftal {
 struct BoxNode {
     static constexpr std::uint32_t inner = 1u << 31; ///< marks the number of a node among those of items
 
-    Float8 lower[3];
-    Float8 upper[3];
+    Float8 side[2][3]; ///< the lower and the upper, by axis
     std::array<std::uint32_t, 8> entry{};
 };
 

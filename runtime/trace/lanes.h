@@ -14,6 +14,7 @@ namespace graftal {
 using Double4 = double __attribute__((vector_size(32), aligned(32)));
 using Float4 = float __attribute__((vector_size(16), aligned(16)));
 using Float8 = float __attribute__((vector_size(32), aligned(32)));
+using Int4 = std::int32_t __attribute__((vector_size(16), aligned(16)));
 using Int8 = std::int32_t __attribute__((vector_size(32), aligned(32)));
 
 /// For functions that take or give vectors: how these are passed depends on the instructions.
@@ -44,8 +45,9 @@ struct LaneMap {
     }
 };
 
+/// By an operation with a scalar, which the compiler knows how to spread: a list of lanes it inserts one by one.
 GRAFTAL_INLINE Double4 splat(double x) {
-    return Double4{x, x, x, x};
+    return x - Double4{};
 }
 
 GRAFTAL_INLINE Double4 direction_through(const LaneMap& map, const Double4& v) {
@@ -79,7 +81,7 @@ GRAFTAL_INLINE Float8 greater(const Float8& a, const Float8& b) {
 }
 
 GRAFTAL_INLINE Float8 splat8(float x) {
-    return Float8{x, x, x, x, x, x, x, x};
+    return x - Float8{};
 }
 
 } // namespace graftal

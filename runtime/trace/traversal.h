@@ -34,15 +34,15 @@ class Traversal final : public Surfaces {
     std::uint64_t given_up() const { return given_up_; }
 
   private:
-    template<Instructions instructions> struct Kernel; ///< the traversal proper
+    template<Instructions instructions> struct Kernel; ///< the traversal proper (traversal_kernel.h)
 
-    /// An object on the way from the root, and the ray in its frame.
+    /// An object on the way from the root, and the ray in its frame: origin + (t - base) / unit * direction.
     struct alignas(32) Frame {
         LaneMap world_from_node;
-        Double4 origin, direction; ///< the ray is origin + (t - base) direction
+        Double4 origin, direction; ///< the direction's largest component is 1, within a small factor
         double base = 0;
-        double largest = 1; ///< component of the direction, or within a small factor of it
-        double unit = 1;    ///< 1 / largest: the step of t in which that is about 1
+        double unit = 1;     ///< of t
+        double speed = 1;    ///< 1 / unit
         double scale = 1;    ///< norm of world_from_node
         double flatness = 1; ///< at most its least stretch, as a share of the largest
         std::uint32_t edge = 0;
@@ -50,15 +50,18 @@ class Traversal final : public Surfaces {
         std::uint32_t steps = 0;
         bool cut = false; ///< drawn by its stop edges
         float margin = 0; ///< by which parts may reach out of their boxes
-        Float4 lower_origin, upper_origin; ///< the origin, with the margin
-        Float4 reciprocal;                 ///< of the direction in these units
+        float least = 0;  ///< where the ray begins, in units from the base
+        /// By axis: the side of boxes where the ray goes in, the origin less the margin as that and the other side see
+        /// it, and the reciprocal of the direction.
+        Int4 side_in;
+        Float4 origin_in, origin_out, reciprocal;
     };
 
     /// An edge or a node of boxes to go into, and from where on.
     struct Entry {
-        double t;
-        std::uint32_t entry;
-        std::uint32_t frame;
+        double at = 0; ///< in units from the frame's base
+        std::uint32_t entry = 0;
+        std::uint32_t frame = 0;
     };
 
     /// The best hit so far.

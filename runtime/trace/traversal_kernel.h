@@ -1,0 +1,443 @@
+#pragma once
+
+// The traversal proper, to be compiled once for each kind of instructions; only traversal.cpp includes it.
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <vector>
+
+#include <glm/geometric.hpp>
+
+#include "compiler/cut/bake.h"
+#include "runtime/trace/traversal.h"
+
+namespace graftal {
+
+/// Nodes and primitives that one ray may go into. Sound models need some tens or hundreds; where thousands of
+/// parts coincide, a ray would not come to an end.
+inline constexpr std::uint64_t most_visits = 1 << 17;
+/// Parts smaller than this are nothing: their inverse maps would not be numbers.
+inline constexpr double least_scale = 1e-150;
+/// Allows for the rounding of what is a little more than enough.
+inline constexpr double surely_more = 1 - 1e-6;
+
+/// One bit for each lane that is true.
+template<Instructions instructions> GRAFTAL_INLINE std::uint32_t bits_of(const Int8& lanes) {
+#if defined(__x86_64__) && !defined(__clang__)
+    if constexpr (instructions == Instructions::avx2) {
+        std::uint32_t bits;
+        // An intrinsic could not be inlined from here: only the caller is compiled for AVX2. Clang looks at
+        // the operands before it inlines.
+        __asm__("vmovmskps %1, %0" : "=r"(bits) : "x"(lanes));
+        return bits;
+    }
+#endif
+    std::uint32_t bits = 0;
+    for (int lane = 0; lane < 8; ++lane)
+        bits |= static_cast<std::uint32_t>(lanes[lane] & 1) << lane;
+    return bits;
+}
+
+/// The range of t in which a ray is within a box; empty where least > most.
+GRAFTAL_INLINE RayRange range_in(const Box& box, const Ray& ray, RayRange range) {
+    for (int axis = 0; axis < 3; ++axis) {
+        const double d = ray.direction[axis];
+        if (d == 0) {
+            if (ray.origin[axis] < box.min[axis] || ray.origin[axis] > box.max[axis]) return {1, 0};
+            continue;
+        }
+        const double inverse = 1 / d;
+        const double a = (box.min[axis] - ray.origin[axis]) * inverse;
+        const double b = (box.max[axis] - ray.origin[axis]) * inverse;
+        range.least = std::max(range.least, std::min(a, b));
+        range.most = std::min(range.most, std::max(a, b));
+    }
+    return range;
+}
+
+/// norm(), to about 1e-8, and an order of magnitude faster: the root of the largest eigenvalue of A^T A, which
+/// solves a cubic (O. Smith, "Eigenvalues of a symmetric 3x3 matrix", 1961).
+inline double largest_stretch(const LaneMap& map) {
+    const Vec3 a = vec3_of(map.column[0]), b = vec3_of(map.column[1]), c = vec3_of(map.column[2]);
+    const double aa = glm::dot(a, a), bb = glm::dot(b, b), cc = glm::dot(c, c);
+    const double mean = (aa + bb + cc) / 3;
+    if (!(mean > 1e-250)) return norm(map.affine().linear);
+    // Of the matrix less its mean eigenvalue, in units of that.
+    const double x = aa / mean - 1, y = bb / mean - 1, z = cc / mean - 1;
+    const double xy = glm::dot(a, b) / mean, yz = glm::dot(b, c) / mean, zx = glm::dot(c, a) / mean;
+    const double p2 = (x * x + y * y + z * z + 2 * (xy * xy + yz * yz + zx * zx)) / 6;
+    if (!(p2 > 0)) return std::sqrt(mean);
+    const double p = std::sqrt(p2);
+    const double determinant =
+        x * (y * z - yz * yz) - xy * (xy * z - yz * zx) + zx * (xy * yz - y * zx);
+    const double angle = std::acos(std::clamp(0.5 * determinant / (p2 * p), -1.0, 1.0)) / 3;
+    return std::sqrt(mean * (1 + 2 * p * std::cos(angle)));
+}
+
+inline bool has_flat_part(const TraceModel& model, const TraceNode& node, const LaneMap& world_from_node, bool cut) {
+    const std::uint32_t first = node.first_edge + (cut ? node.edge_count : 0);
+    const std::uint32_t count = cut ? node.stop_edge_count : node.edge_count;
+    const Affine place = world_from_node.affine();
+    for (std::uint32_t i = first; i < first + count; ++i) {
+        const TraceEdge& edge = model.edges[i];
+        if (!edge.similarity && is_singular(place * edge.parent_from_child.affine(), flattest_placement))
+            return true;
+    }
+    return false;
+}
+
+/// The box, larger by what rounding and thickened parts may need.
+inline Box enlarged(const Box& box, double margin) {
+    const Vec3 more = 1e-9 * box.size() + Vec3(margin);
+    return {box.min - more, box.max + more};
+}
+
+template<Instructions instructions> struct Traversal::Kernel {
+    Traversal& self;
+    const TraceModel& model;
+    const RayRange range;
+    bool any;
+
+    GRAFTAL_INLINE bool run(const Ray& ray) {
+        self.depth_ = 0;
+        self.entry_count_ = 0;
+        self.best_.found = false;
+        self.best_.t = range.most;
+        const std::uint64_t limit = self.visits_ + most_visits;
+        push_world(ray);
+        try_edge(self.frames_.front(), 0);
+        Entry entry;
+        bool more = false;
+        while (more || pop(0, entry)) {
+            more = go_into(entry);
+            if (any && self.best_.found) return true;
+            if (self.visits_ > limit) {
+                ++self.given_up_;
+                break;
+            }
+        }
+        return self.best_.found;
+    }
+
+    /// Takes the nearest entry of those from that number on, if one is left that is nearer than the best hit.
+    GRAFTAL_INLINE bool pop(std::size_t least_count, Entry& entry) {
+        while (self.entry_count_ > least_count) {
+            entry = self.entries_[--self.entry_count_];
+            if (t_of(entry) < self.best_.t) return true;
+        }
+        return false;
+    }
+
+    GRAFTAL_INLINE double t_of(const Entry& entry) const {
+        const Frame& frame = self.frames_[entry.frame];
+        return frame.base + entry.at * frame.unit;
+    }
+
+    /// Puts the nearest of what it leads to in its place; false if there is nothing.
+    GRAFTAL_INLINE bool go_into(Entry& entry) {
+        if (!(entry.entry & BoxNode::inner)) return enter(entry);
+        self.depth_ = entry.frame + 1;
+        return test_boxes(model.boxes, entry.entry & ~BoxNode::inner, entry.frame, entry);
+    }
+
+    GRAFTAL_INLINE Frame& push() {
+        if (self.depth_ == self.frames_.size()) self.frames_.emplace_back();
+        return self.frames_[self.depth_++];
+    }
+
+    GRAFTAL_INLINE void push_world(const Ray& ray) {
+        Frame& frame = push();
+        frame.world_from_node = LaneMap();
+        frame.origin = lanes_of(ray.origin);
+        frame.direction = lanes_of(ray.direction);
+        frame.speed = largest_component(frame.direction);
+        frame.unit = 1 / frame.speed;
+        frame.direction = frame.direction * splat(frame.unit);
+        frame.base = 0;
+        frame.scale = 1;
+        frame.edge = no_edge;
+        frame.steps = model.prepared.root_steps;
+        frame.cut = false;
+        frame.flatness = 1;
+        frame.margin = 0;
+    }
+
+    /// Where boxes are few or infinite: in double precision.
+    GRAFTAL_INLINE void try_edge(const Frame& frame, std::uint32_t number) {
+        const TraceEdge& edge = model.edges[number];
+        const TraceNode& child = model.nodes[edge.child];
+        double at = (range.least - frame.base) * frame.speed;
+        const bool endless = child.kind == TraceNode::Kind::unbounded || child_is_plane(child);
+        if (!endless) {
+            const RayRange within{at, (self.best_.t - frame.base) * frame.speed};
+            const Ray ray{vec3_of(frame.origin), vec3_of(frame.direction)};
+            const RayRange inside = range_in(enlarged(edge.box, frame.margin), ray, within);
+            if (!(inside.least <= inside.most)) return;
+            at = inside.least;
+        }
+        push_entry({at, number, static_cast<std::uint32_t>(self.depth_ - 1)});
+    }
+
+    GRAFTAL_INLINE void push_entry(const Entry& entry) {
+        reserve_entries(1);
+        self.entries_[self.entry_count_++] = entry;
+    }
+
+    GRAFTAL_INLINE static bool child_is_plane(const TraceNode& node) {
+        return node.kind == TraceNode::Kind::primitive && node.primitive == PrimitiveKind::plane;
+    }
+
+    /// Sorts the boxes that the ray meets, the nearest last but for the very nearest, which becomes `nearest`; false
+    /// if there is none.
+    GRAFTAL_INLINE bool test_boxes(const std::vector<BoxNode>& boxes, std::uint32_t number,
+                                   std::uint32_t frame_number, Entry& nearest) {
+        const BoxNode& node = boxes[number];
+        const Frame& frame = self.frames_[frame_number];
+        // A little more, for what single precision leaves out.
+        const float most = static_cast<float>((self.best_.t - frame.base) * frame.speed) + 2e-6f;
+        Float8 enters = splat8(frame.least), leaves = splat8(most);
+        for (int axis = 0; axis < 3; ++axis) {
+            const auto in = static_cast<std::size_t>(frame.side_in[axis]);
+            const Float8 reciprocal = splat8(frame.reciprocal[axis]);
+            // Lanes of no numbers stay so by the last axis.
+            enters = greater(enters, (node.side[in][axis] - splat8(frame.origin_in[axis])) * reciprocal);
+            leaves = lesser(leaves, (node.side[1 - in][axis] - splat8(frame.origin_out[axis])) * reciprocal);
+        }
+        std::uint32_t lanes = bits_of<instructions>(enters <= leaves);
+        if (lanes == 0) return false;
+        const auto entry_of = [&](std::uint32_t bits) {
+            const auto lane = static_cast<std::size_t>(std::countr_zero(bits));
+            return Entry{static_cast<double>(enters[lane]), node.entry[lane], frame_number};
+        };
+        nearest = entry_of(lanes);
+        reserve_entries(7);
+        Entry* const first = self.entries_.data() + self.entry_count_;
+        Entry* end = first;
+        while ((lanes &= lanes - 1) != 0) {
+            Entry entry = entry_of(lanes);
+            if (entry.at <= nearest.at) std::swap(entry, nearest);
+            Entry* place = end++;
+            for (; place > first && place[-1].at < entry.at; --place)
+                *place = place[-1];
+            *place = entry;
+        }
+        self.entry_count_ += static_cast<std::size_t>(end - first);
+        return true;
+    }
+
+    GRAFTAL_INLINE void reserve_entries(std::size_t count) {
+        if (self.entry_count_ + count > self.entries_.size()) self.entries_.resize(2 * self.entries_.size());
+    }
+
+    GRAFTAL_INLINE bool enter(Entry& entry) {
+        ++self.visits_;
+        self.depth_ = entry.frame + 1;
+        const TraceEdge& edge = model.edges[entry.entry];
+        const TraceNode& node = model.nodes[edge.child];
+        Frame& frame = push(); // parents may move, but no more after this
+        const Frame& parent = self.frames_[entry.frame];
+        const Double4 near = parent.origin + splat(entry.at) * parent.direction;
+        const Double4 direction = direction_through(edge.child_from_parent, parent.direction);
+        frame.origin = point_through(edge.child_from_parent, near);
+        frame.base = parent.base + entry.at * parent.unit;
+        if (edge.similarity) {
+            // The direction grows as much as the map shrinks; to compute its length anew would take longer.
+            frame.direction = direction * splat(edge.stretch);
+            frame.speed = parent.speed * edge.growth;
+            frame.unit = parent.unit * edge.stretch;
+        } else {
+            const double largest = largest_component(direction);
+            if (!(largest > 0 && largest < 1 / least_scale)) return false;
+            const double shrink = 1 / largest;
+            frame.direction = direction * splat(shrink);
+            frame.speed = parent.speed * largest;
+            frame.unit = parent.unit * shrink;
+        }
+        if (node.kind == TraceNode::Kind::primitive) {
+            meet_primitive(node.primitive, parent, frame, entry);
+            return false;
+        }
+        return enter_node(edge, node, parent, frame, entry);
+    }
+
+    /// The frame has its ray.
+    GRAFTAL_INLINE bool enter_node(const TraceEdge& edge, const TraceNode& node, const Frame& parent, Frame& frame,
+                                   Entry& entry) {
+        compose(parent.world_from_node, edge.parent_from_child, frame.world_from_node);
+        frame.edge = entry.entry | (parent.cut ? from_cut : 0);
+        frame.node = edge.child;
+        frame.steps = parent.steps == unlimited_steps ? parent.steps : parent.steps - edge.levels;
+        frame.scale = edge.similarity ? parent.scale * edge.stretch : largest_stretch(frame.world_from_node);
+        if (!(frame.scale > least_scale)) return false;
+        frame.flatness = parent.flatness * (edge.similarity ? 1 : edge.flatness);
+        frame.cut = is_cut(node, frame);
+        if (frame.cut && node.stop_tree == no_tree) {
+            meet_proxy(node, frame);
+            return false;
+        }
+        const auto number = static_cast<std::uint32_t>(self.depth_ - 1);
+        if (node.kind == TraceNode::Kind::unbounded) {
+            frame.margin = 0;
+            for (std::uint32_t i = 0; i < node.edge_count; ++i)
+                try_edge(frame, node.first_edge + i);
+            return false;
+        }
+        const bool baked = node.kind == TraceNode::Kind::mesh || too_flat(node, frame);
+        frame.margin = baked ? thickness(node, frame) : 0;
+        ready_for_boxes(frame);
+        if (baked) {
+            meet_mesh(self.mesh_of(frame), number);
+            return false;
+        }
+        if (frame.cut && node.stop_edge_count == 1) { // about as large as the node: no box to test
+            entry = {0, node.first_edge + node.edge_count, number};
+            return true;
+        }
+        const std::uint32_t tree = frame.cut ? node.stop_tree : tree_of(node, frame);
+        return tree != no_tree && test_boxes(model.boxes, tree, number, entry);
+    }
+
+    GRAFTAL_INLINE void ready_for_boxes(Frame& frame) {
+        frame.least = static_cast<float>((range.least - frame.base) * frame.speed);
+        const Float4 direction = __builtin_convertvector(frame.direction, Float4);
+        const Float4 origin = __builtin_convertvector(frame.origin, Float4);
+        // Where it is 0 something small: far beyond all boxes, but a number, and 0 times it is 0.
+        constexpr Float4 least = {1e-18f, 1e-18f, 1e-18f, 1e-18f};
+        const Float4 magnitude = direction < 0 ? -direction : direction;
+        frame.reciprocal = 1 / (magnitude > least ? direction : least);
+        const Int4 falling = frame.reciprocal < 0;
+        const Float4 margin = frame.margin - Float4{};
+        const Float4 inwards = falling ? -margin : margin;
+        frame.side_in = -falling;
+        frame.origin_in = origin + inwards;
+        frame.origin_out = origin - inwards;
+    }
+
+    GRAFTAL_INLINE Ball world_ball(const TraceNode& node, const Frame& frame, double radius) const {
+        return {vec3_of(point_through(frame.world_from_node, node.ball_centre)), frame.scale * radius};
+    }
+
+    /// The rule of the cut (detail.h).
+    GRAFTAL_INLINE bool is_cut(const TraceNode& node, const Frame& frame) const {
+        if (node.kind == TraceNode::Kind::unbounded) return false;
+        if (node.unending && frame.steps == 0) return true;
+        if (!node.cullable) return false;
+        const double diameter = 2 * frame.scale * node.ball_radius;
+        if (diameter * model.least_detail_per_unit > 1) return false;
+        return diameter * model.projection.detail_per_unit(world_ball(node, frame, node.ball_radius)) <= 1;
+    }
+
+    /// The parts that are farthest down, of those that are drawn for sure if none is cut.
+    GRAFTAL_INLINE std::uint32_t tree_of(const TraceNode& node, const Frame& frame) const {
+        double detail = model.least_detail_per_unit;
+        bool known = false;
+        for (std::uint32_t i = 0; i < node.unrolling_count; ++i) {
+            const Unrolling& unrolling = model.unrollings[node.first_unrolling + i];
+            if (frame.steps < unrolling.least_steps) continue;
+            if (!(frame.flatness * unrolling.flattest_edge > flattest_placement)) continue;
+            const double size = surely_more * frame.scale * unrolling.least_size;
+            if (size * detail > 1) return unrolling.tree;
+            if (known) continue;
+            detail = model.projection.least_detail_per_unit(world_ball(node, frame, node.reach));
+            known = true;
+            if (size * detail > 1) return unrolling.tree;
+        }
+        return node.tree;
+    }
+
+    /// Whether some part could not be placed by itself, it is so flat: the cut bakes the node then
+    /// (assemble.cpp).
+    GRAFTAL_INLINE bool too_flat(const TraceNode& node, const Frame& frame) const {
+        if (frame.flatness * node.flattest_edge > flattest_placement) return false;
+        return has_flat_part(model, node, frame.world_from_node, frame.cut);
+    }
+
+    /// What parts may be thickened by, in the frame (bake.h, leaf_thickness).
+    GRAFTAL_INLINE float thickness(const TraceNode& node, const Frame& frame) const {
+        const double detail =
+            frame.scale * model.projection.detail_per_unit(world_ball(node, frame, node.ball_radius));
+        return std::isfinite(detail) ? static_cast<float>(1.5 / detail) : 2e-3f;
+    }
+
+    GRAFTAL_INLINE void meet_mesh(const TraceMesh& mesh, std::uint32_t frame_number) {
+        const std::size_t others = self.entry_count_;
+        Entry entry;
+        bool more = mesh.tree != no_tree && test_boxes(mesh.boxes, mesh.tree, frame_number, entry);
+        while (more || pop(others, entry)) {
+            more = entry.entry & BoxNode::inner &&
+                   test_boxes(mesh.boxes, entry.entry & ~BoxNode::inner, frame_number, entry);
+            if (!more && !(entry.entry & BoxNode::inner)) meet_triangle(mesh, mesh.triangles[entry.entry], entry);
+        }
+    }
+
+    GRAFTAL_INLINE void meet_triangle(const TraceMesh& mesh, const TraceMesh::Triangle& triangle,
+                                      const Entry& entry) {
+        ++self.visits_;
+        const Frame& frame = self.frames_[entry.frame];
+        const Double4 near = frame.origin + splat(entry.at) * frame.direction;
+        const double base = t_of(entry);
+        PrimitiveHit hit;
+        if (!intersect(triangle, {vec3_of(near), vec3_of(frame.direction)}, range_from(base, frame.speed), hit))
+            return;
+        if (!set_best(base + hit.t * frame.unit)) return;
+        self.best_.normal = hit.normal;
+        self.best_.world_from_leaf = frame.world_from_node;
+        self.best_.proxy_node = no_edge;
+        self.best_.mesh_colour = &mesh.colours[triangle.colour];
+        keep_path(entry.frame);
+    }
+
+    /// What counts of a ray that starts there.
+    GRAFTAL_INLINE RayRange range_from(double base, double speed) const {
+        return {(range.least - base) * speed, (self.best_.t - base) * speed};
+    }
+
+    /// False if nobody asks for more.
+    GRAFTAL_INLINE bool set_best(double t) {
+        self.best_.t = t;
+        self.best_.found = true;
+        self.best_.mesh_colour = nullptr;
+        return !any;
+    }
+
+    /// The edges to a frame's node.
+    GRAFTAL_INLINE void keep_path(std::uint32_t frame_number) {
+        self.path_.clear();
+        for (std::size_t i = 1; i <= frame_number; ++i)
+            self.keep_edge(self.frames_[i].edge);
+    }
+
+    /// Meets a child whose ray is in `frame`.
+    GRAFTAL_INLINE void meet_primitive(PrimitiveKind kind, const Frame& parent, const Frame& frame,
+                                       const Entry& entry) {
+        PrimitiveHit hit;
+        if (!intersect(kind, {vec3_of(frame.origin), vec3_of(frame.direction)}, range_from(frame.base, frame.speed),
+                       hit))
+            return;
+        if (!set_best(frame.base + hit.t * frame.unit)) return;
+        self.best_.normal = hit.normal;
+        self.best_.proxy_node = no_edge;
+        compose(parent.world_from_node, model.edges[entry.entry].parent_from_child, self.best_.world_from_leaf);
+        keep_path(entry.frame);
+        self.keep_edge(entry.entry | (parent.cut ? from_cut : 0));
+    }
+
+    /// Meets what stands for the frame's own node.
+    GRAFTAL_INLINE void meet_proxy(const TraceNode& node, const Frame& frame) {
+        const Double4 origin = point_through(node.proxy_from_node, frame.origin);
+        const Double4 direction = direction_through(node.proxy_from_node, frame.direction);
+        const double largest = largest_component(direction), unit = 1 / largest;
+        PrimitiveHit hit;
+        if (!intersect(PrimitiveKind::sphere, {vec3_of(origin), vec3_of(direction * splat(unit))},
+                       range_from(frame.base, frame.speed * largest), hit))
+            return;
+        if (!set_best(frame.base + hit.t * (frame.unit * unit))) return;
+        self.best_.normal = hit.normal;
+        self.best_.proxy_node = frame.node;
+        compose(frame.world_from_node, node.node_from_proxy, self.best_.world_from_leaf);
+        keep_path(static_cast<std::uint32_t>(self.depth_ - 1));
+    }
+};
+
+} // namespace graftal

@@ -44,6 +44,9 @@ bool Traversal::run(const Ray& ray, const RayRange& range, bool any) {
 
 bool Traversal::closest(const Ray& ray, const RayRange& range, SurfaceHit& hit) {
     if (!run(ray, range, false)) return false;
+    path_.clear();
+    for (const std::uint32_t edge : way_)
+        append_to_path(edge);
     surface_at_best(hit);
     return true;
 }
@@ -52,14 +55,14 @@ bool Traversal::meets_any(const Ray& ray, const RayRange& range) {
     return run(ray, range, true);
 }
 
-void Traversal::keep_edge(std::uint32_t edge) {
+void Traversal::append_to_path(std::uint32_t edge) {
     const TraceEdge& whole = model_.edges[edge & ~from_cut];
     if (whole.before == no_edge) {
         path_.push_back(edge);
         return;
     }
-    keep_edge(whole.before);
-    keep_edge(whole.last);
+    append_to_path(whole.before);
+    append_to_path(whole.last);
 }
 
 const TraceMesh& Traversal::mesh_of(const Frame& frame) {

@@ -76,8 +76,8 @@ class Traversal final : public Surfaces {
 
     const TraceMesh& mesh_of(const Frame& frame);
     bool run(const Ray& ray, const RayRange& range, bool any);
-    /// Appends an edge to the path; all those that an unrolling's edge stands for.
-    void keep_edge(std::uint32_t edge);
+    /// Appends an edge to the path; of an unrolling's edge those that it stands for.
+    void append_to_path(std::uint32_t edge);
     void surface_at_best(SurfaceHit& hit) const;
 
     const TraceModel& model_;
@@ -89,7 +89,8 @@ class Traversal final : public Surfaces {
     Best best_;
     /// Meshes asked for lately, by a hash of their keys: the store has to be locked.
     std::array<std::pair<MeshStore::Key, const TraceMesh*>, 64> meshes_{};
-    std::vector<std::uint32_t> path_; ///< edges from the root to the best hit, those from cut nodes marked
+    std::vector<std::uint32_t> way_;  ///< edges through the frames to the best hit, those from cut nodes marked
+    std::vector<std::uint32_t> path_; ///< of the graph, likewise, once the ray is done
     std::uint64_t visits_ = 0;
     std::uint64_t given_up_ = 0;
 };

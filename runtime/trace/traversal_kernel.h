@@ -385,7 +385,7 @@ template<Instructions instructions> struct Traversal::Kernel {
         self.best_.world_from_leaf = frame.world_from_node;
         self.best_.proxy_node = no_edge;
         self.best_.mesh_colour = &mesh.colours[triangle.colour];
-        keep_path(entry.frame);
+        keep_way(entry.frame);
     }
 
     /// What counts of a ray that starts there.
@@ -402,10 +402,10 @@ template<Instructions instructions> struct Traversal::Kernel {
     }
 
     /// The edges to a frame's node.
-    GRAFTAL_INLINE void keep_path(std::uint32_t frame_number) {
-        self.path_.clear();
+    GRAFTAL_INLINE void keep_way(std::uint32_t frame_number) {
+        self.way_.clear();
         for (std::size_t i = 1; i <= frame_number; ++i)
-            self.keep_edge(self.frames_[i].edge);
+            self.way_.push_back(self.frames_[i].edge);
     }
 
     /// Meets a child whose ray is in `frame`.
@@ -419,8 +419,8 @@ template<Instructions instructions> struct Traversal::Kernel {
         self.best_.normal = hit.normal;
         self.best_.proxy_node = no_edge;
         compose(parent.world_from_node, model.edges[entry.entry].parent_from_child, self.best_.world_from_leaf);
-        keep_path(entry.frame);
-        self.keep_edge(entry.entry | (parent.cut ? from_cut : 0));
+        keep_way(entry.frame);
+        self.way_.push_back(entry.entry | (parent.cut ? from_cut : 0));
     }
 
     /// Meets what stands for the frame's own node.
@@ -436,7 +436,7 @@ template<Instructions instructions> struct Traversal::Kernel {
         self.best_.normal = hit.normal;
         self.best_.proxy_node = frame.node;
         compose(frame.world_from_node, node.node_from_proxy, self.best_.world_from_leaf);
-        keep_path(static_cast<std::uint32_t>(self.depth_ - 1));
+        keep_way(static_cast<std::uint32_t>(self.depth_ - 1));
     }
 };
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 
 #include <glm/geometric.hpp>
 
@@ -27,14 +28,16 @@ inline void place(Graph& graph, ObjectId user, ObjectId master, const Affine& ma
     graph.objects[user].instances.push_back(instance);
 }
 
-/// The model as the engine sees it, from the front and far enough away to see all of it in 640 pixels.
-inline std::unique_ptr<TraceModel> traced(const Graph& graph, const CutOptions& options) {
+/// The model as the engine sees it, from the front and far enough away to see all of it in 640 pixels, or from `eye`.
+inline std::unique_ptr<TraceModel> traced(const Graph& graph, const CutOptions& options,
+                                          std::optional<Vec3> eye = {}) {
     const Components components = strong_components(graph);
     const auto bounds = bound_objects(graph, components, decide_contraction(graph, components));
     const Box& box = bounds[graph.root].box;
     View view;
     view.size = {640, 480};
     view.camera.location = box.empty() ? Vec3(0, 1, 5) : box.centre() + Vec3(0, 0, 2 * glm::length(box.size()));
+    if (eye) view.camera.location = *eye;
     return std::make_unique<TraceModel>(prepare_cut(graph, components, bounds, options), view, options);
 }
 

@@ -1,5 +1,7 @@
 #include "runtime/trace/unroll.h"
 
+#include <memory>
+#include <optional>
 #include <random>
 
 #include <gtest/gtest.h>
@@ -21,22 +23,25 @@ CutOptions options_of(double error_px, std::optional<unsigned> steps = {}) {
     return options;
 }
 
-/// The same model, of which every edge is followed by itself.
-std::unique_ptr<TraceModel> traced_plainly(const Graph& graph, const CutOptions& options) {
-    auto model = traced(graph, options);
-    for (TraceNode& node : model->nodes)
-        node.unrolling_count = 0;
-    return model;
-}
+/// The model from the eye, and the same of which every edge is followed by itself.
+struct Pair {
+    Pair(const Graph& graph, const CutOptions& options, std::optional<Vec3> eye) {
+        unrolled = traced(graph, options, eye);
+        plain = traced(graph, options, eye);
+        for (TraceNode& node : plain->nodes)
+            node.unrolling_count = 0;
+    }
+    std::unique_ptr<TraceModel> unrolled, plain;
+};
 
 /// Compares many rays, and that fewer parts are visited where there are unrollings.
-void expect_same(const Graph& graph, const CutOptions& options) {
-    const auto model = traced(graph, options), plain_model = traced_plainly(graph, options);
-    ASSERT_FALSE(model->unrollings.empty());
-    Traversal traversal(*model), plain(*plain_model);
+void expect_same(const Graph& graph, const CutOptions& options, std::optional<Vec3> eye_at = {}) {
+    const Pair models(graph, options, eye_at);
+    ASSERT_FALSE(models.unrolled->unrollings.empty());
+    Traversal traversal(*models.unrolled), plain(*models.plain);
     std::mt19937_64 random(11);
     std::uniform_real_distribution<double> unit(-1, 1);
-    const Vec3& eye = model->view.camera.location;
+    const Vec3& eye = models.plain->view.camera.location;
     std::size_t hits = 0;
     for (int i = 0; i < 20'000; ++i) {
         const Ray ray{eye, {0.5 * unit(random), 0.5 * unit(random), -1}};
@@ -82,6 +87,18 @@ TEST(Unroll, DrawsWhatSingleEdgesDraw) {
         expect_same(test::tetrahedron(), options_of(0, steps));
         expect_same(twisted(0.8), options_of(0, steps));
         expect_same(twisted(0.8), options_of(2, steps));
+    }
+}
+
+TEST(Unroll, DrawsTheSameBesideThePicture) {
+    // From close by, so that most is out of the picture, and coarser.
+    for (const double error_px : {8.0, 1.0}) {
+        SCOPED_TRACE(error_px);
+        expect_same(test::tetrahedron(), options_of(error_px), Vec3(0.4, 0.3, 1.2));
+        expect_same(twisted(0.8), options_of(error_px), Vec3(0.2, 1.5, 1.5));
+        CutOptions in_world = options_of(0);
+        in_world.error_world = 0.01 * error_px;
+        expect_same(twisted(0.8), in_world, Vec3(0.2, 1.5, 1.5));
     }
 }
 

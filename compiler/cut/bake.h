@@ -26,6 +26,7 @@ struct BakeRequest {
     std::vector<Painter> painters;
     double expected_leaves = 0; ///< about; what is known of it saves memory
     bool limit_normals = false; ///< of proxies, where nothing was crushed
+    bool pictures = true;       ///< else what has a texture shows its material's colour
 };
 
 /// The triangles of one finish, and what each painter's colours are.

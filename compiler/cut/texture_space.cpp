@@ -24,13 +24,25 @@ bool is_round(PrimitiveKind kind) {
     return is_long(kind) || kind == PrimitiveKind::sphere || kind == PrimitiveKind::torus;
 }
 
+/// On the axis u is anything.
+bool is_pole(Vec3 point) {
+    return std::hypot(point.x, point.z) < 1e-9;
+}
+
 /// Moves what lies on the other side of a seam, where the coordinate jumps by `whole`.
-void unwrap(std::array<TexturePoint, 3>& uv, std::size_t axis, double whole) {
-    double most = uv[0][axis];
-    for (const TexturePoint& point : uv)
-        most = std::max(most, point[axis]);
+void unwrap(std::array<TexturePoint, 3>& uv, std::size_t axis, double whole,
+            const std::array<Vec3, 3>& points) {
+    double most = -whole;
+    for (std::size_t i = 0; i < 3; ++i)
+        if (!is_pole(points[i])) most = std::max(most, uv[i][axis]);
     for (TexturePoint& point : uv)
         if (most - point[axis] > 0.5 * whole) point[axis] += whole;
+}
+
+/// A pole lies between the others.
+void settle_poles(std::array<TexturePoint, 3>& uv, const std::array<Vec3, 3>& points) {
+    for (std::size_t i = 0; i < 3; ++i)
+        if (is_pole(points[i])) uv[i][0] = 0.5 * (uv[(i + 1) % 3][0] + uv[(i + 2) % 3][0]);
 }
 
 } // namespace
@@ -71,8 +83,11 @@ std::array<TexturePoint, 3> texture_coordinates(PrimitiveKind kind, const Textur
     std::array<TexturePoint, 3> uv;
     for (std::size_t i = 0; i < 3; ++i)
         uv[i] = texture_coordinates(kind, space, points[i]);
-    if (is_round(kind)) unwrap(uv, 0, space.around);
-    if (kind == PrimitiveKind::torus) unwrap(uv, 1, 1);
+    if (is_round(kind)) {
+        unwrap(uv, 0, space.around, points);
+        settle_poles(uv, points);
+    }
+    if (kind == PrimitiveKind::torus) unwrap(uv, 1, 1, points);
     return uv;
 }
 

@@ -123,8 +123,9 @@ const std::string& PovrayTextures::picture_name(const std::string& texture) {
 void PovrayTextures::append_picture(std::string& text, const PlacementGroup& group) {
     const std::string& name = picture_name(group.material.texture);
     const PathTint& tint = group.tint;
-    text += fmt::format("texture {{ uv_mapping pigment {{ pigment_pattern {{ {}_shape }} pigment_map {{ "
-                        "[0.5 rgbt 1] [0.5 ",
+    // What is clear must not shine either.
+    text += fmt::format("texture {{ uv_mapping pigment_pattern {{ {}_shape }} texture_map {{ "
+                        "[0.5 pigment {{ rgbt 1 }} finish {{ ambient 0 diffuse 0 }}] [0.5 pigment {{ ",
                         name);
     if (tint.alpha <= no_tint) {
         text += name;
@@ -139,8 +140,7 @@ void PovrayTextures::append_picture(std::string& text, const PlacementGroup& gro
         append_rgb(text, tint.premultiplied / tint.alpha);
         text += "] }";
     }
-    text += "] }";
-    end_texture(text, finish(group.material, true));
+    text += " } finish { " + finish(group.material, true) + " }] } }";
 }
 
 std::uint32_t PovrayTextures::texture_of(const PlacementGroup& group) {

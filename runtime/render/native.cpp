@@ -161,8 +161,9 @@ std::optional<NativeReport> trace_model(ViewedModel viewed, const NativeOptions&
                                         Compilation& compilation) {
     const Interruption interruption;
     compilation.status = check_writable(options.render.output);
-    if (!compilation.status.ok()) return std::nullopt;
     const AnalysedModel& analysed = viewed.model;
+    if (compilation.status.ok()) compilation.status = load_textures(analysed.graph.materials);
+    if (!compilation.status.ok()) return std::nullopt;
     if (refuse_endless(analysed.graph, analysed.components, viewed.cut, compilation.diagnostics))
         return std::nullopt;
 

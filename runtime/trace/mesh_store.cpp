@@ -111,6 +111,7 @@ std::unique_ptr<TraceMesh> MeshStore::bake_mesh(const Key& key, const Affine& gr
     request.pixels_per_unit = value_of(key.pixels, pixel_step);
     const std::uint32_t pair = symmetry.pair[key.node];
     request.painters = {{pair, Rgb(0.0)}, {pair, Rgb(1.0)}};
+    request.pictures = false; // what is crushed is a pixel or two wide
     Baked baked = bake(prepared_.cut, symmetry, request, most_triangles);
     // Coarser, until it fits.
     for (; !baked.complete && std::isfinite(request.detail_per_unit); request.detail_per_unit /= 2)

@@ -8,6 +8,7 @@
 
 #include <glm/geometric.hpp>
 
+#include "compiler/cut/texture_space.h"
 #include "runtime/trace/drawn_bounds.h"
 #include "runtime/trace/unroll.h"
 
@@ -100,6 +101,7 @@ class Builder {
             edge.similarity = part.edge.similarity;
             edge.tint = part.edge.tint;
             edge.material = part.edge.material;
+            edge.turns = part.turns;
             const Affine& graph_from_child = model_.graph_from_frame[edge.child];
             set_map(edge, frame_from_graph * part.edge.node_from_child * graph_from_child,
                     part.edge.stretch * graph_from_child.linear[0][0] * frame_from_graph.linear[0][0]);
@@ -115,6 +117,7 @@ class Builder {
     struct Part {
         CutEdge edge;
         Box box;
+        double turns = 1;
     };
 
     /// The instances, with the primitives of small groups in place of the groups: a box more to test is
@@ -126,7 +129,7 @@ class Builder {
             if (is_small_group(edges[i].child) && parts.size() + edges.size() < most_parts)
                 add_group(edges[i], parts);
             else
-                parts.push_back({edges[i], boxes[i]});
+                parts.push_back({edges[i], boxes[i], length_in_turns(edges[i].node_from_child.linear)});
         }
         return parts;
     }
@@ -149,11 +152,12 @@ class Builder {
             edge.levels = group.levels + member.levels;
             const auto primitive = cut_.nodes[edge.child].primitive;
             if (primitive)
-                parts.push_back({edge, box_of_image(*primitive, edge.node_from_child)});
+                parts.push_back({edge, box_of_image(*primitive, edge.node_from_child),
+                                 length_in_turns(member.node_from_child.linear)});
             else if (is_small_group(edge.child))
                 add_group(edge, parts);
             else
-                parts.push_back({edge, transformed(edge.node_from_child, bounds_.node[edge.child])});
+                parts.push_back({edge, transformed(edge.node_from_child, bounds_.node[edge.child]), 1});
         }
     }
 
@@ -200,8 +204,20 @@ TraceModel::TraceModel(PreparedCut ready, const View& seen, const CutOptions& cu
       projection(view, options, options.error_px, nearest_to_eye(prepared.cut)),
       meshes(prepared) {
     least_detail_per_unit = least_detail(*this);
+    for (const Material& material : prepared.cut.materials) {
+        Status ignored;
+        textures.push_back(material.texture.empty() ? nullptr : load_texture(material.texture, ignored));
+        clear_texels = clear_texels || (textures.back() && textures.back()->coverage < 1);
+    }
     Builder(*this).build();
     add_unrollings(*this);
+}
+
+Status load_textures(const std::vector<Material>& materials) {
+    Status status;
+    for (const Material& material : materials)
+        if (!material.texture.empty() && status.ok()) load_texture(material.texture, status);
+    return status;
 }
 
 } // namespace graftal

@@ -2,12 +2,14 @@
 
 #include <cstdint>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <vector>
 
 #include "compiler/cut/detail.h"
 #include "compiler/cut/prepare.h"
 #include "compiler/scene/scene.h"
+#include "runtime/image/texture.h"
 #include "runtime/trace/box_tree.h"
 #include "runtime/trace/lanes.h"
 #include "runtime/trace/layers.h"
@@ -34,6 +36,7 @@ struct TraceEdge {
     double flatness = 1;     ///< the least stretch, as a share of the largest
     PathTint tint;
     std::optional<MaterialId> material;
+    double turns = 1; ///< of a primitive: length_in_turns() of the graph's instance
     /// Of an unrolling's edges that lead several levels down, which have no tint and material of their own: the way is
     /// one of its edges or the node's, and then one of that child's.
     std::uint32_t before = no_edge, last = no_edge;
@@ -91,13 +94,19 @@ struct TraceModel {
     std::vector<Unrolling> unrollings;
     std::vector<Affine> graph_from_frame; ///< by node
     mutable MeshStore meshes;
+    std::vector<std::shared_ptr<const Texture>> textures; ///< by material; null where there is none
+    bool clear_texels = false;                            ///< some texture has them
 
     /// The node as the cut has it.
     const CutNode& source(std::uint32_t node) const { return prepared.cut.nodes[layers.source[node]]; }
 
+    /// Textures that cannot be read are left out: see load_textures().
     TraceModel(PreparedCut prepared, const View& view, const CutOptions& options);
     TraceModel(const TraceModel&) = delete;
     TraceModel& operator=(const TraceModel&) = delete;
 };
+
+/// Reads the textures of the materials, as the model will; or says which cannot be read.
+Status load_textures(const std::vector<Material>& materials);
 
 } // namespace graftal

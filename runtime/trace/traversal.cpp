@@ -1,5 +1,8 @@
 #include "runtime/trace/traversal.h"
 
+#include <array>
+
+#include "compiler/cut/texture_space.h"
 #include "runtime/trace/surface_normal.h"
 #include "runtime/trace/traversal_kernel.h"
 
@@ -32,6 +35,20 @@ template<typename Kernel> bool run_portable(Kernel&& kernel, const Ray& ray) {
 
 template<typename Kernel> GRAFTAL_AVX2 bool run_avx2(Kernel&& kernel, const Ray& ray) {
     return kernel.run(ray);
+}
+
+} // namespace
+
+namespace {
+
+Rgb colour_of(const Texture::Texel& texel) {
+    static const std::array<double, 256> linear = [] {
+        std::array<double, 256> levels;
+        for (std::size_t level = 0; level < levels.size(); ++level)
+            levels[level] = srgb_decoded(static_cast<std::uint8_t>(level));
+        return levels;
+    }();
+    return {linear[texel.srgb[0]], linear[texel.srgb[1]], linear[texel.srgb[2]]};
 }
 
 } // namespace
@@ -84,11 +101,35 @@ const TraceMesh& Traversal::mesh_of(const Frame& frame) {
     return *mesh;
 }
 
+std::optional<MaterialId> Traversal::material_of(std::uint32_t edge) const {
+    const TraceEdge& whole = model_.edges[edge & ~from_cut];
+    if (whole.before == no_edge) return whole.material;
+    const std::optional<MaterialId> material = material_of(whole.last);
+    return material ? material : material_of(whole.before);
+}
+
+const Texture::Texel& Traversal::texel(MaterialId material, std::uint32_t edge, Vec3 point) const {
+    const TraceEdge& way = model_.edges[edge & ~from_cut];
+    const PrimitiveKind kind = model_.nodes[way.child].primitive;
+    const double around = model_.prepared.cut.materials[material].around;
+    const auto [u, v] = texture_coordinates(kind, texture_space(kind, around, way.turns), point);
+    return model_.textures[material]->at(u, v);
+}
+
+bool Traversal::is_clear(std::uint32_t edge, std::uint32_t frame, Vec3 point) const {
+    std::optional<MaterialId> material = material_of(edge);
+    for (std::uint32_t i = frame; i > 0 && !material; --i)
+        material = material_of(frames_[i].edge);
+    if (!material || !model_.textures[*material] || model_.textures[*material]->coverage == 1) return false;
+    return texel(*material, edge, point).clear;
+}
+
 void Traversal::surface_at_best(SurfaceHit& hit) const {
     static const Material plain;
     const std::vector<Material>& materials = model_.prepared.cut.materials;
     PathTint tint;
     Rgb inherited = plain.rgb;
+    std::optional<MaterialId> material;
     hit.material = &plain;
     const CutNode* parent = nullptr; // as in descend() (cut/choose.h)
     for (const std::uint32_t step : path_) {
@@ -96,6 +137,7 @@ void Traversal::surface_at_best(SurfaceHit& hit) const {
         if (parent && (step & from_cut) && parent->terminal) inherited = parent->mean.over(inherited);
         tint = tint * edge.tint;
         if (edge.material) {
+            material = edge.material;
             hit.material = &materials[*edge.material];
             inherited = hit.material->rgb;
         }
@@ -105,6 +147,8 @@ void Traversal::surface_at_best(SurfaceHit& hit) const {
         inherited = best_.mesh_colour->fixed + best_.mesh_colour->open * inherited;
         if (best_.mesh_colour->material) hit.material = &materials[*best_.mesh_colour->material];
     }
+    else if (best_.proxy_node == no_edge && material && model_.textures[*material])
+        inherited = colour_of(texel(*material, path_.back(), best_.point));
     if (best_.proxy_node != no_edge)
         inherited = model_.source(best_.proxy_node).mean.over(inherited);
     hit.t = best_.t;

@@ -69,6 +69,7 @@ class Traversal final : public Surfaces {
         double t = 0;
         bool found = false;
         Vec3 normal{0.0}; ///< in the leaf's frame
+        Vec3 point{0.0};  ///< of a primitive, likewise
         LaneMap world_from_leaf;
         std::uint32_t proxy_node = 0;                 ///< or no_edge
         const TraceMesh::Colour* mesh_colour = nullptr; ///< of a triangle
@@ -79,6 +80,11 @@ class Traversal final : public Surfaces {
     /// Appends an edge to the path; of an unrolling's edge those that it stands for.
     void append_to_path(std::uint32_t edge);
     void surface_at_best(SurfaceHit& hit) const;
+    /// The material that an edge gives, the nearest to its child if it stands for several.
+    std::optional<MaterialId> material_of(std::uint32_t edge) const;
+    const Texture::Texel& texel(MaterialId material, std::uint32_t edge, Vec3 point) const;
+    /// Whether the child of the edge, met at this point of its surface, has none there.
+    bool is_clear(std::uint32_t edge, std::uint32_t frame, Vec3 point) const;
 
     const TraceModel& model_;
     Instructions instructions_;

@@ -19,6 +19,8 @@ namespace graftal {
 inline constexpr std::uint64_t most_visits = 1 << 17;
 /// Parts smaller than this are nothing: their inverse maps would not be numbers.
 inline constexpr double least_scale = 1e-150;
+/// A ray crosses no primitive's surface more often: the torus.
+inline constexpr int most_crossings = 4;
 /// Allows for the rounding of what is a little more than enough.
 inline constexpr double surely_more = 1 - 1e-6;
 
@@ -411,12 +413,18 @@ template<Instructions instructions> struct Traversal::Kernel {
     /// Meets a child whose ray is in `frame`.
     GRAFTAL_INLINE void meet_primitive(PrimitiveKind kind, const Frame& parent, const Frame& frame,
                                        const Entry& entry) {
+        const Ray ray{vec3_of(frame.origin), vec3_of(frame.direction)};
+        RayRange near = range_from(frame.base, frame.speed);
         PrimitiveHit hit;
-        if (!intersect(kind, {vec3_of(frame.origin), vec3_of(frame.direction)}, range_from(frame.base, frame.speed),
-                       hit))
-            return;
+        if (!intersect(kind, ray, near, hit)) return;
+        for (int crossing = 0; model.clear_texels && self.is_clear(entry.entry, entry.frame, ray(hit.t));
+             ++crossing) {
+            near.least = hit.t;
+            if (crossing == most_crossings || !intersect(kind, ray, near, hit)) return;
+        }
         if (!set_best(frame.base + hit.t * frame.unit)) return;
         self.best_.normal = hit.normal;
+        self.best_.point = ray(hit.t);
         self.best_.proxy_node = no_edge;
         compose(parent.world_from_node, model.edges[entry.entry].parent_from_child, self.best_.world_from_leaf);
         keep_way(entry.frame);

@@ -157,6 +157,7 @@ class Unroller {
         TraceEdge edge;
         edge.before = before;
         edge.last = last;
+        edge.turns = second.turns;
         edge.child = second.child;
         edge.levels = first.levels + second.levels;
         const Affine parent_from_middle = first.parent_from_child.affine();

@@ -307,9 +307,9 @@ TEST(EmitPovray, PicturesLieBehindTints) {
     const std::string text = scene.text();
     EXPECT_THAT(text, HasSubstr("uv_vectors { 4,\n    <0,0>,<1,0>,<1,1>,<0,1> }"));
     EXPECT_THAT(text, HasSubstr("#declare T_1 = pigment { image_map { png \"model_T_1.png\" } }"));
-    EXPECT_THAT(text, HasSubstr("[0.5 rgbt 1] [0.5 T_1] }"));
-    EXPECT_THAT(text, HasSubstr("[0.5 average pigment_map { [0.75 T_1] [0.25 rgb <0,1,0>] }] }"));
-    EXPECT_THAT(text, HasSubstr("[0.5 rgb <0,1,0>] }"));
+    EXPECT_THAT(text, HasSubstr("[0.5 pigment { T_1 } finish { F_default }] } }"));
+    EXPECT_THAT(text, HasSubstr("{ average pigment_map { [0.75 T_1] [0.25 rgb <0,1,0>] } } finish"));
+    EXPECT_THAT(text, HasSubstr("[0.5 pigment { rgb <0,1,0> } finish"));
     EXPECT_THAT(text, Not(HasSubstr("any")));
     ASSERT_EQ(scene.pictures.size(), 1u);
     EXPECT_EQ(scene.pictures[0].file_name, "model_T_1.png");

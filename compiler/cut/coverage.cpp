@@ -36,6 +36,11 @@ constexpr std::size_t many_nodes = 3000;
 constexpr int coarse_grid = 64, fine_grid = 128;
 constexpr std::size_t fine_factor = 12; ///< so many more parts to see what a cycle ends in
 constexpr int most_rounds = 10;
+/// Bodies that may be drawn for cycles, besides once for each node. Any scene of ours needs less than a
+/// tenth.
+constexpr std::uint64_t most_repeated_draws = 4'000'000;
+/// A primitive of several bodies may make a measurement so much dearer.
+constexpr std::size_t bodies_a_piece = 4;
 
 /// The axes of an icosahedron, then those of a dodecahedron, turned away from the coordinate axes and
 /// towards all sides alike.
@@ -81,6 +86,8 @@ class Measurer {
         : cut_(cut), directions_(directions(direction_count)), coarse_(coarse_grid), fine_(fine_grid) {}
 
     const std::vector<Vec3>& along() const { return directions_; }
+    /// Bodies drawn so far: what all this costs.
+    std::uint64_t draws() const { return coarse_.bodies_drawn() + fine_.bodies_drawn(); }
 
     Measured measure(NodeId node, const Effort& effort) {
         unfold(node, effort.pieces);
@@ -109,10 +116,16 @@ class Measurer {
         Vec3 centre{0.0};
     };
 
+    std::size_t bodies_of(const Part& part) const {
+        const auto& primitive = cut_.nodes[part.node].primitive;
+        return primitive && *primitive != PrimitiveKind::plane ? Shadow::bodies_of(*primitive) : 1;
+    }
+
     bool opens(const Part& part) const { return !cut_.nodes[part.node].edges.empty(); }
 
     void unfold(NodeId root, std::size_t most) {
         parts_.clear();
+        std::size_t bodies = 0;
         std::priority_queue<std::pair<double, std::int64_t>> largest;
         const auto open = [&](const Part& parent, std::size_t reused) {
             const std::vector<CutEdge>& edges = cut_.nodes[parent.node].edges;
@@ -123,6 +136,7 @@ class Measurer {
                 const std::size_t at = i == 0 && reused != SIZE_MAX ? reused : parts_.size();
                 if (at == parts_.size()) parts_.emplace_back();
                 parts_[at] = part;
+                bodies += bodies_of(part);
                 // The earlier of two that are alike first.
                 if (opens(part))
                     largest.emplace(part.scale * cut_.nodes[part.node].ball.radius,
@@ -131,7 +145,8 @@ class Measurer {
         };
         open({root, {}, 1, 0}, SIZE_MAX);
         // A cycle of single instances would be opened for ever, and never make more parts.
-        for (std::size_t opened = 0; !largest.empty() && opened < 4 * most; ++opened) {
+        for (std::size_t opened = 0; !largest.empty() && opened < 4 * most && bodies < bodies_a_piece * most;
+             ++opened) {
             const auto at = static_cast<std::size_t>(-largest.top().second);
             largest.pop();
             const Part part = parts_[at];
@@ -213,10 +228,13 @@ class Fitter {
             else
                 fit_single(roots_.front());
         }
+        draws_ = measurer.draws();
         weigh_edges();
         for (NodeId id = 0; id < cut_.nodes.size(); ++id)
             cut_.nodes[id].shadowless = shadowless_[congruence_.root[id]];
     }
+
+    std::uint64_t draws() const { return draws_; }
 
   private:
     bool fittable(NodeId id) const {
@@ -272,6 +290,20 @@ class Fitter {
                 shadowless_[root] = true;
             return;
         }
+        const std::uint64_t begin = measurer_->draws();
+        // Half of what the cycles before have left, and half of that for either step.
+        const std::uint64_t allowed = (most_repeated_draws - repeated_draws_) / 4;
+        const std::uint64_t round_draws = go_round(allowed);
+        if (grows) fit_together(allowed, round_draws);
+        repeated_draws_ =
+            std::min(repeated_draws_ + measurer_->draws() - begin - round_draws, most_repeated_draws);
+    }
+
+    /// Measures the nodes of a cycle by each other's proxies until these stay as they are. Returns what one
+    /// round draws.
+    std::uint64_t go_round(std::uint64_t allowed) {
+        const std::uint64_t begin = measurer_->draws();
+        std::uint64_t round_draws = 0;
         std::vector<double> mean(roots_.size(), 0);
         for (int round = 0; round < most_rounds; ++round) {
             double change = 0;
@@ -282,17 +314,21 @@ class Fitter {
                     std::max(change, std::abs(measured.mean - mean[i]) / std::max(measured.mean, 1e-300));
                 mean[i] = measured.mean;
             }
-            if (change < 0.01) break;
+            const std::uint64_t draws = measurer_->draws() - begin;
+            if (round == 0) round_draws = draws;
+            if (change < 0.01 || draws > allowed) break;
         }
-        if (grows) fit_together();
+        return round_draws;
     }
 
     /// Proxies side by side cover more than one alone would say, they reach into each other's gaps: scaled,
-    /// all alike, so that some hundred of them cover what the limit does.
-    void fit_together() {
+    /// all alike, so that some hundred of them cover what the limit does. As well as is allowed.
+    void fit_together(std::uint64_t allowed, std::uint64_t round_draws) {
+        const std::uint64_t rounds = allowed / std::max<std::uint64_t>(round_draws, 1) / 2;
+        if (rounds < 4) return;
         Effort fine{std::min(fine_factor * effort_.pieces, fine_factor * all_pieces / (8 * roots_.size())),
                     fine_grid};
-        fine.pieces = std::max(fine.pieces, effort_.pieces);
+        fine.pieces = std::clamp(fine.pieces, effort_.pieces, rounds * effort_.pieces);
         double limit = 0;
         std::vector<Measured> measured;
         for (const NodeId root : roots_)
@@ -308,7 +344,7 @@ class Fitter {
             return sum;
         };
         double low = 0.5, high = 1.5;
-        for (int step = 0; step < 6; ++step) {
+        for (std::uint64_t step = 1; step < std::min<std::uint64_t>(rounds, 7); ++step) {
             const double middle = 0.5 * (low + high);
             (together(middle) < limit ? low : high) = middle;
         }
@@ -402,6 +438,7 @@ class Fitter {
     std::vector<std::vector<double>> seen_;    ///< by node, then by edge
     std::vector<bool> shadowless_;             ///< by root
     Effort effort_{most_pieces, coarse_grid};
+    std::uint64_t draws_ = 0, repeated_draws_ = 0;
     std::vector<NodeId> roots_; ///< of the component under way
     Measurer* measurer_ = nullptr;
     const EllipsoidFit* fit_ = nullptr;
@@ -409,9 +446,11 @@ class Fitter {
 
 } // namespace
 
-void fit_proxies(CutGraph& cut, const Symmetry& symmetry) {
-    Fitter(cut, symmetry).run();
+std::uint64_t fit_proxies(CutGraph& cut, const Symmetry& symmetry) {
+    Fitter fitter(cut, symmetry);
+    fitter.run();
     set_mean_colours(cut);
+    return fitter.draws();
 }
 
 bool is_flat(const CutNode& node) {

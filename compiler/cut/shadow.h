@@ -37,6 +37,12 @@ class Shadow {
     /// How near to the eye a point is: those with a smaller depth hide others.
     double depth(Vec3 point) const;
 
+    /// How many bodies a primitive is drawn as; 1 for most.
+    static std::size_t bodies_of(PrimitiveKind kind);
+
+    /// What drawing has cost so far.
+    std::uint64_t bodies_drawn() const { return bodies_drawn_; }
+
   private:
     struct Point {
         double x = 0;
@@ -44,7 +50,10 @@ class Shadow {
     };
 
     Point project(Vec3 point) const;
-    Cover draw_hull(std::span<const Vec3> points, const Affine& place);
+    Cover draw_hull(std::span<const Vec3> corners, std::size_t ring, const Affine& place);
+    bool join_rings(std::size_t count);
+    std::size_t start_at_lowest();
+    std::size_t wrap_points();
     void fill_hull(std::size_t top, Cover& cover);
     void cover_row(int row, double from, double to, Cover& cover);
     int first_row(double y) const;
@@ -56,6 +65,7 @@ class Shadow {
     Vec3 direction_{0.0}, right_{0.0}, up_{0.0};
     Vec3 centre_{0.0};
     double unit_ = 1;                  ///< samples a scene unit
+    std::uint64_t bodies_drawn_ = 0;
     std::vector<Point> points_, hull_; ///< kept for their memory
 };
 

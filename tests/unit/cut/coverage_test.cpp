@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <numbers>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include <glm/geometric.hpp>
@@ -39,6 +42,7 @@ double mean_shadow(const Affine& proxy) {
 struct Fitted {
     CutGraph cut;
     Symmetry symmetry;
+    std::uint64_t draws = 0;
 
     const CutNode& root() const { return cut.nodes[cut.root]; }
     double root_shadow() const { return mean_shadow(root().node_from_proxy); }
@@ -49,7 +53,7 @@ Fitted fitted(const Graph& graph) {
     result.cut = build_cut_graph(graph, strong_components(graph), test::bounds_of(graph));
     split_into_halves(result.cut);
     result.symmetry = find_symmetry(result.cut);
-    fit_proxies(result.cut, result.symmetry);
+    result.draws = fit_proxies(result.cut, result.symmetry);
     return result;
 }
 
@@ -116,6 +120,46 @@ TEST(Shadow, OfATorusHasAHole) {
     shadow.start({0, 1, 0}, {Vec3(0.0), 1.5});
     const double square = std::pow(3.0 / 256, 2);
     EXPECT_NEAR(shadow.draw(PrimitiveKind::torus, {}).uncovered * square, pi * (1.5625 - 0.5625), 0.15);
+}
+
+/// A cube of the parts themselves, each shrunk to two fifths: their dimension is above 2. Of each part
+/// another torus is left.
+Graph cycles_of_toruses(int cycles, int parts_of_a_cycle) {
+    Graph graph;
+    const ObjectId torus = graph.primitive(PrimitiveKind::torus);
+    Object all{"all", {}, {}, {}, {}};
+    for (int cycle = 0; cycle < cycles; ++cycle) {
+        const auto first = static_cast<ObjectId>(graph.objects.size());
+        for (int part = 0; part < parts_of_a_cycle; ++part) {
+            Object object{"part" + std::to_string(cycle) + "_" + std::to_string(part), {}, {}, {}, {}};
+            const auto next = first + static_cast<ObjectId>((part + 1) % parts_of_a_cycle);
+            for (int corner = 0; corner < 8; ++corner)
+                object.instances.push_back(
+                    {next,
+                     Affine::translate(Vec3(corner & 1, corner >> 1 & 1, corner >> 2)) *
+                         Affine::scale(Vec3(0.4)),
+                     {},
+                     {},
+                     {}});
+            const double size = 0.1 + 0.001 * cycle + 0.02 * part;
+            object.instances.push_back({torus, Affine::scale({size, 0.2, 0.3}), {}, {}, {}});
+            graph.add(std::move(object));
+        }
+        all.instances.push_back({first, Affine::translate(Vec3(3.0 * cycle, 0, 0)), {}, {}, {}});
+    }
+    graph.root = graph.add(std::move(all));
+    return graph;
+}
+
+// Each cycle by itself may be measured again and again; many together would take minutes.
+TEST(Coverage, CyclesShareABudget) {
+    const Fitted one = fitted(cycles_of_toruses(1, 1));
+    EXPECT_LT(one.draws, 300'000u);
+    for (const auto& [cycles, parts] : {std::pair(20, 1), {1, 20}}) {
+        const Fitted model = fitted(cycles_of_toruses(cycles, parts));
+        EXPECT_LT(model.draws, 5'000'000u) << cycles << " of " << parts;
+        EXPECT_GT(model.root_shadow(), cycles * 0.5 * one.root_shadow()) << cycles << " of " << parts;
+    }
 }
 
 TEST(Coverage, AFullBallKeepsItsProxy) {

@@ -126,6 +126,10 @@ class Baker {
         WalkedLeaf leaf;
         std::size_t triangles = 0;
         for (std::uint64_t number = 0; walk.next(leaf); ++number) {
+            if (walk.visits() > request_.most_visits) {
+                baked_.complete = false;
+                return;
+            }
             const double thickness = leaf_thickness(
                 leaf.representative_from_leaf, request_.detail_per_unit, leaf.crushed_length);
             const Affine place = thickened(leaf.representative_from_leaf, thickness);

@@ -27,6 +27,7 @@ struct BakeRequest {
     double expected_leaves = 0; ///< about; what is known of it saves memory
     bool limit_normals = false; ///< of proxies, where nothing was crushed
     bool pictures = true;       ///< else what has a texture shows its material's colour
+    std::uint64_t most_visits = UINT64_MAX; ///< of the walk through the subtree
 };
 
 /// The triangles of one finish, and what each painter's colours are.
@@ -48,7 +49,7 @@ struct Baked {
     std::size_t triangles = 0;
     double culled_detail = 0; ///< largest detail of a culled part
     double tessellation_px = 0;
-    bool complete = true; ///< false: stopped at max_triangles
+    bool complete = true; ///< false: stopped at max_triangles, or at most_visits
 };
 
 /// Unfolds the request into triangles. Leaves that coincide are drawn once; faces on which two cubes meet are

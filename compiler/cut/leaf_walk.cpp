@@ -54,6 +54,7 @@ bool LeafWalk::next(WalkedLeaf& leaf) {
 }
 
 void LeafWalk::pop() {
+    ++visits_;
     visit_ = stack_.back();
     stack_.pop_back();
     const auto begin = paint_stack_.end() - static_cast<std::ptrdiff_t>(paints_.size());

@@ -34,6 +34,8 @@ class LeafWalk {
 
     /// The next leaf, or false at the end. Memory O(depth).
     bool next(WalkedLeaf& leaf);
+    /// Nodes and leaves so far.
+    std::uint64_t visits() const { return visits_; }
 
   private:
     struct Visit {
@@ -72,6 +74,7 @@ class LeafWalk {
     Visit visit_;                    ///< the last one popped
     std::vector<Ball> balls_;        ///< of the unending nodes above it, from the root on
     std::vector<Paint> paints_;
+    std::uint64_t visits_ = 0;
 };
 
 } // namespace graftal

@@ -53,6 +53,7 @@ Vec3 singular_values(const Mat3& linear) {
     const double half_scale = std::exp2(-exponent / 2), rest_scale = std::exp2(-exponent - -exponent / 2);
 
     // One-sided Jacobi: rotate pairs of columns until all are orthogonal; their lengths are the answer.
+    constexpr int enough_sweeps = 6;
     Mat3 a = linear * half_scale * rest_scale;
     for (int sweep = 0; sweep < 30; ++sweep) {
         bool rotated = false;
@@ -61,6 +62,9 @@ Vec3 singular_values(const Mat3& linear) {
             const double beta = glm::dot(a[q], a[q]);
             const double gamma = glm::dot(a[p], a[q]);
             if (std::abs(gamma) <= 1e-16 * std::sqrt(alpha * beta) || gamma == 0) continue;
+            // What a singular map leaves of a column is rounding noise, and never comes to be at right
+            // angles.
+            if (sweep >= enough_sweeps && std::min(alpha, beta) < 1e-30 * std::max(alpha, beta)) continue;
             rotated = true;
             const double zeta = (beta - alpha) / (2 * gamma);
             const double t = std::copysign(1.0, zeta) / (std::abs(zeta) + std::hypot(1.0, zeta));

@@ -17,6 +17,8 @@ constexpr std::size_t most_triangles = 2'000'000;
 /// Thinner than this share of its diameter no part is drawn: what is crushed has to be unfolded first, and
 /// coincides only then.
 constexpr double thinnest_share = 1.0 / 512;
+/// What is crushed may coincide so often that the walk through it would not end in hours.
+constexpr std::uint64_t most_visits = 500'000;
 constexpr int endless = 1 << 20;
 /// How many octaves of sizes share a mesh.
 constexpr double detail_step = 0.5, pixel_step = 1;
@@ -79,18 +81,21 @@ bool intersect(const TraceMesh::Triangle& triangle, const Ray& ray, const RayRan
 
 MeshStore::MeshStore(const PreparedCut& prepared) : prepared_(prepared) {}
 
+double MeshStore::finest_detail(NodeId node) const {
+    return 1 / (2 * prepared_.cut.nodes[node].ball.radius * thinnest_share);
+}
+
 MeshStore::Key MeshStore::key(NodeId node, const Affine& graph_from_frame, std::uint32_t steps,
                               double detail_per_unit, double pixels_per_unit) const {
-    const CutNode& source = prepared_.cut.nodes[node];
     // From the units of the frame to those of the graph.
     const double unit = graph_from_frame.linear[0][0];
     if (std::isfinite(detail_per_unit)) {
-        const double finest = unit / (2 * source.ball.radius * thinnest_share);
+        const double finest = unit * finest_detail(node);
         detail_per_unit = std::min(detail_per_unit, finest);
         pixels_per_unit = std::min(pixels_per_unit, finest);
     }
-    return {node, source.unending ? steps : unlimited_steps, steps_of(detail_per_unit / unit, detail_step),
-            steps_of(pixels_per_unit / unit, pixel_step)};
+    return {node, prepared_.cut.nodes[node].unending ? steps : unlimited_steps,
+            steps_of(detail_per_unit / unit, detail_step), steps_of(pixels_per_unit / unit, pixel_step)};
 }
 
 const TraceMesh& MeshStore::mesh(const Key& key, const Affine& graph_from_frame) {
@@ -112,10 +117,14 @@ std::unique_ptr<TraceMesh> MeshStore::bake_mesh(const Key& key, const Affine& gr
     const std::uint32_t pair = symmetry.pair[key.node];
     request.painters = {{pair, Rgb(0.0)}, {pair, Rgb(1.0)}};
     request.pictures = false; // what is crushed is a pixel or two wide
+    request.most_visits = most_visits;
     Baked baked = bake(prepared_.cut, symmetry, request, most_triangles);
-    // Coarser, until it fits.
-    for (; !baked.complete && std::isfinite(request.detail_per_unit); request.detail_per_unit /= 2)
+    // Coarser, until it fits: much coarser soon, for sizes beyond all bounds are not what they say.
+    for (double factor = 0.5; !baked.complete && request.detail_per_unit > 0; factor *= factor) {
+        request.detail_per_unit = factor * std::min(request.detail_per_unit, finest_detail(key.node));
+        request.most_visits /= 2;
         baked = bake(prepared_.cut, symmetry, request, most_triangles);
+    }
     const Affine frame_from_body = inverse(graph_from_frame) *
                                    symmetry.node_from_representative[key.node] * baked.representative_from_body;
     auto mesh = std::make_unique<TraceMesh>();

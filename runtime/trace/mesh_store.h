@@ -68,6 +68,8 @@ class MeshStore {
         std::unique_ptr<TraceMesh> mesh;
     };
 
+    /// Of a unit of the node: where it is drawn no finer.
+    double finest_detail(NodeId node) const;
     std::unique_ptr<TraceMesh> bake_mesh(const Key& key, const Affine& graph_from_frame) const;
 
     const PreparedCut& prepared_;

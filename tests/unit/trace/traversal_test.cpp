@@ -226,6 +226,21 @@ TEST(Traversal, DrawsWhatIsFlattenedOrCrushed) {
     }
 }
 
+// Thirty half-size copies in one place are as many leaves as no walk can visit, and look like one.
+TEST(Traversal, CrushedPartsThatCoincideForEverAreDrawnCoarser) {
+    Graph graph = empty_graph();
+    const ObjectId self = graph.add({"self", {}, {}, {}, {}});
+    place(graph, self, graph.primitive(PrimitiveKind::cube), {});
+    for (int i = 0; i < 30; ++i)
+        place(graph, self, self, Affine::translate({0.5, 0, i / 60.0}) * Affine::scale(Vec3(0.5)));
+    place(graph, graph.root, self, Affine::scale({1, 1, 0}));
+    const auto model = traced(graph, culled());
+    Traversal traversal(*model);
+    EXPECT_TRUE(traversal.meets_any({{0.5, 0.5, 10}, {0, 0, -1}}, {}));
+    EXPECT_TRUE(traversal.meets_any({{1.2, 0.3, 10}, {0, 0, -1}}, {}));
+    EXPECT_FALSE(traversal.meets_any({{1.2, 0.95, 10}, {0, 0, -1}}, {}));
+}
+
 TEST(Traversal, SurvivesRaysAndModelsOfAllKinds) {
     EXPECT_GT(shoot(*traced(test::tetrahedron(), culled()), 20'000), 1000u);
     Graph planes = empty_graph();

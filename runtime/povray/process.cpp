@@ -130,12 +130,14 @@ class Watch {
     /// False, with errno, if the child cannot be waited for.
     bool run(int& wait_status, rusage& usage) {
         while (true) {
-            // A child without standard error, or one that we are ending, is looked at every 20 ms.
+            // A child without standard error, or one that we are ending, is looked at every 20 ms; any other
+            // now and then, for its memory.
             pollfd watched[2] = {{text_, POLLIN, 0},
                                  {interrupted_ ? -1 : Interruption::wake_descriptor(), POLLIN, 0}};
             const bool waiting_for_text = text_ >= 0 && !interrupted_;
-            const int ready = ::poll(watched, 2, waiting_for_text ? -1 : 20);
+            const int ready = ::poll(watched, 2, waiting_for_text ? next_look_ms() : 20);
             heed_interruption();
+            note_memory();
             if (ready > 0 && watched[0].revents) pass_text();
             if (waiting_for_text) continue;
             const pid_t ended = ::wait4(child_, &wait_status, WNOHANG, &usage);
@@ -144,7 +146,7 @@ class Watch {
         }
     }
     int interrupted() const { return interrupted_; }
-    /// The child's resident memory at its highest, as seen when it last wrote.
+    /// The child's resident memory at its highest, as seen when it was last looked at.
     std::uint64_t peak_bytes() const { return peak_bytes_; }
 
   private:
@@ -160,11 +162,18 @@ class Watch {
         }
     }
 
+    void note_memory() { peak_bytes_ = std::max(peak_bytes_, memory_of(std::to_string(child_), "VmHWM:")); }
+
+    /// Often at first: most children are gone soon, and take their figures with them.
+    int next_look_ms() {
+        constexpr int seldom = 200;
+        return look_ms_ = std::min(2 * look_ms_, seldom);
+    }
+
     void pass_text() {
         char buffer[1 << 14];
         const ssize_t count = ::read(text_, buffer, sizeof buffer);
         if (count == 0 || (count < 0 && errno != EINTR)) text_ = -1;
-        peak_bytes_ = std::max(peak_bytes_, memory_of(std::to_string(child_), "VmHWM:"));
         if (count > 0 && options_.on_error_text)
             options_.on_error_text(std::string_view(buffer, static_cast<std::size_t>(count)));
     }
@@ -174,6 +183,7 @@ class Watch {
     const ProcessOptions& options_;
     int interrupted_ = 0;
     bool killed_ = false;
+    int look_ms_ = 1;
     std::uint64_t peak_bytes_ = 0;
     Clock::time_point interrupted_at_;
 };

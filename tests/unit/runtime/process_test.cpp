@@ -5,6 +5,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <thread>
+#include <vector>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -110,6 +111,14 @@ TEST(Process, MeasuresMemoryAndTime) {
         shell("head -c 50000000 /dev/zero | tail -c 49000000 >/dev/null; exit 0").result;
     EXPECT_GT(result.peak_bytes, 1'000'000u);
     EXPECT_GE(result.user_seconds + result.system_seconds, 0);
+}
+
+// What the kernel says of a child includes what it was before: a copy of us.
+TEST(Process, MeasuresTheMemoryOfAChildSmallerThanUs) {
+    const std::vector<char> ballast(100'000'000, 1);
+    const ProcessResult result = shell("sleep 0.3; exit 0").result;
+    EXPECT_GT(result.peak_bytes, 100'000u);
+    EXPECT_LT(result.peak_bytes, ballast.size() / 2 * static_cast<std::size_t>(ballast.back()));
 }
 
 TEST(Process, InterruptionIsPassedOnAndWaitedFor) {

@@ -82,7 +82,33 @@ class Bounder {
   private:
     void bound() {
         const Components components = strong_components(graph_);
-        bounds_ = bound_objects(graph_, components, decide_contraction(graph_, components));
+        const Contraction contraction = decide_contraction(graph_, components);
+        const bool proved = contraction.verdict == Verdict::acyclic || contraction.verdict == Verdict::proved;
+        bounds_ = proved ? bound_objects(graph_, components, contraction) : bounds_by_balls();
+    }
+
+    /// The model contracts, but this is another graph of it, and the effort that is spent on a proof is
+    /// bounded. Without one, room is left about the balls for what is drawn besides the limit set.
+    std::vector<ObjectBounds> bounds_by_balls() const {
+        constexpr double room = 3;
+        std::vector<ObjectBounds> bounds(graph_.objects.size());
+        const std::size_t nodes = cut_.nodes.size();
+        for (NodeId id = 0; id < nodes; ++id) {
+            const Ball& ball = cut_.nodes[id].ball;
+            if (!(ball.radius > 0)) continue;
+            bounds[id].box.include(ball.centre - Vec3(room * ball.radius));
+            bounds[id].box.include(ball.centre + Vec3(room * ball.radius));
+        }
+        bounds[nodes] = primitive_bounds(PrimitiveKind::sphere);
+        bounds[nodes + 1] = primitive_bounds(PrimitiveKind::cube);
+        for (ObjectId id = 0; id < graph_.objects.size(); ++id) {
+            const std::vector<Instance>& instances = graph_.objects[id].instances;
+            const std::size_t inside = id < nodes ? cut_.nodes[id].edges.size() : 0;
+            for (std::size_t i = inside; i < instances.size(); ++i)
+                bounds[id].box.include(
+                    transformed(instances[i].parent_from_child, bounds[instances[i].master].box));
+        }
+        return bounds;
     }
 
     /// What is crushed is drawn thicker than it is: a box about it stands for that. True if there is any.

@@ -241,6 +241,23 @@ TEST(Traversal, CrushedPartsThatCoincideForEverAreDrawnCoarser) {
     EXPECT_FALSE(traversal.meets_any({{1.2, 0.95, 10}, {0, 0, -1}}, {}));
 }
 
+// Found by random graphs: the proof that the model contracts takes paths of 1000 instances, and in the
+// prepared graph, where what is crushed has a node of its own, they are twice as long.
+TEST(Traversal, DrawsWhatIsHardlyProvedToContract) {
+    Graph graph = empty_graph();
+    const ObjectId branch = graph.add({"branch", {}, {}, {}, {}}), tip = graph.add({"tip", {}, {}, {}, {}});
+    const ObjectId cone = graph.primitive(PrimitiveKind::cone);
+    place(graph, branch, cone, Affine::scale(Vec3(0.5)));
+    place(graph, branch, tip,
+          {Mat3(0.1, 0, 1, 0.28235008753836155, 0.38068594597280025, 0.5, -0.07628720626235008, 1e200,
+                -0.7071067811865476),
+           Vec3(1e200, 0, 0.4299275875091553)});
+    place(graph, tip, cone, Affine::scale(Vec3(0.5)));
+    place(graph, tip, branch, Affine::scale({1, 0, 1}));
+    place(graph, graph.root, branch, {});
+    shoot(*traced(graph, culled()), 100);
+}
+
 TEST(Traversal, SurvivesRaysAndModelsOfAllKinds) {
     EXPECT_GT(shoot(*traced(test::tetrahedron(), culled()), 20'000), 1000u);
     Graph planes = empty_graph();

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <charconv>
 #include <cstring>
 #include <filesystem>
 #include <system_error>
@@ -66,51 +67,64 @@ Status check_regular(const std::string& path) {
     return {};
 }
 
-/// The text of a regular file.
-std::optional<std::string> read_used(Span use_span, const std::string& path, Lowering& lowering) {
+/// A regular file, read once.
+std::optional<FileId> read_used(Span use_span, const std::string& path, Lowering& lowering) {
+    if (const auto known = lowering.files.find(path); known != lowering.files.end()) return known->second;
     std::string text;
     Status read = check_regular(path);
     if (read.ok()) read = read_text(path, text);
-    if (read.ok()) return text;
+    if (read.ok()) return lowering.files[path] = lowering.sources.add(path, std::move(text));
     add_chain(lowering.diagnostics.error(use_span, read.message()), lowering);
     return std::nullopt;
 }
 
-std::shared_ptr<const Graph> load(Span use_span, const std::string& path, Lowering& lowering) {
-    if (!check_chain(use_span, path, lowering)) return nullptr;
-    const auto known = lowering.lowered.find(path);
-    if (known != lowering.lowered.end()) return known->second;
+/// Warnings about the members of one family are said once.
+std::shared_ptr<const Graph> lower_used(FileId file, const LoadingFile& loading, Lowering& lowering) {
+    const std::size_t known = lowering.diagnostics.all().size();
     std::shared_ptr<const Graph> result;
-    if (std::optional<std::string> text = read_used(use_span, path, lowering)) {
-        const FileId file = lowering.sources.add(path, std::move(*text));
-        lowering.loading.push_back({path, use_span});
-        if (std::optional<Graph> graph = lower_file(file, use_span, lowering))
-            result = std::make_shared<const Graph>(std::move(*graph));
-        lowering.loading.pop_back();
-    }
-    lowering.lowered[path] = result;
+    lowering.loading.push_back(loading);
+    if (std::optional<Graph> graph = lower_file(file, loading.use_span, lowering))
+        result = std::make_shared<const Graph>(std::move(*graph));
+    lowering.loading.pop_back();
+    if (!loading.inner.empty()) lowering.diagnostics.drop_repeated_remarks(known);
     return result;
 }
 
-/// Ids of `into` for the materials of `from`, in order.
-std::vector<MaterialId> append_materials(Graph& into, const Graph& from, std::string_view prefix) {
+std::shared_ptr<const Graph> load(const ModelUse& use, const Environment& inner, Lowering& lowering) {
+    const std::string path = path_beside(use.span, use.path, lowering.sources);
+    if (!check_chain(use.span, path, lowering)) return nullptr;
+    const auto key = std::pair(path, inner);
+    const auto known = lowering.lowered.find(key);
+    if (known != lowering.lowered.end()) return known->second;
+    std::shared_ptr<const Graph> result;
+    if (const std::optional<FileId> file = read_used(use.span, path, lowering))
+        result = lower_used(*file, {path, use.span, inner}, lowering);
+    lowering.lowered[key] = result;
+    return result;
+}
+
+/// Ids of `into` for the materials of `from`, in order. `prefixed`: names that are free are not taken either,
+/// since parts of `into` that come later may mean another material by them.
+std::vector<MaterialId> append_materials(Graph& into, const Graph& from, std::string_view prefix,
+                                         bool prefixed) {
     std::unordered_map<std::string, MaterialId> known;
     for (MaterialId id = 0; id < into.materials.size(); ++id)
         known.emplace(into.materials[id].name, id);
     std::vector<MaterialId> ids;
     for (Material material : from.materials) {
-        const auto same = known.find(material.name);
-        if (same != known.end() && into.materials[same->second] == material) {
-            ids.push_back(same->second);
-            continue;
-        }
         const std::string name = material.name;
-        if (known.contains(name)) material.name = fmt::format("{}.{}", prefix, name);
-        for (int i = 2; known.contains(material.name); ++i)
+        const auto taken = [&] {
+            const auto same = known.find(material.name);
+            return same != known.end() && into.materials[same->second] != material;
+        };
+        if (taken() || (prefixed && !known.contains(name)))
+            material.name = fmt::format("{}.{}", prefix, name);
+        for (int i = 2; taken(); ++i)
             material.name = fmt::format("{}.{}_{}", prefix, name, i);
-        ids.push_back(static_cast<MaterialId>(into.materials.size()));
-        known.emplace(material.name, ids.back());
-        into.materials.push_back(std::move(material));
+        const auto [place, fresh] =
+            known.emplace(material.name, static_cast<MaterialId>(into.materials.size()));
+        ids.push_back(place->second);
+        if (fresh) into.materials.push_back(std::move(material));
     }
     return ids;
 }
@@ -141,6 +155,25 @@ ObjectId append_objects(Graph& into, const Graph& from, std::string_view prefix,
     return ids[from.root];
 }
 
+/// `leaf.k3`, if no object's name begins so, nor with `leaf.k4` and so on.
+std::string free_prefix(const Graph& graph, std::string_view name) {
+    const std::string stem = fmt::format("{}.k", name);
+    unsigned last = 0;
+    for (const Object& object : graph.objects) {
+        if (!object.name.starts_with(stem)) continue;
+        const char* const begin = object.name.data() + stem.size();
+        unsigned number = 0;
+        if (std::from_chars(begin, object.name.data() + object.name.size(), number).ec == std::errc())
+            last = std::max(last, number);
+    }
+    return fmt::format("{}{}", stem, last + 1);
+}
+
+bool has_room(const Graph& into, const Graph& model, Span span, Lowering& lowering) {
+    return within_limits(into.objects.size() + model.objects.size(),
+                         instance_count(into) + instance_count(model), span, lowering);
+}
+
 } // namespace
 
 std::optional<std::string> find_beside(Span name_span, std::string_view path, Lowering& lowering) {
@@ -162,20 +195,27 @@ bool within_limits(std::size_t objects, std::size_t instances, Span span, Loweri
     return false;
 }
 
-std::optional<ObjectId> import_model(Graph& into, Span use_span, std::string_view name, std::string_view path,
-                                     Lowering& lowering) {
-    if (!check_path(use_span, path, lowering)) return std::nullopt;
+std::optional<FileId> read_model(const ModelUse& use, Lowering& lowering) {
+    if (!check_path(use.span, use.path, lowering)) return std::nullopt;
     if (++lowering.use_count > max_uses) {
-        lowering.diagnostics.error(use_span, fmt::format("the model has more than {} uses", max_uses));
+        lowering.diagnostics.error(use.span, fmt::format("the model has more than {} uses", max_uses));
         return std::nullopt;
     }
-    const std::shared_ptr<const Graph> model =
-        load(use_span, path_beside(use_span, path, lowering.sources), lowering);
-    if (!model || !within_limits(into.objects.size() + model->objects.size(),
-                                 instance_count(into) + instance_count(*model), use_span, lowering))
-        return std::nullopt;
-    const std::vector<MaterialId> materials = append_materials(into, *model, name);
-    return append_objects(into, *model, name, materials);
+    return read_used(use.span, path_beside(use.span, use.path, lowering.sources), lowering);
+}
+
+std::optional<ObjectId> import_model(Graph& into, const ModelUse& use, Lowering& lowering) {
+    const std::shared_ptr<const Graph> model = load(use, {}, lowering);
+    if (!model || !has_room(into, *model, use.span, lowering)) return std::nullopt;
+    return append_objects(into, *model, use.name, append_materials(into, *model, use.name, false));
+}
+
+std::optional<ObjectId> import_member(Graph& into, const ModelUse& use, const Environment& inner,
+                                      Lowering& lowering) {
+    const std::shared_ptr<const Graph> model = load(use, inner, lowering);
+    if (!model || !has_room(into, *model, use.span, lowering)) return std::nullopt;
+    return append_objects(into, *model, free_prefix(into, use.name),
+                          append_materials(into, *model, use.name, true));
 }
 
 } // namespace graftal

@@ -39,7 +39,7 @@ std::string guessed_language(FileId file, const SourceMap& sources) {
 
 std::optional<Graph> lower_root(FileId file, const LowerOptions& options, SourceMap& sources,
                                 Diagnostics& diagnostics, std::optional<Derivation>* derivation) {
-    Lowering lowering{sources, diagnostics, options, {}, {}, 0, {}};
+    Lowering lowering{.sources = sources, .diagnostics = diagnostics, .options = options};
     const std::filesystem::path path(sources.name(file));
     lowering.loading.push_back({path.lexically_normal().string(), Span()});
     std::optional<Graph> graph = lower_file(file, Span{file, 0, 0}, lowering);

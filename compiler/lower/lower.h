@@ -5,6 +5,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "compiler/graph/graph.h"
 #include "compiler/support/diagnostics.h"
@@ -12,6 +13,15 @@
 #include "compiler/support/status.h"
 
 namespace graftal {
+
+/// What an L-system placed of a model with inner parameters.
+struct FamilyReport {
+    std::string model;                   ///< as `~` names it
+    std::vector<std::string> parameters; ///< names of the inner ones
+    std::size_t used = 0;                ///< different members
+    std::size_t possible = 0;            ///< that the parameters are rounded to
+    double error = 0;                    ///< largest distance of an argument from the value in its place
+};
 
 /// How an L-system was compiled.
 struct Derivation {
@@ -23,6 +33,7 @@ struct Derivation {
     std::uint32_t variants = 1;    ///< of each random part
     double drift = 0; ///< relative standard error of the mean number of segments over the variants
     double error = 0; ///< bound on the displacement of any point
+    std::vector<FamilyReport> families; ///< that were placed, by name
 };
 
 struct LowerOptions {

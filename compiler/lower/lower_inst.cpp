@@ -10,9 +10,11 @@
 #include <fmt/format.h>
 #include <glm/common.hpp>
 
+#include "compiler/lower/inner_parameters.h"
 #include "compiler/lower/inst_index.h"
 #include "compiler/lower/lower_settings.h"
 #include "compiler/lower/lower_transform.h"
+#include "compiler/lower/model_family.h"
 #include "compiler/support/number.h"
 #include "compiler/syntax/inst_parser.h"
 
@@ -79,6 +81,7 @@ class InstLowerer {
 
     std::optional<Graph> run() && {
         lets_ = lower_lets(module_.scene, lowering_);
+        inner_parameters(module_.scene, lets_, diagnostics_); // for its checks
         lower_settings(module_.scene, lets_, graph_, lowering_);
         for (MaterialId id = 0; id < graph_.materials.size(); ++id)
             materials_.emplace(graph_.materials[id].name, id);
@@ -108,13 +111,37 @@ class InstLowerer {
             return;
         }
         const std::size_t known = graph_.objects.size();
-        const std::optional<ObjectId> root = import_model(graph_, use.span, use.name, use.path, lowering_);
+        const ModelUse model{use.name, use.path, use.span};
+        const std::optional<FileId> file = read_model(model, lowering_);
+        if (!file) return;
+        const std::optional<ObjectId> root = import_model(graph_, model, lowering_);
         if (!root) return;
+        add_family(use, *file);
         by_name_[use.name] = *root;
         for (std::size_t id = known; id < graph_.objects.size(); ++id) {
             by_name_[graph_.objects[id].name] = static_cast<ObjectId>(id);
             instance_count_ += graph_.objects[id].instances.size();
         }
+    }
+
+    void add_family(const InstUse& use, FileId file) {
+        std::vector<InnerParameter> parameters = inner_parameters_of(file, lowering_);
+        if (parameters.empty()) return;
+        const auto make = [this, &use, parameters](const std::vector<double>& values) {
+            const std::size_t known = graph_.objects.size();
+            const std::optional<ObjectId> root = import_member(graph_, {use.name, use.path, use.span},
+                                                               named_values(parameters, values), lowering_);
+            for (std::size_t id = known; id < graph_.objects.size(); ++id)
+                instance_count_ += graph_.objects[id].instances.size();
+            return root;
+        };
+        families_.emplace(use.name, ModelFamily(use.name, std::move(parameters), make));
+    }
+
+    /// How many arguments a used model takes at most.
+    std::size_t inner_count(std::string_view name) const {
+        const auto family = families_.find(name);
+        return family == families_.end() ? 0 : family->second.parameters().size();
     }
 
     /// The used model that a name stands for or lies in; null for the file's own names.
@@ -152,8 +179,8 @@ class InstLowerer {
         if (reference.name == frustum_name && arity == 1) return true;
         if (reference.name == frustum_name) return wrong_count(reference, 1), false;
         const bool whole = primitive_named(reference.name) || uses_.contains(reference.name);
-        if (whole && arity > 0) {
-            wrong_count(reference, 0);
+        if (whole && arity > inner_count(reference.name)) {
+            wrong_count(reference, inner_count(reference.name));
             return false;
         }
         // A part of a used model is looked up once its arguments are known.
@@ -309,6 +336,8 @@ class InstLowerer {
         if (const std::optional<PrimitiveKind> kind = primitive_named(name))
             return by_name_[name] = graph_.primitive(*kind);
         if (reference.name == frustum_name) return frustum(reference.span, arguments[0]);
+        if (const auto family = families_.find(reference.name); family != families_.end())
+            return family->second.exact(arguments, reference.span, scratch_);
         if (const InstDefinition* definition = index_.match(reference.name, arguments, name))
             return add_object(*definition, std::move(arguments), name, reference.span, parent);
         if (const InstDefinition* definition = index_.any(reference.name))
@@ -377,6 +406,7 @@ class InstLowerer {
     Environment lets_;
     Graph graph_;
     std::map<std::string, Span, std::less<>> uses_;
+    std::map<std::string, ModelFamily, std::less<>> families_; ///< of the used models with inner parameters
     std::unordered_map<std::string, ObjectId> by_name_;
     std::unordered_map<std::string, MaterialId> materials_;
 

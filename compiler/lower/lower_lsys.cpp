@@ -8,10 +8,13 @@
 
 #include <fmt/format.h>
 
+#include "compiler/lower/inner_parameters.h"
 #include "compiler/lower/lower_settings.h"
 #include "compiler/lower/lowering.h"
 #include "compiler/lower/lsys_drawing.h"
 #include "compiler/lower/lsys_grammar.h"
+#include "compiler/lower/model_family.h"
+#include "compiler/lower/model_placer.h"
 #include "compiler/syntax/lsys_parser.h"
 
 namespace graftal {
@@ -33,7 +36,8 @@ class LsysLowering {
         if (tree_.blocks.empty() && !failed())
             diagnostics_.error({file_, 0, 0}, "this file has no 'lsys' block")
                 .with_hint("lsys NAME { axiom F  F -> F[+F]F }, each statement on its line");
-        lets_ = evaluate_lets(tree_.statements, {}, lowering_);
+        lets_ = evaluate_lets(tree_.statements, {}, lowering_, given_inner());
+        inner_parameters(tree_.statements, lets_, diagnostics_); // for its checks
         lower_settings(tree_.statements, lets_, graph_, lowering_);
         import_models();
         build_grammars();
@@ -46,19 +50,35 @@ class LsysLowering {
     }
 
   private:
+    struct Use {
+        Span span;
+        std::optional<ObjectId> root;      ///< nothing after an error
+        std::optional<ModelFamily> family; ///< in place of a root, if it has inner parameters
+    };
+
     struct Block {
         const LsysBlock* source = nullptr;
-        std::optional<LsysGrammar> grammar;
-        std::optional<ObjectId> root; ///< once it is composed
+        std::optional<LsysGrammar> grammar; ///< with the defaults of its inner parameters
+        std::optional<ModelFamily> family;  ///< if it has some
+        std::optional<ObjectId> root;       ///< once it is composed
         bool under_way = false;
     };
+
+    /// What `~NAME` places: one root, or a family.
+    struct Model {
+        std::optional<ObjectId> root; ///< nothing after an error
+        ModelFamily* family = nullptr;
+    };
+
+    /// The values that who uses this file gives its inner parameters.
+    const Environment& given_inner() const { return lowering_.loading.back().inner; }
 
     bool failed() const { return diagnostics_.error_count() > errors_before_; }
 
     void import_models() {
         for (const LsysUse& use : tree_.uses) {
             if (diagnostics_.full()) return;
-            const auto [first, fresh] = uses_.try_emplace(use.name.text, Use{use.name.span, std::nullopt});
+            const auto [first, fresh] = uses_.try_emplace(use.name.text, Use{use.name.span, {}, {}});
             if (!fresh)
                 diagnostics_.error(use.name.span, fmt::format("duplicate use '{}'", use.name.text))
                     .with_note(first->second.span, "first defined here");
@@ -67,8 +87,24 @@ class LsysLowering {
                     use.name.span,
                     fmt::format("the name '{}' of a used model must not have a '.'", use.name.text));
             else
-                first->second.root = import_model(graph_, use.path_span, use.name.text, use.path, lowering_);
+                import_used(use, first->second);
         }
+    }
+
+    /// A model with inner parameters is imported when it is known which of its family are placed.
+    void import_used(const LsysUse& source, Use& use) {
+        const ModelUse model{source.name.text, source.path, source.path_span};
+        const std::optional<FileId> file = read_model(model, lowering_);
+        if (!file) return;
+        std::vector<InnerParameter> parameters = inner_parameters_of(*file, lowering_);
+        if (parameters.empty()) {
+            use.root = import_model(graph_, model, lowering_);
+            return;
+        }
+        const auto make = [this, model, parameters](const std::vector<double>& values) {
+            return import_member(graph_, model, named_values(parameters, values), lowering_);
+        };
+        use.family.emplace(std::string(source.name.text), std::move(parameters), make);
     }
 
     /// Also checks the names of blocks and of `--set`.
@@ -84,11 +120,23 @@ class LsysLowering {
             Block& added = blocks_.emplace_back();
             added.source = &block;
             check_name(block);
-            Environment lets = evaluate_lets(block.lets, lets_, lowering_);
+            const bool is_main = &block == &main_source();
+            Environment lets =
+                evaluate_lets(block.lets, lets_, lowering_, is_main ? given_inner() : Environment());
             all_lets.insert(lets.begin(), lets.end());
+            add_family(added, lets);
             added.grammar = build_grammar(block, std::move(lets), diagnostics_);
         }
         if (lowering_.at_root_model()) check_set_names(all_lets, lowering_);
+    }
+
+    void add_family(Block& block, const Environment& lets) {
+        std::vector<InnerParameter> parameters = inner_parameters(block.source->lets, lets, diagnostics_);
+        if (parameters.empty()) return;
+        const auto make = [this, &block, parameters](const std::vector<double>& values) {
+            return member_of(block, named_values(parameters, values));
+        };
+        block.family.emplace(std::string(block.source->name.text), std::move(parameters), make);
     }
 
     void check_name(const LsysBlock& block) {
@@ -105,14 +153,34 @@ class LsysLowering {
                                fmt::format("'{}' is a primitive and cannot name a block", block.name.text));
     }
 
+    const LsysBlock& main_source() const {
+        const auto main = std::ranges::find_if(tree_.blocks, [](const LsysBlock& b) { return b.is_main; });
+        return main == tree_.blocks.end() ? tree_.blocks.back() : *main;
+    }
+
     Block& main_block() {
-        const auto main = std::ranges::find_if(blocks_, [](const Block& b) { return b.source->is_main; });
-        return main == blocks_.end() ? blocks_.back() : *main;
+        return *std::ranges::find_if(blocks_, [&](const Block& b) { return b.source == &main_source(); });
     }
 
     /// Composes a block on first use. `use`: of `~NAME`; unknown for the main block.
     std::optional<ObjectId> root_of(Block& block, Span use) {
-        if (block.root) return block.root;
+        if (!block.root) block.root = compose(block, *block.grammar, use);
+        return block.root;
+    }
+
+    /// Composes a block with these values of its inner parameters.
+    std::optional<ObjectId> member_of(Block& block, const Environment& inner) {
+        const std::size_t known = diagnostics_.all().size();
+        Environment lets = evaluate_lets(block.source->lets, lets_, lowering_, inner);
+        const std::optional<LsysGrammar> grammar =
+            build_grammar(*block.source, std::move(lets), diagnostics_);
+        std::optional<ObjectId> root;
+        if (grammar) root = compose(block, *grammar, block.source->name.span);
+        diagnostics_.drop_repeated_remarks(known);
+        return root;
+    }
+
+    std::optional<ObjectId> compose(Block& block, const LsysGrammar& grammar, Span use) {
         const std::string_view name = block.source->name.text;
         if (block.under_way) {
             diagnostics_.error(use, fmt::format("'{}' would place itself", name))
@@ -126,35 +194,44 @@ class LsysLowering {
         }
         block.under_way = true;
         ++nesting_;
-        const std::optional<std::map<SymbolId, ObjectId>> models = models_of(*block.grammar);
+        const std::optional<std::map<SymbolId, Model>> models = models_of(grammar);
         std::optional<unsigned> steps;
-        if (find_steps(block, steps) && models) block.root = draw(block, *models, steps);
+        std::optional<ObjectId> root;
+        if (find_steps(block, grammar, steps) && models) root = draw(block, grammar, *models, steps);
         --nesting_;
         block.under_way = false;
-        return block.root;
+        return root;
     }
 
-    std::optional<std::map<SymbolId, ObjectId>> models_of(const LsysGrammar& grammar) {
-        std::map<SymbolId, ObjectId> models;
+    std::optional<std::map<SymbolId, Model>> models_of(const LsysGrammar& grammar) {
+        std::map<SymbolId, Model> models;
         bool good = true;
         for (SymbolId id = 0; id < grammar.symbols.size(); ++id) {
             if (!grammar.symbols[id].starts_with('~')) continue;
             const std::string_view name = std::string_view(grammar.symbols[id]).substr(1);
-            const std::optional<ObjectId> root = model_named(name, grammar.first_uses[id]);
-            if (root)
-                models.emplace(id, *root);
-            else
-                good = false;
+            const Model model = model_named(name, grammar.first_uses[id]);
+            good = good && (model.root || model.family);
+            models.emplace(id, model);
         }
         if (!good) return std::nullopt;
         return models;
     }
 
-    std::optional<ObjectId> model_named(std::string_view name, Span span) {
-        if (const auto kind = primitive_named(name)) return graph_.primitive(*kind);
-        if (const auto use = uses_.find(name); use != uses_.end()) return use->second.root;
-        for (Block& block : blocks_)
-            if (block.source->name.text == name) return root_of(block, span);
+    Model model_named(std::string_view name, Span span) {
+        if (const auto kind = primitive_named(name)) return {graph_.primitive(*kind)};
+        if (const auto use = uses_.find(name); use != uses_.end())
+            return {use->second.root, use->second.family ? &*use->second.family : nullptr};
+        for (Block& block : blocks_) {
+            if (block.source->name.text != name) continue;
+            if (!block.family) return {root_of(block, span)};
+            if (!block.under_way) return {{}, &*block.family};
+            return {root_of(block, span)}; // for its error
+        }
+        report_unknown(name, span);
+        return {};
+    }
+
+    void report_unknown(std::string_view name, Span span) {
         std::vector<std::string> known;
         for (const auto& [used, use] : uses_)
             known.emplace_back(used);
@@ -167,19 +244,32 @@ class LsysLowering {
             .with_hint(hint.empty()
                            ? fmt::format("use {} = \"FILE\" at the top of the file makes it one", name)
                            : hint);
-        return std::nullopt;
+    }
+
+    ModelPlacer placer(const std::map<SymbolId, Model>& models) {
+        return [this, &models](SymbolId symbol, std::span<const double> parameters,
+                               Span place) -> std::optional<PlacedModel> {
+            const Model& model = models.at(symbol);
+            if (!model.family) return PlacedModel{*model.root, placed_scale(parameters)};
+            const std::size_t inner = std::min(parameters.size(), model.family->parameters().size());
+            const Vec3 scale = placed_scale(parameters.subspan(inner));
+            const std::optional<ObjectId> root =
+                model.family->nearest(parameters.first(inner), place, diagnostics_);
+            if (!root) return std::nullopt;
+            return PlacedModel{*root, scale};
+        };
     }
 
     bool is_root(const Block& block) { return lowering_.at_root_model() && &block == &main_block(); }
 
     /// False after an error; no steps are infinitely many.
-    bool find_steps(const Block& block, std::optional<unsigned>& steps) {
+    bool find_steps(const Block& block, const LsysGrammar& grammar, std::optional<unsigned>& steps) {
         Span span = block.source->steps ? block.source->steps->span : block.source->name.span;
-        steps = block.grammar->steps;
+        steps = grammar.steps;
         if (is_root(block) && lowering_.options.steps) {
             steps = lowering_.options.steps;
             span = Span();
-        } else if (block.grammar->infinite) {
+        } else if (grammar.infinite) {
             return true;
         }
         if (!steps) steps = graph_.settings.steps;
@@ -194,14 +284,13 @@ class LsysLowering {
         return steps && *steps <= max_derivation_steps;
     }
 
-    std::optional<ObjectId> draw(const Block& block, const std::map<SymbolId, ObjectId>& models,
-                                 std::optional<unsigned> steps) {
+    std::optional<ObjectId> draw(const Block& block, const LsysGrammar& grammar,
+                                 const std::map<SymbolId, Model>& models, std::optional<unsigned> steps) {
         const LsysBlock& source = *block.source;
         const LowerOptions& options = lowering_.options;
-        const std::uint64_t seed =
-            lowering_.at_root_model() && options.seed ? *options.seed : block.grammar->seed;
+        const std::uint64_t seed = lowering_.at_root_model() && options.seed ? *options.seed : grammar.seed;
         std::optional<LsysDrawing> drawing = draw_lsys(
-            *block.grammar, models, {steps, seed, options.exact, options.max_modules, options.max_objects},
+            grammar, placer(models), {steps, seed, options.exact, options.max_modules, options.max_objects},
             graph_, pool_, diagnostics_);
         if (!drawing) return std::nullopt;
         if (drawing->instances.empty()) {
@@ -211,8 +300,20 @@ class LsysLowering {
                                                                    : std::string()));
             return std::nullopt;
         }
-        if (is_root(block)) lowering_.derivation = std::move(drawing->derivation);
+        if (is_root(block)) {
+            lowering_.derivation = std::move(drawing->derivation);
+            lowering_.derivation->families = families();
+        }
         return add_root(source, std::move(drawing->instances));
+    }
+
+    std::vector<FamilyReport> families() const {
+        std::vector<FamilyReport> reports;
+        for (const auto& [name, use] : uses_)
+            if (use.family && use.family->is_used()) reports.push_back(use.family->report());
+        for (const Block& block : blocks_)
+            if (block.family && block.family->is_used()) reports.push_back(block.family->report());
+        return reports;
     }
 
     std::optional<ObjectId> add_root(const LsysBlock& block, std::vector<Instance> instances) {
@@ -225,11 +326,6 @@ class LsysLowering {
             return std::nullopt;
         return id;
     }
-
-    struct Use {
-        Span span;
-        std::optional<ObjectId> root; ///< nothing after an error
-    };
 
     FileId file_;
     std::size_t errors_before_;

@@ -10,6 +10,7 @@
 #include <glm/common.hpp>
 
 #include "compiler/graph/components.h"
+#include "compiler/lower/inner_parameters.h"
 #include "compiler/lower/lower_settings.h"
 #include "compiler/lower/lower_transform.h"
 #include "compiler/lower/lowering.h"
@@ -50,6 +51,7 @@ class RifsLowering {
             diagnostics_.error({file_, 0, 0}, "this file has no 'rifs' block")
                 .with_hint("rifs NAME { map NAME { scale 1/2 } ... }");
         lets_ = lower_lets(tree_.statements, lowering_);
+        inner_parameters(tree_.statements, lets_, diagnostics_); // for its checks
         lower_settings(tree_.statements, lets_, graph_, lowering_);
         import_models();
         const RifsLooks looks(lets_, graph_.materials, diagnostics_);
@@ -82,7 +84,8 @@ class RifsLowering {
                     use.name.span,
                     fmt::format("the name '{}' of a used model must not have a '.'", use.name.text));
             } else {
-                first->second.root = import_model(graph_, use.path_span, use.name.text, use.path, lowering_);
+                const ModelUse model{use.name.text, use.path, use.path_span};
+                if (read_model(model, lowering_)) first->second.root = import_model(graph_, model, lowering_);
             }
         }
     }

@@ -19,6 +19,10 @@ using Kind = SceneStatement::Kind;
 constexpr double most_steps = 1e9;
 constexpr double most_around = 1000;
 
+bool is_let(const SceneStatement& statement) {
+    return statement.kind == Kind::let || statement.kind == Kind::inner;
+}
+
 /// One statement's fields by name, each evaluated and checked on demand.
 class Fields {
   public:
@@ -192,7 +196,7 @@ std::optional<unsigned> lower_steps(const Fields& fields) {
 void check_duplicates(const std::vector<SceneStatement>& statements, Diagnostics& diagnostics) {
     std::map<std::pair<Kind, std::string>, Span> first;
     for (const SceneStatement& statement : statements) {
-        if (statement.kind == Kind::let || statement.kind == Kind::light) continue;
+        if (is_let(statement) || statement.kind == Kind::light) continue;
         if (statement.kind == Kind::material && statement.name.empty()) continue; // reported already
         const auto [place, fresh] = first.try_emplace({statement.kind, statement.name}, statement.span);
         if (fresh) continue;
@@ -203,6 +207,14 @@ void check_duplicates(const std::vector<SceneStatement>& statements, Diagnostics
                                        : fmt::format("duplicate '{}'", keyword))
             .with_note(place->second, "first defined here");
     }
+}
+
+/// A value of an inner parameter; one outside of its range is made 0, so that it is reported once.
+void check_inner(std::optional<double>& value, Span span, std::string_view name, Lowering& lowering) {
+    if (!value || (*value >= 0 && *value <= 1)) return;
+    lowering.diagnostics.error(
+        span, fmt::format("{}: an inner parameter lies between 0 and 1, not at {}", name, shortest(*value)));
+    value = 0;
 }
 
 } // namespace
@@ -221,11 +233,12 @@ void check_set_names(const Environment& known_lets, Lowering& lowering) {
 }
 
 Environment evaluate_lets(const std::vector<SceneStatement>& statements, Environment outer,
-                          Lowering& lowering) {
+                          Lowering& lowering, const Environment& inner) {
     Environment lets = std::move(outer);
     std::map<std::string, Span, std::less<>> first;
     for (const SceneStatement& statement : statements) {
-        if (statement.kind != Kind::let) continue;
+        if (!is_let(statement)) continue;
+        const bool is_inner = statement.kind == Kind::inner;
         for (const SceneField& let : statement.fields) {
             if (let.keyword == "pi") {
                 lowering.diagnostics.error(let.span, "'pi' is a constant and cannot be set");
@@ -233,13 +246,21 @@ Environment evaluate_lets(const std::vector<SceneStatement>& statements, Environ
             }
             const auto [place, fresh] = first.try_emplace(let.keyword, let.span);
             if (!fresh) {
-                lowering.diagnostics.error(let.span, fmt::format("duplicate 'let {}'", let.keyword))
+                lowering.diagnostics
+                    .error(let.span,
+                           fmt::format("duplicate '{} {}'", is_inner ? "inner" : "let", let.keyword))
                     .with_note(place->second, "first defined here");
                 continue;
             }
             std::optional<double> value = evaluate(let.values[0], lets, lowering.diagnostics);
+            if (is_inner) check_inner(value, let.values[0].span, let.keyword, lowering);
             const auto set = lowering.options.set.find(let.keyword);
-            if (set != lowering.options.set.end() && lowering.at_root_model()) value = set->second;
+            if (set != lowering.options.set.end() && lowering.at_root_model()) {
+                value = set->second;
+                if (is_inner) check_inner(value, Span(), fmt::format("--set {}", let.keyword), lowering);
+            }
+            const auto given = inner.find(let.keyword);
+            if (is_inner && given != inner.end()) value = given->second;
             // A let in error still has a value, so that its uses are not errors too.
             lets[let.keyword] = value.value_or(1);
         }
@@ -248,7 +269,7 @@ Environment evaluate_lets(const std::vector<SceneStatement>& statements, Environ
 }
 
 Environment lower_lets(const std::vector<SceneStatement>& statements, Lowering& lowering) {
-    Environment lets = evaluate_lets(statements, {}, lowering);
+    Environment lets = evaluate_lets(statements, {}, lowering, lowering.loading.back().inner);
     if (lowering.at_root_model()) check_set_names(lets, lowering);
     return lets;
 }
@@ -257,7 +278,7 @@ void lower_settings(const std::vector<SceneStatement>& statements, const Environ
                     Lowering& lowering) {
     check_duplicates(statements, lowering.diagnostics);
     for (const SceneStatement& statement : statements) {
-        if (statement.kind == Kind::let) continue;
+        if (is_let(statement)) continue;
         const Fields fields(statement, lets, lowering.diagnostics);
         switch (statement.kind) {
         case Kind::camera:
@@ -279,6 +300,7 @@ void lower_settings(const std::vector<SceneStatement>& statements, const Environ
             graph.settings.steps = lower_steps(fields);
             break;
         case Kind::let:
+        case Kind::inner:
             break;
         }
     }

@@ -6,17 +6,20 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "compiler/graph/graph.h"
 #include "compiler/lower/lower.h"
+#include "compiler/syntax/expression.h"
 
 namespace graftal {
 
 /// A file that is being lowered: the root model, or one on the chain of `use` statements below it.
 struct LoadingFile {
-    std::string path; ///< normalised, so that a cycle is noticed
-    Span use_span;    ///< of the `use` that asked for it; unknown for the root
+    std::string path;       ///< normalised, so that a cycle is noticed
+    Span use_span;          ///< of the `use` that asked for it; unknown for the root
+    Environment inner = {}; ///< values of its inner parameters, where they are given
 };
 
 /// What lowering one model shares between its files and front-ends.
@@ -27,11 +30,13 @@ struct Lowering {
     SourceMap& sources;
     Diagnostics& diagnostics;
     const LowerOptions& options;
-    std::vector<LoadingFile> loading; ///< from the root model to the file being lowered
-    /// Models already lowered, by path; null after errors. A model used twice is read and reported once.
-    std::map<std::string, std::shared_ptr<const Graph>> lowered;
-    std::size_t use_count = 0; ///< `use` statements so far, in all files
-    std::optional<Derivation> derivation; ///< of the root model
+    std::vector<LoadingFile> loading = {}; ///< from the root model to the file being lowered
+    /// Models already lowered, by path and inner parameters; null after errors. A model used twice is read
+    /// and reported once.
+    std::map<std::pair<std::string, Environment>, std::shared_ptr<const Graph>> lowered = {};
+    std::map<std::string, FileId> files = {};  ///< used files that were read, by path
+    std::size_t use_count = 0;                 ///< `use` statements so far, in all files
+    std::optional<Derivation> derivation = {}; ///< of the root model
 
     /// `--set` speaks to the root model only.
     bool at_root_model() const { return loading.size() <= 1; }
@@ -45,12 +50,29 @@ std::optional<Graph> lower_file(FileId file, Span asked_for, Lowering& lowering)
 /// it is no regular file: others (pipes, devices) could keep a compilation waiting for ever.
 std::optional<std::string> find_beside(Span name_span, std::string_view path, Lowering& lowering);
 
+/// Where a model file is used.
+struct ModelUse {
+    std::string_view name; ///< that it has there
+    std::string_view path; ///< as the text has it
+    Span span;             ///< of the path
+};
+
+/// The file of a `use`, looked up beside the file that holds the span, and read if it is not known yet; once
+/// for each `use`, of which there may be a thousand. Nothing after an error.
+std::optional<FileId> read_model(const ModelUse& use, Lowering& lowering);
+
 /// Loads `use NAME = "path"`: looked up beside the file that holds `use_span`, lowered, and appended to
 /// `into`: objects as `NAME.object`, primitives shared, materials shared where equal, else renamed to
 /// `NAME.material`; its scene settings do not count. Gives the id of its root, or nothing after an error.
-/// Requires that `into` has its own materials already, and no object yet whose name begins with `NAME.`.
-std::optional<ObjectId> import_model(Graph& into, Span use_span, std::string_view name, std::string_view path,
-                                     Lowering& lowering);
+/// Requires that read_model() has read it, that `into` has its own materials already, and no object yet whose
+/// name begins with `NAME.`.
+std::optional<ObjectId> import_model(Graph& into, const ModelUse& use, Lowering& lowering);
+
+/// The same for one of a family: its inner parameters have these values; its objects are named
+/// `NAME.k1.object`, with another number for each member, and its materials `NAME.material` unless one that
+/// is equal is there already. For `into` that may have objects by any names.
+std::optional<ObjectId> import_member(Graph& into, const ModelUse& use, const Environment& inner,
+                                      Lowering& lowering);
 
 /// The most instances that one model may have, as a multiple of LowerOptions::max_objects.
 inline constexpr std::size_t max_instances_per_object = 4;

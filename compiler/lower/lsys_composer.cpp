@@ -35,8 +35,7 @@ Mat3 chord_frame(Vec3 exit) {
 }
 
 LsysComposer::LsysComposer(LsysRewriter& rewriter, TurtleContext& turtle, ObjectPool& pool,
-                           const std::map<SymbolId, ObjectId>& models, Variants variants,
-                           const LsysLimits& limits)
+                           const ModelPlacer& models, Variants variants, const LsysLimits& limits)
     : rewriter_(rewriter), context_(turtle), pool_(pool), models_(models), variants_(variants),
       max_parts_(limits.max_parts), snaps_(limits.snap_angle > 0),
       directions_(std::max(limits.snap_angle, DirectionTable::rounding)),
@@ -190,9 +189,14 @@ std::optional<Instance> LsysComposer::line_for(const TurtlePart& part, const Tas
 
 bool LsysComposer::draw(Task& task, ModuleId module) {
     const SymbolId symbol = rewriter_.modules().symbol(module);
-    const auto model = models_.find(symbol);
-    return task.turtle.run(rewriter_.grammar().commands[symbol], rewriter_.modules().parameters(module),
-                           model == models_.end() ? std::nullopt : std::optional(model->second), task.span);
+    const TurtleCommand command = rewriter_.grammar().commands[symbol];
+    const std::span<const double> parameters = rewriter_.modules().parameters(module);
+    std::optional<PlacedModel> model;
+    if (command == TurtleCommand::model && !task.turtle.passing_over()) {
+        model = models_(symbol, parameters, task.span);
+        if (!model) return false;
+    }
+    return task.turtle.run(command, parameters, model, task.span);
 }
 
 bool LsysComposer::start_task(ModuleId module, Stage stage, const TurtleState& start,

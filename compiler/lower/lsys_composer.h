@@ -2,7 +2,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <map>
 #include <optional>
 #include <span>
 #include <string>
@@ -11,6 +10,7 @@
 
 #include "compiler/lower/folded_word.h"
 #include "compiler/lower/lsys_rewriter.h"
+#include "compiler/lower/model_placer.h"
 #include "compiler/lower/object_pool.h"
 #include "compiler/lower/turtle.h"
 #include "compiler/lower/turtle_state.h"
@@ -37,9 +37,9 @@ struct LsysLimits {
 /// counts as a part of that state.
 class LsysComposer {
   public:
-    /// All references must outlive this. `models`: the roots of what `~NAME` places, by symbol.
+    /// All references must outlive this.
     LsysComposer(LsysRewriter& rewriter, TurtleContext& turtle, ObjectPool& pool,
-                 const std::map<SymbolId, ObjectId>& models, Variants variants, const LsysLimits& limits);
+                 const ModelPlacer& models, Variants variants, const LsysLimits& limits);
 
     /// The part that the axiom becomes after `steps` steps; nothing after an error in the turtle's
     /// diagnostics.
@@ -116,7 +116,7 @@ class LsysComposer {
     LsysRewriter& rewriter_;
     TurtleContext& context_;
     ObjectPool& pool_;
-    const std::map<SymbolId, ObjectId>& models_;
+    const ModelPlacer& models_;
     Variants variants_;
     std::size_t max_parts_;
     bool snaps_;

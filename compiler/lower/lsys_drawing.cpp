@@ -74,8 +74,8 @@ constexpr std::size_t most_limit_parts = 1000;
 
 class Drawer {
   public:
-    Drawer(const LsysGrammar& grammar, const std::map<SymbolId, ObjectId>& models,
-           const LsysDrawOptions& options, Diagnostics& diagnostics)
+    Drawer(const LsysGrammar& grammar, const ModelPlacer& models, const LsysDrawOptions& options,
+           Diagnostics& diagnostics)
         : grammar_(grammar), models_(models), options_(options), diagnostics_(diagnostics),
           rewriter_(grammar, diagnostics), width_(grammar.width.value_or(thinnest_in_steps * grammar.step)) {}
 
@@ -89,7 +89,7 @@ class Drawer {
             return std::nullopt;
         }
         if (!choose_width(graph)) return std::nullopt;
-        Composition composition(*this, graph, pool, is_line_drawing());
+        Composition composition(*this, graph, pool, is_line_drawing(), models_);
         std::optional<TurtlePart> part = composition.variant(0);
         if (!part) return std::nullopt;
         LsysDrawing drawing{std::move(part->instances), {word_ ? "derived" : "composed"}};
@@ -107,15 +107,16 @@ class Drawer {
   private:
     /// One composer with all that it needs.
     struct Composition {
-        Composition(Drawer& owner, Graph& graph, ObjectPool& pool, bool lines)
-            : Composition(owner, graph, pool, lines, owner.options_.max_parts, owner.diagnostics_) {}
-        Composition(Drawer& owner, Graph& graph, ObjectPool& pool, bool lines, std::size_t max_parts,
-                    Diagnostics& diagnostics)
-            : drawer(owner),
+        Composition(Drawer& owner, Graph& graph, ObjectPool& pool, bool lines, ModelPlacer placer)
+            : Composition(owner, graph, pool, lines, std::move(placer), owner.options_.max_parts,
+                          owner.diagnostics_) {}
+        Composition(Drawer& owner, Graph& graph, ObjectPool& pool, bool lines, ModelPlacer placer,
+                    std::size_t max_parts, Diagnostics& diagnostics)
+            : drawer(owner), models(std::move(placer)),
               bodies(graph, owner.palette_), turtle{bodies, diagnostics, owner.grammar_.angle_deg,
                                                     owner.grammar_.step, lines},
-              composer(owner.rewriter_, turtle, pool, owner.models_,
-                       Variants(owner.options_.seed, owner.variants_), {max_parts, owner.snap_angle_}) {}
+              composer(owner.rewriter_, turtle, pool, models, Variants(owner.options_.seed, owner.variants_),
+                       {max_parts, owner.snap_angle_}) {}
 
         std::optional<TurtlePart> variant(std::uint32_t number) {
             TurtleState start;
@@ -128,10 +129,18 @@ class Drawer {
         }
 
         Drawer& drawer;
+        ModelPlacer models;
         TurtleBodies bodies;
         TurtleContext turtle;
         LsysComposer composer;
     };
+
+    /// For graphs that are thrown away: it does not matter there which models stand in their places.
+    static ModelPlacer stand_ins(Graph& scratch) {
+        return [&scratch](SymbolId, std::span<const double>, Span) {
+            return PlacedModel{scratch.primitive(PrimitiveKind::sphere), Vec3(1.0)};
+        };
+    }
 
     bool derive() {
         auto word = LsysDeriver(rewriter_, diagnostics_, options_.seed, options_.max_modules).derive(steps_);
@@ -150,7 +159,7 @@ class Drawer {
             return std::nullopt;
         }
         for (steps_ = first_limit_steps; steps_ <= last_limit_steps; steps_ *= 2) {
-            Composition composition(*this, graph, pool, is_line_drawing());
+            Composition composition(*this, graph, pool, is_line_drawing(), models_);
             composition.turtle.limit = true;
             const std::optional<TurtlePart> part = composition.variant(0);
             if (!part) return std::nullopt;
@@ -181,7 +190,7 @@ class Drawer {
     std::optional<TurtlePart> sketch(const Graph& graph) {
         Graph scratch = graph;
         ObjectPool pool(scratch);
-        return Composition(*this, scratch, pool, false).variant(0);
+        return Composition(*this, scratch, pool, false, stand_ins(scratch)).variant(0);
     }
 
     /// The limit of figures that grow has no size of its own: the way from its start to its end is made one
@@ -205,7 +214,7 @@ class Drawer {
         variants_ = fewest_variants;
         Graph scratch = graph;
         ObjectPool pool(scratch);
-        Composition composition(*this, scratch, pool, false);
+        Composition composition(*this, scratch, pool, false, stand_ins(scratch));
         double sum = 0, squares = 0;
         int shift = 0;
         for (std::uint32_t i = 0; i < variants_; ++i) {
@@ -239,7 +248,8 @@ class Drawer {
             Graph scratch = graph;
             ObjectPool pool(scratch);
             Diagnostics quiet; // other errors come again when the model itself is composed
-            if (Composition(*this, scratch, pool, false, most_parts, quiet).variant(0)) break;
+            if (Composition(*this, scratch, pool, false, stand_ins(scratch), most_parts, quiet).variant(0))
+                break;
             if (rewriter_.failed()) return false;
         }
         return true;
@@ -264,14 +274,15 @@ class Drawer {
             palette_.push_back(graph.materials[*id]);
         }
         if (!palette_.empty()) return true;
-        const bool coloured = grammar_.uses({TurtleCommand::colour_up, TurtleCommand::colour_down, TurtleCommand::close_polygon});
+        const bool coloured = grammar_.uses(
+            {TurtleCommand::colour_up, TurtleCommand::colour_down, TurtleCommand::close_polygon});
         const Paint& paint = grammar_.uses({TurtleCommand::open_branch}) ? stalk_paint : curve_paint;
         palette_ = is_line_drawing() && !coloured ? palette_of({&paint, 1}) : palette_of(default_paints);
         return true;
     }
 
     const LsysGrammar& grammar_;
-    const std::map<SymbolId, ObjectId>& models_;
+    const ModelPlacer& models_;
     const LsysDrawOptions& options_;
     Diagnostics& diagnostics_;
     LsysRewriter rewriter_;
@@ -286,7 +297,7 @@ class Drawer {
 
 } // namespace
 
-std::optional<LsysDrawing> draw_lsys(const LsysGrammar& grammar, const std::map<SymbolId, ObjectId>& models,
+std::optional<LsysDrawing> draw_lsys(const LsysGrammar& grammar, const ModelPlacer& models,
                                      const LsysDrawOptions& options, Graph& graph, ObjectPool& pool,
                                      Diagnostics& diagnostics) {
     return Drawer(grammar, models, options, diagnostics).draw(graph, pool);

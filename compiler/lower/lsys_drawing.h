@@ -1,13 +1,13 @@
 #pragma once
 
 #include <cstddef>
-#include <map>
 #include <optional>
 #include <vector>
 
 #include "compiler/graph/graph.h"
 #include "compiler/lower/lower.h"
 #include "compiler/lower/lsys_grammar.h"
+#include "compiler/lower/model_placer.h"
 #include "compiler/lower/object_pool.h"
 
 namespace graftal {
@@ -25,13 +25,12 @@ struct LsysDrawing {
     Derivation derivation;
 };
 
-/// Draws what a grammar derives into `graph`. `models`: the roots of what `~NAME` places, by symbol; `pool`
-/// makes the objects. Nothing after an error.
+/// Draws what a grammar derives into `graph`. `models` places models there; `pool` makes the objects. Nothing after an error.
 ///
 /// Of random parts there are as many variants as keep the drift, the relative standard error of the mean
 /// number of segments over a pool, below 5 % by the theory for independent samples
 /// (nu_n = n nu / K, nu the relative variance of one level); stratified ones stray less.
-std::optional<LsysDrawing> draw_lsys(const LsysGrammar& grammar, const std::map<SymbolId, ObjectId>& models,
+std::optional<LsysDrawing> draw_lsys(const LsysGrammar& grammar, const ModelPlacer& models,
                                      const LsysDrawOptions& options, Graph& graph, ObjectPool& pool,
                                      Diagnostics& diagnostics);
 

@@ -38,8 +38,8 @@ double first_or(std::span<const double> parameters, double otherwise) {
 
 Turtle::Turtle(TurtleContext& context, const TurtleState& start) : context_(context), state_(start) {}
 
-bool Turtle::run(TurtleCommand command, std::span<const double> parameters, std::optional<ObjectId> model,
-                 Span span) {
+bool Turtle::run(TurtleCommand command, std::span<const double> parameters,
+                 const std::optional<PlacedModel>& model, Span span) {
     if (cut_depth_ > 0) return pass_over(command);
     ++modules_;
     const double angle_deg = first_or(parameters, context_.angle_deg);
@@ -134,9 +134,7 @@ bool Turtle::run(TurtleCommand command, std::span<const double> parameters, std:
         break;
     case TurtleCommand::model:
         part_.has_bodies = true;
-        if (model)
-            context_.bodies.add_model(*model, start_from_turtle_, first_or(parameters, 1), span,
-                                      part_.instances);
+        if (model) context_.bodies.add_model(*model, start_from_turtle_, span, part_.instances);
         break;
     }
     return within_limits(span);

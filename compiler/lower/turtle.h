@@ -7,6 +7,7 @@
 
 #include <boost/multiprecision/cpp_int.hpp>
 
+#include "compiler/lower/model_placer.h"
 #include "compiler/lower/turtle_bodies.h"
 #include "compiler/lower/turtle_command.h"
 #include "compiler/lower/turtle_state.h"
@@ -67,9 +68,9 @@ class Turtle {
     /// `context` must outlive the turtle.
     Turtle(TurtleContext& context, const TurtleState& start);
 
-    /// Carries out one module; false after an error. `models` of `~` are given by `model`.
-    bool run(TurtleCommand command, std::span<const double> parameters, std::optional<ObjectId> model,
-             Span span);
+    /// Carries out one module; false after an error. What `~` places is given by `model`.
+    bool run(TurtleCommand command, std::span<const double> parameters,
+             const std::optional<PlacedModel>& model, Span span);
 
     /// Places a part whose entry state was state(), but for directions that are off by the angle `snap`:
     /// draws it, and goes where it leaves the turtle.

@@ -106,10 +106,11 @@ void TurtleBodies::add_polygon(std::span<const Vec3> corners, int colour, Span s
     }
 }
 
-void TurtleBodies::add_model(ObjectId root, const Affine& start_from_turtle, double scale, Span span,
+void TurtleBodies::add_model(const PlacedModel& model, const Affine& start_from_turtle, Span span,
                              std::vector<Instance>& instances) {
-    if (scale == 0) return;
-    instances.push_back({root, start_from_turtle * Affine::scale(Vec3(scale)), Tint(), std::nullopt, span});
+    if (model.scale.x == 0 || model.scale.y == 0) return;
+    instances.push_back(
+        {model.root, start_from_turtle * Affine::scale(model.scale), Tint(), std::nullopt, span});
 }
 
 } // namespace graftal

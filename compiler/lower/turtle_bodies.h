@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "compiler/graph/graph.h"
+#include "compiler/lower/model_placer.h"
 
 namespace graftal {
 
@@ -36,7 +37,7 @@ class TurtleBodies {
     void add_disc(const Affine& start_from_turtle, double diameter, int colour, Span span,
                   std::vector<Instance>& instances);
     void add_polygon(std::span<const Vec3> corners, int colour, Span span, std::vector<Instance>& instances);
-    void add_model(ObjectId root, const Affine& start_from_turtle, double scale, Span span,
+    void add_model(const PlacedModel& model, const Affine& start_from_turtle, Span span,
                    std::vector<Instance>& instances);
 
   private:

@@ -94,6 +94,19 @@ Diagnostic& Diagnostics::note(Span span, std::string message) {
     return add(Severity::note, span, std::move(message));
 }
 
+void Diagnostics::drop_repeated_remarks(std::size_t since) {
+    const auto repeated = [&](const Diagnostic& finding) {
+        if (finding.severity == Severity::error) return false;
+        return std::any_of(all_.begin(), all_.begin() + static_cast<std::ptrdiff_t>(since),
+                           [&](const Diagnostic& known) {
+                               return known.span == finding.span && known.message == finding.message;
+                           });
+    };
+    if (since >= all_.size()) return;
+    all_.erase(std::remove_if(all_.begin() + static_cast<std::ptrdiff_t>(since), all_.end(), repeated),
+               all_.end());
+}
+
 Diagnostic& Diagnostics::add(Severity severity, Span span, std::string message) {
     const std::size_t count = severity == Severity::error ? error_count_ : warning_count_;
     Diagnostic diagnostic{severity, span, std::move(message), {}, {}};

@@ -40,6 +40,10 @@ class Diagnostics {
     /// Nothing is wrong, but the picture can be better.
     Diagnostic& note(Span span, std::string message);
 
+    /// Takes back the warnings and notes behind the first `since` findings that say what one before says at
+    /// the same place.
+    void drop_repeated_remarks(std::size_t since);
+
     bool has_errors() const { return error_count_ > 0; }
     std::size_t error_count() const { return error_count_; }
     /// True when max_errors is reached; parsers stop then.

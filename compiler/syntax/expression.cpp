@@ -68,7 +68,7 @@ class Evaluator {
                                            function->arity == 1 ? "" : "s", e.operands.size()));
             return std::nullopt;
         }
-        std::array<double, 2> arguments{};
+        std::array<double, max_function_arity> arguments{};
         for (std::size_t i = 0; i < function->arity; ++i) {
             const std::optional<double> argument = value(e.operands[i]);
             if (!argument) return std::nullopt;
@@ -76,11 +76,14 @@ class Evaluator {
         }
         const std::span<const double> used(arguments.data(), function->arity);
         if (e.text == "mod" && arguments[1] == 0) return division_by_zero(e);
-        const std::string_view separator = function->arity == 2 ? ", " : "";
-        return finite(function->apply(used), e, [&] {
-            return fmt::format("{}({}{}{})", e.text, shortest(arguments[0]), separator,
-                               function->arity == 2 ? shortest(arguments[1]) : "");
-        });
+        return finite(function->apply(used), e, [&] { return call_text(e.text, used); });
+    }
+
+    static std::string call_text(std::string_view name, std::span<const double> arguments) {
+        std::string text;
+        for (const double argument : arguments)
+            text += (text.empty() ? "" : ", ") + shortest(argument);
+        return fmt::format("{}({})", name, text);
     }
 
     std::optional<double> unary(const Expression& e) {

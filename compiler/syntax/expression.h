@@ -16,7 +16,7 @@ namespace graftal {
 /// An arithmetic expression over named values: + - * / % ^ (right associative, binds tighter than a sign on
 /// its left), comparisons and ! && || (giving 1 or 0), functions, and the constant pi. Trigonometric
 /// functions take and give degrees, as turtles and POV-Ray's users do: sin cos tan asin acos atan atan2;
-/// sqrt exp log floor ceil abs min max mod sign pow.
+/// sqrt exp log floor ceil abs min max mod sign pow lerp smooth logistic.
 struct Expression {
     enum class Kind : std::uint8_t { number, name, call, unary, binary };
 

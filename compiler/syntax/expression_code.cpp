@@ -73,16 +73,13 @@ class ExpressionCode::Compiler {
     }
 
     std::optional<std::uint32_t> add_operands(const Expression& e, Node node) {
-        std::array<std::uint32_t, 2> operands{};
         bool good = true;
         for (std::size_t i = 0; i < e.operands.size(); ++i) {
             const std::optional<std::uint32_t> operand = add(e.operands[i]);
-            operands[i] = operand.value_or(0);
+            node.operands[i] = operand.value_or(0);
             good = good && operand;
         }
         if (!good) return std::nullopt;
-        node.slot = operands[0];
-        node.second = operands[1];
         return append(node);
     }
 
@@ -115,9 +112,9 @@ double ExpressionCode::value(std::uint32_t index, std::span<const double> slots)
     case Kind::slot:
         return slots[node.slot];
     case Kind::negate:
-        return -value(node.slot, slots);
+        return -value(node.operands[0], slots);
     case Kind::invert: {
-        const double operand = value(node.slot, slots);
+        const double operand = value(node.operands[0], slots);
         return std::isnan(operand) ? failed : static_cast<double>(operand == 0);
     }
     case Kind::call:
@@ -129,11 +126,11 @@ double ExpressionCode::value(std::uint32_t index, std::span<const double> slots)
 }
 
 double ExpressionCode::binary(const Node& node, std::span<const double> slots) const {
-    const double left = value(node.slot, slots);
+    const double left = value(node.operands[0], slots);
     if (!std::isfinite(left)) return failed;
     if (node.op == BinaryOperator::logical_and && left == 0) return 0;
     if (node.op == BinaryOperator::logical_or && left != 0) return 1;
-    const double right = value(node.second, slots);
+    const double right = value(node.operands[1], slots);
     if (!std::isfinite(right)) return failed;
     const bool divides = node.op == BinaryOperator::divide || node.op == BinaryOperator::remainder;
     if (divides && right == 0) return failed;
@@ -141,11 +138,13 @@ double ExpressionCode::binary(const Node& node, std::span<const double> slots) c
 }
 
 double ExpressionCode::call(const Node& node, std::span<const double> slots) const {
+    std::array<double, max_function_arity> arguments{};
     const std::size_t arity = node.function->arity;
-    const std::array<double, 2> arguments = {value(node.slot, slots),
-                                             arity > 1 ? value(node.second, slots) : 0};
-    const bool finite = std::isfinite(arguments[0]) && std::isfinite(arguments[1]);
-    return finite ? node.function->apply(std::span(arguments).first(arity)) : failed;
+    for (std::size_t i = 0; i < arity; ++i) {
+        arguments[i] = value(node.operands[i], slots);
+        if (!std::isfinite(arguments[i])) return failed;
+    }
+    return node.function->apply(std::span(arguments).first(arity));
 }
 
 void ExpressionCode::report(std::span<const double> slots, const Environment& constants,

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -36,8 +37,8 @@ class ExpressionCode {
     struct Node {
         Kind kind = Kind::number;
         BinaryOperator op = BinaryOperator::add;
-        std::uint32_t slot = 0;   ///< or the first operand
-        std::uint32_t second = 0; ///< operand
+        std::uint32_t slot = 0;
+        std::array<std::uint32_t, max_function_arity> operands{};
         double number = 0;
         const ExpressionFunction* function = nullptr;
     };

@@ -32,6 +32,19 @@ double sign(double x) {
     return x > 0 ? 1 : x < 0 ? -1 : 0;
 }
 
+/// Growth that is slow at first, fastest at `middle`, and comes to an end: limit / (1 + e^(-rate (t -
+/// middle))), the solution of x' = rate x (1 - x / limit). Far before the middle it is 0.
+double logistic(double t, double limit, double rate, double middle) {
+    return limit / (1 + std::exp(-rate * (t - middle)));
+}
+
+/// From 0 at `lo` to 1 at `hi` by 3 x^2 - 2 x^3, level at both ends; a step where they are one.
+double smooth(double lo, double hi, double t) {
+    if (lo == hi) return t < lo ? 0 : 1;
+    const double x = std::clamp((t - lo) / (hi - lo), 0.0, 1.0);
+    return x * x * (3 - 2 * x);
+}
+
 using Arguments = std::span<const double>;
 
 constexpr std::array functions = {
@@ -53,6 +66,9 @@ constexpr std::array functions = {
     ExpressionFunction{"max", 2, [](Arguments a) { return std::max(a[0], a[1]); }},
     ExpressionFunction{"mod", 2, [](Arguments a) { return std::fmod(a[0], a[1]); }},
     ExpressionFunction{"pow", 2, [](Arguments a) { return std::pow(a[0], a[1]); }},
+    ExpressionFunction{"lerp", 3, [](Arguments a) { return a[0] + a[2] * (a[1] - a[0]); }},
+    ExpressionFunction{"smooth", 3, [](Arguments a) { return smooth(a[0], a[1], a[2]); }},
+    ExpressionFunction{"logistic", 4, [](Arguments a) { return logistic(a[0], a[1], a[2], a[3]); }},
 };
 
 constexpr std::array<std::string_view, 14> operators = {

@@ -7,7 +7,10 @@
 
 namespace graftal {
 
-/// A function that expressions may call; of one or two arguments.
+/// The most arguments that a function takes.
+inline constexpr std::size_t max_function_arity = 4;
+
+/// A function that expressions may call.
 struct ExpressionFunction {
     const char* name;
     std::size_t arity;

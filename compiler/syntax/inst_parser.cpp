@@ -64,7 +64,7 @@ class BodyParser {
         const Token& third = stream_.peek(2);
         const bool name_next = after.kind == TokenKind::name;
         if (word.is("canonical") || word.is("object")) return name_next;
-        if (word.is("let") || word.is("use")) return name_next && third.is("=");
+        if (word.is("let") || word.is("inner") || word.is("use")) return name_next && third.is("=");
         if (word.is("material")) return name_next && third.is("{");
         if (word.is("camera") || word.is("light") || word.is("ground")) return after.is("{");
         if (word.is("background")) return after.is("{") || after.is(":");

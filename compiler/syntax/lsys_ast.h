@@ -92,7 +92,7 @@ struct LsysTropism {
 struct LsysBlock {
     LsysName name;
     bool is_main = false;
-    std::vector<SceneStatement> lets; ///< in the order of the text; all of kind `let`
+    std::vector<SceneStatement> lets; ///< in the order of the text; all of kind `let` or `inner`
     std::optional<LsysValue> angle;
     std::optional<LsysValue> step;
     std::optional<LsysValue> width;

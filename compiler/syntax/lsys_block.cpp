@@ -78,7 +78,7 @@ class BlockParser {
         const std::string_view word = statement.word;
         if (statement.section != LsysSection::block && is_lsys_keyword(word))
             return report_section(statement);
-        if (word == "let") return parse_let(statement);
+        if (word == "let" || word == "inner") return parse_let(statement);
         if (word == "angle") return parse_value(statement, block_.angle);
         if (word == "step") return parse_value(statement, block_.step);
         if (word == "width") return parse_value(statement, block_.width);
@@ -134,7 +134,10 @@ class BlockParser {
     void parse_let(const LsysStatement& statement) {
         TokenStream stream = text_.tokens(statement.begin, statement.end, lsys_line_end);
         const std::size_t before = diagnostics_.error_count();
-        if (at_scene_statement(stream)) parse_scene_statement(stream, block_.lets);
+        if (at_scene_statement(stream))
+            parse_scene_statement(stream, block_.lets);
+        else // an `inner` without a name
+            stream.next(), stream.expect_name("a name after 'inner'");
         if (diagnostics_.error_count() == before) text_.finish(stream);
     }
 

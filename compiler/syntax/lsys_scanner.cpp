@@ -25,9 +25,9 @@ std::optional<LsysSection> section_named(std::string_view word) {
 
 /// Statements that are made of the words of all languages, with their comments and strings.
 bool has_values(std::string_view word) {
-    static const std::vector<std::string_view> words = {"let",   "angle",      "step",   "width",    "steps",
-                                                        "seed",  "tropism",    "colors", "modules",  "camera",
-                                                        "light", "background", "ground", "material", "use"};
+    static const std::vector<std::string_view> words = {
+        "let",    "inner",   "angle",  "step",  "width",      "steps",  "seed",     "tropism",
+        "colors", "modules", "camera", "light", "background", "ground", "material", "use"};
     return std::find(words.begin(), words.end(), word) != words.end();
 }
 
@@ -35,8 +35,9 @@ bool has_values(std::string_view word) {
 
 const std::vector<std::string>& lsys_keywords() {
     static const std::vector<std::string> keywords = {
-        "let",     "angle",  "step",    "width", "steps",     "seed",         "ignore",    "consider",
-        "tropism", "colors", "modules", "axiom", "interpret", "homomorphism", "decompose", "decomposition"};
+        "let",   "inner",     "angle",        "step",      "width",        "steps",
+        "seed",  "ignore",    "consider",     "tropism",   "colors",       "modules",
+        "axiom", "interpret", "homomorphism", "decompose", "decomposition"};
     return keywords;
 }
 

@@ -80,6 +80,10 @@ class RifsParser {
     }
 
     bool parse_item(RifsBlock& block) {
+        if (stream_.at("inner") && at_scene_statement(stream_)) {
+            parse_scene_statement(stream_, file_.statements);
+            return true;
+        }
         if (stream_.at("map")) return parse_map(block);
         if (stream_.at("codes")) return parse_rifs_codes(stream_, block.maps, map_room_);
         if (stream_.at("follow")) return parse_follow(block);

@@ -71,7 +71,8 @@ class StatementParser {
         statement_.span = keyword.span;
         switch (statement_.kind) {
         case Kind::let:
-            return parse_lets();
+        case Kind::inner:
+            return parse_lets(keyword.text);
         case Kind::steps:
             stream_.accept(":");
             return parse_value("steps", keyword.span, Shape::number);
@@ -95,11 +96,12 @@ class StatementParser {
         return true;
     }
 
-    bool parse_lets() {
+    bool parse_lets(std::string_view keyword) {
         do {
-            const std::optional<Token> name = stream_.expect_name("a name after 'let'");
+            const std::optional<Token> name = stream_.expect_name(fmt::format("a name after '{}'", keyword));
             if (!name) return false;
-            if (!stream_.expect("=", name->text) || !parse_value(name->text, name->span, Shape::number)) {
+            if (!stream_.expect("=", name->text) || !parse_value(name->text, name->span, Shape::number) ||
+                !parse_members()) {
                 add_placeholder(*name);
                 statement_.complete = false;
                 while (!stream_.at_end() && !stream_.peek().first_on_line && !stream_.at(","))
@@ -109,7 +111,16 @@ class StatementParser {
         return true;
     }
 
+    /// `members N` after the value of an inner parameter.
+    bool parse_members() {
+        if (statement_.kind != Kind::inner || !stream_.accept("members")) return true;
+        std::optional<std::vector<Expression>> members = parse_numbers(stream_, 1, 1, "'members'");
+        if (members) statement_.fields.back().values.push_back(std::move(members->front()));
+        return members.has_value();
+    }
+
     void add_placeholder(const Token& name) {
+        if (!statement_.fields.empty() && statement_.fields.back().span.begin == name.span.begin) return;
         SceneField field;
         field.keyword = name.text;
         field.span = name.span;
@@ -218,11 +229,13 @@ class StatementParser {
 
 const std::vector<std::string>& scene_keywords() {
     static const std::vector<std::string> keywords = {"camera",   "light", "background", "ground",
-                                                      "material", "steps", "let"};
+                                                      "material", "steps", "let",        "inner"};
     return keywords;
 }
 
 bool at_scene_statement(const TokenStream& stream) {
+    // Younger than the languages: the name of a part, too, unless a name follows.
+    if (stream.at("inner")) return stream.peek(1).kind == TokenKind::name && !stream.peek(1).first_on_line;
     return kind_of(stream.peek()).has_value();
 }
 

@@ -19,10 +19,11 @@ struct SceneField {
     Span name_span;
 };
 
-/// camera, light, background, ground, material, steps or let. Short forms are spelled out: `steps: 5` has
-/// the field "steps", `background: r,g,b` the field "zenith", and `let a = 1, b = 2` one field a name.
+/// camera, light, background, ground, material, steps, let or inner. Short forms are spelled out: `steps: 5`
+/// has the field "steps", `background: r,g,b` the field "zenith", and `let a = 1, b = 2` one field a name.
+/// `inner k = 0.5 members 16` is a `let` with a second value.
 struct SceneStatement {
-    enum class Kind : std::uint8_t { camera, light, background, ground, material, steps, let };
+    enum class Kind : std::uint8_t { camera, light, background, ground, material, steps, let, inner };
 
     Kind kind = Kind::camera;
     std::string name; ///< of a material
@@ -38,7 +39,7 @@ const std::vector<std::string>& scene_keywords();
 bool at_scene_statement(const TokenStream& stream);
 
 /// Requires at_scene_statement(). Parses the statement into `statements`; errors are reported, and the
-/// stream then stands where parsing can go on. A `let` in error has the value 1, so that its uses are known.
+/// stream then stands where parsing can go on. A `let` or `inner` in error has the value 1, so that its uses are known.
 void parse_scene_statement(TokenStream& stream, std::vector<SceneStatement>& statements);
 
 } // namespace graftal

@@ -60,6 +60,17 @@ Json bounds_json(const AnalysedModel& model) {
     return {{"min", vector_json(bounds.box.min)}, {"max", vector_json(bounds.box.max)}};
 }
 
+/// By the name of the model.
+Json families_json(const Derivation& derivation) {
+    Json families = Json::object();
+    for (const FamilyReport& family : derivation.families)
+        families[family.model] = {{"parameters", family.parameters},
+                                  {"members", family.used},
+                                  {"possible", family.possible},
+                                  {"error", family.error}};
+    return families;
+}
+
 Json stats_json(const AnalysedModel& model, const SourceMap& sources) {
     const Graph& graph = model.graph;
     const bool converges =
@@ -86,6 +97,7 @@ Json stats_json(const AnalysedModel& model, const SourceMap& sources) {
             json["compiled"]["variants"] = derivation->variants;
             json["compiled"]["drift"] = derivation->drift;
         }
+        if (!derivation->families.empty()) json["families"] = families_json(*derivation);
     }
     return json;
 }

@@ -274,7 +274,7 @@ std::pair<double, double> snapped(const std::string& statements, unsigned steps,
     TurtleBodies bodies(graph, {Material()});
     TurtleContext context{bodies, model.diagnostics()};
     ObjectPool pool(graph);
-    const std::map<SymbolId, ObjectId> no_models;
+    const ModelPlacer no_models;
     LsysComposer composer(model.rewriter(), context, pool, no_models, Variants(0, 1),
                           {1'000'000, angle_deg * std::numbers::pi / 180});
     TurtleState start;

@@ -78,6 +78,15 @@ TEST(Expression, trigonometry_is_in_degrees_and_exact_at_right_angles) {
 TEST(Expression, functions_and_names) {
     EXPECT_EQ(value("sqrt(2)^2"), std::pow(std::sqrt(2.0), 2));
     EXPECT_EQ(value("floor(-1.5) + ceil(1.2) + abs(-3) + sign(-8)"), -2 + 2 + 3 - 1);
+    EXPECT_EQ(value("lerp(2, 6, 0.25)"), 3);
+    EXPECT_EQ(value("lerp(2, 6, 1.5)"), 8);
+    EXPECT_EQ(value("smooth(1, 3, 0)"), 0);
+    EXPECT_EQ(value("smooth(1, 3, 2)"), 0.5);
+    EXPECT_EQ(value("smooth(1, 3, 9)"), 1);
+    EXPECT_EQ(value("smooth(2, 2, 2) + smooth(2, 2, 1.9)"), 1);
+    EXPECT_EQ(value("logistic(5, 8, 2, 5)"), 4);
+    EXPECT_EQ(value("logistic(-1e9, 8, 2, 5)"), 0);
+    EXPECT_NEAR(value("logistic(6, 1, 1, 5)"), 0.7310585786300049, 1e-15);
     EXPECT_EQ(value("min(2, -1) + max(3, 4) + mod(7, 4) + pow(2, 10)"), -1 + 4 + 3 + 1024);
     EXPECT_EQ(value("exp(0) + log(1)"), 1);
     EXPECT_EQ(value("2*pi"), 2 * M_PI);
@@ -95,6 +104,8 @@ TEST(Expression, errors_say_what_is_wrong_and_where) {
     EXPECT_THAT(error("mod(5, 0)"), HasSubstr("division by zero"));
     EXPECT_THAT(error("sqrt(-1)"), HasSubstr("sqrt(-1) is not a finite number"));
     EXPECT_THAT(error("1e308*10"), HasSubstr("1e+308 * 10 is not a finite number"));
+    EXPECT_THAT(error("lerp(1, 2)"), HasSubstr("'lerp' takes 3 arguments, not 2"));
+    EXPECT_THAT(error("lerp(1e308, -1e308, 2)"), HasSubstr("lerp(1e+308, -1e+308, 2) is not a finite number"));
     EXPECT_THAT(error("pow(0, -1)"), HasSubstr("pow(0, -1) is not a finite number"));
     EXPECT_THAT(error("log(0)"), HasSubstr("log(0) is not a finite number"));
     EXPECT_THAT(error("tan(90)"), HasSubstr("tan(90) is not a finite number"));

@@ -13,6 +13,7 @@
 #include "compiler/lower/lower_rifs.h"
 #include "compiler/lower/lowering.h"
 #include "compiler/support/file.h"
+#include "compiler/support/number.h"
 #include "compiler/syntax/lexer.h"
 
 namespace graftal {
@@ -40,6 +41,13 @@ std::string guessed_language(FileId file, const SourceMap& sources) {
 std::optional<Graph> lower_root(FileId file, const LowerOptions& options, SourceMap& sources,
                                 Diagnostics& diagnostics, std::optional<Derivation>* derivation) {
     Lowering lowering{.sources = sources, .diagnostics = diagnostics, .options = options};
+    if (options.time && !options.steps && model_language(file, sources) != "lsys") {
+        diagnostics
+            .error(Span(), fmt::format("--steps {}: only L-systems have times between their steps",
+                                       shortest(*options.time)))
+            .with_hint("give a whole number");
+        return std::nullopt;
+    }
     const std::filesystem::path path(sources.name(file));
     lowering.loading.push_back({path.lexically_normal().string(), Span()});
     std::optional<Graph> graph = lower_file(file, Span{file, 0, 0}, lowering);

@@ -27,6 +27,8 @@ struct FamilyReport {
 struct Derivation {
     std::string way;               ///< "composed" part by part, or "derived" and then shared
     std::optional<unsigned> steps; ///< nothing: infinite
+    bool timed = false;            ///< the drawing reads the time
+    double time = 0;               ///< the steps, and what share of the next had passed
     std::string modules;           ///< of the word after these steps: decimal, exact
     std::string segments;          ///< that it draws
     std::size_t parts = 0;         ///< different modules with their steps and states that were composed
@@ -42,6 +44,10 @@ struct LowerOptions {
     /// Looks at the picture that a material names: the mean of its linear colours, and the share of it that is
     /// not clear. Without this, textures are taken on trust.
     std::function<Status(const std::string& path, Rgb& mean, double& coverage)> look_at_texture;
+    /// The same between steps: L-systems whose drawing reads the time are drawn as old as this, after as many
+    /// steps as are done by then; others after `steps`, or if these are not given, too. Other languages have
+    /// no time: without `steps` it is an error.
+    std::optional<double> time;
     std::optional<std::uint64_t> seed; ///< of what is random, in place of what the model says
     bool exact = false;                ///< L-systems are derived module by module: one honest random tree
     std::uint64_t max_modules = 50'000'000; ///< of a derived word

@@ -1,6 +1,7 @@
 #include "compiler/lower/lower_lsys.h"
 
 #include <algorithm>
+#include <cmath>
 #include <deque>
 #include <map>
 #include <string>
@@ -262,16 +263,31 @@ class LsysLowering {
 
     bool is_root(const Block& block) { return lowering_.at_root_model() && &block == &main_block(); }
 
+    bool is_timed(const LsysGrammar& grammar) const { return grammar.time(RuleKind::interpret) != 0; }
+
+    /// What the command line says.
+    std::optional<unsigned> asked_steps(const LsysGrammar& grammar) const {
+        const LowerOptions& options = lowering_.options;
+        if (!options.time || (options.steps && !is_timed(grammar))) return options.steps;
+        return static_cast<unsigned>(*options.time);
+    }
+
+    /// Of the step after the last, when the block is drawn.
+    double share_of_step(const Block& block, const LsysGrammar& grammar) {
+        const std::optional<double>& time = lowering_.options.time;
+        return time && is_root(block) && is_timed(grammar) ? *time - std::floor(*time) : 0;
+    }
+
     /// False after an error; no steps are infinitely many.
     bool find_steps(const Block& block, const LsysGrammar& grammar, std::optional<unsigned>& steps) {
         Span span = block.source->steps ? block.source->steps->span : block.source->name.span;
-        steps = grammar.steps;
-        if (is_root(block) && lowering_.options.steps) {
-            steps = lowering_.options.steps;
+        if (is_root(block)) steps = asked_steps(grammar);
+        if (steps)
             span = Span();
-        } else if (grammar.infinite) {
+        else if (grammar.infinite)
             return true;
-        }
+        else
+            steps = grammar.steps;
         if (!steps) steps = graph_.settings.steps;
         if (!steps)
             diagnostics_
@@ -289,9 +305,14 @@ class LsysLowering {
         const LsysBlock& source = *block.source;
         const LowerOptions& options = lowering_.options;
         const std::uint64_t seed = lowering_.at_root_model() && options.seed ? *options.seed : grammar.seed;
-        std::optional<LsysDrawing> drawing = draw_lsys(
-            grammar, placer(models), {steps, seed, options.exact, options.max_modules, options.max_objects},
-            graph_, pool_, diagnostics_);
+        std::optional<LsysDrawing> drawing = draw_lsys(grammar, placer(models),
+                                                       {.steps = steps,
+                                                        .share = share_of_step(block, grammar),
+                                                        .seed = seed,
+                                                        .exact = options.exact,
+                                                        .max_modules = options.max_modules,
+                                                        .max_parts = options.max_objects},
+                                                       graph_, pool_, diagnostics_);
         if (!drawing) return std::nullopt;
         if (drawing->instances.empty()) {
             diagnostics_.error(source.name.span, fmt::format("'lsys {}' draws nothing{}", source.name.text,

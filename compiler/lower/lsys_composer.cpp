@@ -42,7 +42,9 @@ LsysComposer::LsysComposer(LsysRewriter& rewriter, TurtleContext& turtle, Object
       uses_directions_(rewriter.grammar().uses({TurtleCommand::level, TurtleCommand::tropism})),
       decomposes_(rewriter.grammar().has_rules(RuleKind::decompose)) {}
 
-std::optional<TurtlePart> LsysComposer::compose(unsigned steps, const TurtleState& start) {
+std::optional<TurtlePart> LsysComposer::compose(unsigned steps, const TurtleState& start, double share) {
+    steps_ = steps;
+    share_ = share;
     const std::optional<ModuleString> axiom = rewriter_.axiom();
     if (!axiom) return std::nullopt;
     return run_from({.start = start,
@@ -52,8 +54,11 @@ std::optional<TurtlePart> LsysComposer::compose(unsigned steps, const TurtleStat
                      .turtle = Turtle(context_, start)});
 }
 
-std::optional<TurtlePart> LsysComposer::compose_word(const FoldedWord& word, const TurtleState& start) {
+std::optional<TurtlePart> LsysComposer::compose_word(const FoldedWord& word, unsigned steps,
+                                                     const TurtleState& start, double share) {
     word_ = &word;
+    steps_ = steps;
+    share_ = share;
     return run_from({.start = start,
                      .string = word.trunk(),
                      .string_stage = 0,
@@ -89,34 +94,65 @@ LsysComposer::Stage LsysComposer::stage_before(unsigned steps) const {
     return 2 * steps + (decomposes_ ? 1 : 0);
 }
 
+/// The modules of a derived word say when they came into being, where that matters; others came with their
+/// string, or are what a module is drawn as, and as old as that.
+std::uint32_t LsysComposer::birth_of(ModuleId module, const Task& task) const {
+    const std::uint32_t birth = rewriter_.modules().birth(module);
+    return birth == ModuleTable::no_birth ? task.birth : birth;
+}
+
 /// False after an error.
-bool LsysComposer::choose(RuleKind kind, ModuleId module, Stage stage, std::uint32_t variant,
-                          Unfolded& result) {
-    if (!rewriter_.is_rewritten(kind, module)) return true;
-    const std::vector<Alternative>* alternatives = rewriter_.alternatives(kind, module);
+bool LsysComposer::choose(RuleKind kind, ModuleId module, Stage stage, std::uint32_t birth,
+                          std::uint32_t variant, Unfolded& result) {
+    Moment moment = moment_of(steps_ - stage / 2 + (kind == RuleKind::produce ? 1 : 0), birth);
+    if (kind == RuleKind::interpret) moment = {moment.step + share_, moment.age + share_};
+    if (!rewriter_.is_rewritten(kind, module, moment)) return true;
+    const std::vector<Alternative>* alternatives = rewriter_.alternatives(kind, module, moment);
     if (!alternatives) return false;
-    result.by = &variants_.choose(*alternatives, variant, module, stage);
+    const ChosenAlternative chosen = variants_.choose(*alternatives, variant, module, stage);
+    result.by = chosen.alternative;
+    result.within = chosen.within;
     result.kind = kind;
-    result.random = alternatives->size() > 1;
+    result.moment = moment;
+    result.random = alternatives->size() > 1 || chosen.alternative->rule->draws > 0;
     return true;
 }
 
-bool LsysComposer::unfold(ModuleId module, Stage stage, std::uint32_t variant, Unfolded& result) {
+/// By a step or a decomposition, at this stage or, if productions read the time, at a later one.
+bool LsysComposer::rewrite(ModuleId module, Stage stage, std::uint32_t birth, std::uint32_t variant,
+                           Unfolded& result) {
+    const LsysGrammar& grammar = rewriter_.grammar();
+    const SymbolId symbol = rewriter_.modules().symbol(module);
+    const bool waits =
+        (grammar.time(RuleKind::produce, symbol) | grammar.time(RuleKind::decompose, symbol)) != 0;
+    const std::uint64_t key = (std::uint64_t{module} << 32) | stage;
+    if (waits)
+        if (const auto known = fits_at_.find(key); known != fits_at_.end()) stage = known->second;
+    while (stage > 0) {
+        const bool decomposing = stage % 2 == 1;
+        result.stage = decomposing ? stage : stage_before(stage / 2 - 1);
+        if (!choose(decomposing ? RuleKind::decompose : RuleKind::produce, module, stage, birth, variant,
+                    result))
+            return false;
+        if (result.by) break;
+        if (decomposing)
+            --stage;
+        else // what no production fits now, none will fit later, unless time decides
+            stage = waits ? result.stage : 0;
+    }
+    if (waits) fits_at_.emplace(key, stage);
+    return true;
+}
+
+bool LsysComposer::unfold(ModuleId module, Stage stage, std::uint32_t birth, std::uint32_t variant,
+                          Unfolded& result) {
     result = {};
-    if (stage % 2 == 1) {
-        result.stage = stage;
-        if (!choose(RuleKind::decompose, module, stage, variant, result)) return false;
-        if (result.by) return true;
-        --stage;
-    }
-    if (stage > 0) {
-        result.stage = stage_before(stage / 2 - 1);
-        if (!choose(RuleKind::produce, module, stage, variant, result)) return false;
-        if (result.by) return true;
-        // What no production fits now, none will fit later.
-    }
+    if (!rewrite(module, stage, birth, variant, result)) return false;
+    if (result.by) return true;
     result.stage = 0;
-    return choose(RuleKind::interpret, module, 0, variant, result);
+    result.aged =
+        rewriter_.grammar().time(RuleKind::interpret, rewriter_.modules().symbol(module)) & reads_age;
+    return choose(RuleKind::interpret, module, 0, birth, variant, result);
 }
 
 /// Goes on until the string ends, or a part is missing, whose task is then the last.
@@ -129,8 +165,10 @@ bool LsysComposer::advance(Task& task) {
         }
         const std::uint32_t variant =
             variants_.child(task.start.variant, task.module, task.string_stage, task.at);
+        const std::uint32_t birth = birth_of(module, task);
         Unfolded unfolded;
-        if (!unfold(module, task.string_stage, variant, unfolded)) return false;
+        if (!unfold(module, task.string_stage, birth, variant, unfolded)) return false;
+        if (unfolded.aged) task.turtle.read_birth();
         if (!unfolded.by || task.turtle.passing_over()) {
             if (!draw(task, module)) return false;
             continue;
@@ -139,6 +177,7 @@ bool LsysComposer::advance(Task& task) {
         double snap = 0;
         TurtleState state = state_of(task.turtle, snap);
         state.variant = variant;
+        state.birth = birth;
         const TurtlePart* part = find(module, stage, state);
         if (!part) return start_task(module, stage, state, unfolded);
         task.turtle.append(*part, task.span, snap);
@@ -150,7 +189,8 @@ bool LsysComposer::advance(Task& task) {
 /// False if its part is missing, whose task is then the last.
 bool LsysComposer::draw_piece(Task& task, ModuleId piece) {
     double snap = 0;
-    const TurtleState state = state_of(task.turtle, snap);
+    TurtleState state = state_of(task.turtle, snap);
+    state.variant = variants_.child(task.start.variant, task.module, 0, task.at);
     if (const TurtlePart* part = find(piece, 0, state)) {
         place_piece(task.turtle, piece, *part, task.span, snap);
         return true;
@@ -216,19 +256,29 @@ bool LsysComposer::start_task(ModuleId module, Stage stage, const TurtleState& s
     if (parts_.size() + tasks_.size() > max_parts_) {
         context_.diagnostics
             .error(span, fmt::format("the model has more than {} different parts", max_parts_))
-            .with_hint("parameters that change without end make every part another one");
+            .with_hint(rewriter_.explosion_hint());
         return false;
     }
+    const bool interprets = unfolded.kind == RuleKind::interpret;
     tasks_.push_back({.module = module,
                       .stage = stage,
                       .start = start,
                       .string = unfolded.by->successor,
                       .string_stage = unfolded.stage,
-                      .interprets = unfolded.kind == RuleKind::interpret,
+                      .birth = interprets ? start.birth : birth_at(unfolded.stage),
+                      .interprets = interprets,
                       .span = span,
                       .turtle = Turtle(context_, start),
                       .repeated = count});
-    if (unfolded.random) tasks_.back().turtle.read_variant();
+    Task& task = tasks_.back();
+    if (unfolded.random) task.turtle.read_variant();
+    if (unfolded.aged) task.turtle.read_birth();
+    if (unfolded.by->rule->draws == 0) return true;
+    std::optional<ModuleString> drawn =
+        rewriter_.draw(*unfolded.by, module, unfolded.moment, unfolded.within);
+    if (!drawn) return false;
+    task.drawn = std::move(*drawn);
+    task.string = task.drawn;
     return true;
 }
 

@@ -38,16 +38,18 @@ struct LsysLimits {
 class LsysComposer {
   public:
     /// All references must outlive this.
-    LsysComposer(LsysRewriter& rewriter, TurtleContext& turtle, ObjectPool& pool,
-                 const ModelPlacer& models, Variants variants, const LsysLimits& limits);
+    LsysComposer(LsysRewriter& rewriter, TurtleContext& turtle, ObjectPool& pool, const ModelPlacer& models,
+                 Variants variants, const LsysLimits& limits);
 
     /// The part that the axiom becomes after `steps` steps; nothing after an error in the turtle's
-    /// diagnostics.
-    std::optional<TurtlePart> compose(unsigned steps, const TurtleState& start);
+    /// diagnostics. When it is drawn, a share of the next step, of [0, 1), has passed. Always the same steps
+    /// and share.
+    std::optional<TurtlePart> compose(unsigned steps, const TurtleState& start, double share = 0);
 
     /// The same for a word that is derived already: its pieces are drawn once, and shared where they are
     /// alike. Always the same word, which must outlive this.
-    std::optional<TurtlePart> compose_word(const FoldedWord& word, const TurtleState& start);
+    std::optional<TurtlePart> compose_word(const FoldedWord& word, unsigned steps, const TurtleState& start,
+                                           double share = 0);
 
     std::size_t part_count() const { return parts_.size(); }
 
@@ -65,9 +67,12 @@ class LsysComposer {
     /// What is drawn in place of a module.
     struct Unfolded {
         const Alternative* by = nullptr; ///< null: drawn as it is
+        double within = 0;               ///< the alternative, of what the variant chose
         RuleKind kind = RuleKind::produce;
+        Moment moment;       ///< of the production
         Stage stage = 0;     ///< of the successor
         bool random = false; ///< the variant decided
+        bool aged = false;   ///< the birth decided how it is drawn
     };
 
     /// A module's string under way.
@@ -75,8 +80,10 @@ class LsysComposer {
         ModuleId module = 0; ///< or a piece of the word
         Stage stage = 0;     ///< of the module
         TurtleState start;
+        ModuleString drawn; ///< the string, if it has random numbers
         std::span<const ModuleId> string;
         Stage string_stage = 0;
+        std::uint32_t birth = 0; ///< of the modules of the string, where they do not say
         bool interprets = false; ///< the string is drawn, but not part of the word
         Span span;               ///< of the production
         Turtle turtle;
@@ -97,8 +104,12 @@ class LsysComposer {
     };
 
     Stage stage_before(unsigned steps) const;
-    bool unfold(ModuleId module, Stage stage, std::uint32_t variant, Unfolded& result);
-    bool choose(RuleKind kind, ModuleId module, Stage stage, std::uint32_t variant, Unfolded& result);
+    std::uint32_t birth_at(Stage stage) const { return steps_ - stage / 2; }
+    std::uint32_t birth_of(ModuleId module, const Task& task) const;
+    bool unfold(ModuleId module, Stage stage, std::uint32_t birth, std::uint32_t variant, Unfolded& result);
+    bool rewrite(ModuleId module, Stage stage, std::uint32_t birth, std::uint32_t variant, Unfolded& result);
+    bool choose(RuleKind kind, ModuleId module, Stage stage, std::uint32_t birth, std::uint32_t variant,
+                Unfolded& result);
     std::optional<TurtlePart> run_from(Task first);
     bool run_tasks();
     bool advance(Task& task);
@@ -134,6 +145,11 @@ class LsysComposer {
     DirectionTable ways_;
     bool uses_directions_;
     bool decomposes_;
+    std::uint32_t steps_ = 0; ///< of the derivation
+    double share_ = 0;        ///< of the next, when it is drawn
+    /// Modules with productions that read the time, and so may fit later if not now: by their stage, the one
+    /// at which one fits; 0 if none ever does.
+    std::unordered_map<std::uint64_t, Stage> fits_at_;
 };
 
 } // namespace graftal

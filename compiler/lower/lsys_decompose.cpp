@@ -7,17 +7,18 @@ namespace graftal {
 LsysDecomposer::LsysDecomposer(LsysRewriter& rewriter, Diagnostics& diagnostics, std::uint64_t max_modules)
     : rewriter_(rewriter), diagnostics_(diagnostics), max_modules_(max_modules) {
     const LsysGrammar& grammar = rewriter.grammar();
-    for (const auto& rules : grammar.rules_of[static_cast<std::size_t>(RuleKind::decompose)])
-        for (const std::uint32_t rule : rules) {
-            has_rules_ = true;
-            is_stochastic_ |= grammar.rules[rule].probability.has_value();
-        }
+    has_rules_ = grammar.has_rules(RuleKind::decompose);
+    varies_ = grammar.is_random(RuleKind::decompose) || grammar.time(RuleKind::decompose) != 0;
+}
+
+Moment LsysDecomposer::moment(ModuleId module) const {
+    return moment_of(step_, rewriter_.modules().birth(module));
 }
 
 bool LsysDecomposer::run(std::span<const ModuleId> word, const CounterRandom& random, ModuleString& out) {
     applied_ = 0;
     for (std::size_t i = 0; i < word.size(); ++i) {
-        if (!rewriter_.is_rewritten(RuleKind::decompose, word[i]))
+        if (!rewriter_.is_rewritten(RuleKind::decompose, word[i], moment(word[i])))
             out.push_back(word[i]);
         else if (!run(word[i], random.sequence(i), out))
             return false;
@@ -31,7 +32,8 @@ bool LsysDecomposer::run(ModuleId module, const CounterRandom& random, ModuleStr
     while (!pending_.empty()) {
         const auto [next, depth] = pending_.back();
         pending_.pop_back();
-        const std::vector<Alternative>* alternatives = rewriter_.alternatives(RuleKind::decompose, next);
+        const std::vector<Alternative>* alternatives =
+            rewriter_.alternatives(RuleKind::decompose, next, moment(next));
         if (!alternatives) return false;
         if (alternatives->empty()) {
             out.push_back(next);
@@ -39,8 +41,13 @@ bool LsysDecomposer::run(ModuleId module, const CounterRandom& random, ModuleStr
         }
         if (depth == max_decomposition_depth || ++applied_ > max_modules_)
             return refuse(module, "does not end");
-        const ModuleString& successor =
-            alternative_at(*alternatives, CounterRandom::unit(random(draws++))).successor;
+        const ChosenAlternative chosen = alternative_at(*alternatives, CounterRandom::unit(random(draws++)));
+        std::optional<ModuleString> drawn;
+        if (chosen.alternative->rule->draws > 0) {
+            drawn = rewriter_.draw(*chosen.alternative, next, moment(next), chosen.within);
+            if (!drawn) return false;
+        }
+        const ModuleString& successor = drawn ? *drawn : chosen.alternative->successor;
         if (out.size() + pending_.size() + successor.size() > max_modules_)
             return refuse(module, "is too long");
         for (auto part = successor.rbegin(); part != successor.rend(); ++part)

@@ -22,8 +22,10 @@ class LsysDecomposer {
     LsysDecomposer(LsysRewriter& rewriter, Diagnostics& diagnostics, std::uint64_t max_modules);
 
     bool has_rules() const { return has_rules_; }
-    /// Whether equal modules may decompose in different ways.
-    bool is_stochastic() const { return is_stochastic_; }
+    /// Whether equal modules may decompose in different ways, by chance or at different times.
+    bool varies() const { return varies_; }
+    /// From now on, what the productions read: the step that was carried out last; 0 for the axiom.
+    void set_step(std::uint32_t step) { step_ = step; }
 
     /// Appends what `word` decomposes into to `out`. What the module at a position becomes depends on that
     /// module and random.sequence(position) alone. False after an error.
@@ -36,6 +38,7 @@ class LsysDecomposer {
     };
 
     bool run(ModuleId module, const CounterRandom& random, ModuleString& out);
+    Moment moment(ModuleId module) const;
     bool refuse(ModuleId module, const char* what);
 
     LsysRewriter& rewriter_;
@@ -43,7 +46,8 @@ class LsysDecomposer {
     std::uint64_t max_modules_;
     std::uint64_t applied_ = 0;
     bool has_rules_ = false;
-    bool is_stochastic_ = false;
+    bool varies_ = false;
+    std::uint32_t step_ = 0;
     std::vector<Pending> pending_; ///< the next one last
 };
 

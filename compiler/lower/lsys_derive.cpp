@@ -26,25 +26,39 @@ LsysDeriver::LsysDeriver(LsysRewriter& rewriter, Diagnostics& diagnostics, std::
       decomposer_(rewriter, diagnostics, max_modules), successors_(rewriter, decomposer_, diagnostics),
       matcher_(rewriter.grammar(), rewriter.modules()) {
     const LsysGrammar& grammar = rewriter.grammar();
+    is_timed_ = grammar.time(RuleKind::produce) != 0;
     has_cuts_ = cuts(grammar, grammar.axiom) || std::ranges::any_of(grammar.rules, [&](const LsysRule& rule) {
                     return cuts(grammar, rule.successor);
                 });
 }
 
 std::optional<ModuleString> LsysDeriver::derive(unsigned steps) {
-    failed_ = failed_ || !begin();
-    changed_ = true;
-    while (!failed_ && changed_ && step_ < steps) {
-        ++step_;
-        failed_ = !step();
-    }
-    if (failed_) return std::nullopt;
+    const bool derived = derive_to(steps);
+    rewriter_.set_birth(ModuleTable::no_birth);
+    if (!derived) return std::nullopt;
     next_ = {};
     return std::exchange(word_, {});
 }
 
+bool LsysDeriver::derive_to(unsigned steps) {
+    failed_ = failed_ || !begin();
+    changed_ = true;
+    while (!failed_ && changed_ && step_ < steps) {
+        set_step(step_ + 1);
+        failed_ = !step();
+    }
+    return !failed_;
+}
+
+void LsysDeriver::set_step(unsigned step) {
+    step_ = step;
+    rewriter_.set_birth(step);
+    decomposer_.set_step(step);
+    successors_.begin_step(step);
+}
+
 bool LsysDeriver::begin() {
-    step_ = 0;
+    set_step(0);
     auto axiom = rewriter_.axiom();
     if (!axiom) return false;
     word_ = std::move(*axiom);
@@ -54,14 +68,13 @@ bool LsysDeriver::begin() {
 }
 
 bool LsysDeriver::step() {
-    successors_.trim();
     const std::optional<std::uint64_t> length = successors_.is_plain() ? count() : choose();
     if (!length || !is_short_enough(*length)) return false;
     gather(*length);
-    if (decomposer_.is_stochastic() && !decompose()) return false;
+    if (decomposer_.varies() && !decompose()) return false;
     if (has_cuts_) cut();
     // Without chance, a word that a step leaves as it was stays so for ever; next_ is the word before.
-    changed_ = successors_.is_stochastic() || decomposer_.is_stochastic() || word_ != next_;
+    changed_ = successors_.is_stochastic() || decomposer_.varies() || is_timed_ || word_ != next_;
     return true;
 }
 

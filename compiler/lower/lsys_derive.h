@@ -34,7 +34,9 @@ class LsysDeriver {
     std::optional<ModuleString> derive(unsigned steps);
 
   private:
+    bool derive_to(unsigned steps);
     bool begin();
+    void set_step(unsigned step);
     bool step();
     std::optional<std::uint64_t> count();
     std::optional<std::uint64_t> choose();
@@ -51,6 +53,7 @@ class LsysDeriver {
     LsysSuccessors successors_;
     ContextMatcher matcher_;
     bool has_cuts_ = false;
+    bool is_timed_ = false; ///< a word may go on after a step that left it as it was
     bool failed_ = false;
 
     unsigned step_ = 0; ///< 0: the axiom

@@ -77,7 +77,8 @@ class Drawer {
     Drawer(const LsysGrammar& grammar, const ModelPlacer& models, const LsysDrawOptions& options,
            Diagnostics& diagnostics)
         : grammar_(grammar), models_(models), options_(options), diagnostics_(diagnostics),
-          rewriter_(grammar, diagnostics), width_(grammar.width.value_or(thinnest_in_steps * grammar.step)) {}
+          rewriter_(grammar, diagnostics, options.seed),
+          width_(grammar.width.value_or(thinnest_in_steps * grammar.step)) {}
 
     std::optional<LsysDrawing> draw(Graph& graph, ObjectPool& pool) {
         if (!choose_palette(graph)) return std::nullopt;
@@ -95,6 +96,8 @@ class Drawer {
         LsysDrawing drawing{std::move(part->instances), {word_ ? "derived" : "composed"}};
         Derivation& derivation = drawing.derivation;
         derivation.steps = steps_;
+        derivation.timed = grammar_.time(RuleKind::interpret) != 0;
+        derivation.time = steps_ + options_.share;
         derivation.modules = part->modules.str();
         derivation.segments = part->segments.str();
         derivation.parts = composition.composer.part_count();
@@ -124,8 +127,9 @@ class Drawer {
             start.tropism = drawer.grammar_.tropism;
             start.vertical = up;
             start.variant = number;
-            return drawer.word_ ? composer.compose_word(*drawer.word_, start)
-                                : composer.compose(drawer.steps_, start);
+            const double share = drawer.options_.share;
+            return drawer.word_ ? composer.compose_word(*drawer.word_, drawer.steps_, start, share)
+                                : composer.compose(drawer.steps_, start, share);
         }
 
         Drawer& drawer;
@@ -145,16 +149,26 @@ class Drawer {
     bool derive() {
         auto word = LsysDeriver(rewriter_, diagnostics_, options_.seed, options_.max_modules).derive(steps_);
         if (word) word_.emplace(grammar_, rewriter_.modules(), std::move(*word));
+        // Equal modules are drawn differently where chance draws them.
+        if (grammar_.is_random(RuleKind::interpret)) variants_ = draw_sets;
         return word_.has_value();
+    }
+
+    const char* obstacle_to_limit() const {
+        if (grammar_.has_context) return "with contexts";
+        for (const LsysRule& rule : grammar_.rules) {
+            if (rule.probability) return "with probabilities";
+            if (rule.draws > 0) return "with random numbers";
+            if (rule.time != 0) return "that read 'step' or 'age'";
+        }
+        return nullptr;
     }
 
     /// Longer derivations until their levels repeat.
     std::optional<LsysDrawing> draw_limit(Graph& graph, ObjectPool& pool) {
-        if (grammar_.is_stochastic || grammar_.has_context) {
+        if (const char* obstacle = obstacle_to_limit()) {
             diagnostics_
-                .error(grammar_.source->steps->span,
-                       fmt::format("productions with {} have no limit",
-                                   grammar_.has_context ? "contexts" : "probabilities"))
+                .error(grammar_.source->steps->span, fmt::format("productions {} have no limit", obstacle))
                 .with_hint("give 'steps N'");
             return std::nullopt;
         }
@@ -211,7 +225,9 @@ class Drawer {
     /// Composes a small pool and judges by its variance how many variants it takes.
     bool choose_variants(const Graph& graph) {
         if (!grammar_.is_stochastic) return true;
-        variants_ = fewest_variants;
+        variants_ = std::ranges::any_of(grammar_.rules, [](const LsysRule& rule) { return rule.draws > 0; })
+                        ? draw_sets
+                        : fewest_variants;
         Graph scratch = graph;
         ObjectPool pool(scratch);
         Composition composition(*this, scratch, pool, false, stand_ins(scratch));

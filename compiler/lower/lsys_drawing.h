@@ -14,6 +14,7 @@ namespace graftal {
 
 struct LsysDrawOptions {
     std::optional<unsigned> steps; ///< nothing: infinitely many
+    double share = 0;              ///< of the step after these that has passed: ages are larger by so much
     std::uint64_t seed = 0;
     bool exact = false; ///< derive the word, rather than compose parts; so are contexts anyway
     std::uint64_t max_modules = 50'000'000; ///< of the word
@@ -25,7 +26,8 @@ struct LsysDrawing {
     Derivation derivation;
 };
 
-/// Draws what a grammar derives into `graph`. `models` places models there; `pool` makes the objects. Nothing after an error.
+/// Draws what a grammar derives into `graph`. `models` places models there; `pool` makes the objects. Nothing
+/// after an error.
 ///
 /// Of random parts there are as many variants as keep the drift, the relative standard error of the mean
 /// number of segments over a pool, below 5 % by the theory for independent samples

@@ -42,13 +42,14 @@ class GrammarBuilder {
 
     std::optional<LsysGrammar> run() && {
         add_settings();
-        if (block_.axiom) grammar_.axiom = templates(*block_.axiom, {});
+        if (block_.axiom) grammar_.axiom = templates(*block_.axiom, {}, nullptr);
         add_rules(block_.productions, RuleKind::produce);
         add_rules(block_.decompose, RuleKind::decompose);
         add_rules(block_.interpret, RuleKind::interpret);
         add_filter();
         for (auto& rules : grammar_.rules_of)
             rules.resize(grammar_.symbols.size());
+        note_times();
         prefer_contexts();
         check_symbols();
         check_contexts();
@@ -124,8 +125,10 @@ class GrammarBuilder {
         return symbol(fmt::format("~{}", module.model), module.span);
     }
 
+    /// `draws`: counts random numbers; null where there are none.
     std::vector<LsysTemplate> templates(const LsysString& string,
-                                        const std::vector<std::string_view>& variables) {
+                                        const std::vector<std::string_view>& variables,
+                                        std::uint32_t* draws) {
         std::vector<LsysTemplate> result;
         result.reserve(string.modules.size());
         for (const LsysModule& module : string.modules) {
@@ -133,7 +136,8 @@ class GrammarBuilder {
             added.symbol = symbol(module);
             uses_.push_back({added.symbol, module.parameters.size(), module.span});
             for (const Expression& parameter : module.parameters)
-                if (auto code = ExpressionCode::compile(parameter, grammar_.lets, variables, diagnostics_))
+                if (auto code =
+                        ExpressionCode::compile(parameter, grammar_.lets, variables, diagnostics_, draws))
                     added.parameters.push_back(std::move(*code));
         }
         grammar_.polygons_cross_branches |= polygons_cross_branches(string);
@@ -157,16 +161,21 @@ class GrammarBuilder {
     void add_rule(const LsysProduction& production, RuleKind kind) {
         LsysRule rule;
         rule.source = &production;
+        rule.kind = kind;
         rule.predecessor = pattern(production.predecessor, rule);
         for (const LsysFormal& formal : production.left)
             rule.left.push_back(pattern(formal, rule));
         for (const LsysFormal& formal : production.right)
             rule.right.push_back(pattern(formal, rule));
+        rule.slots = rule.variables;
+        for (const std::string_view name : {"step", "age"})
+            rule.slots.push_back(is_taken(name, rule) ? std::string_view() : name);
         rule.condition = code(production.condition, rule);
         rule.probability = code(production.probability, rule);
-        rule.successor = templates(production.successor, rule.variables);
+        rule.successor = templates(production.successor, rule.slots, &rule.draws);
+        rule.time = time_of(rule);
         grammar_.has_context |= rule.has_context();
-        grammar_.is_stochastic |= rule.probability.has_value();
+        grammar_.is_stochastic |= rule.is_random();
         auto& of_kind = grammar_.rules_of[static_cast<std::size_t>(kind)];
         if (of_kind.size() <= rule.predecessor.symbol) of_kind.resize(rule.predecessor.symbol + 1u);
         of_kind[rule.predecessor.symbol].push_back(static_cast<std::uint32_t>(grammar_.rules.size()));
@@ -175,7 +184,54 @@ class GrammarBuilder {
 
     std::optional<ExpressionCode> code(const std::optional<Expression>& expression, const LsysRule& rule) {
         if (!expression) return std::nullopt;
-        return ExpressionCode::compile(*expression, grammar_.lets, rule.variables, diagnostics_);
+        return ExpressionCode::compile(*expression, grammar_.lets, rule.slots, diagnostics_);
+    }
+
+    /// Names of the model hide those of the time.
+    bool is_taken(std::string_view name, const LsysRule& rule) const {
+        return grammar_.lets.contains(name) ||
+               std::ranges::find(rule.variables, name) != rule.variables.end();
+    }
+
+    static TimeMask time_of(const LsysRule& rule) {
+        TimeMask time = 0;
+        const auto note = [&](const ExpressionCode& code) {
+            if (code.reads(rule.variables.size())) time |= reads_step;
+            if (code.reads(rule.variables.size() + 1)) time |= reads_age;
+        };
+        if (rule.condition) note(*rule.condition);
+        if (rule.probability) note(*rule.probability);
+        for (const LsysTemplate& module : rule.successor)
+            std::ranges::for_each(module.parameters, note);
+        return time;
+    }
+
+    void note_times() {
+        for (std::size_t kind = 0; kind < rule_kind_count; ++kind) {
+            for (const auto& rules : grammar_.rules_of[kind]) {
+                TimeMask time = 0;
+                for (const std::uint32_t rule : rules)
+                    time |= grammar_.rules[rule].time;
+                grammar_.time_of[kind].push_back(time);
+            }
+        }
+        grammar_.ages.assign(grammar_.symbols.size(), false);
+        for (const auto& times : grammar_.time_of)
+            for (std::size_t symbol = 0; symbol < times.size(); ++symbol)
+                if (times[symbol] & reads_age) grammar_.ages[symbol] = true;
+        while (hand_on_ages()) {
+        }
+    }
+
+    /// What a module is drawn as has the age of the module. True if that made a symbol one of these.
+    bool hand_on_ages() {
+        bool changed = false;
+        for (const LsysRule& rule : grammar_.rules) {
+            if (rule.kind != RuleKind::interpret || grammar_.ages[rule.predecessor.symbol]) continue;
+            changed |= grammar_.ages[rule.predecessor.symbol] = std::ranges::any_of(
+                rule.successor, [&](const LsysTemplate& module) { return grammar_.ages[module.symbol]; });
+        }
+        return changed;
     }
 
     void add_filter() {
@@ -309,6 +365,23 @@ class GrammarBuilder {
 bool LsysGrammar::has_rules(RuleKind kind) const {
     return std::ranges::any_of(rules_of[static_cast<std::size_t>(kind)],
                                [](const auto& of_symbol) { return !of_symbol.empty(); });
+}
+
+TimeMask LsysGrammar::time(RuleKind kind) const {
+    TimeMask all = 0;
+    for (const TimeMask time : time_of[static_cast<std::size_t>(kind)])
+        all |= time;
+    return all;
+}
+
+bool LsysGrammar::draws(RuleKind kind) const {
+    return std::ranges::any_of(rules,
+                               [&](const LsysRule& rule) { return rule.kind == kind && rule.draws > 0; });
+}
+
+bool LsysGrammar::is_random(RuleKind kind) const {
+    return std::ranges::any_of(rules,
+                               [&](const LsysRule& rule) { return rule.kind == kind && rule.is_random(); });
 }
 
 bool LsysGrammar::uses(std::initializer_list<TurtleCommand> wanted) const {

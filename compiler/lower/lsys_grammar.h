@@ -28,6 +28,10 @@ enum class RuleKind : std::uint8_t {
 };
 inline constexpr std::size_t rule_kind_count = 3;
 
+/// What of the time a production looks at, as a set.
+using TimeMask = std::uint8_t;
+enum TimeBit : TimeMask { reads_step = 1, reads_age = 2 };
+
 /// A module of a context or predecessor.
 struct LsysPattern {
     SymbolId symbol = 0;
@@ -42,16 +46,24 @@ struct LsysTemplate {
 
 struct LsysRule {
     const LsysProduction* source = nullptr;
+    RuleKind kind = RuleKind::produce;
     LsysPattern predecessor;
     std::vector<LsysPattern> left;  ///< has no brackets
     std::vector<LsysPattern> right; ///< brackets are balanced
     /// The names that expressions may use: of the predecessor, then of the left context, then of the right.
     std::vector<std::string_view> variables;
+    /// What the slots of the expressions mean: the variables, then `step` and `age` (or nothing, where names
+    /// of the model hide them), then as many random numbers as there are draws.
+    std::vector<std::string_view> slots;
+    TimeMask time = 0;       ///< what is read of it
+    std::uint32_t draws = 0; ///< calls of `normal` and `random` in the successor
     std::optional<ExpressionCode> condition;
     std::optional<ExpressionCode> probability;
     std::vector<LsysTemplate> successor;
 
     bool has_context() const { return !left.empty() || !right.empty(); }
+    /// Whether equal modules may become different ones.
+    bool is_random() const { return probability.has_value() || draws > 0; }
 };
 
 struct LsysGrammar {
@@ -67,7 +79,12 @@ struct LsysGrammar {
     std::array<std::vector<std::vector<std::uint32_t>>, rule_kind_count> rules_of;
     std::vector<bool> ignored; ///< symbols that contexts look past
     bool has_context = false;
-    bool is_stochastic = false;
+    bool is_stochastic = false; ///< some rule is random
+    /// What the rules of a kind that may rewrite a symbol read of the time.
+    std::array<std::vector<TimeMask>, rule_kind_count> time_of;
+    /// Symbols whose modules are drawn by their age, or by that of what they are drawn as, or rewritten by
+    /// it.
+    std::vector<bool> ages;
     bool polygons_cross_branches =
         false; ///< some `{` and its `}` lie in different branches or strings: `[+A{.].C.}`
 
@@ -84,6 +101,15 @@ struct LsysGrammar {
     }
     bool has_rules(RuleKind kind, SymbolId symbol) const { return !candidates(kind, symbol).empty(); }
     bool has_rules(RuleKind kind) const;
+    TimeMask time(RuleKind kind, SymbolId symbol) const {
+        return time_of[static_cast<std::size_t>(kind)][symbol];
+    }
+    /// Of all rules of a kind.
+    TimeMask time(RuleKind kind) const;
+    /// Whether rules of a kind have random numbers in their successors.
+    bool draws(RuleKind kind) const;
+    /// Whether rules of a kind give chance a say.
+    bool is_random(RuleKind kind) const;
     /// Whether some symbol has one of these commands.
     bool uses(std::initializer_list<TurtleCommand> wanted) const;
 };

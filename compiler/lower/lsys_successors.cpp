@@ -5,6 +5,8 @@
 
 #include <fmt/format.h>
 
+#include "compiler/lower/counter_random.h"
+
 namespace graftal {
 
 namespace {
@@ -22,13 +24,15 @@ LsysSuccessors::LsysSuccessors(LsysRewriter& rewriter, LsysDecomposer& decompose
     : rewriter_(rewriter), decomposer_(decomposer), diagnostics_(diagnostics),
       contexts_(rewriter.grammar().symbols.size()) {
     const LsysGrammar& grammar = rewriter.grammar();
+    is_timed_ =
+        grammar.time(RuleKind::produce) != 0 || std::ranges::find(grammar.ages, true) != grammar.ages.end();
     for (const auto& rules : grammar.rules_of[static_cast<std::size_t>(RuleKind::produce)])
         for (const std::uint32_t id : rules)
             look_at(grammar.rules[id]);
 }
 
 void LsysSuccessors::look_at(const LsysRule& rule) {
-    is_stochastic_ |= rule.probability.has_value();
+    is_stochastic_ |= rule.is_random();
     if (!rule.has_context()) return;
     has_context_ = true;
     Contexts& contexts = contexts_[rule.predecessor.symbol];
@@ -39,13 +43,20 @@ void LsysSuccessors::look_at(const LsysRule& rule) {
         std::max(contexts.sight, rule.left.size() > 1 || rule.right.size() > 1 ? Sight::far : Sight::near);
 }
 
-void LsysSuccessors::trim() {
-    if (runs_.size() + choices_.size() <= most_kept_modules) return;
+void LsysSuccessors::begin_step(std::uint32_t step) {
+    step_ = step;
+    if (!is_timed_ && runs_.size() + choices_.size() + bounds_.size() <= most_kept_modules) return;
     runs_.clear();
     entries_.clear();
     choices_.clear();
+    bounds_.clear();
     nearby_.clear();
     outcomes_.clear();
+    drawn_.clear();
+}
+
+Moment LsysSuccessors::moment(ModuleId module) const {
+    return moment_of(step_, rewriter_.modules().birth(module));
 }
 
 LsysSuccessors::Entry LsysSuccessors::compute(ModuleId module) {
@@ -82,9 +93,30 @@ std::optional<RunId> LsysSuccessors::choose(ModuleId module, Entry entry, std::u
     if (is_run(entry)) return entry;
     if (entry == unknown) return std::nullopt;
     const Choice* choice = choices->data() + (entry & ~mark);
+    std::uint64_t below = 0;
     while (draw > choice->upto)
-        ++choice;
-    return choice->run;
+        below = (choice++)->upto;
+    return run_of(*choice, draw - below);
+}
+
+/// What chance gives within a choice has nothing to do with the choice itself.
+std::optional<RunId> LsysSuccessors::run_of(const Choice& choice, std::uint64_t draw) {
+    constexpr RunId unknown_run = UINT32_MAX;
+    if (!choice.draws) return choice.run;
+    const LsysRule& rule = *choice.draws;
+    const auto id = static_cast<std::uint32_t>(&rule - rewriter_.grammar().rules.data());
+    const auto set = static_cast<std::uint32_t>(CounterRandom::scrambled(draw) % draw_sets);
+    forget_if_many(drawn_);
+    const std::span<const ModuleId> bound = std::span(bounds_).subspan(choice.bound, choice.bound_count);
+    RunId& known = drawn_.find_or_add(id * draw_sets + set, bound, unknown_run);
+    if (known != unknown_run) return known;
+    values_of(bound);
+    ModuleString successor;
+    if (!rewriter_.append_successor(rule, values_, moment(bound.front()), set, successor))
+        return std::nullopt;
+    const std::optional<RunId> run = add_successor(successor, rule);
+    if (run) known = *run;
+    return run;
 }
 
 /// The neighbours decide; so each combination of them is tried once.
@@ -113,7 +145,7 @@ std::optional<const LsysRule*> LsysSuccessors::compete_in_context(ModuleId modul
 LsysSuccessors::Entry LsysSuccessors::entry_of(const LsysRule* first, RunId stays,
                                                std::vector<Choice>& choices) {
     if (!first) return stays;
-    if (!first->probability) return competing_.front().run;
+    if (!first->is_random()) return competing_.front().run;
     const auto entry = static_cast<Entry>(choices.size() | mark);
     return add_choices(*first, choices) ? entry : unknown;
 }
@@ -141,7 +173,8 @@ bool LsysSuccessors::add_choices(const LsysRule& first, std::vector<Choice>& cho
         if (outcome.probability == 0) continue;
         below += outcome.probability / sum;
         const double upto = std::ldexp(below, 64);
-        choices.push_back({upto < 0x1p64 ? static_cast<std::uint64_t>(upto) : UINT64_MAX, outcome.run});
+        choices.push_back({upto < 0x1p64 ? static_cast<std::uint64_t>(upto) : UINT64_MAX, outcome.run,
+                           outcome.draws, outcome.bound, outcome.bound_count});
     }
     choices.back().upto = UINT64_MAX;
     return true;
@@ -155,21 +188,33 @@ LsysSuccessors::Outcome LsysSuccessors::known_outcome(const LsysRule& rule, std:
     return known;
 }
 
-LsysSuccessors::Outcome LsysSuccessors::outcome(const LsysRule& rule, std::span<const ModuleId> bound) {
+/// Leaves the parameters of modules in values_.
+void LsysSuccessors::values_of(std::span<const ModuleId> modules) {
     values_.clear();
-    for (const ModuleId module : bound) {
+    for (const ModuleId module : modules) {
         const auto parameters = rewriter_.modules().parameters(module);
         values_.insert(values_.end(), parameters.begin(), parameters.end());
     }
-    const Fit fit = rewriter_.apply(rule, values_, alternative_);
+}
+
+LsysSuccessors::Outcome LsysSuccessors::outcome(const LsysRule& rule, std::span<const ModuleId> bound) {
+    values_of(bound);
+    const Fit fit = rewriter_.apply(rule, values_, moment(bound.front()), alternative_);
     if (fit != Fit::yes) return {fit};
+    if (rule.draws > 0) {
+        bounds_.insert(bounds_.end(), bound.begin(), bound.end());
+        const auto count = static_cast<std::uint32_t>(bound.size());
+        return {
+            Fit::yes, alternative_.probability, 0, &rule, static_cast<std::uint32_t>(bounds_.size()) - count,
+            count};
+    }
     const std::optional<RunId> run = add_successor(alternative_.successor, rule);
     return run ? Outcome{Fit::yes, alternative_.probability, *run} : Outcome{Fit::error};
 }
 
 /// Decomposes the run for good where it can be decomposed in one way only.
 std::optional<RunId> LsysSuccessors::add_successor(const ModuleString& successor, const LsysRule& rule) {
-    if (!decomposer_.has_rules() || decomposer_.is_stochastic()) return add_run(successor, rule.source->span);
+    if (!decomposer_.has_rules() || decomposer_.varies()) return add_run(successor, rule.source->span);
     decomposed_.clear();
     if (!decomposer_.run(successor, CounterRandom(0), decomposed_)) return std::nullopt;
     return add_run(decomposed_, rule.source->span);

@@ -27,7 +27,7 @@ class LsysSuccessors {
     /// All must outlive this.
     LsysSuccessors(LsysRewriter& rewriter, LsysDecomposer& decomposer, Diagnostics& diagnostics);
 
-    /// Whether all entries are runs: no production has a context or a probability.
+    /// Whether all entries are runs: no production has a context, a probability or random numbers.
     bool is_plain() const { return !has_context_ && !is_stochastic_; }
     bool has_context() const { return has_context_; }
     bool is_stochastic() const { return is_stochastic_; }
@@ -47,20 +47,27 @@ class LsysSuccessors {
 
     const ModuleRuns& runs() const { return runs_; }
 
-    /// Forgets what takes much memory; all runs and entries become invalid then. For use between steps.
-    void trim();
+    /// To be called before each step, with its number: forgets what holds for one step only, or takes much
+    /// memory; all runs and entries become invalid then.
+    void begin_step(std::uint32_t step);
 
   private:
     /// With probabilities added up, so that the first with draw <= upto is chosen.
     struct Choice {
         std::uint64_t upto;
         RunId run;
+        const LsysRule* draws = nullptr; ///< in place of the run: one that chance gives
+        std::uint32_t bound = 0;         ///< the rule's modules, in bounds_
+        std::uint32_t bound_count = 0;
     };
     /// What became of a rule.
     struct Outcome {
         Fit fit = Fit::no;
         double probability = 1;
         RunId run = 0;
+        const LsysRule* draws = nullptr; ///< in place of the run
+        std::uint32_t bound = 0;
+        std::uint32_t bound_count = 0;
     };
     /// How far the productions of a symbol look.
     enum class Sight : std::uint8_t {
@@ -87,8 +94,11 @@ class LsysSuccessors {
     template<typename OutcomeOf>
     std::optional<const LsysRule*> compete(ModuleId module, const OutcomeOf& outcome_of);
     bool add_choices(const LsysRule& first, std::vector<Choice>& choices);
+    std::optional<RunId> run_of(const Choice& choice, std::uint64_t draw);
+    Moment moment(ModuleId module) const;
     Outcome known_outcome(const LsysRule& rule, std::span<const ModuleId> bound);
     Outcome outcome(const LsysRule& rule, std::span<const ModuleId> bound);
+    void values_of(std::span<const ModuleId> modules);
     std::optional<RunId> add_successor(const ModuleString& successor, const LsysRule& rule);
     std::optional<RunId> add_run(std::span<const ModuleId> run, Span place);
 
@@ -97,14 +107,18 @@ class LsysSuccessors {
     Diagnostics& diagnostics_;
     bool has_context_ = false;
     bool is_stochastic_ = false;
+    bool is_timed_ = false; ///< what a module becomes depends on the step
+    std::uint32_t step_ = 0;
     std::vector<Contexts> contexts_; ///< of the symbols
 
     ModuleRuns runs_;
     std::vector<Entry> entries_; ///< of the modules
     std::vector<Choice> choices_;
+    ModuleString bounds_;
 
     ModuleKeys<Entry> nearby_;     ///< of modules between others, by their symbols
     ModuleKeys<Outcome> outcomes_; ///< of rules
+    ModuleKeys<RunId> drawn_;      ///< by rule and set of draws
 
     std::vector<Outcome> competing_;
     std::vector<Choice> chances_;

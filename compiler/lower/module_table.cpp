@@ -35,20 +35,22 @@ double NumberTable::representative(double number) {
     return numbers_[found];
 }
 
-ModuleId ModuleTable::intern(SymbolId symbol, std::span<const double> parameters) {
+ModuleId ModuleTable::intern(SymbolId symbol, std::span<const double> parameters, std::uint32_t birth) {
     wanted_.clear();
     std::uint64_t hash = mixed(symbol, parameters.size());
+    if (birth != no_birth) hash = mixed(hash, birth);
     for (const double parameter : parameters) {
         wanted_.push_back(numbers_.representative(parameter));
         hash = mixed(hash, std::bit_cast<std::uint64_t>(wanted_.back()));
     }
     const auto next = static_cast<ModuleId>(entries_.size());
     const ModuleId id = ids_.find_or_add(hash, next, [&](ModuleId other) {
-        return entries_[other].symbol == symbol && std::ranges::equal(this->parameters(other), wanted_);
+        return entries_[other].symbol == symbol && entries_[other].birth == birth &&
+               std::ranges::equal(this->parameters(other), wanted_);
     });
     if (id == next) {
         entries_.push_back({symbol, static_cast<std::uint16_t>(wanted_.size()),
-                            static_cast<std::uint32_t>(parameters_.size())});
+                            static_cast<std::uint32_t>(parameters_.size()), birth});
         parameters_.insert(parameters_.end(), wanted_.begin(), wanted_.end());
     }
     return id;

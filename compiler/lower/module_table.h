@@ -29,14 +29,19 @@ class NumberTable {
 /// All modules of a derivation, each once: a string of them takes four bytes a module.
 class ModuleTable {
   public:
-    /// Requires finite parameters. Parameters that a NumberTable takes for equal make equal modules.
-    ModuleId intern(SymbolId symbol, std::span<const double> parameters);
+    /// The step in which a module came into being, where nothing is said about it.
+    static constexpr std::uint32_t no_birth = UINT32_MAX;
+
+    /// Requires finite parameters. Parameters that a NumberTable takes for equal make equal modules, if they
+    /// have the same birth.
+    ModuleId intern(SymbolId symbol, std::span<const double> parameters, std::uint32_t birth = no_birth);
 
     SymbolId symbol(ModuleId id) const { return entries_[id].symbol; }
     /// Valid until the next intern().
     std::span<const double> parameters(ModuleId id) const {
         return std::span(parameters_).subspan(entries_[id].first, entries_[id].arity);
     }
+    std::uint32_t birth(ModuleId id) const { return entries_[id].birth; }
     std::size_t size() const { return entries_.size(); }
 
   private:
@@ -44,6 +49,7 @@ class ModuleTable {
         SymbolId symbol = 0;
         std::uint16_t arity = 0;
         std::uint32_t first = 0; ///< of its parameters
+        std::uint32_t birth = no_birth;
     };
 
     std::vector<Entry> entries_;

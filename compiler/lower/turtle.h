@@ -80,6 +80,8 @@ class Turtle {
 
     /// Notes that what is drawn depends on state().variant.
     void read_variant() { note(reads_variant); }
+    /// The same for state().birth.
+    void read_birth() { note(reads_birth); }
 
     /// False after the error that there is too much, or that it lies too far; run() looks at it, append()
     /// does not.

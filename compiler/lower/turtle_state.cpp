@@ -30,6 +30,7 @@ bool equal(const TurtleState& a, const TurtleState& b, TurtleStateMask mask) {
            (!(mask & reads_vertical) || a.vertical == b.vertical) &&
            (!(mask & reads_polygons) || a.open_polygons == b.open_polygons) &&
            (!(mask & reads_variant) || a.variant == b.variant) &&
+           (!(mask & reads_birth) || a.birth == b.birth) &&
            (!(mask & reads_cylinder) ||
             (a.in_cylinder == b.in_cylinder &&
              (!a.in_cylinder || (a.control_point == b.control_point && a.control_width == b.control_width))));
@@ -44,6 +45,7 @@ std::uint64_t hash(const TurtleState& state, TurtleStateMask mask) {
     if (mask & reads_vertical) hash = mixed_vector(hash, state.vertical);
     if (mask & reads_polygons) hash = mixed(hash, state.open_polygons);
     if (mask & reads_variant) hash = mixed(hash, state.variant);
+    if (mask & reads_birth) hash = mixed(hash, state.birth);
     if (mask & reads_cylinder) {
         hash = mixed(hash, state.in_cylinder);
         if (state.in_cylinder)

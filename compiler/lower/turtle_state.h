@@ -21,6 +21,7 @@ struct TurtleState {
     Vec3 control_point{0.0};  ///< its last, in the frame of the start
     double control_width = 0;
     std::uint32_t variant = 0; ///< of what is random (lsys_composer.h)
+    std::uint32_t birth = 0;   ///< the step in which the module came into being
 };
 
 /// The members of a TurtleState, as a set.
@@ -34,6 +35,7 @@ enum TurtleStateBit : TurtleStateMask {
     reads_polygons = 32,
     reads_variant = 64,
     reads_cylinder = 128,
+    reads_birth = 256,
 };
 
 /// True if the members of `mask` are equal.

@@ -22,8 +22,8 @@ class Variants {
     /// The variant of a child at a place of the parent's string.
     std::uint32_t child(std::uint32_t variant, ModuleId parent, std::uint32_t stage, std::size_t place) const;
     /// The alternative that a variant takes. Requires probabilities that sum to 1.
-    const Alternative& choose(const std::vector<Alternative>& alternatives, std::uint32_t variant,
-                              ModuleId module, std::uint32_t stage) const;
+    ChosenAlternative choose(const std::vector<Alternative>& alternatives, std::uint32_t variant,
+                             ModuleId module, std::uint32_t stage) const;
 
   private:
     std::uint32_t permuted(std::uint32_t variant, std::uint64_t key) const;

@@ -16,8 +16,8 @@ namespace {
 
 class Evaluator {
   public:
-    Evaluator(const Environment& environment, Diagnostics& diagnostics)
-        : environment_(environment), diagnostics_(diagnostics) {}
+    Evaluator(const Environment& environment, const ChanceDraws& draws, Diagnostics& diagnostics)
+        : environment_(environment), draws_(draws), diagnostics_(diagnostics) {}
 
     /// Recursion is as deep as the tree, which the parser bounds.
     std::optional<double> value(const Expression& e) {
@@ -54,6 +54,7 @@ class Evaluator {
 
     std::optional<double> call(const Expression& e) {
         const ExpressionFunction* function = expression_function(e.text);
+        if (chance_function(e.text)) return chance(e);
         if (!function) {
             std::vector<std::string> candidates;
             for (const ExpressionFunction& known : expression_functions())
@@ -62,12 +63,7 @@ class Evaluator {
                 .with_hint(did_you_mean(e.text, candidates));
             return std::nullopt;
         }
-        if (e.operands.size() != function->arity) {
-            diagnostics_.error(e.span,
-                               fmt::format("'{}' takes {} argument{}, not {}", e.text, function->arity,
-                                           function->arity == 1 ? "" : "s", e.operands.size()));
-            return std::nullopt;
-        }
+        if (e.operands.size() != function->arity) return wrong_count(e, function->arity);
         std::array<double, max_function_arity> arguments{};
         for (std::size_t i = 0; i < function->arity; ++i) {
             const std::optional<double> argument = value(e.operands[i]);
@@ -77,6 +73,34 @@ class Evaluator {
         const std::span<const double> used(arguments.data(), function->arity);
         if (e.text == "mod" && arguments[1] == 0) return division_by_zero(e);
         return finite(function->apply(used), e, [&] { return call_text(e.text, used); });
+    }
+
+    std::nullopt_t wrong_count(const Expression& e, std::size_t arity) {
+        diagnostics_.error(e.span, fmt::format("'{}' takes {} argument{}, not {}", e.text, arity,
+                                               arity == 1 ? "" : "s", e.operands.size()));
+        return std::nullopt;
+    }
+
+    std::optional<double> chance(const Expression& e) {
+        if (e.operands.size() != chance_arguments) return wrong_count(e, chance_arguments);
+        const auto draw = draws_.find(&e);
+        if (draw == draws_.end()) {
+            diagnostics_.error(e.span,
+                               fmt::format("'{}' draws random numbers, which only the successors of an "
+                                           "L-system's productions have",
+                                           e.text));
+            return std::nullopt;
+        }
+        const std::optional<double> first = value(e.operands[0]), second = value(e.operands[1]);
+        if (!first || !second) return std::nullopt;
+        if (e.text == "normal" && *second < 0) {
+            diagnostics_.error(e.operands[1].span,
+                               fmt::format("a deviation must not be negative, but is {}", shortest(*second)));
+            return std::nullopt;
+        }
+        const std::array arguments = {draw->second, *first, *second};
+        return finite(chance_function(e.text)->apply(arguments), e,
+                      [&] { return call_text(e.text, std::span(arguments).subspan(1)); });
     }
 
     static std::string call_text(std::string_view name, std::span<const double> arguments) {
@@ -118,14 +142,15 @@ class Evaluator {
     }
 
     const Environment& environment_;
+    const ChanceDraws& draws_;
     Diagnostics& diagnostics_;
 };
 
 } // namespace
 
 std::optional<double> evaluate(const Expression& expression, const Environment& environment,
-                               Diagnostics& diagnostics) {
-    return Evaluator(environment, diagnostics).value(expression);
+                               Diagnostics& diagnostics, const ChanceDraws& draws) {
+    return Evaluator(environment, draws, diagnostics).value(expression);
 }
 
 } // namespace graftal

@@ -22,17 +22,21 @@ struct Expression {
 
     Kind kind = Kind::number;
     double number = 0;
-    std::string text;                   ///< the name, function or operator
-    std::vector<Expression> operands;   ///< of a call, unary or binary
+    std::string text;                 ///< the name, function or operator
+    std::vector<Expression> operands; ///< of a call, unary or binary
     Span span;
 };
 
 /// The values that names have; `pi` and the functions need no entry.
 using Environment = std::map<std::string, double, std::less<>>;
 
-/// The value, or nothing after an error in `diagnostics`: unknown names (with a suggestion), wrong numbers of
-/// arguments, division by zero, and results that are not finite.
-std::optional<double> evaluate(const Expression& expression, const Environment& environment,
-                               Diagnostics& diagnostics);
+/// Uniform numbers of [0, 1) for the calls of `normal` and `random` in an expression.
+using ChanceDraws = std::map<const Expression*, double>;
 
-}  // namespace graftal
+/// The value, or nothing after an error in `diagnostics`: unknown names (with a suggestion), wrong numbers of
+/// arguments, division by zero, results that are not finite, and calls of `normal` and `random` for which
+/// there is no draw.
+std::optional<double> evaluate(const Expression& expression, const Environment& environment,
+                               Diagnostics& diagnostics, const ChanceDraws& draws = {});
+
+} // namespace graftal

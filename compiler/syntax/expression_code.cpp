@@ -18,8 +18,9 @@ constexpr double failed = std::numeric_limits<double>::quiet_NaN();
 class ExpressionCode::Compiler {
   public:
     Compiler(ExpressionCode& code, const Environment& constants, std::span<const std::string_view> variables,
-             Diagnostics& diagnostics)
-        : code_(code), constants_(constants), variables_(variables), diagnostics_(diagnostics) {}
+             Diagnostics& diagnostics, std::uint32_t* draws)
+        : code_(code), constants_(constants), variables_(variables), diagnostics_(diagnostics),
+          draws_(draws) {}
 
     /// The node of the expression. Recursion is as deep as the tree, which the parser bounds.
     std::optional<std::uint32_t> add(const Expression& e) {
@@ -59,17 +60,29 @@ class ExpressionCode::Compiler {
         Environment names = constants_;
         if (names.contains(e.text)) return names;
         for (const std::string_view variable : variables_)
-            names.emplace(variable, 0);
+            if (!variable.empty()) names.emplace(variable, 0);
         return names;
     }
 
     std::optional<std::uint32_t> add_call(const Expression& e) {
         const ExpressionFunction* function = expression_function(e.text);
+        if (chance_function(e.text) && draws_ && e.operands.size() == chance_arguments) return add_chance(e);
         if (!function || e.operands.size() != function->arity) {
             evaluate(e, constants_, diagnostics_);
             return std::nullopt;
         }
         return add_operands(e, {.kind = Kind::call, .function = function});
+    }
+
+    /// The draw comes before the arguments of the text.
+    std::optional<std::uint32_t> add_chance(const Expression& e) {
+        const auto slot = static_cast<std::uint32_t>(variables_.size() + (*draws_)++);
+        code_.draws_.emplace_back(&e, slot);
+        const std::uint32_t draw = append({.kind = Kind::slot, .slot = slot});
+        const auto first = add(e.operands[0]), second = add(e.operands[1]);
+        if (!first || !second) return std::nullopt;
+        return append(
+            {.kind = Kind::call, .operands = {draw, *first, *second}, .function = chance_function(e.text)});
     }
 
     std::optional<std::uint32_t> add_operands(const Expression& e, Node node) {
@@ -87,15 +100,21 @@ class ExpressionCode::Compiler {
     const Environment& constants_;
     std::span<const std::string_view> variables_;
     Diagnostics& diagnostics_;
+    std::uint32_t* draws_;
 };
 
 std::optional<ExpressionCode> ExpressionCode::compile(const Expression& expression,
                                                       const Environment& constants,
                                                       std::span<const std::string_view> variables,
-                                                      Diagnostics& diagnostics) {
+                                                      Diagnostics& diagnostics, std::uint32_t* draws) {
     ExpressionCode code(expression);
-    if (!Compiler(code, constants, variables, diagnostics).add(expression)) return std::nullopt;
+    if (!Compiler(code, constants, variables, diagnostics, draws).add(expression)) return std::nullopt;
     return code;
+}
+
+bool ExpressionCode::reads(std::size_t slot) const {
+    return std::ranges::any_of(
+        nodes_, [&](const Node& node) { return node.kind == Kind::slot && node.slot == slot; });
 }
 
 std::optional<double> ExpressionCode::value(std::span<const double> slots) const {
@@ -150,9 +169,12 @@ double ExpressionCode::call(const Node& node, std::span<const double> slots) con
 void ExpressionCode::report(std::span<const double> slots, const Environment& constants,
                             std::span<const std::string_view> variables, Diagnostics& diagnostics) const {
     Environment environment = constants;
-    for (std::size_t i = 0; i < variables.size(); ++i)
-        environment.insert_or_assign(std::string(variables[i]), slots[i]);
-    evaluate(*source_, environment, diagnostics);
+    for (std::size_t i = 0; i < std::min(variables.size(), slots.size()); ++i)
+        if (!variables[i].empty()) environment.insert_or_assign(std::string(variables[i]), slots[i]);
+    ChanceDraws draws;
+    for (const auto& [call, slot] : draws_)
+        draws[call] = slots[slot];
+    evaluate(*source_, environment, diagnostics, draws);
 }
 
 } // namespace graftal

@@ -5,6 +5,7 @@
 #include <optional>
 #include <span>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "compiler/support/diagnostics.h"
@@ -19,10 +20,15 @@ class ExpressionCode {
   public:
     /// Names of `variables` are read from the slots of value(), in this order, and hide `constants`. Reports
     /// unknown names and functions and wrong numbers of arguments, and gives nothing then. `expression` must
-    /// outlive the code.
+    /// outlive the code. Each call of `normal` or `random` reads a uniform number of [0, 1) from a slot of
+    /// its own behind those of the variables, the first `*draws`, which is counted up; null: such calls are
+    /// errors.
     static std::optional<ExpressionCode> compile(const Expression& expression, const Environment& constants,
                                                  std::span<const std::string_view> variables,
-                                                 Diagnostics& diagnostics);
+                                                 Diagnostics& diagnostics, std::uint32_t* draws = nullptr);
+
+    /// Whether a slot is looked at.
+    bool reads(std::size_t slot) const;
 
     /// The value, or nothing where evaluate() reports an error.
     std::optional<double> value(std::span<const double> slots) const;
@@ -51,6 +57,7 @@ class ExpressionCode {
     double call(const Node& node, std::span<const double> slots) const;
 
     const Expression* source_;
+    std::vector<std::pair<const Expression*, std::uint32_t>> draws_; ///< calls with the slots of their draws
     std::vector<Node> nodes_; ///< operands before what they are of; the whole is the last
 };
 

@@ -3,8 +3,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <string>
+
+#include <boost/math/special_functions/erf.hpp>
 
 #include "compiler/support/check.h"
 
@@ -71,6 +74,21 @@ constexpr std::array functions = {
     ExpressionFunction{"logistic", 4, [](Arguments a) { return logistic(a[0], a[1], a[2], a[3]); }},
 };
 
+/// Of the normal distribution beyond this many deviations nothing is left: about 0.27 % are moved inside.
+constexpr double most_deviations = 3;
+
+double normal_quantile(double uniform, double mean, double deviation) {
+    if (deviation < 0) return std::numeric_limits<double>::quiet_NaN();
+    const double within = std::erf(most_deviations / std::numbers::sqrt2);
+    const double standard = std::numbers::sqrt2 * boost::math::erf_inv(within * (2 * uniform - 1));
+    return mean + deviation * std::clamp(standard, -most_deviations, most_deviations);
+}
+
+constexpr std::array chance_functions = {
+    ExpressionFunction{"normal", 3, [](Arguments a) { return normal_quantile(a[0], a[1], a[2]); }},
+    ExpressionFunction{"random", 3, [](Arguments a) { return a[1] + a[0] * (a[2] - a[1]); }},
+};
+
 constexpr std::array<std::string_view, 14> operators = {
     "+", "-", "*", "/", "%", "^", "==", "!=", "<", "<=", ">", ">=", "&&", "||"};
 
@@ -84,6 +102,12 @@ const ExpressionFunction* expression_function(std::string_view name) {
     const auto found = std::ranges::find_if(
         functions, [&](const ExpressionFunction& function) { return name == function.name; });
     return found == functions.end() ? nullptr : &*found;
+}
+
+const ExpressionFunction* chance_function(std::string_view name) {
+    const auto found = std::ranges::find_if(
+        chance_functions, [&](const ExpressionFunction& function) { return name == function.name; });
+    return found == chance_functions.end() ? nullptr : &*found;
 }
 
 BinaryOperator binary_operator(std::string_view text) {

@@ -21,6 +21,15 @@ std::span<const ExpressionFunction> expression_functions();
 /// The function of this name, or null.
 const ExpressionFunction* expression_function(std::string_view name);
 
+/// `normal` or `random`: a function of a uniform number of [0, 1) and of its two written arguments; null for
+/// other names.
+///   normal(mean, deviation): the quantile of a normal distribution, cut off at three deviations on either
+///     side. No number for a negative deviation.
+///   random(a, b): uniform.
+const ExpressionFunction* chance_function(std::string_view name);
+/// Arguments that a call of one of these has in the text.
+inline constexpr std::size_t chance_arguments = 2;
+
 enum class BinaryOperator : std::uint8_t {
     add,
     subtract,

@@ -28,9 +28,10 @@ double seconds_since(Clock::time_point begin) {
     return std::chrono::duration<double>(Clock::now() - begin).count();
 }
 
-/// True if two frames show one model, whatever the camera does.
-bool same_model(const CompileOptions& a, const CompileOptions& b) {
-    return a.steps == b.steps && a.lower.seed == b.lower.seed && a.lower.set == b.lower.set;
+/// True if two frames show one model, whatever the camera does. `timed`: a model that is drawn by the time.
+bool same_model(const CompileOptions& a, const CompileOptions& b, bool timed) {
+    return a.steps == b.steps && a.lower.seed == b.lower.seed && a.lower.set == b.lower.set &&
+           (a.lower.time == b.lower.time || (a.steps && !timed));
 }
 
 /// Adds up the times of the stages over all frames.
@@ -102,7 +103,7 @@ class Animation {
         for (std::size_t frame = 0; frame < options_.frames; ++frame) {
             if (Interruption::signal()) return fail("", Status::failure("interrupted"));
             Moment now = moment(frame);
-            if (frame == 0 || !same_model(before.compile, now.compile)) {
+            if (frame == 0 || !same_model(before.compile, now.compile, timed_)) {
                 show({Stage::measuring, frame, options_.frames, {}, {}});
                 if (!measure_model(now)) return false;
             }
@@ -119,6 +120,7 @@ class Animation {
         if (!model) return fail(now.name, std::move(compilation));
         if (options_.on_compiled) options_.on_compiled(compilation);
         framing_.include(*model);
+        timed_ = model->derivation && model->derivation->timed;
         model_sources_ = Digest().add(compilation.sources);
         all_sources_.add(model_sources_.text());
         return true;
@@ -276,6 +278,7 @@ class Animation {
     AnimationKind kind_;
     FrameStore store_;
     SharedFraming framing_;
+    bool timed_ = false; ///< the model measured last
     Digest model_sources_;
     Digest all_sources_;
     std::vector<Digest> sources_; ///< by frame

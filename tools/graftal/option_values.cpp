@@ -48,6 +48,13 @@ std::optional<double> parse_at_least(std::string_view text, double least) {
     return value && std::isfinite(*value) && *value >= least ? value : std::nullopt;
 }
 
+std::optional<StepsValue> parse_steps(std::string_view text, std::uint64_t most) {
+    if (const auto whole = parse_whole(text, 0, most)) return StepsValue{whole, static_cast<double>(*whole)};
+    const std::optional<double> time = parse_at_least(text, 0);
+    if (!time || *time > static_cast<double>(most)) return std::nullopt;
+    return StepsValue{std::nullopt, *time};
+}
+
 std::optional<std::pair<std::string, double>> parse_setting(std::string_view text) {
     const std::size_t equals = text.find('=');
     if (equals == std::string_view::npos || equals == 0) return std::nullopt;

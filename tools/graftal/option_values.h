@@ -25,6 +25,15 @@ std::optional<double> parse_at_least(std::string_view text, double least);
 /// A whole number in [least, most].
 std::optional<std::uint64_t> parse_whole(std::string_view text, std::uint64_t least, std::uint64_t most);
 
+/// A depth: whole steps, or a time between two.
+struct StepsValue {
+    std::optional<std::uint64_t> whole; ///< if it is a whole number
+    double time = 0;
+};
+
+/// "7" or "7.3", from 0 to `most`.
+std::optional<StepsValue> parse_steps(std::string_view text, std::uint64_t most);
+
 /// "NAME=VALUE" with a finite number.
 std::optional<std::pair<std::string, double>> parse_setting(std::string_view text);
 

@@ -69,11 +69,19 @@ void add_common(CLI::App& app, Options& options) {
     CompileOptions& compile = options.compile;
     constexpr std::uint64_t most_steps = 4'000'000'000;
     add_swept(
-        app, options, "--steps", "N", "Depth: levels of the recursion, derivation steps of an L-system",
-        "a whole number from 0 to 4000000000",
-        [](const std::string& text) { return parse_whole(text, 0, most_steps); },
+        app, options, "--steps", "N",
+        "Depth: levels of the recursion, derivation steps of an L-system; 7.3: a growing one between two",
+        "a number from 0 to 4000000000",
+        [](const std::string& text) { return parse_steps(text, most_steps); },
         [](const std::string& text) { return parse_steps_sweep(text, most_steps); },
-        [&](std::uint64_t steps) { compile.steps = static_cast<unsigned>(steps); });
+        [&](const StepsValue& steps) {
+            compile.steps.reset();
+            compile.lower.time.reset();
+            if (steps.whole)
+                compile.steps = static_cast<unsigned>(*steps.whole);
+            else
+                compile.lower.time = steps.time;
+        });
     const bool sweeps = can_sweep(app);
     const auto set = [&options, &compile, sweeps](const std::vector<std::string>& texts) {
         for (const std::string& text : texts) {

@@ -89,6 +89,7 @@ Json stats_json(const AnalysedModel& model, const SourceMap& sources) {
         {"error", model.derivation ? model.derivation->error : 0},
     };
     if (const std::optional<Derivation>& derivation = model.derivation) {
+        if (derivation->timed) json["time"] = derivation->time;
         const bool finite = derivation->steps.has_value();
         json["modules"] = finite ? Json(derivation->modules) : Json(nullptr);
         json["segments"] = finite ? Json(derivation->segments) : Json(nullptr);

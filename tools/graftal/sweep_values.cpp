@@ -57,12 +57,18 @@ std::optional<std::pair<std::string, std::string>> parse_range(std::string_view 
 }
 
 std::optional<Sweep> parse_steps_sweep(std::string_view text, std::uint64_t most) {
-    const auto range = parse_whole_range(text, most);
+    const auto range = parse_range(text);
     if (!range) return std::nullopt;
-    return Sweep{"--steps", [range = *range](double t, CompileOptions& options) {
-                     options.steps = static_cast<unsigned>(swept_whole(range.first, range.second, t));
-                     return fmt::format("--steps {}", *options.steps);
-                 }};
+    const auto from = parse_steps(range->first, most), to = parse_steps(range->second, most);
+    if (!from || !to) return std::nullopt;
+    const auto apply = [a = *from, b = *to](double t, CompileOptions& options) {
+        options.lower.time = swept(a.time, b.time, t);
+        options.steps.reset();
+        if (!a.whole || !b.whole) return fmt::format("--steps {:.6g}", *options.lower.time);
+        options.steps = static_cast<unsigned>(swept_whole(*a.whole, *b.whole, t));
+        return fmt::format("--steps {}", *options.steps);
+    };
+    return Sweep{"--steps", apply};
 }
 
 std::optional<Sweep> parse_seed_sweep(std::string_view text) {

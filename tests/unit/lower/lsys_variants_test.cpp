@@ -119,7 +119,7 @@ TEST(LsysVariants, alternativesAreDealtOutInProportion) {
     for (ModuleId module = 0; module < 20; ++module) {
         std::map<ModuleId, int> seen;
         for (std::uint32_t i = 0; i < 1024; ++i)
-            ++seen[variants.choose(alternatives, i, module, 4).successor[0]];
+            ++seen[variants.choose(alternatives, i, module, 4).alternative->successor[0]];
         EXPECT_NEAR(seen[0], 512, 1);
         EXPECT_NEAR(seen[1], 384, 1);
         EXPECT_NEAR(seen[2], 128, 1);

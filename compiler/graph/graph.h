@@ -69,6 +69,9 @@ struct Instance {
     Tint tint;
     std::optional<MaterialId> material;  ///< nothing: as the parent says
     Span span;
+    /// Its share of the object's random points (chaos/chances.h), relative to the other instances; 0: not
+    /// stated. No part of what the graph means: `.inst` does not write it, and equality does not count it.
+    double chance = 0;
 };
 
 struct Object {

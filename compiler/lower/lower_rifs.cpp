@@ -14,6 +14,7 @@
 #include "compiler/lower/lower_settings.h"
 #include "compiler/lower/lower_transform.h"
 #include "compiler/lower/lowering.h"
+#include "compiler/lower/rifs_chances.h"
 #include "compiler/lower/rifs_system.h"
 #include "compiler/syntax/rifs_parser.h"
 
@@ -28,6 +29,7 @@ struct Part {
     Tint tint;
     std::optional<MaterialId> material;
     Span span;
+    std::optional<double> probability; ///< stated
 };
 
 /// Two tints of one path as one (Hart 1992, eq. (9), (10)), straight again.
@@ -127,7 +129,10 @@ class RifsLowering {
         const std::optional<Affine> placed = lower_transforms(part.transforms, lets_, diagnostics_);
         const Tint tint = looks.tint(part.look);
         const std::optional<MaterialId> material = looks.material(part.look);
-        if (master && placed) parts_.emplace(&part, Part{*master, *placed, tint, material, part.span});
+        // Reported with those of the maps if it is wrong.
+        Diagnostics ignored;
+        const std::optional<double> p = evaluate_probability(part.probability, lets_, ignored);
+        if (master && placed) parts_.emplace(&part, Part{*master, *placed, tint, material, part.span, p});
     }
 
     std::optional<ObjectId> find_master(const RifsName& name) {
@@ -154,6 +159,7 @@ class RifsLowering {
     }
 
     void add_objects() {
+        chances_ = rifs_chances(system_, condensation_shares());
         const bool qualified = tree_.blocks.size() > 1 || names_collide();
         std::vector<ObjectId> ids(system_.nodes.size());
         auto next = static_cast<ObjectId>(graph_.objects.size());
@@ -165,6 +171,17 @@ class RifsLowering {
             add_node(node, qualified ? fmt::format("{}.{}", block, node.name) : node.name, ids);
         }
         add_root(ids);
+    }
+
+    /// By block, by condensation set: the probabilities as far as they are stated.
+    std::vector<std::vector<std::optional<double>>> condensation_shares() const {
+        std::vector<std::vector<std::optional<double>>> shares;
+        for (const RifsBlock& block : tree_.blocks) {
+            shares.emplace_back();
+            for (const RifsPart& part : block.condense)
+                shares.back().push_back(parts_.at(&part).probability);
+        }
+        return shares;
     }
 
     bool names_collide() const {
@@ -179,12 +196,16 @@ class RifsLowering {
         object.name = std::move(name);
         object.span = node.source->name.span;
         const RifsBlock& under = *system_.blocks[system_.block_under(node)].source;
-        for (const RifsPart& condensed : under.condense)
-            object.instances.push_back(placed(parts_.at(&condensed), &node));
-        for (const std::uint32_t master : node.masters)
-            if (!system_.nodes[master].empty)
-                object.instances.push_back(
-                    {ids[master], node.map, node.tint, node.material, node.source->name.span});
+        const RifsChances::OfNode chances = chances_ ? chances_->of(system_, node) : RifsChances::OfNode();
+        const auto at = [](const std::vector<double>& list, std::size_t i) { return list.empty() ? 0 : list[i]; };
+        for (std::size_t i = 0; i < under.condense.size(); ++i) {
+            object.instances.push_back(placed(parts_.at(&under.condense[i]), &node));
+            object.instances.back().chance = at(chances.condensations, i);
+        }
+        for (std::size_t i = 0; i < node.masters.size(); ++i)
+            if (!system_.nodes[node.masters[i]].empty)
+                object.instances.push_back({ids[node.masters[i]], node.map, node.tint, node.material,
+                                            node.source->name.span, at(chances.masters, i)});
         const std::optional<RifsPart>& terminal =
             node.source->terminal ? node.source->terminal : under.terminal;
         if (terminal) object.terminal = placed(parts_.at(&*terminal), &node);
@@ -196,12 +217,15 @@ class RifsLowering {
         Object root;
         root.name = main.source->name.text;
         root.span = main.source->name.span;
-        for (const RifsPart& condensed : main.source->condense)
-            root.instances.push_back(placed(parts_.at(&condensed), nullptr));
+        for (std::size_t i = 0; i < main.source->condense.size(); ++i) {
+            root.instances.push_back(placed(parts_.at(&main.source->condense[i]), nullptr));
+            if (chances_) root.instances.back().chance = chances_->condensation(system_.main, i);
+        }
         for (const std::uint32_t start : main.start)
             if (!system_.nodes[start].empty)
-                root.instances.push_back(
-                    {ids[start], Affine(), Tint(), std::nullopt, system_.nodes[start].source->name.span});
+                root.instances.push_back({ids[start], Affine(), Tint(), std::nullopt,
+                                          system_.nodes[start].source->name.span,
+                                          chances_ ? chances_->share[start] : 0});
         if (main.source->terminal) root.terminal = placed(parts_.at(&*main.source->terminal), nullptr);
         graph_.root = graph_.add(std::move(root));
     }
@@ -232,6 +256,7 @@ class RifsLowering {
     Environment lets_;
     Graph graph_;
     RifsSystem system_;
+    std::optional<RifsChances> chances_; ///< nothing: none are stated
     std::map<std::string_view, Use> uses_;
     std::map<const RifsPart*, Part> parts_; // looked up only, never walked
 };

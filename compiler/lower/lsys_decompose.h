@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "compiler/lower/counter_random.h"
+#include "compiler/support/counter_random.h"
 #include "compiler/lower/lsys_rewriter.h"
 #include "compiler/support/diagnostics.h"
 

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <optional>
 
-#include "compiler/lower/counter_random.h"
+#include "compiler/support/counter_random.h"
 #include "compiler/lower/lsys_context.h"
 #include "compiler/lower/lsys_decompose.h"
 #include "compiler/lower/lsys_rewriter.h"

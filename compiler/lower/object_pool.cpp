@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 #include <glm/matrix.hpp>
 
-#include "compiler/lower/counter_random.h"
+#include "compiler/support/counter_random.h"
 
 namespace graftal {
 

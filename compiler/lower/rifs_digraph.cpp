@@ -35,6 +35,7 @@ class DigraphResolver {
         std::uint32_t from;
         std::uint32_t to;
         Span span;
+        double weight = 1;
     };
 
     bool resolve_block(RifsSubsystem& block) {
@@ -150,7 +151,7 @@ class DigraphResolver {
             weights |= value != 0 && value != 1;
             sums[cell.row] += value;
             if (value != 0)
-                edges.push_back({block_->first + cell.row, block_->first + cell.column, cell.span});
+                edges.push_back({block_->first + cell.row, block_->first + cell.column, cell.span, value});
         }
         for (std::size_t row = 0; weights && in_range && row < sums.size(); ++row)
             if (std::abs(sums[row] - 1) > row_slack)
@@ -191,6 +192,7 @@ class DigraphResolver {
             RifsNode& node = system_.nodes[edge.to];
             if (!node.from) {
                 node.masters.push_back(edge.from);
+                node.weights.push_back(edge.weight);
                 continue;
             }
             diagnostics_

@@ -69,7 +69,8 @@ class SystemBuilder {
             node.map = evaluate_map(map).value_or(Affine());
             node.tint = looks_.tint(map.look);
             node.material = looks_.material(map.look);
-            sum_ += evaluate_probability(map);
+            node.probability = evaluate_probability(map.probability, lets_, diagnostics_);
+            sum_ += node.probability.value_or(0);
         }
         system_.nodes.push_back(std::move(node));
     }
@@ -110,21 +111,19 @@ class SystemBuilder {
         return result;
     }
 
-    double evaluate_probability(const RifsMap& map) {
-        if (!map.probability) return 0;
-        const double p = evaluate(*map.probability, lets_, diagnostics_).value_or(0);
-        if (p < 0 || p > 1)
-            diagnostics_.error(map.probability->span,
-                               fmt::format("a probability must lie between 0 and 1, not {}", shortest(p)));
-        return p;
-    }
-
     void check_probabilities(const RifsBlock& block) {
-        const double sum = std::exchange(sum_, 0);
+        double sum = std::exchange(sum_, 0);
         const bool whole = std::all_of(block.maps.begin(), block.maps.end(),
                                        [](const RifsMap& map) { return map.probability && !map.broken; });
+        for (const RifsPart& part : block.condense)
+            sum += evaluate_probability(part.probability, lets_, diagnostics_).value_or(0);
         if (block.maps.empty() || !whole || diagnostics_.has_errors()) return;
-        if (std::abs(sum - 1) > probability_slack)
+        if (sum == 0)
+            diagnostics_
+                .error(block.maps.front().probability->span,
+                       fmt::format("the probabilities of 'rifs {}' are all 0", block.name.text))
+                .with_hint("without any of them the maps are chosen by their size");
+        else if (std::abs(sum - 1) > probability_slack)
             diagnostics_.warning(block.name.span,
                                  fmt::format("the probabilities of 'rifs {}' add up to {}, not 1",
                                              block.name.text, rounded(sum)));
@@ -160,6 +159,16 @@ Affine from_columns_2d(Vec3 x, Vec3 y, Vec3 offset) {
 }
 
 } // namespace
+
+std::optional<double> evaluate_probability(const std::optional<Expression>& probability, const Environment& lets,
+                                           Diagnostics& diagnostics) {
+    if (!probability) return std::nullopt;
+    const std::optional<double> p = evaluate(*probability, lets, diagnostics);
+    if (!p || (*p >= 0 && *p <= 1)) return p;
+    diagnostics.error(probability->span,
+                      fmt::format("a probability must lie between 0 and 1, not {}", shortest(*p)));
+    return std::nullopt;
+}
 
 RifsLooks::RifsLooks(const Environment& lets, const std::vector<Material>& materials,
                      Diagnostics& diagnostics)

@@ -24,6 +24,8 @@ struct RifsNode {
     std::optional<MaterialId> material;
     std::optional<std::uint32_t> from;  ///< the block whose attractor it takes
     std::vector<std::uint32_t> masters; ///< nodes that w_j may follow, ascending
+    std::vector<double> weights;        ///< of the masters, from a matrix of probabilities; empty: all alike
+    std::optional<double> probability;  ///< that w_j is chosen, for random iteration
     bool empty = false;                 ///< A_j is the empty set
 };
 
@@ -42,6 +44,10 @@ struct RifsSystem {
     /// The block whose condensation and terminal w_j is applied to.
     std::uint32_t block_under(const RifsNode& node) const { return node.from.value_or(node.block); }
 };
+
+/// A probability of random iteration; nothing if it is not stated. Errors are reported and give nothing.
+std::optional<double> evaluate_probability(const std::optional<Expression>& probability, const Environment& lets,
+                                           Diagnostics& diagnostics);
 
 /// Evaluates the tints and materials that the tree names. Errors are reported and give the neutral ones.
 class RifsLooks {

@@ -2,7 +2,7 @@
 
 #include <bit>
 
-#include "compiler/lower/counter_random.h"
+#include "compiler/support/counter_random.h"
 
 namespace graftal {
 

@@ -36,6 +36,7 @@ struct RifsPart {
     RifsName master;
     std::vector<TransformLine> transforms;
     RifsLook look;
+    std::optional<Expression> probability; ///< of a condensation set
     Span span; ///< from the keyword on
 };
 

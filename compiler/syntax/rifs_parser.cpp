@@ -91,8 +91,9 @@ class RifsParser {
         if (stream_.at("terminal")) return parse_terminal(block.terminal);
         if (stream_.at("condense")) {
             std::optional<RifsPart> part = parse_rifs_part(stream_);
-            if (part) block.condense.push_back(std::move(*part));
-            return part.has_value();
+            if (!part) return false;
+            block.condense.push_back(std::move(*part));
+            return !stream_.at("probability") || parse_probability(block.condense.back().probability);
         }
         return unknown_item(block);
     }
@@ -160,7 +161,7 @@ class RifsParser {
     bool parse_map_item(RifsMap& map) {
         if (at_rifs_look(stream_)) return parse_rifs_look(stream_, map.look);
         if (stream_.at("terminal")) return parse_terminal(map.terminal);
-        if (stream_.at("probability")) return parse_probability(map);
+        if (stream_.at("probability")) return parse_probability(map.probability);
         if (at_transform(stream_)) {
             std::optional<TransformLine> line = parse_transform(stream_);
             if (line) map.transforms.push_back(std::move(*line));
@@ -175,12 +176,12 @@ class RifsParser {
         return false;
     }
 
-    bool parse_probability(RifsMap& map) {
+    bool parse_probability(std::optional<Expression>& probability) {
         const Token keyword = stream_.next();
         stream_.accept(":");
-        if (map.probability) return duplicate(keyword, map.probability->span);
-        map.probability = parse_row_expression(stream_);
-        return map.probability.has_value();
+        if (probability) return duplicate(keyword, probability->span);
+        probability = parse_row_expression(stream_);
+        return probability.has_value();
     }
 
     bool parse_terminal(std::optional<RifsPart>& terminal) {

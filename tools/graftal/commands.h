@@ -14,6 +14,8 @@ inline constexpr int exit_environment = 3;
 
 int run_render(const Options& options);
 int run_animate(const Options& options);
+int run_points(const Options& options);
+int run_collage(const Options& options);
 int run_compile(const Options& options);
 int run_check(const Options& options);
 int run_stats(const Options& options);

@@ -26,6 +26,10 @@ int run(const graftal::Options& options) {
         return graftal::run_render(options);
     case Command::animate:
         return graftal::run_animate(options);
+    case Command::points:
+        return graftal::run_points(options);
+    case Command::collage:
+        return graftal::run_collage(options);
     case Command::compile:
         return graftal::run_compile(options);
     case Command::check:

@@ -10,6 +10,7 @@
 #include "tools/graftal/animate_options.h"
 #include "tools/graftal/commands.h"
 #include "tools/graftal/option_values.h"
+#include "tools/graftal/points_options.h"
 #include "tools/graftal/report.h"
 #include "tools/graftal/sweep_values.h"
 
@@ -120,7 +121,7 @@ void add_common(CLI::App& app, Options& options) {
 }
 
 /// Of the commands that look at the model from a camera.
-void add_view(CLI::App& app, Options& options) {
+void add_camera(CLI::App& app, Options& options) {
     CompileOptions& compile = options.compile;
     add_value(app, "--size", "WxH", "Size of the picture in pixels (default 1280x720)",
               "a size such as 1280x720, at most 32768 a side", parse_size,
@@ -154,6 +155,12 @@ void add_view(CLI::App& app, Options& options) {
               "Enlarge F times, such as 1e100 or 2^330, about the part at --at, else the point looked at",
               "a number above 0, such as 1e100 or 2^330", Magnification::parse, parse_zoom_sweep,
               [&](Magnification zoom) { compile.zoom.zoom = zoom; });
+}
+
+/// Of those that decide how much of it is drawn, too.
+void add_view(CLI::App& app, Options& options) {
+    add_camera(app, options);
+    CompileOptions& compile = options.compile;
     CLI::Option* pixels = add_value(
         app, "--error", "PX", "Leave out what is smaller than this on the picture (default 0.5; 0: nothing)",
         "a number of pixels, 0 or more", [](const std::string& text) { return parse_at_least(text, 0); },
@@ -347,6 +354,19 @@ void add_compare(CLI::App& app, Options& options) {
         "Example:\n  graftal compare before.png after.png --threshold 0.01");
 }
 
+void add_points(CLI::App& app, Options& options) {
+    add_model(app, options);
+    add_points_options(app, options);
+    add_camera(app, options);
+    add_common(app, options);
+}
+
+void add_collage(CLI::App& app, Options& options) {
+    add_collage_options(app, options);
+    add_camera(app, options);
+    add_common(app, options);
+}
+
 struct CommandEntry {
     Command command;
     const char* name;
@@ -358,6 +378,8 @@ constexpr CommandEntry commands[] = {
     {Command::render, "render", "Make a picture of a model, by POV-Ray or by rays through its graph",
      add_render},
     {Command::animate, "animate", "Make an animation of a model: turning, growing, changing", add_animate},
+    {Command::points, "points", "Make a picture or a cloud of random points of a model", add_points},
+    {Command::collage, "collage", "Measure how well a model's maps cover a target picture", add_collage},
     {Command::compile, "compile", "Write a model as a POV-Ray scene", add_compile},
     {Command::check, "check", "Read models and say what is wrong with them", add_check},
     {Command::stats, "stats", "Sizes, contraction, dimension and bounds of a model", add_stats},
@@ -420,6 +442,7 @@ std::string complete(Options& options) {
             return fmt::format("'{}' ends neither in .png nor in .exr", options.output);
     }
     if (options.command == Command::animate) return complete_animation(options);
+    if (options.command == Command::points) return complete_points(options);
     if (options.output.empty()) options.output = "-";
     const bool to_stdout = options.output == "-";
     if (options.command == Command::compile && !to_stdout && extension != ".pov" && extension != ".inc")

@@ -7,12 +7,13 @@
 #include "compiler/compile.h"
 #include "runtime/image/animation.h"
 #include "runtime/image/image.h"
+#include "runtime/points/tone.h"
 #include "runtime/render/render.h"
 #include "runtime/render/sweep.h"
 
 namespace graftal {
 
-enum class Command { render, animate, compile, check, stats, print, graph, compare };
+enum class Command { render, animate, points, collage, compile, check, stats, print, graph, compare };
 
 /// What `animate` takes besides what `render` does.
 struct AnimationOptions {
@@ -23,6 +24,14 @@ struct AnimationOptions {
     Ease ease = Ease::linear;
     bool keep_frames = false;
     std::string identity; ///< the options that change what the frames show, and the version
+};
+
+/// What `points` takes besides.
+struct PointsSettings {
+    std::optional<std::uint64_t> points;
+    PointColour colour = PointColour::tint;
+    Tone tone;
+    std::string target; ///< of `collage`
 };
 
 /// The command line, understood.
@@ -42,6 +51,7 @@ struct Options {
     std::optional<int> antialias = 2;
     std::string keep;
     AnimationOptions animation;
+    PointsSettings points;
     bool json = false;
     double threshold = 0;
 

@@ -1,0 +1,41 @@
+#pragma once
+
+#include "compiler/graph/graph.h"
+#include "compiler/support/counter_random.h"
+
+namespace graftal {
+
+/// Random numbers one after the other, of one of the sequences of a seed.
+class RandomStream {
+  public:
+    RandomStream(std::uint64_t seed, std::uint64_t sequence) : random_(CounterRandom(seed).sequence(sequence)) {}
+
+    std::uint64_t bits() { return random_(count_++); }
+    /// Of [0, 1).
+    double unit() { return CounterRandom::unit(bits()); }
+
+  private:
+    CounterRandom random_;
+    std::uint64_t count_ = 0;
+};
+
+/// The image of a canonical primitive under an affine map, as a set to take random points of: evenly over its
+/// surface, however the map stretches it. Requires a primitive that is bounded: no plane.
+class PlacedSurface {
+  public:
+    PlacedSurface(PrimitiveKind kind, const Affine& world_from_primitive);
+
+    /// The area of the image, to some per cent where the map bends a curved surface out of shape, else exact.
+    double area() const { return area_; }
+    /// A point of the image.
+    Vec3 point(RandomStream& random) const;
+
+  private:
+    PrimitiveKind kind_;
+    Affine map_;
+    Mat3 cofactors_;      ///< turn a normal into the image's, as long as area grows there
+    double most_growth_;  ///< of area, anywhere on the surface
+    double area_;
+};
+
+} // namespace graftal

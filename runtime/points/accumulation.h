@@ -1,0 +1,64 @@
+#pragma once
+
+#include <algorithm>
+#include <atomic>
+#include <cstdint>
+#include <vector>
+
+#include "compiler/scene/scene.h"
+
+namespace graftal {
+
+/// How many points fell into each pixel, and their colours' sums. All whole numbers, so that the order in which
+/// points come makes no difference. Colours lie in [0, 1] and are kept to 1/65535.
+class Accumulation {
+  public:
+    struct Cell {
+        std::uint64_t count = 0;
+        std::uint64_t rgb[3] = {0, 0, 0};
+    };
+
+    explicit Accumulation(ImageSize size)
+        : size_(size), cells_(static_cast<std::size_t>(size.width) * static_cast<std::size_t>(size.height)) {}
+
+    void add(std::size_t pixel, const float rgb[3]) {
+        Cell& cell = cells_[pixel];
+        ++cell.count;
+        for (int c = 0; c < 3; ++c)
+            cell.rgb[c] += level(rgb[c]);
+    }
+
+    /// The same where several threads add to one picture.
+    void add_shared(std::size_t pixel, const float rgb[3]) {
+        Cell& cell = cells_[pixel];
+        std::atomic_ref(cell.count).fetch_add(1, std::memory_order_relaxed);
+        for (int c = 0; c < 3; ++c)
+            std::atomic_ref(cell.rgb[c]).fetch_add(level(rgb[c]), std::memory_order_relaxed);
+    }
+
+    void add(const Accumulation& other) {
+        for (std::size_t i = 0; i < cells_.size(); ++i) {
+            cells_[i].count += other.cells_[i].count;
+            for (int c = 0; c < 3; ++c)
+                cells_[i].rgb[c] += other.cells_[i].rgb[c];
+        }
+    }
+
+    ImageSize size() const { return size_; }
+    const std::vector<Cell>& cells() const { return cells_; }
+    Rgb mean_colour(const Cell& cell) const {
+        const double points = 65535.0 * static_cast<double>(cell.count);
+        return {static_cast<double>(cell.rgb[0]) / points, static_cast<double>(cell.rgb[1]) / points,
+                static_cast<double>(cell.rgb[2]) / points};
+    }
+
+  private:
+    static std::uint64_t level(float value) {
+        return value > 0 ? static_cast<std::uint64_t>(65535 * std::min(value, 1.0f) + 0.5f) : 0;
+    }
+
+    ImageSize size_;
+    std::vector<Cell> cells_;
+};
+
+} // namespace graftal

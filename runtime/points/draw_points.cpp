@@ -1,0 +1,191 @@
+#include "runtime/points/draw_points.h"
+
+#include <algorithm>
+#include <atomic>
+#include <filesystem>
+#include <memory>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "compiler/chaos/unroll.h"
+#include "runtime/povray/interruption.h"
+#include "runtime/points/accumulation.h"
+#include "runtime/points/ply_file.h"
+#include "runtime/points/point_source.h"
+#include "runtime/points/projection.h"
+#include "runtime/render/scene_files.h"
+#include "runtime/render/stopwatch.h"
+
+namespace graftal {
+
+namespace {
+
+constexpr std::uint64_t points_a_pixel = 100;
+constexpr std::uint64_t points_of_cloud = 1'000'000;
+constexpr std::uint64_t most_bytes_of_copies = 1u << 30;
+constexpr std::size_t most_unrolled = 4'000'000;
+
+std::uint64_t point_count(const PointsOptions& options) {
+    if (options.points) return *options.points;
+    if (is_cloud_name(options.output)) return points_of_cloud;
+    const ImageSize size = options.compile.size;
+    return points_a_pixel * static_cast<std::uint64_t>(size.width) * static_cast<std::uint64_t>(size.height);
+}
+
+/// Planes have no end, and so no random point.
+void note_planes(const Graph& graph, Diagnostics& diagnostics) {
+    for (const Object& object : graph.objects)
+        for (const Instance& instance : object.instances)
+            if (graph.objects[instance.master].primitive == PrimitiveKind::plane) {
+                diagnostics.note(instance.span, "a plane has no end, and gets no points");
+                return;
+            }
+}
+
+std::optional<ChaosGame> game_of(const AnalysedModel& model, Diagnostics& diagnostics) {
+    const double rate =
+        model.contraction.verdict == Verdict::proved ? model.contraction.certificate.rate : 0;
+    std::optional<ChaosGame> game;
+    if (model.steps && model.components.unending[model.graph.root]) {
+        const auto cut = unrolled(model.graph, model.components, model.bounds, *model.steps, most_unrolled);
+        if (cut) {
+            const std::vector<ObjectBounds> none(cut->objects.size());
+            game = ChaosGame::of(*cut, strong_components(*cut), none, 0);
+        } else {
+            diagnostics.note(model.graph.objects[model.graph.root].span,
+                             fmt::format("{} levels are too many to tell from all: the limit is drawn", *model.steps));
+        }
+    }
+    if (!game) game = ChaosGame::of(model.graph, model.components, model.bounds, rate);
+    note_planes(model.graph, diagnostics);
+    if (!game)
+        diagnostics.error(model.graph.objects[model.graph.root].span, "there is nothing in this model to take points of");
+    return game;
+}
+
+/// The picture while its points are coming in.
+class Canvas {
+  public:
+    Canvas(const View& view, const PointsOptions& options, std::uint32_t maps)
+        : options_(options), projection_(view.camera, view.size) {
+        const auto workers = static_cast<std::size_t>(worker_count(options.threads));
+        const std::uint64_t bytes = sizeof(Accumulation::Cell) * static_cast<std::uint64_t>(view.size.width) *
+                                    static_cast<std::uint64_t>(view.size.height);
+        shared_ = bytes * workers > most_bytes_of_copies;
+        copies_.resize(shared_ ? 1 : workers);
+        if (shared_) copies_.front() = std::make_unique<Accumulation>(view.size);
+        for (std::uint32_t map = 0; map <= maps; ++map)
+            map_colours_.push_back(map == 0 ? Rgb(0.6) : map_colour(map - 1));
+        size_ = view.size;
+    }
+
+    void take(int worker, std::span<const ChaosPoint> points) {
+        std::unique_ptr<Accumulation>& own = copies_[shared_ ? 0 : static_cast<std::size_t>(worker)];
+        if (!own) own = std::make_unique<Accumulation>(size_); // by the thread that fills it
+        for (const ChaosPoint& point : points) {
+            const std::optional<std::size_t> pixel = projection_.pixel_of(point.place);
+            if (!pixel) continue;
+            float by_map[3];
+            const float* rgb = point.rgb;
+            if (options_.colour == PointColour::map) {
+                for (int c = 0; c < 3; ++c)
+                    by_map[c] = static_cast<float>(map_colours_[point.map][c]);
+                rgb = by_map;
+            }
+            shared_ ? own->add_shared(*pixel, rgb) : own->add(*pixel, rgb);
+        }
+    }
+
+    const Accumulation& sum() {
+        std::unique_ptr<Accumulation>& all = copies_.front();
+        if (!all) all = std::make_unique<Accumulation>(size_);
+        for (std::size_t i = 1; i < copies_.size(); ++i)
+            if (copies_[i]) {
+                all->add(*copies_[i]);
+                copies_[i].reset();
+            }
+        return *all;
+    }
+
+    Rgb colour_of(const ChaosPoint& point) const {
+        if (options_.colour == PointColour::map) return map_colours_[point.map];
+        return {point.rgb[0], point.rgb[1], point.rgb[2]};
+    }
+
+  private:
+    const PointsOptions& options_;
+    Projection projection_;
+    ImageSize size_;
+    bool shared_ = false;
+    std::vector<std::unique_ptr<Accumulation>> copies_; ///< by worker
+    std::vector<Rgb> map_colours_;
+};
+
+PointWork work_for(const PointsOptions& options) {
+    return {point_count(options), options.threads, options.on_progress, [] { return Interruption::signal() != 0; }};
+}
+
+Status write_picture(Canvas& canvas, const View& view, const PointsOptions& options, PointsReport& report) {
+    const Accumulation& points = canvas.sum();
+    for (const Accumulation::Cell& cell : points.cells())
+        report.inside += cell.count;
+    Tone tone = options.tone;
+    tone.by_density = options.colour == PointColour::density;
+    Image image = toned(points, tone, view);
+    if (!is_exr_name(options.output))
+        for (std::size_t i = 0; i < image.pixels.size(); ++i)
+            if (image.channels == 3 || i % 4 != 3) image.pixels[i] = srgb_encoded(image.pixels[i]);
+    if (is_exr_name(options.output) && image.channels == 4) // colour belongs to alpha already, as EXR has it
+        for (std::size_t i = 0; i < image.pixels.size(); ++i)
+            if (i % 4 != 3) image.pixels[i] *= image.pixels[i / 4 * 4 + 3];
+    return write_image(options.output, image, SampleFormat::srgb8, options.metadata);
+}
+
+} // namespace
+
+bool is_cloud_name(const std::string& path) {
+    return std::filesystem::path(path).extension() == ".ply";
+}
+
+Status place_points(const PointSource& source, const View& view, const PointsOptions& options, PointsReport& report) {
+    const Interruption interruption;
+    Status status = check_writable(options.output);
+    if (!status.ok()) return status;
+    const PointWork work = work_for(options);
+    Canvas canvas(view, options, report.maps);
+    report.points = work.points;
+    const Stopwatch watch;
+    if (is_cloud_name(options.output)) {
+        status = write_ply(options.output, source, work, options.metadata,
+                           [&](const ChaosPoint& point) { return canvas.colour_of(point); });
+        report.seconds = watch.seconds();
+        report.inside = work.points;
+        return status;
+    }
+    const bool complete = take_points(
+        source, work, [&](int worker, std::span<const ChaosPoint> points) { canvas.take(worker, points); });
+    report.seconds = watch.seconds();
+    return complete ? write_picture(canvas, view, options, report) : Status::failure("interrupted");
+}
+
+std::optional<PointsReport> draw_points(const std::string& path, const PointsOptions& options,
+                                        Compilation& compilation) {
+    CompileOptions compile = options.compile;
+    compile.pipeline.keep_names = true; // objects that differ in their chances only are not to be merged
+    const std::optional<ViewedModel> viewed = view_model(path, compile, compilation);
+    if (!viewed) return std::nullopt;
+    const Stopwatch watch;
+    const std::optional<ChaosGame> game = game_of(viewed->model, compilation.diagnostics);
+    compilation.times.push_back({"chances", watch.seconds()});
+    if (!game) return std::nullopt;
+    PointsReport report;
+    report.maps = game->map_count();
+    const ChaosSource source(*game, compile.lower.seed.value_or(0));
+    compilation.status = place_points(source, viewed->view, options, report);
+    compilation.times.push_back({"points", report.seconds});
+    if (!compilation.status.ok()) return std::nullopt;
+    return report;
+}
+
+} // namespace graftal

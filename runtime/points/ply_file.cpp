@@ -1,0 +1,113 @@
+#include "runtime/points/ply_file.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+#include <memory>
+
+#include <fmt/format.h>
+
+#include "compiler/support/file.h"
+
+namespace graftal {
+
+namespace {
+
+constexpr std::uint64_t bytes_of_point = 15;
+
+struct Close {
+    void operator()(std::FILE* file) const { std::fclose(file); }
+};
+
+std::string bytes_text(double bytes) {
+    constexpr std::array<const char*, 6> units = {"bytes", "KiB", "MiB", "GiB", "TiB", "PiB"};
+    std::size_t unit = 0;
+    for (; bytes >= 1024 && unit + 1 < units.size(); ++unit)
+        bytes /= 1024;
+    return fmt::format("{:.3g} {}", bytes, units[unit]);
+}
+
+Status check_room(const std::string& path, std::uint64_t points) {
+    const std::filesystem::path folder = std::filesystem::path(path).parent_path();
+    std::error_code error;
+    const std::filesystem::space_info space = std::filesystem::space(folder.empty() ? "." : folder, error);
+    if (error) return Status();
+    const double needed = static_cast<double>(points) * bytes_of_point + 1024;
+    if (needed <= static_cast<double>(space.available)) return Status();
+    return Status::failure(fmt::format("no room for '{}': {} points take {}, and {} are free", path, points,
+                                       bytes_text(needed), bytes_text(static_cast<double>(space.available))));
+}
+
+/// Comments of a header end with their line.
+std::string one_line(std::string text) {
+    for (char& c : text)
+        if (static_cast<unsigned char>(c) < 0x20) c = ' ';
+    return text;
+}
+
+std::string header(std::uint64_t points, const ImageMetadata& metadata) {
+    std::string text = "ply\nformat binary_little_endian 1.0\n";
+    for (const std::string& line : {metadata.software, metadata.description})
+        if (!line.empty()) text += "comment " + one_line(line) + "\n";
+    text += fmt::format("element vertex {}\n", points);
+    for (const char* property : {"float x", "float y", "float z", "uchar red", "uchar green", "uchar blue"})
+        text += fmt::format("property {}\n", property);
+    return text + "end_header\n";
+}
+
+void append(float value, std::vector<char>& bytes) {
+    const auto bits = std::bit_cast<std::uint32_t>(value);
+    for (int shift = 0; shift < 32; shift += 8)
+        bytes.push_back(static_cast<char>(bits >> shift & 0xff));
+}
+
+char byte_of(double linear) {
+    // A table: the power of sRGB would take longer than the point.
+    static const std::vector<char> table = [] {
+        std::vector<char> levels;
+        for (int i = 0; i <= 4095; ++i)
+            levels.push_back(static_cast<char>(255 * srgb_encoded(static_cast<float>(i) / 4095) + 0.5f));
+        return levels;
+    }();
+    const double level = linear > 0 ? std::min(linear, 1.0) * 4095 + 0.5 : 0;
+    return table[static_cast<std::size_t>(level)];
+}
+
+} // namespace
+
+Status write_ply(const std::string& path, const PointSource& source, const PointWork& work,
+                 const ImageMetadata& metadata, const std::function<Rgb(const ChaosPoint&)>& coloured) {
+    Status room = check_room(path, work.points);
+    if (!room.ok()) return room;
+    PendingFile pending(path);
+    std::unique_ptr<std::FILE, Close> file(std::fopen(pending.temporary_path().c_str(), "wb"));
+    int reason = file ? 0 : errno;
+    const auto write = [&](const char* bytes, std::size_t count) {
+        errno = 0;
+        if (reason == 0 && std::fwrite(bytes, 1, count, file.get()) != count) reason = errno ? errno : EIO;
+        return reason == 0;
+    };
+    const auto make = [&](std::span<const ChaosPoint> points, std::vector<char>& bytes) {
+        for (const ChaosPoint& point : points) {
+            for (int axis = 0; axis < 3; ++axis)
+                append(static_cast<float>(point.place[axis]), bytes);
+            const Rgb rgb = coloured(point);
+            for (int c = 0; c < 3; ++c)
+                bytes.push_back(byte_of(rgb[c]));
+        }
+    };
+    const std::string head = header(work.points, metadata);
+    const bool complete =
+        reason == 0 && write(head.data(), head.size()) &&
+        write_points(source, work, make,
+                     [&](const std::vector<char>& bytes) { return write(bytes.data(), bytes.size()); });
+    if (file && std::fclose(file.release()) != 0 && reason == 0) reason = errno;
+    if (reason != 0) return Status::failure(fmt::format("cannot write '{}': {}", path, std::strerror(reason)));
+    return complete ? pending.commit() : Status::failure("interrupted");
+}
+
+} // namespace graftal

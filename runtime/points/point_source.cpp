@@ -1,0 +1,155 @@
+#include "runtime/points/point_source.h"
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <mutex>
+
+#include <tbb/global_control.h>
+#include <tbb/info.h>
+#include <tbb/parallel_for.h>
+#include <tbb/parallel_pipeline.h>
+#include <tbb/task_arena.h>
+
+namespace graftal {
+
+namespace {
+
+constexpr std::size_t batch_size = 512;
+/// A cloud is written by pieces of this size.
+constexpr std::size_t piece_size = 1u << 15;
+
+class ChaosStream : public PointStream {
+  public:
+    ChaosStream(const ChaosGame& game, std::uint64_t seed, std::uint64_t number) : player_(game, seed, number) {}
+    bool fill(std::span<ChaosPoint> points) override {
+        for (ChaosPoint& point : points)
+            point = player_.next();
+        return true;
+    }
+
+  private:
+    ChaosPlayer player_;
+};
+
+/// Tells how far the work is, now and then, from whatever thread.
+class Progress {
+  public:
+    explicit Progress(const PointWork& work) : work_(work) {}
+
+    void add(std::uint64_t points) {
+        const std::uint64_t done = done_.fetch_add(points) + points;
+        if (!work_.on_progress) return;
+        const std::unique_lock lock(telling_, std::try_to_lock);
+        if (!lock) return;
+        const auto now = std::chrono::steady_clock::now();
+        if (now < next_) return;
+        next_ = now + std::chrono::milliseconds(100);
+        work_.on_progress(static_cast<double>(done) / static_cast<double>(work_.points));
+    }
+    bool stopped() {
+        if (!stopped_ && work_.cancelled && work_.cancelled()) stopped_ = true;
+        return stopped_;
+    }
+    void stop() { stopped_ = true; }
+
+  private:
+    const PointWork& work_;
+    std::atomic<std::uint64_t> done_ = 0;
+    std::atomic<bool> stopped_ = false;
+    std::mutex telling_;
+    std::chrono::steady_clock::time_point next_;
+};
+
+std::uint64_t stream_count(const PointSource& source, const PointWork& work) {
+    return source.single() ? 1 : (work.points + points_of_stream - 1) / points_of_stream;
+}
+
+/// The points of stream `number`, in batches.
+template<typename Take>
+void play(const PointSource& source, const PointWork& work, std::uint64_t number, Progress& progress,
+          const Take& take) {
+    const std::uint64_t first = number * points_of_stream;
+    std::uint64_t left = source.single() ? work.points : std::min(points_of_stream, work.points - first);
+    const std::unique_ptr<PointStream> stream = source.stream(number);
+    std::vector<ChaosPoint> batch(batch_size);
+    for (std::uint64_t told = left; left > 0 && !progress.stopped();) {
+        const std::span<ChaosPoint> points(batch.data(), std::min<std::uint64_t>(batch_size, left));
+        if (!stream->fill(points)) return progress.stop();
+        take(points);
+        left -= points.size();
+        if (told - left < points_of_stream && left > 0) continue;
+        progress.add(told - left);
+        told = left;
+    }
+}
+
+} // namespace
+
+std::unique_ptr<PointStream> ChaosSource::stream(std::uint64_t number) const {
+    return std::make_unique<ChaosStream>(game_, seed_, number);
+}
+
+int worker_count(int threads) {
+    return threads > 0 ? threads : tbb::info::default_concurrency();
+}
+
+bool take_points(const PointSource& source, const PointWork& work,
+                 const std::function<void(int worker, std::span<const ChaosPoint>)>& take) {
+    Progress progress(work);
+    const int workers = worker_count(work.threads);
+    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(workers));
+    tbb::task_arena arena(workers);
+    arena.execute([&] {
+        tbb::parallel_for(std::uint64_t{0}, stream_count(source, work), [&](std::uint64_t number) {
+            if (progress.stopped()) return;
+            const int worker = tbb::this_task_arena::current_thread_index();
+            play(source, work, number, progress, [&](std::span<const ChaosPoint> points) { take(worker, points); });
+        });
+    });
+    return !progress.stopped();
+}
+
+bool write_points(const PointSource& source, const PointWork& work,
+                  const std::function<void(std::span<const ChaosPoint>, std::vector<char>&)>& make,
+                  const std::function<bool(const std::vector<char>&)>& write) {
+    Progress progress(work);
+    const auto put = [&](const std::vector<char>& bytes) {
+        if (!progress.stopped() && !bytes.empty() && !write(bytes)) progress.stop();
+    };
+    if (source.single()) {
+        std::vector<char> bytes;
+        play(source, work, 0, progress, [&](std::span<const ChaosPoint> points) {
+            make(points, bytes);
+            if (bytes.size() < piece_size) return;
+            put(bytes);
+            bytes.clear();
+        });
+        put(bytes);
+        return !progress.stopped();
+    }
+    const int workers = worker_count(work.threads);
+    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(workers));
+    const std::uint64_t streams = stream_count(source, work);
+    std::uint64_t next = 0;
+    tbb::parallel_pipeline(
+        static_cast<std::size_t>(2 * workers),
+        tbb::make_filter<void, std::uint64_t>(tbb::filter_mode::serial_in_order,
+                                              [&](tbb::flow_control& control) -> std::uint64_t {
+                                                  if (next == streams || progress.stopped()) control.stop();
+                                                  return next++;
+                                              }) &
+            tbb::make_filter<std::uint64_t, std::vector<char>>(
+                tbb::filter_mode::parallel,
+                [&](std::uint64_t number) {
+                    std::vector<char> bytes;
+                    if (number < streams)
+                        play(source, work, number, progress,
+                             [&](std::span<const ChaosPoint> points) { make(points, bytes); });
+                    return bytes;
+                }) &
+            tbb::make_filter<std::vector<char>, void>(tbb::filter_mode::serial_in_order, put));
+    return !progress.stopped();
+}
+
+} // namespace graftal

@@ -1,0 +1,68 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "compiler/chaos/chaos_game.h"
+
+namespace graftal {
+
+/// Points one after the other.
+class PointStream {
+  public:
+    virtual ~PointStream() = default;
+    /// The next points, as many as there is room for; false if there are none: the sequence has gone astray.
+    virtual bool fill(std::span<ChaosPoint> points) = 0;
+};
+
+/// What points are drawn from.
+class PointSource {
+  public:
+    virtual ~PointSource() = default;
+    /// A sequence of its own for each number: threads may take them in any order.
+    virtual std::unique_ptr<PointStream> stream(std::uint64_t number) const = 0;
+    /// Whether there is one sequence only, number 0: each point follows from the one before.
+    virtual bool single() const { return false; }
+};
+
+/// Random iteration on a graph. The game must outlive this.
+class ChaosSource : public PointSource {
+  public:
+    ChaosSource(const ChaosGame& game, std::uint64_t seed) : game_(game), seed_(seed) {}
+    std::unique_ptr<PointStream> stream(std::uint64_t number) const override;
+
+  private:
+    const ChaosGame& game_;
+    std::uint64_t seed_;
+};
+
+/// How a number of points is taken from a source.
+struct PointWork {
+    std::uint64_t points = 0;
+    int threads = 0; ///< 0: all processors
+    std::function<void(double fraction)> on_progress;
+    std::function<bool()> cancelled;
+};
+
+/// Points of one stream; streams are as long, but for the last.
+inline constexpr std::uint64_t points_of_stream = 1u << 17;
+
+/// Calls `take(worker, points)` for batches of points, all together those of the streams 0, 1, ... up to the number.
+/// Batches come in any order, from several threads at a time, each with a number of its own below worker_count().
+/// False if it was cancelled, or a stream has gone astray.
+bool take_points(const PointSource& source, const PointWork& work,
+                 const std::function<void(int worker, std::span<const ChaosPoint>)>& take);
+
+/// As take_points(), but one batch at a time and in order: `make` turns points into bytes, on any thread; `write`
+/// gets them in order. False also if `write` fails.
+bool write_points(const PointSource& source, const PointWork& work,
+                  const std::function<void(std::span<const ChaosPoint>, std::vector<char>&)>& make,
+                  const std::function<bool(const std::vector<char>&)>& write);
+
+/// How many threads will be at work.
+int worker_count(int threads);
+
+} // namespace graftal

@@ -1,0 +1,52 @@
+#include <fmt/format.h>
+
+#include "runtime/points/draw_points.h"
+#include "tools/graftal/commands.h"
+#include "tools/graftal/progress_bar.h"
+#include "tools/graftal/report.h"
+
+namespace graftal {
+
+namespace {
+
+PointsOptions points_options(const Options& options) {
+    PointsOptions points;
+    points.compile = compile_options(options);
+    points.output = options.output;
+    points.metadata = {"graftal " GRAFTAL_VERSION, options.command_line, {}};
+    points.points = options.points.points;
+    points.colour = options.points.colour;
+    points.tone = options.points.tone;
+    points.threads = options.threads;
+    return points;
+}
+
+std::string done_text(const Options& options, const PointsReport& report) {
+    std::string text = fmt::format("{}: {} points", options.output, report.points);
+    if (report.inside < report.points)
+        text += fmt::format(", {:.3g} % of them in the picture",
+                            100 * static_cast<double>(report.inside) / static_cast<double>(report.points));
+    const double millions = 1e-6 * static_cast<double>(report.points) / std::max(report.seconds, 1e-9);
+    return text + fmt::format(", in {:.2f} s, {:.3g} million a second\n", report.seconds, millions);
+}
+
+} // namespace
+
+int run_points(const Options& options) {
+    ProgressBar bar(!options.quiet);
+    PointsOptions points = points_options(options);
+    points.on_progress = [&](double fraction) { bar.show("points", fraction); };
+    Compilation compilation;
+    bar.show("compiling...");
+    const std::optional<PointsReport> report = draw_points(options.operands.front(), points, compilation);
+    bar.clear();
+    const int status = conclude(options, compilation);
+    if (report && !options.quiet) say(done_text(options, *report));
+    return status;
+}
+
+int run_collage(const Options&) {
+    return exit_usage;
+}
+
+} // namespace graftal

@@ -1,0 +1,106 @@
+#include "tools/graftal/points_options.h"
+
+#include <cmath>
+#include <filesystem>
+#include <map>
+
+#include <fmt/format.h>
+
+#include "compiler/support/number.h"
+#include "runtime/points/draw_points.h"
+
+namespace graftal {
+
+namespace {
+
+constexpr double most_points = 1e15;
+
+/// "20000000", "2e7": a whole number, also by a power of ten.
+std::optional<std::uint64_t> parse_points(const std::string& text) {
+    const std::optional<double> value = parse_number(text);
+    if (!value || !(*value >= 1 && *value <= most_points) || *value != std::floor(*value)) return std::nullopt;
+    return static_cast<std::uint64_t>(*value);
+}
+
+/// An option whose value is a number above 0.
+void add_positive(CLI::App& app, const std::string& name, const std::string& help, double& value) {
+    const auto set = [name, &value](const std::string& text) {
+        const std::optional<double> number = parse_number(text);
+        if (!number || !(*number > 0 && *number <= 1e12))
+            throw CLI::ValidationError(fmt::format("{}: '{}' is not a number above 0", name, text));
+        value = *number;
+    };
+    app.add_option_function<std::string>(name, set, help)->type_name("X")->take_last();
+}
+
+} // namespace
+
+void add_points_options(CLI::App& app, Options& options) {
+    PointsSettings& settings = options.points;
+    app.add_option("-o,--output", options.output,
+                   "Picture, .png or .exr, or a cloud of points, .ply (default: MODEL's name + .png, here)")
+        ->type_name("FILE");
+    const auto points = [&settings](const std::string& text) {
+        settings.points = parse_points(text);
+        if (!settings.points)
+            throw CLI::ValidationError(
+                fmt::format("--points: '{}' is not a whole number from 1 to 1e15, such as 1e9", text));
+    };
+    app.add_option_function<std::string>("--points", points, "Points (default: 100 a pixel; of a cloud 1e6)")
+        ->type_name("N")
+        ->take_last();
+    const auto colour = [&settings](const std::string& text) {
+        static const std::map<std::string, PointColour> colours = {
+            {"tint", PointColour::tint}, {"map", PointColour::map}, {"density", PointColour::density}};
+        const auto found = colours.find(text);
+        if (found == colours.end())
+            throw CLI::ValidationError(fmt::format("--color: '{}' is neither tint nor map nor density", text));
+        settings.colour = found->second;
+    };
+    app.add_option_function<std::string>(
+           "--color", colour,
+           "Colours: the model's tints; one for each map, by the last; or how dense points lie (default tint)")
+        ->type_name("tint|map|density")
+        ->take_last();
+    add_positive(app, "--exposure", "How much few points show beside many (default 10)", settings.tone.exposure);
+    add_positive(app, "--gamma", "Above 1 lightens what is thin, below 1 darkens it (default 1)", settings.tone.gamma);
+    app.add_flag("--transparent", settings.tone.transparent, "No background: the picture gets an alpha channel");
+    app.footer("Examples:\n"
+               "  graftal points scenes/ifs/fern.rifs                   # makes fern.png\n"
+               "  graftal points scenes/ifs/fern.rifs --points 1e9 --size 2000x3000 -o fern.exr\n"
+               "  graftal points scenes/hart/pound_sign.rifs --points 1e7 -o pound_sign.ply\n"
+               "  graftal points scenes/ifs/twin_dragon.rifs --color map\n"
+               "  graftal points scenes/papers/gumowski_mira.rifs --color density --set a=0.31");
+}
+
+std::string complete_points(Options& options) {
+    if (options.output.empty() && options.operands.front() == "-")
+        return "a model from standard input has no name: say where the points go by '-o FILE'";
+    if (options.output.empty())
+        options.output = std::filesystem::path(options.operands.front()).stem().string() + ".png";
+    if (is_cloud_name(options.output))
+        return options.points.colour == PointColour::density
+                   ? "--color density: a cloud has no pixels to count points in"
+                   : "";
+    if (!is_picture_name(options.output))
+        return fmt::format("'{}' ends neither in .png nor in .exr nor in .ply", options.output);
+    return {};
+}
+
+void add_collage_options(CLI::App& app, Options& options) {
+    app.add_option("TARGET", options.points.target,
+                   "Picture of the target set: its dark pixels, or, where it has an alpha, its opaque ones")
+        ->required()
+        ->type_name("");
+    const auto set = [&options](const std::string& model) { options.operands = {model}; };
+    app.add_option_function<std::string>("MODEL", set, "Model file of a flat iterated function system, or -")
+        ->required()
+        ->type_name("");
+    app.add_flag("--json", options.json, "One JSON object on standard output");
+    app.footer("The picture is laid over the view that 'points' and 'render' have of the model at its size.\n"
+               "Example:\n"
+               "  graftal points leaf.rifs --size 400x400 -o leaf.png\n"
+               "  graftal collage leaf.png leaf.rifs");
+}
+
+} // namespace graftal

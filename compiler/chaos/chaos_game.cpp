@@ -29,12 +29,6 @@ Graph walked_graph(const Graph& graph, const Chances& chances) {
     return walked;
 }
 
-Paint paint_of(const Tint& tint) {
-    const PathTint path(tint);
-    return {static_cast<float>(path.premultiplied.r), static_cast<float>(path.premultiplied.g),
-            static_cast<float>(path.premultiplied.b), static_cast<float>(1 - path.alpha)};
-}
-
 bool before(const Affine& a, const Affine& b) {
     const auto numbers = [](const Affine& m) {
         std::array<double, 12> all;
@@ -55,6 +49,12 @@ std::uint32_t moves_to_settle(double rate) {
 }
 
 } // namespace
+
+Paint paint_of(const Tint& tint) {
+    const PathTint path(tint);
+    return {static_cast<float>(path.premultiplied.r), static_cast<float>(path.premultiplied.g),
+            static_cast<float>(path.premultiplied.b), static_cast<float>(1 - path.alpha)};
+}
 
 class ChaosGame::Builder {
   public:

@@ -33,6 +33,8 @@ struct Paint {
     }
 };
 
+Paint paint_of(const Tint& tint);
+
 struct ChaosPoint {
     Vec3 place;
     float rgb[3];

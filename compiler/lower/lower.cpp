@@ -32,6 +32,7 @@ std::string guessed_language(FileId file, const SourceMap& sources) {
         if (token.is("}") && depth > 0) --depth;
         if (depth > 0 || !token.first_on_line) continue;
         if (token.is("main")) return "rifs"; // `main rifs NAME {`
+        if (token.is("orbit")) return "rifs";
         if (token.is("rifs") || token.is("lsys")) return std::string(token.text);
         if (token.is("object") || token.is("canonical")) break;
     }

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <functional>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -38,6 +39,8 @@ struct Derivation {
     std::vector<FamilyReport> families; ///< that were placed, by name
 };
 
+struct OrbitModel;
+
 struct LowerOptions {
     std::map<std::string, double, std::less<>> set; ///< `--set NAME=VALUE`: replaces the value of a `let`
     std::optional<unsigned> steps;     ///< derivation steps of an L-system, in place of what the model says
@@ -52,6 +55,9 @@ struct LowerOptions {
     bool exact = false;                ///< L-systems are derived module by module: one honest random tree
     std::uint64_t max_modules = 50'000'000; ///< of a derived word
     std::size_t max_objects = 1'000'000;    ///< a model that enumerates more is an error
+    /// Where the root model goes if it is an orbit (orbit_model.h), which has no graph: then nothing comes back, but
+    /// without an error. Null: an orbit is an error.
+    std::shared_ptr<const OrbitModel>* orbit = nullptr;
 };
 
 /// Reads a model, and all that it uses, and lowers it to a verified graph. The language follows the file

@@ -13,6 +13,7 @@
 #include "compiler/lower/inner_parameters.h"
 #include "compiler/lower/lower_settings.h"
 #include "compiler/lower/lower_transform.h"
+#include "compiler/lower/lower_orbit.h"
 #include "compiler/lower/lowering.h"
 #include "compiler/lower/rifs_chances.h"
 #include "compiler/lower/rifs_system.h"
@@ -49,6 +50,10 @@ class RifsLowering {
 
     /// All checks run, whatever has failed before, so that one run reports all of a file's errors.
     std::optional<Graph> run() && {
+        if (!tree_.orbits.empty()) {
+            lower_orbit_file(tree_, lowering_);
+            return std::nullopt;
+        }
         if (tree_.blocks.empty() && !failed())
             diagnostics_.error({file_, 0, 0}, "this file has no 'rifs' block")
                 .with_hint("rifs NAME { map NAME { scale 1/2 } ... }");

@@ -8,6 +8,8 @@
 
 #include "compiler/support/source.h"
 #include "compiler/syntax/expression.h"
+#include "compiler/syntax/orbit_ast.h"
+#include "compiler/syntax/rifs_look.h"
 #include "compiler/syntax/scene_statements.h"
 #include "compiler/syntax/transform.h"
 
@@ -19,17 +21,6 @@ namespace graftal {
 inline constexpr std::size_t max_rifs_maps = 100'000;
 /// The same for the edges and matrix entries of one `follow`.
 inline constexpr std::size_t max_rifs_edges = 4'000'000;
-
-struct RifsName {
-    std::string_view text;
-    Span span;
-};
-
-/// `tint r, g, b, a` and `material NAME`, as a map, a row of codes, a condensation or a terminal may have.
-struct RifsLook {
-    std::vector<Expression> tint; ///< four, or none
-    std::optional<RifsName> material;
-};
 
 /// `condense` and `terminal`: a primitive or used model, placed.
 struct RifsPart {
@@ -112,6 +103,7 @@ struct RifsFile {
     std::vector<RifsUse> uses;
     std::vector<SceneStatement> statements;
     std::vector<RifsBlock> blocks;
+    std::vector<OrbitBlock> orbits;
 };
 
 } // namespace graftal

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "compiler/syntax/expression_parser.h"
+#include "compiler/syntax/orbit_parser.h"
 #include "compiler/syntax/rifs_parts.h"
 #include "compiler/syntax/rifs_tables.h"
 
@@ -27,15 +28,21 @@ class RifsParser {
   private:
     void parse_statement() {
         if (at_scene_statement(stream_)) return parse_scene_statement(stream_, file_.statements);
-        const bool good = at_block() ? parse_block() : stream_.at("use") ? parse_use() : unknown_statement();
-        if (!good) stream_.skip_line();
+        if (!parse_definition()) stream_.skip_line();
+    }
+
+    bool parse_definition() {
+        if (at_block()) return parse_block();
+        if (stream_.at("use")) return parse_use();
+        if (stream_.at("orbit")) return parse_orbit(stream_, file_.orbits);
+        return unknown_statement();
     }
 
     bool at_block() const { return stream_.at("rifs") || (stream_.at("main") && stream_.peek(1).is("rifs")); }
 
     bool unknown_statement() {
         std::vector<std::string> words = scene_keywords();
-        words.insert(words.end(), {"rifs", "main", "use"});
+        words.insert(words.end(), {"rifs", "main", "use", "orbit"});
         const Token& word = stream_.peek();
         Diagnostic& error = stream_.expected("'rifs', 'use' or a scene statement");
         if (word.kind == TokenKind::name) error.with_hint(did_you_mean(word.text, words));

@@ -11,6 +11,7 @@
 #include "compiler/chaos/unroll.h"
 #include "runtime/povray/interruption.h"
 #include "runtime/points/accumulation.h"
+#include "runtime/points/orbit_source.h"
 #include "runtime/points/ply_file.h"
 #include "runtime/points/point_source.h"
 #include "runtime/points/projection.h"
@@ -169,11 +170,39 @@ Status place_points(const PointSource& source, const View& view, const PointsOpt
     return complete ? write_picture(canvas, view, options, report) : Status::failure("interrupted");
 }
 
+namespace {
+
+std::optional<PointsReport> draw_orbit(const OrbitModel& model, const PointsOptions& options,
+                                       Compilation& compilation) {
+    constexpr std::uint64_t most_surveyed = 1u << 20;
+    if (options.compile.zoom.active()) {
+        compilation.diagnostics.error(model.span, "an orbit has no parts that '--at' and '--zoom' could look at")
+            .with_hint("--camera \"look_at=X,Y,0 width=W\" looks closer");
+        return std::nullopt;
+    }
+    const OrbitSource source(model, options.compile.lower.seed.value_or(0));
+    const Box box = source.survey(std::min(point_count(options), most_surveyed));
+    if (source.report(compilation.diagnostics)) return std::nullopt;
+    PointsReport report;
+    report.maps = static_cast<std::uint32_t>(model.maps.size());
+    const View view = frame(model.scene, box, options.compile.size, options.compile.camera);
+    compilation.status = place_points(source, view, options, report);
+    if (source.report(compilation.diagnostics)) compilation.status = Status(); // which is why it was given up
+    compilation.times.push_back({"points", report.seconds});
+    if (!compilation.status.ok() || compilation.diagnostics.has_errors()) return std::nullopt;
+    return report;
+}
+
+} // namespace
+
 std::optional<PointsReport> draw_points(const std::string& path, const PointsOptions& options,
                                         Compilation& compilation) {
     CompileOptions compile = options.compile;
     compile.pipeline.keep_names = true; // objects that differ in their chances only are not to be merged
+    std::shared_ptr<const OrbitModel> orbit;
+    compile.lower.orbit = &orbit;
     const std::optional<ViewedModel> viewed = view_model(path, compile, compilation);
+    if (orbit) return draw_orbit(*orbit, options, compilation);
     if (!viewed) return std::nullopt;
     const Stopwatch watch;
     const std::optional<ChaosGame> game = game_of(viewed->model, compilation.diagnostics);

@@ -14,11 +14,11 @@ enum class PointColour {
 };
 
 /// How numbers of points become a picture. With n points in a pixel, m in the mean over all pixels that have any,
-/// and w the number that 99 of 100 of these do not exceed, the points cover
+/// and w the number that 95 of 100 of these do not exceed, the points cover
 ///     a = (log(1 + exposure n / m) / log(1 + exposure w / m))^(1 / gamma)
 /// of the pixel, at most all of it, with their mean colour.
 struct Tone {
-    double exposure = 10;
+    double exposure = 30;
     double gamma = 1;
     bool transparent = false; ///< no background, but an alpha
     bool by_density = false;  ///< colours by a instead of the points' own

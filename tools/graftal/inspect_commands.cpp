@@ -4,6 +4,7 @@
 
 #include "compiler/emit/emit_dot.h"
 #include "compiler/graph/print.h"
+#include "compiler/lower/orbit_model.h"
 #include "compiler/support/file.h"
 #include "runtime/povray/interruption.h"
 #include "runtime/povray/process.h"
@@ -23,8 +24,14 @@ std::string verdict_text(const Contraction& contraction) {
 
 int check_one(const Options& options, const std::string& path) {
     Compilation compilation;
-    const std::optional<AnalysedModel> model = analyse_model(path, compile_options(options), compilation);
+    CompileOptions compile = compile_options(options);
+    std::shared_ptr<const OrbitModel> orbit;
+    compile.lower.orbit = &orbit;
+    const std::optional<AnalysedModel> model = analyse_model(path, compile, compilation);
     const int status = conclude(options, compilation);
+    if (status == exit_done && orbit && !options.quiet)
+        return print_output(fmt::format("{}: ok, an orbit of {} map{}: 'graftal points' draws it\n", path,
+                                        orbit->maps.size(), orbit->maps.size() == 1 ? "" : "s"));
     if (status != exit_done || !model || options.quiet) return status;
     return print_output(fmt::format("{}: ok, {}\n", path, verdict_text(model->contraction)));
 }

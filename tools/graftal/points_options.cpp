@@ -62,7 +62,7 @@ void add_points_options(CLI::App& app, Options& options) {
            "Colours: the model's tints; one for each map, by the last; or how dense points lie (default tint)")
         ->type_name("tint|map|density")
         ->take_last();
-    add_positive(app, "--exposure", "How much few points show beside many (default 10)", settings.tone.exposure);
+    add_positive(app, "--exposure", "How much few points show beside many (default 30)", settings.tone.exposure);
     add_positive(app, "--gamma", "Above 1 lightens what is thin, below 1 darkens it (default 1)", settings.tone.gamma);
     app.add_flag("--transparent", settings.tone.transparent, "No background: the picture gets an alpha channel");
     app.footer("Examples:\n"
@@ -70,7 +70,7 @@ void add_points_options(CLI::App& app, Options& options) {
                "  graftal points scenes/ifs/fern.rifs --points 1e9 --size 2000x3000 -o fern.exr\n"
                "  graftal points scenes/hart/pound_sign.rifs --points 1e7 -o pound_sign.ply\n"
                "  graftal points scenes/ifs/twin_dragon.rifs --color map\n"
-               "  graftal points scenes/papers/gumowski_mira.rifs --color density --set a=0.31");
+               "  graftal points scenes/orbits/gumowski_mira.rifs --color density --set a=0.31");
 }
 
 std::string complete_points(Options& options) {

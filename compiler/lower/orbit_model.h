@@ -1,0 +1,48 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "compiler/graph/graph.h"
+#include "compiler/support/diagnostics.h"
+#include "compiler/syntax/expression_code.h"
+
+namespace graftal {
+
+/// A map by formulas: numbers of a point are computed in order, each from x, y, z and those before it.
+struct OrbitFormulas {
+    std::string name; ///< "" if it has none
+    std::vector<Expression> sources;   ///< what the codes point into: do not change
+    std::vector<ExpressionCode> codes; ///< the map's own names, then the new x, y and z
+    std::vector<std::string> names;    ///< of all values: x, y, z, then the map's own
+    double probability = 1;            ///< relative to the other maps
+    Tint tint;
+    std::optional<MaterialId> material;
+    Span span;
+};
+
+/// A point that is mapped again and again, by one map or by several that are chosen at random.
+struct OrbitModel {
+    std::string name;
+    Vec3 start{0.0};
+    std::uint64_t skip = 100; ///< points at the beginning that do not count
+    bool flat = true;         ///< z stays 0
+    std::vector<OrbitFormulas> maps;
+    Environment lets;         ///< that the formulas use; for messages
+    Graph scene;              ///< its settings and materials; a root that has the maps' colours
+    Span span;
+
+    /// Reports that the map cannot be computed at this point: why.
+    void report(std::size_t map, Vec3 point, Diagnostics& diagnostics) const;
+};
+
+/// Farther from the origin an orbit counts as diverging.
+inline constexpr double farthest_of_orbit = 1e12;
+
+/// Applies the map; nothing where a formula has no value.
+std::optional<Vec3> apply(const OrbitFormulas& map, Vec3 point, std::vector<double>& slots);
+
+} // namespace graftal

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <mutex>
+#include <optional>
+
+#include "compiler/lower/orbit_model.h"
+#include "compiler/support/bounds.h"
+#include "runtime/points/point_source.h"
+
+namespace graftal {
+
+/// The points of an orbit: of one map a single sequence, of several any number, which all begin at the same point. The
+/// model must outlive this.
+class OrbitSource : public PointSource {
+  public:
+    OrbitSource(const OrbitModel& model, std::uint64_t seed);
+    std::unique_ptr<PointStream> stream(std::uint64_t number) const override;
+    bool single() const override { return model_.maps.size() == 1; }
+
+    /// The box of the first points of the first sequence.
+    Box survey(std::uint64_t points) const;
+    /// Reports, if a sequence has gone astray, where and why; of several that have, the first.
+    bool report(Diagnostics& diagnostics) const;
+
+  private:
+    class Stream;
+    struct Astray {
+        std::uint64_t stream = 0;
+        std::uint64_t steps = 0;
+        std::size_t map = 0;
+        Vec3 before{0.0};
+        bool has_value = false; ///< but too far away
+    };
+
+    void note(const Astray& astray) const;
+
+    const OrbitModel& model_;
+    std::uint64_t seed_;
+    AliasTables tables_;
+    AliasTables::Range choice_;
+    mutable std::mutex noting_;
+    mutable std::optional<Astray> astray_;
+};
+
+} // namespace graftal

@@ -364,6 +364,7 @@ void add_points(CLI::App& app, Options& options) {
 void add_collage(CLI::App& app, Options& options) {
     add_collage_options(app, options);
     add_camera(app, options);
+    app.remove_option(app.get_option("--size")); // it is the target's
     add_common(app, options);
 }
 

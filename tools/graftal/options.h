@@ -32,6 +32,8 @@ struct PointsSettings {
     PointColour colour = PointColour::tint;
     Tone tone;
     std::string target; ///< of `collage`
+    double threshold = 0.5;
+    bool light = false;
 };
 
 /// The command line, understood.

@@ -45,8 +45,4 @@ int run_points(const Options& options) {
     return status;
 }
 
-int run_collage(const Options&) {
-    return exit_usage;
-}
-
 } // namespace graftal

@@ -96,10 +96,21 @@ void add_collage_options(CLI::App& app, Options& options) {
     app.add_option_function<std::string>("MODEL", set, "Model file of a flat iterated function system, or -")
         ->required()
         ->type_name("");
+    const auto threshold = [&options](const std::string& text) {
+        const std::optional<double> value = parse_number(text);
+        if (!value || !(*value >= 0 && *value <= 1))
+            throw CLI::ValidationError(fmt::format("--threshold: '{}' is not a number from 0 to 1", text));
+        options.points.threshold = *value;
+    };
+    app.add_option_function<std::string>("--threshold", threshold,
+                                         "The target's pixels are darker than this, or at least as opaque (default 0.5)")
+        ->type_name("T")
+        ->take_last();
+    app.add_flag("--light", options.points.light, "The target's pixels are the lighter ones");
     app.add_flag("--json", options.json, "One JSON object on standard output");
     app.footer("The picture is laid over the view that 'points' and 'render' have of the model at its size.\n"
                "Example:\n"
-               "  graftal points leaf.rifs --size 400x400 -o leaf.png\n"
+               "  graftal points leaf.rifs --size 400x400 --transparent -o leaf.png\n"
                "  graftal collage leaf.png leaf.rifs");
 }
 

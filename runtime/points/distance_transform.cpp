@@ -1,0 +1,96 @@
+#include "runtime/points/distance_transform.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace graftal {
+
+namespace {
+
+constexpr std::int64_t nowhere = -1;
+
+/// Down each column: the distance to the nearest cell of the set in it.
+std::vector<std::int64_t> column_distances(const CellSet& set) {
+    std::vector<std::int64_t> distance(set.cells.size(), nowhere);
+    for (int x = 0; x < set.width; ++x) {
+        const auto sweep = [&](int first, int last, int step) {
+            std::int64_t since = nowhere;
+            for (int y = first; y != last; y += step) {
+                since = set.at(x, y) ? 0 : since == nowhere ? nowhere : since + 1;
+                std::int64_t& here = distance[set.index(x, y)];
+                if (since != nowhere && (here == nowhere || since < here)) here = since;
+            }
+        };
+        sweep(0, set.height, 1);
+        sweep(set.height - 1, -1, -1);
+    }
+    return distance;
+}
+
+/// The lower envelope of the parabolas (x - at)^2 + base along a row.
+class Envelope {
+  public:
+    void clear() { parabolas_.clear(); }
+
+    void add(int at, std::int64_t base) {
+        double from = -1e300;
+        while (!parabolas_.empty()) {
+            const Parabola& last = parabolas_.back();
+            // Where the new one comes to lie below.
+            from = static_cast<double>(base + std::int64_t{at} * at - last.base - std::int64_t{last.at} * last.at) /
+                   (2.0 * (at - last.at));
+            if (from > last.from) break;
+            parabolas_.pop_back();
+            from = -1e300;
+        }
+        parabolas_.push_back({at, base, from});
+    }
+
+    template<typename Put> void walk(int width, const Put& put) const {
+        std::size_t i = 0;
+        for (int x = 0; x < width && !parabolas_.empty(); ++x) {
+            while (i + 1 < parabolas_.size() && parabolas_[i + 1].from < x)
+                ++i;
+            const std::int64_t away = x - parabolas_[i].at;
+            put(x, away * away + parabolas_[i].base);
+        }
+    }
+
+  private:
+    struct Parabola {
+        int at;
+        std::int64_t base;
+        double from;
+    };
+
+    std::vector<Parabola> parabolas_;
+};
+
+} // namespace
+
+std::vector<std::int64_t> squared_distances(const CellSet& set) {
+    std::vector<std::int64_t> squared = column_distances(set);
+    Envelope envelope;
+    for (int y = 0; y < set.height; ++y) {
+        envelope.clear();
+        for (int x = 0; x < set.width; ++x) {
+            const std::int64_t down = squared[set.index(x, y)];
+            if (down != nowhere) envelope.add(x, down * down);
+        }
+        envelope.walk(set.width, [&](int x, std::int64_t value) { squared[set.index(x, y)] = value; });
+    }
+    return squared;
+}
+
+double farthest(const CellSet& from, const std::vector<std::int64_t>& squared) {
+    std::int64_t most = 0;
+    for (std::size_t i = 0; i < from.cells.size(); ++i)
+        if (from.cells[i]) most = std::max(most, squared[i]);
+    return std::sqrt(static_cast<double>(most));
+}
+
+double hausdorff_distance(const CellSet& a, const CellSet& b) {
+    return std::max(farthest(a, squared_distances(b)), farthest(b, squared_distances(a)));
+}
+
+} // namespace graftal

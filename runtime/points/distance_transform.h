@@ -1,0 +1,33 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace graftal {
+
+/// Cells of a grid that belong to a set; cell (x, y) stands for its middle.
+struct CellSet {
+    int width = 0;
+    int height = 0;
+    std::vector<bool> cells;
+
+    CellSet(int w, int h)
+        : width(w), height(h), cells(static_cast<std::size_t>(w) * static_cast<std::size_t>(h), false) {}
+    std::size_t index(int x, int y) const {
+        return static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
+    }
+    bool at(int x, int y) const { return cells[index(x, y)]; }
+};
+
+/// For every cell the squared distance to the nearest cell of the set, exact (Felzenszwalb and Huttenlocher 2012: lower
+/// envelopes of parabolas, row by row after column by column). O(cells). Requires a set that is not empty.
+std::vector<std::int64_t> squared_distances(const CellSet& set);
+
+/// The largest distance of a cell of `from` from the nearest of the set that these are the squared distances to.
+double farthest(const CellSet& from, const std::vector<std::int64_t>& squared);
+
+/// The Hausdorff distance of two sets of one grid, neither of them empty, in cells.
+double hausdorff_distance(const CellSet& a, const CellSet& b);
+
+} // namespace graftal

@@ -56,7 +56,7 @@ class Curve {
                 sum += static_cast<double>(cell.count);
             }
         if (counts.empty()) return;
-        const auto high = counts.begin() + static_cast<std::ptrdiff_t>((counts.size() - 1) * 95 / 100);
+        const auto high = counts.begin() + static_cast<std::ptrdiff_t>(counts.size() * 95 / 100);
         std::nth_element(counts.begin(), high, counts.end());
         factor_ = tone.exposure * static_cast<double>(counts.size()) / sum;
         white_ = std::log1p(factor_ * static_cast<double>(*high));

@@ -37,6 +37,7 @@ TEST(Determinism, ScenesOfTheProject) {
         if (!entry.is_regular_file() ||
             (entry.path().extension() != ".rifs" && entry.path().extension() != ".inst"))
             continue;
+        if (entry.path().parent_path().filename() == "orbits") continue; // they have no graph
         const std::string path = std::filesystem::relative(entry.path(), GRAFTAL_SOURCE_DIR).string();
         SCOPED_TRACE(path);
         CompileOptions options;

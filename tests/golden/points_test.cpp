@@ -1,0 +1,110 @@
+#include "tests/golden/command_line.h"
+
+#include <gmock/gmock.h>
+#include <nlohmann/json.hpp>
+
+namespace graftal {
+namespace {
+
+using testing::HasSubstr;
+using testing::StartsWith;
+
+const std::string fern = "'" + source_path("scenes/ifs/fern.rifs") + "'";
+const std::string flower = "'" + source_path("scenes/orbits/gumowski_mira.rifs") + "'";
+const std::string small = " --size 80x60 --points 20000 ";
+
+TEST_F(CommandLine, PointsUsage) {
+    const struct {
+        std::string arguments, message;
+    } cases[] = {
+        {"points", "Try 'graftal points --help' for more information.\n"},
+        {"points a.rifs --points 0", "--points: '0' is not a whole number from 1 to 1e15, such as 1e9"},
+        {"points a.rifs --points 1.5", "--points: '1.5' is not"},
+        {"points a.rifs --points 1e16", "--points: '1e16' is not"},
+        {"points a.rifs --color red", "--color: 'red' is neither tint nor map nor density"},
+        {"points a.rifs --exposure 0", "--exposure: '0' is not a number above 0"},
+        {"points a.rifs --gamma nan", "--gamma: 'nan' is not a number above 0"},
+        {"points a.rifs -o a.jpg", "'a.jpg' ends neither in .png nor in .exr nor in .ply"},
+        {"points a.rifs -o a.ply --color density", "a cloud has no pixels to count points in"},
+        {"points -", "standard input has no name"},
+        {"points a.rifs --error 1", "--error"},
+        {"collage a.png", "Try 'graftal collage --help'"},
+        {"collage a.png b.rifs --threshold 2", "--threshold: '2' is not a number from 0 to 1"},
+        {"collage a.png b.rifs --size 10x10", "--size"},
+    };
+    for (const auto& [arguments, message] : cases) {
+        const RunResult result = graftal(arguments);
+        EXPECT_EQ(result.status, 2) << arguments;
+        EXPECT_THAT(result.err, HasSubstr(message)) << arguments;
+    }
+}
+
+TEST_F(CommandLine, PointsMakePicturesAndClouds) {
+    const RunResult result = graftal("points " + fern + small);
+    EXPECT_EQ(result.status, 0) << result.err;
+    EXPECT_THAT(result.err, StartsWith("fern.png: 20000 points, in "));
+    EXPECT_EQ(picture("fern.png").width, 80);
+    EXPECT_EQ(graftal("points " + fern + small + "-q --transparent -o a.exr").err, "");
+    EXPECT_EQ(picture("a.exr").channels, 4);
+    EXPECT_EQ(graftal("points " + flower + small + "--color density -o b.png").status, 0);
+    EXPECT_EQ(graftal("points " + fern + " --points 1000 -o c.ply").status, 0);
+    EXPECT_THAT(read("c.ply"), StartsWith("ply\nformat binary_little_endian 1.0\ncomment graftal "));
+    EXPECT_EQ(graftal("points - -o d.png" + small + "< " + fern).status, 0);
+    EXPECT_EQ(graftal("points - -o e.png" + small + "< " + flower).status, 0);
+    EXPECT_EQ(files(), "a.exr b.png c.ply d.png e.png fern.png");
+}
+
+TEST_F(CommandLine, PointsThatFailLeaveNothing) {
+    RunResult result = graftal("points " + fern + " --points 1e15 -o a.ply");
+    EXPECT_EQ(result.status, 3);
+    EXPECT_THAT(result.err, HasSubstr("no room for 'a.ply': 1000000000000000 points take 13.3 PiB, and "));
+    result = graftal("points " + fern + small + "-o nowhere/a.png");
+    EXPECT_EQ(result.status, 3);
+    EXPECT_THAT(result.err, HasSubstr("cannot write 'nowhere/a.png'"));
+    write("o.rifs", "orbit o { x = x + 1\n  y = z }\n");
+    EXPECT_EQ(graftal("points o.rifs" + small).status, 0);
+    write("o.rifs", "orbit o { x = 3*x + 1\n  y = 0 }\n");
+    result = graftal("points o.rifs -o b.png");
+    EXPECT_EQ(result.status, 1);
+    EXPECT_THAT(result.err, StartsWith("o.rifs:1:11: error: the orbit diverges: in step 26 it goes from <"));
+    write("p.rifs", "rifs p { map a { scale 1/2 probability 0 } }\n");
+    result = graftal("points p.rifs");
+    EXPECT_EQ(result.status, 1);
+    EXPECT_THAT(result.err, HasSubstr("p.rifs:1:40: error: the probabilities of 'rifs p' are all 0"));
+    write("p.rifs", "rifs p { map a { scale 1/2 probability -0.1 } map b { scale 1/2 probability 0/0 } }\n");
+    result = graftal("points p.rifs");
+    EXPECT_EQ(result.status, 1);
+    EXPECT_THAT(result.err, HasSubstr("a probability must lie between 0 and 1, not -0.1"));
+    EXPECT_THAT(result.err, HasSubstr("division by zero"));
+    EXPECT_EQ(files(), "o.png o.rifs p.rifs");
+}
+
+TEST_F(CommandLine, OrbitsAreForPointsOnly) {
+    EXPECT_THAT(graftal("check " + flower).out, HasSubstr(": ok, an orbit of 1 map: 'graftal points' draws it\n"));
+    for (const char* command : {"render", "stats", "print", "animate"}) {
+        const RunResult result = graftal(command + (" " + flower));
+        EXPECT_EQ(result.status, 1) << command;
+        EXPECT_THAT(result.err, HasSubstr("is made of formulas, not of instances")) << command;
+        EXPECT_THAT(result.err, HasSubstr("'graftal points' draws it")) << command;
+    }
+    EXPECT_EQ(files(), "");
+}
+
+TEST_F(CommandLine, Collage) {
+    ASSERT_EQ(graftal("points " + fern + " --size 200x200 --points 1e6 --transparent -o t.png -q").status, 0);
+    const RunResult text = graftal("collage t.png " + fern + " --threshold 0.01");
+    EXPECT_EQ(text.status, 0) << text.err;
+    EXPECT_THAT(text.out, HasSubstr("contractivity  0.850941\n"));
+    const auto json = nlohmann::json::parse(graftal("collage t.png " + fern + " --threshold 0.01 --json").out);
+    EXPECT_EQ(json["maps"], 4);
+    EXPECT_EQ(json["norm"], "euclidean");
+    EXPECT_LT(json["epsilon"], 3 * json["pixel"].get<double>());
+    EXPECT_LT(json["distance"], json["bound"]);
+    EXPECT_EQ(graftal("collage none.png " + fern).status, 3);
+    EXPECT_EQ(graftal("collage t.png none.rifs").status, 3);
+    EXPECT_EQ(graftal("collage t.png '" + source_path("scenes/hart/pound_sign.rifs") + "'").status, 1);
+    EXPECT_EQ(files(), "t.png");
+}
+
+} // namespace
+} // namespace graftal

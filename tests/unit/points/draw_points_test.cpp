@@ -1,0 +1,197 @@
+#include "runtime/points/draw_points.h"
+
+#include <cmath>
+#include <cstring>
+#include <filesystem>
+
+#include <gtest/gtest.h>
+
+#include "compiler/support/file.h"
+#include "runtime/points/projection.h"
+#include "runtime/povray/temporary_directory.h"
+#include "runtime/trace/camera_rays.h"
+
+namespace graftal {
+namespace {
+
+class Points : public ::testing::Test {
+  protected:
+    void SetUp() override { ASSERT_TRUE(directory_.create().ok()); }
+
+    std::string path(const std::string& name) const { return directory_.path() + "/" + name; }
+    std::string read(const std::string& name) const {
+        std::string text;
+        EXPECT_TRUE(read_text(path(name), text).ok()) << name;
+        return text;
+    }
+    std::string scene(const std::string& name) const { return std::string(GRAFTAL_SOURCE_DIR) + "/scenes/" + name; }
+
+    std::optional<PointsReport> draw(const std::string& model, const std::string& output, std::uint64_t points,
+                                     int threads = 2, PointColour colour = PointColour::tint) {
+        PointsOptions options;
+        options.compile.size = {160, 120};
+        options.output = path(output);
+        options.points = points;
+        options.threads = threads;
+        options.colour = colour;
+        Compilation compilation;
+        auto report = draw_points(model, options, compilation);
+        message_ = compilation.diagnostics.render(compilation.sources) + compilation.status.message();
+        return report;
+    }
+
+    TemporaryDirectory directory_;
+    std::string message_;
+};
+
+TEST_F(Points, TheSameBytesForAnyNumberOfThreads) {
+    for (const char* model : {"ifs/fern.rifs", "hart/pound_sign.rifs", "hart/elm.inst", "orbits/julia_set.rifs"})
+        for (const char* ending : {".png", ".ply"}) {
+            const std::string one = std::string("one") + ending, three = std::string("three") + ending;
+            ASSERT_TRUE(draw(scene(model), one, 400'001, 1)) << message_;
+            ASSERT_TRUE(draw(scene(model), three, 400'001, 3)) << message_;
+            EXPECT_TRUE(read(one) == read(three)) << model << ending;
+        }
+}
+
+TEST_F(Points, CloudsHaveEveryPointInThePlaceThatItHas) {
+    ASSERT_TRUE(draw(scene("ifs/fern.rifs"), "fern.ply", 200'000)) << message_;
+    const std::string text = read("fern.ply");
+    const std::size_t head = text.find("end_header\n") + 11;
+    EXPECT_NE(text.find("format binary_little_endian 1.0\n"), std::string::npos);
+    EXPECT_NE(text.find("element vertex 200000\n"), std::string::npos);
+    ASSERT_EQ(text.size(), head + 15 * 200'000);
+    for (std::size_t i = 0; i < 200'000; ++i) {
+        float p[3];
+        std::memcpy(p, text.data() + head + 15 * i, sizeof p);
+        ASSERT_GE(p[0], -2.182f);
+        ASSERT_LE(p[0], 2.656f);
+        ASSERT_GE(p[1], 0);
+        ASSERT_LE(p[1], 9.999f);
+        ASSERT_EQ(p[2], 0);
+    }
+}
+
+TEST_F(Points, ColoursByMapAndByDensity) {
+    ASSERT_TRUE(draw(scene("ifs/twin_dragon.rifs"), "map.png", 300'000, 2, PointColour::map)) << message_;
+    ASSERT_TRUE(draw(scene("ifs/twin_dragon.rifs"), "tint.png", 300'000)) << message_;
+    ASSERT_TRUE(draw(scene("ifs/twin_dragon.rifs"), "density.exr", 300'000, 2, PointColour::density)) << message_;
+    EXPECT_FALSE(read("map.png") == read("tint.png"));
+}
+
+TEST_F(Points, WhatHasNoRoomIsNotBegun) {
+    EXPECT_FALSE(draw(scene("ifs/fern.rifs"), "fern.ply", 1'000'000'000'000'000));
+    EXPECT_NE(message_.find("no room for"), std::string::npos) << message_;
+    EXPECT_TRUE(std::filesystem::is_empty(directory_.path()));
+}
+
+TEST_F(Points, OrbitsThatGoAstrayAreExplained) {
+    const struct {
+        const char *text, *message;
+    } cases[] = {
+        {"orbit o { start <1, 1>  x = 2*x  y = y }\n", "the orbit diverges: in step 40 it goes from <549755813888, 1>"},
+        {"orbit o { start <1, 0>  x = 1/y  y = x }\n", "division by zero"},
+        {"orbit o { start <1, 0>  map { let u = sqrt(y - x) x = u y = 0 } }\n", "sqrt"},
+        {"orbit o { start <1, 1>  map { x = 2*x  y = y } map { x = x/2 y = 3*y } }\n", "the orbit diverges"},
+    };
+    for (const auto& [text, message] : cases) {
+        ASSERT_TRUE(write_text(path("o.rifs"), text).ok());
+        EXPECT_FALSE(draw(path("o.rifs"), "o.png", 1'000'000));
+        EXPECT_NE(message_.find(message), std::string::npos) << message_;
+        EXPECT_NE(message_.find("o.rifs:1:"), std::string::npos) << message_;
+        EXPECT_FALSE(std::filesystem::exists(path("o.png")));
+    }
+}
+
+TEST_F(Points, OrbitsThatAreWrongAreExplained) {
+    const struct {
+        const char *text, *message;
+    } cases[] = {
+        {"orbit o { }\n", "'orbit o' has no map"},
+        {"orbit o { x = y }\n", "this map has no formula 'y = ...'"},
+        {"orbit o { x = y  y = u }\n", "unknown name 'u'"},
+        {"orbit o { f(t) = g(t)  g(t) = t  x = f(y)  y = x }\n", "'g' is not defined above"},
+        {"orbit o { f(t) = f(t)  x = f(y)  y = x }\n", "'f' is not defined above"},
+        {"orbit o { f(t) = t  x = f(y, 1)  y = x }\n", "'f' takes 1 argument, not 2"},
+        {"orbit o { skip 0.5  x = y  y = x }\n", "'skip' must be a whole number from 0 to 1e9, not 0.5"},
+        {"orbit o { map { x = y y = x probability 0 } }\n", "the probabilities of 'orbit o' are all 0"},
+        {"orbit o { map { x = y y = x probability 1 } map { x = y y = x } }\n", "either all maps have a probability"},
+        {"orbit o { map { x = y y = x probability 2 } }\n", "a probability must lie between 0 and 1, not 2"},
+        {"orbit o { map { x = y y = x material m } }\n", "unknown material 'm'"},
+        {"orbit o { x = y  y = x }\norbit p { x = y  y = x }\n", "an orbit stands alone in its file"},
+    };
+    for (const auto& [text, message] : cases) {
+        ASSERT_TRUE(write_text(path("o.rifs"), text).ok());
+        EXPECT_FALSE(draw(path("o.rifs"), "o.png", 1000)) << text;
+        EXPECT_NE(message_.find(message), std::string::npos) << message_;
+        EXPECT_NE(message_.find("o.rifs:"), std::string::npos) << message_;
+    }
+    // Functions of functions, each twice in the next: 2^40 words.
+    std::string text = "orbit o {\n f0(t) = t + t\n";
+    for (int i = 1; i < 40; ++i)
+        text += "f" + std::to_string(i) + "(t) = f" + std::to_string(i - 1) + "(t) + f" + std::to_string(i - 1) + "(t)\n";
+    ASSERT_TRUE(write_text(path("o.rifs"), text + "x = f39(x)  y = x }\n").ok());
+    EXPECT_FALSE(draw(path("o.rifs"), "o.png", 1000));
+    EXPECT_NE(message_.find("this formula has more than 100000 words"), std::string::npos) << message_.substr(0, 500);
+}
+
+TEST_F(Points, OrbitsFollowTheirFormulas) {
+    ASSERT_TRUE(write_text(path("o.rifs"), "let k = 2\norbit o { let half = 1/k  f(u, v) = (u + v)*half\n"
+                                           "g(u) = f(u, 4)  start <0, 8> skip 0  x = g(x)  y = f(y, x) }\n")
+                    .ok());
+    ASSERT_TRUE(draw(path("o.rifs"), "o.ply", 3)) << message_;
+    const std::string text = read("o.ply");
+    float p[3];
+    const double expected[3][2] = {{2, 4}, {3, 3}, {3.5, 3}};
+    for (std::size_t i = 0; i < 3; ++i) {
+        std::memcpy(p, text.data() + text.find("end_header\n") + 11 + 15 * i, sizeof p);
+        EXPECT_EQ(p[0], expected[i][0]);
+        EXPECT_EQ(p[1], expected[i][1]);
+    }
+}
+
+TEST_F(Points, LieWhereRaysSeeThem) {
+    // Any point in front of the eye falls into the pixel whose ray goes through it.
+    for (const bool parallel : {false, true}) {
+        View view;
+        view.size = {64, 48};
+        view.camera.location = {1, 2, 5};
+        view.camera.orthographic = parallel;
+        view.camera.width = 3;
+        const CameraRays rays(view);
+        const Projection projection(view.camera, view.size);
+        for (int y = 0; y < 48; ++y)
+            for (int x = 0; x < 64; ++x) {
+                const Ray ray = rays.through(x + 0.3, y + 0.6);
+                const auto pixel = projection.pixel_of(ray.origin + 3.7 * ray.direction);
+                ASSERT_TRUE(pixel);
+                EXPECT_EQ(*pixel, static_cast<std::size_t>(64 * y + x));
+            }
+        EXPECT_FALSE(projection.pixel_of({1e6, 2, 0}));
+        if (!parallel) {
+            EXPECT_FALSE(projection.pixel_of({1, 2, 7}));
+        }
+    }
+}
+
+TEST(Tone, CoversFromNothingToAll) {
+    View view;
+    view.size = {3, 1};
+    Accumulation points(view.size);
+    const float red[3] = {1, 0, 0};
+    for (int i = 0; i < 1000; ++i)
+        points.add(0, red);
+    points.add(1, red);
+    Tone tone;
+    tone.transparent = true;
+    const Image image = toned(points, tone, view);
+    EXPECT_EQ(image.pixels[3], 1);
+    EXPECT_GT(image.pixels[7], 0);
+    EXPECT_LT(image.pixels[7], 0.1);
+    EXPECT_EQ(image.pixels[11], 0);
+    EXPECT_EQ(image.pixels[4], 1);
+    EXPECT_EQ(image.pixels[5], 0);
+}
+
+} // namespace
+} // namespace graftal

@@ -67,6 +67,7 @@ class OrbitLowering {
     /// The expression with the block's functions written out: each may use those above it.
     Expression expanded(const Expression& e) {
         words_ = 0;
+        too_long_ = false;
         return expanded(e, block_.functions.size(), {});
     }
 
@@ -74,7 +75,7 @@ class OrbitLowering {
 
     Expression expanded(const Expression& e, std::size_t known, const Arguments& arguments) {
         if (++words_ > most_words) {
-            if (words_ == most_words + 1)
+            if (!std::exchange(too_long_, true))
                 diagnostics_.error(e.span, fmt::format("this formula has more than {} words", most_words));
             return {};
         }
@@ -205,7 +206,8 @@ class OrbitLowering {
     Diagnostics& diagnostics_;
     OrbitModel model_;
     std::size_t stated_ = 0;
-    std::size_t words_ = 0;
+    std::size_t words_ = 0; ///< of the formula that is being written out
+    bool too_long_ = false;
 };
 
 bool may_stand_there(const RifsFile& tree, Lowering& lowering) {

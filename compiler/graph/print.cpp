@@ -104,7 +104,16 @@ class Printer {
         print_numbers("  height", {ground.height});
         if (ground.material) out_ += "  material: " + *ground.material + "\n";
         print_vector("  color", ground.rgb);
+        if (ground.area) print_area(*ground.area);
         out_ += "}\n";
+    }
+
+    void print_area(const FlatArea& area) {
+        if (area.disc)
+            out_ += "  area: disc " + shortest(area.radius) + ", " + shortest(area.centre.x) + ", " +
+                    shortest(area.centre.y) + "\n";
+        else
+            print_numbers("  area", {area.low.x, area.low.y, area.high.x, area.high.y});
     }
 
     void print_object(ObjectId id) {

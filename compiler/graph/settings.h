@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "compiler/support/affine.h"
+#include "compiler/support/flat_area.h"
 #include "compiler/support/source.h"
 #include "compiler/support/tint.h"
 
@@ -53,6 +54,7 @@ struct GroundSetting {
     double height = 0;                    ///< the plane y = height
     std::optional<std::string> material;  ///< by name; else a neutral one
     std::optional<Rgb> rgb;
+    std::optional<FlatArea> area;         ///< what `scatter` covers with `over: ground`; the plane goes on
     bool operator==(const GroundSetting&) const = default;
 };
 

@@ -8,10 +8,10 @@
 #include <vector>
 
 #include <fmt/format.h>
-#include <glm/common.hpp>
 
 #include "compiler/lower/inner_parameters.h"
 #include "compiler/lower/inst_index.h"
+#include "compiler/lower/lower_scatter.h"
 #include "compiler/lower/lower_settings.h"
 #include "compiler/lower/lower_transform.h"
 #include "compiler/lower/model_family.h"
@@ -45,17 +45,6 @@ struct Reached {
     Span use;               ///< the reference that reached it; unknown where nothing did
     std::size_t parent = 0; ///< index of the object that holds the reference; its own where nothing did
 };
-
-/// Later lines in front. A single tint keeps its bits.
-Tint composed(const std::vector<Tint>& tints) {
-    if (tints.empty()) return {};
-    if (tints.size() == 1) return tints.front();
-    PathTint path;
-    for (const Tint& tint : tints)
-        path = PathTint(tint) * path;
-    if (path.alpha == 0) return {};
-    return {glm::clamp(path.premultiplied / path.alpha, 0.0, 1.0), std::min(path.alpha, 1.0)};
-}
 
 /// `f(0) -> f(1) -> f(2) -> ... -> f(99999) -> f(100000)`
 std::string abridged_chain(const std::vector<std::string_view>& names) {
@@ -292,6 +281,7 @@ class InstLowerer {
     }
 
     void lower_group(const InstGroup& group, std::size_t parent, Object& object) {
+        if (group.scatter) return lower_scattered(group, parent, object);
         const std::optional<Placement> placement = lower_placement(group);
         instance_count_ += group.masters.size();
         if (!stopped_ && !within_limits(graph_.objects.size(), instance_count_, group.span, lowering_))
@@ -309,16 +299,44 @@ class InstLowerer {
         }
     }
 
+    void lower_scattered(const InstGroup& group, std::size_t parent, Object& object) {
+        std::vector<std::optional<ObjectId>> masters;
+        for (const InstReference& reference : group.masters) {
+            masters.push_back(resolve(reference, parent));
+            if (stopped_) return;
+        }
+        const std::optional<Placement> placement = lower_placement(group);
+        const std::size_t most = lowering_.options.max_objects * max_instances_per_object;
+        const ScatterContext context{environment_, graph_.settings, scatter_seed(),
+                                     most - std::min(most, instance_count_)};
+        const auto places = lower_scatter(group, context, scratch_);
+        if (!places || !placement || std::ranges::count(masters, std::optional<ObjectId>()) > 0) return;
+        instance_count_ += places->size();
+        bool lost = false;
+        for (const ScatteredPlace& place : *places) {
+            const Affine map = placement->parent_from_child * place.parent_from_child;
+            lost = lost || !is_finite(map) || map.linear == Mat3(0.0);
+            object.instances.push_back({*masters[place.master], map, place.tint, placement->material,
+                                        group.masters[place.master].span});
+        }
+        if (lost) scratch_.error(group.span, "the sizes or places of these leave the range of numbers");
+    }
+
+    std::optional<std::uint64_t> scatter_seed() const {
+        return lowering_.at_root_model() ? lowering_.options.seed : std::nullopt;
+    }
+
     std::optional<Placement> lower_placement(const InstGroup& group) {
         Placement placement;
         const std::optional<Affine> map = lower_transforms(group.transforms, environment_, scratch_);
         std::vector<Tint> tints;
-        for (const InstTint& line : group.tints)
-            if (const std::optional<Tint> tint = lower_tint(line.values, environment_, scratch_))
+        const std::size_t tint_lines = group.scatter ? 0 : group.tints.size(); // those of a scatter vary
+        for (std::size_t i = 0; i < tint_lines; ++i)
+            if (const auto tint = lower_tint(group.tints[i].values, environment_, scratch_))
                 tints.push_back(*tint);
         if (group.material && materials_.contains(*group.material))
             placement.material = materials_.at(*group.material);
-        if (!map || tints.size() < group.tints.size()) return std::nullopt;
+        if (!map || tints.size() < tint_lines) return std::nullopt;
         placement.parent_from_child = *map;
         placement.tint = composed(tints);
         return placement;

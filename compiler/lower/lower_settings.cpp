@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "compiler/lower/lower_area.h"
 #include "compiler/lower/lower_transform.h"
 #include "compiler/support/number.h"
 
@@ -54,6 +55,11 @@ class Fields {
     std::optional<Rgb> color(std::string_view keyword) const {
         const SceneField* field = find(keyword);
         return field ? lower_color(field->values, lets_, diagnostics_) : std::nullopt;
+    }
+
+    std::optional<FlatArea> area(std::string_view keyword) const {
+        const SceneField* field = find(keyword);
+        return field ? lower_area(field->values, field->span, lets_, diagnostics_) : std::nullopt;
     }
 
     std::optional<double> number(std::string_view keyword) const {
@@ -141,6 +147,7 @@ GroundSetting lower_ground(const Fields& fields) {
     ground.height = fields.number("height").value_or(0);
     ground.rgb = fields.color("color");
     if (const SceneField* material = fields.find("material")) ground.material = material->name;
+    ground.area = fields.area("area");
     return ground;
 }
 

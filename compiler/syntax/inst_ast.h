@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "compiler/syntax/expression.h"
+#include "compiler/syntax/scatter.h"
 #include "compiler/syntax/scene_statements.h"
 #include "compiler/syntax/transform.h"
 
@@ -21,13 +22,15 @@ struct InstReference {
 
 struct InstTint {
     std::vector<Expression> values; ///< r, g, b, alpha
+    std::vector<Expression> until;  ///< the other end of a range, in a scatter; else empty
     Span span;
 };
 
-/// `union:`, `instance:`, a bare name or `terminal:`, and the lines after it, which hold for each of its
-/// masters, the first line applied first.
+/// `union:`, `instance:`, a bare name, `terminal:` or `scatter:`, and the lines after it, which hold for each
+/// of its masters, the first line applied first.
 struct InstGroup {
     bool terminal = false;
+    std::optional<InstScatter> scatter; ///< then the masters are placed many times, each where it says
     std::vector<InstReference> masters; ///< one or more; one of a terminal
     std::vector<TransformLine> transforms;
     std::vector<InstTint> tints;

@@ -20,8 +20,9 @@ constexpr std::size_t max_parameters = 100;
 const std::vector<std::string>& body_keywords() {
     static const std::vector<std::string> keywords = [] {
         std::vector<std::string> words(transform_keywords.begin(), transform_keywords.end());
-        for (const char* word : {"union", "instance", "terminal", "tint", "material"})
+        for (const char* word : {"union", "instance", "terminal", "scatter", "tint", "material"})
             words.emplace_back(word);
+        words.insert(words.end(), scatter_keywords().begin(), scatter_keywords().end());
         return words;
     }();
     return keywords;
@@ -36,8 +37,9 @@ std::vector<std::string> file_keywords() {
 /// The lines of one object, from its '{' to its '}'.
 class BodyParser {
   public:
-    BodyParser(TokenStream& stream, InstDefinition& definition)
-        : stream_(stream), diagnostics_(stream.diagnostics()), definition_(definition) {}
+    /// `scatters`: how many there are in the file so far.
+    BodyParser(TokenStream& stream, InstDefinition& definition, std::size_t& scatters)
+        : stream_(stream), diagnostics_(stream.diagnostics()), definition_(definition), scatters_(scatters) {}
 
     /// Requires that the '{' was just taken.
     void parse() {
@@ -76,6 +78,8 @@ class BodyParser {
         if (stream_.at("tint")) return parse_tint_line();
         if (stream_.at("material")) return parse_material();
         if (stream_.at("union") || stream_.at("instance") || stream_.at("terminal")) return parse_group();
+        if (at_scatter()) return parse_group();
+        if (in_scatter() && at_scatter_line(stream_)) return parse_line_of_scatter();
         if (stream_.at_name()) return parse_bare_group();
         const bool open = stream_.at("{");
         stream_.expected("a line of an object");
@@ -84,12 +88,32 @@ class BodyParser {
         return false;
     }
 
+    /// `scatter: tree` or `scatter tree`, and not an object of that name.
+    bool at_scatter() const {
+        const Token& after = stream_.peek(1);
+        return stream_.at("scatter") &&
+               (after.is(":") || (after.kind == TokenKind::name && !after.first_on_line));
+    }
+
+    bool in_scatter() const {
+        return !lost_group_ && !definition_.groups.empty() && definition_.groups.back().scatter;
+    }
+
+    bool parse_line_of_scatter() {
+        InstScatter& scatter = *definition_.groups.back().scatter;
+        const bool good = parse_scatter_line(stream_, scatter);
+        scatter.complete = scatter.complete && good;
+        return good;
+    }
+
     bool parse_group() {
         const Token keyword = stream_.next();
         stream_.accept(":");
         InstGroup group;
         group.terminal = keyword.is("terminal");
-        if (!parse_masters(group, keyword.text)) return false;
+        if (keyword.is("scatter")) group.scatter.emplace().ordinal = scatters_++;
+        lost_group_ = !parse_masters(group, keyword.text);
+        if (lost_group_) return false;
         group.span = stream_.span_from(keyword.span);
         return group.terminal ? add_terminal(std::move(group)) : add(std::move(group));
     }
@@ -99,7 +123,14 @@ class BodyParser {
         const Token name = stream_.peek();
         const bool begins_line = name.first_on_line || stream_.previous().is("{");
         if (stream_.peek(1).is(":")) {
+            const bool scattered = at_scatter_line(stream_);
             stream_.next();
+            if (scattered && lost_group_) return false; // its scatter is in error
+            if (scattered) {
+                diagnostics_.error(name.span, fmt::format("'{}' belongs to a scatter", name.text))
+                    .with_hint("open the group with 'scatter:'");
+                return false;
+            }
             diagnostics_.error(name.span, fmt::format("unknown keyword '{}'", name.text))
                 .with_hint(did_you_mean(name.text, body_keywords()));
             return false;
@@ -160,6 +191,7 @@ class BodyParser {
     }
 
     bool add(InstGroup group) {
+        lost_group_ = false;
         definition_.groups.push_back(std::move(group));
         return true;
     }
@@ -200,8 +232,19 @@ class BodyParser {
         stream_.accept(":");
         std::optional<std::vector<Expression>> values = parse_tint(stream_, "'tint'");
         if (!values) return false;
-        if (InstGroup* group = current(keyword))
-            group->tints.push_back({std::move(*values), stream_.span_from(keyword.span)});
+        std::vector<Expression> until;
+        if (stream_.accept("..")) {
+            std::optional<std::vector<Expression>> end = parse_tint(stream_, "'tint'");
+            if (!end) return false;
+            until = std::move(*end);
+        }
+        const Span span = stream_.span_from(keyword.span);
+        InstGroup* group = current(keyword);
+        if (!group) return true;
+        if (!until.empty() && !group->scatter)
+            diagnostics_.error(span, "a range of tints belongs to a scatter")
+                .with_hint("open the group with 'scatter:', or give one tint");
+        group->tints.push_back({std::move(*values), std::move(until), span});
         return true;
     }
 
@@ -231,7 +274,9 @@ class BodyParser {
     TokenStream& stream_;
     Diagnostics& diagnostics_;
     InstDefinition& definition_;
+    std::size_t& scatters_;
     bool failed_ = false;
+    bool lost_group_ = false; ///< the last group was in error
 };
 
 class FileParser {
@@ -269,7 +314,7 @@ class FileParser {
         definition.span = stream_.span_from(name->span);
         stream_.accept(":");
         if (!stream_.expect("{", stream_.previous().text)) return false;
-        BodyParser(stream_, definition).parse();
+        BodyParser(stream_, definition, scatters_).parse();
         definition.size = stream_.position() - begin;
         module_.definitions.push_back(std::move(definition));
         return true;
@@ -353,6 +398,7 @@ class FileParser {
     TokenStream& stream_;
     Diagnostics& diagnostics_;
     InstModule module_;
+    std::size_t scatters_ = 0;
 };
 
 } // namespace

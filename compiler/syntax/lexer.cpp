@@ -12,7 +12,8 @@ namespace graftal {
 namespace {
 
 constexpr std::string_view one_character_symbols = "{}()[]<>,:;=+-*/%^!~?";
-constexpr std::array<std::string_view, 7> two_character_symbols = {"->", "==", "!=", "<=", ">=", "&&", "||"};
+constexpr std::array<std::string_view, 8> two_character_symbols = {"->", "==", "!=", "<=",
+                                                                   ">=", "&&", "||", ".."};
 
 /// A token takes about 40 bytes and its syntax tree about as much again.
 constexpr std::size_t max_tokens = 16'000'000;
@@ -136,7 +137,7 @@ class Lexer {
         const std::size_t begin = at_;
         while (is_digit(peek()))
             ++at_;
-        if (peek() == '.') ++at_;
+        if (peek() == '.' && peek(1) != '.') ++at_; // `0..360` is a range
         while (is_digit(peek()))
             ++at_;
         const std::size_t sign = peek(1) == '+' || peek(1) == '-' ? 1 : 0;

@@ -13,7 +13,7 @@ enum class TokenKind : std::uint8_t { name, number, string, symbol, end };
 
 /// One token. Names are [A-Za-z_][A-Za-z0-9_]* with inner dots (`leaf.llr`); numbers
 /// are decimal (`2`, `.16`, `1e-3`); strings are in double quotes without escapes; symbols are one
-/// character, or one of `-> == != <= >= && ||`.
+/// character, or one of `-> == != <= >= && || ..`. Two dots end a number: `0..360` is three tokens.
 struct Token {
     TokenKind kind = TokenKind::end;
     bool first_on_line = false;  ///< no token before it on its line

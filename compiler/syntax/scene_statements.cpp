@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "compiler/syntax/expression_parser.h"
+#include "compiler/syntax/scatter.h"
 
 namespace graftal {
 
@@ -14,7 +15,7 @@ namespace {
 
 using Kind = SceneStatement::Kind;
 
-enum class Shape { flag, number, vector, color, name, text };
+enum class Shape { flag, number, vector, color, name, text, area };
 
 struct FieldRule {
     std::string_view keyword;
@@ -32,7 +33,7 @@ const std::vector<FieldRule>& rules(Kind kind) {
                                                  {"shadowless", Shape::flag}};
     static const std::vector<FieldRule> background = {{"zenith", Shape::color}, {"horizon", Shape::color}};
     static const std::vector<FieldRule> ground = {
-        {"height", Shape::number}, {"color", Shape::color}, {"material", Shape::name}};
+        {"height", Shape::number}, {"color", Shape::color}, {"material", Shape::name}, {"area", Shape::area}};
     static const std::vector<FieldRule> material = {
         {"color", Shape::color},     {"ambient", Shape::number},   {"diffuse", Shape::number},
         {"specular", Shape::number}, {"roughness", Shape::number}, {"reflection", Shape::number},
@@ -212,6 +213,13 @@ class StatementParser {
             if (!text) return false;
             field.name = text->text;
             field.name_span = text->span;
+            break;
+        }
+        case Shape::area: {
+            std::optional<AreaText> area = parse_area(stream_, what, false);
+            if (!area) return false;
+            if (area->kind == AreaText::Kind::disc) field.name = "disc";
+            values = std::move(area->numbers);
             break;
         }
         }

@@ -15,7 +15,7 @@ struct SceneField {
     std::string keyword;
     Span span;                      ///< of the keyword
     std::vector<Expression> values; ///< none of a flag, one of a number, three of a vector or colour
-    std::string name;               ///< where the value is a name (`material: bark`) or a string
+    std::string name; ///< where the value is a name (`material: bark`) or a string, or "disc" of an area
     Span name_span;
 };
 

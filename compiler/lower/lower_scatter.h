@@ -1,0 +1,36 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "compiler/graph/settings.h"
+#include "compiler/support/affine.h"
+#include "compiler/syntax/inst_ast.h"
+
+namespace graftal {
+
+/// What a scatter needs to know of the model around it.
+struct ScatterContext {
+    const Environment& environment;
+    const SceneSettings& settings;     ///< for what `ground` is
+    std::optional<std::uint64_t> seed; ///< `--seed`, which gives every scatter other numbers
+    std::size_t most = 0;              ///< places that the graph has room for
+};
+
+/// One instance that a scatter makes, before the transforms and the material of its group.
+struct ScatteredPlace {
+    std::size_t master = 0; ///< index among the group's
+    Affine parent_from_child;
+    Tint tint;
+};
+
+/// Chooses the places of the group, which must be a scatter, and what stands on each. Errors: numbers out of
+/// range, areas that are empty or unknown, and places that do not fit.
+std::optional<std::vector<ScatteredPlace>>
+lower_scatter(const InstGroup& group, const ScatterContext& context, Diagnostics& diagnostics);
+
+/// Later tints in front. A single one keeps its bits.
+Tint composed(const std::vector<Tint>& tints);
+
+} // namespace graftal

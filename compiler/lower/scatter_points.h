@@ -1,0 +1,45 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include "compiler/lower/counter_random.h"
+#include "compiler/support/flat_area.h"
+
+namespace graftal {
+
+/// Where places may lie: in one area, and in none of others.
+struct ScatterArea {
+    FlatArea within;
+    std::vector<FlatArea> without;
+
+    bool contains(Vec2 p) const;
+    /// What is left of `within`, as 256 times 256 samples find it: exact where nothing is left out.
+    double size() const;
+};
+
+// Each gives as many places as it can, at most `count`, all inside `area`. Requires size() to be more than
+// some hundredth of the whole, for the others are drawn in vain.
+// They depend on the arguments alone, and are made by additions, multiplications and roots, which all
+// machines round alike.
+
+/// None nearer to another than `apart` (> 0): darts, thrown until most of them miss, then candidates around
+/// every place (Bridson 2007, "Fast Poisson disk sampling in arbitrary dimensions"), until the area is full.
+std::vector<Vec2> poisson_points(const ScatterArea& area, std::size_t count, double apart,
+                                 CounterRandom random);
+
+/// Each by itself: they gather in clumps.
+std::vector<Vec2> uniform_points(const ScatterArea& area, std::size_t count, CounterRandom random);
+
+/// One somewhere in each cell of a lattice: even, with neither clumps nor a least distance.
+std::vector<Vec2> jittered_points(const ScatterArea& area, std::size_t count, CounterRandom random);
+
+/// As the seeds of a sunflower (Vogel 1979), about the centre of the area.
+std::vector<Vec2> spiral_points(const ScatterArea& area, std::size_t count);
+
+/// The distance at which `count` places fill the area loosely enough that darts find them soon: 0.7 of the
+/// side of the square that each has. Darts alone get to 0.83, a triangular lattice to 1.07.
+double loose_distance(double area_size, std::size_t count);
+
+} // namespace graftal

@@ -151,8 +151,8 @@ class ScatterLowerer {
         if (scatter_.weights.empty()) return;
         if (scatter_.weights.size() != group_.masters.size()) {
             diagnostics_.error(scatter_.weights_span,
-                               fmt::format("there are {} weights for {} objects", scatter_.weights.size(),
-                                           group_.masters.size()));
+                               fmt::format("as many weights as objects are needed: {}, not {}",
+                                           group_.masters.size(), scatter_.weights.size()));
             return;
         }
         double sum = 0;

@@ -1,5 +1,5 @@
-// Every example of docs/language.md that is marked as a model (```lsys) is a whole file that compiles without
-// a word, in both ways in which a model may be compiled.
+// Every example of docs/language.md that is marked as a model (```lsys or ```inst) is a whole file that
+// compiles without a word, L-systems in both ways in which they may be compiled.
 
 #include <algorithm>
 #include <cstddef>
@@ -36,12 +36,12 @@ std::vector<Example> examples(const std::string& page, const std::string& langua
     return found;
 }
 
-TEST(Language, ExamplesCompile) {
+void compile_examples(const std::string& language, std::size_t at_least) {
     const std::filesystem::path root = GRAFTAL_SOURCE_DIR;
     std::string page;
     ASSERT_TRUE(read_text((root / "docs/language.md").string(), page).ok());
-    const std::vector<Example> found = examples(page, "lsys");
-    EXPECT_GE(found.size(), 18u);
+    const std::vector<Example> found = examples(page, language);
+    EXPECT_GE(found.size(), at_least);
     for (const Example& example : found)
         for (const bool exact : {false, true}) {
             SourceMap sources;
@@ -49,11 +49,16 @@ TEST(Language, ExamplesCompile) {
             LowerOptions options;
             options.exact = exact;
             // Beside the models that examples use.
-            const std::string name = (root / "scenes/ifs/example.lsys").string();
+            const std::string name = (root / "scenes/ifs/example.").string() + language;
             const std::optional<Graph> graph = lower_text(name, example.text, options, sources, diagnostics);
             EXPECT_TRUE(graph) << "docs/language.md:" << example.line;
             EXPECT_EQ(diagnostics.render(sources), "") << "docs/language.md:" << example.line;
         }
+}
+
+TEST(Language, ExamplesCompile) {
+    compile_examples("lsys", 18);
+    compile_examples("inst", 1);
 }
 
 } // namespace

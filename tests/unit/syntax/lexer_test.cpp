@@ -41,6 +41,11 @@ TEST(Lexer, a_number_may_be_followed_by_a_word) {
                 ElementsAre("codes", "2", "d", "{", "1", "e", "1.", "x", "}"));
 }
 
+TEST(Lexer, two_dots_are_a_range_and_no_part_of_its_ends) {
+    EXPECT_THAT(Lexed("0..360 .5...7 1. .. a..b 2.5..3").texts(),
+                ElementsAre("0", "..", "360", ".5", "..", ".7", "1.", "..", "a", "..", "b", "2.5", "..", "3"));
+}
+
 TEST(Lexer, knows_line_starts_and_space_before_tokens) {
     const Lexed lexed("a -1 # c\n - 1 /* \n */ b// x\nc");
     std::vector<bool> first, space;

@@ -76,6 +76,8 @@ class ChaosGame::Builder {
         for (ObjectId id = 0; id < graph_.objects.size(); ++id)
             add_climb(id);
         if (game_.sources_.empty()) return std::nullopt;
+        for (std::size_t c = 0; c < game_.cores_.size(); ++c)
+            game_.cores_[c].in_world = game_.cores_[c].always_leaves && is_in_world(c);
         game_.source_choice_ = game_.tables_.add(source_weights_);
         return std::move(game_);
     }
@@ -177,6 +179,7 @@ class ChaosGame::Builder {
         game_.sources_.push_back(std::move(source));
         source_weights_.push_back(entering);
         game_.cores_.push_back(std::move(core));
+        first_of_core_.push_back(members.front());
     }
 
     void add_wandering(std::uint32_t c, const std::vector<double>& shares) {
@@ -246,6 +249,21 @@ class ChaosGame::Builder {
             state.climb = add_moves(arrivals_[id], ends, false);
     }
 
+    /// Whether every way from the core to the root leaves points as they are.
+    bool is_in_world(std::size_t core) const {
+        const ObjectId any = first_of_core_[core];
+        for (const ObjectId id : components_.members[components_.component_of[any]]) {
+            if (game_.states_[id].at_root) continue;
+            for (const Arrival& arrival : arrivals_[id]) {
+                const Instance& instance = graph_.objects[arrival.user].instances[arrival.instance];
+                if (!(instance.parent_from_child == Affine()) || instance.tint.alpha != 0 || instance.material ||
+                    !game_.states_[arrival.user].at_root)
+                    return false;
+            }
+        }
+        return true;
+    }
+
     struct Before {
         bool operator()(const Affine& a, const Affine& b) const { return before(a, b); }
     };
@@ -257,6 +275,7 @@ class ChaosGame::Builder {
     const std::vector<ObjectBounds>& bounds_;
     std::vector<std::uint32_t> places_;
     std::vector<double> source_weights_;
+    std::vector<ObjectId> first_of_core_;
     std::map<Affine, std::uint32_t, Before> labels_;
     ChaosGame game_;
 };

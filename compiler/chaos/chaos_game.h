@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "compiler/chaos/alias_table.h"
@@ -57,7 +58,7 @@ class ChaosGame {
     static constexpr std::uint32_t none = UINT32_MAX;
 
     /// One step up: an instance, or the end of a climb.
-    struct Move {
+    struct alignas(64) Move {
         Affine map;
         Paint paint;
         std::uint32_t to = none; ///< state; none: the point is in the world
@@ -75,7 +76,8 @@ class ChaosGame {
 
     struct Core {
         AliasTables::Range start; ///< states, by their share of time
-        bool always_leaves = false;
+        bool always_leaves = false; ///< every move makes a point
+        bool in_world = false;      ///< and so does every state, as it is
         std::optional<Rgb> base;  ///< mean colour of its materials
     };
 
@@ -105,9 +107,14 @@ class ChaosGame {
 class ChaosPlayer {
   public:
     ChaosPlayer(const ChaosGame& game, std::uint64_t seed, std::uint64_t sequence);
-    ChaosPoint next();
+    /// The next points. Sequences do not depend on how they are divided, where each part is a multiple of `grain`.
+    void fill(std::span<ChaosPoint> points);
+    static constexpr std::size_t grain = 4;
 
   private:
+    /// In each core so many points wander at a time: a move waits for the one before.
+    static constexpr std::size_t together = grain;
+
     struct Wanderer {
         Vec3 place{0.0};
         Paint paint;
@@ -115,14 +122,17 @@ class ChaosPlayer {
         std::uint32_t map = 0;
     };
 
+    ChaosPoint next();
+    void fill_in_world(std::span<ChaosPoint> points);
     void wander(Wanderer& wanderer);
-    void settle(std::uint32_t core);
+    Wanderer* settled(std::uint32_t core);
     ChaosPoint climb(Wanderer at, std::uint32_t material, const std::optional<Rgb>& base);
+    ChaosPoint seen(const Wanderer& at, const Rgb& behind) const;
 
     const ChaosGame& game_;
     RandomStream random_;
-    std::vector<Wanderer> wanderers_; ///< by core
-    std::vector<bool> settled_;
+    std::vector<Wanderer> wanderers_; ///< by core, `together` each
+    std::vector<std::uint8_t> next_;  ///< by core: the one to move next; `unsettled` at first
 };
 
 } // namespace graftal

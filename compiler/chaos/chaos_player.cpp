@@ -2,10 +2,17 @@
 
 namespace graftal {
 
-ChaosPlayer::ChaosPlayer(const ChaosGame& game, std::uint64_t seed, std::uint64_t sequence)
-    : game_(game), random_(seed, sequence), wanderers_(game.cores_.size()), settled_(game.cores_.size(), false) {}
+namespace {
 
-void ChaosPlayer::wander(Wanderer& wanderer) {
+constexpr std::uint8_t unsettled = UINT8_MAX;
+
+} // namespace
+
+ChaosPlayer::ChaosPlayer(const ChaosGame& game, std::uint64_t seed, std::uint64_t sequence)
+    : game_(game), random_(seed, sequence), wanderers_(together * game.cores_.size()),
+      next_(game.cores_.size(), unsettled) {}
+
+inline void ChaosPlayer::wander(Wanderer& wanderer) {
     const ChaosGame::State& state = game_.states_[wanderer.state];
     const ChaosGame::Move& move = game_.moves_[game_.tables_.choose(state.wander, random_.bits())];
     wanderer.place = move.map(wanderer.place);
@@ -14,13 +21,38 @@ void ChaosPlayer::wander(Wanderer& wanderer) {
     wanderer.state = move.to;
 }
 
-void ChaosPlayer::settle(std::uint32_t core) {
-    Wanderer& wanderer = wanderers_[core];
-    wanderer.state = game_.entries_[game_.tables_.choose(game_.cores_[core].start, random_.bits())];
-    wanderer.place = game_.middles_[wanderer.state];
-    for (std::uint32_t i = 0; i < game_.settling_; ++i)
-        wander(wanderer);
-    settled_[core] = true;
+/// The wanderers of a core, once they have forgotten where they began.
+ChaosPlayer::Wanderer* ChaosPlayer::settled(std::uint32_t core) {
+    Wanderer* const wanderers = &wanderers_[together * core];
+    if (next_[core] != unsettled) return wanderers;
+    for (std::size_t w = 0; w < together; ++w) {
+        Wanderer& wanderer = wanderers[w];
+        wanderer.state = game_.entries_[game_.tables_.choose(game_.cores_[core].start, random_.bits())];
+        wanderer.place = game_.middles_[wanderer.state];
+        for (std::uint32_t i = 0; i < game_.settling_; ++i)
+            wander(wanderer);
+    }
+    next_[core] = 0;
+    return wanderers;
+}
+
+void ChaosPlayer::fill(std::span<ChaosPoint> points) {
+    const ChaosGame::Source& first = game_.sources_.front();
+    if (game_.sources_.size() == 1 && first.core != ChaosGame::none && game_.cores_[first.core].in_world)
+        return fill_in_world(points);
+    for (ChaosPoint& point : points)
+        point = next();
+}
+
+/// The usual case of a system by itself: every move of every point is a point of the picture.
+void ChaosPlayer::fill_in_world(std::span<ChaosPoint> points) {
+    Wanderer* const wanderers = settled(0);
+    const Rgb behind = game_.cores_.front().base.value_or(Material{}.rgb);
+    for (std::size_t i = 0; i < points.size(); i += together)
+        for (std::size_t w = 0; w < together && i + w < points.size(); ++w) {
+            wander(wanderers[w]);
+            points[i + w] = seen(wanderers[w], behind);
+        }
 }
 
 ChaosPoint ChaosPlayer::next() {
@@ -28,9 +60,10 @@ ChaosPoint ChaosPlayer::next() {
     const ChaosGame::Source& source =
         game_.sources_[only ? 0 : game_.tables_.choose(game_.source_choice_, random_.bits())];
     if (source.core == ChaosGame::none)
-        return climb({source.surface->point(random_), source.paint, source.state, 0}, source.material, std::nullopt);
-    if (!settled_[source.core]) settle(source.core);
-    Wanderer& wanderer = wanderers_[source.core];
+        return climb({source.surface->point(random_), source.paint, source.state, 0}, source.material,
+                     std::nullopt);
+    Wanderer& wanderer = settled(source.core)[next_[source.core]];
+    next_[source.core] = static_cast<std::uint8_t>((next_[source.core] + 1) % together);
     const ChaosGame::Core& core = game_.cores_[source.core];
     do
         wander(wanderer);
@@ -41,9 +74,8 @@ ChaosPoint ChaosPlayer::next() {
 ChaosPoint ChaosPlayer::climb(Wanderer at, std::uint32_t material, const std::optional<Rgb>& base) {
     const ChaosGame::State* state = &game_.states_[at.state];
     while (!state->at_root) {
-        const ChaosGame::Move& move = game_.moves_[state->climb.count == 1
-                                                       ? game_.tables_.choose(state->climb, 0)
-                                                       : game_.tables_.choose(state->climb, random_.bits())];
+        const std::uint64_t bits = state->climb.count == 1 ? 0 : random_.bits();
+        const ChaosGame::Move& move = game_.moves_[game_.tables_.choose(state->climb, bits)];
         if (move.to == ChaosGame::none) break;
         if (!move.identity) at.place = move.map(at.place);
         at.paint = at.paint.under(move.paint);
@@ -51,9 +83,11 @@ ChaosPoint ChaosPlayer::climb(Wanderer at, std::uint32_t material, const std::op
         if (move.label != 0) at.map = move.label;
         state = &game_.states_[move.to];
     }
-    const Rgb behind = base                             ? *base
-                       : material != ChaosGame::none ? game_.materials_[material]
-                                                     : Material{}.rgb;
+    if (base) return seen(at, *base);
+    return seen(at, material != ChaosGame::none ? game_.materials_[material] : Material{}.rgb);
+}
+
+inline ChaosPoint ChaosPlayer::seen(const Wanderer& at, const Rgb& behind) const {
     const float through = at.paint.through;
     return {at.place,
             {at.paint.red + through * static_cast<float>(behind.r),

@@ -28,6 +28,8 @@ class Accumulation {
             cell.rgb[c] += level(rgb[c]);
     }
 
+    void prefetch(std::size_t pixel) const { __builtin_prefetch(&cells_[pixel], 1); }
+
     /// The same where several threads add to one picture.
     void add_shared(std::size_t pixel, const float rgb[3]) {
         Cell& cell = cells_[pixel];
@@ -54,7 +56,8 @@ class Accumulation {
 
   private:
     static std::uint64_t level(float value) {
-        return value > 0 ? static_cast<std::uint64_t>(65535 * std::min(value, 1.0f) + 0.5f) : 0;
+        const float clamped = std::min(std::max(0.0f, value), 1.0f); // NaN gives 0
+        return static_cast<std::uint64_t>(static_cast<std::int32_t>(65535 * clamped + 0.5f));
     }
 
     ImageSize size_;

@@ -177,8 +177,12 @@ void mark_points(const AnalysedModel& model, Graph graph, const Grid& grid, Cell
     const auto game = ChaosGame::of(graph, strong_components(graph), model.bounds, rate);
     if (!game) return;
     ChaosPlayer player(*game, 0, 0);
-    for (std::uint64_t i = 0; i < random_points; ++i)
-        grid.mark(set, grid.pixels_of(player.next().place));
+    std::vector<ChaosPoint> points(1000);
+    for (std::uint64_t done = 0; done < random_points; done += points.size()) {
+        player.fill(points);
+        for (const ChaosPoint& point : points)
+            grid.mark(set, grid.pixels_of(point.place));
+    }
 }
 
 bool faces_plane(const Camera& camera) {

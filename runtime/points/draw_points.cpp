@@ -1,6 +1,7 @@
 #include "runtime/points/draw_points.h"
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <filesystem>
 #include <memory>
@@ -9,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "compiler/chaos/unroll.h"
+#include "compiler/support/check.h"
 #include "runtime/povray/interruption.h"
 #include "runtime/points/accumulation.h"
 #include "runtime/points/orbit_source.h"
@@ -84,9 +86,16 @@ class Canvas {
     void take(int worker, std::span<const ChaosPoint> points) {
         std::unique_ptr<Accumulation>& own = copies_[shared_ ? 0 : static_cast<std::size_t>(worker)];
         if (!own) own = std::make_unique<Accumulation>(size_); // by the thread that fills it
-        for (const ChaosPoint& point : points) {
-            const std::optional<std::size_t> pixel = projection_.pixel_of(point.place);
-            if (!pixel) continue;
+        std::array<std::size_t, most_at_once> pixels;
+        GRAFTAL_CHECK(points.size() <= pixels.size(), "points: a batch too large");
+        for (std::size_t i = 0; i < points.size(); ++i) {
+            pixels[i] = projection_.pixel_of(points[i].place).value_or(beside);
+            // The cells lie all over the memory: asked for now, they are there when they are wanted.
+            if (pixels[i] != beside) own->prefetch(pixels[i]);
+        }
+        for (std::size_t i = 0; i < points.size(); ++i) {
+            const ChaosPoint& point = points[i];
+            if (pixels[i] == beside) continue;
             float by_map[3];
             const float* rgb = point.rgb;
             if (options_.colour == PointColour::map) {
@@ -94,7 +103,7 @@ class Canvas {
                     by_map[c] = static_cast<float>(map_colours_[point.map][c]);
                 rgb = by_map;
             }
-            shared_ ? own->add_shared(*pixel, rgb) : own->add(*pixel, rgb);
+            shared_ ? own->add_shared(pixels[i], rgb) : own->add(pixels[i], rgb);
         }
     }
 
@@ -115,6 +124,9 @@ class Canvas {
     }
 
   private:
+    static constexpr std::size_t most_at_once = 512;
+    static constexpr std::size_t beside = SIZE_MAX; ///< the picture
+
     const PointsOptions& options_;
     Projection projection_;
     ImageSize size_;

@@ -23,8 +23,7 @@ class ChaosStream : public PointStream {
   public:
     ChaosStream(const ChaosGame& game, std::uint64_t seed, std::uint64_t number) : player_(game, seed, number) {}
     bool fill(std::span<ChaosPoint> points) override {
-        for (ChaosPoint& point : points)
-            point = player_.next();
+        player_.fill(points);
         return true;
     }
 

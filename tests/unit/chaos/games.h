@@ -49,11 +49,13 @@ inline Played played(const std::string& name, const std::string& text) {
 inline std::vector<ChaosPoint> points_of(const ChaosGame& game, int count, int stride, std::uint64_t sequence = 0) {
     ChaosPlayer player(game, 1, sequence);
     std::vector<ChaosPoint> points;
-    for (int i = 0; i < count; ++i) {
-        for (int skipped = 1; skipped < stride; ++skipped)
-            player.next();
-        points.push_back(player.next());
+    // Points of one wanderer are `grain` apart.
+    std::vector<ChaosPoint> all(static_cast<std::size_t>(stride) * ChaosPlayer::grain);
+    while (points.size() < static_cast<std::size_t>(count)) {
+        player.fill(all);
+        points.insert(points.end(), all.end() - ChaosPlayer::grain, all.end());
     }
+    points.resize(static_cast<std::size_t>(count));
     return points;
 }
 

@@ -19,7 +19,8 @@ std::uint32_t heaviest(const std::vector<double>& weights) {
 AliasTables::Range AliasTables::add(const std::vector<double>& weights, std::uint32_t first_choice) {
     const double sum = std::accumulate(weights.begin(), weights.end(), 0.0);
     GRAFTAL_CHECK(sum > 0 && std::isfinite(sum), "chances that sum to nothing");
-    const Range range{static_cast<std::uint32_t>(entries_.size()), static_cast<std::uint32_t>(weights.size())};
+    const Range range{static_cast<std::uint32_t>(entries_.size()),
+                      static_cast<std::uint32_t>(weights.size())};
     std::vector<double> share; // of a slot: below 1 it has room for a part of another
     std::vector<std::uint32_t> poor, rich;
     for (std::uint32_t i = 0; i < range.count; ++i) {
@@ -40,7 +41,9 @@ AliasTables::Range AliasTables::add(const std::vector<double>& weights, std::uin
     }
     // What is left is full, but for rounding: unless it has no weight at all.
     for (const std::uint32_t i : poor)
-        if (weights[i] == 0) entries_[range.first + i].choice = entries_[range.first + i].alias = first_choice + heaviest(weights);
+        if (weights[i] == 0)
+            entries_[range.first + i].choice = entries_[range.first + i].alias =
+                first_choice + heaviest(weights);
     return range;
 }
 

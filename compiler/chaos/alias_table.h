@@ -5,8 +5,8 @@
 
 namespace graftal {
 
-/// Many small tables of weighted choices in one array (Walker 1977): each choice takes one random number and looks
-/// at one entry. Chances are kept to 2^-32.
+/// Many small tables of weighted choices in one array (Walker 1977): each choice takes one random number and
+/// looks at one entry. Chances are kept to 2^-32.
 class AliasTables {
   public:
     struct Range {

@@ -14,8 +14,8 @@ namespace graftal {
 namespace {
 
 constexpr double share_of_flattening = 0.01;
-constexpr double flattening = 0.02;     ///< area_factor / norm^2 below which a map counts as flattening
-constexpr double most_kept = 0.95;      ///< area from level to level where levels are drawn
+constexpr double flattening = 0.02; ///< area_factor / norm^2 below which a map counts as flattening
+constexpr double most_kept = 0.95;  ///< area from level to level where levels are drawn
 constexpr std::uint64_t most_work = 400'000'000; ///< visits of edges, for one component
 
 /// A cyclic component and the sizes of its edges.
@@ -199,8 +199,8 @@ class ChanceFinder {
         for (std::uint32_t v = 0; v < cycle.size(); ++v) {
             any_stated |= stated(cycle.objects[v]);
             for (const Instance& instance : graph_.objects[cycle.objects[v]].instances) {
-                const bool inside = components_.component_of[instance.master] ==
-                                    components_.component_of[cycle.objects[v]];
+                const bool inside =
+                    components_.component_of[instance.master] == components_.component_of[cycle.objects[v]];
                 sizes[v].push_back(inside ? 0 : size_of(instance));
                 begins[v] += sizes[v].back();
             }
@@ -253,7 +253,8 @@ double area_factor(const Mat3& linear) {
     return largest * largest * std::pow(std::abs(glm::determinant(linear / largest)), 2.0 / 3.0);
 }
 
-Chances chances_of(const Graph& graph, const Components& components, const std::vector<ObjectBounds>& bounds) {
+Chances chances_of(const Graph& graph, const Components& components,
+                   const std::vector<ObjectBounds>& bounds) {
     return ChanceFinder(graph, components, bounds).find();
 }
 

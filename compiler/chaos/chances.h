@@ -8,20 +8,24 @@
 
 namespace graftal {
 
-/// By object, by instance: the chance that a random walk down from the object takes the instance. They add up to
-/// 1; of an object in which there is nothing to take points of (planes only) all are 0.
+/// By object, by instance: the chance that a random walk down from the object takes the instance. They add up
+/// to 1; of an object in which there is nothing to take points of (planes only) all are 0.
 using Chances = std::vector<std::vector<double>>;
 
 /// The chances that the instances state; else by size, so that points lie evenly:
 ///
-/// - What ends is a surface, and gets points by its area; instances on the way by |det|^(2/3) times the size of
+/// - What ends is a surface, and gets points by its area; instances on the way by |det|^(2/3) times the size
+/// of
 ///   what they place: |ad - bc| of a flat map.
-/// - The limit set of a cycle gets points by the measure that its maps multiply by |det|^(2t/3), with the t for
-///   which it is invariant (the spectral radius of [|det|^(2t/3)] is 1): of an ordinary IFS p_j = |det_j|^(2t/3).
-///   Among similarities that meet at most in edges this is the even measure, of exponent 2t = dimension.
+/// - The limit set of a cycle gets points by the measure that its maps multiply by |det|^(2t/3), with the t
+/// for
+///   which it is invariant (the spectral radius of [|det|^(2t/3)] is 1): of an ordinary IFS p_j =
+///   |det_j|^(2t/3). Among similarities that meet at most in edges this is the even measure, of exponent 2t =
+///   dimension.
 /// - A map that flattens gets a hundredth of what the largest of its component has.
 /// - A cycle that draws something at every level gets points by area, if the areas of the levels add up to
-///   something; they are made to, by the choice of t, if a level has more than 0.95 of the area of the one before.
+///   something; they are made to, by the choice of t, if a level has more than 0.95 of the area of the one
+///   before.
 ///
 /// Requires the bounds of all objects. O(graph), but for some dozen rounds through cyclic components.
 Chances chances_of(const Graph& graph, const Components& components, const std::vector<ObjectBounds>& bounds);

@@ -58,7 +58,8 @@ Paint paint_of(const Tint& tint) {
 
 class ChaosGame::Builder {
   public:
-    Builder(const Graph& graph, const Components& components, const std::vector<ObjectBounds>& bounds, double rate)
+    Builder(const Graph& graph, const Components& components, const std::vector<ObjectBounds>& bounds,
+            double rate)
         : graph_(walked_graph(graph, chances_of(graph, components, bounds))),
           components_(strong_components(graph_)), begins_(graph.objects.size(), 0.0),
           arrivals_(graph.objects.size()), bounds_(bounds) {
@@ -256,8 +257,8 @@ class ChaosGame::Builder {
             if (game_.states_[id].at_root) continue;
             for (const Arrival& arrival : arrivals_[id]) {
                 const Instance& instance = graph_.objects[arrival.user].instances[arrival.instance];
-                if (!(instance.parent_from_child == Affine()) || instance.tint.alpha != 0 || instance.material ||
-                    !game_.states_[arrival.user].at_root)
+                if (!(instance.parent_from_child == Affine()) || instance.tint.alpha != 0 ||
+                    instance.material || !game_.states_[arrival.user].at_root)
                     return false;
             }
         }

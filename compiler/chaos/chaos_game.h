@@ -11,14 +11,15 @@
 #include "compiler/graph/components.h"
 #include "compiler/graph/graph.h"
 
-// Random iteration (the chaos game) on an object-instance graph: points of the root, distributed as a random walk
-// down from the root would have them that takes each instance by its chance (chances.h).
+// Random iteration (the chaos game) on an object-instance graph: points of the root, distributed as a random
+// walk down from the root would have them that takes each instance by its chance (chances.h).
 //
-// Points are made upwards, so that one costs a few affine maps of a point however deep it lies. A walk down ends in
-// a primitive, or in a *core*: a cyclic component that it cannot leave. In a core a point wanders for ever: from
-// (object v, x) to (object u, A x) where u has an instance of v under A, by the chances of the walk turned round in
-// time. Whatever state it is in, x is a random point of v (Barnsley, Elton and Hardin 1989). From there, or from a
-// random point of a primitive, it climbs to the root, by the chances of the walk down turned round too.
+// Points are made upwards, so that one costs a few affine maps of a point however deep it lies. A walk down
+// ends in a primitive, or in a *core*: a cyclic component that it cannot leave. In a core a point wanders for
+// ever: from (object v, x) to (object u, A x) where u has an instance of v under A, by the chances of the
+// walk turned round in time. Whatever state it is in, x is a random point of v (Barnsley, Elton and Hardin
+// 1989). From there, or from a random point of a primitive, it climbs to the root, by the chances of the walk
+// down turned round too.
 
 namespace graftal {
 
@@ -45,8 +46,8 @@ struct ChaosPoint {
 class ChaosGame {
   public:
     /// Nothing if there is nothing to take points of. Requires that the graph is verified, and contracts by
-    /// `rate` an instance in its cycles; the bounds are those of all objects. A graph with cycles that is cut by
-    /// levels must be unrolled first (unroll.h).
+    /// `rate` an instance in its cycles; the bounds are those of all objects. A graph with cycles that is cut
+    /// by levels must be unrolled first (unroll.h).
     static std::optional<ChaosGame> of(const Graph& graph, const Components& components,
                                        const std::vector<ObjectBounds>& bounds, double rate);
 
@@ -75,10 +76,10 @@ class ChaosGame {
     };
 
     struct Core {
-        AliasTables::Range start; ///< states, by their share of time
+        AliasTables::Range start;   ///< states, by their share of time
         bool always_leaves = false; ///< every move makes a point
         bool in_world = false;      ///< and so does every state, as it is
-        std::optional<Rgb> base;  ///< mean colour of its materials
+        std::optional<Rgb> base;    ///< mean colour of its materials
     };
 
     /// Where points come from: a primitive under an instance, or a core.
@@ -107,7 +108,8 @@ class ChaosGame {
 class ChaosPlayer {
   public:
     ChaosPlayer(const ChaosGame& game, std::uint64_t seed, std::uint64_t sequence);
-    /// The next points. Sequences do not depend on how they are divided, where each part is a multiple of `grain`.
+    /// The next points. Sequences do not depend on how they are divided, where each part is a multiple of
+    /// `grain`.
     void fill(std::span<ChaosPoint> points);
     static constexpr std::size_t grain = 4;
 

@@ -47,7 +47,8 @@ class Recogniser {
         return ifs;
     }
 
-    bool splits_like_root(ObjectId id, const std::vector<Instance>& inner, const std::vector<Instance>& ending) const {
+    bool splits_like_root(ObjectId id, const std::vector<Instance>& inner,
+                          const std::vector<Instance>& ending) const {
         return part(id, inner, ending).has_value();
     }
 
@@ -61,7 +62,8 @@ class Recogniser {
         const auto by_master = [](const Instance& a, const Instance& b) { return a.master < b.master; };
         std::sort(masters.begin(), masters.end(), by_master);
         for (std::size_t i = 0; i < inner.size(); ++i)
-            if (masters[i].master != inner[i].master || !(masters[i].parent_from_child == map)) return std::nullopt;
+            if (masters[i].master != inner[i].master || !(masters[i].parent_from_child == map))
+                return std::nullopt;
         for (std::size_t i = 0; i < parts.size(); ++i) {
             Instance expected = ending[i];
             expected.parent_from_child = map * expected.parent_from_child;
@@ -71,7 +73,8 @@ class Recogniser {
     }
 
     /// Every part of the root is the root itself under a map.
-    std::optional<OrdinaryIfs> union_of(std::vector<Instance> inner, const std::vector<Instance>& ending) const {
+    std::optional<OrdinaryIfs> union_of(std::vector<Instance> inner,
+                                        const std::vector<Instance>& ending) const {
         std::sort(inner.begin(), inner.end(),
                   [](const Instance& a, const Instance& b) { return a.master < b.master; });
         OrdinaryIfs ifs;
@@ -116,7 +119,8 @@ double rate_in(const Mat3& metric, const std::vector<Instance>& maps) {
     return rate;
 }
 
-/// The metric that a certificate has for vectors of the plane: the upper left 2 x 2 of L, which is triangular.
+/// The metric that a certificate has for vectors of the plane: the upper left 2 x 2 of L, which is
+/// triangular.
 PlaneNorm norm_of_certificate(const Mat3& metric, const std::vector<Instance>& maps) {
     PlaneNorm result;
     result.metric = flat_part(metric);

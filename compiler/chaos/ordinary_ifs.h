@@ -14,8 +14,9 @@ struct OrdinaryIfs {
     std::vector<Instance> condensation; ///< the parts of C
 };
 
-/// The system that the root is, if it is one: an object that contains itself, or several that each contain all of them
-/// under one map, as `.rifs` has it where every map may follow every map. Nothing for other graphs.
+/// The system that the root is, if it is one: an object that contains itself, or several that each contain
+/// all of them under one map, as `.rifs` has it where every map may follow every map. Nothing for other
+/// graphs.
 std::optional<OrdinaryIfs> ordinary_ifs(const Graph& graph, const Components& components);
 
 /// A flat map, x -> linear x + translation in the plane z = 0, and the norm in which maps are to contract.
@@ -25,8 +26,8 @@ struct PlaneNorm {
     double rate = 1;      ///< of the map that contracts least, in this norm
 };
 
-/// The norm in which the maps contract: the plane's own if they do in that, else one that was found for them. The rate
-/// is 1 or more if there is none. Requires flat maps.
+/// The norm in which the maps contract: the plane's own if they do in that, else one that was found for them.
+/// The rate is 1 or more if there is none. Requires flat maps.
 PlaneNorm contracting_norm(const std::vector<Instance>& maps);
 
 /// Whether the map takes the plane z = 0 into itself.

@@ -72,8 +72,8 @@ Site on_tapered(Choice u, double top) {
     // From the lower edge on, the area up to y grows with y (2 - (1 - top) y).
     const double narrowing = 1 - top;
     const double share = u.x * (1 + top);
-    const double y = narrowing < 1e-12 ? u.x
-                                       : (1 - std::sqrt(std::max(0.0, 1 - narrowing * share))) / narrowing;
+    const double y =
+        narrowing < 1e-12 ? u.x : (1 - std::sqrt(std::max(0.0, 1 - narrowing * share))) / narrowing;
     const Vec3 out = on_circle(u.y);
     Vec3 p = (1 - narrowing * y) * out;
     p.y = y;
@@ -133,7 +133,8 @@ Mat3 cofactors_of(const Mat3& a) {
 Choice spread_choice(int i) {
     constexpr double step = 0.8191725133961645;
     const auto fraction = [&](double x) { return x - std::floor(x); };
-    return {fraction(0.5 + step * i), fraction(0.5 + step * step * i), fraction(0.5 + step * step * step * i)};
+    return {fraction(0.5 + step * i), fraction(0.5 + step * step * i),
+            fraction(0.5 + step * step * step * i)};
 }
 
 } // namespace

@@ -8,7 +8,8 @@ namespace graftal {
 /// Random numbers one after the other, of one of the sequences of a seed.
 class RandomStream {
   public:
-    RandomStream(std::uint64_t seed, std::uint64_t sequence) : random_(CounterRandom(seed).sequence(sequence)) {}
+    RandomStream(std::uint64_t seed, std::uint64_t sequence)
+        : random_(CounterRandom(seed).sequence(sequence)) {}
 
     std::uint64_t bits() { return random_(count_++); }
     /// Of [0, 1).
@@ -33,8 +34,8 @@ class PlacedSurface {
   private:
     PrimitiveKind kind_;
     Affine map_;
-    Mat3 cofactors_;      ///< turn a normal into the image's, as long as area grows there
-    double most_growth_;  ///< of area, anywhere on the surface
+    Mat3 cofactors_;     ///< turn a normal into the image's, as long as area grows there
+    double most_growth_; ///< of area, anywhere on the surface
     double area_;
 };
 

@@ -85,7 +85,8 @@ class Unrolling {
 } // namespace
 
 std::optional<Graph> unrolled(const Graph& graph, const Components& components,
-                              const std::vector<ObjectBounds>& bounds, unsigned steps, std::size_t max_instances) {
+                              const std::vector<ObjectBounds>& bounds, unsigned steps,
+                              std::size_t max_instances) {
     return Unrolling(graph, components, bounds, max_instances).run(steps);
 }
 

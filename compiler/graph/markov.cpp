@@ -132,7 +132,8 @@ std::vector<double> stationary_shares(std::uint32_t states, const std::vector<Wa
 }
 
 std::vector<double> expected_visits(const std::vector<double>& begins, const std::vector<WalkStep>& steps) {
-    return begins.size() <= most_eliminated ? eliminated_visits(begins, steps) : iterated_visits(begins, steps);
+    return begins.size() <= most_eliminated ? eliminated_visits(begins, steps)
+                                            : iterated_visits(begins, steps);
 }
 
 } // namespace graftal

@@ -13,13 +13,13 @@ struct WalkStep {
 };
 
 /// The share of time that a walk spends in each state. Requires that the chances of the steps from each state
-/// add up to 1, and that every state is reached from every other. Exact to rounding for up to a few hundred states
-/// (Grassmann, Taksar and Heyman 1985: elimination without subtraction), by iteration for more.
+/// add up to 1, and that every state is reached from every other. Exact to rounding for up to a few hundred
+/// states (Grassmann, Taksar and Heyman 1985: elimination without subtraction), by iteration for more.
 std::vector<double> stationary_shares(std::uint32_t states, const std::vector<WalkStep>& steps);
 
-/// How often a walk that starts in state s `begins[s]` times passes through each state, the starts included, where
-/// it leaves the states for good sooner or later: x = begins + x P. Requires that the chances from each state add
-/// up to 1 or less, and that every state leads to one from which they fall short of 1.
+/// How often a walk that starts in state s `begins[s]` times passes through each state, the starts included,
+/// where it leaves the states for good sooner or later: x = begins + x P. Requires that the chances from each
+/// state add up to 1 or less, and that every state leads to one from which they fall short of 1.
 std::vector<double> expected_visits(const std::vector<double>& begins, const std::vector<WalkStep>& steps);
 
 } // namespace graftal

@@ -106,9 +106,9 @@ class OrbitLowering {
         }
         if (call.operands.size() != function->parameters.size()) {
             diagnostics_
-                .error(call.span, fmt::format("'{}' takes {} argument{}, not {}", call.text,
-                                              function->parameters.size(),
-                                              function->parameters.size() == 1 ? "" : "s", call.operands.size()))
+                .error(call.span,
+                       fmt::format("'{}' takes {} argument{}, not {}", call.text, function->parameters.size(),
+                                   function->parameters.size() == 1 ? "" : "s", call.operands.size()))
                 .with_note(function->name.span, "it is defined here");
             return {};
         }
@@ -132,8 +132,9 @@ class OrbitLowering {
         if (!block_.skip) return;
         const double skip = evaluate(expanded(*block_.skip), model_.lets, diagnostics_).value_or(0);
         if (!(skip >= 0 && skip <= most_skipped && skip == std::floor(skip)))
-            diagnostics_.error(block_.skip->span,
-                               fmt::format("'skip' must be a whole number from 0 to 1e9, not {}", shortest(skip)));
+            diagnostics_.error(
+                block_.skip->span,
+                fmt::format("'skip' must be a whole number from 0 to 1e9, not {}", shortest(skip)));
         else
             model_.skip = static_cast<std::uint64_t>(skip);
     }
@@ -171,7 +172,8 @@ class OrbitLowering {
         std::vector<std::string_view> visible = {"x", "y", "z"};
         for (std::size_t i = 0; i < formulas.sources.size(); ++i) {
             if (i > 0 && i <= own) visible.push_back(formulas.names[2 + i]);
-            const auto code = ExpressionCode::compile(formulas.sources[i], model_.lets, visible, diagnostics_);
+            const auto code =
+                ExpressionCode::compile(formulas.sources[i], model_.lets, visible, diagnostics_);
             if (!code) continue;
             formulas.codes.push_back(*code);
         }

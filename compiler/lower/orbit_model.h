@@ -14,7 +14,7 @@ namespace graftal {
 
 /// A map by formulas: numbers of a point are computed in order, each from x, y, z and those before it.
 struct OrbitFormulas {
-    std::string name; ///< "" if it has none
+    std::string name;                  ///< "" if it has none
     std::vector<Expression> sources;   ///< what the codes point into: do not change
     std::vector<ExpressionCode> codes; ///< the map's own names, then the new x, y and z
     std::vector<std::string> names;    ///< of all values: x, y, z, then the map's own
@@ -31,8 +31,8 @@ struct OrbitModel {
     std::uint64_t skip = 100; ///< points at the beginning that do not count
     bool flat = true;         ///< z stays 0
     std::vector<OrbitFormulas> maps;
-    Environment lets;         ///< that the formulas use; for messages
-    Graph scene;              ///< its settings and materials; a root that has the maps' colours
+    Environment lets; ///< that the formulas use; for messages
+    Graph scene;      ///< its settings and materials; a root that has the maps' colours
     Span span;
 
     /// Reports that the map cannot be computed at this point: why.

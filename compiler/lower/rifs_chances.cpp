@@ -11,7 +11,7 @@ namespace graftal {
 
 namespace {
 
-constexpr double restart = 0.05;            ///< of walks that would end, or stay in a part
+constexpr double restart = 0.05;             ///< of walks that would end, or stay in a part
 constexpr double default_condensation = 0.1; ///< of points, where maps say theirs and add up to 1
 constexpr double least_share = 0.01;
 
@@ -111,7 +111,8 @@ class ChanceSolver {
             queue.push_back(node);
         };
         const auto reach_block = [&](std::uint32_t block) {
-            if (chances_.block_anew[block] > 0 && state_of_block_[block] == none) state_of_block_[block] = states_++;
+            if (chances_.block_anew[block] > 0 && state_of_block_[block] == none)
+                state_of_block_[block] = states_++;
         };
         reach_block(system_.main);
         for (const std::uint32_t start : system_.blocks[system_.main].start)
@@ -153,7 +154,8 @@ class ChanceSolver {
         });
         add_condensation_steps();
         return std::none_of(state_of_node_.begin(), state_of_node_.end(), [&](const std::uint32_t& state) {
-            return state != none && !(chances_.row[static_cast<std::size_t>(&state - state_of_node_.data())] > 0);
+            return state != none &&
+                   !(chances_.row[static_cast<std::size_t>(&state - state_of_node_.data())] > 0);
         });
     }
 
@@ -165,7 +167,8 @@ class ChanceSolver {
                 steps_.push_back({state_of_node_[i], state_of_block_[system_.nodes[i].block],
                                   anew(system_.nodes[i].block)});
         for (std::uint32_t b = 0; b < system_.blocks.size(); ++b)
-            if (state_of_block_[b] != none) steps_.push_back({state_of_block_[b], state_of_block_[b], anew(b)});
+            if (state_of_block_[b] != none)
+                steps_.push_back({state_of_block_[b], state_of_block_[b], anew(b)});
         for (std::uint32_t j = 0; j < system_.nodes.size(); ++j) {
             const std::uint32_t under = system_.block_under(system_.nodes[j]);
             if (state_of_node_[j] == none || !(anew(under) > 0) || !(chances_.weight[j] > 0)) continue;
@@ -191,7 +194,8 @@ class ChanceSolver {
         return queue.size() == states_;
     }
 
-    /// Every state goes on to a further one, which leads to all, once in a while; or always, if it leads nowhere.
+    /// Every state goes on to a further one, which leads to all, once in a while; or always, if it leads
+    /// nowhere.
     void restart_everywhere() {
         std::vector<double> leaving(states_, 0.0);
         for (WalkStep& step : steps_) {
@@ -225,8 +229,9 @@ RifsChances::OfNode RifsChances::of(const RifsSystem& system, const RifsNode& no
     }
     const std::uint32_t under = system.block_under(node);
     for (const double part : parts[under])
-        chances.condensations.push_back(
-            block_row[under] > 0 ? block_share[under] * (1 - block_anew[under]) * part * weight[j] / block_row[under] : 0);
+        chances.condensations.push_back(block_row[under] > 0 ? block_share[under] * (1 - block_anew[under]) *
+                                                                   part * weight[j] / block_row[under]
+                                                             : 0);
     return chances;
 }
 

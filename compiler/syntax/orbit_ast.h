@@ -8,7 +8,8 @@
 #include "compiler/syntax/expression.h"
 #include "compiler/syntax/rifs_look.h"
 
-// `orbit NAME { ... }` in a `.rifs` file (docs/language.md): maps of the plane or of space written as formulas.
+// `orbit NAME { ... }` in a `.rifs` file (docs/language.md): maps of the plane or of space written as
+// formulas.
 
 namespace graftal {
 
@@ -26,9 +27,9 @@ struct OrbitLet {
 };
 
 struct OrbitMap {
-    RifsName name;                                  ///< of a map without one: an empty text, at the map
-    std::vector<OrbitLet> lets;                     ///< of x, y, z and those above
-    std::optional<Expression> coordinates[3];       ///< the new x, y, z
+    RifsName name;                            ///< of a map without one: an empty text, at the map
+    std::vector<OrbitLet> lets;               ///< of x, y, z and those above
+    std::optional<Expression> coordinates[3]; ///< the new x, y, z
     std::optional<Expression> probability;
     RifsLook look;
     Span span;
@@ -41,7 +42,7 @@ struct OrbitBlock {
     std::vector<OrbitMap> maps;
     std::vector<Expression> start; ///< none, two or three
     std::optional<Expression> skip;
-    Span span;                     ///< of the keyword and the name
+    Span span; ///< of the keyword and the name
 };
 
 } // namespace graftal

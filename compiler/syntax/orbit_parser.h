@@ -7,8 +7,8 @@
 
 namespace graftal {
 
-/// Parses `orbit NAME { ... }`, from its keyword on, into `orbits`; errors are reported. False where the stream
-/// stands in a line that is at fault.
+/// Parses `orbit NAME { ... }`, from its keyword on, into `orbits`; errors are reported. False where the
+/// stream stands in a line that is at fault.
 bool parse_orbit(TokenStream& stream, std::vector<OrbitBlock>& orbits);
 
 } // namespace graftal

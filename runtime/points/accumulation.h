@@ -9,8 +9,8 @@
 
 namespace graftal {
 
-/// How many points fell into each pixel, and their colours' sums. All whole numbers, so that the order in which
-/// points come makes no difference. Colours lie in [0, 1] and are kept to 1/65535.
+/// How many points fell into each pixel, and their colours' sums. All whole numbers, so that the order in
+/// which points come makes no difference. Colours lie in [0, 1] and are kept to 1/65535.
 class Accumulation {
   public:
     struct Cell {

@@ -22,7 +22,7 @@ namespace {
 constexpr double half_diagonal = 0.70710678118654752; ///< of a cell
 constexpr std::uint64_t most_parts = 40'000'000;      ///< of an attractor
 constexpr std::uint64_t most_cells = 1u << 27;
-constexpr std::uint64_t random_points = 8'000'000;    ///< where there is condensation
+constexpr std::uint64_t random_points = 8'000'000; ///< where there is condensation
 
 /// Cells of the target, by the pixels of its picture.
 std::optional<CellSet> target_of(const Image& image, const CollageOptions& options, bool& by_alpha) {
@@ -59,7 +59,8 @@ class Grid {
             to_pixels_.linear[axis][1] = -scale * camera_.up[axis];
             to_pixels_.linear[axis][2] = scale * camera_.direction[axis];
         }
-        to_pixels_.translation = Vec3(0.5 * size_.width, 0.5 * size_.height, 0) - to_pixels_.linear * camera_.location;
+        to_pixels_.translation =
+            Vec3(0.5 * size_.width, 0.5 * size_.height, 0) - to_pixels_.linear * camera_.location;
         // The depth of the plane becomes 0.
         to_pixels_.translation.z -= to_pixels_(Vec3(0.0)).z;
         pixel_ = 1 / scale;
@@ -118,7 +119,8 @@ class Grid {
 };
 
 /// The union of the target's images.
-CellSet images_of(const CellSet& target, const CellSet& framed, const Grid& grid, const std::vector<Instance>& maps) {
+CellSet images_of(const CellSet& target, const CellSet& framed, const Grid& grid,
+                  const std::vector<Instance>& maps) {
     CellSet images = framed; // its size
     std::fill(images.cells.begin(), images.cells.end(), false);
     for (const Instance& instance : maps) {
@@ -194,10 +196,11 @@ std::optional<OrdinaryIfs> system_of(const AnalysedModel& model, Diagnostics& di
     const Object& root = model.graph.objects[model.graph.root];
     std::optional<OrdinaryIfs> ifs = ordinary_ifs(model.graph, model.components);
     if (!ifs) {
-        diagnostics.error(root.span, fmt::format("'{}' is not an iterated function system: {}", root.name,
-                                                 model.components.unending[model.graph.root]
-                                                     ? "not every map may follow every map"
-                                                     : "it does not contain itself"))
+        diagnostics
+            .error(root.span, fmt::format("'{}' is not an iterated function system: {}", root.name,
+                                          model.components.unending[model.graph.root]
+                                              ? "not every map may follow every map"
+                                              : "it does not contain itself"))
             .with_hint("the collage theorem takes one target, and a set that is the union of its own images");
         return std::nullopt;
     }
@@ -223,7 +226,8 @@ Collage measured(const AnalysedModel& model, const OrdinaryIfs& ifs, const Plane
                  const CellSet& target) {
     Collage collage;
     collage.pixels = target.cells.size();
-    collage.target_pixels = static_cast<std::size_t>(std::count(target.cells.begin(), target.cells.end(), true));
+    collage.target_pixels =
+        static_cast<std::size_t>(std::count(target.cells.begin(), target.cells.end(), true));
     collage.pixel = grid.pixel();
     collage.maps = ifs.maps.size();
     collage.condensations = ifs.condensation.size();

@@ -9,31 +9,33 @@ namespace graftal {
 
 struct CollageOptions {
     CompileOptions compile;
-    std::string target;     ///< a picture
-    double threshold = 0.5; ///< of the stored values: darker pixels are the target, or those of at least this alpha
-    bool light = false;     ///< the lighter ones are
+    std::string target; ///< a picture
+    double threshold =
+        0.5; ///< of the stored values: darker pixels are the target, or those of at least this alpha
+    bool light = false; ///< the lighter ones are
 };
 
-/// How well the maps of an iterated function system cover a target set L by their images of it (Barnsley 1985): with
-/// eps = h(L, C u union of w_j(L)) in Hausdorff distance, and contractivity s, the attractor A has
-/// h(L, A) <= eps / (1 - s). Sets are cells of a grid of pixels, which moves points by half a pixel's diagonal at most;
-/// the bound has that added to eps. Lengths are in the model's units.
+/// How well the maps of an iterated function system cover a target set L by their images of it (Barnsley
+/// 1985): with eps = h(L, C u union of w_j(L)) in Hausdorff distance, and contractivity s, the attractor A
+/// has h(L, A) <= eps / (1 - s). Sets are cells of a grid of pixels, which moves points by half a pixel's
+/// diagonal at most; the bound has that added to eps. Lengths are in the model's units.
 struct Collage {
     std::size_t target_pixels = 0;
     std::size_t pixels = 0;
-    double pixel = 0;          ///< its side
-    bool by_alpha = false;     ///< the target is what is opaque
+    double pixel = 0;      ///< its side
+    bool by_alpha = false; ///< the target is what is opaque
     std::size_t maps = 0;
     std::size_t condensations = 0;
-    bool euclidean = true;     ///< the norm is the plane's own
-    double condition = 1;      ///< of the norm: the bound has grown by it
+    bool euclidean = true; ///< the norm is the plane's own
+    double condition = 1;  ///< of the norm: the bound has grown by it
     double contractivity = 0;
     double epsilon = 0;
     double bound = 0;
     std::optional<double> distance; ///< measured, of target and attractor; nothing if that has too many parts
 };
 
-/// Nothing after errors in `compilation.diagnostics`, or with a failed `compilation.status`: the target cannot be read.
+/// Nothing after errors in `compilation.diagnostics`, or with a failed `compilation.status`: the target
+/// cannot be read.
 std::optional<Collage> measure_collage(const std::string& path, const CollageOptions& options,
                                        Compilation& compilation);
 

@@ -37,7 +37,8 @@ class Envelope {
         while (!parabolas_.empty()) {
             const Parabola& last = parabolas_.back();
             // Where the new one comes to lie below.
-            from = static_cast<double>(base + std::int64_t{at} * at - last.base - std::int64_t{last.at} * last.at) /
+            from = static_cast<double>(base + std::int64_t{at} * at - last.base -
+                                       std::int64_t{last.at} * last.at) /
                    (2.0 * (at - last.at));
             if (from > last.from) break;
             parabolas_.pop_back();

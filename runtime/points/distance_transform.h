@@ -20,11 +20,13 @@ struct CellSet {
     bool at(int x, int y) const { return cells[index(x, y)]; }
 };
 
-/// For every cell the squared distance to the nearest cell of the set, exact (Felzenszwalb and Huttenlocher 2012: lower
-/// envelopes of parabolas, row by row after column by column). O(cells). Requires a set that is not empty.
+/// For every cell the squared distance to the nearest cell of the set, exact (Felzenszwalb and Huttenlocher
+/// 2012: lower envelopes of parabolas, row by row after column by column). O(cells). Requires a set that is
+/// not empty.
 std::vector<std::int64_t> squared_distances(const CellSet& set);
 
-/// The largest distance of a cell of `from` from the nearest of the set that these are the squared distances to.
+/// The largest distance of a cell of `from` from the nearest of the set that these are the squared distances
+/// to.
 double farthest(const CellSet& from, const std::vector<std::int64_t>& squared);
 
 /// The Hausdorff distance of two sets of one grid, neither of them empty, in cells.

@@ -11,12 +11,12 @@
 
 #include "compiler/chaos/unroll.h"
 #include "compiler/support/check.h"
-#include "runtime/povray/interruption.h"
 #include "runtime/points/accumulation.h"
 #include "runtime/points/orbit_source.h"
 #include "runtime/points/ply_file.h"
 #include "runtime/points/point_source.h"
 #include "runtime/points/projection.h"
+#include "runtime/povray/interruption.h"
 #include "runtime/render/scene_files.h"
 #include "runtime/render/stopwatch.h"
 
@@ -47,8 +47,7 @@ void note_planes(const Graph& graph, Diagnostics& diagnostics) {
 }
 
 std::optional<ChaosGame> game_of(const AnalysedModel& model, Diagnostics& diagnostics) {
-    const double rate =
-        model.contraction.verdict == Verdict::proved ? model.contraction.certificate.rate : 0;
+    const double rate = model.contraction.verdict == Verdict::proved ? model.contraction.certificate.rate : 0;
     std::optional<ChaosGame> game;
     if (model.steps && model.components.unending[model.graph.root]) {
         const auto cut = unrolled(model.graph, model.components, model.bounds, *model.steps, most_unrolled);
@@ -56,14 +55,16 @@ std::optional<ChaosGame> game_of(const AnalysedModel& model, Diagnostics& diagno
             const std::vector<ObjectBounds> none(cut->objects.size());
             game = ChaosGame::of(*cut, strong_components(*cut), none, 0);
         } else {
-            diagnostics.note(model.graph.objects[model.graph.root].span,
-                             fmt::format("{} levels are too many to tell from all: the limit is drawn", *model.steps));
+            diagnostics.note(
+                model.graph.objects[model.graph.root].span,
+                fmt::format("{} levels are too many to tell from all: the limit is drawn", *model.steps));
         }
     }
     if (!game) game = ChaosGame::of(model.graph, model.components, model.bounds, rate);
     note_planes(model.graph, diagnostics);
     if (!game)
-        diagnostics.error(model.graph.objects[model.graph.root].span, "there is nothing in this model to take points of");
+        diagnostics.error(model.graph.objects[model.graph.root].span,
+                          "there is nothing in this model to take points of");
     return game;
 }
 
@@ -136,7 +137,8 @@ class Canvas {
 };
 
 PointWork work_for(const PointsOptions& options) {
-    return {point_count(options), options.threads, options.on_progress, [] { return Interruption::signal() != 0; }};
+    return {point_count(options), options.threads, options.on_progress,
+            [] { return Interruption::signal() != 0; }};
 }
 
 Status write_picture(Canvas& canvas, const View& view, const PointsOptions& options, PointsReport& report) {
@@ -161,7 +163,8 @@ bool is_cloud_name(const std::string& path) {
     return std::filesystem::path(path).extension() == ".ply";
 }
 
-Status place_points(const PointSource& source, const View& view, const PointsOptions& options, PointsReport& report) {
+Status place_points(const PointSource& source, const View& view, const PointsOptions& options,
+                    PointsReport& report) {
     const Interruption interruption;
     Status status = check_writable(options.output);
     if (!status.ok()) return status;
@@ -188,7 +191,8 @@ std::optional<PointsReport> draw_orbit(const OrbitModel& model, const PointsOpti
                                        Compilation& compilation) {
     constexpr std::uint64_t most_surveyed = 1u << 20;
     if (options.compile.zoom.active()) {
-        compilation.diagnostics.error(model.span, "an orbit has no parts that '--at' and '--zoom' could look at")
+        compilation.diagnostics
+            .error(model.span, "an orbit has no parts that '--at' and '--zoom' could look at")
             .with_hint("--camera \"look_at=X,Y,0 width=W\" looks closer");
         return std::nullopt;
     }

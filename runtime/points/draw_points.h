@@ -17,7 +17,7 @@ bool is_cloud_name(const std::string& path);
 
 struct PointsOptions {
     CompileOptions compile;
-    std::string output;                  ///< is_picture_name() or is_cloud_name()
+    std::string output; ///< is_picture_name() or is_cloud_name()
     ImageMetadata metadata;
     std::optional<std::uint64_t> points; ///< nothing: 100 a pixel, or a million of a cloud
     PointColour colour = PointColour::tint;
@@ -30,16 +30,17 @@ struct PointsReport {
     std::uint64_t points = 0;
     std::uint64_t inside = 0; ///< of the picture
     std::uint32_t maps = 0;
-    double seconds = 0;       ///< of making points
+    double seconds = 0; ///< of making points
 };
 
 /// Draws points of a source, or writes them: what draw_points() ends with.
-Status place_points(const PointSource& source, const View& view, const PointsOptions& options, PointsReport& report);
+Status place_points(const PointSource& source, const View& view, const PointsOptions& options,
+                    PointsReport& report);
 
-/// Model file -> points, by random iteration on its graph (chaos/chaos_game.h) or by the formulas of an orbit. The
-/// file depends on model, options and seed, not on the number of threads. Nothing comes back, and no file, after
-/// errors in `compilation.diagnostics`, or with a failed `compilation.status`. Memory: that of the picture for each
-/// thread, or, where that is more than a gigabyte, once.
+/// Model file -> points, by random iteration on its graph (chaos/chaos_game.h) or by the formulas of an
+/// orbit. The file depends on model, options and seed, not on the number of threads. Nothing comes back, and
+/// no file, after errors in `compilation.diagnostics`, or with a failed `compilation.status`. Memory: that of
+/// the picture for each thread, or, where that is more than a gigabyte, once.
 std::optional<PointsReport> draw_points(const std::string& path, const PointsOptions& options,
                                         Compilation& compilation);
 

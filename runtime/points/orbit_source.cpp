@@ -100,9 +100,10 @@ bool OrbitSource::report(Diagnostics& diagnostics) const {
     const Vec3 p = astray_->before;
     diagnostics
         .error(model_.maps[astray_->map].span,
-               fmt::format("the orbit diverges: in step {} it goes from <{}, {}{}> farther than {} from the origin",
-                           astray_->steps, shortest(p.x), shortest(p.y),
-                           model_.flat ? "" : ", " + shortest(p.z), shortest(farthest_of_orbit)))
+               fmt::format(
+                   "the orbit diverges: in step {} it goes from <{}, {}{}> farther than {} from the origin",
+                   astray_->steps, shortest(p.x), shortest(p.y), model_.flat ? "" : ", " + shortest(p.z),
+                   shortest(farthest_of_orbit)))
         .with_hint("another 'start' or other parameters may stay");
     return true;
 }

@@ -9,8 +9,8 @@
 
 namespace graftal {
 
-/// The points of an orbit: of one map a single sequence, of several any number, which all begin at the same point. The
-/// model must outlive this.
+/// The points of an orbit: of one map a single sequence, of several any number, which all begin at the same
+/// point. The model must outlive this.
 class OrbitSource : public PointSource {
   public:
     OrbitSource(const OrbitModel& model, std::uint64_t seed);

@@ -101,12 +101,13 @@ Status write_ply(const std::string& path, const PointSource& source, const Point
         }
     };
     const std::string head = header(work.points, metadata);
-    const bool complete =
-        reason == 0 && write(head.data(), head.size()) &&
-        write_points(source, work, make,
-                     [&](const std::vector<char>& bytes) { return write(bytes.data(), bytes.size()); });
+    const bool complete = reason == 0 && write(head.data(), head.size()) &&
+                          write_points(source, work, make, [&](const std::vector<char>& bytes) {
+                              return write(bytes.data(), bytes.size());
+                          });
     if (file && std::fclose(file.release()) != 0 && reason == 0) reason = errno;
-    if (reason != 0) return Status::failure(fmt::format("cannot write '{}': {}", path, std::strerror(reason)));
+    if (reason != 0)
+        return Status::failure(fmt::format("cannot write '{}': {}", path, std::strerror(reason)));
     return complete ? pending.commit() : Status::failure("interrupted");
 }
 

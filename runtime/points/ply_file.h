@@ -9,8 +9,8 @@
 
 namespace graftal {
 
-/// Writes points as `.ply`: binary, little-endian, x y z as 32-bit floats and red green blue as bytes (sRGB), 15
-/// bytes a point, whole or not at all. Fails before the first point if the disk has no room for all.
+/// Writes points as `.ply`: binary, little-endian, x y z as 32-bit floats and red green blue as bytes (sRGB),
+/// 15 bytes a point, whole or not at all. Fails before the first point if the disk has no room for all.
 /// `coloured` gives a point's colour, linear. "interrupted" if the work is cancelled.
 Status write_ply(const std::string& path, const PointSource& source, const PointWork& work,
                  const ImageMetadata& metadata, const std::function<Rgb(const ChaosPoint&)>& coloured);

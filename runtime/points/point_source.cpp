@@ -21,7 +21,8 @@ constexpr std::size_t piece_size = 1u << 15;
 
 class ChaosStream : public PointStream {
   public:
-    ChaosStream(const ChaosGame& game, std::uint64_t seed, std::uint64_t number) : player_(game, seed, number) {}
+    ChaosStream(const ChaosGame& game, std::uint64_t seed, std::uint64_t number)
+        : player_(game, seed, number) {}
     bool fill(std::span<ChaosPoint> points) override {
         player_.fill(points);
         return true;
@@ -97,13 +98,15 @@ bool take_points(const PointSource& source, const PointWork& work,
                  const std::function<void(int worker, std::span<const ChaosPoint>)>& take) {
     Progress progress(work);
     const int workers = worker_count(work.threads);
-    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(workers));
+    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
+                                    static_cast<std::size_t>(workers));
     tbb::task_arena arena(workers);
     arena.execute([&] {
         tbb::parallel_for(std::uint64_t{0}, stream_count(source, work), [&](std::uint64_t number) {
             if (progress.stopped()) return;
             const int worker = tbb::this_task_arena::current_thread_index();
-            play(source, work, number, progress, [&](std::span<const ChaosPoint> points) { take(worker, points); });
+            play(source, work, number, progress,
+                 [&](std::span<const ChaosPoint> points) { take(worker, points); });
         });
     });
     return !progress.stopped();
@@ -128,7 +131,8 @@ bool write_points(const PointSource& source, const PointWork& work,
         return !progress.stopped();
     }
     const int workers = worker_count(work.threads);
-    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(workers));
+    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
+                                    static_cast<std::size_t>(workers));
     const std::uint64_t streams = stream_count(source, work);
     std::uint64_t next = 0;
     tbb::parallel_pipeline(

@@ -50,14 +50,14 @@ struct PointWork {
 /// Points of one stream; streams are as long, but for the last.
 inline constexpr std::uint64_t points_of_stream = 1u << 17;
 
-/// Calls `take(worker, points)` for batches of points, all together those of the streams 0, 1, ... up to the number.
-/// Batches come in any order, from several threads at a time, each with a number of its own below worker_count().
-/// False if it was cancelled, or a stream has gone astray.
+/// Calls `take(worker, points)` for batches of points, all together those of the streams 0, 1, ... up to the
+/// number. Batches come in any order, from several threads at a time, each with a number of its own below
+/// worker_count(). False if it was cancelled, or a stream has gone astray.
 bool take_points(const PointSource& source, const PointWork& work,
                  const std::function<void(int worker, std::span<const ChaosPoint>)>& take);
 
-/// As take_points(), but one batch at a time and in order: `make` turns points into bytes, on any thread; `write`
-/// gets them in order. False also if `write` fails.
+/// As take_points(), but one batch at a time and in order: `make` turns points into bytes, on any thread;
+/// `write` gets them in order. False also if `write` fails.
 bool write_points(const PointSource& source, const PointWork& work,
                   const std::function<void(std::span<const ChaosPoint>, std::vector<char>&)>& make,
                   const std::function<bool(const std::vector<char>&)>& write);

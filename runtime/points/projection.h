@@ -15,7 +15,8 @@ namespace graftal {
 class Projection {
   public:
     Projection(const Camera& camera, ImageSize size)
-        : eye_(camera.location), direction_(camera.direction), perspective_(!camera.orthographic), size_(size) {
+        : eye_(camera.location), direction_(camera.direction), perspective_(!camera.orthographic),
+          size_(size) {
         const double half_width =
             camera.orthographic ? 0.5 * camera.width : std::tan(camera.angle_deg * std::numbers::pi / 360);
         const double scale = 0.5 * size.width / half_width;
@@ -23,8 +24,8 @@ class Projection {
         down_ = -scale * camera.up;
     }
 
-    /// The pixel that the point falls into, counted row by row; nothing if it falls beside the picture or behind
-    /// the eye.
+    /// The pixel that the point falls into, counted row by row; nothing if it falls beside the picture or
+    /// behind the eye.
     std::optional<std::size_t> pixel_of(Vec3 point) const {
         const Vec3 sight = point - eye_;
         double x = glm::dot(sight, across_), y = glm::dot(sight, down_);
@@ -37,7 +38,8 @@ class Projection {
         x += 0.5 * size_.width;
         y += 0.5 * size_.height;
         if (!(x >= 0 && y >= 0 && x < size_.width && y < size_.height)) return std::nullopt;
-        return static_cast<std::size_t>(y) * static_cast<std::size_t>(size_.width) + static_cast<std::size_t>(x);
+        return static_cast<std::size_t>(y) * static_cast<std::size_t>(size_.width) +
+               static_cast<std::size_t>(x);
     }
 
   private:

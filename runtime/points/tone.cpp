@@ -96,8 +96,9 @@ Image toned(const Accumulation& points, const Tone& tone, const View& view) {
 
 Rgb density_colour(double x) {
     // sRGB, even steps of lightness from violet over green to yellow.
-    static constexpr std::array<Rgb, 6> scale = {Rgb(0.25, 0.10, 0.45), Rgb(0.22, 0.32, 0.60), Rgb(0.13, 0.52, 0.56),
-                                                 Rgb(0.25, 0.70, 0.42), Rgb(0.68, 0.84, 0.22), Rgb(1.00, 0.95, 0.55)};
+    static constexpr std::array<Rgb, 6> scale = {Rgb(0.25, 0.10, 0.45), Rgb(0.22, 0.32, 0.60),
+                                                 Rgb(0.13, 0.52, 0.56), Rgb(0.25, 0.70, 0.42),
+                                                 Rgb(0.68, 0.84, 0.22), Rgb(1.00, 0.95, 0.55)};
     const double at = std::clamp(x, 0.0, 1.0) * (scale.size() - 1);
     const auto i = std::min(static_cast<std::size_t>(at), scale.size() - 2);
     const double t = at - static_cast<double>(i);

@@ -13,8 +13,8 @@ enum class PointColour {
     density, ///< by how many there are
 };
 
-/// How numbers of points become a picture. With n points in a pixel, m in the mean over all pixels that have any,
-/// and w the number that 95 of 100 of these do not exceed, the points cover
+/// How numbers of points become a picture. With n points in a pixel, m in the mean over all pixels that have
+/// any, and w the number that 95 of 100 of these do not exceed, the points cover
 ///     a = (log(1 + exposure n / m) / log(1 + exposure w / m))^(1 / gamma)
 /// of the pixel, at most all of it, with their mean colour.
 struct Tone {
@@ -24,7 +24,8 @@ struct Tone {
     bool by_density = false;  ///< colours by a instead of the points' own
 };
 
-/// The picture in linear light, RGB, or with straight alpha. An accumulation without points gives the background.
+/// The picture in linear light, RGB, or with straight alpha. An accumulation without points gives the
+/// background.
 Image toned(const Accumulation& points, const Tone& tone, const View& view);
 
 /// A colour of the scale that densities are shown by, 0 <= x <= 1, from dark to bright.

@@ -80,7 +80,8 @@ TEST_F(CommandLine, PointsThatFailLeaveNothing) {
 }
 
 TEST_F(CommandLine, OrbitsAreForPointsOnly) {
-    EXPECT_THAT(graftal("check " + flower).out, HasSubstr(": ok, an orbit of 1 map: 'graftal points' draws it\n"));
+    EXPECT_THAT(graftal("check " + flower).out,
+                HasSubstr(": ok, an orbit of 1 map: 'graftal points' draws it\n"));
     for (const char* command : {"render", "stats", "print", "animate"}) {
         const RunResult result = graftal(command + (" " + flower));
         EXPECT_EQ(result.status, 1) << command;
@@ -95,7 +96,8 @@ TEST_F(CommandLine, Collage) {
     const RunResult text = graftal("collage t.png " + fern + " --threshold 0.01");
     EXPECT_EQ(text.status, 0) << text.err;
     EXPECT_THAT(text.out, HasSubstr("contractivity  0.850941\n"));
-    const auto json = nlohmann::json::parse(graftal("collage t.png " + fern + " --threshold 0.01 --json").out);
+    const auto json =
+        nlohmann::json::parse(graftal("collage t.png " + fern + " --threshold 0.01 --json").out);
     EXPECT_EQ(json["maps"], 4);
     EXPECT_EQ(json["norm"], "euclidean");
     EXPECT_LT(json["epsilon"], 3 * json["pixel"].get<double>());

@@ -29,24 +29,29 @@ Json collage_json(const Options& options, const Collage& collage) {
 
 std::string criterion(const Options& options, const Collage& collage) {
     return fmt::format("{} {:g}",
-                       collage.by_alpha        ? "of an alpha of at least"
+                       collage.by_alpha       ? "of an alpha of at least"
                        : options.points.light ? "lighter than"
                                               : "darker than",
                        options.points.threshold);
 }
 
 std::string collage_text(const Options& options, const Collage& collage) {
-    const auto length = [&](double units) { return fmt::format("{:.4g} ({:.3g} pixels)", units, units / collage.pixel); };
+    const auto length = [&](double units) {
+        return fmt::format("{:.4g} ({:.3g} pixels)", units, units / collage.pixel);
+    };
     std::string text = fmt::format("target         {} of {} pixels, those {}\n", collage.target_pixels,
                                    collage.pixels, criterion(options, collage));
     text += fmt::format("maps           {}", collage.maps);
     if (collage.condensations > 0) text += fmt::format(", and {} condensed", collage.condensations);
-    text += fmt::format("\ncontractivity  {:.6g}{}\n", collage.contractivity,
-                        collage.euclidean ? "" : fmt::format(", in a norm of condition {:.4g}", collage.condition));
+    text += fmt::format(
+        "\ncontractivity  {:.6g}{}\n", collage.contractivity,
+        collage.euclidean ? "" : fmt::format(", in a norm of condition {:.4g}", collage.condition));
     text += fmt::format("epsilon        {}, of the target from its images\n", length(collage.epsilon));
     text += fmt::format("bound          {}, of the target from the attractor\n", length(collage.bound));
-    text += "measured       " +
-            (collage.distance ? length(*collage.distance) : std::string("-, the attractor has too many parts")) + "\n";
+    text +=
+        "measured       " +
+        (collage.distance ? length(*collage.distance) : std::string("-, the attractor has too many parts")) +
+        "\n";
     return text;
 }
 
@@ -64,7 +69,8 @@ int run_collage(const Options& options) {
     const int status = conclude(options, compilation);
     if (!collage || status != exit_done) return status;
     if (!options.json) return print_output(collage_text(options, *collage));
-    return print_output(collage_json(options, *collage).dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
+    return print_output(collage_json(options, *collage).dump(2, ' ', false, Json::error_handler_t::replace) +
+                        "\n");
 }
 
 } // namespace graftal

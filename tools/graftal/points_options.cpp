@@ -18,7 +18,8 @@ constexpr double most_points = 1e15;
 /// "20000000", "2e7": a whole number, also by a power of ten.
 std::optional<std::uint64_t> parse_points(const std::string& text) {
     const std::optional<double> value = parse_number(text);
-    if (!value || !(*value >= 1 && *value <= most_points) || *value != std::floor(*value)) return std::nullopt;
+    if (!value || !(*value >= 1 && *value <= most_points) || *value != std::floor(*value))
+        return std::nullopt;
     return static_cast<std::uint64_t>(*value);
 }
 
@@ -54,17 +55,21 @@ void add_points_options(CLI::App& app, Options& options) {
             {"tint", PointColour::tint}, {"map", PointColour::map}, {"density", PointColour::density}};
         const auto found = colours.find(text);
         if (found == colours.end())
-            throw CLI::ValidationError(fmt::format("--color: '{}' is neither tint nor map nor density", text));
+            throw CLI::ValidationError(
+                fmt::format("--color: '{}' is neither tint nor map nor density", text));
         settings.colour = found->second;
     };
-    app.add_option_function<std::string>(
-           "--color", colour,
-           "Colours: the model's tints; one for each map, by the last; or how dense points lie (default tint)")
+    app.add_option_function<std::string>("--color", colour,
+                                         "Colours: the model's tints; one for each map, by the last; or how "
+                                         "dense points lie (default tint)")
         ->type_name("tint|map|density")
         ->take_last();
-    add_positive(app, "--exposure", "How much few points show beside many (default 30)", settings.tone.exposure);
-    add_positive(app, "--gamma", "Above 1 lightens what is thin, below 1 darkens it (default 1)", settings.tone.gamma);
-    app.add_flag("--transparent", settings.tone.transparent, "No background: the picture gets an alpha channel");
+    add_positive(app, "--exposure", "How much few points show beside many (default 30)",
+                 settings.tone.exposure);
+    add_positive(app, "--gamma", "Above 1 lightens what is thin, below 1 darkens it (default 1)",
+                 settings.tone.gamma);
+    app.add_flag("--transparent", settings.tone.transparent,
+                 "No background: the picture gets an alpha channel");
     app.footer("Examples:\n"
                "  graftal points scenes/ifs/fern.rifs                   # makes fern.png\n"
                "  graftal points scenes/ifs/fern.rifs --points 1e9 --size 2000x3000 -o fern.exr\n"
@@ -102,8 +107,9 @@ void add_collage_options(CLI::App& app, Options& options) {
             throw CLI::ValidationError(fmt::format("--threshold: '{}' is not a number from 0 to 1", text));
         options.points.threshold = *value;
     };
-    app.add_option_function<std::string>("--threshold", threshold,
-                                         "The target's pixels are darker than this, or at least as opaque (default 0.5)")
+    app.add_option_function<std::string>(
+           "--threshold", threshold,
+           "The target's pixels are darker than this, or at least as opaque (default 0.5)")
         ->type_name("T")
         ->take_last();
     app.add_flag("--light", options.points.light, "The target's pixels are the lighter ones");

@@ -1,5 +1,5 @@
-// Random iteration against measures that are known exactly: cylinder sets of words of maps, by chi-square tests that
-// a wrong measure fails by orders of magnitude.
+// Random iteration against measures that are known exactly: cylinder sets of words of maps, by chi-square
+// tests that a wrong measure fails by orders of magnitude.
 
 #include <array>
 #include <filesystem>
@@ -20,8 +20,8 @@ using testing::points_of;
 
 /// The gasket over the corners (0,0), (1,0), (0,1), with probabilities; its points have binary addresses.
 std::string gasket(const std::string& p, const std::string& q, const std::string& r) {
-    return "rifs gasket { codes 2d {\n .5 0 0 .5 0 0 " + p + "\n .5 0 0 .5 .5 0 " + q + "\n .5 0 0 .5 0 .5 " + r +
-           "\n } }";
+    return "rifs gasket { codes 2d {\n .5 0 0 .5 0 0 " + p + "\n .5 0 0 .5 .5 0 " + q + "\n .5 0 0 .5 0 .5 " +
+           r + "\n } }";
 }
 
 /// The number of the cell of level `depth` that holds a point of the gasket: a word of digits 0, 1, 2.
@@ -61,8 +61,9 @@ TEST(ChaosGame, InvariantMeasureOfUnequalProbabilities) {
 
 TEST(ChaosGame, MapsWithoutProbabilitiesGetTheEvenMeasure) {
     // Ratios 1/2, 1/4, 1/4: dimension 1, so chances of 1/2, 1/4, 1/4.
-    const Played model = played("a.rifs", "rifs a { map a { scale 1/2 } map b { scale 1/4 translate <1/2, 0> }"
-                                          " map c { scale 1/4 translate <3/4, 0> } }");
+    const Played model =
+        played("a.rifs", "rifs a { map a { scale 1/2 } map b { scale 1/4 translate <1/2, 0> }"
+                         " map c { scale 1/4 translate <3/4, 0> } }");
     const Chances chances = chances_of(model.graph, model.components, model.bounds);
     const std::vector<double>& root = chances[model.graph.root];
     ASSERT_EQ(root.size(), 3u);
@@ -82,9 +83,10 @@ TEST(ChaosGame, FlatteningMapsGetASmallShare) {
 
 TEST(ChaosGame, ControlDigraphIsKept) {
     // No quadrant twice in a row, and all 4 * 3^4 words of five alike.
-    const Played model = played("a.rifs", "rifs p { map a { scale 1/2 } map b { scale 1/2 translate <1/2, 0> }"
-                                          " map c { scale 1/2 translate <0, 1/2> } map d { scale 1/2 translate "
-                                          "<1/2, 1/2> } follow all except self }");
+    const Played model =
+        played("a.rifs", "rifs p { map a { scale 1/2 } map b { scale 1/2 translate <1/2, 0> }"
+                         " map c { scale 1/2 translate <0, 1/2> } map d { scale 1/2 translate "
+                         "<1/2, 1/2> } follow all except self }");
     std::vector<double> counts(1024, 0.0), shares(1024, 0.0);
     for (const ChaosPoint& point : points_of(model.game(), 200'000, 8)) {
         std::size_t word = 0;
@@ -107,8 +109,9 @@ TEST(ChaosGame, ControlDigraphIsKept) {
 
 TEST(ChaosGame, MatrixOfProbabilities) {
     // Stationary shares 5/6 and 1/6; the cell (j, i) holds points that w_j was applied to after w_i.
-    const Played model = played("a.rifs", "rifs r { map a { scale 1/2 } map b { scale 1/2 translate <1/2, 0> }\n"
-                                          "follow matrix {\n .9 .1\n .5 .5\n } }");
+    const Played model =
+        played("a.rifs", "rifs r { map a { scale 1/2 } map b { scale 1/2 translate <1/2, 0> }\n"
+                         "follow matrix {\n .9 .1\n .5 .5\n } }");
     std::vector<double> counts(4, 0.0);
     for (const ChaosPoint& point : points_of(model.game(), 200'000, 40))
         ++counts[std::min<std::size_t>(static_cast<std::size_t>(4 * point.place.x), 3)];
@@ -116,8 +119,9 @@ TEST(ChaosGame, MatrixOfProbabilities) {
 }
 
 TEST(ChaosGame, CondensationSetsGetTheirProbability) {
-    const Played model = played("a.rifs", "rifs c { map half { scale 1/2 probability 0.7 }\n"
-                                          "condense sphere scale 0.01 translate <1, 0, 0> probability 0.3\n }");
+    const Played model =
+        played("a.rifs", "rifs c { map half { scale 1/2 probability 0.7 }\n"
+                         "condense sphere scale 0.01 translate <1, 0, 0> probability 0.3\n }");
     std::vector<double> counts(12, 0.0), shares(12, 0.0);
     for (const ChaosPoint& point : points_of(model.game(), 100'000, 1)) {
         const double level = -std::log2(point.place.x);
@@ -142,8 +146,9 @@ TEST(ChaosGame, CondensationWithoutAProbabilityGetsItsArea) {
 
 TEST(ChaosGame, SharedPartsAreFoundOnAllWays) {
     // Two ways lead to the pair of balls, one of them twice as large: four times the area.
-    const Played model = played("a.inst", "canonical object pair { sphere scale: 0.1\nsphere scale: 0.1 translate: 3,0,0 }\n"
-                                          "object top { pair translate: 0,10,0\n pair scale: 2 }");
+    const Played model =
+        played("a.inst", "canonical object pair { sphere scale: 0.1\nsphere scale: 0.1 translate: 3,0,0 }\n"
+                         "object top { pair translate: 0,10,0\n pair scale: 2 }");
     std::vector<double> counts(4, 0.0);
     for (const ChaosPoint& point : points_of(model.game(), 100'000, 1)) {
         const bool high = point.place.y > 5;
@@ -153,10 +158,12 @@ TEST(ChaosGame, SharedPartsAreFoundOnAllWays) {
 }
 
 TEST(ChaosGame, UsedAttractorsBelowOtherCyclesAreReached) {
-    // A cycle that condenses another one: dust of one system at every level of the outer, and in nothing else.
-    const Played model = played("a.inst", "canonical object inner { inner scale: 0.5\ninner scale: 0.5 translate: 1,0,0 }\n"
-                                          "canonical object outer { inner scale: 0.1\nouter scale: 0.5 translate: 0,2,0 }\n"
-                                          "object top { outer }");
+    // A cycle that condenses another one: dust of one system at every level of the outer, and in nothing
+    // else.
+    const Played model =
+        played("a.inst", "canonical object inner { inner scale: 0.5\ninner scale: 0.5 translate: 1,0,0 }\n"
+                         "canonical object outer { inner scale: 0.1\nouter scale: 0.5 translate: 0,2,0 }\n"
+                         "object top { outer }");
     std::array<int, 4> levels{};
     for (const ChaosPoint& point : points_of(model.game(), 20'000, 1)) {
         // Level k lies at y = 4 (1 - 2^-k).
@@ -202,10 +209,11 @@ TEST(ChaosGame, NothingButPlanesHasNoPoints) {
 }
 
 TEST(Unrolled, LevelsAreThoseOfTheGraph) {
-    const Played model = played("a.inst", "canonical object up { union: up, left scale: 0.5\nterminal: sphere scale: 0.5 }\n"
-                                          "canonical object left { union: up, left scale: 0.5 translate: 1,0,0\n"
-                                          "terminal: sphere scale: 0.5 translate: 1,0,0 }\n"
-                                          "object top { up, left\nterminal: sphere }");
+    const Played model =
+        played("a.inst", "canonical object up { union: up, left scale: 0.5\nterminal: sphere scale: 0.5 }\n"
+                         "canonical object left { union: up, left scale: 0.5 translate: 1,0,0\n"
+                         "terminal: sphere scale: 0.5 translate: 1,0,0 }\n"
+                         "object top { up, left\nterminal: sphere }");
     for (const unsigned steps : {0u, 1u, 5u}) {
         const auto cut = unrolled(model.graph, model.components, model.bounds, steps, 10'000);
         ASSERT_TRUE(cut);
@@ -215,8 +223,8 @@ TEST(Unrolled, LevelsAreThoseOfTheGraph) {
         std::vector<double> counts(std::size_t{1} << steps, 0.0);
         for (const ChaosPoint& point : points_of(finite.game(), 20'000, 1)) {
             const double spacing = 2.0 / static_cast<double>(counts.size());
-            const double cell = std::clamp(std::round(point.place.x / spacing), 0.0,
-                                           static_cast<double>(counts.size() - 1));
+            const double cell =
+                std::clamp(std::round(point.place.x / spacing), 0.0, static_cast<double>(counts.size() - 1));
             EXPECT_NEAR(glm::length(point.place - Vec3(cell * spacing, 0, 0)), radius, radius + 1e-9);
             ++counts[static_cast<std::size_t>(cell)];
         }
@@ -243,7 +251,8 @@ TEST_P(ScenePoints, StayInTheBoundsAndFillThem) {
     std::optional<Graph> graph = lower_model(GetParam(), {}, sources, diagnostics, status);
     ASSERT_TRUE(graph) << diagnostics.render(sources);
     const Played model = analysed(std::move(*graph));
-    ASSERT_TRUE(model.contraction.verdict == Verdict::proved || model.contraction.verdict == Verdict::acyclic);
+    ASSERT_TRUE(model.contraction.verdict == Verdict::proved ||
+                model.contraction.verdict == Verdict::acyclic);
     const Box& box = model.bounds[model.graph.root].box;
     const double slack = 1e-9 * glm::length(box.size());
     Box found;

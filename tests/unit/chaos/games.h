@@ -20,9 +20,7 @@ struct Played {
     Contraction contraction;
     std::vector<ObjectBounds> bounds;
 
-    double rate() const {
-        return contraction.verdict == Verdict::proved ? contraction.certificate.rate : 0;
-    }
+    double rate() const { return contraction.verdict == Verdict::proved ? contraction.certificate.rate : 0; }
     ChaosGame game() const { return ChaosGame::of(graph, components, bounds, rate()).value(); }
 };
 
@@ -44,9 +42,10 @@ inline Played played(const std::string& name, const std::string& text) {
     return analysed(graph ? std::move(*graph) : Graph());
 }
 
-/// Every `stride`-th of a sequence of points; with a stride longer than the words that are looked at, these are
-/// independent.
-inline std::vector<ChaosPoint> points_of(const ChaosGame& game, int count, int stride, std::uint64_t sequence = 0) {
+/// Every `stride`-th of a sequence of points; with a stride longer than the words that are looked at, these
+/// are independent.
+inline std::vector<ChaosPoint> points_of(const ChaosGame& game, int count, int stride,
+                                         std::uint64_t sequence = 0) {
     ChaosPlayer player(game, 1, sequence);
     std::vector<ChaosPoint> points;
     // Points of one wanderer are `grain` apart.
@@ -59,8 +58,8 @@ inline std::vector<ChaosPoint> points_of(const ChaosGame& game, int count, int s
     return points;
 }
 
-/// Pearson's statistic: the mean is the number of cells with a share less one, its standard deviation the root of
-/// twice that. Cells without a share must be empty, else it is infinite.
+/// Pearson's statistic: the mean is the number of cells with a share less one, its standard deviation the
+/// root of twice that. Cells without a share must be empty, else it is infinite.
 inline double chi_square(const std::vector<double>& counts, const std::vector<double>& shares) {
     double total = 0, sum = 0;
     for (const double count : counts)

@@ -69,7 +69,8 @@ class CollageTest : public ::testing::Test {
         options.points = 1'500'000;
         options.tone.transparent = true;
         Compilation compilation;
-        EXPECT_TRUE(draw_points(model, options, compilation)) << compilation.diagnostics.render(compilation.sources);
+        EXPECT_TRUE(draw_points(model, options, compilation))
+            << compilation.diagnostics.render(compilation.sources);
         return options.output;
     }
 
@@ -88,7 +89,8 @@ class CollageTest : public ::testing::Test {
 };
 
 TEST_F(CollageTest, AnAttractorIsItsOwnCollage) {
-    for (const char* name : {"ifs/fern.rifs", "ifs/twin_dragon.rifs", "hart/sierpinski.inst", "ifs/koch_curve.rifs"}) {
+    for (const char* name :
+         {"ifs/fern.rifs", "ifs/twin_dragon.rifs", "hart/sierpinski.inst", "ifs/koch_curve.rifs"}) {
         const std::string model = std::string(GRAFTAL_SOURCE_DIR) + "/scenes/" + name;
         const auto collage = measure(model, picture_of(model));
         ASSERT_TRUE(collage) << message_;
@@ -106,10 +108,11 @@ TEST_F(CollageTest, TheBoundHolds) {
         return std::uniform_real_distribution<>(low, high)(random);
     };
     for (int i = 0; i < 12; ++i) {
-        std::string text = "let s = 1\ncamera { orthographic location: 0.5,0.5,9 look_at: 0.5,0.5,0 width: 3 }\nrifs r {\n";
+        std::string text =
+            "let s = 1\ncamera { orthographic location: 0.5,0.5,9 look_at: 0.5,0.5,0 width: 3 }\nrifs r {\n";
         for (int m = 0; m < 3; ++m)
-            text += fmt::format("map w{} {{ rotate z {} scale {}*s translate <{}, {}> }}\n", m, number(-90, 90),
-                                number(0.3, 0.6), number(0, 0.6), number(0, 0.6));
+            text += fmt::format("map w{} {{ rotate z {} scale {}*s translate <{}, {}> }}\n", m,
+                                number(-90, 90), number(0.3, 0.6), number(0, 0.6), number(0, 0.6));
         const std::string model = write("r.rifs", text + "}\n");
         const auto collage = measure(model, picture_of(model, {{"s", number(0.4, 1.3)}}));
         ASSERT_TRUE(collage) << message_;
@@ -121,7 +124,8 @@ TEST_F(CollageTest, TheBoundHolds) {
 
 TEST_F(CollageTest, MapsMayContractInAnotherNormOnly) {
     const std::string model =
-        write("shear.rifs", "rifs shear { codes 2d {\n .5 1.2 0 .5 0 0\n .5 1.2 0 .5 1 0\n .5 1.2 0 .5 0 1\n } }\n");
+        write("shear.rifs",
+              "rifs shear { codes 2d {\n .5 1.2 0 .5 0 0\n .5 1.2 0 .5 1 0\n .5 1.2 0 .5 0 1\n } }\n");
     const auto collage = measure(model, picture_of(model));
     ASSERT_TRUE(collage) << message_;
     EXPECT_FALSE(collage->euclidean);
@@ -131,8 +135,9 @@ TEST_F(CollageTest, MapsMayContractInAnotherNormOnly) {
 }
 
 TEST_F(CollageTest, CondensationCounts) {
-    const std::string model = write(
-        "c.rifs", "rifs c { map w { scale 0.7 translate <0.6, 0> }\ncondense cube scale <0.1, 0.4, 1e-6> }\n");
+    const std::string model =
+        write("c.rifs",
+              "rifs c { map w { scale 0.7 translate <0.6, 0> }\ncondense cube scale <0.1, 0.4, 1e-6> }\n");
     const auto collage = measure(model, picture_of(model));
     ASSERT_TRUE(collage) << message_;
     EXPECT_EQ(collage->condensations, 1u);

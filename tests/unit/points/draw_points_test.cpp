@@ -24,10 +24,13 @@ class Points : public ::testing::Test {
         EXPECT_TRUE(read_text(path(name), text).ok()) << name;
         return text;
     }
-    std::string scene(const std::string& name) const { return std::string(GRAFTAL_SOURCE_DIR) + "/scenes/" + name; }
+    std::string scene(const std::string& name) const {
+        return std::string(GRAFTAL_SOURCE_DIR) + "/scenes/" + name;
+    }
 
-    std::optional<PointsReport> draw(const std::string& model, const std::string& output, std::uint64_t points,
-                                     int threads = 2, PointColour colour = PointColour::tint) {
+    std::optional<PointsReport> draw(const std::string& model, const std::string& output,
+                                     std::uint64_t points, int threads = 2,
+                                     PointColour colour = PointColour::tint) {
         PointsOptions options;
         options.compile.size = {160, 120};
         options.output = path(output);
@@ -45,7 +48,8 @@ class Points : public ::testing::Test {
 };
 
 TEST_F(Points, TheSameBytesForAnyNumberOfThreads) {
-    for (const char* model : {"ifs/fern.rifs", "hart/pound_sign.rifs", "hart/elm.inst", "orbits/julia_set.rifs"})
+    for (const char* model :
+         {"ifs/fern.rifs", "hart/pound_sign.rifs", "hart/elm.inst", "orbits/julia_set.rifs"})
         for (const char* ending : {".png", ".ply"}) {
             const std::string one = std::string("one") + ending, three = std::string("three") + ending;
             ASSERT_TRUE(draw(scene(model), one, 400'001, 1)) << message_;
@@ -75,7 +79,8 @@ TEST_F(Points, CloudsHaveEveryPointInThePlaceThatItHas) {
 TEST_F(Points, ColoursByMapAndByDensity) {
     ASSERT_TRUE(draw(scene("ifs/twin_dragon.rifs"), "map.png", 300'000, 2, PointColour::map)) << message_;
     ASSERT_TRUE(draw(scene("ifs/twin_dragon.rifs"), "tint.png", 300'000)) << message_;
-    ASSERT_TRUE(draw(scene("ifs/twin_dragon.rifs"), "density.exr", 300'000, 2, PointColour::density)) << message_;
+    ASSERT_TRUE(draw(scene("ifs/twin_dragon.rifs"), "density.exr", 300'000, 2, PointColour::density))
+        << message_;
     EXPECT_FALSE(read("map.png") == read("tint.png"));
 }
 
@@ -89,7 +94,8 @@ TEST_F(Points, OrbitsThatGoAstrayAreExplained) {
     const struct {
         const char *text, *message;
     } cases[] = {
-        {"orbit o { start <1, 1>  x = 2*x  y = y }\n", "the orbit diverges: in step 40 it goes from <549755813888, 1>"},
+        {"orbit o { start <1, 1>  x = 2*x  y = y }\n",
+         "the orbit diverges: in step 40 it goes from <549755813888, 1>"},
         {"orbit o { start <1, 0>  x = 1/y  y = x }\n", "division by zero"},
         {"orbit o { start <1, 0>  map { let u = sqrt(y - x) x = u y = 0 } }\n", "sqrt"},
         {"orbit o { start <1, 1>  map { x = 2*x  y = y } map { x = x/2 y = 3*y } }\n", "the orbit diverges"},
@@ -115,7 +121,8 @@ TEST_F(Points, OrbitsThatAreWrongAreExplained) {
         {"orbit o { f(t) = t  x = f(y, 1)  y = x }\n", "'f' takes 1 argument, not 2"},
         {"orbit o { skip 0.5  x = y  y = x }\n", "'skip' must be a whole number from 0 to 1e9, not 0.5"},
         {"orbit o { map { x = y y = x probability 0 } }\n", "the probabilities of 'orbit o' are all 0"},
-        {"orbit o { map { x = y y = x probability 1 } map { x = y y = x } }\n", "either all maps have a probability"},
+        {"orbit o { map { x = y y = x probability 1 } map { x = y y = x } }\n",
+         "either all maps have a probability"},
         {"orbit o { map { x = y y = x probability 2 } }\n", "a probability must lie between 0 and 1, not 2"},
         {"orbit o { map { x = y y = x material m } }\n", "unknown material 'm'"},
         {"orbit o { x = y  y = x }\norbit p { x = y  y = x }\n", "an orbit stands alone in its file"},
@@ -129,10 +136,12 @@ TEST_F(Points, OrbitsThatAreWrongAreExplained) {
     // Functions of functions, each twice in the next: 2^40 words.
     std::string text = "orbit o {\n f0(t) = t + t\n";
     for (int i = 1; i < 40; ++i)
-        text += "f" + std::to_string(i) + "(t) = f" + std::to_string(i - 1) + "(t) + f" + std::to_string(i - 1) + "(t)\n";
+        text += "f" + std::to_string(i) + "(t) = f" + std::to_string(i - 1) + "(t) + f" +
+                std::to_string(i - 1) + "(t)\n";
     ASSERT_TRUE(write_text(path("o.rifs"), text + "x = f39(x)  y = x }\n").ok());
     EXPECT_FALSE(draw(path("o.rifs"), "o.png", 1000));
-    EXPECT_NE(message_.find("this formula has more than 100000 words"), std::string::npos) << message_.substr(0, 500);
+    EXPECT_NE(message_.find("this formula has more than 100000 words"), std::string::npos)
+        << message_.substr(0, 500);
 }
 
 TEST_F(Points, OrbitsFollowTheirFormulas) {

@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-#include "compiler/lower/counter_random.h"
+#include "compiler/support/counter_random.h"
 
 namespace graftal {
 

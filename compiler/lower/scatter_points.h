@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "compiler/lower/counter_random.h"
+#include "compiler/support/counter_random.h"
 #include "compiler/support/flat_area.h"
 
 namespace graftal {

@@ -112,6 +112,7 @@ class LsysLowering {
     void build_grammars() {
         Environment all_lets = lets_;
         const LsysBlock* main = nullptr;
+        const LsysBlock* const chosen = main_source();
         for (const LsysBlock& block : tree_.blocks) {
             if (diagnostics_.full()) return;
             if (main && block.is_main)
@@ -121,7 +122,8 @@ class LsysLowering {
             Block& added = blocks_.emplace_back();
             added.source = &block;
             check_name(block);
-            const bool is_main = &block == &main_source();
+            const bool is_main = &block == chosen;
+            if (is_main) main_block_ = &added;
             Environment lets =
                 evaluate_lets(block.lets, lets_, lowering_, is_main ? given_inner() : Environment());
             all_lets.insert(lets.begin(), lets.end());
@@ -154,14 +156,14 @@ class LsysLowering {
                                fmt::format("'{}' is a primitive and cannot name a block", block.name.text));
     }
 
-    const LsysBlock& main_source() const {
+    /// The block that is the model; null without blocks.
+    const LsysBlock* main_source() const {
+        if (tree_.blocks.empty()) return nullptr;
         const auto main = std::ranges::find_if(tree_.blocks, [](const LsysBlock& b) { return b.is_main; });
-        return main == tree_.blocks.end() ? tree_.blocks.back() : *main;
+        return main == tree_.blocks.end() ? &tree_.blocks.back() : &*main;
     }
 
-    Block& main_block() {
-        return *std::ranges::find_if(blocks_, [&](const Block& b) { return b.source == &main_source(); });
-    }
+    Block& main_block() { return *main_block_; }
 
     /// Composes a block on first use. `use`: of `~NAME`; unknown for the main block.
     std::optional<ObjectId> root_of(Block& block, Span use) {
@@ -357,6 +359,7 @@ class LsysLowering {
     Graph graph_;
     ObjectPool pool_;
     std::deque<Block> blocks_;
+    Block* main_block_ = nullptr;
     unsigned nesting_ = 0; ///< blocks under way
     std::map<std::string_view, Use> uses_;
     std::map<std::string_view, Span> names_; ///< of the blocks

@@ -40,7 +40,8 @@ LsysComposer::LsysComposer(LsysRewriter& rewriter, TurtleContext& turtle, Object
       max_parts_(limits.max_parts), snaps_(limits.snap_angle > 0),
       directions_(std::max(limits.snap_angle, DirectionTable::rounding)),
       uses_directions_(rewriter.grammar().uses({TurtleCommand::level, TurtleCommand::tropism})),
-      decomposes_(rewriter.grammar().has_rules(RuleKind::decompose)) {}
+      decomposes_(rewriter.grammar().has_rules(RuleKind::decompose)),
+      is_timed_(rewriter.grammar().time(RuleKind::interpret) != 0) {}
 
 std::optional<TurtlePart> LsysComposer::compose(unsigned steps, const TurtleState& start, double share) {
     steps_ = steps;
@@ -101,6 +102,13 @@ std::uint32_t LsysComposer::birth_of(ModuleId module, const Task& task) const {
     return birth == ModuleTable::no_birth ? task.birth : birth;
 }
 
+/// What chance knows of a stage. In a film of growth the same module must draw the same after one step more,
+/// so that there steps are counted from the beginning.
+std::uint32_t LsysComposer::chance_key(Stage stage, bool drawing) const {
+    if (!is_timed_) return stage;
+    return drawing ? 0 : 2 * steps_ + 2 - stage;
+}
+
 /// False after an error.
 bool LsysComposer::choose(RuleKind kind, ModuleId module, Stage stage, std::uint32_t birth,
                           std::uint32_t variant, Unfolded& result) {
@@ -109,7 +117,8 @@ bool LsysComposer::choose(RuleKind kind, ModuleId module, Stage stage, std::uint
     if (!rewriter_.is_rewritten(kind, module, moment)) return true;
     const std::vector<Alternative>* alternatives = rewriter_.alternatives(kind, module, moment);
     if (!alternatives) return false;
-    const ChosenAlternative chosen = variants_.choose(*alternatives, variant, module, stage);
+    const ChosenAlternative chosen =
+        variants_.choose(*alternatives, variant, module, chance_key(stage, kind == RuleKind::interpret));
     result.by = chosen.alternative;
     result.within = chosen.within;
     result.kind = kind;
@@ -163,8 +172,8 @@ bool LsysComposer::advance(Task& task) {
             if (!draw_piece(task, module)) return true;
             continue;
         }
-        const std::uint32_t variant =
-            variants_.child(task.start.variant, task.module, task.string_stage, task.at);
+        const std::uint32_t variant = variants_.child(
+            task.start.variant, task.module, chance_key(task.string_stage, task.interprets), task.at);
         const std::uint32_t birth = birth_of(module, task);
         Unfolded unfolded;
         if (!unfold(module, task.string_stage, birth, variant, unfolded)) return false;

@@ -105,6 +105,7 @@ class LsysComposer {
 
     Stage stage_before(unsigned steps) const;
     std::uint32_t birth_at(Stage stage) const { return steps_ - stage / 2; }
+    std::uint32_t chance_key(Stage stage, bool drawing) const;
     std::uint32_t birth_of(ModuleId module, const Task& task) const;
     bool unfold(ModuleId module, Stage stage, std::uint32_t birth, std::uint32_t variant, Unfolded& result);
     bool rewrite(ModuleId module, Stage stage, std::uint32_t birth, std::uint32_t variant, Unfolded& result);
@@ -145,6 +146,7 @@ class LsysComposer {
     DirectionTable ways_;
     bool uses_directions_;
     bool decomposes_;
+    bool is_timed_;           ///< what is drawn depends on the time
     std::uint32_t steps_ = 0; ///< of the derivation
     double share_ = 0;        ///< of the next, when it is drawn
     /// Modules with productions that read the time, and so may fit later if not now: by their stage, the one

@@ -50,8 +50,10 @@ std::optional<double> parse_at_least(std::string_view text, double least) {
 
 std::optional<StepsValue> parse_steps(std::string_view text, std::uint64_t most) {
     if (const auto whole = parse_whole(text, 0, most)) return StepsValue{whole, static_cast<double>(*whole)};
+    if (text.find_first_not_of("0123456789.") != std::string_view::npos) return std::nullopt;
     const std::optional<double> time = parse_at_least(text, 0);
     if (!time || *time > static_cast<double>(most)) return std::nullopt;
+    if (*time == std::floor(*time)) return StepsValue{static_cast<std::uint64_t>(*time), *time};
     return StepsValue{std::nullopt, *time};
 }
 

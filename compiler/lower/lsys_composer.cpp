@@ -1,6 +1,7 @@
 #include "compiler/lower/lsys_composer.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <utility>
 
@@ -104,9 +105,19 @@ std::uint32_t LsysComposer::birth_of(ModuleId module, const Task& task) const {
 
 /// What chance knows of a stage. In a film of growth the same module must draw the same after one step more,
 /// so that there steps are counted from the beginning.
-std::uint32_t LsysComposer::chance_key(Stage stage, bool drawing) const {
+std::uint32_t LsysComposer::chance_stage(Stage stage, bool drawing) const {
     if (!is_timed_) return stage;
     return drawing ? 0 : 2 * steps_ + 2 - stage;
+}
+
+/// The same of a module: there numbers of modules are not the same after one step more.
+std::uint32_t LsysComposer::chance_module(ModuleId module) const {
+    const ModuleTable& modules = rewriter_.modules();
+    if (!is_timed_ || FoldedWord::is_piece(module)) return module;
+    std::uint64_t hash = modules.symbol(module);
+    for (const double parameter : modules.parameters(module)) // but for rounding
+        hash = mixed(hash, std::bit_cast<std::uint32_t>(static_cast<float>(parameter)));
+    return static_cast<std::uint32_t>(mixed(hash, 1) >> 32);
 }
 
 /// False after an error.
@@ -117,8 +128,8 @@ bool LsysComposer::choose(RuleKind kind, ModuleId module, Stage stage, std::uint
     if (!rewriter_.is_rewritten(kind, module, moment)) return true;
     const std::vector<Alternative>* alternatives = rewriter_.alternatives(kind, module, moment);
     if (!alternatives) return false;
-    const ChosenAlternative chosen =
-        variants_.choose(*alternatives, variant, module, chance_key(stage, kind == RuleKind::interpret));
+    const ChosenAlternative chosen = variants_.choose(*alternatives, variant, chance_module(module),
+                                                      chance_stage(stage, kind == RuleKind::interpret));
     result.by = chosen.alternative;
     result.within = chosen.within;
     result.kind = kind;
@@ -172,8 +183,9 @@ bool LsysComposer::advance(Task& task) {
             if (!draw_piece(task, module)) return true;
             continue;
         }
-        const std::uint32_t variant = variants_.child(
-            task.start.variant, task.module, chance_key(task.string_stage, task.interprets), task.at);
+        const std::uint32_t variant =
+            variants_.child(task.start.variant, chance_module(task.module),
+                            chance_stage(task.string_stage, task.interprets), task.at);
         const std::uint32_t birth = birth_of(module, task);
         Unfolded unfolded;
         if (!unfold(module, task.string_stage, birth, variant, unfolded)) return false;

@@ -105,7 +105,8 @@ class LsysComposer {
 
     Stage stage_before(unsigned steps) const;
     std::uint32_t birth_at(Stage stage) const { return steps_ - stage / 2; }
-    std::uint32_t chance_key(Stage stage, bool drawing) const;
+    std::uint32_t chance_stage(Stage stage, bool drawing) const;
+    std::uint32_t chance_module(ModuleId module) const;
     std::uint32_t birth_of(ModuleId module, const Task& task) const;
     bool unfold(ModuleId module, Stage stage, std::uint32_t birth, std::uint32_t variant, Unfolded& result);
     bool rewrite(ModuleId module, Stage stage, std::uint32_t birth, std::uint32_t variant, Unfolded& result);

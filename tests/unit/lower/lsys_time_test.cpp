@@ -307,6 +307,26 @@ TEST(LsysTime, growthIsContinuous) {
     }
 }
 
+/// Strokes that are there on both sides of a whole step are the same ones.
+TEST(LsysTime, chanceKeepsItsChoicesFromStepToStep) {
+    const std::string bush =
+        "axiom A(1)\nA(l) -> I(l)[&(20)A(l*0.9)]/(170)[&(50)A(l*0.8)]\n"
+        "interpret I(l) -> +(normal(0, 30))F(l*smooth(0, 2, age))[/(random(0, 360))+F(age/10)]";
+    const CompiledLsys before("width 0.25\n" + bush, 5, {.time = 5.9999999});
+    const CompiledLsys after("width 0.25\n" + bush, 6, {.time = 6});
+    const auto strokes = [](const CompiledLsys& compiled) {
+        std::vector<Stroke> grown;
+        for (const Stroke& stroke : Unfolding(compiled.graph).strokes)
+            if (glm::distance(stroke.from, stroke.to) > 1e-3) grown.push_back(stroke);
+        return grown;
+    };
+    const std::vector<Stroke> a = strokes(before), b = strokes(after);
+    ASSERT_EQ(a.size(), b.size());
+    EXPECT_EQ(a.size(), 2u * 31);
+    for (std::size_t i = 0; i < a.size(); ++i)
+        EXPECT_LE(glm::distance(a[i].to, b[i].to), 1e-5) << i;
+}
+
 std::string errors_of(const std::string& text, const LowerOptions& options,
                       const std::string& name = "m.lsys") {
     SourceMap sources;

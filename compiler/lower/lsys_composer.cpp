@@ -15,6 +15,9 @@ namespace {
 /// Rules of one kind may follow each other so often without a step between them.
 constexpr unsigned most_repeated = 1000;
 
+/// So often is it tried whether a production that reads the time fits at last: some seconds of work.
+constexpr std::uint64_t most_waits = 50'000'000;
+
 double angle_between(Vec3 a, Vec3 b) {
     return 2 * std::asin(std::min(1.0, 0.5 * glm::length(a - b)));
 }
@@ -149,6 +152,7 @@ bool LsysComposer::rewrite(ModuleId module, Stage stage, std::uint32_t birth, st
     if (waits)
         if (const auto known = fits_at_.find(key); known != fits_at_.end()) stage = known->second;
     while (stage > 0) {
+        if (waits && ++waits_ > most_waits) return refuse_to_wait(symbol);
         const bool decomposing = stage % 2 == 1;
         result.stage = decomposing ? stage : stage_before(stage / 2 - 1);
         if (!choose(decomposing ? RuleKind::decompose : RuleKind::produce, module, stage, birth, variant,
@@ -162,6 +166,18 @@ bool LsysComposer::rewrite(ModuleId module, Stage stage, std::uint32_t birth, st
     }
     if (waits) fits_at_.emplace(key, stage);
     return true;
+}
+
+bool LsysComposer::refuse_to_wait(SymbolId symbol) {
+    const LsysGrammar& grammar = rewriter_.grammar();
+    const RuleKind kind =
+        grammar.time(RuleKind::produce, symbol) != 0 ? RuleKind::produce : RuleKind::decompose;
+    context_.diagnostics
+        .error(grammar.rules[grammar.candidates(kind, symbol).front()].source->span,
+               fmt::format("too many different modules wait for the productions of '{}'",
+                           grammar.symbols[symbol]))
+        .with_hint("fewer steps are tried faster, as are modules with fewer different parameters");
+    return false;
 }
 
 bool LsysComposer::unfold(ModuleId module, Stage stage, std::uint32_t birth, std::uint32_t variant,

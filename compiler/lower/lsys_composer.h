@@ -110,6 +110,7 @@ class LsysComposer {
     std::uint32_t birth_of(ModuleId module, const Task& task) const;
     bool unfold(ModuleId module, Stage stage, std::uint32_t birth, std::uint32_t variant, Unfolded& result);
     bool rewrite(ModuleId module, Stage stage, std::uint32_t birth, std::uint32_t variant, Unfolded& result);
+    bool refuse_to_wait(SymbolId symbol);
     bool choose(RuleKind kind, ModuleId module, Stage stage, std::uint32_t birth, std::uint32_t variant,
                 Unfolded& result);
     std::optional<TurtlePart> run_from(Task first);
@@ -153,6 +154,7 @@ class LsysComposer {
     /// Modules with productions that read the time, and so may fit later if not now: by their stage, the one
     /// at which one fits; 0 if none ever does.
     std::unordered_map<std::uint64_t, Stage> fits_at_;
+    std::uint64_t waits_ = 0; ///< how often it was tried
 };
 
 } // namespace graftal

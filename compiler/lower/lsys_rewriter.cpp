@@ -19,6 +19,9 @@ namespace {
 /// Probabilities as printed in books sum to 1 within this.
 constexpr double probability_slack = 0.0101;
 
+/// Modules at times of which it is known what becomes of them; more are forgotten.
+constexpr std::size_t most_timed = 1u << 22;
+
 } // namespace
 
 ChosenAlternative alternative_at(const std::vector<Alternative>& alternatives, double share) {
@@ -63,6 +66,10 @@ std::uint32_t LsysRewriter::find(RuleKind kind, ModuleId module, const Moment& m
 }
 
 std::uint32_t LsysRewriter::find_timed(RuleKind kind, ModuleId module, Moment moment, TimeMask reads) {
+    if (timed_.size() >= most_timed) {
+        timed_.clear();
+        timed_ids_.clear();
+    }
     if (!(reads & reads_step)) moment.step = 0;
     if (!(reads & reads_age)) moment.age = 0;
     const std::uint64_t hash = mixed(

@@ -335,6 +335,12 @@ std::string errors_of(const std::string& text, const LowerOptions& options,
     return diagnostics.render(sources);
 }
 
+TEST(LsysTime, waitingForEverEnds) {
+    const std::string text = "lsys m {\nsteps 10000\nwidth 0.1\naxiom A(0)\nA(n) -> FB(n)A(n+1)\n"
+                             "B(n) : step == n + 20000 -> F\nmodules B\n}\n";
+    EXPECT_THAT(errors_of(text, {}), ::testing::AnyOf("", HasSubstr("wait for the productions of 'B'")));
+}
+
 TEST(LsysTime, faults) {
     const std::string tree = "lsys m {\nsteps infinite\naxiom A\nA -> F[+A]\ninterpret A -> F(age)\n}\n";
     EXPECT_THAT(errors_of(tree, {}),

@@ -16,7 +16,7 @@ namespace {
 constexpr unsigned most_repeated = 1000;
 
 /// So often is it tried whether a production that reads the time fits at last: some seconds of work.
-constexpr std::uint64_t most_waits = 50'000'000;
+constexpr std::uint64_t most_waits = 10'000'000;
 
 double angle_between(Vec3 a, Vec3 b) {
     return 2 * std::asin(std::min(1.0, 0.5 * glm::length(a - b)));

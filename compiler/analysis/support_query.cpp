@@ -50,7 +50,8 @@ Support SupportSearch::run(ObjectId object, Vec3 direction, double tolerance, st
         }
         expand(top);
     }
-    const Vec3 point = point_in_root(best_parent_, best_instance_, best_point_);
+    // Where all has overflown, nothing was reached.
+    const Vec3 point = best_ > nowhere ? point_in_root(best_parent_, best_instance_, best_point_) : Vec3(0.0);
     const double rounding = 16 * std::numeric_limits<double>::epsilon() * magnitude_;
     return {std::max({open, discarded_, best_}) + rounding, best_, point};
 }
@@ -76,6 +77,7 @@ void SupportSearch::expand(std::uint32_t parent) {
         const Vec3 point = primitive ? primitive_support_point(*primitive, piece.direction)
                                      : outer.farthest_point(piece.direction);
         const double reached = piece.offset + glm::dot(piece.direction, point);
+        if (std::isnan(reached)) discarded_ = largest_length;
         if (reached > best_) {
             best_ = reached;
             best_parent_ = parent;

@@ -11,7 +11,8 @@ namespace graftal {
 /// The support function of a limit set in one direction: h = max of <direction, x>.
 struct Support {
     double upper = 0; ///< h <= upper
-    double lower = 0; ///< reached by `point` (to rounding)
+    double lower =
+        0; ///< reached by `point` (to rounding); minus infinity: it is out of range, and no point is known
     Vec3 point{0.0};
 };
 

@@ -4,10 +4,12 @@
 #include <ctime>
 #include <functional>
 #include <random>
+#include <utility>
 
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
+#include "compiler/analysis/support_query.h"
 #include "tests/unit/analysis/bounds_checks.h"
 #include "tests/unit/analysis/sampling.h"
 #include "tests/unit/analysis/systems.h"
@@ -29,6 +31,30 @@ TEST(Bounding, SingularMaps) {
     step_down.linear[1][0] = 100;
     step_down.translation = {1, 1, 0};
     expect_box(root_bounds(ifs({step_down})).box, {101, 1, 0}, {101, 1, 0});
+}
+
+// All of the part lies at minus infinity, as far as numbers go: the search finds no point of it, and must not take
+// one that it found before (of an instance that there need not be).
+TEST(Bounding, NothingIsReachedWhereAllOverflows) {
+    Graph graph;
+    const ObjectId ball = graph.primitive(PrimitiveKind::sphere);
+    Object pair = named("pair"), far = named("far");
+    for (const double x : {0.0, 5.0})
+        pair.instances.push_back(instance(ball, scaled(1, {x, 0, 0})));
+    const ObjectId pair_id = graph.add(std::move(pair));
+    for (const double factor : {1e200, 1e201})
+        far.instances.push_back(instance(pair_id, scaled(factor, Vec3(0.0))));
+    graph.root = graph.add(std::move(far));
+    Outers outers(graph.objects.size());
+    for (const ObjectId id : {ball, pair_id}) {
+        outers[id].empty = false;
+        outers[id].set_ball({Vec3(0.0), 6});
+        outers[id].point_count = 1;
+    }
+    SupportSearch search(graph, outers);
+    EXPECT_EQ(search.run(pair_id, {1, 0, 0}, 0, 100).point, Vec3(6, 0, 0));
+    outers[pair_id].points[0] = {-1e139, 0, 0};
+    EXPECT_EQ(search.run(graph.root, {1, 0, 0}, 0, 100).point, Vec3(0.0));
 }
 
 TEST(Bounding, APointIsBoundedToRounding) {

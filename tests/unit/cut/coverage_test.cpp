@@ -155,7 +155,7 @@ Graph cycles_of_toruses(int cycles, int parts_of_a_cycle) {
 TEST(Coverage, CyclesShareABudget) {
     const Fitted one = fitted(cycles_of_toruses(1, 1));
     EXPECT_LT(one.draws, 300'000u);
-    for (const auto& [cycles, parts] : {std::pair(20, 1), {1, 20}}) {
+    for (const auto& [cycles, parts] : {std::pair(40, 1), {1, 40}}) {
         const Fitted model = fitted(cycles_of_toruses(cycles, parts));
         EXPECT_LT(model.draws, 5'000'000u) << cycles << " of " << parts;
         EXPECT_GT(model.root_shadow(), cycles * 0.5 * one.root_shadow()) << cycles << " of " << parts;

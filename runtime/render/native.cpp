@@ -159,7 +159,6 @@ std::optional<NativeReport> render_natively(const std::string& path, const Nativ
 
 std::optional<NativeReport> trace_model(ViewedModel viewed, const NativeOptions& options,
                                         Compilation& compilation) {
-    const Interruption interruption;
     compilation.status = check_writable(options.render.output);
     const AnalysedModel& analysed = viewed.model;
     if (compilation.status.ok()) compilation.status = load_textures(analysed.graph.materials);
@@ -173,6 +172,7 @@ std::optional<NativeReport> trace_model(ViewedModel viewed, const NativeOptions&
     compilation.times.push_back({"prepare", watch.seconds()});
     if (viewed.cut.culls() && !viewed.cut.steps)
         note_shadowless(model.prepared.cut, analysed.graph, compilation.diagnostics);
+    const Interruption interruption; // from here on something may be half written
     const Stopwatch drawing_watch;
     Drawing drawing(model, options);
     compilation.status = drawing.run();

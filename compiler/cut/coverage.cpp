@@ -77,6 +77,7 @@ struct Part {
     Affine place;
     double scale = 1;
     std::uint32_t edge = 0; ///< of the subtree's root, that it hangs on
+    std::optional<MaterialId> material;
 };
 
 /// Unfolds subtrees, largest parts first, and takes their shadows.
@@ -132,7 +133,7 @@ class Measurer {
             for (std::uint32_t i = 0; i < edges.size(); ++i) {
                 const CutEdge& edge = edges[i];
                 Part part{edge.child, parent.place * edge.node_from_child, parent.scale * edge.stretch,
-                          reused == SIZE_MAX ? i : parent.edge};
+                          reused == SIZE_MAX ? i : parent.edge, edge.material ? edge.material : parent.material};
                 const std::size_t at = i == 0 && reused != SIZE_MAX ? reused : parts_.size();
                 if (at == parts_.size()) parts_.emplace_back();
                 parts_[at] = part;
@@ -143,7 +144,7 @@ class Measurer {
                                     -static_cast<std::int64_t>(at));
             }
         };
-        open({root, {}, 1, 0}, SIZE_MAX);
+        open({root, {}, 1, 0, {}}, SIZE_MAX);
         // A cycle of single instances would be opened for ever, and never make more parts.
         for (std::size_t opened = 0; !largest.empty() && opened < 4 * most && bodies < bodies_a_piece * most;
              ++opened) {
@@ -160,9 +161,17 @@ class Measurer {
             const CutNode& node = cut_.nodes[part.node];
             const PrimitiveKind kind = node.primitive.value_or(PrimitiveKind::sphere);
             bodies_.push_back(
-                {kind, node.primitive ? part.place : part.place * node.node_from_proxy,
+                {kind, node.primitive ? part.place * solid_part(node, part) : part.place * node.node_from_proxy,
                  part.place(node.primitive ? node.ball.centre : node.node_from_proxy.translation)});
         }
+    }
+
+    /// Where the material's picture is clear a primitive throws no shadow: it is as much smaller.
+    Affine solid_part(const CutNode& primitive, const Part& part) const {
+        const double coverage = part.material ? cut_.materials[*part.material].coverage : 1;
+        if (coverage == 1) return {};
+        const Vec3 centre = primitive.ball.centre;
+        return Affine::translate(centre) * Affine::scale(Vec3(std::sqrt(coverage))) * Affine::translate(-centre);
     }
 
     /// The area of the union: the sum of the parts' areas, which is exact, times the share of it that the

@@ -312,5 +312,25 @@ TEST(Shadow, OfWhatHasNoPlaceIsNone) {
         EXPECT_EQ(shadow.draw(kind, far).samples, 0) << name_of(kind);
 }
 
+TEST(Coverage, WhatIsClearThrowsNoShadow) {
+    // Cards far apart, whose picture is clear for the most part.
+    Graph graph = union_of(PrimitiveKind::cube, [] {
+        std::vector<Affine> cards;
+        for (int i = 0; i < 30; ++i)
+            cards.push_back(Affine::translate({5.0 * i, 3.0 * (i % 7), 2.0 * (i % 11)}) *
+                            Affine::rotate({1, 2, 3}, 50 * i) * Affine::scale({1, 1, 0.01}));
+        return cards;
+    }());
+    const double solid = fitted(graph).root_shadow();
+    Material leaf;
+    leaf.name = "leaf";
+    leaf.texture = "leaf.png";
+    leaf.coverage = 0.36;
+    graph.materials = {leaf};
+    for (Instance& card : graph.objects[graph.root].instances)
+        card.material = 0;
+    EXPECT_NEAR(fitted(graph).root_shadow() / solid, 0.36, 0.01);
+}
+
 } // namespace
 } // namespace graftal

@@ -19,6 +19,10 @@ namespace {
 /// Beyond this many, pieces are only counted.
 constexpr double max_real_pieces = 300'000;
 constexpr std::size_t max_splits = 200'000;
+/// Each tree of a wood stands at a distance of its own. Where one node has more edges than this, details are
+/// told apart by no more than this part of an octave, lest each tree be a kind to be split by itself.
+constexpr std::size_t many_edges = 4096;
+constexpr int coarse_steps_an_octave = 16;
 
 /// What one mesh would serve.
 struct MeshKind {
@@ -31,7 +35,11 @@ struct MeshKind {
 class Chooser {
   public:
     Chooser(const CutGraph& cut, const Symmetry& symmetry, const Projection& projection, Weights& weights)
-        : cut_(cut), symmetry_(symmetry), projection_(projection), weights_(weights) {}
+        : cut_(cut), symmetry_(symmetry), projection_(projection), weights_(weights) {
+        const bool crowded = std::ranges::any_of(
+            cut.nodes, [](const CutNode& node) { return node.edges.size() > many_edges; });
+        if (crowded) grain_ = PieceKind::steps_an_octave / coarse_steps_an_octave;
+    }
 
     Choice choose(const Piece& root) {
         add_piece(root);
@@ -74,7 +82,15 @@ class Chooser {
     };
 
     PieceKind kind_of(const Piece& piece) const {
-        return weights_.normalised(graftal::kind_of(cut_, projection_, piece));
+        return grained(weights_.normalised(graftal::kind_of(cut_, projection_, piece)));
+    }
+
+    /// To the nearest, so that what is counted level by level does not drift.
+    PieceKind grained(PieceKind kind) const {
+        if (kind.unit_step == PieceKind::tiny || kind.unit_step == PieceKind::endless_detail) return kind;
+        const double steps = std::round(static_cast<double>(kind.unit_step) / grain_) * grain_;
+        kind.unit_step = static_cast<std::int32_t>(steps);
+        return kind;
     }
 
     MeshKind mesh_kind(const PieceKind& kind) const {
@@ -144,7 +160,7 @@ class Chooser {
                 for (const Piece& piece : bucket.pieces)
                     add_piece(descend(cut_, piece, edge, cut));
             } else {
-                bucket_for(weights_.child_kind(kind, edge)).count += bucket.count;
+                bucket_for(grained(weights_.child_kind(kind, edge))).count += bucket.count;
                 placements_ += bucket.count;
             }
         }
@@ -165,6 +181,7 @@ class Chooser {
     const Symmetry& symmetry_;
     const Projection& projection_;
     Weights& weights_;
+    int grain_ = 1; ///< kinds' details are multiples of it
     double placement_bytes_ = 0;
     double placements_ = 0;
     double triangles_ = 0;

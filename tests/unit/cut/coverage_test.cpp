@@ -329,7 +329,7 @@ TEST(Coverage, WhatIsClearThrowsNoShadow) {
     graph.materials = {leaf};
     for (Instance& card : graph.objects[graph.root].instances)
         card.material = 0;
-    EXPECT_NEAR(fitted(graph).root_shadow() / solid, 0.36, 0.01);
+    EXPECT_NEAR(fitted(graph).root_shadow() / solid, 0.36, 0.02); // and a little for their edges
 }
 
 } // namespace

@@ -246,7 +246,8 @@ class Baker {
     int fineness(const KeptLeaf& leaf) {
         if (max_fineness(leaf.kind) == 0) return 0;
         const double px = norm(leaf.place.linear) * request_.pixels_per_unit;
-        const int level = fineness_for(leaf.kind, tessellation_tolerance_px / std::max(px, 1e-300));
+        const double error_px = request_.pixels_per_unit / request_.detail_per_unit;
+        const int level = fineness_for(leaf.kind, tessellation_tolerance(error_px) / std::max(px, 1e-300));
         baked_.tessellation_px = std::max(baked_.tessellation_px, px * tessellation_error(leaf.kind, level));
         return level;
     }
@@ -258,7 +259,7 @@ class Baker {
     Baked baked_;
     std::vector<Part> parts_;
     std::map<PartKey, std::size_t> part_of_;
-    std::vector<std::uint64_t> numbers_;          ///< of the leaves that are kept, in the order of the walk
+    std::vector<std::uint64_t> numbers_; ///< of the leaves that are kept, in the order of the walk
 };
 
 } // namespace

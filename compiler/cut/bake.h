@@ -71,7 +71,11 @@ Affine thickened(const Affine& place, double thickness);
 /// Pieces whose map is flatter than this are not placed but baked into a neighbour above.
 inline constexpr double flattest_placement = 1e-5;
 
-/// What curved surfaces may be off by, and the fineness that follows for a primitive of this size.
+/// What curved surfaces may be off by; and where parts of this many pixels are culled: were the surfaces of
+/// those that are left much finer than that, no one would see it, and few would fit the memory.
 inline constexpr double tessellation_tolerance_px = 0.2;
+constexpr double tessellation_tolerance(double error_px) {
+    return error_px > 4 * tessellation_tolerance_px ? error_px / 4 : tessellation_tolerance_px;
+}
 
 } // namespace graftal

@@ -119,7 +119,7 @@ Weights::Weight Weights::of_primitive(const PieceKind& asked) const {
     if (kind == PrimitiveKind::cube) return {cube_triangles_, 1, 0, flat_bytes};
     const double unit = static_cast<double>(asked.unit_step) / PieceKind::steps_an_octave;
     const double px = asked.unit_step == PieceKind::endless_detail ? 0 : px_ * std::exp2(unit);
-    const int level = px > 0 ? fineness_for(kind, tessellation_tolerance_px / px) : 0;
+    const int level = px > 0 ? fineness_for(kind, tessellation_tolerance(px_) / px) : 0;
     const TessellatedPrimitive& mesh = tessellated(kind, level);
     return {static_cast<double>(mesh.triangles.size()), 1, mesh.normals.empty() ? 0.0 : 1.0, flat_bytes};
 }

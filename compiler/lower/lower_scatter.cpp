@@ -231,20 +231,22 @@ class ScatterLowerer {
     std::optional<std::vector<Vec2>> choose_points(const ScatterArea& area) {
         const auto count = static_cast<std::size_t>(count_.value_or(static_cast<double>(context_.most) + 1));
         const double apart = apart_.value_or(loose_distance(area.size(), count));
+        // Where no more fit, the discs of this radius around the places cover the area.
+        const double at_least = area.size() / apart / apart / std::numbers::pi;
+        if (!count_ && at_least > static_cast<double>(context_.most)) return refuse_fill();
         std::vector<Vec2> points = points_by_order(area, count, apart);
-        if (count_ && points.size() < count) {
-            refuse_places(points.size(), apart);
-            return std::nullopt;
-        }
-        if (points.size() > context_.most) {
-            diagnostics_
-                .error(group_.span, fmt::format("more than {} places fit, and the graph has no room for "
-                                                "more instances",
-                                                context_.most))
-                .with_hint("enlarge 'apart', or give 'count'");
-            return std::nullopt;
-        }
+        if (count_ && points.size() < count) return refuse_places(points.size(), apart);
+        if (points.size() > context_.most) return refuse_fill();
         return points;
+    }
+
+    std::nullopt_t refuse_fill() {
+        diagnostics_
+            .error(group_.span, fmt::format("more than {} places fit, and the graph has no room for more "
+                                            "instances",
+                                            context_.most))
+            .with_hint("enlarge 'apart', or give 'count'");
+        return std::nullopt;
     }
 
     std::vector<Vec2> points_by_order(const ScatterArea& area, std::size_t count, double apart) const {
@@ -261,16 +263,16 @@ class ScatterLowerer {
         return poisson_points(area, count, apart, random_.sequence(places));
     }
 
-    void refuse_places(std::size_t placed, double apart) {
-        if (order() != ScatterOrder::poisson) {
+    std::nullopt_t refuse_places(std::size_t placed, double apart) {
+        if (order() != ScatterOrder::poisson)
             diagnostics_.error(scatter_.count->span, "this area has no such pattern")
                 .with_hint("leave less of it out, or place them 'by: poisson'");
-            return;
-        }
-        diagnostics_
-            .error(scatter_.count->span, fmt::format("only {} of {} places fit {} apart", placed,
-                                                     shortest(*count_), shortest(apart)))
-            .with_hint("lower 'count' or 'apart', or leave one of them out");
+        else
+            diagnostics_
+                .error(scatter_.count->span, fmt::format("only {} of {} places fit {} apart", placed,
+                                                         shortest(*count_), shortest(apart)))
+                .with_hint("lower 'count' or 'apart', or leave one of them out");
+        return std::nullopt;
     }
 
     /// The i-th number of [0, 1) for one use.

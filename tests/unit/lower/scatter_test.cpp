@@ -127,6 +127,13 @@ TEST(Scatter, says_how_many_fit) {
     EXPECT_THAT(said, HasSubstr("only 9 of 100 places fit 1 apart"));
 }
 
+TEST(Scatter, more_than_the_graph_has_room_for_are_refused_before_they_are_made) {
+    EXPECT_THAT(errors_of("object o { scatter: cube  over: disc 1  apart: 1e-9 }"),
+                HasSubstr("more than 4000000 places fit"));
+    EXPECT_THAT(errors_of("object o { scatter: cube  over: disc 1  count: 1e15 }"),
+                HasSubstr("room for 4000000 more instances"));
+}
+
 TEST(Scatter, jitter_has_one_in_each_cell) {
     const std::vector<Vec2> points =
         places(scattered("scatter: cube  by: jitter  over: 0,0,10,10  count: 100"));

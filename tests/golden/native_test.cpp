@@ -207,7 +207,7 @@ TEST_F(NativeAnimation, FramesAgreeWithPovrays) {
         shell("PATH=/nowhere \"$graftal\" animate --engine native -o native/ " + turning);
     ASSERT_EQ(result.status, 0) << result.err;
     EXPECT_THAT(result.err,
-                MatchesRegex("native/: 3 frames, 25 a second; [0-9.]+ million rays a second; 0 s\n"));
+                MatchesRegex("native/: 3 frames, 25 a second; [0-9.]+ million rays a second; [0-9]+ s\n"));
     ASSERT_EQ(graftal("animate -q -o povray/ " + turning).status, 0);
     for (int i = 1; i <= 3; ++i) {
         const RunResult compared =

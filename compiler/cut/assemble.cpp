@@ -59,7 +59,6 @@ class Unfolding {
     Unfolding(const CutGraph& cut, const Symmetry& symmetry, const Projection& projection,
               const Choice& choice, Weights& weights)
         : cut_(cut), symmetry_(symmetry), projection_(projection), choice_(choice), weights_(weights),
-          textured_(std::ranges::any_of(cut.materials, [](const Material& m) { return !m.texture.empty(); })),
           seen_(cut.nodes[cut.root].ball.radius) {}
 
     bool run(const Piece& root, std::size_t max_placements) {
@@ -86,13 +85,12 @@ class Unfolding {
         children.clear();
         const CutNode& node = cut_.nodes[piece.node];
         if (!node.unbounded && projection_.drops(world_ball(cut_, piece))) return;
-        if (node.primitive && !node.unbounded && piece.material &&
-            !cut_.materials[*piece.material].texture.empty())
+        if (node.primitive && !node.unbounded && piece.material && has_picture(*piece.material))
             return place_textured(*node.primitive, piece);
         if (node.primitive)
             return place_primitive(*node.primitive, piece.world_from_node, piece, piece.inherited);
         const double detail = detail_of(cut_, projection_, piece);
-        const bool cut = is_cut(node, piece.steps, detail);
+        const bool cut = is_cut(node, piece.steps, detail, projection_.error_px());
         const PieceKind kind = weights_.normalised(kind_of(cut_, projection_, piece));
         if (cut && detail <= 1) culled_detail = std::max(culled_detail, detail);
         if (node.sealed) return place_mesh(piece, kind);
@@ -159,6 +157,7 @@ class Unfolding {
             requests.back().representative = representative;
             requests.back().steps = kind.steps;
             requests.back().material = piece.material;
+            requests.back().error_px = projection_.error_px();
             requests.back().expected_leaves = weights_.of(kind).leaves;
         }
         BakeRequest& bake = requests[request->second];
@@ -179,13 +178,15 @@ class Unfolding {
         placed.push_back(thing);
     }
 
+    bool has_picture(MaterialId material) const { return !cut_.materials[material].texture.empty(); }
+
     void note_finest(const Ball& ball) {
         if (projection_.culls() && projection_.sees(ball))
             finest = std::min(finest, 1 / projection_.detail_per_unit(ball));
     }
 
     std::optional<PainterKey> own_painter(const Piece& piece) const {
-        if (!textured_) return std::nullopt;
+        if (!cut_.nodes[piece.node].textured && !(piece.material && has_picture(*piece.material))) return std::nullopt;
         return PainterKey{0, symmetry_.pair[piece.node], as_array(piece.inherited)};
     }
 
@@ -203,7 +204,6 @@ class Unfolding {
     const Projection& projection_;
     const Choice& choice_;
     Weights& weights_;
-    const bool textured_; ///< some material has a picture
     std::map<TexturedPrimitive, std::uint32_t> textured_of_;
     PlacedSet seen_;
     std::map<RequestKey, std::uint32_t> request_of_;

@@ -22,6 +22,7 @@ struct BakeRequest {
     std::uint32_t steps = unlimited_steps;
     double detail_per_unit = 0;         ///< of the representative's frame, where it is seen largest
     double pixels_per_unit = 0;         ///< likewise; decides how finely curved surfaces are meshed
+    double error_px = 0;                ///< Projection::error_px()
     std::optional<MaterialId> material; ///< the finish of what names no material
     std::vector<Painter> painters;
     double expected_leaves = 0; ///< about; what is known of it saves memory

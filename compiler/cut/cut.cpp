@@ -88,7 +88,7 @@ class Cutter {
         root.steps = prepared_.root_steps;
         const Ball whole_ball = world_ball(cut_, root);
         const double px = projection.pixels_per_unit(whole_ball) / projection.detail_per_unit(whole_ball);
-        Weights weights(cut_, cube_triangles_, px);
+        Weights weights(cut_, cube_triangles_, px, projection.error_px());
         const double memory = memory_for_scene();
         const PieceKind whole = kind_of(cut_, projection, root);
         choice_ = options.flatten || better_flat(weights.of(whole), memory)

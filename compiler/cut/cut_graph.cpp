@@ -143,7 +143,8 @@ class Builder {
             node.primitive = object.primitive;
             node.unending = components_.unending[id];
             node.unbounded = unbounded.at(object.name);
-            node.cullable = node.unending || leaves[id] > uncullable_leaves;
+            node.terminal_px = object.terminal_px;
+            node.cullable = node.unending || leaves[id] > uncullable_leaves || node.terminal_px > 0;
             node.ball = factor.ball.empty() ? Ball{Vec3(0.0), 0.0} : factor.ball;
             node.node_from_proxy = ellipsoid_in(factor.box);
             for (const Instance& instance : object.instances)
@@ -240,6 +241,23 @@ std::vector<NodeId> masters_first(const CutGraph& cut) {
     return order;
 }
 
+void mark_textured(CutGraph& cut) {
+    const std::vector<NodeId> order = masters_first(cut);
+    const auto shows_picture = [&](const CutEdge& edge) {
+        return cut.nodes[edge.child].textured || (edge.material && !cut.materials[*edge.material].texture.empty());
+    };
+    for (bool changed = true; changed;) {
+        changed = false;
+        for (const NodeId id : order) {
+            CutNode& node = cut.nodes[id];
+            if (node.textured) continue;
+            node.textured = std::ranges::any_of(node.edges, shows_picture) ||
+                            std::ranges::any_of(node.stop_edges, shows_picture);
+            changed = changed || node.textured;
+        }
+    }
+}
+
 MeanColour mean_of(const CutGraph& cut, const CutNode& node) {
     MeanColour sum{Rgb(0.0), 0};
     double weights = 0;
@@ -287,6 +305,7 @@ CutGraph build_cut_graph(const Graph& graph, const Components& components,
     const Components merged = strong_components(factored);
     CutGraph cut = Builder(factored, merged).build(factor_of, unbounded);
     cut.materials = factored.materials;
+    mark_textured(cut);
     weigh_by_reach(cut);
     set_mean_colours(cut);
     return cut;

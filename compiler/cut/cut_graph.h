@@ -40,10 +40,12 @@ struct CutNode {
     std::vector<CutEdge> edges;
     std::vector<CutEdge> stop_edges; ///< drawn in place of the edges where the node is cut; if empty: proxy
     bool terminal = false;           ///< stop_edges holds the terminal, not the ending instances
+    double terminal_px = 0;          ///< as the object's (graph.h)
     bool unending = false;
     bool unbounded = false;  ///< holds a plane: always expanded into placements
     bool sealed = false;     ///< leads through a singular map: never expanded, POV-Ray could not place it
     bool cullable = true;    ///< worth a proxy; a handful of primitives is drawn as it is
+    bool textured = false;   ///< some material within it has a picture
     bool shadowless = false; ///< its limit covers no area: it looks the fainter the deeper it is unfolded
     Ball ball;
     Affine node_from_proxy; ///< places the unit sphere: the ellipsoid in the node's box, until fit_proxies()

@@ -58,16 +58,23 @@ std::size_t PieceKindHash::operator()(const PieceKind& kind) const {
     return h ^ (h >> 32);
 }
 
-bool is_cut(const CutNode& node, std::uint32_t steps, double detail) {
-    if (node.primitive || node.unbounded) return false;
-    return (node.unending && steps == 0) || (node.cullable && detail <= 1);
+double cut_detail(const CutNode& node, double error_px) {
+    return error_px > 0 ? std::max(1.0, node.terminal_px / error_px) : 1;
 }
 
-Weights::Weights(const CutGraph& cut, double cube_triangles, double px)
+bool is_cut(const CutNode& node, std::uint32_t steps, double detail, double error_px) {
+    if (node.primitive || node.unbounded) return false;
+    return (node.unending && steps == 0) || (node.cullable && detail <= cut_detail(node, error_px));
+}
+
+Weights::Weights(const CutGraph& cut, double cube_triangles, double px, double error_px)
     : cut_(cut), cube_triangles_(cube_triangles), px_(px) {
     diameter_step_.reserve(cut.nodes.size());
-    for (const CutNode& node : cut.nodes)
+    cut_step_.reserve(cut.nodes.size());
+    for (const CutNode& node : cut.nodes) {
         diameter_step_.push_back(steps_of(2 * node.ball.radius));
+        cut_step_.push_back(steps_of(cut_detail(node, error_px)) + 1e-6);
+    }
 }
 
 double Weights::detail_step(const PieceKind& kind) const {
@@ -77,7 +84,9 @@ double Weights::detail_step(const PieceKind& kind) const {
 }
 
 bool Weights::is_cut(const PieceKind& kind) const {
-    return graftal::is_cut(cut_.nodes[kind.node], kind.steps, detail_step(kind) <= 1e-6 ? 1 : 2);
+    const CutNode& node = cut_.nodes[kind.node];
+    if (node.primitive || node.unbounded) return false;
+    return (node.unending && kind.steps == 0) || (node.cullable && detail_step(kind) <= cut_step_[kind.node]);
 }
 
 PieceKind Weights::normalised(PieceKind kind) const {

@@ -37,6 +37,8 @@ class Projection {
     bool drops(const Ball& world_ball) const { return visible_only_ && !sees(world_ball); }
 
     bool culls() const { return culls_; }
+    /// Pixels of a detail of 1; 0 where the error is a length in the scene, so that a detail tells no pixels.
+    double error_px() const { return error_world_ > 0 ? 0 : error_px_; }
 
     /// How much larger parts may be culled that only throw shadows into the picture, or are reflected in it.
     static constexpr double coarser_out_of_sight = 8;
@@ -123,7 +125,8 @@ class Weights {
   public:
     /// `cube_triangles`: how many of a cube's triangles stay visible in a mesh, on average. `px`: pixels of a
     /// detail of 1, which decide how finely curved surfaces are meshed; 0: as coarsely as can be.
-    explicit Weights(const CutGraph& cut, double cube_triangles = 12, double px = 0);
+    /// `error_px`: as Projection::error_px().
+    explicit Weights(const CutGraph& cut, double cube_triangles = 12, double px = 0, double error_px = 0);
 
     struct Weight {
         double triangles = 0;
@@ -157,12 +160,17 @@ class Weights {
 
     const CutGraph& cut_;
     std::vector<double> diameter_step_; ///< by node
+    std::vector<double> cut_step_;      ///< by node, of cut_detail()
     double cube_triangles_;
     double px_;
     std::unordered_map<PieceKind, Weight, PieceKindHash> known_;
 };
 
+/// The detail from which down a cullable node is cut, 1 at least: more if its terminal takes its place before it is
+/// culled. `error_px`: as Projection::error_px().
+double cut_detail(const CutNode& node, double error_px);
+
 /// The rule that ends recursion: no level left, or too small.
-bool is_cut(const CutNode& node, std::uint32_t steps, double detail);
+bool is_cut(const CutNode& node, std::uint32_t steps, double detail, double error_px);
 
 } // namespace graftal

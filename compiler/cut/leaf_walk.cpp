@@ -9,7 +9,7 @@ namespace graftal {
 LeafWalk::LeafWalk(const CutGraph& cut, const Symmetry& symmetry, const BakeRequest& request,
                    std::span<const Painter> painters)
     : cut_(cut), symmetry_(symmetry),
-      detail_per_unit_(request.detail_per_unit), limit_normals_(request.limit_normals),
+      detail_per_unit_(request.detail_per_unit), error_px_(request.error_px), limit_normals_(request.limit_normals),
       visit_{request.representative, request.steps, {}, 1, 0} {
     for (const Painter& painter : painters)
         paints_.push_back({painter.pair, {}, painter.inherited, request.material});
@@ -37,7 +37,7 @@ bool LeafWalk::next(WalkedLeaf& leaf) {
             return true;
         }
         const double detail = 2 * shape.ball.radius * visit_.scale * detail_per_unit_;
-        const bool cut = is_cut(shape, visit_.steps, detail);
+        const bool cut = is_cut(shape, visit_.steps, detail, error_px_);
         if (followed_edges(shape, cut).empty()) {
             leaf.kind = PrimitiveKind::sphere;
             leaf.representative_from_leaf = visit_.representative_from_node * shape.node_from_proxy;

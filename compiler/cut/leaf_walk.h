@@ -68,6 +68,7 @@ class LeafWalk {
     const CutGraph& cut_;
     const Symmetry& symmetry_;
     double detail_per_unit_;
+    double error_px_;
     bool limit_normals_;
     std::vector<Visit> stack_;
     std::vector<Paint> paint_stack_; ///< as many for each visit as there are painters

@@ -240,7 +240,7 @@ class Finder {
         const CutNode& a = cut_.nodes[pair.a];
         const CutNode& b = cut_.nodes[pair.b];
         if (a.primitive != b.primitive || a.unending != b.unending || a.sealed != b.sealed ||
-            a.unbounded != b.unbounded || a.cullable != b.cullable)
+            a.unbounded != b.unbounded || a.cullable != b.cullable || a.terminal_px != b.terminal_px)
             return false;
         if (pair.a == pair.b && pair.b_from_a == Affine()) return match_itself(index);
         if (a.sealed) return false;
@@ -339,6 +339,7 @@ void split_into_halves(CutGraph& cut) {
             half.edges.clear();
             half.stop_edges.clear();
             half.terminal = false;
+            half.terminal_px = 0;
             half.cullable = false; // the whole node is culled or cut, never a half
             for (std::size_t i = 0; i < halves[id].size(); ++i)
                 if (halves[id][i] == first) half.edges.push_back(cut.nodes[id].edges[i]);

@@ -40,7 +40,7 @@ bool equal(const Graph& a, const Instance& x, const Graph& b, const Instance& y)
 
 bool equal(const Graph& a, const Object& x, const Graph& b, const Object& y) {
     if (x.primitive != y.primitive || x.instances.size() != y.instances.size()) return false;
-    if (x.terminal.has_value() != y.terminal.has_value()) return false;
+    if (x.terminal.has_value() != y.terminal.has_value() || x.terminal_px != y.terminal_px) return false;
     if (x.terminal && !equal(a, *x.terminal, b, *y.terminal)) return false;
     for (std::size_t i = 0; i < x.instances.size(); ++i)
         if (!equal(a, x.instances[i], b, y.instances[i])) return false;

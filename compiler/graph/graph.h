@@ -15,6 +15,9 @@
 //   2. else, where levels end, its instances of ending masters (its condensation set, its trunk), if it has any;
 //   3. else a proxy: an ellipsoid that covers as much of a picture as the object does.
 //
+// An object whose terminal has a size (`terminal_px`) is drawn as its terminal wherever it measures at most so many
+// pixels across: a card or a few triangles in place of a leaf's recursion. What is nearer is unfolded.
+//
 // Tints compose along a path from the root by PathTint, parent in front. The material nearest to the
 // primitive wins.
 
@@ -80,6 +83,8 @@ struct Object {
     std::vector<Instance> instances;         ///< the union, in the order of the text
     std::optional<Instance> terminal;        ///< drawn in place of the object where recursion is cut; its
                                              ///< master must be ending
+    double terminal_px = 0;                  ///< size on screen from which down the terminal is drawn; 0: that of
+                                             ///< what is culled
     Span span;
 };
 

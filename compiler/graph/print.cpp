@@ -125,6 +125,7 @@ class Printer {
         if (object.terminal) {
             out_ += "  terminal: " + master_name(*object.terminal) + "\n";
             print_attributes(*object.terminal);
+            if (object.terminal_px > 0) print_numbers("  below", {object.terminal_px});
         }
         out_ += "}\n\n";
     }

@@ -153,6 +153,8 @@ class Verifier {
         for (std::size_t i = 0; i < object.instances.size(); ++i)
             check_instance(id, i, object.instances[i]);
         if (object.terminal) check_instance(id, std::nullopt, *object.terminal);
+        const bool sized = std::isfinite(object.terminal_px) && object.terminal_px >= 0;
+        if (!sized || (object.terminal_px > 0 && !object.terminal)) flaw(id, "a terminal drawn below {} px", object.terminal_px);
     }
 
     /// `index`: of the instance; nothing for a terminal.

@@ -278,6 +278,7 @@ class InstLowerer {
         Object& object = graph_.objects[reached_[index].id];
         object.instances = std::move(lowered.instances);
         object.terminal = std::move(lowered.terminal);
+        object.terminal_px = lowered.terminal_px;
     }
 
     void lower_group(const InstGroup& group, std::size_t parent, Object& object) {
@@ -286,6 +287,7 @@ class InstLowerer {
         instance_count_ += group.masters.size();
         if (!stopped_ && !within_limits(graph_.objects.size(), instance_count_, group.span, lowering_))
             stopped_ = true;
+        if (group.below) object.terminal_px = lower_size_px(*group.below, environment_, scratch_).value_or(0);
         for (const InstReference& reference : group.masters) {
             const std::optional<ObjectId> master = resolve(reference, parent);
             if (stopped_) return;

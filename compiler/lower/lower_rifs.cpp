@@ -31,6 +31,7 @@ struct Part {
     std::optional<MaterialId> material;
     Span span;
     std::optional<double> probability; ///< stated
+    double terminal_px = 0;            ///< of a terminal
 };
 
 /// Two tints of one path as one (Hart 1992, eq. (9), (10)), straight again.
@@ -137,7 +138,8 @@ class RifsLowering {
         // Reported with those of the maps if it is wrong.
         Diagnostics ignored;
         const std::optional<double> p = evaluate_probability(part.probability, lets_, ignored);
-        if (master && placed) parts_.emplace(&part, Part{*master, *placed, tint, material, part.span, p});
+        const std::optional<double> px = part.below ? lower_size_px(*part.below, lets_, diagnostics_) : 0.0;
+        if (master && placed && px) parts_.emplace(&part, Part{*master, *placed, tint, material, part.span, p, *px});
     }
 
     std::optional<ObjectId> find_master(const RifsName& name) {
@@ -213,7 +215,7 @@ class RifsLowering {
                                             node.source->name.span, at(chances.masters, i)});
         const std::optional<RifsPart>& terminal =
             node.source->terminal ? node.source->terminal : under.terminal;
-        if (terminal) object.terminal = placed(parts_.at(&*terminal), &node);
+        if (terminal) set_terminal(object, *terminal, &node);
         graph_.add(std::move(object));
     }
 
@@ -231,8 +233,14 @@ class RifsLowering {
                 root.instances.push_back({ids[start], Affine(), Tint(), std::nullopt,
                                           system_.nodes[start].source->name.span,
                                           chances_ ? chances_->share[start] : 0});
-        if (main.source->terminal) root.terminal = placed(parts_.at(&*main.source->terminal), nullptr);
+        if (main.source->terminal) set_terminal(root, *main.source->terminal, nullptr);
         graph_.root = graph_.add(std::move(root));
+    }
+
+    void set_terminal(Object& object, const RifsPart& terminal, const RifsNode* node) {
+        const Part& part = parts_.at(&terminal);
+        object.terminal = placed(part, node);
+        object.terminal_px = part.terminal_px;
     }
 
     /// A part under the map of `node`, or as it is.

@@ -170,6 +170,15 @@ std::optional<Affine> lower_transform(const TransformLine& line, const Environme
     return map;
 }
 
+std::optional<double> lower_size_px(const Expression& size_px, const Environment& environment,
+                                    Diagnostics& diagnostics) {
+    constexpr double most = 1e6;
+    const std::optional<double> value = evaluate(size_px, environment, diagnostics);
+    if (!value || (*value >= 0 && *value <= most)) return value;
+    diagnostics.error(size_px.span, fmt::format("a size in pixels lies between 0 and {}, not at {}", most, shortest(*value)));
+    return std::nullopt;
+}
+
 std::optional<Affine> lower_transforms(const std::vector<TransformLine>& lines,
                                        const Environment& environment, Diagnostics& diagnostics) {
     std::optional<Affine> product;

@@ -22,6 +22,10 @@ std::optional<Rgb> lower_color(const std::vector<Expression>& values, const Envi
 std::optional<Tint> lower_tint(const std::vector<Expression>& values, const Environment& environment,
                                Diagnostics& diagnostics);
 
+/// The size in pixels that `below:` gives; nothing, after an error, unless it lies between 0 and 10^6.
+std::optional<double> lower_size_px(const Expression& size_px, const Environment& environment,
+                                    Diagnostics& diagnostics);
+
 /// The map of one line. Errors: singular maps (but not of `projection`, which must only not vanish), zero
 /// axes, numbers that are not finite. `matrix` and `projection` are taken to the last bit.
 ///

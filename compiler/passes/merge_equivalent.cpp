@@ -6,6 +6,7 @@
 #include <compare>
 #include <cstdint>
 #include <numeric>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -21,7 +22,7 @@ namespace {
 using Label = std::uint32_t;
 
 /// All of an instance but its master, bit by bit.
-using Placement = std::array<std::uint64_t, 17>;
+using Placement = std::array<std::uint64_t, 18>;
 
 std::uint64_t hash_of(const Placement& placement) {
     std::uint64_t hash = 0;
@@ -30,7 +31,8 @@ std::uint64_t hash_of(const Placement& placement) {
     return hash;
 }
 
-Placement placement_of(const Instance& instance, bool is_terminal) {
+/// `terminal_px`: nothing but of a terminal.
+Placement placement_of(const Instance& instance, std::optional<double> terminal_px) {
     Placement placement;
     std::size_t next = 0;
     const auto put = [&](double value) {
@@ -46,14 +48,15 @@ Placement placement_of(const Instance& instance, bool is_terminal) {
         put(instance.tint.rgb[channel]);
     put(instance.tint.alpha);
     const std::uint64_t material = instance.material ? *instance.material + std::uint64_t{1} : 0;
-    placement[next] = material << 1 | (is_terminal ? 1u : 0u);
+    placement[next++] = material << 1 | (terminal_px ? 1u : 0u);
+    put(terminal_px.value_or(0));
     return placement;
 }
 
 class Labels {
   public:
-    Label of(const Instance& instance, bool is_terminal) {
-        const Placement placement = placement_of(instance, is_terminal);
+    Label of(const Instance& instance, std::optional<double> terminal_px) {
+        const Placement placement = placement_of(instance, terminal_px);
         const auto next = static_cast<Label>(known_.size());
         const Label label =
             ids_.find_or_add(hash_of(placement), next, [&](Label known) { return known_[known] == placement; });
@@ -92,11 +95,11 @@ Edges edges_of(const Graph& graph) {
     for (ObjectId user = 0; user < graph.objects.size(); ++user) {
         const Object& object = graph.objects[user];
         for (const Instance& instance : object.instances) {
-            edges.labels_of[user].push_back(labels.of(instance, false));
+            edges.labels_of[user].push_back(labels.of(instance, std::nullopt));
             ++edges.first_arrival[instance.master + 1];
         }
         if (object.terminal) {
-            edges.labels_of[user].push_back(labels.of(*object.terminal, true));
+            edges.labels_of[user].push_back(labels.of(*object.terminal, object.terminal_px));
             ++edges.first_arrival[object.terminal->master + 1];
         }
     }

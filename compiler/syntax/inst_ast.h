@@ -30,6 +30,7 @@ struct InstTint {
 /// of its masters, the first line applied first.
 struct InstGroup {
     bool terminal = false;
+    std::optional<Expression> below; ///< of a terminal: the size from which down it is drawn
     std::optional<InstScatter> scatter; ///< then the masters are placed many times, each where it says
     std::vector<InstReference> masters; ///< one or more; one of a terminal
     std::vector<TransformLine> transforms;

@@ -20,7 +20,7 @@ constexpr std::size_t max_parameters = 100;
 const std::vector<std::string>& body_keywords() {
     static const std::vector<std::string> keywords = [] {
         std::vector<std::string> words(transform_keywords.begin(), transform_keywords.end());
-        for (const char* word : {"union", "instance", "terminal", "scatter", "tint", "material"})
+        for (const char* word : {"union", "instance", "terminal", "scatter", "tint", "material", "below"})
             words.emplace_back(word);
         words.insert(words.end(), scatter_keywords().begin(), scatter_keywords().end());
         return words;
@@ -77,6 +77,7 @@ class BodyParser {
         if (at_transform(stream_)) return parse_transform_line();
         if (stream_.at("tint")) return parse_tint_line();
         if (stream_.at("material")) return parse_material();
+        if (at_below()) return parse_below();
         if (stream_.at("union") || stream_.at("instance") || stream_.at("terminal")) return parse_group();
         if (at_scatter()) return parse_group();
         if (in_scatter() && at_scatter_line(stream_)) return parse_line_of_scatter();
@@ -260,6 +261,29 @@ class BodyParser {
                 .with_note(group->material_span, "first given here");
         group->material = name->text;
         group->material_span = name->span;
+        return true;
+    }
+
+    /// `below: 12`, or after a terminal `below 12`; else an object may have that name.
+    bool at_below() const {
+        const bool after_terminal = !definition_.groups.empty() && definition_.groups.back().terminal;
+        return stream_.at("below") && (after_terminal || stream_.peek(1).is(":"));
+    }
+
+    bool parse_below() {
+        const Token keyword = stream_.next();
+        stream_.accept(":");
+        std::optional<Expression> size_px = parse_expression(stream_);
+        if (!size_px) return false;
+        InstGroup* group = current(keyword);
+        if (!group) return true;
+        if (!group->terminal) {
+            diagnostics_.error(keyword.span, "'below' belongs to a terminal")
+                .with_hint("it says from which size in pixels down the terminal takes the object's place");
+        } else if (group->below) {
+            diagnostics_.error(keyword.span, "duplicate 'below'").with_note(group->below->span, "first given here");
+        }
+        group->below = std::move(size_px);
         return true;
     }
 

@@ -28,6 +28,7 @@ struct RifsPart {
     std::vector<TransformLine> transforms;
     RifsLook look;
     std::optional<Expression> probability; ///< of a condensation set
+    std::optional<Expression> below;       ///< of a terminal: the size from which down it is drawn
     Span span; ///< from the keyword on
 };
 

@@ -33,6 +33,17 @@ bool parse_tint_values(TokenStream& stream, std::vector<Expression>& tint) {
     return true;
 }
 
+bool parse_below(TokenStream& stream, std::optional<Expression>& below) {
+    const Token keyword = stream.next();
+    stream.accept(":");
+    if (below) {
+        stream.diagnostics().error(keyword.span, "duplicate 'below'").with_note(below->span, "first given here");
+        return false;
+    }
+    below = parse_row_expression(stream);
+    return below.has_value();
+}
+
 constexpr std::array<std::string_view, 8> item_keywords = {"map",      "codes",    "follow", "start",
                                                            "condense", "terminal", "rifs",   "main"};
 
@@ -92,7 +103,12 @@ std::optional<RifsPart> parse_rifs_part(TokenStream& stream) {
     if (!master) return std::nullopt;
     RifsPart part;
     part.master = *master;
-    while (at_transform(stream) || at_rifs_look(stream)) {
+    const auto at_below = [&] { return keyword.is("terminal") && stream.at("below"); };
+    while (at_transform(stream) || at_rifs_look(stream) || at_below()) {
+        if (at_below()) {
+            if (!parse_below(stream, part.below)) return std::nullopt;
+            continue;
+        }
         if (at_rifs_look(stream)) {
             if (!parse_rifs_look(stream, part.look)) return std::nullopt;
             continue;

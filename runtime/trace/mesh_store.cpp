@@ -79,7 +79,7 @@ bool intersect(const TraceMesh::Triangle& triangle, const Ray& ray, const RayRan
     return true;
 }
 
-MeshStore::MeshStore(const PreparedCut& prepared) : prepared_(prepared) {}
+MeshStore::MeshStore(const PreparedCut& prepared, double error_px) : prepared_(prepared), error_px_(error_px) {}
 
 double MeshStore::finest_detail(NodeId node) const {
     return 1 / (2 * prepared_.cut.nodes[node].ball.radius * thinnest_share);
@@ -114,6 +114,7 @@ std::unique_ptr<TraceMesh> MeshStore::bake_mesh(const Key& key, const Affine& gr
     request.steps = key.steps;
     request.detail_per_unit = value_of(key.detail, detail_step);
     request.pixels_per_unit = value_of(key.pixels, pixel_step);
+    request.error_px = error_px_;
     const std::uint32_t pair = symmetry.pair[key.node];
     request.painters = {{pair, Rgb(0.0)}, {pair, Rgb(1.0)}};
     request.pictures = false; // what is crushed is a pixel or two wide

@@ -43,7 +43,8 @@ bool intersect(const TraceMesh::Triangle& triangle, const Ray& ray, const RayRan
 class MeshStore {
   public:
     /// Keeps a reference.
-    explicit MeshStore(const PreparedCut& prepared);
+    /// `error_px`: as Projection::error_px().
+    MeshStore(const PreparedCut& prepared, double error_px);
 
     /// What one mesh serves.
     struct Key {
@@ -73,6 +74,7 @@ class MeshStore {
     std::unique_ptr<TraceMesh> bake_mesh(const Key& key, const Affine& graph_from_frame) const;
 
     const PreparedCut& prepared_;
+    const double error_px_;
     std::mutex mutex_;
     std::map<Key, Entry> meshes_;
 };

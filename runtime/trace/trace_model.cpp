@@ -68,6 +68,7 @@ class Builder {
         node.primitive = source.primitive.value_or(PrimitiveKind::sphere);
         node.unending = source.unending;
         node.cullable = source.cullable;
+        node.cut_detail = cut_detail(source, model_.projection.error_px());
         node.ball_centre = lanes_of(frame_from_graph(source.ball.centre));
         node.ball_radius = frame_from_graph.linear[0][0] * source.ball.radius;
         const Affine frame_from_proxy = frame_from_graph * source.node_from_proxy;
@@ -202,7 +203,7 @@ TraceModel::TraceModel(PreparedCut ready, const View& seen, const CutOptions& cu
     : prepared(std::move(ready)), layers(layered(prepared.cut, prepared.root_steps)), view(seen),
       options(cut_options),
       projection(view, options, options.error_px, nearest_to_eye(prepared.cut)),
-      meshes(prepared) {
+      meshes(prepared, projection.error_px()) {
     least_detail_per_unit = least_detail(*this);
     for (const Material& material : prepared.cut.materials) {
         Status ignored;

@@ -47,7 +47,7 @@ struct TraceEdge {
 struct Unrolling {
     std::uint32_t tree = no_tree;
     std::uint32_t least_steps = 0;    ///< levels that must be left
-    /// Least diameter of a node passed over that may be culled, in the node's frame.
+    /// Least diameter of a node passed over that may be culled, in the node's frame, by its cut_detail.
     double least_size = std::numeric_limits<double>::infinity();
     double flattest_edge = 1; ///< the least flatness on the ways
 };
@@ -64,6 +64,7 @@ struct TraceNode {
     PrimitiveKind primitive = PrimitiveKind::sphere;
     bool unending = false;
     bool cullable = true;
+    double cut_detail = 1;             ///< from which down a cullable node is cut (detail.h)
     std::uint32_t tree = no_tree;      ///< of its edges
     std::uint32_t stop_tree = no_tree; ///< of what is drawn where it is cut; none: its proxy
     double flattest_edge = 1;          ///< least flatness of its edges

@@ -326,8 +326,8 @@ template<Instructions instructions> struct Traversal::Kernel {
         if (node.unending && frame.steps == 0) return true;
         if (!node.cullable) return false;
         const double diameter = 2 * frame.scale * node.ball_radius;
-        if (diameter * model.least_detail_per_unit > 1) return false;
-        return diameter * model.projection.detail_per_unit(world_ball(node, frame, node.ball_radius)) <= 1;
+        if (diameter * model.least_detail_per_unit > node.cut_detail) return false;
+        return diameter * model.projection.detail_per_unit(world_ball(node, frame, node.ball_radius)) <= node.cut_detail;
     }
 
     /// The parts that are farthest down, of those that are drawn for sure if none is cut.

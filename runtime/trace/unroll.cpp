@@ -142,8 +142,9 @@ class Unroller {
                           Unrolling& unrolling) {
         if (child.unending) unrolling.least_steps = std::max(unrolling.least_steps, edge.levels + 1);
         if (child.cullable)
-            unrolling.least_size = std::min(unrolling.least_size, 2 * child.ball_radius * edge.stretch *
-                                                                      (edge.similarity ? 1 : edge.flatness));
+            unrolling.least_size =
+                std::min(unrolling.least_size, 2 * child.ball_radius * edge.stretch *
+                                                   (edge.similarity ? 1 : edge.flatness) / child.cut_detail);
         unrolling.flattest_edge =
             std::min(unrolling.flattest_edge, (edge.similarity ? 1 : edge.flatness) * child.flattest_edge);
         const Vec3 centre = edge.parent_from_child.affine()(vec3_of(child.ball_centre));

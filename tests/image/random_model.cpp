@@ -36,6 +36,7 @@ class ModelText {
             tint(0.5);
         }
         text_ += fmt::format("  terminal {}\n", solid());
+        if (one_in(2)) text_ += fmt::format("    below {}\n", 1 + below(40));
         place(0.5, 0.9, 0.2);
         return text_ + "}\n";
     }
@@ -106,6 +107,7 @@ class ModelText {
 
     void terminal() {
         text_ += "    terminal part\n";
+        if (one_in(2)) text_ += fmt::format("        below {}\n", 1 + below(40));
         place(0.5, 0.8, 0.2);
         tint(0.5);
     }

@@ -167,7 +167,11 @@ class Generator {
             if (ending.empty() || !choices_.one_in(4)) continue;
             const ObjectId master = ending[choices_.below(static_cast<std::uint32_t>(ending.size()))];
             graph_.objects[id].terminal = instance_of(master);
-            if (terminals_that_return(graph_, components)[id]) graph_.objects[id].terminal.reset();
+            if (terminals_that_return(graph_, components)[id]) {
+                graph_.objects[id].terminal.reset();
+                continue;
+            }
+            if (choices_.one_in(2)) graph_.objects[id].terminal_px = 1 + choices_.below(40);
         }
     }
 

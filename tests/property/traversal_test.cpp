@@ -40,7 +40,8 @@ std::optional<std::vector<Leaf>> plain_unfolding(const TraceModel& model, std::s
         const CutNode& node = cut.nodes[piece.node];
         if (node.sealed || leaves.size() + stack.size() > most) return std::nullopt;
         const bool is_cut =
-            graftal::is_cut(node, piece.steps, detail_of(cut, model.projection, piece));
+            graftal::is_cut(node, piece.steps, detail_of(cut, model.projection, piece),
+                            model.projection.error_px());
         const auto add = [&](PrimitiveKind kind, const Affine& place, const Rgb& base) {
             if (is_singular(place, 1e-4) || norm(place.linear) < 1e-6) return false;
             leaves.push_back({kind, inverse(place), piece.tint.over(base)});

@@ -29,6 +29,7 @@ TEST(Print, ObjectsInOrderInstancesGroupedAsHartWritesThem) {
     graph.objects[gasket].instances = {instance_of(up), instance_of(up), instance_of(tip, half),
                                        instance_of(triangle, half), instance_of(up)};
     graph.objects[gasket].terminal = instance_of(tip);
+    graph.objects[gasket].terminal_px = 7.5;
     graph.root = gasket;
     EXPECT_EQ(print(graph), "object gasket {\n"
                             "  union: up, up\n"
@@ -36,6 +37,7 @@ TEST(Print, ObjectsInOrderInstancesGroupedAsHartWritesThem) {
                             "    matrix: 0.5, 0, 0, 0, 0, 0.5, 0, 0, 0, 0, 0.5, 0\n"
                             "  instance: up\n"
                             "  terminal: tip(3, -0.5)\n"
+                            "  below: 7.5\n"
                             "}\n\n"
                             "canonical object up {\n"
                             "  instance: gasket\n"
@@ -171,6 +173,7 @@ TEST(Equal, SeesEveryDifferenceThatCounts) {
     EXPECT_TRUE(differs([&](Graph& g) { g.objects[b].instances[0].tint.rgb.r = 1; }));
     EXPECT_TRUE(differs([&](Graph& g) { g.objects[b].instances[0].material = 0; }));
     EXPECT_TRUE(differs([&](Graph& g) { g.objects[b].terminal = instance_of(sphere); }));
+    EXPECT_TRUE(differs([&](Graph& g) { g.objects[b].terminal_px = 3; }));
     EXPECT_TRUE(differs([&](Graph& g) { g.materials[0].roughness = 1; }));
     EXPECT_TRUE(differs([&](Graph& g) { g.settings.steps = 3; }));
     EXPECT_TRUE(differs([&](Graph& g) { g.primitive(PrimitiveKind::cone); }));

@@ -83,6 +83,9 @@ TEST_F(Verify, PrimitivesAreBareAndUnionsAreNot) {
     graph_.objects[sphere].terminal = instance_of(sphere);
     expect_flaw(sphere, "a primitive with a terminal");
     graph_.objects[sphere].terminal.reset();
+    graph_.objects[sphere].terminal_px = 3;
+    expect_flaw(sphere, "a terminal drawn below 3 px");
+    graph_.objects[sphere].terminal_px = 0;
     graph_.objects[root].instances.clear();
     expect_flaw(root, "an empty union");
 }

@@ -167,7 +167,7 @@ TEST(Inst, tints_of_a_group_compose_with_later_lines_in_front) {
 
 TEST(Inst, a_terminal_is_a_group_of_its_own) {
     const Model model(R"(
-        canonical object a { union: a, a scale: 0.5 terminal: triangle scale: 3 tint: 1, 1, 1, 0.25 }
+        canonical object a { union: a, a scale: 0.5 terminal: triangle scale: 3 tint: 1, 1, 1, 0.25 below 4 * 3 }
         object top { a })");
     ASSERT_TRUE(model.graph) << model.errors();
     const Object& a = model.object("a");
@@ -176,6 +176,7 @@ TEST(Inst, a_terminal_is_a_group_of_its_own) {
     EXPECT_EQ(model.graph->objects[a.terminal->master].primitive, PrimitiveKind::triangle);
     EXPECT_EQ(a.terminal->parent_from_child.linear, Mat3(3.0));
     EXPECT_EQ(a.terminal->tint.alpha, 0.25);
+    EXPECT_EQ(a.terminal_px, 12);
 }
 
 TEST(Inst, parametric_objects_are_enumerated_as_far_as_they_are_reached) {

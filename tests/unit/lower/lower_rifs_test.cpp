@@ -83,7 +83,7 @@ TEST(LowerRifs, oneObjectAMapAndARootAsHartHasIt) {
   map ul { scale 1/2 translate <-1/2, 1/2> }
   map ur { scale 1/2 translate <1/2, 1/2> }
   follow all except self
-  terminal cube scale <1, 1, .02>
+  terminal cube scale <1, 1, .02> below 12
 })");
     EXPECT_EQ(graph.objects[graph.root].name, "pound");
     EXPECT_EQ(masters(graph, "pound"), "ll lr ul ur");
@@ -102,6 +102,7 @@ TEST(LowerRifs, oneObjectAMapAndARootAsHartHasIt) {
     EXPECT_EQ(graph.objects[graph.root].terminal->parent_from_child, slab);
     EXPECT_EQ(object(graph, "ll").terminal->parent_from_child, half * slab);
     EXPECT_EQ(object(graph, "ll").terminal->tint, (Tint{{1, 0, 0}, .5}));
+    EXPECT_EQ(object(graph, "ll").terminal_px, 12);
 }
 
 TEST(LowerRifs, anEdgeLeadsFromTheMapThatIsAppliedFirst) {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <optional>
 #include <queue>
 #include <utility>
 
@@ -79,6 +80,7 @@ class Chooser {
     struct Bucket {
         double count = 0;
         std::vector<Piece> pieces;
+        std::optional<MeshKind> mesh; ///< that serves its pieces; weights may be told apart less finely later
     };
 
     PieceKind kind_of(const Piece& piece) const {
@@ -109,7 +111,7 @@ class Chooser {
                 queue_.push(
                     {cut_.nodes[kind.node].unbounded ? std::numeric_limits<double>::max() : weight.triangles,
                      weights_.detail_step(kind), kind});
-            if (weight.leaves > 1) add_mesh(mesh_kind(kind), weight.triangles);
+            if (weight.leaves > 1) add_mesh(place->second.mesh.emplace(mesh_kind(kind)), weight.triangles);
         }
         return place->second;
     }
@@ -150,7 +152,7 @@ class Chooser {
         if (node.empty()) return;
         const Bucket& bucket = node.mapped();
         placements_ -= bucket.count;
-        drop_mesh(mesh_kind(kind));
+        if (bucket.mesh) drop_mesh(*bucket.mesh);
         const bool cut = weights_.is_cut(kind);
         const auto& edges = followed_edges(cut_.nodes[kind.node], cut);
         const bool real = static_cast<double>(bucket.pieces.size()) == bucket.count &&
@@ -168,7 +170,7 @@ class Chooser {
 
     Choice current(double threshold) const {
         const double per_triangle =
-            PovrayCosts::triangle + PovrayCosts::vertex + (cut_.tinted ? PovrayCosts::slot : 0);
+            PovrayCosts::triangle + PovrayCosts::vertex + PovrayCosts::normal + (cut_.tinted ? PovrayCosts::slot : 0);
         Choice choice;
         choice.threshold = threshold;
         choice.placements = placements_;

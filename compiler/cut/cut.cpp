@@ -18,6 +18,8 @@ namespace {
 
 /// The error grows by this where the memory does not suffice: a quarter less on each side of a leaf.
 constexpr double coarser = 1.25;
+/// A cut is tried that is estimated to take this much more than there is: what is assembled is then counted.
+constexpr double estimate_slack = 1.25;
 
 std::string readable_count(double count) {
     if (!std::isfinite(count)) return "more than 1e308";
@@ -94,7 +96,7 @@ class Cutter {
         choice_ = options.flatten || better_flat(weights.of(whole), memory)
                       ? flat_choice(weights.of(whole))
                       : choose_cut(cut_, symmetry_, projection, root, weights);
-        if (!(choice_.bytes <= memory)) return std::nullopt;
+        if (!(choice_.bytes <= estimate_slack * memory)) return std::nullopt;
         const AssemblyLimits limits{
             static_cast<std::size_t>(std::max(0.0, memory) / PovrayCosts::least_placement) + 1,
             static_cast<std::size_t>(std::max(0.0, memory) / PovrayCosts::triangle) + 1};

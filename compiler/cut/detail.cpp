@@ -17,7 +17,9 @@ namespace {
 
 /// A proxy's mesh is an octahedron.
 const Weights::Weight proxy{8, 1, 0, PovrayCosts::primitive(PrimitiveKind::sphere) + PovrayCosts::matrix};
-constexpr std::size_t max_known_kinds = 4'000'000;
+/// More kinds than these are not told apart: the steps of their details get coarser by so much.
+constexpr std::size_t max_known_kinds = 1'000'000;
+constexpr int coarser_grain = 4;
 /// Details beyond this are not told apart.
 constexpr std::int32_t largest_step = 1 << 24;
 
@@ -93,12 +95,15 @@ PieceKind Weights::normalised(PieceKind kind) const {
     const CutNode& node = cut_.nodes[kind.node];
     if (!node.unending) kind.steps = unlimited_steps;
     if (kind.unit_step == PieceKind::endless_detail || kind.unit_step == PieceKind::tiny) return kind;
+    // To the nearest, so that what is counted level by level does not drift.
+    if (grain_ > 1)
+        kind.unit_step = static_cast<std::int32_t>(std::lround(static_cast<double>(kind.unit_step) / grain_)) * grain_;
     if (!node.primitive && detail_step(kind) <= 1e-6) {
         kind.unit_step = PieceKind::tiny;
     } else if (node.primitive || (!node.cullable && !node.unending)) {
         // The size decides how finely curved surfaces are meshed, and that grows slowly: a few kinds will do.
         const int octave = PieceKind::steps_an_octave;
-        const double rounded = std::ceil(static_cast<double>(kind.unit_step) / octave) * octave;
+        const double rounded = std::round(static_cast<double>(kind.unit_step) / octave) * octave;
         kind.unit_step = px_ > 0 ? static_cast<std::int32_t>(rounded) : 0;
     }
     return kind;
@@ -155,7 +160,7 @@ Weights::Weight Weights::of(const PieceKind& asked) {
         std::size_t next_edge;
         Weight sum;
     };
-    const PieceKind start = normalised(asked);
+    PieceKind start = normalised(asked);
     if (const auto found = known_.find(start); found != known_.end()) return found->second;
     std::vector<Frame> stack = {{start, 0, {}}};
     known_.emplace(start, proxy); // what a kind under way counts as
@@ -174,11 +179,15 @@ Weights::Weight Weights::of(const PieceKind& asked) {
                 frame.sum.curved_leaves += found->second.curved_leaves;
                 frame.sum.flat_bytes += found->second.flat_bytes;
                 ++frame.next_edge;
-            } else if (known_.size() < max_known_kinds) {
+            } else if (known_.size() < max_known_kinds || grain_ > PieceKind::steps_an_octave) {
                 known_.emplace(child, proxy);
                 stack.push_back({child, 0, {}});
             } else {
-                ++frame.next_edge;
+                known_.clear();
+                grain_ *= coarser_grain;
+                start = normalised(asked);
+                known_.emplace(start, proxy);
+                stack = {{start, 0, {}}};
             }
             continue;
         }

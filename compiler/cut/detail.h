@@ -135,7 +135,8 @@ class Weights {
         double flat_bytes = 0;    ///< of POV-Ray's memory, where every leaf is a placement of its own
     };
 
-    /// Saturates at infinity; kinds that lead back to themselves without losing detail count as one leaf.
+    /// Saturates at infinity; kinds that lead back to themselves without losing detail count as one leaf. Where there
+    /// are too many kinds, details are told apart less finely from then on.
     Weight of(const PieceKind& kind);
 
     /// Kinds are the same where levels do not matter.
@@ -163,6 +164,7 @@ class Weights {
     std::vector<double> cut_step_;      ///< by node, of cut_detail()
     double cube_triangles_;
     double px_;
+    int grain_ = 1; ///< details are told apart by so many steps
     std::unordered_map<PieceKind, Weight, PieceKindHash> known_;
 };
 

@@ -78,7 +78,9 @@ double povray_bytes(const Cut& cut) {
     for (const Body& body : cut.bodies)
         if (const Mesh* mesh = std::get_if<Mesh>(&body.shape))
             bytes += PovrayCosts::triangle * static_cast<double>(mesh->triangles.size()) +
-                     PovrayCosts::vertex * static_cast<double>(mesh->vertices.size());
+                     PovrayCosts::vertex * static_cast<double>(mesh->vertices.size()) +
+                     PovrayCosts::normal * static_cast<double>(mesh->normals.size()) +
+                     PovrayCosts::uv * static_cast<double>(mesh->uv.size());
     return bytes;
 }
 

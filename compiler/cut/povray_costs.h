@@ -14,8 +14,10 @@ struct PovrayCosts {
     static constexpr double placement = 931;   ///< of a mesh, in a union of one texture
     static constexpr double own_texture = 690; ///< more, for a placement that shares its texture with none
     static constexpr double own_layer = 740;   ///< more still, for a tint in front of a palette
-    static constexpr double triangle = 221;
-    static constexpr double vertex = 9.3;
+    static constexpr double triangle = 207;
+    static constexpr double vertex = 18;
+    static constexpr double normal = 12; ///< one a vertex, of a smooth mesh
+    static constexpr double uv = 16;     ///< one a vertex, of a mesh with a picture
     static constexpr double slot = 8; ///< one colour of a palette
 
     static constexpr double least_placement = 336;

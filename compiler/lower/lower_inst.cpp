@@ -25,7 +25,6 @@ namespace {
 /// Words of definitions that are evaluated over all enumerated objects: some seconds of work.
 constexpr std::size_t max_work = 30'000'000;
 
-constexpr std::string_view frustum_name = "frustum";
 
 /// Names that are compared with misspelt ones.
 constexpr std::size_t max_suggestion_work = 100'000;
@@ -355,7 +354,10 @@ class InstLowerer {
         if (const auto found = by_name_.find(name); found != by_name_.end()) return found->second;
         if (const std::optional<PrimitiveKind> kind = primitive_named(name))
             return by_name_[name] = graph_.primitive(*kind);
-        if (reference.name == frustum_name) return frustum(reference.span, arguments[0]);
+        if (reference.name == frustum_name) {
+            const std::optional<PrimitiveKind> kind = lower_frustum(arguments[0], reference.span, scratch_);
+            return kind ? std::optional(graph_.primitive(*kind)) : std::nullopt;
+        }
         if (const auto family = families_.find(reference.name); family != families_.end())
             return family->second.exact(arguments, reference.span, scratch_);
         if (const InstDefinition* definition = index_.match(reference.name, arguments, name))
@@ -367,14 +369,6 @@ class InstLowerer {
                 .with_note(definition->span, "defined here");
         else if (by_name_.contains(use_of(reference.name)->first))
             unknown_object(reference.span, name);
-        return std::nullopt;
-    }
-
-    /// The nearest of those that there are.
-    std::optional<ObjectId> frustum(Span span, double radius) {
-        if (radius >= 0 && radius <= 1) return graph_.primitive(tapered(radius));
-        scratch_.error(span, fmt::format("the upper radius of a frustum lies between 0 and 1, not at {}",
-                                         shortest(radius)));
         return std::nullopt;
     }
 

@@ -15,6 +15,7 @@
 #include "compiler/lower/lower_transform.h"
 #include "compiler/lower/lower_orbit.h"
 #include "compiler/lower/lowering.h"
+#include "compiler/lower/model_family.h"
 #include "compiler/lower/rifs_chances.h"
 #include "compiler/lower/rifs_system.h"
 #include "compiler/syntax/rifs_parser.h"
@@ -74,12 +75,18 @@ class RifsLowering {
     }
 
   private:
+    struct Use {
+        Span span;
+        std::optional<ObjectId> root;      ///< nothing after an error
+        std::optional<ModelFamily> family; ///< if it has inner parameters
+    };
+
     bool failed() const { return diagnostics_.error_count() > errors_before_; }
 
     void import_models() {
         for (const RifsUse& use : tree_.uses) {
             if (diagnostics_.full()) return;
-            const auto [first, fresh] = uses_.try_emplace(use.name.text, Use{use.name.span, std::nullopt});
+            const auto [first, fresh] = uses_.try_emplace(use.name.text, Use{use.name.span, std::nullopt, std::nullopt});
             if (!fresh) {
                 diagnostics_.error(use.name.span, fmt::format("duplicate use '{}'", use.name.text))
                     .with_note(first->second.span, "first defined here");
@@ -93,9 +100,21 @@ class RifsLowering {
                     fmt::format("the name '{}' of a used model must not have a '.'", use.name.text));
             } else {
                 const ModelUse model{use.name.text, use.path, use.path_span};
-                if (read_model(model, lowering_)) first->second.root = import_model(graph_, model, lowering_);
+                const std::optional<FileId> file = read_model(model, lowering_);
+                if (!file) continue;
+                first->second.root = import_model(graph_, model, lowering_);
+                if (first->second.root) add_family(first->second, model, *file);
             }
         }
+    }
+
+    void add_family(Use& use, const ModelUse& model, FileId file) {
+        std::vector<InnerParameter> parameters = inner_parameters_of(file, lowering_);
+        if (parameters.empty()) return;
+        const auto make = [this, model, parameters](const std::vector<double>& values) {
+            return import_member(graph_, model, named_values(parameters, values), lowering_);
+        };
+        use.family.emplace(std::string(model.name), std::move(parameters), make);
     }
 
     /// Objects of blocks and of used models are told apart by these names.
@@ -131,7 +150,7 @@ class RifsLowering {
     }
 
     void lower_part(const RifsPart& part, const RifsLooks& looks) {
-        const std::optional<ObjectId> master = find_master(part.master);
+        const std::optional<ObjectId> master = find_master(part);
         const std::optional<Affine> placed = lower_transforms(part.transforms, lets_, diagnostics_);
         const Tint tint = looks.tint(part.look);
         const std::optional<MaterialId> material = looks.material(part.look);
@@ -142,16 +161,41 @@ class RifsLowering {
         if (master && placed && px) parts_.emplace(&part, Part{*master, *placed, tint, material, part.span, p, *px});
     }
 
-    std::optional<ObjectId> find_master(const RifsName& name) {
-        if (const auto kind = primitive_named(name.text)) return graph_.primitive(*kind);
-        if (const auto use = uses_.find(name.text); use != uses_.end()) return use->second.root;
-        std::vector<std::string> known;
+    std::optional<ObjectId> find_master(const RifsPart& part) {
+        const std::string_view name = part.master.text;
+        const std::optional<PrimitiveKind> primitive = primitive_named(name);
+        const auto use = uses_.find(name);
+        ModelFamily* const family = use != uses_.end() && use->second.family ? &*use->second.family : nullptr;
+        const bool is_frustum = name == frustum_name;
+        if (!primitive && !is_frustum && use == uses_.end()) return unknown_master(part.master);
+        std::vector<double> arguments;
+        for (const Expression& expression : part.arguments)
+            if (const auto value = evaluate(expression, lets_, diagnostics_)) arguments.push_back(*value);
+        if (arguments.size() < part.arguments.size()) return std::nullopt;
+        const std::size_t most = is_frustum ? 1 : family ? family->parameters().size() : 0;
+        if (arguments.size() > most || (is_frustum && arguments.empty())) return wrong_count(part, most);
+        if (primitive) return graph_.primitive(*primitive);
+        if (family && !arguments.empty()) return family->exact(arguments, part.master.span, diagnostics_);
+        if (!is_frustum) return use->second.root;
+        const std::optional<PrimitiveKind> frustum = lower_frustum(arguments[0], part.master.span, diagnostics_);
+        return frustum ? std::optional(graph_.primitive(*frustum)) : std::nullopt;
+    }
+
+    std::nullopt_t unknown_master(const RifsName& name) {
+        std::vector<std::string> known = {std::string(frustum_name)};
         for (int kind = 0; kind < static_cast<int>(PrimitiveKind::frustum); ++kind)
             known.emplace_back(name_of(static_cast<PrimitiveKind>(kind)));
         for (const auto& [used, use] : uses_)
             known.emplace_back(used);
         diagnostics_.error(name.span, fmt::format("'{}' is no primitive and no used model", name.text))
             .with_hint(did_you_mean(name.text, known));
+        return std::nullopt;
+    }
+
+    std::nullopt_t wrong_count(const RifsPart& part, std::size_t most) {
+        diagnostics_.error(part.master.span,
+                           fmt::format("'{}' takes {} argument{}, not {}", part.master.text, most, most == 1 ? "" : "s",
+                                       part.arguments.size()));
         return std::nullopt;
     }
 
@@ -256,10 +300,6 @@ class RifsLowering {
                 part.material ? part.material : node->material, part.span};
     }
 
-    struct Use {
-        Span span;
-        std::optional<ObjectId> root; ///< nothing after an error
-    };
 
     FileId file_;
     std::size_t errors_before_;

@@ -170,6 +170,13 @@ std::optional<Affine> lower_transform(const TransformLine& line, const Environme
     return map;
 }
 
+std::optional<PrimitiveKind> lower_frustum(double top_radius, Span place, Diagnostics& diagnostics) {
+    if (top_radius >= 0 && top_radius <= 1) return tapered(top_radius);
+    diagnostics.error(place, fmt::format("the upper radius of a frustum lies between 0 and 1, not at {}",
+                                         shortest(top_radius)));
+    return std::nullopt;
+}
+
 std::optional<double> lower_size_px(const Expression& size_px, const Environment& environment,
                                     Diagnostics& diagnostics) {
     constexpr double most = 1e6;

@@ -1,8 +1,10 @@
 #pragma once
 
 #include <optional>
+#include <string_view>
 #include <vector>
 
+#include "compiler/graph/graph.h"
 #include "compiler/support/affine.h"
 #include "compiler/support/tint.h"
 #include "compiler/syntax/expression.h"
@@ -25,6 +27,10 @@ std::optional<Tint> lower_tint(const std::vector<Expression>& values, const Envi
 /// The size in pixels that `below:` gives; nothing, after an error, unless it lies between 0 and 10^6.
 std::optional<double> lower_size_px(const Expression& size_px, const Environment& environment,
                                     Diagnostics& diagnostics);
+
+/// What `frustum(r)` names: of those that there are the one whose upper radius is nearest. Error: not in [0, 1].
+inline constexpr std::string_view frustum_name = "frustum";
+std::optional<PrimitiveKind> lower_frustum(double top_radius, Span place, Diagnostics& diagnostics);
 
 /// The map of one line. Errors: singular maps (but not of `projection`, which must only not vanish), zero
 /// axes, numbers that are not finite. `matrix` and `projection` are taken to the last bit.

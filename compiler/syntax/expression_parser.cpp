@@ -231,6 +231,18 @@ std::optional<std::vector<Expression>> parse_numbers(TokenStream& stream, std::s
     return numbers;
 }
 
+bool parse_arguments(TokenStream& stream, std::vector<Expression>& arguments) {
+    const Token open = stream.previous();
+    do {
+        std::optional<Expression> argument = parse_expression(stream);
+        if (!argument) return false;
+        arguments.push_back(std::move(*argument));
+    } while (stream.accept(","));
+    if (stream.accept(")")) return true;
+    stream.expected("')'").with_note(open.span, "to close this '('");
+    return false;
+}
+
 std::optional<std::vector<Expression>> parse_vector(TokenStream& stream, std::string_view what) {
     return parse_numbers(stream, 3, 3, what);
 }

@@ -26,6 +26,9 @@ std::optional<Expression> parse_row_expression(TokenStream& stream);
 std::optional<std::vector<Expression>> parse_numbers(TokenStream& stream, std::size_t min, std::size_t max,
                                                      std::string_view what);
 
+/// Expressions with commas between them, up to the ')'. Requires that the '(' was just taken; false after an error.
+bool parse_arguments(TokenStream& stream, std::vector<Expression>& arguments);
+
 /// Three numbers: `x, y, z` or `<x, y, z>`.
 std::optional<std::vector<Expression>> parse_vector(TokenStream& stream, std::string_view what);
 

@@ -159,7 +159,7 @@ class BodyParser {
             InstReference reference;
             const Token name = stream_.next();
             reference.name = name.text;
-            if (stream_.accept("(") && !parse_arguments(reference)) return false;
+            if (stream_.accept("(") && !parse_arguments(stream_, reference.arguments)) return false;
             reference.span = stream_.span_from(name.span);
             group.masters.push_back(std::move(reference));
         } while (goes_on() && stream_.accept(","));
@@ -176,19 +176,6 @@ class BodyParser {
     static bool is_keyword(const Token& token) {
         return token.kind == TokenKind::name &&
                std::find(body_keywords().begin(), body_keywords().end(), token.text) != body_keywords().end();
-    }
-
-    /// Requires that the '(' was just taken.
-    bool parse_arguments(InstReference& reference) {
-        const Token open = stream_.previous();
-        do {
-            std::optional<Expression> argument = parse_expression(stream_);
-            if (!argument) return false;
-            reference.arguments.push_back(std::move(*argument));
-        } while (stream_.accept(","));
-        if (stream_.accept(")")) return true;
-        stream_.expected("')'").with_note(open.span, "to close this '('");
-        return false;
     }
 
     bool add(InstGroup group) {

@@ -25,6 +25,7 @@ inline constexpr std::size_t max_rifs_edges = 4'000'000;
 /// `condense` and `terminal`: a primitive or used model, placed.
 struct RifsPart {
     RifsName master;
+    std::vector<Expression> arguments; ///< `frustum(0.5)`, or the inner parameters of a model
     std::vector<TransformLine> transforms;
     RifsLook look;
     std::optional<Expression> probability; ///< of a condensation set

@@ -103,6 +103,7 @@ std::optional<RifsPart> parse_rifs_part(TokenStream& stream) {
     if (!master) return std::nullopt;
     RifsPart part;
     part.master = *master;
+    if (stream.accept("(") && !parse_arguments(stream, part.arguments)) return std::nullopt;
     const auto at_below = [&] { return keyword.is("terminal") && stream.at("below"); };
     while (at_transform(stream) || at_rifs_look(stream) || at_below()) {
         if (at_below()) {

@@ -82,6 +82,25 @@ TEST_F(Inner, isALetOfTheRootModel) {
     EXPECT_THAT(report(), HasSubstr("--set k: an inner parameter lies between 0 and 1, not at 1.5"));
 }
 
+TEST_F(Inner, condensationSetsHaveArguments) {
+    write("mast.inst", mast);
+    write("a.rifs", "use mast = \"mast.inst\"\nlet third = 0.3\nrifs a { map a { scale 0.5 }\n"
+                    "condense mast(third + 0.01)\ncondense mast\ncondense frustum(third)\nterminal mast(1)\n}");
+    lower("a.rifs");
+    ASSERT_TRUE(graph_) << report();
+    const Object& root = graph_->objects[graph_->root];
+    ASSERT_EQ(root.instances.size(), 4u);
+    std::vector<Affine> found;
+    for (const std::size_t i : {0u, 1u})
+        collect(root.instances[i].master, Affine(), found);
+    collect(root.terminal->master, Affine(), found);
+    ASSERT_EQ(found.size(), 3u);
+    EXPECT_DOUBLE_EQ(found[0].translation.y, 3.1); // as it is said, not rounded
+    EXPECT_DOUBLE_EQ(found[1].translation.y, 5);
+    EXPECT_DOUBLE_EQ(found[2].translation.y, 10);
+    EXPECT_EQ(graph_->objects[root.instances[2].master].primitive, tapered(0.3));
+}
+
 TEST_F(Inner, turtlesPlaceTheNearestMember) {
     write("mast.inst", mast);
     write("a.lsys",

@@ -1,5 +1,6 @@
 #include "tests/golden/command_line.h"
 
+#include <algorithm>
 #include <csignal>
 #include <filesystem>
 
@@ -109,6 +110,26 @@ TEST_F(Animate, PlantGrowsInThePicture) {
               4);
     EXPECT_THAT(animation, HasSubstr("--steps 1..4")) << "says which command made it";
     EXPECT_EQ(differing(picture("growth.png"), frame("growth.frames", 1)), 0u);
+}
+
+/// Four times as many frames are far less apart each, those at whole steps too, where parts are born.
+TEST_F(Animate, PlantsWithAgesGrowWithoutJumps) {
+    const std::string herb = "'" + source_path("scenes/plants/growing_herb.lsys") + "' ";
+    const auto largest_change = [&](int frames) {
+        EXPECT_EQ(graftal(fmt::format("animate -q {}--steps 4..7 --frames {} --size 96x72 --engine native -o herb{}",
+                                      herb, frames, frames))
+                      .status,
+                  0);
+        double most = 0;
+        for (int i = 1; i < frames; ++i)
+            most = std::max(most, compare_images(frame(fmt::format("herb{}", frames), i),
+                                                 frame(fmt::format("herb{}", frames), i + 1))
+                                      .rms);
+        return most;
+    };
+    const double coarse = largest_change(13);
+    EXPECT_GT(coarse, 0.02);
+    EXPECT_LT(largest_change(49), 0.45 * coarse);
 }
 
 TEST_F(Animate, ValuesOfModelsAreSwept) {

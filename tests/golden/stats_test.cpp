@@ -76,6 +76,16 @@ TEST_F(Stats, NameTheCycleThatDoesNotContract) {
     EXPECT_EQ(graftal("check grow.inst").status, 1);
 }
 
+TEST_F(Stats, CountTheMembersOfFamilies) {
+    write("leaf.inst", "inner k = 0 members 5\nobject leaf { sphere scale: 1, lerp(1, 2, k), 1 }\n");
+    write("a.lsys", "use leaf = \"leaf.inst\"\nlsys a { steps 0\naxiom ~leaf(0.26)~leaf(0.3)~leaf(1)\n}\n");
+    const Json family = stats("a.lsys")["families"]["leaf"];
+    EXPECT_EQ(family["parameters"], Json({"k"}));
+    EXPECT_EQ(family["members"], 2);
+    EXPECT_EQ(family["possible"], 5);
+    EXPECT_NEAR(family["error"].get<double>(), 0.05, 1e-12); // of 0.3, rounded to 1/4
+}
+
 TEST_F(Stats, LanguageOfStandardInputFollowsTheText) {
     EXPECT_EQ(stats("- <" + pound_sign)["language"], "rifs");
     EXPECT_EQ(stats("- <'" + source_path("scenes/hart/sierpinski.inst") + "'")["language"], "inst");

@@ -11,7 +11,9 @@
 
 #include "compiler/chaos/unroll.h"
 #include "compiler/support/check.h"
+#include "compiler/support/file.h"
 #include "runtime/points/accumulation.h"
+#include "runtime/points/card.h"
 #include "runtime/points/orbit_source.h"
 #include "runtime/points/ply_file.h"
 #include "runtime/points/point_source.h"
@@ -187,6 +189,14 @@ Status place_points(const PointSource& source, const View& view, const PointsOpt
 
 namespace {
 
+Status place_card(const PointSource& source, const Box& box, const std::vector<Material>& materials,
+                  const PointsOptions& options, PointsReport& report) {
+    const ImageSize size = options.compile.size;
+    const std::string picture = std::filesystem::path(options.output).filename().string();
+    const Status placed = place_points(source, card_view(box, size), options, report);
+    return placed.ok() ? write_text(options.card, card_text(picture, box, size, materials)) : placed;
+}
+
 std::optional<PointsReport> draw_orbit(const OrbitModel& model, const PointsOptions& options,
                                        Compilation& compilation) {
     constexpr std::uint64_t most_surveyed = 1u << 20;
@@ -202,7 +212,8 @@ std::optional<PointsReport> draw_orbit(const OrbitModel& model, const PointsOpti
     PointsReport report;
     report.maps = static_cast<std::uint32_t>(model.maps.size());
     const View view = frame(model.scene, box, options.compile.size, options.compile.camera);
-    compilation.status = place_points(source, view, options, report);
+    compilation.status = options.card.empty() ? place_points(source, view, options, report)
+                                              : place_card(source, box, {}, options, report);
     if (source.report(compilation.diagnostics)) compilation.status = Status(); // which is why it was given up
     compilation.times.push_back({"points", report.seconds});
     if (!compilation.status.ok() || compilation.diagnostics.has_errors()) return std::nullopt;
@@ -227,7 +238,10 @@ std::optional<PointsReport> draw_points(const std::string& path, const PointsOpt
     PointsReport report;
     report.maps = game->map_count();
     const ChaosSource source(*game, compile.lower.seed.value_or(0));
-    compilation.status = place_points(source, viewed->view, options, report);
+    const Graph& graph = viewed->model.graph;
+    const Box& box = viewed->model.bounds[graph.root].box;
+    compilation.status = options.card.empty() ? place_points(source, viewed->view, options, report)
+                                              : place_card(source, box, graph.materials, options, report);
     compilation.times.push_back({"points", report.seconds});
     if (!compilation.status.ok()) return std::nullopt;
     return report;

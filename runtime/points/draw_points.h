@@ -20,6 +20,7 @@ struct PointsOptions {
     std::string output; ///< is_picture_name() or is_cloud_name()
     ImageMetadata metadata;
     std::optional<std::uint64_t> points; ///< nothing: 100 a pixel, or a million of a cloud
+    std::string card;                    ///< `.inst` file of a card with the picture (card.h); empty: none
     PointColour colour = PointColour::tint;
     Tone tone;
     int threads = 0; ///< 0: all processors

@@ -1,5 +1,5 @@
 // A leaf by recursion, as a mesh, and as a card with its picture: from the size at which they take each other's place they
-// look alike (scenes/plants/maple_leaf.rifs, maple_leaf_card.inst).
+// look alike, as docs/points.md says (scenes/plants/maple_leaf.rifs, maple_leaf_card.inst).
 
 #include "tests/golden/command_line.h"
 
@@ -27,11 +27,12 @@ class Bodies : public CommandLine {
   protected:
     /// Sixty leaves that lean and turn, `size_px` long.
     Look look_of(const std::string& leaf, double size_px, const std::string& options) {
+        const std::string own = leaf == "own" ? "use own = \"leaf.inst\"\n" : "";
         std::array<std::array<double, 3>, 2> means{};
         for (const int shade : {0, 1}) {
             const std::string name = shade ? "white" : "black";
             write(name + ".inst",
-                  "use maple = \"" + source_path("scenes/plants/maple_leaf.rifs") + "\"\nuse card = \"" +
+                  own + "use maple = \"" + source_path("scenes/plants/maple_leaf.rifs") + "\"\nuse card = \"" +
                       source_path("scenes/plants/maple_leaf_card.inst") +
                       "\"\ncamera { location: 0,0,10 look_at: 0,0,0 orthographic width: 0.7 }\n"
                       "light { sun: 0.3,0.4,1 color: 1,1,1 }\nbackground: " +
@@ -84,6 +85,19 @@ TEST_F(Bodies, LookAlikeWhereTheyTakeEachOthersPlace) {
         SCOPED_TRACE(other.leaf + " " + other.options);
         expect_alike(look_of(other.leaf, size_px, other.options), recursion);
     }
+}
+
+/// As the command makes it, without choosing anything.
+TEST_F(Bodies, ACardOfPointsStandsForItsModel) {
+    ASSERT_EQ(graftal("points -q '" + source_path("scenes/plants/maple_leaf.rifs") + "' --card leaf.inst").status, 0);
+    const Look recursion = look_of("maple", 32, "--engine native");
+    const Look card = look_of("own", 32, "--engine native");
+    EXPECT_NEAR(card.coverage / recursion.coverage, 1, 0.03);
+    for (std::size_t k = 0; k < 3; ++k)
+        EXPECT_NEAR(card.rgb[k], recursion.rgb[k], 3) << "channel " << k;
+    EXPECT_EQ(graftal("points -q x.rifs --card leaf.rifs").status, 2);
+    EXPECT_EQ(graftal("points -q x.rifs --card leaf.inst -o other/leaf.png").status, 2);
+    EXPECT_EQ(graftal("points -q x.rifs --card leaf.inst -o 'le\"af.png'").status, 2);
 }
 
 /// A terminal that is nothing like its object tells which of the two is drawn.

@@ -31,6 +31,7 @@ struct PointsSettings {
     std::optional<std::uint64_t> points;
     PointColour colour = PointColour::tint;
     Tone tone;
+    std::string card; ///< file, or ""
     std::string target; ///< of `collage`
     double threshold = 0.5;
     bool light = false;

@@ -17,6 +17,7 @@ PointsOptions points_options(const Options& options) {
     points.points = options.points.points;
     points.colour = options.points.colour;
     points.tone = options.points.tone;
+    points.card = options.points.card;
     points.threads = options.threads;
     return points;
 }

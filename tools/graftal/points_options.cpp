@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "compiler/support/number.h"
+#include "runtime/points/card.h"
 #include "runtime/points/draw_points.h"
 
 namespace graftal {
@@ -70,15 +71,37 @@ void add_points_options(CLI::App& app, Options& options) {
                  settings.tone.gamma);
     app.add_flag("--transparent", settings.tone.transparent,
                  "No background: the picture gets an alpha channel");
+    app.add_option("--card", settings.card,
+                   "Also a model of a flat cube with the picture, in the place of a flat model: for terminals\n"
+                   "(default size 512x512, exposure 800; the picture is transparent)")
+        ->type_name("FILE.inst");
+    app.parse_complete_callback([&app, &options, &settings] {
+        if (settings.card.empty()) return;
+        settings.tone.transparent = true;
+        if (app.count("--size") == 0) options.compile.size = {512, 512};
+        if (app.count("--exposure") == 0) settings.tone.exposure = 800;
+    });
     app.footer("Examples:\n"
                "  graftal points scenes/ifs/fern.rifs                   # makes fern.png\n"
                "  graftal points scenes/ifs/fern.rifs --points 1e9 --size 2000x3000 -o fern.exr\n"
                "  graftal points scenes/hart/pound_sign.rifs --points 1e7 -o pound_sign.ply\n"
                "  graftal points scenes/ifs/twin_dragon.rifs --color map\n"
+               "  graftal points scenes/plants/maple_leaf.rifs --card leaf_card.inst   # and leaf_card.png\n"
                "  graftal points scenes/orbits/gumowski_mira.rifs --color density --set a=0.31");
 }
 
 std::string complete_points(Options& options) {
+    const std::string& card = options.points.card;
+    if (!card.empty() && std::filesystem::path(card).extension() != ".inst")
+        return fmt::format("--card: '{}' does not end in .inst", card);
+    if (options.output.empty() && !card.empty())
+        options.output = std::filesystem::path(card).replace_extension(".png").string();
+    if (!card.empty() && std::filesystem::path(options.output).extension() != ".png")
+        return "--card: its picture is a .png";
+    if (!card.empty() && std::filesystem::path(options.output).parent_path() != std::filesystem::path(card).parent_path())
+        return "--card: its picture lies in the same folder";
+    if (!card.empty() && !is_card_picture(std::filesystem::path(options.output).filename().string()))
+        return "--card: a name of a picture without quotes, backslashes and control characters";
     if (options.output.empty() && options.operands.front() == "-")
         return "a model from standard input has no name: say where the points go by '-o FILE'";
     if (options.output.empty())

@@ -59,10 +59,11 @@ class Cutter {
         int fits = next;
         while (fits - fails > 1) {
             const int half = (fails + fits) / 2;
-            std::optional<Cut> cut = attempt(half);
-            (cut ? fits : fails) = half;
-            if (cut) best = std::move(cut);
+            best.reset(); // two cuts of this size would take more memory than POV-Ray itself
+            best = attempt(half);
+            (best ? fits : fails) = half;
         }
+        if (!best) best = attempt(fits);
         return finish(std::move(*best), fits);
     }
 
@@ -90,12 +91,13 @@ class Cutter {
         root.steps = prepared_.root_steps;
         const Ball whole_ball = world_ball(cut_, root);
         const double px = projection.pixels_per_unit(whole_ball) / projection.detail_per_unit(whole_ball);
-        Weights weights(cut_, cube_triangles_, px, projection.error_px());
+        Weights weights(cut_, cube_triangles_, px, projection.error_px(), grain_);
         const double memory = memory_for_scene();
         const PieceKind whole = kind_of(cut_, projection, root);
         choice_ = options.flatten || better_flat(weights.of(whole), memory)
                       ? flat_choice(weights.of(whole))
                       : choose_cut(cut_, symmetry_, projection, root, weights);
+        grain_ = weights.grain();
         if (!(choice_.bytes <= estimate_slack * memory)) return std::nullopt;
         const AssemblyLimits limits{
             static_cast<std::size_t>(std::max(0.0, memory) / PovrayCosts::least_placement) + 1,
@@ -177,6 +179,7 @@ class Cutter {
     const CutGraph& cut_;
     const Symmetry& symmetry_;
     double cube_triangles_ = 0; ///< visible_cube_triangles(), whatever the error
+    int grain_ = 1;             ///< of the last weights
     Choice choice_;
 };
 

@@ -69,8 +69,8 @@ bool is_cut(const CutNode& node, std::uint32_t steps, double detail, double erro
     return (node.unending && steps == 0) || (node.cullable && detail <= cut_detail(node, error_px));
 }
 
-Weights::Weights(const CutGraph& cut, double cube_triangles, double px, double error_px)
-    : cut_(cut), cube_triangles_(cube_triangles), px_(px) {
+Weights::Weights(const CutGraph& cut, double cube_triangles, double px, double error_px, int grain)
+    : cut_(cut), cube_triangles_(cube_triangles), px_(px), grain_(grain) {
     diameter_step_.reserve(cut.nodes.size());
     cut_step_.reserve(cut.nodes.size());
     for (const CutNode& node : cut.nodes) {

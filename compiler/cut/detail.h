@@ -125,8 +125,9 @@ class Weights {
   public:
     /// `cube_triangles`: how many of a cube's triangles stay visible in a mesh, on average. `px`: pixels of a
     /// detail of 1, which decide how finely curved surfaces are meshed; 0: as coarsely as can be.
-    /// `error_px`: as Projection::error_px().
-    explicit Weights(const CutGraph& cut, double cube_triangles = 12, double px = 0, double error_px = 0);
+    /// `error_px`: as Projection::error_px(). `grain`: that of other weights of this graph, which saves finding it.
+    explicit Weights(const CutGraph& cut, double cube_triangles = 12, double px = 0, double error_px = 0,
+                     int grain = 1);
 
     struct Weight {
         double triangles = 0;
@@ -138,6 +139,8 @@ class Weights {
     /// Saturates at infinity; kinds that lead back to themselves without losing detail count as one leaf. Where there
     /// are too many kinds, details are told apart less finely from then on.
     Weight of(const PieceKind& kind);
+
+    int grain() const { return grain_; }
 
     /// Kinds are the same where levels do not matter.
     PieceKind normalised(PieceKind kind) const;
@@ -164,7 +167,7 @@ class Weights {
     std::vector<double> cut_step_;      ///< by node, of cut_detail()
     double cube_triangles_;
     double px_;
-    int grain_ = 1; ///< details are told apart by so many steps
+    int grain_; ///< details are told apart by so many steps
     std::unordered_map<PieceKind, Weight, PieceKindHash> known_;
 };
 

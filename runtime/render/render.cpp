@@ -3,6 +3,10 @@
 #include <filesystem>
 #include <utility>
 
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
+
 #include <fmt/format.h>
 
 #include "runtime/povray/interruption.h"
@@ -73,6 +77,13 @@ PovrayJob job_for(const RenderOptions& options) {
     return job;
 }
 
+/// The C library keeps what it was given back; other programs cannot use that.
+void return_free_memory() {
+#ifdef __GLIBC__
+    malloc_trim(0);
+#endif
+}
+
 /// Checks what would fail late, and writes the scene.
 Status prepare(const CompiledModel& model, const RenderOptions& options, TemporaryDirectory& temporary,
                PovrayJob& job) {
@@ -109,6 +120,7 @@ std::optional<RenderReport> draw_model(CompiledModel compiled, const RenderOptio
     RenderReport report = report_of(model->cut);
     job.finite_objects = finite_objects(model->cut);
     model.reset(); // POV-Ray may need the memory
+    return_free_memory();
 
     const auto trace = [&] {
         const PovrayResult result = run_povray(job);

@@ -6,6 +6,7 @@
 #include <map>
 #include <optional>
 #include <queue>
+#include <set>
 #include <utility>
 
 #include <glm/geometric.hpp>
@@ -81,6 +82,7 @@ class Chooser {
         double count = 0;
         std::vector<Piece> pieces;
         std::optional<MeshKind> mesh; ///< that serves its pieces; weights may be told apart less finely later
+        double triangles = 0;         ///< that its pieces ask of the mesh
     };
 
     PieceKind kind_of(const Piece& piece) const {
@@ -111,6 +113,7 @@ class Chooser {
                 queue_.push(
                     {cut_.nodes[kind.node].unbounded ? std::numeric_limits<double>::max() : weight.triangles,
                      weights_.detail_step(kind), kind});
+            place->second.triangles = weight.triangles;
             if (weight.leaves > 1) add_mesh(place->second.mesh.emplace(mesh_kind(kind)), weight.triangles);
         }
         return place->second;
@@ -119,22 +122,22 @@ class Chooser {
     /// A mesh is as fine as the finest of its pieces asks for.
     void add_mesh(const MeshKind& kind, double triangles) {
         LiveMesh& mesh = live_meshes_[kind];
-        const double before = mesh.triangles;
-        ++mesh.kinds;
-        mesh.triangles = std::max(mesh.triangles, triangles);
-        triangles_ += mesh.triangles - before;
+        const double before = mesh.triangles();
+        mesh.asked.insert(triangles);
+        if (triangles > before) triangles_ += triangles - before;
         most_triangles_ = std::max(most_triangles_, triangles_);
     }
 
-    void drop_mesh(const MeshKind& kind) {
+    void drop_mesh(const MeshKind& kind, double triangles) {
         LiveMesh& mesh = live_meshes_[kind];
-        if (--mesh.kinds > 0) return;
-        triangles_ -= std::exchange(mesh.triangles, 0);
+        mesh.asked.erase(mesh.asked.find(triangles));
+        if (!(triangles > mesh.triangles())) return; // others are as fine
+        triangles_ -= triangles - mesh.triangles();
         // What is left after subtracting far larger numbers, or infinities, is noise: summed anew.
         if (!(triangles_ >= 1e-3 * most_triangles_)) {
             triangles_ = 0;
             for (const auto& [key, live] : live_meshes_)
-                triangles_ += live.triangles;
+                triangles_ += live.triangles();
             most_triangles_ = triangles_;
         }
     }
@@ -152,7 +155,7 @@ class Chooser {
         if (node.empty()) return;
         const Bucket& bucket = node.mapped();
         placements_ -= bucket.count;
-        if (bucket.mesh) drop_mesh(*bucket.mesh);
+        if (bucket.mesh) drop_mesh(*bucket.mesh, bucket.triangles);
         const bool cut = weights_.is_cut(kind);
         const auto& edges = followed_edges(cut_.nodes[kind.node], cut);
         const bool real = static_cast<double>(bucket.pieces.size()) == bucket.count &&
@@ -190,8 +193,9 @@ class Chooser {
     double most_triangles_ = 0; ///< since they were last summed
     std::unordered_map<PieceKind, Bucket, PieceKindHash> buckets_;
     struct LiveMesh {
-        int kinds = 0; ///< of pieces that it serves now
-        double triangles = 0;
+        std::multiset<double> asked; ///< triangles, by the kinds of pieces that it serves now
+
+        double triangles() const { return asked.empty() ? 0 : *asked.rbegin(); }
     };
     std::map<MeshKind, LiveMesh> live_meshes_;
     std::priority_queue<Entry> queue_;

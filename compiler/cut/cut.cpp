@@ -94,16 +94,27 @@ class Cutter {
         Weights weights(cut_, cube_triangles_, px, projection.error_px(), grain_);
         const double memory = memory_for_scene();
         const PieceKind whole = kind_of(cut_, projection, root);
-        choice_ = options.flatten || better_flat(weights.of(whole), memory)
-                      ? flat_choice(weights.of(whole))
-                      : choose_cut(cut_, symmetry_, projection, root, weights);
+        const Weights::Weight weight = weights.of(whole);
+        const bool flat = options.flatten || better_flat(weight, memory);
         grain_ = weights.grain();
+        if (flat) {
+            choice_ = flat_choice(weight);
+            std::optional<Cut> cut = assembled(root, projection, weights, memory);
+            if (cut || options.flatten) return cut;
+        }
+        choice_ = choose_cut(cut_, symmetry_, projection, root, weights);
+        grain_ = weights.grain();
+        return assembled(root, projection, weights, memory);
+    }
+
+    /// What was chosen, if it fits.
+    std::optional<Cut> assembled(const Piece& root, const Projection& projection, Weights& weights, double memory) {
         if (!(choice_.bytes <= estimate_slack * memory)) return std::nullopt;
         const AssemblyLimits limits{
             static_cast<std::size_t>(std::max(0.0, memory) / PovrayCosts::least_placement) + 1,
             static_cast<std::size_t>(std::max(0.0, memory) / PovrayCosts::triangle) + 1};
         std::optional<Cut> cut = assemble(cut_, symmetry_, projection, root, choice_, weights,
-                                          options.limit_normals(), limits);
+                                          options_.limit_normals(), limits);
         if (!cut) return std::nullopt;
         const double bytes = povray_bytes(*cut);
         cut->estimated_bytes = static_cast<std::uint64_t>(bytes + picture_bytes());

@@ -148,9 +148,9 @@ class Builder {
             node.ball = factor.ball.empty() ? Ball{Vec3(0.0), 0.0} : factor.ball;
             node.node_from_proxy = ellipsoid_in(factor.box);
             for (const Instance& instance : object.instances)
-                node.edges.push_back(edge(instance, node));
+                node.edges.push_back(edge(instance, node, id));
             if (object.terminal) {
-                node.stop_edges.push_back(edge(*object.terminal, node));
+                node.stop_edges.push_back(edge(*object.terminal, node, id));
                 node.terminal = true;
             } else if (node.unending) {
                 for (const CutEdge& candidate : node.edges)
@@ -162,7 +162,7 @@ class Builder {
     }
 
   private:
-    CutEdge edge(const Instance& instance, const CutNode& node) {
+    CutEdge edge(const Instance& instance, const CutNode& node, ObjectId user) {
         CutEdge edge{instance.master, instance.parent_from_child, PathTint(instance.tint), instance.material,
                      components_.unending[instance.master] ? 1u : 0u};
         const Vec3 sigma = singular_values(edge.node_from_child.linear);
@@ -171,7 +171,8 @@ class Builder {
         if (edge.volume_stretch <= 0) edge.volume_stretch = edge.stretch;
         edge.similarity = sigma.z > sigma.x * (1 - 1e-9);
         cut_.tinted = cut_.tinted || instance.tint.alpha > 0;
-        if (node.unending && edge.levels > 0 && sigma.x >= 0.97) cut_.contractive = false;
+        const bool in_cycle = components_.component_of[user] == components_.component_of[instance.master];
+        if (in_cycle && sigma.x >= 0.97) cut_.contractive = false;
         return is_singular(edge.node_from_child, 1e-9) ? sealed_detour(std::move(edge), node) : edge;
     }
 

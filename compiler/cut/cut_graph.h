@@ -62,7 +62,7 @@ struct CutGraph {
     std::vector<Material> materials;
     NodeId root = 0;
     bool tinted = false;     ///< some instance has a tint
-    bool contractive = true; ///< every edge between unending nodes has stretch < 1: products of stretches end
+    bool contractive = true; ///< every edge within a cycle has stretch < 1: products of stretches end
 };
 
 /// Requires what cut_graph() requires. O(graph).

@@ -5,33 +5,15 @@ Long plates with furrows between them: the cells of Worley's noise on a lattice 
 lattices close, so the picture does too. Python's own library is enough:  python3 autumn_bark.py
 """
 import math
-import os
-import random
-import struct
-import zlib
+
+from bark_noise import Noise, between, noise, write_png
 
 SIZE = 384
-CHANCE = random.Random(6)
-
-
-def lattice(columns, rows):
-    return columns, rows, [[CHANCE.random() for _ in range(columns)] for _ in range(rows)]
-
-
-def noise(grid, u, v):
-    """Smooth noise in [0, 1], of period 1 in u and v."""
-    columns, rows, values = grid
-    x, y = u * columns, v * rows
-    i, j = math.floor(x), math.floor(y)
-    s, t = x - i, y - j
-    s, t = s * s * (3 - 2 * s), t * t * (3 - 2 * t)
-    low, high = values[j % rows], values[(j + 1) % rows]
-    a, b = i % columns, (i + 1) % columns
-    return (low[a] * (1 - s) + low[b] * s) * (1 - t) + (high[a] * (1 - s) + high[b] * s) * t
-
+NOISE = Noise(6)
+lattice = NOISE.lattice
 
 COLUMNS, ROWS = 19, 4
-points = [[(CHANCE.random(), CHANCE.random(), CHANCE.random()) for _ in range(COLUMNS)] for _ in range(ROWS)]
+points = [[(NOISE.chance.random(), NOISE.chance.random(), NOISE.chance.random()) for _ in range(COLUMNS)] for _ in range(ROWS)]
 bend_u, bend_v = lattice(5, 4), lattice(8, 3)
 rag = lattice(30, 14)
 streak, grain, patches = lattice(60, 12), lattice(128, 96), lattice(4, 4)
@@ -59,11 +41,7 @@ def plate(u, v):
 # The palette: 64 shades from the furrow to the ridge, and the same with lichen.
 def ramp(t, lichen):
     stops = [(0.0, (34, 25, 20)), (0.3, (78, 61, 49)), (0.65, (128, 107, 90)), (1.0, (178, 160, 140))]
-    for (t0, c0), (t1, c1) in zip(stops, stops[1:]):
-        if t <= t1:
-            k = (t - t0) / (t1 - t0)
-            c = [a + k * (b - a) for a, b in zip(c0, c1)]
-            break
+    c = between(stops, t)
     if lichen:
         c = [0.6 * c[0] + 0.4 * 118, 0.6 * c[1] + 0.4 * 124, 0.6 * c[2] + 0.4 * 92]
     return bytes(round(x) for x in c)
@@ -83,7 +61,7 @@ for row in range(SIZE):
 
 rows = []
 for row in range(SIZE):
-    line = bytearray([0])
+    line = []
     for column in range(SIZE):
         u, v = column / SIZE, row / SIZE
         h = height[row][column]
@@ -92,13 +70,6 @@ for row in range(SIZE):
         index = max(0, min(63, int(64 * shade)))
         mossy = 0.75 * noise(patches, u, v) + 0.25 * noise(grain, u, v) > 0.60 and h > 0.4
         line.append(index + (64 if mossy else 0))
-    rows.append(bytes(line))
+    rows.append(line)
 
-
-def chunk(name, data):
-    return struct.pack(">I", len(data)) + name + data + struct.pack(">I", zlib.crc32(name + data))
-
-
-with open(os.path.join(os.path.dirname(os.path.abspath(__file__)), "autumn_bark.png"), "wb") as file:
-    file.write(b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">IIBBBBB", SIZE, SIZE, 8, 3, 0, 0, 0))
-               + chunk(b"PLTE", palette) + chunk(b"IDAT", zlib.compress(b"".join(rows), 9)) + chunk(b"IEND", b""))
+write_png("autumn_bark.png", palette, rows)

@@ -4,31 +4,11 @@
 Upright ridges that part and meet, with furrows between them and cracks across: sums of smooth noise on lattices that
 close, so the picture does too. Python's own library is enough:  python3 bark.py
 """
-import math
-import os
-import random
-import struct
-import zlib
+from bark_noise import Noise, between, noise, write_png
 
 SIZE = 256
-CHANCE = random.Random(8)
-
-
-def lattice(columns, rows):
-    return columns, rows, [[CHANCE.random() for _ in range(columns)] for _ in range(rows)]
-
-
-def noise(grid, u, v):
-    """Smooth noise in [0, 1], of period 1 in u and v."""
-    columns, rows, values = grid
-    x, y = u * columns, v * rows
-    i, j = math.floor(x), math.floor(y)
-    s, t = x - i, y - j
-    s, t = s * s * (3 - 2 * s), t * t * (3 - 2 * t)
-    low, high = values[j % rows], values[(j + 1) % rows]
-    a, b = i % columns, (i + 1) % columns
-    return (low[a] * (1 - s) + low[b] * s) * (1 - t) + (high[a] * (1 - s) + high[b] * s) * t
-
+NOISE = Noise(8)
+lattice = NOISE.lattice
 
 wave, small_wave = lattice(4, 3), lattice(11, 9)
 ridges, fine_ridges = lattice(21, 5), lattice(40, 12)
@@ -50,11 +30,7 @@ STOPS = [(0.0, (38, 29, 23)), (0.35, (88, 71, 57)), (0.7, (138, 118, 98)), (1.0,
 
 def colour(t, grey):
     t = max(0.0, min(1.0, t))
-    for (t0, c0), (t1, c1) in zip(STOPS, STOPS[1:]):
-        if t <= t1:
-            k = (t - t0) / (t1 - t0)
-            c = [a + k * (b - a) for a, b in zip(c0, c1)]
-            break
+    c = between(STOPS, t)
     mean = sum(c) / 3
     return [a + grey * (mean - a) for a in c]
 
@@ -63,20 +39,13 @@ palette = b"".join(bytes(round(x) for x in colour(i / 63, grey)) for grey in (0,
 heights = [[height(column / SIZE, row / SIZE) for column in range(SIZE)] for row in range(SIZE)]
 rows = []
 for row in range(SIZE):
-    line = bytearray([0])
+    line = []
     for column in range(SIZE):
         h = heights[row][column]
         slope = h - heights[row][column - 2]                     # light from the left on the ridges
         shade = max(0, min(63, int(64 * (0.04 + 0.82 * h + 0.30 * slope))))
         grey = max(0, min(3, int(5 * noise(patches, column / SIZE, row / SIZE) - 0.5)))
         line.append(shade + 64 * grey)
-    rows.append(bytes(line))
+    rows.append(line)
 
-
-def chunk(name, data):
-    return struct.pack(">I", len(data)) + name + data + struct.pack(">I", zlib.crc32(name + data))
-
-
-with open(os.path.join(os.path.dirname(os.path.abspath(__file__)), "bark.png"), "wb") as file:
-    file.write(b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">IIBBBBB", SIZE, SIZE, 8, 3, 0, 0, 0))
-               + chunk(b"PLTE", palette) + chunk(b"IDAT", zlib.compress(b"".join(rows), 9)) + chunk(b"IEND", b""))
+write_png("bark.png", palette, rows)

@@ -128,7 +128,7 @@ TEST_F(Animate, PlantsWithAgesGrowWithoutJumps) {
         return most;
     };
     const double coarse = largest_change(13);
-    EXPECT_GT(coarse, 0.02);
+    EXPECT_GT(coarse, 0.01);
     EXPECT_LT(largest_change(49), 0.45 * coarse);
 }
 

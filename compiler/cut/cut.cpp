@@ -95,20 +95,18 @@ class Cutter {
         const double memory = memory_for_scene();
         const PieceKind whole = kind_of(cut_, projection, root);
         const Weights::Weight weight = weights.of(whole);
-        const bool flat = options.flatten || better_flat(weight, memory);
-        grain_ = weights.grain();
-        if (flat) {
+        if (options.flatten || better_flat(weight, memory)) {
             choice_ = flat_choice(weight);
             std::optional<Cut> cut = assembled(root, projection, weights, memory);
             if (cut || options.flatten) return cut;
         }
         choice_ = choose_cut(cut_, symmetry_, projection, root, weights);
-        grain_ = weights.grain();
         return assembled(root, projection, weights, memory);
     }
 
     /// What was chosen, if it fits.
     std::optional<Cut> assembled(const Piece& root, const Projection& projection, Weights& weights, double memory) {
+        grain_ = weights.grain();
         if (!(choice_.bytes <= estimate_slack * memory)) return std::nullopt;
         const AssemblyLimits limits{
             static_cast<std::size_t>(std::max(0.0, memory) / PovrayCosts::least_placement) + 1,

@@ -28,6 +28,12 @@ double steps_of(double detail) {
     return std::log2(std::max(detail, 1e-300)) * PieceKind::steps_an_octave;
 }
 
+/// `small`: enough to be cut for its size.
+bool ends(const CutNode& node, std::uint32_t steps, bool small) {
+    if (node.primitive || node.unbounded) return false;
+    return (node.unending && steps == 0) || (node.cullable && small);
+}
+
 } // namespace
 
 Projection::Projection(const View& view, const CutOptions& options, double error_px, double near)
@@ -65,8 +71,7 @@ double cut_detail(const CutNode& node, double error_px) {
 }
 
 bool is_cut(const CutNode& node, std::uint32_t steps, double detail, double error_px) {
-    if (node.primitive || node.unbounded) return false;
-    return (node.unending && steps == 0) || (node.cullable && detail <= cut_detail(node, error_px));
+    return ends(node, steps, detail <= cut_detail(node, error_px));
 }
 
 Weights::Weights(const CutGraph& cut, double cube_triangles, double px, double error_px, int grain)
@@ -86,9 +91,7 @@ double Weights::detail_step(const PieceKind& kind) const {
 }
 
 bool Weights::is_cut(const PieceKind& kind) const {
-    const CutNode& node = cut_.nodes[kind.node];
-    if (node.primitive || node.unbounded) return false;
-    return (node.unending && kind.steps == 0) || (node.cullable && detail_step(kind) <= cut_step_[kind.node]);
+    return ends(cut_.nodes[kind.node], kind.steps, detail_step(kind) <= cut_step_[kind.node]);
 }
 
 PieceKind Weights::normalised(PieceKind kind) const {

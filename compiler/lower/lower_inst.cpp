@@ -25,7 +25,6 @@ namespace {
 /// Words of definitions that are evaluated over all enumerated objects: some seconds of work.
 constexpr std::size_t max_work = 30'000'000;
 
-
 /// Names that are compared with misspelt ones.
 constexpr std::size_t max_suggestion_work = 100'000;
 

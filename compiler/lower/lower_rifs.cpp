@@ -300,7 +300,6 @@ class RifsLowering {
                 part.material ? part.material : node->material, part.span};
     }
 
-
     FileId file_;
     std::size_t errors_before_;
     Lowering& lowering_;

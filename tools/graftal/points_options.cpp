@@ -35,6 +35,19 @@ void add_positive(CLI::App& app, const std::string& name, const std::string& hel
     app.add_option_function<std::string>(name, set, help)->type_name("X")->take_last();
 }
 
+/// What `--card` leaves out, and what is wrong with it, or "".
+std::string complete_card(Options& options) {
+    const std::filesystem::path card = options.points.card;
+    if (card.extension() != ".inst") return fmt::format("--card: '{}' does not end in .inst", card.string());
+    if (options.output.empty()) options.output = std::filesystem::path(card).replace_extension(".png").string();
+    const std::filesystem::path picture = options.output;
+    if (picture.extension() != ".png") return "--card: its picture is a .png";
+    if (picture.parent_path() != card.parent_path()) return "--card: its picture lies in the same folder";
+    if (!is_card_picture(picture.filename().string()))
+        return "--card: a name of a picture without quotes, backslashes and control characters";
+    return {};
+}
+
 } // namespace
 
 void add_points_options(CLI::App& app, Options& options) {
@@ -91,17 +104,8 @@ void add_points_options(CLI::App& app, Options& options) {
 }
 
 std::string complete_points(Options& options) {
-    const std::string& card = options.points.card;
-    if (!card.empty() && std::filesystem::path(card).extension() != ".inst")
-        return fmt::format("--card: '{}' does not end in .inst", card);
-    if (options.output.empty() && !card.empty())
-        options.output = std::filesystem::path(card).replace_extension(".png").string();
-    if (!card.empty() && std::filesystem::path(options.output).extension() != ".png")
-        return "--card: its picture is a .png";
-    if (!card.empty() && std::filesystem::path(options.output).parent_path() != std::filesystem::path(card).parent_path())
-        return "--card: its picture lies in the same folder";
-    if (!card.empty() && !is_card_picture(std::filesystem::path(options.output).filename().string()))
-        return "--card: a name of a picture without quotes, backslashes and control characters";
+    if (!options.points.card.empty())
+        if (std::string wrong = complete_card(options); !wrong.empty()) return wrong;
     if (options.output.empty() && options.operands.front() == "-")
         return "a model from standard input has no name: say where the points go by '-o FILE'";
     if (options.output.empty())

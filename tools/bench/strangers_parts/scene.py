@@ -1,0 +1,101 @@
+"""What models of all languages may say: materials, cameras, lights, skies, grounds; and pictures to wrap round them."""
+import struct
+import zlib
+
+from draw import number, numbers
+
+PRIMITIVES = ['triangle', 'sphere', 'cube', 'cylinder', 'cone', 'torus']
+
+
+def primitive(draw):
+    return f'frustum({number(draw.uniform(0, 1))})' if draw.chance(0.15) else draw.pick(PRIMITIVES)
+
+
+def colour(draw):
+    return numbers([draw.random() for _ in range(3)])
+
+
+def tint(draw):
+    if draw.chance(0.5):
+        return f'tint rgb <{colour(draw)}> {number(draw.random())}'
+    return f'tint {colour(draw)}, {number(draw.random())}'
+
+
+def transforms(draw, size=1.0, distance=1.0):
+    """Of a thing that is placed once: a list of lines."""
+    lines = []
+    if draw.chance(0.8):
+        factor = size * draw.log_uniform(0.05, 1)
+        if draw.chance(0.3):
+            lines.append('scale <' + numbers([factor * draw.log_uniform(0.02, 1) for _ in range(3)]) + '>')
+        else:
+            lines.append(f'scale {number(factor)}')
+    if draw.chance(0.4):
+        lines.append(f'rotate {draw.pick("xyz")}, {number(draw.uniform(-180, 180))}')
+    if draw.chance(0.1):
+        lines.append(f'shear {draw.pick(["xy", "yx", "xz", "yz"])} {number(draw.uniform(-1, 1))}')
+    if draw.chance(0.6):
+        lines.append('translate <' + numbers([distance * draw.uniform(-1, 1) for _ in range(3)]) + '>')
+    return lines
+
+
+def png(draw):
+    """A small picture of two colours, with holes where its alpha is 0."""
+    width, height = draw.whole(1, 40), draw.whole(1, 40)
+    colours = [bytes(draw.whole(0, 255) for _ in range(3)) + alpha for alpha in (b'\xff', draw.pick([b'\xff', b'\0']))]
+    rows = b''.join(b'\0' + b''.join(colours[draw.chance(0.4)] for _ in range(width)) for _ in range(height))
+
+    def chunk(kind, data):
+        return struct.pack('>I', len(data)) + kind + data + struct.pack('>I', zlib.crc32(kind + data))
+
+    return b'\x89PNG\r\n\x1a\n' + chunk(b'IHDR', struct.pack('>IIBBBBB', width, height, 8, 6, 0, 0, 0)) + \
+        chunk(b'IDAT', zlib.compress(rows)) + chunk(b'IEND', b'')
+
+
+def materials(draw, model, most=3):
+    """Declares some, and returns their names; model.files gets their pictures."""
+    names = []
+    while len(names) < most and draw.chance(0.4):
+        name = f'paint{len(names) + 1}'
+        fields = []
+        if draw.chance(0.15):
+            picture = f'{name}.png'
+            model.files[picture] = png(draw)
+            fields.append(f'texture: "{picture}"')
+            if draw.chance(0.3):
+                fields.append(f'around: {draw.whole(1, 4)}')
+        if not fields or draw.chance(0.5):
+            fields.append(f'color: {colour(draw)}')
+        for field in ('ambient', 'diffuse', 'specular', 'reflection'):
+            if draw.chance(0.2):
+                fields.append(f'{field}: {number(draw.random())}')
+        if draw.chance(0.1):
+            fields.append(f'roughness: {number(draw.log_uniform(0.001, 1))}')
+        model.say(f'material {name} {{ {"  ".join(fields)} }}')
+        names.append(name)
+    return names
+
+
+def surroundings(draw, model):
+    """Camera, lights, background and ground, each now and then."""
+    if draw.chance(0.12):
+        distance = draw.log_uniform(0.1, 30)
+        at = [distance * draw.normal() for _ in range(3)]
+        fields = [f'location: {numbers(at)}', f'look_at: {numbers([0.3 * draw.normal() for _ in range(3)])}']
+        if draw.chance(0.3):
+            fields += ['orthographic', f'width: {number(draw.log_uniform(0.01, 30))}']
+        else:
+            fields.append(f'angle: {number(draw.uniform(5, 120))}')
+        model.say(f'camera {{ {"  ".join(fields)} }}')
+    while draw.chance(0.15):
+        if draw.chance(0.5):
+            model.say(f'light {{ location: {numbers([10 * draw.normal() for _ in range(3)])}  color: {colour(draw)}'
+                      f'{"  shadowless" if draw.chance(0.3) else ""} }}')
+        else:
+            model.say(f'light {{ sun: {numbers([draw.uniform(-1, 1), draw.uniform(0.1, 1), draw.uniform(-1, 1)])}'
+                      f'  color: {colour(draw)} }}')
+    if draw.chance(0.15):
+        model.say(f'background {{ zenith: {colour(draw)}  horizon: {colour(draw)} }}' if draw.chance(0.5) else
+                  f'background: {colour(draw)}')
+    if draw.chance(0.1):
+        model.say(f'ground {{ height: {number(draw.uniform(-2, 0.2))}  color: {colour(draw)} }}')

@@ -1,0 +1,92 @@
+"""Runs the commands of graftal on one model, and judges how each ended."""
+import json
+import os
+import re
+import shutil
+
+import picture
+from limited import observe
+
+# Name of a trial -> the command, and the file that it writes.
+COMMANDS = {
+    'check': (['check'], None),
+    'stats': (['stats', '--json'], None),
+    'compile small': (['compile', '--size', '64x36'], 'small.pov'),
+    'compile': (['compile'], 'scene.pov'),
+    'native': (['render', '--engine', 'native'], 'native.png'),
+    'povray': (['render'], 'povray.png'),
+}
+
+
+def command_line(program, name, model, size=None):
+    words, result = COMMANDS[name]
+    line = [program, *words, model['model'], *model['options']]
+    if result:
+        line += [*model['drawn'], '-o', f'out/{result}']
+        if name != 'native' and model['visible_only']:
+            line.append('--visible-only')
+        if size and '--size' not in words:
+            line += ['--size', size]
+    return line
+
+
+def attempt(program, name, folder, limits, size=None):
+    """One row of the results; what the command leaves in the folder is looked at and taken away."""
+    model = json.loads((folder / 'options.json').read_text())
+    out, temporary = folder / 'out', folder / 'tmp'
+    for fresh in (out, temporary):
+        shutil.rmtree(fresh, ignore_errors=True)
+        fresh.mkdir()
+    line = command_line(program, name, model, size)
+    ended = observe(line, limits, folder / 'stdout', folder / 'stderr', folder, {**os.environ, 'TMPDIR': str(temporary)})
+    said = (folder / 'stderr').read_text(errors='replace').splitlines()
+    wrong = [text for text in said if 'error' in text]
+    row = {'command': name, 'code': ended.code, 'signal': ended.signal, 'cpu': round(ended.usage.cpu, 2),
+           'peak': round(ended.usage.peak), 'said': (wrong or said or [''])[0][:200] if ended.code != 0 else '',
+           'line': ' '.join(['graftal', *line[1:]])}
+    row['findings'] = judged(row, ended, limits)
+    row['findings'] += leftovers(name, row, out, temporary)
+    if name in ('native', 'povray') and ended.code == 0 and not model['drawn']:
+        if not picture.shows_something(out / COMMANDS[name][1]):
+            row['blank'] = True
+    for used in ('out', 'tmp', 'stdout', 'stderr'):
+        path = folder / used
+        shutil.rmtree(path) if path.is_dir() else path.unlink()
+    return row
+
+
+def judged(row, ended, limits):
+    if ended.over == 'time (it hangs)':
+        return ['hangs']
+    if ended.over == 'time' or row['cpu'] > limits.cpu_s:
+        return ['time']
+    found = ['memory'] if ended.over == 'memory' or row['peak'] > limits.report_mib else []
+    if row['signal'] and not ended.over:
+        found.append(f'signal {row["signal"]}')
+    elif row['code'] not in (0, 1, None):
+        found.append(f'status {row["code"]}')
+    return found
+
+
+def leftovers(name, row, out, temporary):
+    """Files that should not be there; palettes stand beside a scene that was written. What is killed may leave some."""
+    if row['code'] is None:
+        return []
+    expected = COMMANDS[name][1] if row['code'] == 0 else None
+    found = {path.name for path in out.iterdir()}
+    if expected and expected not in found:
+        return ['no result']
+    palettes = {file for file in found if expected and re.search(r'_[PT]_\d+\.png$', file)}
+    extra = found - {expected} - palettes | {path.name for path in temporary.iterdir()}
+    return ['leaves ' + ' '.join(sorted(extra)[:3])] if extra else []
+
+
+def run_all(program, folder, limits, povray, keep, size=None):
+    """Calls `keep` with each row; commands that draw are tried where `check` accepts the model."""
+    for name in COMMANDS:
+        if name == 'povray' and not povray:
+            continue
+        row = attempt(program, name, folder, limits, size)
+        keep(row)
+        if name == 'check' and row['code'] != 0:
+            return

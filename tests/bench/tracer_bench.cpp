@@ -116,7 +116,8 @@ Flat flatten(const TraceModel& model) {
         const Piece piece = stack.back();
         stack.pop_back();
         const CutNode& node = cut.nodes[piece.node];
-        const bool is_cut = graftal::is_cut(node, piece.steps, detail_of(cut, model.projection, piece));
+        const bool is_cut = graftal::is_cut(node, piece.steps, detail_of(cut, model.projection, piece),
+                                            model.projection.error_px());
         if (node.primitive)
             add(*node.primitive, piece.world_from_node);
         else if (followed_edges(node, is_cut).empty())

@@ -1,13 +1,61 @@
-# Shared by the benchmarks of this folder; to be sourced. Brings tools/setup.sh, and with it $root.
+# Shared by the benchmarks of this folder; to be sourced with their arguments: . common.sh "$@". Brings tools/setup.sh,
+# and with it $root; leaves in the array $arguments what is not for all of them:
+#
+#   --write    puts the tables into their page of docs/, with the commit that they were measured at
+#   --check    compares with what the page says, where that does not depend on the machine
+#   --smoke    tries whether everything runs, on models so small that it takes a moment; measures nothing
 . "$(dirname "${BASH_SOURCE[0]}")/../setup.sh"
 
-# need COMMAND PACKAGE: installs the Debian package that brings the command.
+write=false check=false smoke=false arguments=()
+for argument; do
+    case $argument in
+    --write) write=true ;;
+    --check) check=true ;;
+    --smoke) smoke=true ;;
+    *) arguments+=("$argument") ;;
+    esac
+done
+if $write && $smoke; then
+    echo "${0#"$root"/}: --smoke measures nothing that could be written" >&2
+    exit 2
+fi
+
+# programs TARGET...: builds them, and leaves the folder of the build in $built. Where GRAFTAL_BUILD names a folder they
+# are there already.
+programs() {
+    built=${GRAFTAL_BUILD:-$root/build/release}
+    [[ -n ${GRAFTAL_BUILD:-} ]] || build release "$@"
+    graftal=$built/graftal
+}
+
+# need COMMAND PACKAGE: installs the Debian package that brings the command. For a mere try nothing is installed: fails
+# then, and says what is left out.
 need() {
     command -v "$1" >/dev/null && return
+    if $smoke; then
+        echo "without $1: it is not installed"
+        return 1
+    fi
     local as_root=()
     ((EUID == 0)) || as_root=(sudo)
     echo "installing: $2" >&2
     "${as_root[@]}" apt-get update -qq >&2 &&
         "${as_root[@]}" apt-get install -qq -y --no-install-recommends "$2" >&2 ||
         { echo "${0#"$root"/}: needs '$1', of the Debian package '$2'" >&2 && exit 3; }
+}
+
+# publish PAGE PART [WORD...] <TABLE: shows the table; with --write puts it into that part of docs/PAGE.md, with --check
+# compares it. WORDs are those that make the command measure this part alone.
+publish() {
+    local page=$1 part=$2 table
+    shift 2
+    table=$(cat)
+    printf '%s\n\n' "$table"
+    [[ -n $table ]] || { echo "${0#"$root"/}: nothing came of '$part'" >&2 && exit 1; }
+    if $check; then "$root/tools/bench/page" --same "docs/$page.md" "$part" <<<"$table"; fi
+    if $write; then
+        local command="tools/bench/${0##*/}"
+        (($# == 0)) || command+=" $*"
+        "$root/tools/bench/page" "docs/$page.md" "$part" "$command" <<<"$table"
+    fi
 }

@@ -3,6 +3,7 @@ import datetime
 import json
 import os
 import re
+import shutil
 import subprocess
 
 STAGES = ('compile', 'parse', 'bound', 'trace')
@@ -28,8 +29,8 @@ def size(value):
 
 COLUMNS = ['table', 'model', 'depth', 'leaves', 'contender', 'sdl', 'compile', 'parse', 'bound', 'trace', 'cpu',
            'wall', 'peak', 'compile_peak', 'pov_cpu', 'pov_peak', 'difference', 'placements', 'triangles', 'drawn',
-           'shapes', 'died']
-WORDS = ('table', 'model', 'depth', 'contender', 'died')
+           'shapes', 'died', 'commit']
+WORDS = ('table', 'model', 'depth', 'contender', 'died', 'commit')
 
 
 def flattened(row):
@@ -173,6 +174,8 @@ def plot(path, script, contenders, rows, models, value, title, unit, low, high):
 
 def machine(options):
     def first(pattern, command):
+        if not shutil.which(command[0]):
+            return '-'
         found = subprocess.run(command, capture_output=True, text=True)
         match = re.search(pattern, found.stdout + found.stderr)
         return match[1] if match else '?'
@@ -186,6 +189,12 @@ def machine(options):
             f'{first(r"POV-Ray ([0-9.]+[0-9])", ["povray", "--version"])}, Context Free '
             f'{first(r"cfdg - ([0-9.]+[0-9])", ["cfdg", "--version"])}, Structure Synth {packaged}; pictures of '
             f'{options.size[0]}x{options.size[1]}.')
+
+
+def measured(rows):
+    """The line that tools/bench/page asks of each part with a table."""
+    commits = sorted({row['commit'] for row in rows}, key=lambda commit: commit.split()[1])
+    return '\n*Commit ' + ', and '.join(', '.join(commit.split()) for commit in commits) + ': `tools/bench/instances`*\n'
 
 
 def put_between(text, mark, body):
@@ -219,5 +228,6 @@ def write(folder, contenders, script):
     page = folder / 'instances.md'
     text = page.read_text() if page.exists() else '# Instances\n'
     for mark, content in (('machine', described), ('flat', beyond(flat)), ('roots', beyond(roots)), ('models', body)):
-        text = put_between(text, mark, content)
+        of_part = {'flat': flat, 'roots': roots, 'models': rows}.get(mark)
+        text = put_between(text, mark, content + measured(of_part) if of_part else content)
     page.write_text(text)

@@ -3,17 +3,7 @@ import collections
 import datetime
 import json
 import os
-import platform
-import subprocess
-
-
-def commit(root):
-    """The short name of the commit, with a plus sign if files differ from it; None outside of a repository."""
-    def git(*words):
-        done = subprocess.run(['git', '-C', root, *words], capture_output=True, text=True)
-        return done.stdout.strip() if done.returncode == 0 else None
-    name = git('rev-parse', '--short', 'HEAD')
-    return name and name + ('+' if git('status', '--porcelain', '--untracked-files=no', 'compiler', 'runtime') else '')
+import commits
 
 
 def quantile(sorted_values, share):
@@ -64,12 +54,13 @@ def page(rows, campaign, root, limits, most=60):
     lines = ["# Strangers' models", '',
              '`tools/bench/strangers` draws models by chance from wide distributions, and runs every command on them under',
              'limits. It writes this page.', '',
-             f'Commit {commit(root)}, {datetime.date.today().isoformat()}, {os.cpu_count()} processors, {platform.machine()}.',
              f'Seed {campaign["seed"]}: {models} models, of which `check` accepts {accepted}; {len(rows)} commands, '
              f'{hours:.2f} CPU hours.',
              f'Limits: {limits.cpu_s} s of CPU and {limits.report_mib} MiB a command; pictures of '
              f'{campaign["size"] or "1280x720"}.', '',
-             *table(rows), '',
+             '<!-- table -->', *table(rows), '',
+             f'*Commit {commits.name(root)}, {datetime.date.today().isoformat()}, {os.cpu_count()} processors: '
+             f'`tools/bench/strangers --seed {campaign["seed"]}`*', '<!-- end of table -->', '',
              f'"Refused" is status 1, with a message. {len(refused)} commands refused a model that `check` accepts; '
              f'{len(blank)} pictures of whole models show nothing.', '',
              f'## Findings: {len(found)}', '']

@@ -126,14 +126,15 @@ class Text:
 
     def address(self):
         """A walk down from the root; for ever, if it meets itself again."""
-        walk, ahead = [], [self.names[0]]
+        walk, ahead = [], ['o0#1']
         while ahead and len(walk) < 30:
             at = self.draw.pick(ahead)
             if at in walk and self.draw.chance(0.6):
                 first = walk.index(at)
                 return '.'.join([*walk[:first], '(' + '.'.join(walk[first:]) + ')*'])
             walk.append(at)
-            ahead = self.parts.get(at, [])
+            parts = self.parts.get(at.split('#')[0], [])
+            ahead = [part if parts.count(part) == 1 else f'{part}#1' for part in parts]
         return '.'.join(walk)
 
     def top(self):

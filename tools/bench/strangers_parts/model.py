@@ -55,8 +55,9 @@ def view(draw, model, address):
     """From where it is looked at: mostly as a whole, else from near, or very deep."""
     if draw.chance(0.25) and address:
         model.drawn += ['--at', address]
-        if draw.chance(0.8):
-            model.drawn += ['--zoom', number(draw.log_uniform(1, 1e100))]
+        endless = address.endswith(')*')
+        if endless or draw.chance(0.5):
+            model.drawn += ['--zoom', number(draw.log_uniform(1, 1e100 if endless else 100))]
     elif draw.chance(0.25):
         model.drawn += ['--zoom', number(draw.log_uniform(1, 1e12 if draw.chance(0.9) else 1e100))]
     if draw.chance(0.08):

@@ -38,6 +38,10 @@ class Draw:
                 return choice
         return choice
 
+    def ranged(self, choices):
+        """A whole number from one of the ranges (least, most) of a table of weights."""
+        return self.whole(*self.weighted(choices))
+
     def shuffled(self, choices):
         rest = list(choices)
         return [rest.pop(int(self.random() * len(rest))) for _ in range(len(rest))]
@@ -49,11 +53,11 @@ class Draw:
         return 1 if self.chance(0.5) else -1
 
 
-def number(value):
+def number(value, digits=5):
     """As short as people write it, and never in a form that the languages do not read."""
-    text = f'{value:.5g}'
+    text = f'{value:.{digits}g}'
     return '0' if float(text) == 0 else text
 
 
-def numbers(values, between=', '):
-    return between.join(number(value) for value in values)
+def numbers(values, between=', ', digits=5):
+    return between.join(number(value, digits) for value in values)

@@ -30,13 +30,11 @@ def rotation_3d(draw):
             [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)]]
 
 
-def angle(draw):
-    return draw.weighted({0: 3, 90: 2, 180: 1, 45: 1, 60: 1, 120: 1, 30: 1, 'any': 6}) if draw.chance(0.7) else 'any'
-
-
 def angle_deg(draw):
-    drawn = angle(draw)
-    return draw.uniform(-180, 180) if drawn == 'any' else draw.sign() * drawn
+    """As often one that people would write as any other."""
+    if draw.chance(0.5):
+        return draw.uniform(-180, 180)
+    return draw.sign() * draw.weighted({0: 3, 90: 2, 180: 1, 45: 1, 60: 1, 120: 1, 30: 1})
 
 
 def singular_values(draw, kind, scale, dimensions):
@@ -77,8 +75,7 @@ def scales(draw, count, dimension):
 
 
 def dimension(draw):
-    return draw.weighted({draw.uniform(0.3, 6): 5, draw.uniform(0.9, 1.6): 1.5, draw.uniform(1.8, 2.3): 2,
-                          draw.uniform(2.7, 3.3): 1.5})
+    return draw.uniform(*draw.weighted({(0.3, 6): 5, (0.9, 1.6): 1.5, (1.8, 2.3): 2, (2.7, 3.3): 1.5}))
 
 
 def places(draw, scale_of, dimensions):

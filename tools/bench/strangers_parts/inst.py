@@ -5,8 +5,8 @@ from draw import number, numbers
 
 def write(draw, model, small):
     paints = scene.materials(draw, model)
-    count = draw.whole(1, 4) if small else draw.weighted(
-        {draw.whole(1, 5): 4, draw.whole(4, 15): 3, draw.whole(15, 40): 2, draw.log_whole(40, 2000): 0.5})
+    count = draw.whole(1, 4) if small else draw.ranged(
+        {(1, 5): 4, (4, 15): 3, (15, 40): 2, (40, draw.log_whole(40, 2000)): 0.5})
     cyclic = draw.chance(0.6)
     back = draw.uniform(0.3, 0.98)           # what an edge against the order contracts by, at the most
     ahead = draw.uniform(0.3, 0.98) if draw.chance(0.8) else 1
@@ -113,7 +113,7 @@ class Text:
         """An object that counts down, or halves, until its base case."""
         draw = self.draw
         for name in ('tip', 'fork')[:draw.whole(1, 2)]:
-            last = draw.weighted({draw.whole(1, 8): 3, draw.whole(8, 40): 1})
+            last = draw.ranged({(1, 8): 3, (8, 40): 1})
             self.model.say(f'canonical object {name}(0) {{ union: {scene.primitive(draw)} scale: 0.2 }}',
                            f'canonical object {name}(n) {{')
             for _ in range(draw.pick([1, 2, 2, 3])):

@@ -18,7 +18,7 @@ class Grammar:
 
     def __init__(self, draw, model, small):
         self.draw, self.model = draw, model
-        count = draw.whole(1, 3) if small else draw.weighted({draw.whole(1, 3): 4, draw.whole(3, 6): 3, draw.whole(6, 12): 2})
+        count = draw.whole(1, 3) if small else draw.ranged({(1, 3): 4, (3, 6): 3, (6, 12): 2})
         self.parametric = draw.chance(0.45)
         # Factors of one model are few, as people write them, or all different.
         self.factors = [draw.uniform(0.4, 1) if draw.chance(0.85) else draw.uniform(1, 1.3)
@@ -175,7 +175,7 @@ def productions(draw, grammar, symbol, kinds, stochastic, conditional, contexts,
 
     def successor():
         before = grammar.growth
-        text = grammar.string(own, draw.weighted({draw.whole(1, 4): 3, draw.whole(3, 9): 5, draw.whole(8, 20): 1}))
+        text = grammar.string(own, draw.ranged({(1, 4): 3, (3, 9): 5, (8, 20): 1}))
         if grammar.growth == before and draw.chance(0.6):
             text += symbol + grammar.parameters(symbol, own)
             grammar.growth += 1

@@ -36,7 +36,7 @@ def address(draw, names, edges, starts):
 
 
 def block(draw, model, name, paints, small, beside):
-    count = draw.whole(1, 4) if small else draw.weighted({draw.whole(1, 5): 5, draw.whole(4, 12): 3, draw.whole(10, 24): 2})
+    count = draw.whole(1, 4) if small else draw.ranged({(1, 1): 0.3, (2, 5): 5, (4, 12): 3, (10, 24): 2})
     style = draw.weighted(STYLES)
     flat = style in ('codes 2d', 'codes polar', 'flat maps')
     dimensions = 2 if flat else 3
@@ -70,14 +70,14 @@ def block(draw, model, name, paints, small, beside):
             row = [x for r in m for x in r] + where[i]
         if style.startswith('codes'):
             probability = [factors[i] ** wanted] if chances else []
-            lines.append('  ' + numbers(row + probability, '  ') + look)
+            lines.append('  ' + numbers(row, '  ', digits(kinds[i])) + '  ' + numbers(probability) + look)
             continue
         source = f' from {beside}' if beside and (i == 0 or draw.chance(0.3)) else ''
         if style == 'matrices' or kinds[i] in ('singular', 'nearly singular'):
             m = full(m)
             t = (where[i] + [0.0])[:3]
             word = 'projection' if kinds[i] == 'singular' else 'matrix'
-            body = f'{word} ' + numbers([x for r, y in zip(m, t) for x in r + [y]])
+            body = f'{word} ' + numbers([x for r, y in zip(m, t) for x in r + [y]], digits=digits(kinds[i]))
         else:
             body = named(draw, kinds[i], factors[i], where[i], flat)
         lines.append(f'map {names[i]}{source} {{ {body}{look} }}')
@@ -94,6 +94,11 @@ def block(draw, model, name, paints, small, beside):
     condense_and_terminal(draw, model, flat, paints)
     model.say('}')
     return names, edges, starts
+
+
+def digits(kind):
+    """Rounded, a map that flattens would be a thick one."""
+    return 17 if 'singular' in kind else 5
 
 
 def full(m):

@@ -3,7 +3,11 @@ import collections
 import datetime
 import json
 import os
+import re
+
 import commits
+
+LANGUAGES = ('inst', 'lsys', 'rifs')
 
 
 def quantile(sorted_values, share):
@@ -13,6 +17,9 @@ def quantile(sorted_values, share):
 def three(values, form):
     values = sorted(values)
     return ', '.join(form % value for value in (quantile(values, 0.5), quantile(values, 0.95), values[-1]))
+
+
+LANGUAGES = ('inst', 'lsys', 'rifs')
 
 
 def load(folder):
@@ -44,38 +51,56 @@ def listed(rows, most):
     return lines
 
 
+def kind(row):
+    """What a refusal says, of whichever part."""
+    said = row['said'].split(' error: ')[-1]
+    return re.sub(r"'[^']*'", "'...'", re.sub(r'\b\d[\d.]*(e[+-]?\d+)?\b', 'N', said))[:100]
+
+
+def grouped(rows):
+    """One line for all models that are told the same."""
+    models = {}
+    for row in rows:
+        models.setdefault(kind(row), {})[row['model']] = row['line']
+    lines = ['| models | it says | such as |', '|---|---|---|']
+    for said, lines_of in sorted(models.items(), key=lambda item: -len(item[1])):
+        first = next(iter(lines_of))
+        lines.append(f'| {len(lines_of)} | {said} | {first}: `{lines_of[first]}` |')
+    return lines
+
+
 def page(rows, campaign, root, limits, most=60):
-    found = [row for row in rows if row['findings']]
+    found = sorted((row for row in rows if row['findings']), key=lambda row: row['model'])
     refused = [row for row in rows if row['code'] == 1 and row['command'] != 'check']
     blank = [row for row in rows if row.get('blank')]
     models = len({row['model'] for row in rows})
     accepted = sum(row['command'] == 'check' and row['code'] == 0 for row in rows)
     hours = sum(row['cpu'] for row in rows) / 3600
+    command = f'tools/bench/strangers --seed {campaign["seed"]} --models {models // len(LANGUAGES)}'
     lines = ["# Strangers' models", '',
              '`tools/bench/strangers` draws models by chance from wide distributions, and runs every command on them under',
              'limits. It writes this page.', '',
+             '<!-- campaign -->',
              f'Seed {campaign["seed"]}: {models} models, of which `check` accepts {accepted}; {len(rows)} commands, '
              f'{hours:.2f} CPU hours.',
-             f'Limits: {limits.cpu_s} s of CPU and {limits.report_mib} MiB a command; pictures of '
+             f'Limits: {limits.report_s} s of CPU and {limits.report_mib} MiB a command; pictures of '
              f'{campaign["size"] or "1280x720"}.', '',
-             '<!-- table -->', *table(rows), '',
-             f'*Commit {commits.name(root)}, {datetime.date.today().isoformat()}, {os.cpu_count()} processors: '
-             f'`tools/bench/strangers --seed {campaign["seed"]}`*', '<!-- end of table -->', '',
-             f'"Refused" is status 1, with a message. {len(refused)} commands refused a model that `check` accepts; '
-             f'{len(blank)} pictures of whole models show nothing.', '',
-             f'## Findings: {len(found)}', '']
+             *table(rows), '',
+             '"Refused" is status 1, with a message.', '',
+             f'## Findings: {len(found)}', '',
+             'A command over a limit, one that ends by a signal or with a status other than 0 and 1, and one that leaves files',
+             'behind.']
     if found:
-        lines += [f'`tools/bench/strangers --seed {campaign["seed"]} --only MODEL --out FOLDER` makes one again. A finding is '
-                  'a command over a limit, one that ends by a signal or with a status other than 0 and 1, and one that '
-                  'leaves files behind.', '', *listed(sorted(found, key=lambda row: row['model']), most)]
-    for title, group in (('Accepted by `check`, refused by others', refused), ('Nothing to see', blank)):
-        if group:
-            lines += ['', f'## {title}', '']
-            kinds = collections.Counter((row['command'], row['said'].split(' error: ')[-1][:100]) for row in group)
-            examples = {}
-            for row in group:
-                examples.setdefault((row['command'], row['said'].split(' error: ')[-1][:100]), row['model'])
-            lines += ['| command | models | it says | such as |', '|---|---|---|---|']
-            lines += [f'| {command} | {count} | {said} | {examples[command, said]} |'
-                      for (command, said), count in kinds.most_common(25)]
-    return '\n'.join(lines) + '\n'
+        lines += [f'`tools/bench/strangers --seed {campaign["seed"]} --only MODEL --out FOLDER` makes one again.', '',
+                  *listed(found, most)]
+    if refused:
+        lines += ['', '## Accepted by `check`, refused by others', '', *grouped(refused)]
+    if blank:
+        lines += ['', '## Nothing to see', '', 'No pixel of the whole model differs from its neighbours: points, fine dust, or a fault.',
+                  '', *grouped(blank)]
+    return '\n'.join(lines + ['', measured(root, command), '<!-- end of campaign -->']) + '\n'
+
+
+def measured(root, command):
+    """The line that tools/bench/page asks of each part with a table."""
+    return f'*Commit {commits.name(root)}, {datetime.date.today().isoformat()}, {os.cpu_count()} processors: `{command}`*'

@@ -58,7 +58,7 @@ def attempt(program, name, folder, limits, size=None):
 def judged(row, ended, limits):
     if ended.over == 'time (it hangs)':
         return ['hangs']
-    if ended.over == 'time' or row['cpu'] > limits.cpu_s:
+    if ended.over == 'time' or row['cpu'] > limits.report_s:
         return ['time']
     found = ['memory'] if ended.over == 'memory' or row['peak'] > limits.report_mib else []
     if row['signal'] and not ended.over:

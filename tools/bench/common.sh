@@ -20,11 +20,14 @@ if $write && $smoke; then
     exit 2
 fi
 
-# programs TARGET...: builds them, and leaves the folder of the build in $built. Where GRAFTAL_BUILD names a folder they
-# are there already.
+# programs TARGET...: installs the packages that are missing and builds them; leaves the folder of the build in $built, and
+# $graftal. Where GRAFTAL_BUILD names a folder they are there already.
 programs() {
     built=${GRAFTAL_BUILD:-$root/build/release}
-    [[ -n ${GRAFTAL_BUILD:-} ]] || build release "$@"
+    if [[ -z ${GRAFTAL_BUILD:-} ]]; then
+        install_packages
+        build release "$@"
+    fi
     graftal=$built/graftal
 }
 

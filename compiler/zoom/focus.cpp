@@ -8,6 +8,8 @@
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 
+#include "compiler/analysis/primitive_shape.h"
+
 namespace graftal {
 
 namespace {
@@ -38,6 +40,16 @@ void pull_up(const Graph& graph, Focus& focus, Vec3 last, std::size_t count) {
     focus.points[count] = last;
     for (std::size_t i = count; i-- > 0;)
         focus.points[i] = instance_of(graph, focus.path.at(i)).parent_from_child(focus.points[i + 1]);
+}
+
+/// A direction of the root's frame in that of the object at the path's end: of two points there, the one that
+/// is farther along this is so along the other in the root.
+Vec3 pulled_down(const Graph& graph, const GraphPath& path, Vec3 direction) {
+    for (const GraphStep& step : path.steps) {
+        const Vec3 pulled = glm::transpose(instance_of(graph, step).parent_from_child.linear) * direction;
+        direction = pulled / glm::length(pulled);
+    }
+    return direction;
 }
 
 /// By object: whether a path along maps that can be inverted leads on from it for ever.
@@ -83,7 +95,8 @@ class PointWalk {
         const std::vector<Instance>& instances = graph_.objects[object_].instances;
         for (std::uint32_t i = 0; i < instances.size(); ++i) {
             const Ball& ball = bounds_[instances[i].master].ball;
-            const bool point_like = !(ball.radius > 0) || graph_.objects[instances[i].master].primitive;
+            const bool point_like =
+                !(ball.radius > 0) || (graph_.objects[instances[i].master].primitive && !ends_in_primitive());
             const bool dead_end = nearest_ && endless_[object_] && !endless_[instances[i].master];
             if (point_like || dead_end || is_singular(instances[i].parent_from_child)) continue;
             const Vec3 pulled = inverse(instances[i].parent_from_child)(point_);
@@ -93,12 +106,13 @@ class PointWalk {
         }
         if (!best) return false;
         take(*best);
-        return !known_to_recur_;
+        return !known_to_recur_ && !graph_.objects[object_].primitive;
     }
 
     /// The point is no better known than the part is large.
     bool digits_spent() const { return error_ > 1e-5 * bounds_[object_].ball.radius; }
     double log2_size() const { return log2_size_; }
+    ObjectId object() const { return object_; }
     bool recurs() const { return known_to_recur_; }
     double error() const { return error_; }
     Vec3 point() const { return point_; }
@@ -111,6 +125,9 @@ class PointWalk {
         double error;
     };
     static constexpr std::size_t most_visits = 64;
+
+    /// Of a model that goes on for ever the way never ends; a point asked for lies where it lies.
+    bool ends_in_primitive() const { return nearest_ && !endless_[object_]; }
 
     void take(std::uint32_t instance) {
         const Instance& step = graph_.objects[object_].instances[instance];
@@ -186,13 +203,20 @@ Focus focus_at_point(const Graph& graph, const std::vector<ObjectBounds>& bounds
 }
 
 Focus focus_near_point(const Graph& graph, const std::vector<ObjectBounds>& bounds, Vec3 point,
-                       const Magnification& zoom) {
+                       const Magnification& zoom, Vec3 to_eye) {
     constexpr double margin = 30; // binary orders beyond what the zoom shows
     constexpr std::size_t most_steps = 10'000'000;
     PointWalk walk(graph, bounds, point, true);
     for (std::size_t i = 0; i < most_steps && walk.log2_size() + zoom.log2() > -margin; ++i)
         if (!walk.step()) break;
-    return focus_of_path(graph, bounds, std::move(walk).path());
+    const std::optional<PrimitiveKind> primitive = graph.objects[walk.object()].primitive;
+    GraphPath path = std::move(walk).path();
+    if (!primitive || path.endless()) return focus_of_path(graph, bounds, std::move(path));
+    Focus focus;
+    focus.path = std::move(path);
+    const Vec3 seen = primitive_support_point(*primitive, pulled_down(graph, focus.path, to_eye));
+    pull_up(graph, focus, seen, focus.path.steps.size());
+    return focus;
 }
 
 } // namespace graftal

@@ -32,8 +32,9 @@ Focus focus_of_path(const Graph& graph, const std::vector<ObjectBounds>& bounds,
 Focus focus_at_point(const Graph& graph, const std::vector<ObjectBounds>& bounds, Vec3 point);
 
 /// The point of the model that lies nearest to the one given, about; exact at every depth. `zoom` says
-/// how deep it is asked for.
+/// how deep it is asked for. Of a primitive, where the way ends, it is a point that is farthest towards
+/// `to_eye`, a direction in the frame of the root: one that an eye there sees.
 Focus focus_near_point(const Graph& graph, const std::vector<ObjectBounds>& bounds, Vec3 point,
-                       const Magnification& zoom);
+                       const Magnification& zoom, Vec3 to_eye);
 
 } // namespace graftal

@@ -64,8 +64,9 @@ class Rerooter {
             focus_ = focus_at_point(model_.graph, model_.bounds, *look_at);
         } else {
             const Box& box = model_.bounds[model_.graph.root].box;
+            const Vec3 to_eye = -frame_object_(model_.graph.root, 0).camera.direction;
             focus_ = focus_near_point(model_.graph, model_.bounds, box.empty() ? Vec3(0.0) : box.centre(),
-                                      *request_.zoom);
+                                      *request_.zoom, to_eye);
         }
         return true;
     }
@@ -296,6 +297,9 @@ class Rerooter {
             error = std::max(error, stretch * piece.error);
         }
         if (ground_) add_ground(root, bounds);
+        if (root.instances.empty() && too_large > 0)
+            return refuse("one surface fills the picture there",
+                          "zoom in less, or choose another place with --at or look_at");
         if (root.instances.empty())
             return refuse("nothing of the model is left there",
                           "zoom in less, or choose another place with --at or look_at");

@@ -29,6 +29,11 @@ programs() {
         build release "$@"
     fi
     graftal=$built/graftal
+    # What is measured is what was built, whatever becomes of the sources meanwhile.
+    if $write; then
+        MEASURED_COMMIT=$(python3 "$root/tools/bench/commits.py")
+        export MEASURED_COMMIT
+    fi
 }
 
 # need COMMAND PACKAGE: installs the Debian package that brings the command. For a mere try nothing is installed: fails

@@ -40,10 +40,17 @@ struct StageTime {
     double seconds = 0;
 };
 
+/// Of a graph: its objects, and its instances, which are its edges.
+struct GraphSize {
+    std::size_t objects = 0;
+    std::size_t instances = 0;
+};
+
 /// A model after analysis: all that `stats`, `check`, `print` and `graph` need.
 struct AnalysedModel {
     std::string path;
-    Graph graph;
+    GraphSize written; ///< of the graph that the text gives, before the passes
+    Graph graph;       ///< after them
     Components components;
     Contraction contraction;
     std::vector<ObjectBounds> bounds;     ///< empty unless the contraction is proved or acyclic

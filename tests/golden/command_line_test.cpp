@@ -206,6 +206,13 @@ TEST_F(CommandLine, GraphIsDotOnStandardOutputOrInAFile) {
     EXPECT_EQ(read("g.dot"), result.out);
 }
 
+TEST_F(CommandLine, GraphIsDrawnBeforeEqualObjectsAreMergedToo) {
+    const std::string tree = "'" + source_path("scenes/hart/sierpinski_tree.inst") + "'";
+    EXPECT_THAT(graftal("graph " + tree).out, Not(HasSubstr("piece(0, 8)")));
+    EXPECT_THAT(graftal("graph " + tree + " --after drop_unreachable").out, HasSubstr("piece(0, 8)"));
+    EXPECT_EQ(graftal("graph " + tree + " --after nothing").status, 2);
+}
+
 TEST_F(CommandLine, SvgIsDrawnByTheProgramDot) {
     std::filesystem::create_directory(path("bin"));
     write("bin/dot", "#!/bin/sh\n[ \"$1\" = -Tsvg ] && [ \"$2\" = -o ] && cp \"$4\" \"$3\"\n");

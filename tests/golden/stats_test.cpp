@@ -65,6 +65,21 @@ TEST_F(Stats, OfAnEndingModel) {
     EXPECT_EQ(json["leaves"], "2");
 }
 
+TEST_F(Stats, SayWhatIsWrittenAndWhatIsLeftWhenEqualObjectsAreMerged) {
+    // Hart 1992, Figures 1 to 3: a tree grows as fast as the picture, levels by three objects, a cycle not at
+    // all.
+    const std::string tree = "'" + source_path("scenes/hart/sierpinski_tree.inst") + "'";
+    for (const auto& [levels, objects, instances] : {std::tuple{2, 14, 21}, {3, 41, 66}}) {
+        const Json json = stats(tree + " --set levels=" + std::to_string(levels));
+        EXPECT_EQ(json["written"]["objects"], objects) << levels;
+        EXPECT_EQ(json["written"]["instances"], instances) << levels;
+        EXPECT_EQ(json["objects"], 2 + levels);
+    }
+    const Json by_levels = stats("'" + source_path("scenes/hart/sierpinski_levels.inst") + "'");
+    EXPECT_EQ(by_levels["written"], Json({{"objects", 8}, {"instances", 15}}));
+    EXPECT_EQ(by_levels["objects"], 8);
+}
+
 TEST_F(Stats, NameTheCycleThatDoesNotContract) {
     write("grow.inst", "canonical object grow {\n    instance: grow\n    scale: 1.5\n    instance: cube\n}\n"
                        "object top {\n    instance: grow\n}\n");

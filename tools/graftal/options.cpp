@@ -313,12 +313,16 @@ void add_stats(CLI::App& app, Options& options) {
                "  graftal stats scenes/hart/pound_sign.rifs --steps 100 --json | jq -r .leaves");
 }
 
-void add_print(CLI::App& app, Options& options) {
-    add_model(app, options);
+void add_after(CLI::App& app, Options& options, const std::string& verb) {
     add_value(
-        app, "--after", "PASS", "Print the graph as it is after this pass (default: after all)", "a pass",
+        app, "--after", "PASS", verb + " the graph as it is after this pass (default: after all)", "a pass",
         [](const std::string& text) { return pass_named(text, false); },
         [&](const std::string& pass) { options.compile.pipeline.stop_after = pass; });
+}
+
+void add_print(CLI::App& app, Options& options) {
+    add_model(app, options);
+    add_after(app, options, "Print");
     add_common(app, options);
     app.footer("Examples:\n"
                "  graftal print fern.rifs > fern.inst     # the same model in the instancing language\n"
@@ -330,10 +334,12 @@ void add_graph(CLI::App& app, Options& options) {
     app.add_option("-o,--output", options.output,
                    "Drawing of the graph: .dot, or .svg by Graphviz (default: DOT on standard output)")
         ->type_name("FILE");
+    add_after(app, options, "Draw");
     add_common(app, options);
     app.footer("Examples:\n"
                "  graftal graph pound_sign.rifs -o pound_sign.svg\n"
-               "  graftal graph pound_sign.rifs | dot -Tpdf > pound_sign.pdf");
+               "  graftal graph pound_sign.rifs | dot -Tpdf > pound_sign.pdf\n"
+               "  graftal graph gasket.inst --after drop_unreachable     # before equal objects are merged");
 }
 
 void add_compare(CLI::App& app, Options& options) {

@@ -80,6 +80,7 @@ Json stats_json(const AnalysedModel& model, const SourceMap& sources) {
         {"language", model_language(0, sources)},
         {"objects", graph.objects.size()},
         {"instances", instance_count(graph)},
+        {"written", {{"objects", model.written.objects}, {"instances", model.written.instances}}},
         {"steps", or_null(model.derivation ? model.derivation->steps : model.steps)},
         {"leaves", or_null(count_leaves(graph, model.components, model.steps))},
         {"contraction", contraction_json(model)},

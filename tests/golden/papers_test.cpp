@@ -1,0 +1,93 @@
+// Models of the papers, held to what the papers print.
+
+#include <algorithm>
+#include <regex>
+#include <set>
+
+#include <nlohmann/json.hpp>
+
+#include "compiler/support/file.h"
+#include "tests/golden/command_line.h"
+
+namespace graftal {
+namespace {
+
+using Json = nlohmann::json;
+
+class Papers : public CommandLine {
+  protected:
+    Json stats(const std::string& arguments) const {
+        const RunResult result = graftal("stats -q --json " + arguments);
+        EXPECT_EQ(result.status, 0) << result.err;
+        return Json::parse(result.out, nullptr, false);
+    }
+};
+
+/// The L-systems of a scene as far as its `main` one, or all of them, the last one with another axiom.
+std::string with_axiom(const std::string& scene, const std::string& axiom) {
+    std::string text;
+    EXPECT_TRUE(read_text(source_path(scene), text).ok()) << scene;
+    if (const std::size_t whole = text.find("\nmain lsys scene"); whole != std::string::npos)
+        text.resize(whole);
+    const std::size_t line = text.rfind("\n  axiom ");
+    text.replace(line, text.find('\n', line + 1) - line, "\n  axiom " + axiom);
+    return std::regex_replace(text, std::regex("\nuse setting [^\n]*"), "");
+}
+
+TEST_F(Papers, FigureThreeStandsAsItsTurtleDrawsIt) {
+    // FFF+F+F-F+F-F+F-FFF from the left below: three to the right, a stair back to the left, three up.
+    ASSERT_EQ(graftal("render -q --engine native --size 90x90 -o a.png '" +
+                      source_path("scenes/papers/figure_3.lsys") + "'")
+                  .status,
+              0);
+    const Image image = picture("a.png");
+    const auto drawn_in_row = [&](int y) {
+        int count = 0;
+        for (int x = 0; x < image.width; ++x)
+            count += image.pixels[image.channels * (y * image.width + x) + 2] < 0.5f; // the paper is light
+        return count;
+    };
+    int top = 0, bottom = image.height - 1;
+    while (top < bottom && drawn_in_row(top) == 0)
+        ++top;
+    while (top < bottom && drawn_in_row(bottom) == 0)
+        --bottom;
+    int widest_above = 0, widest_below = 0; // of the few rows that a stroke takes
+    for (int i = 0; i < 5; ++i) {
+        widest_above = std::max(widest_above, drawn_in_row(top + i));
+        widest_below = std::max(widest_below, drawn_in_row(bottom - i));
+    }
+    EXPECT_GT(widest_below, 5 * widest_above);
+}
+
+TEST_F(Papers, TuftsOfBambooHaveThreeLeaves) {
+    // P7: one tuft, two, or three.
+    write("leaf.lsys", with_axiom("scenes/papers/bamboo.lsys", "S"));
+    write("tuft.lsys", with_axiom("scenes/papers/bamboo.lsys", "Y"));
+    const long leaf = std::stol(stats("leaf.lsys --steps 0")["leaves"].get<std::string>());
+    std::set<long> leaves;
+    for (int seed = 1; seed <= 12; ++seed) {
+        const Json json = stats("tuft.lsys --exact --steps 1 --seed " + std::to_string(seed));
+        leaves.insert(std::stol(json["leaves"].get<std::string>()) / leaf);
+    }
+    EXPECT_EQ(leaves, (std::set<long>{3, 6, 9}));
+}
+
+TEST_F(Papers, StretchesOfTheCulmGrow) {
+    write("culm.lsys", with_axiom("scenes/plants/bamboo_culm.lsys", "A(3)"));
+    const auto height = [&](int steps) {
+        return stats("culm.lsys --steps " + std::to_string(steps))["bounds"]["max"][1].get<double>();
+    };
+    EXPECT_GT(height(10), 1.4 * height(0)); // 1.05^10 = 1.63, less what the end's thickness adds
+}
+
+TEST_F(Papers, TreeWithoutChanceIsSymmetric) {
+    write("tree.inst", "use tree = \"" + source_path("scenes/plants/tree_plain.lsys") +
+                           "\"\nobject top { tree.tree_plain }\n");
+    const Json bounds = stats("tree.inst")["bounds"];
+    for (const int axis : {0, 2})
+        EXPECT_NEAR(bounds["min"][axis].get<double>(), -bounds["max"][axis].get<double>(), 1e-9);
+}
+
+} // namespace
+} // namespace graftal

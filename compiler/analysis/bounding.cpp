@@ -10,6 +10,7 @@
 #include "compiler/analysis/invariant.h"
 #include "compiler/analysis/outer.h"
 #include "compiler/analysis/primitive_shape.h"
+#include "compiler/analysis/run_bounds.h"
 #include "compiler/analysis/support_query.h"
 #include "compiler/analysis/tight_ball.h"
 #include "compiler/support/check.h"
@@ -86,6 +87,7 @@ class Bounder {
             bound_primitive(id, *object.primitive);
             return;
         }
+        if (object.run) return bound_run(id, object.run);
         Outer& outer = outers_[id];
         for (const Instance& instance : object.instances) {
             unbounded_[id] = unbounded_[id] || unbounded_[instance.master];
@@ -115,6 +117,20 @@ class Bounder {
             outer.points[static_cast<std::size_t>(outer.point_count++)] = primitive_support_point(kind, axis);
             outer.points[static_cast<std::size_t>(outer.point_count++)] =
                 primitive_support_point(kind, -axis);
+        }
+    }
+
+    void bound_run(ObjectId id, std::shared_ptr<const Run> run) {
+        Outer& outer = outers_[id];
+        outer.run = std::make_shared<const RunBounds>(std::move(run));
+        outer.box = outer.run->box();
+        outer.set_ball(outer.run->ball());
+        outer.empty = false;
+        for (int i = 0; i < 3; ++i) {
+            Vec3 axis(0.0);
+            axis[i] = 1;
+            outer.points[static_cast<std::size_t>(outer.point_count++)] = outer.run->support_point(axis);
+            outer.points[static_cast<std::size_t>(outer.point_count++)] = outer.run->support_point(-axis);
         }
     }
 
@@ -166,6 +182,7 @@ class Bounder {
         if (outer.empty) return bounds;
         bounds.box = outer.box;
         bounds.ball = outer.ball();
+        bounds.run = outer.run;
         return bounds;
     }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <memory>
 #include <vector>
 
 #include "compiler/analysis/contraction.h"
@@ -10,11 +11,14 @@
 
 namespace graftal {
 
+class RunBounds;
+
 /// Outer bounds of an object's limit set, in the object's own frame.
 struct ObjectBounds {
     Box box;   ///< every face touches the set to within 1e-10 of its size where effort allows
     Ball ball; ///< holds the set; its radius within a few per cent of the least where effort allows
     bool unbounded = false; ///< holds a plane; box and ball are then of the rest
+    std::shared_ptr<const RunBounds> run; ///< of an object that has one: of its ranges (run_bounds.h)
 };
 
 /// The box of a canonical primitive (exact), and its smallest ball. A plane has neither.

@@ -6,6 +6,7 @@
 
 #include "compiler/analysis/decimal.h"
 #include "compiler/analysis/partition.h"
+#include "compiler/graph/run.h"
 
 namespace graftal {
 
@@ -134,6 +135,7 @@ class Counter {
     bool add_up_ending(ObjectId id) {
         const Object& object = graph_.objects[id];
         if (object.primitive) ending_[id] = 1;
+        if (object.run) ending_[id] = object.run->part_count();
         for (const Times& part : masters_of(object))
             if (!budget_.add(ending_[id], ending_[part.master], part.times)) return false;
         held_bits_ += bits(ending_[id]);
@@ -236,7 +238,7 @@ std::vector<std::vector<double>> approximate_leaf_counts(const Graph& graph, con
     for (const ObjectId id : ending_first(components)) {
         const Object& object = graph.objects[id];
         bool any = false;
-        every_level[id] = object.primitive ? 1 : 0;
+        every_level[id] = object.primitive ? 1 : object.run ? static_cast<double>(object.run->part_count()) : 0;
         for (const Instance& instance : object.instances) {
             if (components.unending[instance.master]) continue;
             every_level[id] += row[instance.master];

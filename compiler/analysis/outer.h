@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <memory>
 #include <vector>
 
 #include "compiler/analysis/bounding.h"
@@ -17,6 +18,7 @@ struct Outer {
     Box box;
     std::array<Vec3, 7> points;
     int point_count = 0;
+    std::shared_ptr<const RunBounds> run; ///< of a run, whose support function it gives
     bool empty = true; ///< nothing but planes, or not computed yet
 
     /// At least the support function of the set.

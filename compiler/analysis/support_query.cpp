@@ -9,6 +9,7 @@
 #include <glm/geometric.hpp>
 
 #include "compiler/analysis/primitive_shape.h"
+#include "compiler/analysis/run_bounds.h"
 
 namespace graftal {
 
@@ -74,8 +75,9 @@ void SupportSearch::expand(std::uint32_t parent) {
         magnitude_ = std::max(magnitude_, std::abs(from.offset) + std::abs(shift.x) + std::abs(shift.y) +
                                               std::abs(shift.z));
         const std::optional<PrimitiveKind> primitive = graph_.objects[instance.master].primitive;
-        const Vec3 point = primitive ? primitive_support_point(*primitive, piece.direction)
-                                     : outer.farthest_point(piece.direction);
+        const Vec3 point = primitive   ? primitive_support_point(*primitive, piece.direction)
+                           : outer.run ? outer.run->support_point(piece.direction)
+                                       : outer.farthest_point(piece.direction);
         const double reached = piece.offset + glm::dot(piece.direction, point);
         if (std::isnan(reached)) discarded_ = largest_length;
         if (reached > best_) {
@@ -84,7 +86,7 @@ void SupportSearch::expand(std::uint32_t parent) {
             best_instance_ = i;
             best_point_ = point;
         }
-        if (primitive) continue;
+        if (primitive || outer.run) continue;
         piece.upper = within_range(piece.offset + outer.above(piece.direction));
         if (piece.upper == largest_length) {
             // Out of range: nothing to be gained by looking closer.

@@ -38,10 +38,14 @@ class Pieces {
         for (const Instance& instance : graph_.objects[id].instances) {
             if (outers_[instance.master].empty) continue;
             const bool primitive = graph_.objects[instance.master].primitive.has_value();
+            const bool run = outers_[instance.master].run != nullptr; // its ball is as tight as can be
             const Affine inner = place * instance.parent_from_child;
             const Ball whole = outers_[instance.master].ball();
             add({inner(whole.centre), within_range(norm(inner.linear) * whole.radius)},
-                {primitive ? Origin::Kind::primitive : Origin::Kind::object, instance.master, inner});
+                {run         ? Origin::Kind::point
+                 : primitive ? Origin::Kind::primitive
+                             : Origin::Kind::object,
+                 instance.master, inner});
         }
     }
 

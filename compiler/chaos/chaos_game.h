@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
@@ -82,11 +83,14 @@ class ChaosGame {
         std::optional<Rgb> base;    ///< mean colour of its materials
     };
 
-    /// Where points come from: a primitive under an instance, or a core.
+    /// Where points come from: a primitive under an instance, a run, or a core.
     struct Source {
         std::uint32_t core = none;
         std::uint32_t state = none; ///< of the object that has the instance
         std::optional<PlacedSurface> surface;
+        std::shared_ptr<const Run> run; ///< then one of its items, and `state` is the run's own
+        AliasTables::Range items;
+        std::vector<std::uint32_t> run_materials; ///< by colour
         Paint paint;
         std::uint32_t material = none;
     };
@@ -125,6 +129,7 @@ class ChaosPlayer {
     };
 
     ChaosPoint next();
+    ChaosPoint next_of_run(const ChaosGame::Source& source);
     void fill_in_world(std::span<ChaosPoint> points);
     void wander(Wanderer& wanderer);
     Wanderer* settled(std::uint32_t core);

@@ -59,6 +59,7 @@ ChaosPoint ChaosPlayer::next() {
     const bool only = game_.source_choice_.count == 1;
     const ChaosGame::Source& source =
         game_.sources_[only ? 0 : game_.tables_.choose(game_.source_choice_, random_.bits())];
+    if (source.run) return next_of_run(source);
     if (source.core == ChaosGame::none)
         return climb({source.surface->point(random_), source.paint, source.state, 0}, source.material,
                      std::nullopt);
@@ -69,6 +70,15 @@ ChaosPoint ChaosPlayer::next() {
         wander(wanderer);
     while (!core.always_leaves && random_.unit() >= game_.states_[wanderer.state].leave);
     return climb(wanderer, ChaosGame::none, core.base);
+}
+
+ChaosPoint ChaosPlayer::next_of_run(const ChaosGame::Source& source) {
+    const RunItem& item = (*source.run)[game_.tables_.choose(source.items, random_.bits())];
+    const bool ball = item.ball && random_.unit() * area_of(item) < area_of_ball(item);
+    const PlacedSurface surface =
+        ball ? PlacedSurface(PrimitiveKind::sphere, run_from_ball(item)) : PlacedSurface(item.kind, run_from_body(item));
+    return climb({surface.point(random_), source.paint, source.state, 0}, source.run_materials[item.colour],
+                 std::nullopt);
 }
 
 ChaosPoint ChaosPlayer::climb(Wanderer at, std::uint32_t material, const std::optional<Rgb>& base) {

@@ -161,4 +161,16 @@ Vec3 PlacedSurface::point(RandomStream& random) const {
     return map_(site.point);
 }
 
+double area_of_ball(const RunItem& item) {
+    return item.ball ? 4 * pi * item.radius * item.radius : 0;
+}
+
+double area_of(const RunItem& item) {
+    const double r = item.radius;
+    if (item.kind == PrimitiveKind::sphere) return 4 * pi * r * r;
+    const double top = top_radius(item.kind);
+    return pi * r * r * (1 + top * top) + pi * r * (1 + top) * std::hypot((1 - top) * r, glm::length(item.axis)) +
+           area_of_ball(item);
+}
+
 } // namespace graftal

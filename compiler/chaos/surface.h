@@ -1,6 +1,7 @@
 #pragma once
 
 #include "compiler/graph/graph.h"
+#include "compiler/graph/run.h"
 #include "compiler/support/counter_random.h"
 
 namespace graftal {
@@ -38,5 +39,10 @@ class PlacedSurface {
     double most_growth_; ///< of area, anywhere on the surface
     double area_;
 };
+
+/// The area of what an item of a run draws, its ball included; exact.
+double area_of(const RunItem& item);
+/// The part of it that the ball has.
+double area_of_ball(const RunItem& item);
 
 } // namespace graftal

@@ -15,6 +15,7 @@
 #include "compiler/cut/bake.h"
 #include "compiler/cut/mesh_builder.h"
 #include "compiler/cut/placed_set.h"
+#include "compiler/cut/run_cells.h"
 #include "compiler/cut/tessellate.h"
 #include "compiler/cut/texture_space.h"
 #include "compiler/support/id_table.h"
@@ -94,18 +95,18 @@ class Unfolding {
         const PieceKind kind = weights_.normalised(kind_of(cut_, projection_, piece));
         if (cut && detail <= 1) culled_detail = std::max(culled_detail, detail);
         if (node.sealed) return place_mesh(piece, kind);
-        if (followed_edges(node, cut).empty())
+        if (edge_count(node, cut) == 0)
             return place_primitive(PrimitiveKind::sphere, piece.world_from_node * node.node_from_proxy, piece,
                                    node.mean.over(piece.inherited));
         const Weights::Weight weight = weights_.of(kind);
         if (!node.unbounded && weight.leaves > 1 && weight.triangles <= choice_.threshold)
             return place_mesh(piece, kind);
         bool placeable = true;
-        for (const CutEdge& edge : followed_edges(node, cut)) {
+        for_each_edge(node, cut, [&](const CutEdge& edge) {
             children.push_back(descend(cut_, piece, edge, cut));
             const Affine& world_from_child = children.back().world_from_node;
             placeable = placeable && (edge.similarity || !is_singular(world_from_child, flattest_placement));
-        }
+        });
         if (placeable || node.unbounded) return;
         children.clear();
         place_mesh(piece, kind);

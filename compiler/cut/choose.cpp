@@ -12,6 +12,7 @@
 #include <glm/geometric.hpp>
 
 #include "compiler/cut/povray_costs.h"
+#include "compiler/cut/run_cells.h"
 #include "compiler/cut/texture_space.h"
 
 namespace graftal {
@@ -157,10 +158,10 @@ class Chooser {
         placements_ -= bucket.count;
         if (bucket.mesh) drop_mesh(*bucket.mesh, bucket.triangles);
         const bool cut = weights_.is_cut(kind);
-        const auto& edges = followed_edges(cut_.nodes[kind.node], cut);
+        const CutNode& split_node = cut_.nodes[kind.node];
         const bool real = static_cast<double>(bucket.pieces.size()) == bucket.count &&
-                          placements_ + bucket.count * static_cast<double>(edges.size()) <= max_real_pieces;
-        for (const CutEdge& edge : edges) {
+                          placements_ + bucket.count * static_cast<double>(edge_count(split_node, cut)) <= max_real_pieces;
+        for_each_edge(split_node, cut, [&](const CutEdge& edge) {
             if (real) {
                 for (const Piece& piece : bucket.pieces)
                     add_piece(descend(cut_, piece, edge, cut));
@@ -168,7 +169,7 @@ class Chooser {
                 bucket_for(grained(weights_.child_kind(kind, edge))).count += bucket.count;
                 placements_ += bucket.count;
             }
-        }
+        });
     }
 
     Choice current(double threshold) const {

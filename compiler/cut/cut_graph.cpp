@@ -1,6 +1,7 @@
 #include "compiler/cut/cut_graph.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <unordered_map>
 #include <utility>
@@ -10,6 +11,7 @@
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 
+#include "compiler/cut/run_cells.h"
 #include "compiler/passes/drop_unreachable.h"
 #include "compiler/passes/merge_equivalent.h"
 #include "compiler/support/check.h"
@@ -28,6 +30,7 @@ struct Factor {
     Instance instance; ///< master, map, tint and material to compose with
     Box box;           ///< of the object once the map is taken out
     Ball ball;
+    std::shared_ptr<const RunBounds> run; ///< of an object that has one
 };
 
 Tint composed(const Tint& parent, const Tint& child) {
@@ -46,7 +49,7 @@ bool share_placement(const Instance& a, const Instance& b) {
 }
 
 bool factorable(const Object& object) {
-    if (object.primitive) return false;
+    if (object.primitive || object.run) return false;
     const Instance& first = object.instances.front();
     if (is_singular(first.parent_from_child)) return false;
     for (const Instance& instance : object.instances)
@@ -74,12 +77,12 @@ std::vector<Factor> take_out_factors(Graph& graph, const Components& components,
         for (const ObjectId id : members) {
             Object& object = graph.objects[id];
             Factor& factor = factors[id];
-            factor = {{id, {}, {}, {}, object.span}, bounds[id].box, bounds[id].ball};
+            factor = {{id, {}, {}, {}, object.span}, bounds[id].box, bounds[id].ball, bounds[id].run};
             if (id == graph.root || !factorable(object)) continue;
             const Instance first = object.instances.front();
             if (object.instances.size() == 1 && !components.unending[id] && !object.terminal) {
                 const Factor& master = factors[first.master];
-                factor = {composed(first, master.instance), master.box, master.ball};
+                factor = {composed(first, master.instance), master.box, master.ball, nullptr};
                 continue;
             }
             factor.instance.parent_from_child = first.parent_from_child;
@@ -134,6 +137,7 @@ class Builder {
         const auto count = graph_.objects.size();
         cut_.nodes.resize(count);
         cut_.root = graph_.root;
+        cut_.materials = graph_.materials;
         const std::vector<double> leaves = approximate_leaves();
         for (ObjectId id = 0; id < count; ++id) {
             const Object& object = graph_.objects[id];
@@ -147,6 +151,7 @@ class Builder {
             node.cullable = node.unending || leaves[id] > uncullable_leaves || node.terminal_px > 0;
             node.ball = factor.ball.empty() ? Ball{Vec3(0.0), 0.0} : factor.ball;
             node.node_from_proxy = ellipsoid_in(factor.box);
+            if (object.run) add_run(object, *factor.run, node);
             for (const Instance& instance : object.instances)
                 node.edges.push_back(edge(instance, node, id));
             if (object.terminal) {
@@ -162,6 +167,37 @@ class Builder {
     }
 
   private:
+    void add_run(const Object& object, const RunBounds& bounds, CutNode& node) {
+        auto source = std::make_shared<RunSource>();
+        source->run = object.run;
+        source->materials = object.run_materials;
+        std::array<bool, primitive_kind_count> met{};
+        for (std::size_t i = 0; i < object.run->size(); ++i) {
+            const RunItem& item = (*object.run)[i];
+            for (const PrimitiveKind kind : {item.kind, item.ball ? PrimitiveKind::sphere : item.kind}) {
+                if (std::exchange(met[static_cast<std::size_t>(kind)], true)) continue;
+                source->child[static_cast<std::size_t>(kind)] = primitive_node(kind);
+            }
+        }
+        add_run_nodes(cut_, node, source, bounds);
+    }
+
+    NodeId primitive_node(PrimitiveKind kind) {
+        for (ObjectId id = 0; id < graph_.objects.size(); ++id)
+            if (graph_.objects[id].primitive == kind) return id;
+        for (auto id = static_cast<NodeId>(graph_.objects.size()); id < cut_.nodes.size(); ++id)
+            if (cut_.nodes[id].primitive == kind) return id;
+        const ObjectBounds bounds = primitive_bounds(kind);
+        CutNode node;
+        node.name = name_of(kind);
+        node.primitive = kind;
+        node.cullable = false;
+        node.ball = bounds.ball;
+        node.node_from_proxy = ellipsoid_in(bounds.box);
+        cut_.nodes.push_back(std::move(node));
+        return static_cast<NodeId>(cut_.nodes.size() - 1);
+    }
+
     CutEdge edge(const Instance& instance, const CutNode& node, ObjectId user) {
         CutEdge edge{instance.master, instance.parent_from_child, PathTint(instance.tint), instance.material,
                      components_.unending[instance.master] ? 1u : 0u};
@@ -198,7 +234,8 @@ class Builder {
         std::vector<double> leaves(graph_.objects.size(), 0);
         for (const auto& members : components_.members)
             for (const ObjectId id : members) {
-                leaves[id] = graph_.objects[id].primitive ? 1 : 0;
+                const Object& object = graph_.objects[id];
+                leaves[id] = object.primitive ? 1 : object.run ? static_cast<double>(object.run->part_count()) : 0;
                 for (const Instance& instance : graph_.objects[id].instances)
                     leaves[id] += leaves[instance.master];
             }
@@ -244,15 +281,19 @@ std::vector<NodeId> masters_first(const CutGraph& cut) {
 
 void mark_textured(CutGraph& cut) {
     const std::vector<NodeId> order = masters_first(cut);
+    const auto has_picture = [&](const std::optional<MaterialId>& material) {
+        return material && !cut.materials[*material].texture.empty();
+    };
     const auto shows_picture = [&](const CutEdge& edge) {
-        return cut.nodes[edge.child].textured || (edge.material && !cut.materials[*edge.material].texture.empty());
+        return cut.nodes[edge.child].textured || has_picture(edge.material);
     };
     for (bool changed = true; changed;) {
         changed = false;
         for (const NodeId id : order) {
             CutNode& node = cut.nodes[id];
             if (node.textured) continue;
-            node.textured = std::ranges::any_of(node.edges, shows_picture) ||
+            node.textured = (node.cell && std::ranges::any_of(node.cell->source->materials, has_picture)) ||
+                            std::ranges::any_of(node.edges, shows_picture) ||
                             std::ranges::any_of(node.stop_edges, shows_picture);
             changed = changed || node.textured;
         }
@@ -305,7 +346,6 @@ CutGraph build_cut_graph(const Graph& graph, const Components& components,
 
     const Components merged = strong_components(factored);
     CutGraph cut = Builder(factored, merged).build(factor_of, unbounded);
-    cut.materials = factored.materials;
     mark_textured(cut);
     weigh_by_reach(cut);
     set_mean_colours(cut);

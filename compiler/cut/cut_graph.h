@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -33,12 +34,15 @@ struct MeanColour {
     Rgb over(Rgb inherited) const { return fixed + open * inherited; }
 };
 
+struct RunCell;
+
 /// An object as the cut sees it.
 struct CutNode {
     std::string name;
     std::optional<PrimitiveKind> primitive;
     std::vector<CutEdge> edges;
     std::vector<CutEdge> stop_edges; ///< drawn in place of the edges where the node is cut; if empty: proxy
+    std::shared_ptr<const RunCell> cell; ///< in place of edges: see for_each_edge() (run_cells.h)
     bool terminal = false;           ///< stop_edges holds the terminal, not the ending instances
     double terminal_px = 0;          ///< as the object's (graph.h)
     bool unending = false;
@@ -73,7 +77,7 @@ CutGraph build_cut_graph(const Graph& graph, const Components& components,
 /// for the others.
 void set_mean_colours(CutGraph& cut);
 
-/// The edges that a visit follows: all of them, or those of a cut node.
+/// The edges that a visit follows: all of them, or those of a cut node. None of a cell, which has others.
 inline const std::vector<CutEdge>& followed_edges(const CutNode& node, bool cut) {
     return cut ? node.stop_edges : node.edges;
 }

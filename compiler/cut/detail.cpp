@@ -9,6 +9,7 @@
 
 #include "compiler/cut/bake.h"
 #include "compiler/cut/povray_costs.h"
+#include "compiler/cut/run_cells.h"
 #include "compiler/cut/tessellate.h"
 
 namespace graftal {
@@ -172,6 +173,18 @@ Weights::Weight Weights::of(const PieceKind& asked) {
         const CutNode& node = cut_.nodes[frame.kind.node];
         const bool cut = is_cut(frame.kind);
         const auto& edges = followed_edges(node, cut);
+        if (node.cell && !cut) {
+            for_each_edge(node, false, [&](const CutEdge& edge) {
+                const Weight part = of_primitive(child_kind(frame.kind, edge));
+                frame.sum.triangles += part.triangles;
+                frame.sum.leaves += part.leaves;
+                frame.sum.curved_leaves += part.curved_leaves;
+                frame.sum.flat_bytes += part.flat_bytes;
+            });
+            known_[frame.kind] = frame.sum;
+            stack.pop_back();
+            continue;
+        }
         if (frame.next_edge < edges.size()) {
             const CutEdge& edge = edges[frame.next_edge];
             const PieceKind child = child_kind(frame.kind, edge);

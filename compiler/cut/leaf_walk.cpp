@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "compiler/cut/run_cells.h"
 #include "compiler/cut/texture_space.h"
 
 namespace graftal {
@@ -38,7 +39,7 @@ bool LeafWalk::next(WalkedLeaf& leaf) {
         }
         const double detail = 2 * shape.ball.radius * visit_.scale * detail_per_unit_;
         const bool cut = is_cut(shape, visit_.steps, detail, error_px_);
-        if (followed_edges(shape, cut).empty()) {
+        if (followed_edges(shape, cut).empty() && (cut || !shape.cell)) {
             leaf.kind = PrimitiveKind::sphere;
             leaf.representative_from_leaf = visit_.representative_from_node * shape.node_from_proxy;
             for (const Paint& paint : paints_)
@@ -80,11 +81,32 @@ NormalField LeafWalk::normals() const {
 }
 
 void LeafWalk::push_children(bool is_cut, double detail) {
+    if (cut_.nodes[visit_.shape].cell && !is_cut) return push_items();
     const auto& edges = followed_edges(cut_.nodes[visit_.shape], is_cut);
     for (std::size_t i = edges.size(); i-- > 0;) {
         fill_child(edges[i], is_cut, detail, stack_.emplace_back());
         for (const Paint& paint : paints_)
             fill_child(paint, i, is_cut, paint_stack_.emplace_back());
+    }
+}
+
+/// The last of them first. All painters show them alike.
+void LeafWalk::push_items() {
+    const RunCell& cell = *cut_.nodes[visit_.shape].cell;
+    const auto push = [&](const CutEdge& edge) {
+        fill_child(edge, false, 0, stack_.emplace_back());
+        for (const Paint& paint : paints_) {
+            Paint& child = paint_stack_.emplace_back(paint);
+            child.pair = symmetry_.pair[edge.child];
+            if (!edge.material) continue;
+            child.material = edge.material;
+            child.inherited = cut_.materials[*edge.material].rgb;
+        }
+    };
+    for (std::size_t i = cell.first + cell.count; i-- > cell.first;) {
+        const RunItem& item = (*cell.source->run)[i];
+        if (item.ball) push(edge_to_ball(*cell.source, item));
+        push(edge_to_body(*cell.source, item));
     }
 }
 

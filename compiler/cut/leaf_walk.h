@@ -61,6 +61,7 @@ class LeafWalk {
     void enter_ball(const CutNode& shape);
     NormalField normals() const;
     void push_children(bool is_cut, double detail);
+    void push_items();
     // Where they lie: to build them elsewhere and to copy them would take twice the time.
     void fill_child(const CutEdge& edge, bool is_cut, double detail, Visit& child) const;
     void fill_child(const Paint& paint, std::size_t edge, bool is_cut, Paint& child) const;

@@ -172,7 +172,9 @@ class Finder {
         }
         // Of points that coincide but for rounding the spread is noise.
         if (spread < 1e-6 * node.ball.radius) spread = 0;
-        const std::size_t kind = node.primitive ? 1'000'000 + static_cast<std::size_t>(*node.primitive) : 0;
+        const std::size_t kind = node.cell        ? 2'000'000 + std::size_t{id} // like no other
+                                 : node.primitive ? 1'000'000 + static_cast<std::size_t>(*node.primitive)
+                                                  : 0;
         return {kind + node.edges.size(), rounded(stretch), rounded(spread)};
     }
 
@@ -239,7 +241,7 @@ class Finder {
         const NodePair pair = result_.pairs[index];
         const CutNode& a = cut_.nodes[pair.a];
         const CutNode& b = cut_.nodes[pair.b];
-        if (a.primitive != b.primitive || a.unending != b.unending || a.sealed != b.sealed ||
+        if (a.primitive != b.primitive || a.cell != b.cell || a.unending != b.unending || a.sealed != b.sealed ||
             a.unbounded != b.unbounded || a.cullable != b.cullable || a.terminal_px != b.terminal_px)
             return false;
         if (pair.a == pair.b && pair.b_from_a == Affine()) return match_itself(index);

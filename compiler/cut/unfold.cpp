@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "compiler/graph/run.h"
 #include "compiler/support/check.h"
 
 namespace graftal {
@@ -68,6 +69,7 @@ class Unfolding {
     bool open(const Place& place) {
         const Object& object = graph_.objects[place.object];
         if (object.primitive) return draw_leaf(place, object.primitive);
+        if (object.run) return draw_run(place, object);
         if (!components_.unending[place.object] || !steps_ || place.level < *steps_) {
             stack_.push_back({place, Draw::all});
         } else if (object.terminal) {
@@ -76,6 +78,20 @@ class Unfolding {
             stack_.push_back({place, Draw::ending});
         } else {
             return draw_leaf(place, std::nullopt);
+        }
+        return true;
+    }
+
+    bool draw_run(const Place& place, const Object& object) {
+        for (std::size_t i = 0; i < object.run->size(); ++i) {
+            const RunItem& item = (*object.run)[i];
+            const std::optional<MaterialId>& own = object.run_materials[item.colour];
+            const auto part = [&](const Affine& run_from_part) {
+                return Place{place.object, place.level, place.world_from_object * run_from_part, place.tint,
+                             own ? own : place.material};
+            };
+            if (!draw_leaf(part(run_from_body(item)), item.kind)) return false;
+            if (item.ball && !draw_leaf(part(run_from_ball(item)), PrimitiveKind::sphere)) return false;
         }
         return true;
     }

@@ -1,9 +1,11 @@
 #include "compiler/graph/graph.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <unordered_map>
 
+#include "compiler/graph/run.h"
 #include "compiler/support/number.h"
 
 namespace graftal {
@@ -31,20 +33,67 @@ ObjectsByName by_name(const Graph& graph) {
     return objects;
 }
 
-bool equal(const Graph& a, const Instance& x, const Graph& b, const Instance& y) {
-    if (a.objects[x.master].name != b.objects[y.master].name) return false;
-    if (x.material.has_value() != y.material.has_value()) return false;
-    if (x.material && !(a.materials[*x.material] == b.materials[*y.material])) return false;
-    return x.parent_from_child == y.parent_from_child && x.tint == y.tint;
+/// The instances of an object one by one, those that a run means too.
+class Parts {
+  public:
+    Parts(const Graph& graph, const Object& object) : graph_(graph), object_(object) {}
+
+    struct Part {
+        std::string_view master;
+        Affine place;
+        Tint tint;
+        const Material* material = nullptr;
+    };
+
+    std::size_t count() const { return object_.run ? object_.run->part_count() : object_.instances.size(); }
+
+    Part of(const Instance& instance) const {
+        return {graph_.objects[instance.master].name, instance.parent_from_child, instance.tint,
+                material(instance.material)};
+    }
+
+    /// Requires that one is left.
+    Part next() {
+        if (!object_.run) return of(object_.instances[next_++]);
+        const RunItem& item = (*object_.run)[next_];
+        const bool ball = at_ball_;
+        at_ball_ = item.ball && !ball;
+        if (!at_ball_) ++next_;
+        return {name_of(ball ? PrimitiveKind::sphere : item.kind),
+                ball ? run_from_ball(item) : run_from_body(item), Tint(),
+                material(object_.run_materials[item.colour])};
+    }
+
+  private:
+    const Material* material(const std::optional<MaterialId>& id) const {
+        return id ? &graph_.materials[*id] : nullptr;
+    }
+
+    const Graph& graph_;
+    const Object& object_;
+    std::size_t next_ = 0;
+    bool at_ball_ = false;
+};
+
+bool equal(const Parts::Part& x, const Parts::Part& y) {
+    if (x.master != y.master || (x.material == nullptr) != (y.material == nullptr)) return false;
+    if (x.material && !(*x.material == *y.material)) return false;
+    return x.place == y.place && x.tint == y.tint;
 }
 
 bool equal(const Graph& a, const Object& x, const Graph& b, const Object& y) {
-    if (x.primitive != y.primitive || x.instances.size() != y.instances.size()) return false;
+    Parts parts_of_x(a, x), parts_of_y(b, y);
+    if (x.primitive != y.primitive || parts_of_x.count() != parts_of_y.count()) return false;
     if (x.terminal.has_value() != y.terminal.has_value() || x.terminal_px != y.terminal_px) return false;
-    if (x.terminal && !equal(a, *x.terminal, b, *y.terminal)) return false;
-    for (std::size_t i = 0; i < x.instances.size(); ++i)
-        if (!equal(a, x.instances[i], b, y.instances[i])) return false;
+    if (x.terminal && !equal(parts_of_x.of(*x.terminal), parts_of_y.of(*y.terminal))) return false;
+    for (std::size_t left = parts_of_x.count(); left > 0; --left)
+        if (!equal(parts_of_x.next(), parts_of_y.next())) return false;
     return true;
+}
+
+std::size_t union_count(const Graph& graph) {
+    return static_cast<std::size_t>(
+        std::ranges::count_if(graph.objects, [](const Object& object) { return !object.primitive; }));
 }
 
 } // namespace
@@ -105,11 +154,19 @@ std::size_t instance_count(const Graph& graph) {
     return count;
 }
 
+std::size_t run_part_count(const Graph& graph) {
+    std::size_t count = 0;
+    for (const Object& object : graph.objects)
+        if (object.run) count += object.run->part_count();
+    return count;
+}
+
 bool equal(const Graph& a, const Graph& b) {
-    if (a.objects.size() != b.objects.size() || !(a.settings == b.settings)) return false;
+    if (union_count(a) != union_count(b) || !(a.settings == b.settings)) return false;
     if (a.materials != b.materials || a.objects[a.root].name != b.objects[b.root].name) return false;
     const ObjectsByName others = by_name(b);
     for (const Object& object : a.objects) {
+        if (object.primitive) continue;
         const auto other = others.find(object.name);
         if (other == others.end() || !equal(a, object, b, *other->second)) return false;
     }

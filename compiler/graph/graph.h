@@ -23,6 +23,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -63,6 +64,8 @@ inline PrimitiveKind family_of(PrimitiveKind kind) {
 const char* name_of(PrimitiveKind kind);
 std::optional<PrimitiveKind> primitive_named(std::string_view name);
 
+class Run;
+
 using ObjectId = std::uint32_t;
 using MaterialId = std::uint32_t;
 
@@ -83,6 +86,10 @@ struct Object {
     std::vector<Instance> instances;         ///< the union, in the order of the text
     std::optional<Instance> terminal;        ///< drawn in place of the object where recursion is cut; its
                                              ///< master must be ending
+    /// In place of instances: a union of round primitives, too many to be instances (run.h). Means what
+    /// instances of them would, in this order; graphs share it, for nobody changes it.
+    std::shared_ptr<const Run> run;
+    std::vector<std::optional<MaterialId>> run_materials; ///< by the colours of the run
     double terminal_px = 0;                  ///< size on screen from which down the terminal is drawn; 0: that of
                                              ///< what is culled
     Span span;
@@ -101,11 +108,14 @@ struct Graph {
     ObjectId primitive(PrimitiveKind kind);
 };
 
-/// The edges of the graph.
+/// The edges of the graph, runs aside.
 std::size_t instance_count(const Graph& graph);
 
-/// Equal structure: the same objects, names, instances (in order), transforms to the last bit, tints,
-/// materials, settings and root. Ids may differ, spans do not count.
+/// The primitives that its runs hold, each run once.
+std::size_t run_part_count(const Graph& graph);
+
+/// Equal structure: the same objects but for primitives, names, instances (in order), transforms to the last bit, tints,
+/// materials, settings and root. A run equals the instances that it means. Ids may differ, spans do not count.
 bool equal(const Graph& a, const Graph& b);
 
 }  // namespace graftal

@@ -4,6 +4,7 @@
 #include <string>
 #include <string_view>
 
+#include "compiler/graph/run.h"
 #include "compiler/support/number.h"
 
 namespace graftal {
@@ -122,12 +123,30 @@ class Printer {
         out_ += object.name + " {\n";
         for (std::size_t i = 0; i < object.instances.size();)
             i = print_group(object.instances, i);
+        if (object.run) print_run(object);
         if (object.terminal) {
             out_ += "  terminal: " + master_name(*object.terminal) + "\n";
             print_attributes(*object.terminal);
             if (object.terminal_px > 0) print_numbers("  below", {object.terminal_px});
         }
         out_ += "}\n\n";
+    }
+
+    /// As the instances that it means.
+    void print_run(const Object& object) {
+        for (std::size_t i = 0; i < object.run->size(); ++i) {
+            const RunItem& item = (*object.run)[i];
+            const std::optional<MaterialId>& material = object.run_materials[item.colour];
+            print_part(item.kind, run_from_body(item), material);
+            if (item.ball) print_part(PrimitiveKind::sphere, run_from_ball(item), material);
+        }
+    }
+
+    void print_part(PrimitiveKind kind, const Affine& place, const std::optional<MaterialId>& material) {
+        out_ += "  instance: ";
+        out_ += name_of(kind);
+        out_ += '\n';
+        print_attributes({0, place, Tint(), material, Span(), 0});
     }
 
     /// Writes the instances from `first` on that are placed alike as one statement, as Hart's texts do.

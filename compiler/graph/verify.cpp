@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "compiler/graph/components.h"
+#include "compiler/graph/run.h"
 #include "compiler/support/check.h"
 #include "compiler/support/number.h"
 
@@ -147,14 +148,29 @@ class Verifier {
         if (object.primitive) {
             if (!object.instances.empty()) flaw(id, "a primitive with instances");
             if (object.terminal) flaw(id, "a primitive with a terminal");
-        } else if (object.instances.empty()) {
+        } else if (object.instances.empty() && !object.run) {
             flaw(id, "an empty union");
         }
+        if (object.run) check_run(id, object);
         for (std::size_t i = 0; i < object.instances.size(); ++i)
             check_instance(id, i, object.instances[i]);
         if (object.terminal) check_instance(id, std::nullopt, *object.terminal);
         const bool sized = std::isfinite(object.terminal_px) && object.terminal_px >= 0;
         if (!sized || (object.terminal_px > 0 && !object.terminal)) flaw(id, "a terminal drawn below {} px", object.terminal_px);
+    }
+
+    void check_run(ObjectId id, const Object& object) {
+        if (object.primitive || !object.instances.empty() || object.terminal)
+            flaw(id, "a run beside other parts");
+        if (object.run->empty()) flaw(id, "an empty run");
+        for (const std::optional<MaterialId>& material : object.run_materials)
+            if (material && *material >= graph_.materials.size())
+                flaw(id, "a run has material {} of {}", *material, graph_.materials.size());
+        for (std::size_t i = 0; i < object.run->size(); ++i) {
+            const RunItem& item = (*object.run)[i];
+            if (!is_sound(item) || item.colour >= object.run_materials.size())
+                return flaw(id, "item {} of a run is not sound", i);
+        }
     }
 
     /// `index`: of the instance; nothing for a terminal.

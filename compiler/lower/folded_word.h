@@ -20,6 +20,8 @@ class FoldedWord {
     /// Requires balanced brackets. A word whose polygons cross branches is one piece. O(word), in its place.
     FoldedWord(const LsysGrammar& grammar, const ModuleTable& modules, ModuleString word);
 
+    /// Modules and pieces that are kept.
+    std::size_t size() const { return trunk_.size() + store_.size(); }
     /// What stands outside of all pieces.
     std::span<const ModuleId> trunk() const { return trunk_; }
     /// Whether it is the number of a piece, not a module.

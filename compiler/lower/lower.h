@@ -54,6 +54,7 @@ struct LowerOptions {
     std::optional<std::uint64_t> seed; ///< of what is random, in place of what the model says
     bool exact = false;                ///< L-systems are derived module by module: one honest random tree
     std::uint64_t max_modules = 50'000'000; ///< of a derived word
+    std::uint64_t run_from = 4096; ///< derived words of so many modules make a run, if they repeat little
     std::size_t max_objects = 1'000'000;    ///< a model that enumerates more is an error
     /// Where the root model goes if it is an orbit (orbit_model.h), which has no graph: then nothing comes back, but
     /// without an error. Null: an orbit is an error.

@@ -313,10 +313,11 @@ class LsysLowering {
                                                         .seed = seed,
                                                         .exact = options.exact,
                                                         .max_modules = options.max_modules,
-                                                        .max_parts = options.max_objects},
+                                                        .max_parts = options.max_objects,
+                                                        .run_from = options.run_from},
                                                        graph_, pool_, diagnostics_);
         if (!drawing) return std::nullopt;
-        if (drawing->instances.empty()) {
+        if (drawing->instances.empty() && !drawing->run) {
             diagnostics_.error(source.name.span, fmt::format("'lsys {}' draws nothing{}", source.name.text,
                                                              steps ? fmt::format(" after {} step{}", *steps,
                                                                                  *steps == 1 ? "" : "s")
@@ -327,7 +328,7 @@ class LsysLowering {
             lowering_.derivation = std::move(drawing->derivation);
             lowering_.derivation->families = families();
         }
-        return add_root(source, std::move(drawing->instances));
+        return add_root(source, std::move(*drawing));
     }
 
     std::vector<FamilyReport> families() const {
@@ -339,11 +340,22 @@ class LsysLowering {
         return reports;
     }
 
-    std::optional<ObjectId> add_root(const LsysBlock& block, std::vector<Instance> instances) {
+    /// What is in a run makes an object of its own, unless it is all.
+    std::optional<ObjectId> add_root(const LsysBlock& block, LsysDrawing drawing) {
         Object root;
         root.name = pool_.unique_name(block.name.text);
-        root.instances = std::move(instances);
         root.span = block.name.span;
+        Object* of_run = &root;
+        Object parts;
+        if (drawing.run && !drawing.instances.empty()) {
+            parts.name = pool_.unique_name(fmt::format("{}_parts", block.name.text));
+            parts.span = root.span;
+            of_run = &parts;
+        }
+        of_run->run = std::move(drawing.run);
+        of_run->run_materials = std::move(drawing.run_materials);
+        root.instances = std::move(drawing.instances);
+        if (parts.run) root.instances.push_back({graph_.add(std::move(parts)), {}, {}, {}, root.span});
         const ObjectId id = graph_.add(std::move(root));
         if (!within_limits(graph_.objects.size(), instance_count(graph_), block.name.span, lowering_))
             return std::nullopt;

@@ -41,7 +41,7 @@ Mat3 chord_frame(Vec3 exit) {
 LsysComposer::LsysComposer(LsysRewriter& rewriter, TurtleContext& turtle, ObjectPool& pool,
                            const ModelPlacer& models, Variants variants, const LsysLimits& limits)
     : rewriter_(rewriter), context_(turtle), pool_(pool), models_(models), variants_(variants),
-      max_parts_(limits.max_parts), snaps_(limits.snap_angle > 0),
+      max_parts_(limits.max_parts), give_up_from_(limits.give_up_from), snaps_(limits.snap_angle > 0),
       directions_(std::max(limits.snap_angle, DirectionTable::rounding)),
       uses_directions_(rewriter.grammar().uses({TurtleCommand::level, TurtleCommand::tropism})),
       decomposes_(rewriter.grammar().has_rules(RuleKind::decompose)),
@@ -217,6 +217,7 @@ bool LsysComposer::advance(Task& task) {
         state.birth = birth;
         const TurtlePart* part = find(module, stage, state);
         if (!part) return start_task(module, stage, state, unfolded);
+        if (stage > 0) ++served_;
         task.turtle.append(*part, task.span, snap);
         if (!task.turtle.within_limits(task.span)) return false;
     }
@@ -290,6 +291,8 @@ bool LsysComposer::start_task(ModuleId module, Stage stage, const TurtleState& s
                 "these productions are applied again and again until none fits: a condition must end it");
         return false;
     }
+    gave_up_ = parts_.size() >= give_up_from_ && served_ < parts_.size() + parts_.size() / 8; // once each
+    if (gave_up_) return false;
     if (parts_.size() + tasks_.size() > max_parts_) {
         context_.diagnostics
             .error(span, fmt::format("the model has more than {} different parts", max_parts_))

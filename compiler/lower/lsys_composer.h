@@ -28,6 +28,8 @@ struct LsysLimits {
     /// Directions that `$` and tropism look at are taken for equal within this angle, in radians, when a part
     /// is looked up; it is then placed exactly. The displacement is bounded in TurtlePart::error.
     double snap_angle = 0;
+    /// With so many parts of which few serve twice, composing gives up: module by module it is done sooner.
+    std::size_t give_up_from = SIZE_MAX;
 };
 
 /// Compiles a derivation without deriving it (Hart 1992, section 4, made automatic): what a module becomes
@@ -52,6 +54,8 @@ class LsysComposer {
                                            double share = 0);
 
     std::size_t part_count() const { return parts_.size(); }
+    /// Whether compose() gave nothing for that reason, without an error.
+    bool gave_up() const { return gave_up_; }
 
     /// The first part that made an object.
     struct Origin {
@@ -133,6 +137,9 @@ class LsysComposer {
     const ModelPlacer& models_;
     Variants variants_;
     std::size_t max_parts_;
+    std::size_t give_up_from_;
+    std::size_t served_ = 0; ///< how often a part was placed that had steps left
+    bool gave_up_ = false;
     bool snaps_;
     const FoldedWord* word_ = nullptr;
     std::vector<Task> tasks_;

@@ -46,6 +46,9 @@ bool LsysDeriver::derive_to(unsigned steps) {
     while (!failed_ && changed_ && step_ < steps) {
         set_step(step_ + 1);
         failed_ = !step();
+        const std::uint64_t distinct = rewriter_.modules().size();
+        gave_up_ = !failed_ && distinct >= gives_up_from_ && little_repeats(distinct, word_.size());
+        if (gave_up_) return false;
     }
     return !failed_;
 }

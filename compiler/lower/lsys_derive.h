@@ -18,6 +18,10 @@ namespace graftal {
 /// Words are never longer: their positions are numbered with 32 bits.
 inline constexpr std::uint64_t max_word_modules = 4'000'000'000;
 
+/// Whether so many that are kept are too many, of those that there are, for sharing to pay: an instance of a shared
+/// object takes about as much as three parts of a run, and time to find.
+inline bool little_repeats(std::uint64_t kept, std::uint64_t all) { return kept > all / 8; }
+
 /// Derives the words of a grammar. In each step all modules are replaced at once, by the first production
 /// that fits, contexts before others, or by chance; a module that none fits stays. The axiom and the result
 /// of each step are decomposed, and lose what stands behind a `%` in its branch.
@@ -32,6 +36,11 @@ class LsysDeriver {
     /// reported once; a step whose word would have more than max_modules is an error, found before the word
     /// takes memory. O(modules of all words), and O(modules * patterns) for contexts.
     std::optional<ModuleString> derive(unsigned steps);
+
+    /// From now on derive() gives up, without an error, where the modules of all words are too different from each
+    /// other for looking them up to pay: LsysStream does without. `fewest`: modules that it takes to tell.
+    void give_up_where_little_repeats(std::uint64_t fewest) { gives_up_from_ = fewest; }
+    bool gave_up() const { return gave_up_; }
 
   private:
     bool derive_to(unsigned steps);
@@ -55,6 +64,8 @@ class LsysDeriver {
     bool has_cuts_ = false;
     bool is_timed_ = false; ///< a word may go on after a step that left it as it was
     bool failed_ = false;
+    std::uint64_t gives_up_from_ = UINT64_MAX;
+    bool gave_up_ = false;
 
     unsigned step_ = 0; ///< 0: the axiom
     ModuleString word_;

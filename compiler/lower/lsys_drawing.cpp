@@ -16,6 +16,7 @@
 #include "compiler/lower/lsys_composer.h"
 #include "compiler/lower/lsys_derive.h"
 #include "compiler/lower/lsys_limit.h"
+#include "compiler/lower/lsys_stream.h"
 
 namespace graftal {
 
@@ -66,6 +67,9 @@ constexpr std::uint32_t most_variants = 4096;
 /// Models with more parts get by with fewer directions.
 constexpr std::size_t most_exact_parts = 100'000;
 
+/// With more, of which few serve twice, nothing is composed.
+constexpr std::size_t most_single_parts = 16'384;
+
 // Derivations whose levels are looked at for repetition.
 constexpr unsigned first_limit_steps = 24;
 constexpr unsigned last_limit_steps = 192;
@@ -89,22 +93,14 @@ class Drawer {
         } else if (!choose_variants(graph) || !choose_snap_angle(graph)) {
             return std::nullopt;
         }
-        if (!choose_width(graph)) return std::nullopt;
-        Composition composition(*this, graph, pool, is_line_drawing(), models_);
-        std::optional<TurtlePart> part = composition.variant(0);
-        if (!part) return std::nullopt;
-        LsysDrawing drawing{std::move(part->instances), {word_ ? "derived" : "composed"}};
-        Derivation& derivation = drawing.derivation;
-        derivation.steps = steps_;
-        derivation.timed = grammar_.time(RuleKind::interpret) != 0;
-        derivation.time = steps_ + options_.share;
-        derivation.modules = part->modules.str();
-        derivation.segments = part->segments.str();
-        derivation.parts = composition.composer.part_count();
-        derivation.variants = variants_;
-        derivation.drift = drift_;
-        derivation.error = part->error.farthest;
-        return drawing;
+        if (in_run_) return draw_run(graph, diagnostics_);
+        std::optional<LsysDrawing> drawing = compose(graph, pool);
+        if (drawing || !gave_up_) return drawing;
+        Diagnostics quiet; // the word may be too long, where parts repeat after all
+        drawing = draw_run(graph, quiet);
+        if (drawing || rewriter_.failed()) return drawing;
+        may_give_up_ = false;
+        return compose(graph, pool);
     }
 
   private:
@@ -119,17 +115,17 @@ class Drawer {
               bodies(graph, owner.palette_), turtle{bodies, diagnostics, owner.grammar_.angle_deg,
                                                     owner.grammar_.step, lines},
               composer(owner.rewriter_, turtle, pool, models, Variants(owner.options_.seed, owner.variants_),
-                       {max_parts, owner.snap_angle_}) {}
+                       {max_parts, owner.snap_angle_, owner.composes_or_derives() ? most_single_parts : SIZE_MAX}) {}
 
         std::optional<TurtlePart> variant(std::uint32_t number) {
-            TurtleState start;
-            start.width = drawer.width_;
-            start.tropism = drawer.grammar_.tropism;
-            start.vertical = up;
+            TurtleState start = drawer.start();
             start.variant = number;
             const double share = drawer.options_.share;
-            return drawer.word_ ? composer.compose_word(*drawer.word_, drawer.steps_, start, share)
-                                : composer.compose(drawer.steps_, start, share);
+            std::optional<TurtlePart> part = drawer.word_
+                                                 ? composer.compose_word(*drawer.word_, drawer.steps_, start, share)
+                                                 : composer.compose(drawer.steps_, start, share);
+            drawer.gave_up_ = drawer.gave_up_ || composer.gave_up();
+            return part;
         }
 
         Drawer& drawer;
@@ -139,6 +135,67 @@ class Drawer {
         LsysComposer composer;
     };
 
+    /// Whether either way gives the same drawing.
+    bool composes_or_derives() const {
+        return may_give_up_ && options_.steps && !word_ && !grammar_.is_stochastic &&
+               !grammar_.uses({TurtleCommand::level, TurtleCommand::tropism}) && LsysStream::can_derive(grammar_) && LsysStream::can_draw(grammar_) && palette_.size() < open_width;
+    }
+
+    std::optional<LsysDrawing> compose(Graph& graph, ObjectPool& pool) {
+        if (!choose_width(graph)) return std::nullopt;
+        Composition composition(*this, graph, pool, is_line_drawing(), models_);
+        std::optional<TurtlePart> part = composition.variant(0);
+        if (!part) return std::nullopt;
+        return drawing_of(*part, word_ ? "derived" : "composed", composition.composer.part_count());
+    }
+
+    TurtleState start() const {
+        TurtleState start;
+        start.width = width_;
+        start.tropism = grammar_.tropism;
+        start.vertical = up;
+        return start;
+    }
+
+    LsysDrawing drawing_of(TurtlePart& part, const char* way, std::size_t part_count) const {
+        LsysDrawing drawing;
+        drawing.instances = std::move(part.instances);
+        Derivation& derivation = drawing.derivation;
+        derivation.way = way;
+        derivation.steps = steps_;
+        derivation.timed = grammar_.time(RuleKind::interpret) != 0;
+        derivation.time = steps_ + options_.share;
+        derivation.modules = part.modules.str();
+        derivation.segments = part.segments.str();
+        derivation.parts = part_count;
+        derivation.variants = variants_;
+        derivation.drift = drift_;
+        derivation.error = part.error.farthest;
+        return drawing;
+    }
+
+    /// Module by module, by one turtle.
+    std::optional<LsysDrawing> draw_run(Graph& graph, Diagnostics& diagnostics) {
+        auto run = std::make_shared<Run>();
+        TurtleBodies bodies(graph, palette_);
+        TurtleContext context{bodies, diagnostics, grammar_.angle_deg, grammar_.step, is_line_drawing()};
+        context.open_width = is_line_drawing();
+        Turtle turtle(context, start(), run.get());
+        LsysStream stream(rewriter_, models_, diagnostics,
+                          {steps_, options_.share, options_.seed, options_.max_modules});
+        if (!(word_ ? stream.draw(*word_, turtle) : stream.derive(turtle))) return std::nullopt;
+        TurtlePart part = std::move(turtle).finish();
+        part.modules = stream.module_count();
+        if (context.open_width) widen(*run, line_width(part.reach) / width_);
+        run->shrink_to_fit();
+        variants_ = 1;
+        LsysDrawing drawing = drawing_of(part, "derived", 1);
+        if (run->empty()) return drawing;
+        drawing.run = std::move(run);
+        drawing.run_materials = bodies.run_materials();
+        return drawing;
+    }
+
     /// For graphs that are thrown away: it does not matter there which models stand in their places.
     static ModelPlacer stand_ins(Graph& scratch) {
         return [&scratch](SymbolId, std::span<const double>, Span) {
@@ -147,8 +204,17 @@ class Drawer {
     }
 
     bool derive() {
-        auto word = LsysDeriver(rewriter_, diagnostics_, options_.seed, options_.max_modules).derive(steps_);
-        if (word) word_.emplace(grammar_, rewriter_.modules(), std::move(*word));
+        const bool can_draw = LsysStream::can_draw(grammar_) && palette_.size() < open_width;
+        LsysDeriver deriver(rewriter_, diagnostics_, options_.seed, options_.max_modules);
+        if (can_draw && LsysStream::can_derive(grammar_)) deriver.give_up_where_little_repeats(options_.run_from);
+        auto word = deriver.derive(steps_);
+        in_run_ = deriver.gave_up();
+        if (in_run_) return true;
+        if (word) {
+            const std::size_t length = word->size();
+            word_.emplace(grammar_, rewriter_.modules(), std::move(*word));
+            in_run_ = can_draw && length >= options_.run_from && little_repeats(word_->size(), length);
+        }
         // Equal modules are drawn differently where chance draws them.
         if (grammar_.is_random(RuleKind::interpret)) variants_ = draw_sets;
         return word_.has_value();
@@ -187,7 +253,9 @@ class Drawer {
             const Affine limit_from_levels = unit_from(*part, graph);
             for (Instance& instance : *folded)
                 instance.parent_from_child = limit_from_levels * instance.parent_from_child;
-            LsysDrawing drawing{std::move(*folded), {"folded"}};
+            LsysDrawing drawing;
+            drawing.instances = std::move(*folded);
+            drawing.derivation.way = "folded";
             drawing.derivation.parts = composition.composer.part_count();
             return drawing;
         }
@@ -276,8 +344,13 @@ class Drawer {
         if (!is_line_drawing()) return true;
         const std::optional<TurtlePart> figure = sketch(graph);
         if (!figure) return false;
-        width_ = std::clamp(thinnest_in_figure * figure->reach, width_, thickest_in_steps * grammar_.step);
+        width_ = line_width(figure->reach);
         return true;
+    }
+
+    /// Of a figure that reaches so far.
+    double line_width(double reach) const {
+        return std::clamp(thinnest_in_figure * reach, width_, thickest_in_steps * grammar_.step);
     }
 
     bool is_line_drawing() const { return !grammar_.width && !grammar_.uses({TurtleCommand::width}); }
@@ -303,6 +376,9 @@ class Drawer {
     Diagnostics& diagnostics_;
     LsysRewriter rewriter_;
     std::optional<FoldedWord> word_; ///< where it is derived
+    bool may_give_up_ = true;        ///< composing
+    bool gave_up_ = false;           ///< composing, for it shared too little
+    bool in_run_ = false;            ///< it is drawn module by module; without a word it is derived so too
     double width_;
     unsigned steps_ = 0;
     std::uint32_t variants_ = 1;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -19,14 +20,18 @@ struct LsysDrawOptions {
     bool exact = false; ///< derive the word, rather than compose parts; so are contexts anyway
     std::uint64_t max_modules = 50'000'000; ///< of the word
     std::size_t max_parts = 1'000'000;
+    std::uint64_t run_from = 4096; ///< words of so many modules are drawn into a run, if they repeat little
 };
 
 struct LsysDrawing {
     std::vector<Instance> instances; ///< the whole model, in world space
+    std::shared_ptr<const Run> run;  ///< with what is here, if anything is
+    std::vector<std::optional<MaterialId>> run_materials;
     Derivation derivation;
 };
 
-/// Draws what a grammar derives into `graph`. `models` places models there; `pool` makes the objects. Nothing
+/// Draws what a grammar derives into `graph`. A word that is derived is composed of its pieces, each drawn once, where
+/// they repeat; where little does, its round bodies go into a run (graph/run.h). `models` places models there; `pool` makes the objects. Nothing
 /// after an error.
 ///
 /// Of random parts there are as many variants as keep the drift, the relative standard error of the mean

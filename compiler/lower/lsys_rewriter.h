@@ -110,6 +110,9 @@ class LsysRewriter {
     /// it.
     bool sums_to_one(double sum, const LsysRule& first);
 
+    /// The random numbers of a rule: for each call one of each set, call by call.
+    const std::vector<double>& draws_of(const LsysRule& rule);
+
     bool failed() const { return failed_; }
 
     /// What to do where there are too many different modules or parts.
@@ -138,7 +141,6 @@ class LsysRewriter {
                                 std::span<const double> slots);
     std::span<const double> slots_of(const LsysRule& rule, std::span<const double> values,
                                      const Moment& moment);
-    const std::vector<double>& draws_of(const LsysRule& rule);
     bool append(const std::vector<LsysTemplate>& templates, const LsysRule* rule,
                 std::span<const double> slots, ModuleString& string);
 

@@ -10,6 +10,7 @@
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 
+#include "compiler/support/angle.h"
 #include "compiler/support/number.h"
 
 namespace graftal {
@@ -19,16 +20,14 @@ namespace {
 /// `!` without an argument: the areas of two such branches sum to that of their parent.
 constexpr double thinning = std::numbers::sqrt2 / 2;
 
-constexpr Vec3 ahead(0, 1, 0);
-constexpr Vec3 right(1, 0, 0);
-constexpr Vec3 up(0, 0, 1);
-
 /// Squares of lengths must be numbers too.
 constexpr double farthest_place = 1e150;
 /// They are cut into triangles in a time that goes with the square.
 constexpr std::size_t max_polygon_vertices = 10'000;
 /// Parts keep the vertices of those that they leave open.
 constexpr std::size_t max_polygon_nesting = 1000;
+/// In one run; each takes 64 bytes.
+constexpr std::size_t max_run_items = 32'000'000;
 
 double first_or(std::span<const double> parameters, double otherwise) {
     return parameters.empty() ? otherwise : parameters[0];
@@ -36,7 +35,8 @@ double first_or(std::span<const double> parameters, double otherwise) {
 
 } // namespace
 
-Turtle::Turtle(TurtleContext& context, const TurtleState& start) : context_(context), state_(start) {}
+Turtle::Turtle(TurtleContext& context, const TurtleState& start, Run* run)
+    : context_(context), run_(run), state_(start) {}
 
 bool Turtle::run(TurtleCommand command, std::span<const double> parameters,
                  const std::optional<PlacedModel>& model, Span span) {
@@ -59,25 +59,25 @@ bool Turtle::run(TurtleCommand command, std::span<const double> parameters,
         move(first_or(parameters, context_.step), false, false, span);
         break;
     case TurtleCommand::turn_left:
-        turn(up, angle_deg);
+        turn(Axis::up, angle_deg);
         return true;
     case TurtleCommand::turn_right:
-        turn(up, -angle_deg);
+        turn(Axis::up, -angle_deg);
         return true;
     case TurtleCommand::pitch_down:
-        turn(right, -angle_deg);
+        turn(Axis::right, -angle_deg);
         return true;
     case TurtleCommand::pitch_up:
-        turn(right, angle_deg);
+        turn(Axis::right, angle_deg);
         return true;
     case TurtleCommand::roll_left:
-        turn(ahead, -angle_deg);
+        turn(Axis::ahead, -angle_deg);
         return true;
     case TurtleCommand::roll_right:
-        turn(ahead, angle_deg);
+        turn(Axis::ahead, angle_deg);
         return true;
     case TurtleCommand::turn_back:
-        turn(up, 180);
+        turn(Axis::up, 180);
         return true;
     case TurtleCommand::level:
         level();
@@ -125,16 +125,16 @@ bool Turtle::run(TurtleCommand command, std::span<const double> parameters,
     case TurtleCommand::sphere:
         part_.has_bodies = true;
         context_.bodies.add_sphere(start_from_turtle_, parameters.empty() ? read_width() : parameters[0],
-                                   read_colour(), span, part_.instances);
+                                   read_colour(), span, sink(parameters.empty()));
         break;
     case TurtleCommand::disc:
         part_.has_bodies = true;
         context_.bodies.add_disc(start_from_turtle_, parameters.empty() ? read_width() : parameters[0],
-                                 read_colour(), span, part_.instances);
+                                 read_colour(), span, sink(parameters.empty()));
         break;
     case TurtleCommand::model:
         part_.has_bodies = true;
-        if (model) context_.bodies.add_model(*model, start_from_turtle_, span, part_.instances);
+        if (model) context_.bodies.add_model(*model, start_from_turtle_, span, sink(false));
         break;
     }
     return within_limits(span);
@@ -154,6 +154,11 @@ bool Turtle::within_limits(Span span) {
     if (part_.instances.size() + vertex_count_ > context_.max_instances) {
         context_.diagnostics.error(
             span, fmt::format("more than {} parts are drawn in one place", context_.max_instances));
+        return false;
+    }
+    if (run_ && run_->size() > max_run_items) {
+        context_.diagnostics.error(span, fmt::format("more than {} single parts are drawn", max_run_items))
+            .with_hint("fewer steps draw fewer");
         return false;
     }
     if (longest_polygon_ > max_polygon_vertices) {
@@ -178,7 +183,7 @@ void Turtle::move(double length, bool draw, bool record, Span span) {
     if (draw) ++segments_;
     if (draw && !fills && !(note(reads_cylinder), state_.in_cylinder))
         context_.bodies.add_segment(start_from_turtle_, length, line_width(length), read_colour(), span,
-                                    part_.instances);
+                                    sink(true));
     start_from_turtle_.translation += length * start_from_turtle_.linear[1];
     part_.reach = std::max(part_.reach, glm::length(start_from_turtle_.translation));
     for (auto [drift, total] :
@@ -195,8 +200,15 @@ double Turtle::line_width(double length) {
     return context_.limit && context_.lines ? slenderness * std::abs(length) : read_width();
 }
 
-void Turtle::turn(Vec3 axis, double angle_deg) {
-    start_from_turtle_.linear = start_from_turtle_.linear * Affine::rotate(axis, angle_deg).linear;
+/// By columns: what is not turned stays as it is, to the last bit.
+void Turtle::turn(Axis axis, double angle_deg) {
+    const auto [cosine, sine] = cos_sin_deg(angle_deg);
+    const int k = static_cast<int>(axis);
+    Vec3& first = start_from_turtle_.linear[(k + 1) % 3];
+    Vec3& second = start_from_turtle_.linear[(k + 2) % 3];
+    const Vec3 turned = cosine * first + sine * second;
+    second = cosine * second - sine * first;
+    first = turned;
 }
 
 /// L = V x H / |V x H|, U = H x L (ABOP, section 2.2); a turtle that heads straight up or down stays.
@@ -283,7 +295,7 @@ void Turtle::record_vertex(Vec3 vertex) {
 void Turtle::close_polygon(int colour, Span span) {
     if (!polygons_.empty()) {
         part_.has_bodies = true;
-        context_.bodies.add_polygon(polygons_.back(), colour, span, part_.instances);
+        context_.bodies.add_polygon(polygons_.back(), colour, span, sink(false));
         polygons_.pop_back();
         return;
     }
@@ -322,7 +334,7 @@ void Turtle::add_control_point(Span span) {
     note(reads_cylinder);
     if (!state_.in_cylinder) return;
     context_.bodies.add_taper(start_from_turtle_, state_.control_point, state_.control_width, read_width(),
-                              read_colour(), span, part_.instances);
+                              read_colour(), span, sink(true));
     start_cylinder();
 }
 

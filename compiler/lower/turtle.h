@@ -59,14 +59,16 @@ struct TurtleContext {
     bool lines = false; ///< segments are strokes of a curve: small parts are drawn as lines
     bool limit = false; ///< only proportions count: lines are as thick as their lengths ask, and parts that
                         ///< differ by a rotation in the plane are made equal
+    bool open_width = false; ///< how thick lines are is not known yet (turtle_bodies.h)
     std::size_t max_instances = 4'000'000; ///< of one part, its polygons' vertices too
 };
 
 /// Follows commands and gathers what they draw.
 class Turtle {
   public:
-    /// `context` must outlive the turtle.
-    Turtle(TurtleContext& context, const TurtleState& start);
+    /// `context` must outlive the turtle. `run`: takes the round bodies that run() draws, in place of the part's
+    /// instances.
+    Turtle(TurtleContext& context, const TurtleState& start, Run* run = nullptr);
 
     /// Carries out one module; false after an error. What `~` places is given by `model`.
     bool run(TurtleCommand command, std::span<const double> parameters,
@@ -115,9 +117,12 @@ class Turtle {
         std::size_t polygons = 0; ///< open ones
     };
 
+    /// Of the turtle, by columns.
+    enum class Axis { right, ahead, up };
+
     bool pass_over(TurtleCommand command);
     void move(double length, bool draw, bool record, Span span);
-    void turn(Vec3 axis, double angle_deg);
+    void turn(Axis axis, double angle_deg);
     void level();
     void bend();
     bool set_width(std::span<const double> parameters, Span span);
@@ -136,7 +141,11 @@ class Turtle {
     int read_colour() { return note(reads_colour), state_.colour; }
     void note(TurtleStateMask bits) { part_.reads |= static_cast<TurtleStateMask>(bits & ~writes_); }
 
+    /// `by_width`: of a body that is as thick as a line.
+    BodySink sink(bool by_width) { return {part_.instances, run_, by_width && context_.open_width}; }
+
     TurtleContext& context_;
+    Run* run_;
     Affine start_from_turtle_;
     TurtleState state_; ///< directions in the frame of the start, as they came in
     TurtleStateMask writes_ = 0;

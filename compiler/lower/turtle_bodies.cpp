@@ -26,9 +26,22 @@ Affine on_corners(Vec3 a, Vec3 b, Vec3 c) {
 
 } // namespace
 
-MaterialId TurtleBodies::material(int colour) {
+void widen(Run& run, double factor) {
+    for (std::size_t i = 0; i < run.size(); ++i) {
+        RunItem& item = run[i];
+        if (!(item.colour & open_width)) continue;
+        item.colour &= static_cast<std::uint16_t>(~open_width);
+        item.radius *= factor;
+    }
+}
+
+std::size_t TurtleBodies::palette_index(int colour) const {
     const auto size = static_cast<int>(palette_.size());
-    const auto index = static_cast<std::size_t>(((colour % size) + size) % size);
+    return static_cast<std::size_t>(((colour % size) + size) % size);
+}
+
+MaterialId TurtleBodies::material(int colour) {
+    const std::size_t index = palette_index(colour);
     if (ids_[index]) return *ids_[index];
     const auto known = std::ranges::find(graph_.materials, palette_[index].name, &Material::name);
     ids_[index] = static_cast<MaterialId>(known - graph_.materials.begin());
@@ -42,18 +55,35 @@ Instance TurtleBodies::body(PrimitiveKind kind, const Affine& place, int colour,
     return {*primitive, place, Tint(), material(colour), span};
 }
 
+/// `x`: of unit length, where the body's x axis points.
+void TurtleBodies::add_item(PrimitiveKind kind, Vec3 base, Vec3 axis, double radius, Vec3 x, bool ball, int colour,
+                            const BodySink& sink) {
+    const std::size_t index = palette_index(colour);
+    material(colour);
+    RunItem item{base, axis, std::abs(radius), 0, kind, ball, static_cast<std::uint16_t>(index)};
+    if (!is_sound(item)) return; // too small for numbers
+    if (!palette_[index].texture.empty()) item.turn = turn_of(axis, x);
+    if (sink.open_width) item.colour |= open_width;
+    sink.run->add(item);
+}
+
 void TurtleBodies::add_segment(const Affine& start_from_turtle, double length, double width, int colour,
-                               Span span, std::vector<Instance>& instances) {
+                               Span span, BodySink sink) {
     if (length == 0 || width == 0) return;
     const double radius = width / 2;
+    if (sink.run) {
+        add_item(PrimitiveKind::cylinder, start_from_turtle.translation, length * start_from_turtle.linear[1], radius,
+                 start_from_turtle.linear[0], true, colour, sink);
+        return;
+    }
     add(PrimitiveKind::cylinder, start_from_turtle * Affine::scale({radius, length, radius}), colour, span,
-        instances);
+        sink);
     const Affine end = start_from_turtle * Affine::translate({0, length, 0});
-    add(PrimitiveKind::sphere, end * Affine::scale(Vec3(radius)), colour, span, instances);
+    add(PrimitiveKind::sphere, end * Affine::scale(Vec3(radius)), colour, span, sink);
 }
 
 void TurtleBodies::add_taper(const Affine& start_from_turtle, Vec3 from, double from_width, double width,
-                             int colour, Span span, std::vector<Instance>& instances) {
+                             int colour, Span span, BodySink sink) {
     Vec3 thick = from, thin = start_from_turtle.translation;
     if (width > from_width) std::swap(thick, thin);
     const Vec3 y = thin - thick;
@@ -64,9 +94,14 @@ void TurtleBodies::add_taper(const Affine& start_from_turtle, Vec3 from, double 
     if (glm::length(x) < 1e-3)
         x = start_from_turtle.linear[2] - glm::dot(start_from_turtle.linear[2], y) / (length * length) * y;
     x = glm::normalize(x);
+    if (sink.run) {
+        add_item(tapered(std::min(width, from_width) / (2 * radius)), thick, y, radius, x, false, colour, sink);
+        add_sphere(start_from_turtle, width, colour, span, sink);
+        return;
+    }
     const Mat3 linear(radius * x, y, radius * glm::cross(x, y / length));
-    add(tapered(std::min(width, from_width) / (2 * radius)), {linear, thick}, colour, span, instances);
-    add_sphere(start_from_turtle, width, colour, span, instances);
+    add(tapered(std::min(width, from_width) / (2 * radius)), {linear, thick}, colour, span, sink);
+    add_sphere(start_from_turtle, width, colour, span, sink);
 }
 
 std::optional<Instance> TurtleBodies::line(Vec3 end, int colour, Span span) {
@@ -81,35 +116,47 @@ std::optional<Instance> TurtleBodies::line(Vec3 end, int colour, Span span) {
 }
 
 void TurtleBodies::add_sphere(const Affine& start_from_turtle, double diameter, int colour, Span span,
-                              std::vector<Instance>& instances) {
+                              BodySink sink) {
     if (diameter == 0) return;
+    if (sink.run) {
+        const double radius = std::abs(diameter) / 2;
+        add_item(PrimitiveKind::sphere, start_from_turtle.translation, radius * start_from_turtle.linear[1], radius,
+                 start_from_turtle.linear[0], false, colour, sink);
+        return;
+    }
     add(PrimitiveKind::sphere, start_from_turtle * Affine::scale(Vec3(diameter / 2)), colour, span,
-        instances);
+        sink);
 }
 
 void TurtleBodies::add_disc(const Affine& start_from_turtle, double diameter, int colour, Span span,
-                            std::vector<Instance>& instances) {
+                            BodySink sink) {
     if (diameter == 0) return;
     const Affine upright = start_from_turtle * Affine::rotate({1, 0, 0}, 90);
     const double thickness = disc_thickness * diameter;
+    if (sink.run) {
+        const Vec3 axis = std::abs(thickness) * upright.linear[1];
+        add_item(PrimitiveKind::cylinder, upright.translation - 0.5 * axis, axis, diameter / 2, upright.linear[0],
+                 false, colour, sink);
+        return;
+    }
     add(PrimitiveKind::cylinder,
         upright * Affine::translate({0, -thickness / 2, 0}) *
             Affine::scale({diameter / 2, thickness, diameter / 2}),
-        colour, span, instances);
+        colour, span, sink);
 }
 
 void TurtleBodies::add_polygon(std::span<const Vec3> corners, int colour, Span span,
-                               std::vector<Instance>& instances) {
+                               BodySink sink) {
     for (const auto& [a, b, c] : triangulate(corners)) {
         const Affine place = on_corners(corners[a], corners[b], corners[c]);
-        if (is_finite(place)) add(PrimitiveKind::triangle, place, colour, span, instances);
+        if (is_finite(place)) add(PrimitiveKind::triangle, place, colour, span, sink);
     }
 }
 
 void TurtleBodies::add_model(const PlacedModel& model, const Affine& start_from_turtle, Span span,
-                             std::vector<Instance>& instances) {
+                             BodySink sink) {
     if (model.scale.x == 0 || model.scale.y == 0) return;
-    instances.push_back(
+    sink.instances.push_back(
         {model.root, start_from_turtle * Affine::scale(model.scale), Tint(), std::nullopt, span});
 }
 

@@ -38,16 +38,14 @@ Graph drop_unreachable(Graph graph) {
     std::vector<bool> used(graph.materials.size(), false);
     for_each_instance(graph, [&](Instance& instance) {
         instance.master = new_object[instance.master];
-        if (instance.material) used[*instance.material] = true;
     });
+    for_each_material(graph, [&](MaterialId& material) { used[material] = true; });
     const std::optional<GroundSetting>& ground = graph.settings.ground;
     for (MaterialId id = 0; id < graph.materials.size(); ++id)
         if (ground && ground->material == graph.materials[id].name) used[id] = true;
 
     const std::vector<std::uint32_t> new_material = compact(graph.materials, used);
-    for_each_instance(graph, [&](Instance& instance) {
-        if (instance.material) instance.material = new_material[*instance.material];
-    });
+    for_each_material(graph, [&](MaterialId& material) { material = new_material[material]; });
     return graph;
 }
 

@@ -5,6 +5,7 @@
 #include <bit>
 #include <compare>
 #include <cstdint>
+#include <functional>
 #include <numeric>
 #include <optional>
 #include <span>
@@ -198,11 +199,16 @@ class Refinement {
         std::iota(order.begin(), order.end(), 0u);
         const auto same_kind = [&](ObjectId a, ObjectId b) {
             return graph.objects[a].primitive == graph.objects[b].primitive &&
-                   edges_.labels_of[a] == edges_.labels_of[b];
+                   graph.objects[a].run == graph.objects[b].run &&
+                   graph.objects[a].run_materials == graph.objects[b].run_materials && edges_.labels_of[a] == edges_.labels_of[b];
         };
         std::sort(order.begin(), order.end(), [&](ObjectId a, ObjectId b) {
             if (graph.objects[a].primitive != graph.objects[b].primitive)
                 return graph.objects[a].primitive < graph.objects[b].primitive;
+            const Object &x = graph.objects[a], &y = graph.objects[b];
+            // Whichever comes first, the blocks are the same.
+            if (x.run != y.run) return std::less<>()(x.run.get(), y.run.get());
+            if (x.run_materials != y.run_materials) return x.run_materials < y.run_materials;
             if (edges_.labels_of[a] != edges_.labels_of[b]) return edges_.labels_of[a] < edges_.labels_of[b];
             return a < b;
         });

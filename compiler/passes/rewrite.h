@@ -3,6 +3,7 @@
 // What passes that drop and renumber objects share.
 
 #include <cstdint>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -17,6 +18,16 @@ template<typename Visit> void for_each_instance(Graph& graph, const Visit& visit
             visit(instance);
         if (object.terminal) visit(*object.terminal);
     }
+}
+
+/// Calls `visit` on the material of every instance, terminal and colour of a run that has one.
+template<typename Visit> void for_each_material(Graph& graph, const Visit& visit) {
+    for_each_instance(graph, [&](Instance& instance) {
+        if (instance.material) visit(*instance.material);
+    });
+    for (Object& object : graph.objects)
+        for (std::optional<MaterialId>& material : object.run_materials)
+            if (material) visit(*material);
 }
 
 /// Keeps the marked elements in their order. Returns the new index by old index, UINT32_MAX for the dropped.

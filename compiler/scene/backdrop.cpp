@@ -8,6 +8,8 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
+#include "compiler/graph/run.h"
+
 namespace graftal {
 
 namespace {
@@ -36,6 +38,10 @@ Rgb colour_of_path(const Graph& graph, Dice& dice) {
     ObjectId at = graph.root;
     for (int step = 0; step < path_length; ++step) {
         const Object& object = graph.objects[at];
+        if (object.run) {
+            const RunItem& item = (*object.run)[dice.roll(object.run->size())];
+            if (const auto material = object.run_materials[item.colour]) base = graph.materials[*material].rgb;
+        }
         if (object.primitive || object.instances.empty()) break;
         const Instance& instance = object.instances[dice.roll(object.instances.size())];
         tint = tint * PathTint(instance.tint);

@@ -6,6 +6,8 @@
 
 #include <glm/geometric.hpp>
 
+#include "compiler/analysis/run_bounds.h"
+
 namespace graftal {
 
 namespace {
@@ -19,6 +21,8 @@ struct Piece {
     Affine world_from_object;
     ObjectId object = 0;
     double size = 0; ///< length of the longest axis of its box in the world; 0 if it is not to be unfolded
+    Box box;         ///< of the object, or of a range of its run
+    std::size_t level = 0, index = 0; ///< of the range (RunBounds)
 };
 
 class Outline {
@@ -58,7 +62,7 @@ class Outline {
         std::vector<Vec3> points;
         points.reserve(8 * pieces_.size());
         for (const Piece& piece : pieces_) {
-            for (const Vec3& corner : hull_points(graph_.objects[piece.object], bounds_[piece.object].box))
+            for (const Vec3& corner : hull_points(graph_.objects[piece.object], piece.box))
                 points.push_back(piece.world_from_object(corner));
         }
         return points;
@@ -68,18 +72,46 @@ class Outline {
     void add(ObjectId object, const Affine& world_from_object) {
         const Box& box = bounds_[object].box;
         if (box.empty()) return; // nothing but planes
+        Piece piece{world_from_object, object, longest_axis(box, world_from_object), box};
+        if (graph_.objects[object].primitive) piece.size = 0;
+        if (graph_.objects[object].run) piece.level = bounds_[object].run->level_count() - 1;
+        pieces_.push_back(piece);
+    }
+
+    static double longest_axis(const Box& box, const Affine& place) {
         const Vec3 size = box.size();
         double longest = 0;
         for (int axis = 0; axis < 3; ++axis)
-            longest = std::max(longest, size[axis] * glm::length(world_from_object.linear[axis]));
-        if (graph_.objects[object].primitive) longest = 0;
-        pieces_.push_back({world_from_object, object, longest});
+            longest = std::max(longest, size[axis] * glm::length(place.linear[axis]));
+        return longest;
+    }
+
+    /// The same as unfold_last() for a range of a run, whose items are not unfolded further.
+    bool unfold_last_range() {
+        const Piece piece = pieces_.back();
+        const RunBounds& run = *bounds_[piece.object].run;
+        const bool items = piece.level == 0;
+        const std::size_t width = items ? RunBounds::items_a_range : RunBounds::ranges_a_range;
+        const std::size_t count = items ? run.run().size() : run.boxes(piece.level - 1).size();
+        const std::size_t first = piece.index * width, end = std::min(first + width, count);
+        if (piece.size <= small_ || pieces_.size() + (end - first) > most_pieces) return false;
+        pieces_.pop_back();
+        for (std::size_t i = first; i < end; ++i) {
+            Piece part = piece;
+            part.box = items ? box_of(run.run()[i]) : run.boxes(piece.level - 1)[i];
+            part.size = items ? 0 : longest_axis(part.box, part.world_from_object);
+            part.level = items ? 0 : piece.level - 1;
+            part.index = i;
+            pieces_.push_back(part);
+        }
+        return true;
     }
 
     /// Replaces the last piece by its instances. False if it is small enough or there are too many.
     bool unfold_last() {
         const Piece piece = pieces_.back();
         const Object& object = graph_.objects[piece.object];
+        if (object.run) return unfold_last_range();
         if (piece.size <= small_ || pieces_.size() + object.instances.size() > most_pieces) return false;
         pieces_.pop_back();
         for (const Instance& instance : object.instances)
@@ -88,7 +120,7 @@ class Outline {
     }
 
     double reach(const Piece& piece, Vec3 direction) const {
-        const Box& box = bounds_[piece.object].box;
+        const Box& box = piece.box;
         const Vec3 half = 0.5 * box.size();
         double sum = glm::dot(direction, piece.world_from_object(box.centre()));
         for (int axis = 0; axis < 3; ++axis)

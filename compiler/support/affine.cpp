@@ -8,24 +8,10 @@
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 
+#include "compiler/support/angle.h"
 #include "compiler/support/check.h"
 
 namespace graftal {
-
-namespace {
-
-/// Cosine and sine of an angle in degrees, exact at multiples of 90.
-std::pair<double, double> cos_sin_deg(double angle_deg) {
-    const double turn = std::remainder(angle_deg, 360.0);
-    if (turn == 0) return {1, 0};
-    if (turn == 90) return {0, 1};
-    if (turn == -90) return {0, -1};
-    if (std::abs(turn) == 180) return {-1, 0};
-    const double angle = turn * std::numbers::pi / 180;
-    return {std::cos(angle), std::sin(angle)};
-}
-
-} // namespace
 
 Affine Affine::rotate(Vec3 axis, double angle_deg) {
     const double length = glm::length(axis);

@@ -118,7 +118,10 @@ bool ExpressionCode::reads(std::size_t slot) const {
 }
 
 std::optional<double> ExpressionCode::value(std::span<const double> slots) const {
-    const double result = value(static_cast<std::uint32_t>(nodes_.size() - 1), slots);
+    const Node& whole = nodes_.back();
+    const double result = whole.kind == Kind::slot     ? slots[whole.slot]
+                          : whole.kind == Kind::number ? whole.number
+                                                       : value(static_cast<std::uint32_t>(nodes_.size() - 1), slots);
     if (std::isfinite(result)) return result;
     return std::nullopt;
 }
@@ -145,11 +148,18 @@ double ExpressionCode::value(std::uint32_t index, std::span<const double> slots)
 }
 
 double ExpressionCode::binary(const Node& node, std::span<const double> slots) const {
-    const double left = value(node.operands[0], slots);
+    // Most operands are numbers and names: to call for them would take most of the time.
+    const auto value_of = [&](std::uint32_t operand) {
+        const Node& leaf = nodes_[operand];
+        return leaf.kind == Kind::slot     ? slots[leaf.slot]
+               : leaf.kind == Kind::number ? leaf.number
+                                           : value(operand, slots);
+    };
+    const double left = value_of(node.operands[0]);
     if (!std::isfinite(left)) return failed;
     if (node.op == BinaryOperator::logical_and && left == 0) return 0;
     if (node.op == BinaryOperator::logical_or && left != 0) return 1;
-    const double right = value(node.operands[1], slots);
+    const double right = value_of(node.operands[1]);
     if (!std::isfinite(right)) return failed;
     const bool divides = node.op == BinaryOperator::divide || node.op == BinaryOperator::remainder;
     if (divides && right == 0) return failed;

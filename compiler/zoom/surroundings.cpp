@@ -93,7 +93,7 @@ bool Surroundings::in_reach(const NearPiece& piece, Vec3 focus, double reach) co
 
 bool Surroundings::divisible(const NearPiece& piece) const {
     const Object& object = graph_.objects[piece.object];
-    if (object.primitive) return false;
+    if (object.primitive || object.run) return false;
     // Where no level is left, the object is drawn by what ends it.
     return !steps_ || !components_.unending[piece.object] || piece.levels < *steps_;
 }

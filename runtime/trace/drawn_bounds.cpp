@@ -7,6 +7,7 @@
 #include "compiler/analysis/bounding.h"
 #include "compiler/analysis/contraction.h"
 #include "compiler/cut/bake.h"
+#include "compiler/cut/run_cells.h"
 #include "compiler/graph/components.h"
 
 namespace graftal {
@@ -47,6 +48,14 @@ class Bounder {
             Object primitive;
             primitive.primitive = kind;
             graph_.objects.push_back(std::move(primitive));
+        }
+        for (NodeId id = 0; id < cut.nodes.size(); ++id) {
+            if (!cut.nodes[id].cell) continue;
+            const Box& box = cut.nodes[id].cell->box; // a cube stands for what the cell holds
+            Instance about;
+            about.master = static_cast<ObjectId>(cut.nodes.size() + 1);
+            about.parent_from_child = Affine::translate(box.centre()) * Affine::scale(0.5 * box.size());
+            graph_.objects[id].instances.push_back(about);
         }
         for (NodeId id = 0; id < cut.nodes.size(); ++id) {
             const CutNode& node = cut.nodes[id];

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 #include <set>
 #include <utility>
 
@@ -30,6 +31,7 @@ Affine graph_from_frame(const CutNode& node, const Box& box) {
 
 TraceNode::Kind kind_of(const CutNode& node) {
     if (node.primitive) return TraceNode::Kind::primitive;
+    if (node.cell) return TraceNode::Kind::run;
     if (node.unbounded) return TraceNode::Kind::unbounded;
     return node.sealed ? TraceNode::Kind::mesh : TraceNode::Kind::parts;
 }
@@ -81,6 +83,8 @@ class Builder {
             node.stop_tree = add_edges(id, source.stop_edges, bounds_.stop_edge[id]);
             node.stop_edge_count =
                 static_cast<std::uint32_t>(model_.edges.size()) - node.first_edge - node.edge_count;
+        } else if (node.kind == TraceNode::Kind::run) {
+            add_cell(*source.cell, frame_from_graph, node);
         } else if (node.kind == TraceNode::Kind::unbounded) {
             add_edges(id, source.edges, bounds_.edge[id]);
             node.edge_count = static_cast<std::uint32_t>(model_.edges.size()) - node.first_edge;
@@ -88,6 +92,38 @@ class Builder {
         for (std::size_t i = node.first_edge; i < model_.edges.size(); ++i)
             node.flattest_edge = std::min(node.flattest_edge, model_.edges[i].flatness);
         model_.nodes.push_back(node);
+    }
+
+    void add_cell(const RunCell& cell, const Affine& frame_from_graph, TraceNode& node) {
+        node.run = run_of(*cell.source);
+        node.first_edge = static_cast<std::uint32_t>(model_.edges.size());
+        std::vector<BoxedItem> items;
+        for (std::size_t i = cell.first; i < cell.first + cell.count; ++i)
+            items.emplace_back(transformed(frame_from_graph, box_of((*cell.source->run)[i])), 1,
+                               static_cast<std::uint32_t>(i));
+        node.tree = build_box_tree(items, model_.boxes);
+    }
+
+    std::uint32_t run_of(const RunSource& source) {
+        const auto [place, added] = run_of_.emplace(&source, static_cast<std::uint32_t>(model_.runs.size()));
+        if (!added) return place->second;
+        TraceRun& run = model_.runs.emplace_back();
+        run.run = source.run.get();
+        for (std::size_t i = 0; i < source.run->size(); ++i) {
+            const RunItem& item = (*source.run)[i];
+            add_look(source, item.kind, item.colour, run);
+            if (item.ball) add_look(source, PrimitiveKind::sphere, item.colour, run);
+        }
+        return place->second;
+    }
+
+    void add_look(const RunSource& source, PrimitiveKind kind, std::uint16_t colour, TraceRun& run) {
+        if (run.edge_of(kind, colour) != no_edge) return;
+        TraceEdge edge;
+        edge.child = source.child[static_cast<std::size_t>(kind)];
+        edge.material = source.materials[colour];
+        run.looks.push_back({kind, colour, static_cast<std::uint32_t>(model_.edges.size())});
+        model_.edges.push_back(edge);
     }
 
     std::uint32_t add_edges(NodeId id, const std::vector<CutEdge>& edges, const std::vector<Box>& boxes) {
@@ -138,7 +174,7 @@ class Builder {
     /// A handful of primitives, which is never cut.
     bool is_small_group(NodeId id) const {
         const CutNode& node = cut_.nodes[id];
-        return !node.primitive && !node.unending && !node.unbounded && !node.sealed && !node.cullable;
+        return !node.primitive && !node.cell && !node.unending && !node.unbounded && !node.sealed && !node.cullable;
     }
 
     void add_group(const CutEdge& group, std::vector<Part>& parts) const {
@@ -185,6 +221,7 @@ class Builder {
     TraceModel& model_;
     const CutGraph& cut_;
     DrawnBounds bounds_;
+    std::map<const RunSource*, std::uint32_t> run_of_;
 };
 
 /// What a unit measures at the far end of the model, were it out of the picture.
@@ -198,6 +235,12 @@ double least_detail(const TraceModel& model) {
 }
 
 } // namespace
+
+std::uint32_t TraceRun::edge_of(PrimitiveKind kind, std::uint16_t colour) const {
+    for (const Look& look : looks)
+        if (look.kind == kind && look.colour == colour) return look.edge;
+    return no_edge;
+}
 
 TraceModel::TraceModel(PreparedCut ready, const View& seen, const CutOptions& cut_options)
     : prepared(std::move(ready)), layers(layered(prepared.cut, prepared.root_steps)), view(seen),

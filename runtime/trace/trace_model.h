@@ -8,6 +8,7 @@
 
 #include "compiler/cut/detail.h"
 #include "compiler/cut/prepare.h"
+#include "compiler/cut/run_cells.h"
 #include "compiler/scene/scene.h"
 #include "runtime/image/texture.h"
 #include "runtime/trace/box_tree.h"
@@ -57,6 +58,7 @@ struct TraceNode {
         primitive,
         parts,     ///< a union
         unbounded, ///< a union that holds planes: its edges are tried one after the other
+        run,       ///< a range of a run
         mesh,      ///< leads through a singular map: always baked (CutNode::sealed)
     };
 
@@ -65,7 +67,8 @@ struct TraceNode {
     bool unending = false;
     bool cullable = true;
     double cut_detail = 1;             ///< from which down a cullable node is cut (detail.h)
-    std::uint32_t tree = no_tree;      ///< of its edges
+    std::uint32_t tree = no_tree;      ///< of its edges, or its items of the run
+    std::uint32_t run = 0;             ///< of TraceModel::runs
     std::uint32_t stop_tree = no_tree; ///< of what is drawn where it is cut; none: its proxy
     double flattest_edge = 1;          ///< least flatness of its edges
     std::uint32_t first_unrolling = 0; ///< the deepest first
@@ -78,6 +81,20 @@ struct TraceNode {
     double ball_radius = 0;
     LaneMap node_from_proxy; ///< places the unit sphere
     LaneMap proxy_from_node;
+};
+
+/// A run as rays meet it. An edge for each look of its parts has its material; where a part lies says the run.
+struct TraceRun {
+    struct Look {
+        PrimitiveKind kind;
+        std::uint16_t colour;
+        std::uint32_t edge;
+    };
+
+    const Run* run = nullptr;
+    std::vector<Look> looks;
+
+    std::uint32_t edge_of(PrimitiveKind kind, std::uint16_t colour) const;
 };
 
 /// A prepared graph made ready for rays, for one view. It is read by many threads.
@@ -93,6 +110,7 @@ struct TraceModel {
     std::vector<TraceEdge> edges; ///< the first leads to the root, from world space
     std::vector<BoxNode> boxes;
     std::vector<Unrolling> unrollings;
+    std::vector<TraceRun> runs;
     std::vector<Affine> graph_from_frame; ///< by node
     mutable MeshStore meshes;
     std::vector<std::shared_ptr<const Texture>> textures; ///< by material; null where there is none

@@ -108,20 +108,20 @@ std::optional<MaterialId> Traversal::material_of(std::uint32_t edge) const {
     return material ? material : material_of(whole.before);
 }
 
-const Texture::Texel& Traversal::texel(MaterialId material, std::uint32_t edge, Vec3 point) const {
+const Texture::Texel& Traversal::texel(MaterialId material, std::uint32_t edge, double turns, Vec3 point) const {
     const TraceEdge& way = model_.edges[edge & ~from_cut];
     const PrimitiveKind kind = model_.nodes[way.child].primitive;
     const double around = model_.prepared.cut.materials[material].around;
-    const auto [u, v] = texture_coordinates(kind, texture_space(kind, around, way.turns), point);
+    const auto [u, v] = texture_coordinates(kind, texture_space(kind, around, turns), point);
     return model_.textures[material]->at(u, v);
 }
 
-bool Traversal::is_clear(std::uint32_t edge, std::uint32_t frame, Vec3 point) const {
+bool Traversal::is_clear(std::uint32_t edge, std::uint32_t frame, double turns, Vec3 point) const {
     std::optional<MaterialId> material = material_of(edge);
     for (std::uint32_t i = frame; i > 0 && !material; --i)
         material = material_of(frames_[i].edge);
     if (!material || !model_.textures[*material] || model_.textures[*material]->coverage == 1) return false;
-    return texel(*material, edge, point).clear;
+    return texel(*material, edge, turns, point).clear;
 }
 
 void Traversal::surface_at_best(SurfaceHit& hit) const {
@@ -148,7 +148,7 @@ void Traversal::surface_at_best(SurfaceHit& hit) const {
         if (best_.mesh_colour->material) hit.material = &materials[*best_.mesh_colour->material];
     }
     else if (best_.proxy_node == no_edge && material && model_.textures[*material])
-        inherited = colour_of(texel(*material, path_.back(), best_.point));
+        inherited = colour_of(texel(*material, path_.back(), best_.turns, best_.point));
     if (best_.proxy_node != no_edge)
         inherited = model_.source(best_.proxy_node).mean.over(inherited);
     hit.t = best_.t;

@@ -49,6 +49,7 @@ class Traversal final : public Surfaces {
         std::uint32_t node = 0;
         std::uint32_t steps = 0;
         bool cut = false; ///< drawn by its stop edges
+        bool items = false; ///< its entries are items of a run, not edges
         float margin = 0; ///< by which parts may reach out of their boxes
         float least = 0;  ///< where the ray begins, in units from the base
         /// By axis: the side of boxes where the ray goes in, the origin less the margin as that and the other side see
@@ -70,6 +71,7 @@ class Traversal final : public Surfaces {
         bool found = false;
         Vec3 normal{0.0}; ///< in the leaf's frame
         Vec3 point{0.0};  ///< of a primitive, likewise
+        double turns = 1; ///< of a primitive (TraceEdge)
         LaneMap world_from_leaf;
         std::uint32_t proxy_node = 0;                 ///< or no_edge
         const TraceMesh::Colour* mesh_colour = nullptr; ///< of a triangle
@@ -82,9 +84,9 @@ class Traversal final : public Surfaces {
     void surface_at_best(SurfaceHit& hit) const;
     /// The material that an edge gives, the nearest to its child if it stands for several.
     std::optional<MaterialId> material_of(std::uint32_t edge) const;
-    const Texture::Texel& texel(MaterialId material, std::uint32_t edge, Vec3 point) const;
+    const Texture::Texel& texel(MaterialId material, std::uint32_t edge, double turns, Vec3 point) const;
     /// Whether the child of the edge, met at this point of its surface, has none there.
-    bool is_clear(std::uint32_t edge, std::uint32_t frame, Vec3 point) const;
+    bool is_clear(std::uint32_t edge, std::uint32_t frame, double turns, Vec3 point) const;
 
     const TraceModel& model_;
     Instructions instructions_;

@@ -10,6 +10,7 @@
 #include <glm/geometric.hpp>
 
 #include "compiler/cut/bake.h"
+#include "compiler/cut/texture_space.h"
 #include "runtime/trace/traversal.h"
 
 namespace graftal {
@@ -161,6 +162,7 @@ template<Instructions instructions> struct Traversal::Kernel {
         frame.edge = no_edge;
         frame.steps = model.prepared.root_steps;
         frame.cut = false;
+        frame.items = false;
         frame.flatness = 1;
         frame.margin = 0;
     }
@@ -234,6 +236,10 @@ template<Instructions instructions> struct Traversal::Kernel {
 
     GRAFTAL_INLINE bool enter(Entry& entry) {
         ++self.visits_;
+        if (self.frames_[entry.frame].items) {
+            meet_item(entry);
+            return false;
+        }
         self.depth_ = entry.frame + 1;
         const TraceEdge& edge = model.edges[entry.entry];
         const TraceNode& node = model.nodes[edge.child];
@@ -274,6 +280,7 @@ template<Instructions instructions> struct Traversal::Kernel {
         if (!(frame.scale > least_scale)) return false;
         frame.flatness = parent.flatness * (edge.similarity ? 1 : edge.flatness);
         frame.cut = is_cut(node, frame);
+        frame.items = node.kind == TraceNode::Kind::run;
         if (frame.cut && node.stop_tree == no_tree) {
             meet_proxy(node, frame);
             return false;
@@ -417,7 +424,8 @@ template<Instructions instructions> struct Traversal::Kernel {
         RayRange near = range_from(frame.base, frame.speed);
         PrimitiveHit hit;
         if (!intersect(kind, ray, near, hit)) return;
-        for (int crossing = 0; model.clear_texels && self.is_clear(entry.entry, entry.frame, ray(hit.t));
+        for (int crossing = 0; model.clear_texels && self.is_clear(entry.entry, entry.frame,
+                                                                       model.edges[entry.entry].turns, ray(hit.t));
              ++crossing) {
             near.least = hit.t;
             if (crossing == most_crossings || !intersect(kind, ray, near, hit)) return;
@@ -425,10 +433,66 @@ template<Instructions instructions> struct Traversal::Kernel {
         if (!set_best(frame.base + hit.t * frame.unit)) return;
         self.best_.normal = hit.normal;
         self.best_.point = ray(hit.t);
+        self.best_.turns = model.edges[entry.entry].turns;
         self.best_.proxy_node = no_edge;
         compose(parent.world_from_node, model.edges[entry.entry].parent_from_child, self.best_.world_from_leaf);
         keep_way(entry.frame);
         self.way_.push_back(entry.entry | (parent.cut ? from_cut : 0));
+    }
+
+    /// Meets an item of the frame's run.
+    void meet_item(const Entry& entry) {
+        self.depth_ = entry.frame + 1;
+        const Frame& frame = self.frames_[entry.frame];
+        const TraceRun& run = model.runs[model.nodes[frame.node].run];
+        const RunItem& item = (*run.run)[entry.entry];
+        const Affine& run_from_frame = model.graph_from_frame[frame.node];
+        const Ray ray{run_from_frame(vec3_of(frame.origin + splat(entry.at) * frame.direction)),
+                      run_from_frame.linear * vec3_of(frame.direction)};
+        meet_body(item.kind, run_from_body(item), run, item, ray, entry);
+        if (item.ball) meet_body(PrimitiveKind::sphere, run_from_ball(item), run, item, ray, entry);
+    }
+
+    /// `ray`: from where the entry begins, in units of the frame's.
+    void meet_body(PrimitiveKind kind, const Affine& run_from_body, const TraceRun& run, const RunItem& item,
+                   const Ray& ray, const Entry& entry) {
+        const Frame& frame = self.frames_[entry.frame];
+        // Its axes are at right angles: dividing by the squares of their lengths turns the map round.
+        const Mat3& m = run_from_body.linear;
+        const Vec3 squares(glm::dot(m[0], m[0]), glm::dot(m[1], m[1]), glm::dot(m[2], m[2]));
+        const Vec3 from_base = ray.origin - run_from_body.translation;
+        const Vec3 origin = from_base * m / squares;
+        const Vec3 direction = ray.direction * m / squares;
+        const double largest = largest_component(lanes_of(direction));
+        if (!(largest > 0 && largest < 1 / least_scale)) return;
+        const Ray inner{origin, direction / largest};
+        const double base = t_of(entry), speed = frame.speed * largest;
+        RayRange near = range_from(base, speed);
+        PrimitiveHit hit;
+        if (!intersect(kind, inner, near, hit)) return;
+        std::uint32_t look = no_edge;
+        double turns = 1;
+        if (model.clear_texels) {
+            look = run.edge_of(kind, item.colour);
+            turns = length_in_turns(m);
+            for (int crossing = 0; self.is_clear(look, entry.frame, turns, inner(hit.t)); ++crossing) {
+                near.least = hit.t;
+                if (crossing == most_crossings || !intersect(kind, inner, near, hit)) return;
+            }
+        }
+        if (!set_best(base + hit.t / speed)) return;
+        if (look == no_edge) {
+            look = run.edge_of(kind, item.colour);
+            turns = length_in_turns(m);
+        }
+        self.best_.normal = hit.normal;
+        self.best_.point = inner(hit.t);
+        self.best_.turns = turns;
+        self.best_.proxy_node = no_edge;
+        compose(frame.world_from_node,
+                LaneMap(inverse(model.graph_from_frame[frame.node]) * run_from_body), self.best_.world_from_leaf);
+        keep_way(entry.frame);
+        self.way_.push_back(look);
     }
 
     /// Meets what stands for the frame's own node.

@@ -34,12 +34,14 @@ struct Lowered {
     Derivation derivation;
 };
 
-std::optional<Lowered> lower(const std::string& path, unsigned steps, bool exact) {
+std::optional<Lowered> lower(const std::string& path, unsigned steps, bool exact,
+                             std::uint64_t run_from = UINT64_MAX) {
     std::ifstream file(path);
     const std::string text((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
     LowerOptions options;
     options.steps = steps;
     options.exact = exact;
+    options.run_from = run_from;
     SourceMap sources;
     Diagnostics diagnostics;
     std::optional<Derivation> derivation;
@@ -95,6 +97,13 @@ TEST_P(LsysScene, ComposedIsDerived) {
         const std::string what = GetParam() + " after " + std::to_string(steps) + " steps";
         const std::optional<Lowered> derived = lower(path, steps, true);
         ASSERT_TRUE(derived) << what;
+        // Module by module, without a word where that can be.
+        const std::optional<Lowered> in_run = lower(path, steps, true, 0);
+        ASSERT_TRUE(in_run) << what;
+        EXPECT_EQ(in_run->derivation.modules, derived->derivation.modules) << what;
+        EXPECT_EQ(in_run->derivation.segments, derived->derivation.segments) << what;
+        if (derived->derivation.variants == 1) // interpretations are drawn otherwise by chance
+            expect_same_drawing(in_run->graph, derived->graph, what + ", in a run");
         // Chance falls otherwise in a pool than in a word; contexts are always derived.
         if (composed->derivation.variants > 1) continue;
         EXPECT_EQ(composed->derivation.modules, derived->derivation.modules) << what;

@@ -2,12 +2,17 @@
 
 #include <algorithm>
 #include <array>
+#include <memory>
 #include <numeric>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include <glm/geometric.hpp>
+
 #include "compiler/graph/components.h"
+#include "compiler/graph/run.h"
 
 namespace graftal::testing {
 
@@ -143,7 +148,32 @@ class Generator {
         return unions_[first + choices_.below(union_count - first)];
     }
 
+    /// Of a few items, or of so many that they make several ranges.
+    void fill_with_run(Object& object) {
+        static constexpr std::array<double, 4> tapers = {0, 0.25, 0.5, 1};
+        auto run = std::make_shared<Run>();
+        object.run_materials.resize(1 + choices_.below(2));
+        for (std::optional<MaterialId>& material : object.run_materials)
+            if (!graph_.materials.empty() && !choices_.one_in(3))
+                material = choices_.below(static_cast<std::uint32_t>(graph_.materials.size()));
+        for (std::uint32_t left = 1 + choices_.below(choices_.one_in(4) ? 70 : 4); left > 0; --left) {
+            RunItem item;
+            item.base = {unit(), -1 + 2 * unit(), unit()};
+            item.axis = {unit(), unit(), 0.25};
+            item.radius = 0.01 + 0.3 * unit();
+            item.turn = choices_.below(3) * 0x40000001u;
+            item.kind = choices_.one_in(4) ? PrimitiveKind::sphere : tapered(tapers[choices_.below(4)]);
+            if (item.kind == PrimitiveKind::sphere) item.axis *= item.radius / glm::length(item.axis);
+            item.ball = item.kind == PrimitiveKind::cylinder && choices_.one_in(2);
+            item.colour = static_cast<std::uint16_t>(
+                choices_.below(static_cast<std::uint32_t>(object.run_materials.size())));
+            run->add(item);
+        }
+        object.run = std::move(run);
+    }
+
     void fill(std::uint32_t i) {
+        if (options_.runs && choices_.one_in(4)) return fill_with_run(graph_.objects[unions_[i]]);
         const std::uint32_t count = 1 + choices_.below(options_.max_instances);
         for (std::uint32_t k = 0; k < count; ++k) {
             const ObjectId master = master_for(i); // may add an object
@@ -164,7 +194,7 @@ class Generator {
         for (ObjectId id = 0; id < graph_.objects.size(); ++id)
             if (!components.unending[id]) ending.push_back(id);
         for (const ObjectId id : unions_) {
-            if (ending.empty() || !choices_.one_in(4)) continue;
+            if (graph_.objects[id].run || ending.empty() || !choices_.one_in(4)) continue;
             const ObjectId master = ending[choices_.below(static_cast<std::uint32_t>(ending.size()))];
             graph_.objects[id].terminal = instance_of(master);
             if (terminals_that_return(graph_, components)[id]) {

@@ -31,6 +31,7 @@ struct RandomGraphOptions {
     bool cycles = true;
     bool duplicates = true; ///< plants copies of objects under other names, in three graphs of four
     bool settings = true;   ///< random scene statements
+    bool runs = false;      ///< some unions are runs (graph/run.h)
 };
 
 /// A graph that verify() accepts: unions in every relation, shared and nested masters, cycles through one

@@ -79,7 +79,7 @@ Json stats_json(const AnalysedModel& model, const SourceMap& sources) {
         {"model", model.path},
         {"language", model_language(0, sources)},
         {"objects", graph.objects.size()},
-        {"instances", instance_count(graph)},
+        {"instances", instance_count(graph) + run_part_count(graph)},
         {"written", {{"objects", model.written.objects}, {"instances", model.written.instances}}},
         {"steps", or_null(model.derivation ? model.derivation->steps : model.steps)},
         {"leaves", or_null(count_leaves(graph, model.components, model.steps))},

@@ -5,7 +5,30 @@ const [folder, name, steps] = process.argv.slice(2);
 const LSystem = require(folder);
 
 const module_ = (symbol, ...params) => ({symbol, params});
+const between = (low, high) => low + (high - low) * Math.random();
+const twig = (l, first, last) => [
+    module_('['), module_('&', between(first, last)), module_('A', l * between(0.6, 0.8)), module_(']'),
+];
 const systems = {
+    single: {
+        axiom: [module_('A', 1, 1)],
+        productions: {
+            A: ({params: [l, k]}) => [
+                module_('F', l), module_('['), module_('+', 30 + k * 0.001), module_('A', l * 0.9, 2 * k), module_(']'),
+                module_('['), module_('-', 25 + k * 0.001), module_('A', l * 0.8, 2 * k + 1), module_(']'),
+            ],
+        },
+    },
+    thicket: {
+        axiom: [module_('!', 0.02), module_('A', 1)],
+        productions: {
+            A: ({params: [l]}) => [
+                module_('F', l), module_('!', 0.02 * l), module_('/', between(0, 360)), ...twig(l, 20, 70),
+                module_('/', between(100, 140)), ...twig(l, 20, 70), module_('/', between(100, 140)),
+                ...twig(l, 10, 40),
+            ],
+        },
+    },
     koch: {angle: 60, axiom: 'F--F--F', productions: {F: 'F+F--F+F'}},
     plant: {angle: 22.5, axiom: 'X', productions: {X: 'F-[[X]+X]+F[+FX]-X', F: 'FF'}},
     tree: {

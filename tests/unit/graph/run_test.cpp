@@ -1,0 +1,124 @@
+#include "compiler/graph/run.h"
+
+#include <cmath>
+#include <memory>
+
+#include <glm/geometric.hpp>
+#include <gtest/gtest.h>
+
+#include "compiler/graph/graph.h"
+
+namespace graftal {
+namespace {
+
+RunItem segment(Vec3 base, Vec3 axis, double radius) {
+    RunItem item;
+    item.base = base;
+    item.axis = axis;
+    item.radius = radius;
+    item.kind = PrimitiveKind::cylinder;
+    item.ball = true;
+    return item;
+}
+
+Graph of_run(const graftal::Run& run) {
+    Graph graph;
+    Object object;
+    object.name = "m";
+    auto copy = std::make_shared<graftal::Run>();
+    for (std::size_t i = 0; i < run.size(); ++i)
+        copy->add(run[i]);
+    object.run = std::move(copy);
+    object.run_materials.resize(1);
+    graph.root = graph.add(std::move(object));
+    return graph;
+}
+
+TEST(Run, ASegmentTakes64Bytes) {
+    EXPECT_EQ(sizeof(RunItem), 64u);
+}
+
+TEST(Run, KeepsTheNumbersOfASegment) {
+    const RunItem item = segment({1, 2, 3}, {0.1, -0.7, 0.3}, 0.05);
+    const Affine body = run_from_body(item), ball = run_from_ball(item);
+    EXPECT_EQ(body.translation, item.base);
+    EXPECT_EQ(body.linear[1], item.axis);
+    EXPECT_EQ(ball.translation, item.base + item.axis);
+    for (const int column : {0, 2}) {
+        EXPECT_NEAR(glm::length(body.linear[column]), 0.05, 1e-17);
+        EXPECT_NEAR(glm::dot(body.linear[column], item.axis), 0, 1e-17);
+    }
+    EXPECT_NEAR(glm::determinant(body.linear), 0.05 * 0.05 * glm::length(item.axis), 1e-15);
+}
+
+TEST(Run, TurnsPicturesAsTheTurtleDoes) {
+    for (int step = 0; step < 100; ++step) {
+        const Affine turtle = Affine::rotate({0.3, 0.5, -0.7}, 7.3 * step) * Affine::rotate({0, 1, 0}, 11.0 * step);
+        RunItem item = segment({}, 0.4 * turtle.linear[1], 2);
+        item.turn = turn_of(item.axis, turtle.linear[0]);
+        EXPECT_NEAR(glm::distance(run_from_body(item).linear[0], 2.0 * turtle.linear[0]), 0, 2 * 7.4e-10);
+    }
+}
+
+TEST(Run, GrowsAndShrinks) {
+    graftal::Run run;
+    for (int i = 0; i < 40'000; ++i)
+        run.add(segment({static_cast<double>(i), 0, 0}, {0, 1, 0}, 0.1));
+    run.shrink_to_fit();
+    EXPECT_EQ(run.size(), 40'000u);
+    EXPECT_EQ(run.part_count(), 80'000u);
+    for (const std::size_t i : {0u, 16'383u, 16'384u, 39'999u})
+        EXPECT_EQ(run[i].base.x, static_cast<double>(i));
+    run.add(segment({7, 0, 0}, {0, 1, 0}, 0.1));
+    EXPECT_EQ(run[40'000].base.x, 7);
+    EXPECT_EQ(run[39'999].base.x, 39'999);
+}
+
+TEST(Run, EqualsTheInstancesThatItMeans) {
+    graftal::Run run;
+    run.add(segment({0, 0, 0}, {0, 1, 0}, 0.1));
+    RunItem cone = segment({0, 1, 0}, {0, 0.5, 0.25}, 0.2);
+    cone.kind = PrimitiveKind::cone;
+    cone.ball = false;
+    run.add(cone);
+    const Graph with_run = of_run(run);
+    EXPECT_EQ(run_part_count(with_run), 3u);
+    EXPECT_EQ(instance_count(with_run), 0u);
+
+    Graph spelt;
+    Object object;
+    object.name = "m";
+    spelt.root = spelt.add(std::move(object));
+    const auto add = [&](PrimitiveKind kind, const Affine& place) {
+        const ObjectId master = spelt.primitive(kind);
+        spelt.objects[spelt.root].instances.push_back({master, place, {}, {}, {}});
+    };
+    add(PrimitiveKind::cylinder, run_from_body(run[0]));
+    add(PrimitiveKind::sphere, run_from_ball(run[0]));
+    EXPECT_FALSE(equal(with_run, spelt));
+    add(PrimitiveKind::cone, run_from_body(run[1]));
+    EXPECT_TRUE(equal(with_run, spelt));
+    EXPECT_TRUE(equal(spelt, with_run));
+    spelt.objects[spelt.root].instances.back().parent_from_child.translation.x = 1e-300;
+    EXPECT_FALSE(equal(with_run, spelt));
+}
+
+TEST(Run, KnowsWhatIsSound) {
+    const RunItem good = segment({}, {0, 1, 0}, 1);
+    EXPECT_TRUE(is_sound(good));
+    RunItem item = good;
+    item.radius = 0;
+    EXPECT_FALSE(is_sound(item));
+    item = good;
+    item.axis = Vec3(0.0);
+    EXPECT_FALSE(is_sound(item));
+    item = good;
+    item.base.y = std::nan("");
+    EXPECT_FALSE(is_sound(item));
+    item = good;
+    item.kind = PrimitiveKind::cube;
+    EXPECT_FALSE(is_sound(item));
+}
+
+} // namespace
+} // namespace graftal

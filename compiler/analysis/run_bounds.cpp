@@ -7,6 +7,7 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
+#include "compiler/analysis/smallest_ball.h"
 #include "compiler/graph/graph.h"
 
 namespace graftal {
@@ -165,16 +166,20 @@ double RunBounds::farthest_from(Vec3 centre, Vec3& point) const {
     return best;
 }
 
-/// The centre goes towards the farthest point, a shorter way each time (M. Badoiu and K. Clarkson, "Smaller
-/// Core-Sets for Balls", 2003).
+/// The smallest ball about some points; the farthest point from its centre is one more of them, until none lies
+/// farther (M. Badoiu and K. Clarkson, "Smaller Core-Sets for Balls", 2003).
 void RunBounds::find_ball() {
-    constexpr int moves = 200;
-    Vec3 centre = box().centre();
-    for (int move = 1; move <= moves; ++move) {
+    constexpr int most_points = 100;
+    constexpr double close_enough = 1e-6;
+    std::vector<Ball> points;
+    Ball about{box().centre(), 0};
+    for (int count = 0; count < most_points; ++count) {
         Vec3 point;
-        const double radius = farthest_from(centre, point) * (1 + 1e-12);
-        if (ball_.empty() || radius < ball_.radius) ball_ = {centre, radius};
-        centre += (point - centre) / (move + 1.0);
+        const double radius = farthest_from(about.centre, point) * (1 + 1e-12);
+        if (ball_.empty() || radius < ball_.radius) ball_ = {about.centre, radius};
+        if (radius <= (1 + close_enough) * about.radius) return;
+        points.push_back({point, 0});
+        about = smallest_ball(points);
     }
 }
 

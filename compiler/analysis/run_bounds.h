@@ -24,7 +24,7 @@ class RunBounds {
 
     const Run& run() const { return *run_; }
     const Box& box() const { return levels_.back().front(); }
-    /// A ball about all, its radius within a thousandth or so of the least.
+    /// A ball about all, its radius within a millionth of the least, or nearly so.
     Ball ball() const { return ball_; }
 
     std::size_t level_count() const { return levels_.size(); }

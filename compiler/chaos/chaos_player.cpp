@@ -74,10 +74,7 @@ ChaosPoint ChaosPlayer::next() {
 
 ChaosPoint ChaosPlayer::next_of_run(const ChaosGame::Source& source) {
     const RunItem& item = (*source.run)[game_.tables_.choose(source.items, random_.bits())];
-    const bool ball = item.ball && random_.unit() * area_of(item) < area_of_ball(item);
-    const PlacedSurface surface =
-        ball ? PlacedSurface(PrimitiveKind::sphere, run_from_ball(item)) : PlacedSurface(item.kind, run_from_body(item));
-    return climb({surface.point(random_), source.paint, source.state, 0}, source.run_materials[item.colour],
+    return climb({point_of(item, random_), source.paint, source.state, 0}, source.run_materials[item.colour],
                  std::nullopt);
 }
 

@@ -161,16 +161,39 @@ Vec3 PlacedSurface::point(RandomStream& random) const {
     return map_(site.point);
 }
 
-double area_of_ball(const RunItem& item) {
-    return item.ball ? 4 * pi * item.radius * item.radius : 0;
+namespace {
+
+double slant_of(const RunItem& item) {
+    return std::hypot((1 - top_radius(item.kind)) * item.radius, glm::length(item.axis));
 }
 
+} // namespace
+
 double area_of(const RunItem& item) {
-    const double r = item.radius;
-    if (item.kind == PrimitiveKind::sphere) return 4 * pi * r * r;
+    const double r = item.radius, ball = 4 * pi * r * r;
+    if (item.kind == PrimitiveKind::sphere) return ball;
     const double top = top_radius(item.kind);
-    return pi * r * r * (1 + top * top) + pi * r * (1 + top) * std::hypot((1 - top) * r, glm::length(item.axis)) +
-           area_of_ball(item);
+    return pi * r * r * (1 + top * top) + pi * r * (1 + top) * slant_of(item) + (item.ball ? ball : 0);
+}
+
+Vec3 point_of(const RunItem& item, RandomStream& random) {
+    const double r = item.radius, top = top_radius(item.kind);
+    const double u = random.unit(), v = random.unit();
+    double at = random.unit() * area_of(item);
+    const double ball = 4 * pi * r * r;
+    if (item.kind == PrimitiveKind::sphere) return item.base + r * on_sphere({u, v, 0}).point;
+    if (item.ball && at < ball) return item.base + item.axis + r * on_sphere({u, v, 0}).point;
+    if (item.ball) at -= ball;
+    const Affine place = run_from_body(item);
+    if (at < pi * r * r) return place(on_disc({u, v, 0}, 1, 0).point);
+    at -= pi * r * r;
+    if (at < pi * r * r * top * top) return place(on_disc({u, v, 0}, top, 1).point);
+    // As on_tapered() has it: the side's area up to y grows so however the axis stretches it.
+    const double narrowing = 1 - top, share = u * (1 + top);
+    const double y = narrowing < 1e-12 ? u : (1 - std::sqrt(std::max(0.0, 1 - narrowing * share))) / narrowing;
+    Vec3 p = (1 - narrowing * y) * on_circle(v);
+    p.y = y;
+    return place(p);
 }
 
 } // namespace graftal

@@ -42,7 +42,7 @@ class PlacedSurface {
 
 /// The area of what an item of a run draws, its ball included; exact.
 double area_of(const RunItem& item);
-/// The part of it that the ball has.
-double area_of_ball(const RunItem& item);
+/// A point of it, evenly spread.
+Vec3 point_of(const RunItem& item, RandomStream& random);
 
 } // namespace graftal

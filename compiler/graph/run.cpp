@@ -64,8 +64,14 @@ Affine run_from_ball(const RunItem& item) {
 }
 
 void Run::grow() {
-    chunks_.push_back(std::make_unique_for_overwrite<RunItem[]>(chunk_size));
-    capacity_ += chunk_size;
+    auto chunk = std::make_unique_for_overwrite<RunItem[]>(chunk_size);
+    const std::size_t used = size_ & (chunk_size - 1);
+    if (used > 0) { // the last one was made shorter
+        std::copy_n(chunks_.back().get(), used, chunk.get());
+        chunks_.pop_back();
+    }
+    chunks_.push_back(std::move(chunk));
+    capacity_ = chunks_.size() * chunk_size;
 }
 
 void Run::shrink_to_fit() {

@@ -72,7 +72,7 @@ bool LsysStream::read_module(Frame& frame, Module& module) {
                         diagnostics_);
             return false;
         }
-        values_.push_back(*value);
+        values_.push_back(unrounded(*value));
     }
     return true;
 }

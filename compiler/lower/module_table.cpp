@@ -1,6 +1,7 @@
 #include "compiler/lower/module_table.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 
@@ -18,6 +19,20 @@ std::uint64_t cell_of(double number) {
 
 } // namespace
 
+double unrounded(double number) {
+    static constexpr std::array<double, 23> powers = {1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,
+                                                      1e8,  1e9,  1e10, 1e11, 1e12, 1e13, 1e14, 1e15,
+                                                      1e16, 1e17, 1e18, 1e19, 1e20, 1e21, 1e22}; // all exact
+    constexpr double noise = 8e-15, digits_a_bit = 0.30102999566398120;
+    constexpr double integer = 0x1.8p52; // what is added to it and taken away again is rounded to an integer
+    const int exponent = static_cast<int>(std::bit_cast<std::uint64_t>(number) >> 52 & 0x7ff) - 1023;
+    const int places = 11 - static_cast<int>(std::floor(exponent * digits_a_bit));
+    if (places < 0 || places >= static_cast<int>(powers.size())) return number;
+    const double power = powers[static_cast<std::size_t>(places)];
+    const double decimal = (number * power + integer - integer) / power;
+    return std::abs(decimal - number) <= noise * std::abs(number) ? decimal : number;
+}
+
 double NumberTable::representative(double number) {
     if (number == 0) return 0;
     const std::uint64_t cell = cell_of(number);
@@ -31,7 +46,7 @@ double NumberTable::representative(double number) {
     }
     const auto next = static_cast<std::uint32_t>(numbers_.size());
     const std::uint32_t found = ids_.find_or_add(mixed(0, cell), next, like);
-    if (found == next) numbers_.push_back(number);
+    if (found == next) numbers_.push_back(unrounded(number));
     return numbers_[found];
 }
 

@@ -48,8 +48,8 @@ Graph with_materials() {
     return graph;
 }
 
-/// Two placements of the branch, as a run or spelt out.
-Graph two_branches(std::size_t count, bool spelt) {
+/// Two placements of the branch and more, as a run or spelt out.
+Graph two_branches(std::size_t count, bool spelt, int more = 0) {
     Graph graph = with_materials();
     const auto run = branch(count);
     Object object;
@@ -73,6 +73,8 @@ Graph two_branches(std::size_t count, bool spelt) {
     root.instances.push_back({master, {}, {}, {}, {}});
     root.instances.push_back(
         {master, Affine::translate({3, 0, 0}) * Affine::rotate({1, 2, 3}, 50) * Affine::scale(Vec3(0.5)), {}, {}, {}});
+    for (int i = 0; i < more; ++i)
+        root.instances.push_back({master, Affine::translate({5.0 + 2 * i, 0, 0}), {}, {}, {}});
     graph.root = graph.add(std::move(root));
     return graph;
 }
@@ -133,9 +135,9 @@ TEST(RunCut, EverySizeOfRunIsDrawnWhole) {
 
 TEST(RunCut, MeshesHaveAsManyTriangles) {
     CutOptions options{.error_px = 0};
-    options.memory_bytes = 24'000'000; // too little to spell all out
-    const Cut run = cut_of(Bounded(two_branches(3000, false)), options);
-    const Cut spelt = cut_of(Bounded(two_branches(3000, true)), options);
+    options.memory_bytes = 200'000'000; // too little to spell all out
+    const Cut run = cut_of(Bounded(two_branches(3000, false, 60)), options);
+    const Cut spelt = cut_of(Bounded(two_branches(3000, true, 60)), options);
     EXPECT_GT(run.triangle_count, 0u);
     EXPECT_NEAR(static_cast<double>(run.triangle_count), static_cast<double>(spelt.triangle_count),
                 0.2 * static_cast<double>(spelt.triangle_count));
@@ -166,7 +168,7 @@ TEST(RunCut, CellsHoldNoEdges) {
 TEST(RunCut, ProxiesAreAsDarkAsWhatTheyStandFor) {
     // Few thin parts in a large box leave most of it open, many fill it.
     for (const auto& [radius, least, most] : {std::tuple(1e-4, 0.0, 0.05), std::tuple(0.5, 0.7, 1.0)}) {
-        auto run = std::make_shared<Run>();
+        auto run = std::make_shared<graftal::Run>();
         for (int i = 0; i < 200; ++i) {
             RunItem item;
             item.base = {std::sin(3.7 * i), std::sin(5.1 * i), std::sin(7.3 * i)};

@@ -9,6 +9,7 @@
 #include <glm/matrix.hpp>
 
 #include "compiler/analysis/primitive_shape.h"
+#include "compiler/graph/run.h"
 
 namespace graftal {
 
@@ -50,6 +51,27 @@ Vec3 pulled_down(const Graph& graph, const GraphPath& path, Vec3 direction) {
         direction = pulled / glm::length(pulled);
     }
     return direction;
+}
+
+/// Of the item that lies nearest to a point, a point of its side that is farthest towards the eye.
+Vec3 surface_of_run(const Run& run, Vec3 point, Vec3 to_eye) {
+    Vec3 seen(0.0);
+    double nearest = std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i < run.size(); ++i) {
+        const RunItem& item = run[i];
+        const bool round = item.kind == PrimitiveKind::sphere;
+        const double square = glm::dot(item.axis, item.axis);
+        const double share =
+            round || !(square > 0) ? 0 : std::clamp(glm::dot(point - item.base, item.axis) / square, 0.0, 1.0);
+        const Vec3 inside = item.base + share * item.axis;
+        const double distance = glm::distance(inside, point) - item.radius;
+        if (!(distance < nearest)) continue;
+        nearest = distance;
+        const Vec3 out = round || !(square > 0) ? to_eye : to_eye - glm::dot(to_eye, item.axis) / square * item.axis;
+        const double length = glm::length(out), narrowing = item.ball ? 0 : 1 - top_radius(item.kind);
+        seen = length > 0 ? inside + item.radius * (round ? 1 : 1 - share * narrowing) / length * out : inside;
+    }
+    return seen;
 }
 
 /// By object: whether a path along maps that can be inverted leads on from it for ever.
@@ -209,12 +231,15 @@ Focus focus_near_point(const Graph& graph, const std::vector<ObjectBounds>& boun
     PointWalk walk(graph, bounds, point, true);
     for (std::size_t i = 0; i < most_steps && walk.log2_size() + zoom.log2() > -margin; ++i)
         if (!walk.step()) break;
-    const std::optional<PrimitiveKind> primitive = graph.objects[walk.object()].primitive;
+    const Object& last = graph.objects[walk.object()];
+    const Vec3 nearest = walk.point();
     GraphPath path = std::move(walk).path();
-    if (!primitive || path.endless()) return focus_of_path(graph, bounds, std::move(path));
+    if (!(last.primitive || last.run) || path.endless()) return focus_of_path(graph, bounds, std::move(path));
     Focus focus;
     focus.path = std::move(path);
-    const Vec3 seen = primitive_support_point(*primitive, pulled_down(graph, focus.path, to_eye));
+    const Vec3 direction = pulled_down(graph, focus.path, to_eye);
+    const Vec3 seen = last.run ? surface_of_run(*last.run, nearest, direction)
+                               : primitive_support_point(*last.primitive, direction);
     pull_up(graph, focus, seen, focus.path.steps.size());
     return focus;
 }

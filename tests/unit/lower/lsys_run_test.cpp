@@ -85,7 +85,7 @@ INSTANTIATE_TEST_SUITE_P(
              "axiom !(1)@Gs A(1)\nmodules A\nA(l) -> f(l)!(l*0.5)@Gc[+(23*l)f(1)@Ge][^(10)A(l*0.8)]A(l*0.9)", 5},
         Case{"Contexts", "width 0.1\nmodules a b\naxiom baaaa[+aaa]aaa\nb < a -> b[-(33)F]F\nb -> F", 5},
         Case{"Decompositions", "width 0.1\naxiom A(1)\nA(l) -> B(l)[+A(l*0.9)][-A(l*0.8)]\ndecompose B(l) -> F(l)F(l)", 5}),
-    [](const auto& info) { return std::string(info.param.name); });
+    [](const auto& tested) { return std::string(tested.param.name); });
 
 TEST(LsysRuns, RoundingDecidesNothing) {
     for (const double exact : {2.0, 0.3, -0.7, 1e6, 123456.789, 1e-9, 0.0})

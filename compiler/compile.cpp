@@ -159,7 +159,7 @@ std::optional<AnalysedModel> analyse_model(const std::string& path, const Compil
     });
     if (!lowered) return std::nullopt;
     check_verified(*lowered, "after lowering");
-    model.written = {lowered->objects.size(), instance_count(*lowered)};
+    model.written = {lowered->objects.size(), instance_count(*lowered) + run_part_count(*lowered)};
 
     PipelineOptions pipeline = options.pipeline;
     pipeline.keep_names |= options.zoom.active();

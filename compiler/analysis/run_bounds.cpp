@@ -26,7 +26,8 @@ Vec3 far_end(const RunItem& item) {
     return item.base + item.axis;
 }
 
-/// A point of the disc about `centre`, at right angles to the unit vector `y`, that is farthest along `direction`.
+/// A point of the disc about `centre`, at right angles to the unit vector `y`, that is farthest along
+/// `direction`.
 Vec3 rim_point(Vec3 centre, double radius, Vec3 y, Vec3 direction) {
     const Vec3 aside = direction - glm::dot(direction, y) * y;
     const double length = glm::length(aside);
@@ -84,8 +85,10 @@ Box box_of(const RunItem& item) {
     } else {
         far_reach = near_reach;
     }
-    Box box{glm::min(item.base - near_reach, end - far_reach), glm::max(item.base + near_reach, end + far_reach)};
-    const Vec3 slack = rounding * glm::max(glm::abs(box.min), glm::abs(box.max)) + Vec3(rounding * item.radius);
+    Box box{glm::min(item.base - near_reach, end - far_reach),
+            glm::max(item.base + near_reach, end + far_reach)};
+    const Vec3 slack =
+        rounding * glm::max(glm::abs(box.min), glm::abs(box.max)) + Vec3(rounding * item.radius);
     box.min -= slack;
     box.max += slack;
     return box;
@@ -166,8 +169,8 @@ double RunBounds::farthest_from(Vec3 centre, Vec3& point) const {
     return best;
 }
 
-/// The smallest ball about some points; the farthest point from its centre is one more of them, until none lies
-/// farther (M. Badoiu and K. Clarkson, "Smaller Core-Sets for Balls", 2003).
+/// The smallest ball about some points; the farthest point from its centre is one more of them, until none
+/// lies farther (M. Badoiu and K. Clarkson, "Smaller Core-Sets for Balls", 2003).
 void RunBounds::find_ball() {
     constexpr int most_points = 100;
     constexpr double close_enough = 1e-6;

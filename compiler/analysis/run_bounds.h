@@ -37,7 +37,8 @@ class RunBounds {
     Vec3 support_point(Vec3 direction) const;
 
   private:
-    template<typename UpperOf, typename OfItem> void search(const UpperOf& upper_of, const OfItem& of_item) const;
+    template<typename UpperOf, typename OfItem>
+    void search(const UpperOf& upper_of, const OfItem& of_item) const;
     double farthest_from(Vec3 centre, Vec3& point) const;
     void find_ball();
 

@@ -74,7 +74,8 @@ class Builder {
         for (std::size_t i = first; i < end; ++i) {
             CutNode child = like(node);
             fill(child, level - 1, i);
-            ball.radius = std::max(ball.radius, glm::distance(ball.centre, child.ball.centre) + child.ball.radius);
+            ball.radius =
+                std::max(ball.radius, glm::distance(ball.centre, child.ball.centre) + child.ball.radius);
             CutEdge edge;
             edge.child = static_cast<NodeId>(cut_.nodes.size());
             edge.similarity = true;
@@ -109,7 +110,8 @@ class Builder {
         node.mean = shadow > 0 ? MeanColour{mean.fixed / shadow, mean.open / shadow} : MeanColour{};
         node.cullable = leaves > uncullable_leaves;
         node.ball = {centre, std::min(reach, 0.5 * glm::length(box.size()))};
-        // Parts that lie anyhow in the ellipsoid hide each other: so much of its shadow is left dark (Beer's law).
+        // Parts that lie anyhow in the ellipsoid hide each other: so much of its shadow is left dark (Beer's
+        // law).
         const Vec3 half = half_of(box);
         const double dark = 1 - std::exp(-shadow / mean_shadow(half));
         node.node_from_proxy = Affine::translate(centre) * Affine::scale(std::sqrt(dark) * half);

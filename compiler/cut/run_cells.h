@@ -1,8 +1,8 @@
 #pragma once
 
-// Runs (graph/run.h) in the cut: an object that has one becomes a tree of nodes over its ranges, whose lowest, the
-// cells, hold no edges but a range of the run. What a cell holds is edges all the same, made one by one where they
-// are looked at.
+// Runs (graph/run.h) in the cut: an object that has one becomes a tree of nodes over its ranges, whose
+// lowest, the cells, hold no edges but a range of the run. What a cell holds is edges all the same, made one
+// by one where they are looked at.
 
 #include <array>
 #include <cstddef>
@@ -54,8 +54,8 @@ template<typename Visit> void for_each_edge(const CutNode& node, bool cut, const
 /// How many edges that are.
 std::size_t edge_count(const CutNode& node, bool cut);
 
-/// Fills in `node`, which has everything else of its object but edges, ball and proxy, and adds the nodes below it.
-/// `source` must know all children that are met.
+/// Fills in `node`, which has everything else of its object but edges, ball and proxy, and adds the nodes
+/// below it. `source` must know all children that are met.
 void add_run_nodes(CutGraph& cut, CutNode& node, const std::shared_ptr<const RunSource>& source,
                    const RunBounds& bounds);
 

@@ -59,8 +59,7 @@ Affine run_from_body(const RunItem& item) {
 
 Affine run_from_ball(const RunItem& item) {
     const Vec3 y = unit_along(item.axis), x = unit_aside(item, y);
-    return {Mat3(item.radius * x, item.radius * y, item.radius * glm::cross(x, y)),
-            item.base + item.axis};
+    return {Mat3(item.radius * x, item.radius * y, item.radius * glm::cross(x, y)), item.base + item.axis};
 }
 
 void Run::grow() {

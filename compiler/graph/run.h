@@ -14,8 +14,8 @@ namespace graftal {
 
 enum class PrimitiveKind : std::uint8_t;
 
-/// A round primitive at its place: a cylinder, a cone, a frustum or a sphere; of a segment the ball at its far
-/// end too. The numbers are those of the turtle, to the last bit.
+/// A round primitive at its place: a cylinder, a cone, a frustum or a sphere; of a segment the ball at its
+/// far end too. The numbers are those of the turtle, to the last bit.
 struct RunItem {
     Vec3 base{0.0}; ///< of a sphere the centre
     Vec3 axis{0.0}; ///< from the base to the far end; of a sphere as long as the radius
@@ -24,7 +24,7 @@ struct RunItem {
     /// show it; it is rounded to 7e-10 of the radius.
     std::uint32_t turn = 0;
     PrimitiveKind kind{};
-    bool ball = false; ///< another part: a sphere of this radius at the far end
+    bool ball = false;        ///< another part: a sphere of this radius at the far end
     std::uint16_t colour = 0; ///< one of Object::run_materials
 };
 

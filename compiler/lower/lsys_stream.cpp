@@ -17,7 +17,8 @@ constexpr std::uint32_t most_repeated = 1000;
 } // namespace
 
 bool LsysStream::can_derive(const LsysGrammar& grammar) {
-    return !grammar.has_context && !grammar.has_rules(RuleKind::decompose) && !grammar.uses({TurtleCommand::cut});
+    return !grammar.has_context && !grammar.has_rules(RuleKind::decompose) &&
+           !grammar.uses({TurtleCommand::cut});
 }
 
 bool LsysStream::can_draw(const LsysGrammar& grammar) {
@@ -108,8 +109,9 @@ bool LsysStream::count_from(std::uint32_t word) {
 bool LsysStream::refuse_length(std::uint32_t word) {
     const LsysBlock& block = *grammar_.source;
     diagnostics_
-        .error(block.steps ? block.steps->span : block.name.span,
-               fmt::format("the derivation has more than {} modules after step {}", options_.max_modules, word))
+        .error(
+            block.steps ? block.steps->span : block.name.span,
+            fmt::format("the derivation has more than {} modules after step {}", options_.max_modules, word))
         .with_hint("fewer steps give a shorter one");
     return false;
 }
@@ -126,7 +128,10 @@ bool LsysStream::emit(Turtle& turtle, const Module& module, std::uint32_t repeat
             if (chosen.rule->is_random()) ++interpreted_;
             if (repeated < most_repeated) {
                 push(chosen, module, moment,
-                     {.word = options_.steps, .birth = module.birth, .repeated = repeated + 1, .interprets = true});
+                     {.word = options_.steps,
+                      .birth = module.birth,
+                      .repeated = repeated + 1,
+                      .interprets = true});
                 return true;
             }
             diagnostics_
@@ -170,8 +175,8 @@ bool LsysStream::choose(RuleKind kind, const Module& module, const Moment& momen
                         Chosen& chosen) {
     const std::span<const double> values = parameters(module);
     competitors_.clear();
-    const auto first =
-        rewriter_.try_rules(grammar_.candidates(kind, module.symbol), values.size(), [&](const LsysRule& rule) {
+    const auto first = rewriter_.try_rules(
+        grammar_.candidates(kind, module.symbol), values.size(), [&](const LsysRule& rule) {
             if (rule.has_context()) return Fit::no;
             if (rule.condition) {
                 const std::size_t errors = diagnostics_.error_count();

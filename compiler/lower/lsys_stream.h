@@ -13,10 +13,11 @@
 
 namespace graftal {
 
-/// Derives and draws in one go, module by module, for words in which little repeats: no module is looked up, no word
-/// is kept. A module is replaced down to the last step before the next one is looked at, so that what is kept is one
-/// string a step. What a module becomes by chance depends on the seed, the step and its place in the word of that
-/// step, as in LsysDeriver: the word is the same, but for the rounding of its parameters (NumberTable).
+/// Derives and draws in one go, module by module, for words in which little repeats: no module is looked up,
+/// no word is kept. A module is replaced down to the last step before the next one is looked at, so that what
+/// is kept is one string a step. What a module becomes by chance depends on the seed, the step and its place
+/// in the word of that step, as in LsysDeriver: the word is the same, but for the rounding of its parameters
+/// (NumberTable).
 class LsysStream {
   public:
     struct Options {
@@ -26,16 +27,18 @@ class LsysStream {
         std::uint64_t max_modules = 50'000'000;
     };
 
-    /// Whether words of the grammar can be derived so: a context sees its neighbours, a cut what stands behind it, and
-    /// decompositions come between the steps.
+    /// Whether words of the grammar can be derived so: a context sees its neighbours, a cut what stands
+    /// behind it, and decompositions come between the steps.
     static bool can_derive(const LsysGrammar& grammar);
     /// Whether what is drawn can be told from the module and its place alone: not where chance draws a film.
     static bool can_draw(const LsysGrammar& grammar);
 
     /// All must outlive this.
-    LsysStream(LsysRewriter& rewriter, const ModelPlacer& models, Diagnostics& diagnostics, const Options& options);
+    LsysStream(LsysRewriter& rewriter, const ModelPlacer& models, Diagnostics& diagnostics,
+               const Options& options);
 
-    /// Derives the word and draws it by the turtle; false after an error. Requires can_derive() and can_draw().
+    /// Derives the word and draws it by the turtle; false after an error. Requires can_derive() and
+    /// can_draw().
     bool derive(Turtle& turtle);
     /// Draws a word that is derived already. Requires can_draw().
     bool draw(const FoldedWord& word, Turtle& turtle);
@@ -80,7 +83,8 @@ class LsysStream {
     bool draw(const FoldedWord& word, std::span<const ModuleId> string, Turtle& turtle);
     bool draw_bracket(TurtleCommand command, Turtle& turtle);
     void push(const Chosen& chosen, const Module& module, const Moment& moment, Frame frame);
-    bool choose(RuleKind kind, const Module& module, const Moment& moment, std::uint64_t draw, Chosen& chosen);
+    bool choose(RuleKind kind, const Module& module, const Moment& moment, std::uint64_t draw,
+                Chosen& chosen);
     bool count_from(std::uint32_t word);
     bool refuse_length(std::uint32_t word);
     std::span<const double> parameters(const Module& module) const {
@@ -95,8 +99,9 @@ class LsysStream {
     CounterRandom random_;
     bool chooses_ = false; ///< by chance, in steps
     std::vector<Frame> frames_;
-    std::vector<double> values_;          ///< of all frames' names, and of the module under way
-    std::vector<std::uint64_t> in_word_;  ///< by step: modules of the word so far; without chance those that have rules
+    std::vector<double> values_; ///< of all frames' names, and of the module under way
+    std::vector<std::uint64_t>
+        in_word_; ///< by step: modules of the word so far; without chance those that have rules
     std::vector<Competitor> competitors_;
     std::uint64_t modules_ = 0;
     std::uint64_t interpreted_ = 0; ///< choices made when drawing

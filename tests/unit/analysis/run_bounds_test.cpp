@@ -57,7 +57,8 @@ TEST_P(RunBoundsTest, SupportIsThatOfTheParts) {
     for (int i = 0; i < 50; ++i) {
         const Vec3 direction(normal(random), normal(random), normal(random));
         const double expected = plain_support(*run, direction);
-        EXPECT_NEAR(glm::dot(direction, bounds.support_point(direction)), expected, 1e-11 * (1 + std::abs(expected)));
+        EXPECT_NEAR(glm::dot(direction, bounds.support_point(direction)), expected,
+                    1e-11 * (1 + std::abs(expected)));
     }
 }
 

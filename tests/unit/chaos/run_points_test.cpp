@@ -49,7 +49,8 @@ Graph model() {
     Object root;
     root.name = "root";
     root.instances.push_back({graph.add(std::move(object)), Affine::scale(Vec3(2.0)), {}, {}, {}});
-    root.instances.push_back({graph.primitive(PrimitiveKind::sphere), Affine::translate({600, 0, 0}), {}, {}, {}});
+    root.instances.push_back(
+        {graph.primitive(PrimitiveKind::sphere), Affine::translate({600, 0, 0}), {}, {}, {}});
     graph.root = graph.add(std::move(root));
     return graph;
 }
@@ -64,7 +65,8 @@ TEST(RunPoints, AreSpreadByArea) {
     for (const ChaosPoint& point : testing::points_of(*game, 100'000, 3)) {
         const Vec3 p = point.place;
         const int part = p.x < 100 ? 0 : p.x < 300 ? 1 : p.x < 500 ? 2 : 3;
-        const bool ball = part == 0 && glm::distance(p, Vec3(0, 6, 0)) < 1 + 1e-9 && std::abs(glm::length(Vec3(p.x, 0, p.z)) - 1) > 1e-9;
+        const bool ball = part == 0 && glm::distance(p, Vec3(0, 6, 0)) < 1 + 1e-9 &&
+                          std::abs(glm::length(Vec3(p.x, 0, p.z)) - 1) > 1e-9;
         ++counts[ball ? 4u : static_cast<std::size_t>(part)];
         if (part == 1) {
             EXPECT_NEAR(glm::distance(p, Vec3(200, 0, 0)), 4, 1e-9);
@@ -73,7 +75,8 @@ TEST(RunPoints, AreSpreadByArea) {
     }
     // In the world all of the run is twice as large; the upper cap of the segment lies within its ball.
     const double ball = 4 * pi * 0.25, side = 2 * pi * 0.5 * 3, cap = pi * 0.25;
-    std::vector<double> areas = {4 * (side + cap), 4 * 16 * pi, 4 * (pi + pi * std::sqrt(2.0)), 4 * pi, 4 * (ball + cap)};
+    std::vector<double> areas = {4 * (side + cap), 4 * 16 * pi, 4 * (pi + pi * std::sqrt(2.0)), 4 * pi,
+                                 4 * (ball + cap)};
     double sum = 0;
     for (const double area : areas)
         sum += area;

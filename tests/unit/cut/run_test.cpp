@@ -72,7 +72,11 @@ Graph two_branches(std::size_t count, bool spelt, int more = 0) {
     const ObjectId master = graph.add(std::move(object));
     root.instances.push_back({master, {}, {}, {}, {}});
     root.instances.push_back(
-        {master, Affine::translate({3, 0, 0}) * Affine::rotate({1, 2, 3}, 50) * Affine::scale(Vec3(0.5)), {}, {}, {}});
+        {master,
+         Affine::translate({3, 0, 0}) * Affine::rotate({1, 2, 3}, 50) * Affine::scale(Vec3(0.5)),
+         {},
+         {},
+         {}});
     for (int i = 0; i < more; ++i)
         root.instances.push_back({master, Affine::translate({5.0 + 2 * i, 0, 0}), {}, {}, {}});
     graph.root = graph.add(std::move(root));
@@ -99,8 +103,8 @@ View front_view(const Bounded& model, double distance) {
 
 Cut cut_of(const Bounded& model, const CutOptions& options, double distance = 1.5) {
     Diagnostics diagnostics;
-    std::optional<Cut> cut = cut_graph(model.graph, model.components, model.bounds, front_view(model, distance),
-                                       options, diagnostics);
+    std::optional<Cut> cut = cut_graph(model.graph, model.components, model.bounds,
+                                       front_view(model, distance), options, diagnostics);
     EXPECT_TRUE(cut) << diagnostics.render(SourceMap());
     return cut ? std::move(*cut) : Cut();
 }
@@ -116,8 +120,9 @@ std::vector<Drawn> drawn(const Cut& cut) {
             const Affine& place = placement.world_from_body;
             const auto* kind = std::get_if<PrimitiveKind>(&cut.bodies[placement.body].shape);
             all.push_back({kind ? static_cast<long long>(*kind) : -1, digits(place.translation.x),
-                           digits(place.translation.y), digits(place.translation.z), digits(glm::length(place.linear[0])),
-                           digits(glm::length(place.linear[1])), digits(cut.palettes[group.palette][0].r)});
+                           digits(place.translation.y), digits(place.translation.z),
+                           digits(glm::length(place.linear[0])), digits(glm::length(place.linear[1])),
+                           digits(cut.palettes[group.palette][0].r)});
         }
     std::ranges::sort(all);
     return all;

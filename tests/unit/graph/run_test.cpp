@@ -53,7 +53,8 @@ TEST(Run, KeepsTheNumbersOfASegment) {
 
 TEST(Run, TurnsPicturesAsTheTurtleDoes) {
     for (int step = 0; step < 100; ++step) {
-        const Affine turtle = Affine::rotate({0.3, 0.5, -0.7}, 7.3 * step) * Affine::rotate({0, 1, 0}, 11.0 * step);
+        const Affine turtle =
+            Affine::rotate({0.3, 0.5, -0.7}, 7.3 * step) * Affine::rotate({0, 1, 0}, 11.0 * step);
         RunItem item = segment({}, 0.4 * turtle.linear[1], 2);
         item.turn = turn_of(item.axis, turtle.linear[0]);
         EXPECT_NEAR(glm::distance(run_from_body(item).linear[0], 2.0 * turtle.linear[0]), 0, 2 * 7.4e-10);

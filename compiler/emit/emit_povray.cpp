@@ -11,6 +11,7 @@
 #include "compiler/emit/povray_textures.h"
 #include "compiler/emit/povray_view.h"
 #include "compiler/emit/sdl_writer.h"
+#include "compiler/scene/ground.h"
 #include "compiler/support/check.h"
 
 namespace graftal {
@@ -149,7 +150,9 @@ bool Emitter::write_scene(const View& view, std::vector<PaletteImage>& pictures)
     if (needs_fine_bailout()) out_ << " " << fine_bailout;
     out_ << (reflects(cut_, view) ? std::string_view(" max_trace_level 8 }\n") : " }\n");
     const std::string ground =
-        view.ground ? textures_.plain(view.ground->material.rgb, view.ground->material) : "";
+        view.ground ? textures_.ground(view.ground->material,
+                                       units_.pov_from_world() * world_from_picture(*view.ground))
+                    : "";
     out_ << textures_.declarations(pictures) << "\n";
     write_view(out_, view, units_, cut_.bounds.empty() ? Vec3(0.0) : cut_.bounds.centre(), ground);
     if (!bodies_.declare(out_, progress_)) return false;

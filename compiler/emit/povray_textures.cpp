@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <functional>
+#include <string_view>
 #include <utility>
 
 #include <fmt/format.h>
@@ -40,6 +41,14 @@ std::string finish_text(const Material& m, bool shining) {
                             number_text(std::max(m.roughness, least_roughness)));
     if (shining && m.reflection > 0) text += fmt::format(" reflection {}", number_text(m.reflection));
     return text;
+}
+
+/// A texture up to the pigment that shows where the picture is not clear. What is clear must not shine
+/// either.
+std::string clear_or(const std::string& picture, std::string_view pattern) {
+    return fmt::format("texture {{ {} {{ {}_shape }} texture_map {{ "
+                       "[0.5 pigment {{ rgbt 1 }} finish {{ ambient 0 diffuse 0 }}] [0.5 pigment {{ ",
+                       pattern, picture);
 }
 
 void begin_texture(std::string& text) {
@@ -119,14 +128,27 @@ const std::string& PovrayTextures::picture_name(const std::string& texture) {
     return name;
 }
 
+std::string PovrayTextures::ground(const Material& material, const Affine& pov_from_picture) {
+    if (material.texture.empty()) return plain(material.rgb, material);
+    const std::string& name = picture_name(material.texture);
+    std::string text = clear_or(name, "pigment_pattern");
+    text += name + " } finish { " + finish(material, true) + " }] } matrix <";
+    constexpr int place_digits = 12;
+    for (int column = 0; column < 4; ++column)
+        for (int row = 0; row < 3; ++row) {
+            if (column + row > 0) text += ",";
+            append_number(
+                text, column < 3 ? pov_from_picture.linear[column][row] : pov_from_picture.translation[row],
+                place_digits);
+        }
+    return text + "> }";
+}
+
 /// The tint over the picture is the weighted mean of a colour and the picture, where there is any of it.
 void PovrayTextures::append_picture(std::string& text, const PlacementGroup& group) {
     const std::string& name = picture_name(group.material.texture);
     const PathTint& tint = group.tint;
-    // What is clear must not shine either.
-    text += fmt::format("texture {{ uv_mapping pigment_pattern {{ {}_shape }} texture_map {{ "
-                        "[0.5 pigment {{ rgbt 1 }} finish {{ ambient 0 diffuse 0 }}] [0.5 pigment {{ ",
-                        name);
+    text += clear_or(name, "uv_mapping pigment_pattern");
     if (tint.alpha <= no_tint) {
         text += name;
     } else if (tint.alpha >= 1 - no_tint) {

@@ -27,6 +27,9 @@ class PovrayTextures {
     std::uint32_t texture_of(const PlacementGroup& group);
     /// A texture of one colour.
     std::string plain(Rgb rgb, const Material& material);
+    /// Of the ground: a picture lies on it as texture_space.h says. `pov_from_picture` places the picture,
+    /// the unit square of x and y.
+    std::string ground(const Material& material, const Affine& pov_from_picture);
 
     /// `texture { ... }`, one or two layers.
     const std::deque<std::string>& all() const { return textures_; }

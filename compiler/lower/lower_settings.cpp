@@ -57,6 +57,11 @@ class Fields {
         return field ? lower_color(field->values, lets_, diagnostics_) : std::nullopt;
     }
 
+    std::optional<Rgb> light_color(std::string_view keyword) const {
+        const SceneField* field = find(keyword);
+        return field ? lower_light_color(field->values, lets_, diagnostics_) : std::nullopt;
+    }
+
     std::optional<FlatArea> area(std::string_view keyword) const {
         const SceneField* field = find(keyword);
         return field ? lower_area(field->values, field->span, lets_, diagnostics_) : std::nullopt;
@@ -128,7 +133,7 @@ LightSetting lower_light(const Fields& fields) {
         fields.error_at_statement("this light has no place", "give it 'location: x, y, z' or 'sun: x, y, z'");
     light.location = fields.vector(light.sun ? "sun" : "location").value_or(Vec3(1.0));
     if (light.sun && light.location == Vec3(0.0)) fields.error("sun", "'sun' must have a direction");
-    light.rgb = fields.color("color").value_or(light.rgb);
+    light.rgb = fields.light_color("color").value_or(light.rgb);
     light.shadowless = fields.flag("shadowless");
     return light;
 }

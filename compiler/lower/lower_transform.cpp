@@ -133,6 +133,20 @@ std::optional<Rgb> lower_color(const std::vector<Expression>& values, const Envi
     return Rgb((*n)[0], (*n)[1], (*n)[2]);
 }
 
+std::optional<Rgb> lower_light_color(const std::vector<Expression>& values, const Environment& environment,
+                                     Diagnostics& diagnostics) {
+    const auto n = evaluate_all<3>(values, environment, diagnostics);
+    if (!n) return std::nullopt;
+    for (std::size_t i = 0; i < 3; ++i) {
+        if ((*n)[i] >= 0 && (*n)[i] <= brightest_light) continue;
+        diagnostics.error(values[i].span,
+                          fmt::format("the brightness of a light must lie between 0 and {:.0f}, not {}",
+                                      brightest_light, shortest((*n)[i])));
+        return std::nullopt;
+    }
+    return Rgb((*n)[0], (*n)[1], (*n)[2]);
+}
+
 std::optional<Tint> lower_tint(const std::vector<Expression>& values, const Environment& environment,
                                Diagnostics& diagnostics) {
     const auto n = evaluate_all<4>(values, environment, diagnostics);

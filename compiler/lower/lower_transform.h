@@ -20,6 +20,11 @@ std::optional<Vec3> lower_vector(const std::vector<Expression>& values, const En
 std::optional<Rgb> lower_color(const std::vector<Expression>& values, const Environment& environment,
                                Diagnostics& diagnostics);
 
+/// Of a light: 1 is full white on a white surface that faces it, and there may be more.
+inline constexpr double brightest_light = 1e6;
+std::optional<Rgb> lower_light_color(const std::vector<Expression>& values, const Environment& environment,
+                                     Diagnostics& diagnostics);
+
 /// Evaluates four expressions, colour and alpha; values outside [0,1] are errors.
 std::optional<Tint> lower_tint(const std::vector<Expression>& values, const Environment& environment,
                                Diagnostics& diagnostics);

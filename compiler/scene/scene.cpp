@@ -66,7 +66,10 @@ Ground resolve(const GroundSetting& setting, const std::vector<Material>& materi
     if (setting.material)
         for (const Material& material : materials)
             if (material.name == *setting.material) ground.material = material;
-    if (setting.rgb) ground.material.rgb = *setting.rgb;
+    if (setting.rgb) {
+        ground.material.rgb = *setting.rgb;
+        ground.material.texture.clear();
+    }
     return ground;
 }
 

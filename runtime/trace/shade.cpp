@@ -6,6 +6,8 @@
 
 #include <glm/geometric.hpp>
 
+#include "compiler/scene/ground.h"
+
 namespace graftal {
 
 namespace {
@@ -35,13 +37,6 @@ double finite_or_zero(double value) {
     return std::isfinite(value) ? value : 0;
 }
 
-/// Where and how a plane of that height is met; false beyond the range, and along the plane.
-bool meet_ground(double height, const Ray& ray, const RayRange& range, double& t) {
-    if (!(std::abs(ray.direction.y) >= least_cosine)) return false;
-    t = (height - ray.origin.y) / ray.direction.y;
-    return range.least < t && t < range.most;
-}
-
 } // namespace
 
 /// A point of a surface as the viewer sees it.
@@ -59,6 +54,11 @@ Shader::Shader(const View& view, Surfaces& surfaces, const ShaderLimits& limits)
         if (std::max({light.rgb.x, light.rgb.y, light.rgb.z}) < least_light) continue;
         const Vec3 at = light.sun ? glm::normalize(light.location) : light.location;
         if (is_finite(at)) lamps_.push_back({at, light.rgb, light.sun, light.shadowless});
+    }
+    if (view.ground && !view.ground->material.texture.empty()) {
+        Status ignored;
+        ground_texture_ = load_texture(view.ground->material.texture, ignored);
+        picture_from_world_ = inverse(world_from_picture(*view.ground));
     }
     const Camera& camera = view.camera;
     const double width =
@@ -101,9 +101,25 @@ bool Shader::closest(const Ray& ray, RayRange range, SurfaceHit& hit) {
     if (!view_.ground) return found;
     if (found) range.most = hit.t;
     double t = 0;
-    if (!meet_ground(view_.ground->height, ray, range, t)) return found;
+    if (!meet_ground(ray, range, t)) return found;
     hit = {t, {0, 1, 0}, view_.ground->material.rgb, &view_.ground->material};
+    if (ground_texture_) {
+        const auto& srgb = ground_texel(ray(t)).srgb;
+        hit.rgb = {srgb_decoded(srgb[0]), srgb_decoded(srgb[1]), srgb_decoded(srgb[2])};
+    }
     return true;
+}
+
+bool Shader::meet_ground(const Ray& ray, const RayRange& range, double& t) const {
+    if (!(std::abs(ray.direction.y) >= least_cosine)) return false;
+    t = (view_.ground->height - ray.origin.y) / ray.direction.y;
+    if (!(range.least < t && t < range.most)) return false;
+    return !ground_texture_ || !ground_texel(ray(t)).clear;
+}
+
+const Texture::Texel& Shader::ground_texel(Vec3 point) const {
+    const Vec3 place = picture_from_world_(point);
+    return ground_texture_->at(place.x, place.y);
 }
 
 Shader::Point Shader::point_of(const Ray& ray, const SurfaceHit& hit) const {
@@ -167,7 +183,7 @@ Rgb Shader::light_of(const Lamp& lamp, const Point& point, double least) {
 bool Shader::shadowed(const Ray& to_light, const RayRange& range) {
     if (!(range.least < range.most)) return false;
     double t = 0;
-    if (view_.ground && meet_ground(view_.ground->height, to_light, range, t)) return true;
+    if (view_.ground && meet_ground(to_light, range, t)) return true;
     return surfaces_.meets_any(to_light, range);
 }
 

@@ -1,9 +1,11 @@
 #pragma once
 
 #include <limits>
+#include <memory>
 #include <vector>
 
 #include "compiler/scene/scene.h"
+#include "runtime/image/texture.h"
 #include "runtime/trace/surfaces.h"
 
 namespace graftal {
@@ -29,7 +31,8 @@ struct ShaderLimits {
 /// ComputeLightedTexture, ComputeOneDiffuseLight, ComputeSpecularColour, ComputeReflection, ComputeSky.)
 class Shader {
   public:
-    /// Keeps references to the view and the surfaces.
+    /// Keeps references to the view and the surfaces. A picture of the ground that cannot be read is left
+    /// out: see load_textures().
     Shader(const View& view, Surfaces& surfaces, const ShaderLimits& limits = {});
 
     /// The light that comes along the ray, from the front; components may exceed 1, and are finite whatever
@@ -49,6 +52,9 @@ class Shader {
     struct Point;
 
     bool closest(const Ray& ray, RayRange range, SurfaceHit& hit);
+    /// Where and how the ground is met; false beyond the range, along it, and where its picture is clear.
+    bool meet_ground(const Ray& ray, const RayRange& range, double& t) const;
+    const Texture::Texel& ground_texel(Vec3 point) const;
     Point point_of(const Ray& ray, const SurfaceHit& hit) const;
     Rgb lit(const Point& point);
     Rgb light_of(const Lamp& lamp, const Point& point, double least);
@@ -62,6 +68,8 @@ class Shader {
     std::vector<Lamp> lamps_; ///< without those that are black
     double pixel_;            ///< a pixel's length: of parallel rays in scene units, else at distance 1
     double sky_slope_;
+    std::shared_ptr<const Texture> ground_texture_; ///< null: plain
+    Affine picture_from_world_;                     ///< of the ground's
 };
 
 } // namespace graftal

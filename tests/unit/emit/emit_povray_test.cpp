@@ -294,6 +294,20 @@ TEST(EmitPovrayDeathTest, BrokenCutsAreBugs) {
     EXPECT_DEATH(nan.text(), "finite");
 }
 
+TEST(EmitPovray, APictureLiesOnTheGround) {
+    Scene scene;
+    scene.group(scene.palette({Rgb(1)}), {});
+    View view;
+    view.ground = Ground{.height = 3, .material = {.texture = "soil.png", .around = 4}};
+    const std::string text = scene.text(view);
+    EXPECT_THAT(text, HasSubstr("image_map { png \"model_T_1.png\" }"));
+    EXPECT_THAT(text, HasSubstr("pigment_pattern { T_1_shape }"));
+    EXPECT_THAT(text, HasSubstr("[0.5 pigment { T_1 } finish"));
+    EXPECT_THAT(text, HasSubstr("}] } matrix <"));
+    ASSERT_EQ(scene.pictures.size(), 1u);
+    EXPECT_EQ(scene.pictures[0].texture, "soil.png");
+}
+
 // With use_alpha POV-Ray's pattern is 1 where the picture is clear; tests/image looks at what comes of it.
 TEST(EmitPovray, PicturesLieBehindTints) {
     Scene scene;

@@ -23,6 +23,14 @@ struct Model {
     const SceneSettings& settings() const { return graph->settings; }
 };
 
+TEST(Settings, LightsAreAsBrightAsOneLikes) {
+    const Model model("light { sun: 0, 1, 0  color: 5, 40.5, 0 }");
+    ASSERT_TRUE(model.graph) << model.errors();
+    EXPECT_EQ(model.settings().lights[0].rgb, Rgb(5, 40.5, 0));
+    EXPECT_NE(Model("light { sun: 0, 1, 0  color: 5, -1, 0 }").errors().find("brightness of a light"),
+              std::string::npos);
+}
+
 TEST(Settings, all_statements) {
     const Model model(R"(
         camera { location: 3, 2, 5  look_at: <0, 1, 0>  up: 0, 0, 1  angle: 40 }

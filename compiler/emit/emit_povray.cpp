@@ -42,13 +42,21 @@ struct Plane {
     const Placement* placement;
 };
 
+/// The pictures of an include file are named as it is: several of one model may lie side by side.
+std::string picture_stem(const PovrayOptions& options) {
+    std::string_view name = options.file_name;
+    if (!options.include || name.empty()) return harmless(options.scene_name);
+    if (name.ends_with(".inc")) name.remove_suffix(4);
+    return harmless(name);
+}
+
 class Emitter {
   public:
     Emitter(const Cut& cut, const PovrayOptions& options, const PovrayUnits& units, const TextSink& sink)
         : cut_(cut), options_(options), units_(units), out_(sink),
-          identifier_(model_identifier(options.scene_name)),
+          identifier_(options.identifier.empty() ? model_identifier(options.scene_name) : options.identifier),
           prefix_(options.include ? identifier_ + "_" : ""), bodies_(cut, prefix_),
-          textures_(cut, prefix_, harmless(options.scene_name)),
+          textures_(cut, prefix_, picture_stem(options), options.include),
           progress_(out_, cut.placement_count + bodies_.triangle_count(), options.progress) {
         sort_into_buckets();
     }
@@ -61,6 +69,7 @@ class Emitter {
     void write_header();
     bool write_objects();
     bool write_bucket(const Bucket& bucket);
+    void write_usage(const std::vector<std::string>& materials, bool pictures);
     bool needs_fine_bailout() const { return textures_.least_transmit() < default_bailout; }
 
     const Cut& cut_;
@@ -74,6 +83,7 @@ class Emitter {
     ProgressMarks progress_;
     std::vector<Bucket> buckets_;
     std::vector<Plane> planes_;
+    std::vector<std::string> texture_texts_; ///< by texture: what stands at the objects
 };
 
 void Emitter::sort_into_buckets() {
@@ -111,7 +121,7 @@ void Emitter::write_header() {
 }
 
 bool Emitter::write_bucket(const Bucket& bucket) {
-    const std::string& texture = textures_.all()[bucket.texture];
+    const std::string& texture = texture_texts_[bucket.texture];
     const Affine pov_from_world = units_.pov_from_world();
     const bool single = bucket.count == 1;
     if (!single) out_ << "union {\n";
@@ -131,7 +141,7 @@ bool Emitter::write_objects() {
         if (!write_bucket(bucket)) return false;
     for (const Plane& plane : planes_)
         bodies_.place(out_, plane.placement->body, units_.pov_from_world() * plane.placement->world_from_body,
-                      textures_.all()[plane.texture]);
+                      texture_texts_[plane.texture]);
     return !out_.stopped();
 }
 
@@ -143,6 +153,7 @@ bool reflects(const Cut& cut, const View& view) {
 
 bool Emitter::write_scene(const View& view, std::vector<PaletteImage>& pictures) {
     write_header();
+    texture_texts_.assign(textures_.all().begin(), textures_.all().end());
     const Vec3 origin = units_.origin;
     out_ << "; the camera mirrors it into POV-Ray's.\n// 1 unit of the model is ";
     out_.number(units_.scale, 6) << " here; <0,0,0> here is ";
@@ -160,17 +171,51 @@ bool Emitter::write_scene(const View& view, std::vector<PaletteImage>& pictures)
     return write_objects() && out_.flush();
 }
 
-bool Emitter::write_include(std::vector<PaletteImage>& pictures) {
-    write_header();
+/// How to use an include file, in comments at its beginning.
+void Emitter::write_usage(const std::vector<std::string>& materials, bool pictures) {
+    constexpr std::size_t most_listed = 12;
     out_ << ", and its colours are linear light.\n// In a scene of your own, with assumed_gamma 1";
     if (needs_fine_bailout()) out_ << " and " << fine_bailout;
+    const std::string file = harmless(options_.file_name);
     out_ << ":\n"
-         << fmt::format("//     #include \"{}\"\n", harmless(options_.file_name))
+         << fmt::format("//     #include \"{}\"\n", file)
          << fmt::format("//     object {{ {} }}                   // right-handed\n", identifier_)
          << fmt::format(
                 "//     object {{ {} scale <1,1,-1> }}    // for a camera with look_at, left-handed\n",
-                identifier_);
-    out_ << textures_.declarations(pictures);
+                identifier_)
+         << "// If " << file << (pictures ? " and its pictures lie" : " lies")
+         << " in another folder, say it to POV-Ray: povray +LFOLDER ...\n"
+         << fmt::format("// Placed so, it lies between the corners {0}_min and {0}_max.\n", identifier_);
+    if (textures_.all().size() == 1)
+        out_ << fmt::format("// For a texture of your own: object {{ {} texture {{ ... }} }}\n", identifier_);
+    else
+        out_ << "// For one texture of your own in place of all, before the #include:\n"
+             << fmt::format("//     #declare {0}_bare = yes;  and then  object {{ {0} texture {{ ... }} }}\n",
+                            identifier_);
+    out_ << "// For one material with another texture, before the #include:\n";
+    for (std::size_t i = 0; i < std::min(materials.size(), most_listed); ++i)
+        out_ << fmt::format("//     #declare {} = texture {{ ... }}\n", materials[i]);
+    if (materials.size() > most_listed)
+        out_ << fmt::format("//     and {} more, each after an #ifndef below\n",
+                            materials.size() - most_listed);
+}
+
+bool Emitter::write_include(std::vector<PaletteImage>& pictures) {
+    const PovrayTextures::Overridable textures = textures_.overridable();
+    const bool several = textures.names.size() > 1;
+    for (const std::string& name : textures.names)
+        texture_texts_.push_back(
+            several ? fmt::format("#ifndef ({}_bare) texture {{ {} }} #end", identifier_, name)
+                    : fmt::format("texture {{ {} }}", name));
+    const std::string declarations = textures_.declarations(pictures); // of what the textures are made of
+    write_header();
+    write_usage(textures.materials, !pictures.empty());
+    out_ << declarations << textures.declarations;
+    if (!cut_.bounds.empty()) {
+        out_ << fmt::format("#declare {}_min = ", identifier_);
+        out_.vector(cut_.bounds.min, 9) << fmt::format(";\n#declare {}_max = ", identifier_);
+        out_.vector(cut_.bounds.max, 9) << ";\n";
+    }
     if (!bodies_.declare(out_, progress_)) return false;
     out_ << "\n#declare " << identifier_ << " =\n";
     const bool single = buckets_.size() + planes_.size() == 1;

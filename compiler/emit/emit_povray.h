@@ -28,9 +28,15 @@ struct PaletteImage {
 struct PovrayOptions {
     std::string scene_name; ///< of the model, for comments and file names; any text (it is made harmless)
     bool include = false;   ///< `.inc`: declares the object in model coordinates, and draws nothing
-    std::string file_name;  ///< of the `.inc`, for the comment that says how to use it
+    std::string file_name;  ///< of the `.inc`, for the comment that says how to use it, and its pictures
     bool progress = false;  ///< emits `#debug` marks that the driver reads as parse progress
+    /// What the `.inc` declares, and what all its names begin with; "": by the model's name. Requires an
+    /// is_model_identifier().
+    std::string identifier = {};
 };
+
+/// What `--name` may be: letters, digits and '_', a capital first, since POV-Ray's own words have none; at most 24.
+bool is_model_identifier(std::string_view text);
 
 /// Writes the scene as POV-Ray 3.7 SDL (research: povray.md): literal placements of shared meshes, grouped by
 /// texture; the whole scaled so that it is about 1000 units large. Returns false if the sink stopped it.

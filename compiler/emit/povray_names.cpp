@@ -1,5 +1,7 @@
 #include "compiler/emit/povray_names.h"
 
+#include "compiler/emit/emit_povray.h"
+
 #include <algorithm>
 
 namespace graftal {
@@ -33,7 +35,13 @@ std::string identifier_part(std::string_view text) {
     return safe;
 }
 
+bool is_model_identifier(std::string_view text) {
+    return !text.empty() && text[0] >= 'A' && text[0] <= 'Z' && identifier_part(text) == text;
+}
+
 std::string model_identifier(std::string_view name) {
+    for (const std::string_view ending : {".rifs", ".lsys", ".inst"})
+        if (name.ends_with(ending)) name.remove_suffix(ending.size());
     std::string safe = identifier_part(name);
     if (safe.empty() || !is_letter(safe[0])) return "Model_" + safe;
     if (safe[0] >= 'a') safe[0] = static_cast<char>(safe[0] - 'a' + 'A');

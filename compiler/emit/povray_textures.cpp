@@ -63,8 +63,14 @@ void end_texture(std::string& text, const std::string& finish) {
 
 } // namespace
 
-PovrayTextures::PovrayTextures(const Cut& cut, const std::string& prefix, std::string file_stem)
-    : cut_(cut), prefix_(prefix), file_stem_(std::move(file_stem)), finish_names_(prefix + "F_") {}
+PovrayTextures::PovrayTextures(const Cut& cut, const std::string& prefix, std::string file_stem,
+                               bool by_material)
+    : cut_(cut), prefix_(prefix), file_stem_(std::move(file_stem)), finish_names_(prefix + "F_"),
+      by_material_(by_material) {}
+
+std::string PovrayTextures::name_of(const Material& material) {
+    return material.name.empty() ? "default" : material.name;
+}
 
 const std::string& PovrayTextures::finish(const Material& material, bool shining) {
     if (!(last_finish_.material == material)) last_finish_ = {material, {}, {}};
@@ -77,7 +83,7 @@ std::string PovrayTextures::named_finish(const Material& material, bool shining)
     const std::string text = finish_text(material, shining);
     std::string& name = finish_by_text_[text];
     if (name.empty()) {
-        const std::string wish = material.name.empty() ? "default" : material.name;
+        const std::string wish = name_of(material);
         name = finish_names_.next(text == finish_text(material, true) ? wish : wish + "_matt");
         finish_declarations_.push_back(fmt::format("#declare {} = finish {{ {} }}\n", name, text));
     }
@@ -124,7 +130,7 @@ void PovrayTextures::append_layered(std::string& text, const PlacementGroup& gro
 
 const std::string& PovrayTextures::picture_name(const std::string& texture) {
     std::string& name = pictures_[texture];
-    if (name.empty()) name = fmt::format("{}T_{}", prefix_, pictures_.size());
+    if (name.empty()) name = fmt::format("{}I_{}", prefix_, pictures_.size());
     return name;
 }
 
@@ -174,15 +180,48 @@ std::uint32_t PovrayTextures::texture_of(const PlacementGroup& group) {
     else
         append_picture(text_, group);
     const auto next = static_cast<std::uint32_t>(textures_.size());
+    const std::string material = by_material_ ? name_of(group.material) : std::string();
     const std::uint32_t index =
-        texture_ids_.find_or_add(std::hash<std::string>()(text_), next,
-                                 [&](std::uint32_t other) { return textures_[other] == text_; });
-    if (index == next) textures_.push_back(text_);
+        texture_ids_.find_or_add(std::hash<std::string>()(text_), next, [&](std::uint32_t other) {
+            return textures_[other] == text_ && materials_[other] == material;
+        });
+    if (index == next) {
+        textures_.push_back(text_);
+        materials_.push_back(material);
+    }
     return index;
 }
 
+PovrayTextures::Overridable PovrayTextures::overridable() const {
+    Overridable result;
+    result.names.resize(textures_.size());
+    std::vector<std::string> materials; // in the order of their first textures
+    std::unordered_map<std::string, std::vector<std::size_t>> textures_of;
+    for (std::size_t i = 0; i < textures_.size(); ++i) {
+        std::vector<std::size_t>& textures = textures_of[materials_[i]];
+        if (textures.empty()) materials.push_back(materials_[i]);
+        textures.push_back(i);
+    }
+    UniqueNames names(prefix_ + "T_");
+    for (const std::string& material : materials)
+        result.materials.push_back(names.next(material));
+    for (std::size_t m = 0; m < materials.size(); ++m) {
+        const std::string& name = result.materials[m];
+        const std::vector<std::size_t>& textures = textures_of[materials[m]];
+        std::string own = fmt::format("#ifndef ({})\n", name), given = "#else\n";
+        for (const std::size_t i : textures) {
+            result.names[i] = textures.size() == 1 ? name : names.next(materials[m]);
+            own += fmt::format("#declare {} = {}\n", result.names[i], textures_[i]);
+            given += fmt::format("#declare {} = texture {{ {} }}\n", result.names[i], name);
+        }
+        result.declarations += own + (textures.size() == 1 ? "" : given) + "#end\n";
+    }
+    return result;
+}
+
 std::string PovrayTextures::file_name(const std::string& name) const {
-    return fmt::format("{}_{}.png", file_stem_, name);
+    const std::string_view own = std::string_view(name).substr(prefix_.size());
+    return fmt::format("{}_{}.png", file_stem_, own);
 }
 
 std::string PovrayTextures::declarations(std::vector<PaletteImage>& pictures) const {

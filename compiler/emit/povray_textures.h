@@ -20,8 +20,9 @@ namespace graftal {
 /// second layer of the texture (research: povray.md, section 3).
 class PovrayTextures {
   public:
-    /// `prefix` begins every name; `file_stem` the names of pictures.
-    PovrayTextures(const Cut& cut, const std::string& prefix, std::string file_stem);
+    /// `prefix` begins every name; `file_stem` the names of pictures. `by_material`: looks of different materials
+    /// are different though they are equal.
+    PovrayTextures(const Cut& cut, const std::string& prefix, std::string file_stem, bool by_material);
 
     /// Of the group's primitives and meshes: an index into all(). Equal looks have equal indices.
     std::uint32_t texture_of(const PlacementGroup& group);
@@ -33,6 +34,15 @@ class PovrayTextures {
 
     /// `texture { ... }`, one or two layers.
     const std::deque<std::string>& all() const { return textures_; }
+    /// `#ifndef (Prefix_T_wood) #declare Prefix_T_wood = ... #end` for each material, so that who includes the
+    /// file can declare it before. Where tints and palettes make several textures of one material, all of them are
+    /// its texture then. Gives what stands in place of all(), in the same order.
+    struct Overridable {
+        std::string declarations;
+        std::vector<std::string> names;     ///< by texture
+        std::vector<std::string> materials; ///< the names that can be declared
+    };
+    Overridable overridable() const;
     /// The least share that a tint leaves of the palette below it; 1 if there are no layers.
     double least_transmit() const { return least_transmit_; }
     /// `#declare` of the finishes and palettes that the textures name. Adds the pictures they need.
@@ -51,6 +61,7 @@ class PovrayTextures {
     /// The name of the finish, with or without what shines.
     const std::string& finish(const Material& material, bool shining);
     std::string named_finish(const Material& material, bool shining);
+    static std::string name_of(const Material& material);
     const std::string& palette_name(std::uint32_t index);
     const std::string& picture_name(const std::string& texture);
     std::string file_name(const std::string& name) const;
@@ -64,7 +75,9 @@ class PovrayTextures {
     std::map<std::uint32_t, std::string> palettes_; ///< by index in the cut: the declared name
     std::map<std::string, std::string> pictures_;   ///< likewise, by Material::texture
     FinishNames last_finish_;
+    bool by_material_;
     std::deque<std::string> textures_;
+    std::vector<std::string> materials_; ///< by texture: the name of its material
     IdTable texture_ids_;
     std::string text_; ///< of the texture under way
     double least_transmit_ = 1;

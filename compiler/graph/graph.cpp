@@ -43,13 +43,14 @@ class Parts {
         Affine place;
         Tint tint;
         const Material* material = nullptr;
+        double chance = 0;
     };
 
     std::size_t count() const { return object_.run ? object_.run->part_count() : object_.instances.size(); }
 
     Part of(const Instance& instance) const {
         return {graph_.objects[instance.master].name, instance.parent_from_child, instance.tint,
-                material(instance.material)};
+                material(instance.material), instance.chance};
     }
 
     /// Requires that one is left.
@@ -61,7 +62,7 @@ class Parts {
         if (!at_ball_) ++next_;
         return {name_of(ball ? PrimitiveKind::sphere : item.kind),
                 ball ? run_from_ball(item) : run_from_body(item), Tint(),
-                material(object_.run_materials[item.colour])};
+                material(object_.run_materials[item.colour]), 0};
     }
 
   private:
@@ -78,7 +79,7 @@ class Parts {
 bool equal(const Parts::Part& x, const Parts::Part& y) {
     if (x.master != y.master || (x.material == nullptr) != (y.material == nullptr)) return false;
     if (x.material && !(*x.material == *y.material)) return false;
-    return x.place == y.place && x.tint == y.tint;
+    return x.place == y.place && x.tint == y.tint && x.chance == y.chance;
 }
 
 bool equal(const Graph& a, const Object& x, const Graph& b, const Object& y) {

@@ -75,8 +75,8 @@ struct Instance {
     Tint tint;
     std::optional<MaterialId> material;  ///< nothing: as the parent says
     Span span;
-    /// Its share of the object's random points (chaos/chances.h), relative to the other instances; 0: not
-    /// stated. No part of what the graph means: `.inst` does not write it, and equality does not count it.
+    /// Its share of the object's random points (chaos/chances.h), relative to the other instances of the object;
+    /// 0: not stated, or none beside others that are. Pictures of surfaces do not depend on it.
     double chance = 0;
 };
 

@@ -166,7 +166,8 @@ class Printer {
     }
 
     static bool placed_alike(const Instance& a, const Instance& b) {
-        return a.parent_from_child == b.parent_from_child && a.tint == b.tint && a.material == b.material;
+        return a.parent_from_child == b.parent_from_child && a.tint == b.tint && a.material == b.material &&
+               a.chance == b.chance;
     }
 
     const std::string& master_name(const Instance& instance) const {
@@ -186,6 +187,7 @@ class Printer {
         const Tint& tint = instance.tint;
         if (!(tint == Tint())) print_numbers("    tint", {tint.rgb.r, tint.rgb.g, tint.rgb.b, tint.alpha});
         if (instance.material) out_ += "    material: " + graph_.materials[*instance.material].name + "\n";
+        if (instance.chance > 0) print_numbers("    chance", {instance.chance});
     }
 
     const Graph& graph_;

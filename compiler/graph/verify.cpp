@@ -184,6 +184,8 @@ class Verifier {
             fault(fmt::format("has material {} of {}", *instance.material, graph_.materials.size()));
         if (!is_finite(instance.parent_from_child)) fault("has a transform that is not finite");
         if (instance.parent_from_child.linear == Mat3(0.0)) fault("has a linear part of zero");
+        if (!(instance.chance >= 0) || !std::isfinite(instance.chance))
+            fault(fmt::format("has a chance of {}", instance.chance));
         const Tint& tint = instance.tint;
         if (!in_unit_interval(tint.rgb.r) || !in_unit_interval(tint.rgb.g) || !in_unit_interval(tint.rgb.b) ||
             !in_unit_interval(tint.alpha))

@@ -1,5 +1,6 @@
 #include "compiler/lower/lower.h"
 
+#include <algorithm>
 #include <filesystem>
 #include <string_view>
 #include <utility>
@@ -15,6 +16,8 @@
 #include "compiler/support/file.h"
 #include "compiler/support/number.h"
 #include "compiler/syntax/lexer.h"
+#include "compiler/syntax/lsys_scanner.h"
+#include "compiler/syntax/scene_statements.h"
 
 namespace graftal {
 
@@ -37,6 +40,40 @@ std::string guessed_language(FileId file, const SourceMap& sources) {
         if (token.is("object") || token.is("canonical")) break;
     }
     return "inst";
+}
+
+/// The words that a text of a language begins with; those of the other languages are for the hint that it is
+/// one.
+std::vector<std::string> first_words(const std::string& language) {
+    std::vector<std::string> words =
+        language == "inst"   ? std::vector<std::string>{"object", "canonical", "use"}
+        : language == "rifs" ? std::vector<std::string>{"rifs", "main", "orbit", "use"}
+                             : std::vector<std::string>{"lsys", "main", "use"};
+    words.insert(words.end(), scene_keywords().begin(), scene_keywords().end());
+    return words;
+}
+
+/// Whether the first statement is one, or a misspelt one. Who names another file by mistake, or by the
+/// mistake of a stranger's link, must not see it printed line by line as bad syntax.
+bool looks_like_model(FileId file, const std::string& language, const SourceMap& sources) {
+    constexpr std::size_t glimpse = 4096;
+    Diagnostics ignored; // the front-end reads the text again
+    const std::size_t size = sources.text(file).size();
+    const Span beginning{file, 0, static_cast<std::uint32_t>(std::min(size, glimpse))};
+    std::vector<Token> tokens = lex_range(sources, beginning, ignored);
+    if (tokens.size() < 3 && size > glimpse) tokens = lex(sources, file, ignored);
+    if (tokens.size() == 1) return true; // empty, as the front-end will say
+    const Token& first = tokens[0];
+    const Token& second = tokens[1];
+    if (first.kind != TokenKind::name) return first.is("}") || first.is("{") || first.is(";");
+    for (const std::string& known :
+         {language, std::string("inst"), std::string("rifs"), std::string("lsys")}) {
+        const std::vector<std::string> words = first_words(known);
+        if (std::find(words.begin(), words.end(), first.text) != words.end()) return true;
+        if (!closest_name(first.text, words).empty()) return true;
+    }
+    return second.is("{") || second.is("=") || second.is("->") || is_lsys_keyword(first.text) ||
+           first.is("map") || first.is("codes");
 }
 
 std::optional<Graph> lower_root(FileId file, const LowerOptions& options, SourceMap& sources,
@@ -70,10 +107,19 @@ std::string model_language(FileId file, const SourceMap& sources) {
 std::optional<Graph> lower_file(FileId file, Span asked_for, Lowering& lowering) {
     const std::string_view name = lowering.sources.name(file);
     const std::string language = model_language(file, lowering.sources);
+    // Without the text: of what is no model nothing is shown.
+    const Span place = asked_for.file == file ? Span() : asked_for;
+    const bool known = language == "inst" || language == "rifs" || language == "lsys";
+    if (known && !looks_like_model(file, language, lowering.sources)) {
+        lowering.diagnostics
+            .error(place, fmt::format("'{}' is no model: its first word begins no statement", name))
+            .with_hint(choices("", first_words(language)));
+        return std::nullopt;
+    }
     if (language == "inst") return lower_inst(file, lowering);
     if (language == "rifs") return lower_rifs(file, lowering);
     if (language == "lsys") return lower_lsys(file, lowering);
-    lowering.diagnostics.error(asked_for, fmt::format("'{}' is no model that is known here", name))
+    lowering.diagnostics.error(place, fmt::format("'{}' is no model that is known here", name))
         .with_hint("the names of models end in .lsys, .rifs or .inst");
     return std::nullopt;
 }

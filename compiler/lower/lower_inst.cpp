@@ -191,12 +191,17 @@ class InstLowerer {
         for (int i = 0; i < static_cast<int>(PrimitiveKind::frustum); ++i)
             known.emplace_back(name_of(static_cast<PrimitiveKind>(i)));
         known.emplace_back(frustum_name);
+        const std::vector<std::string> primitives(known.end() - static_cast<int>(PrimitiveKind::frustum) - 1,
+                                                  known.end());
         for (const auto& [use, place] : uses_)
             known.push_back(use);
         for (const auto& [object, id] : by_name_)
             known.push_back(object);
         std::sort(known.begin(), known.end());
-        error.with_hint(did_you_mean(name, known));
+        known.erase(std::unique(known.begin(), known.end()), known.end());
+        const std::string hint = choices(name, known);
+        error.with_hint(hint.empty() ? fmt::format("the primitives are {}", fmt::join(primitives, ", "))
+                                     : hint);
     }
 
     // Enumeration
@@ -285,13 +290,15 @@ class InstLowerer {
         instance_count_ += group.masters.size();
         if (!stopped_ && !within_limits(graph_.objects.size(), instance_count_, group.span, lowering_))
             stopped_ = true;
+        const double chance = lower_chance(group);
         if (group.below) object.terminal_px = lower_size_px(*group.below, environment_, scratch_).value_or(0);
         for (const InstReference& reference : group.masters) {
             const std::optional<ObjectId> master = resolve(reference, parent);
             if (stopped_) return;
             if (!master || !placement) continue;
-            Instance instance{*master, placement->parent_from_child, placement->tint, placement->material,
-                              reference.span};
+            Instance instance{*master,         placement->parent_from_child,
+                              placement->tint, placement->material,
+                              reference.span,  chance};
             if (group.terminal)
                 object.terminal = instance;
             else
@@ -310,6 +317,7 @@ class InstLowerer {
         const ScatterContext context{environment_, graph_.settings, scatter_seed(),
                                      most - std::min(most, instance_count_)};
         const auto places = lower_scatter(group, context, scratch_);
+        const double chance = lower_chance(group);
         if (!places || !placement || std::ranges::count(masters, std::optional<ObjectId>()) > 0) return;
         instance_count_ += places->size();
         bool lost = false;
@@ -317,9 +325,21 @@ class InstLowerer {
             const Affine map = placement->parent_from_child * place.parent_from_child;
             lost = lost || !is_finite(map) || map.linear == Mat3(0.0);
             object.instances.push_back({*masters[place.master], map, place.tint, placement->material,
-                                        group.masters[place.master].span});
+                                        group.masters[place.master].span, chance});
         }
         if (lost) scratch_.error(group.span, "the sizes or places of these leave the range of numbers");
+    }
+
+    /// 0 where none is stated.
+    double lower_chance(const InstGroup& group) {
+        if (!group.chance) return 0;
+        const std::optional<double> chance = evaluate(*group.chance, environment_, scratch_);
+        if (!chance || *chance >= 0) return chance.value_or(0);
+        scratch_
+            .error(group.chance->span,
+                   fmt::format("a chance must not be negative, but is {}", shortest(*chance)))
+            .with_hint("chances are relative to those of the other instances");
+        return 0;
     }
 
     std::optional<std::uint64_t> scatter_seed() const {

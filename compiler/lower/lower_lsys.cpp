@@ -113,7 +113,7 @@ class LsysLowering {
         Environment all_lets = lets_;
         const LsysBlock* main = nullptr;
         const LsysBlock* const chosen = main_source();
-        for (const LsysBlock& block : tree_.blocks) {
+        for (LsysBlock& block : tree_.blocks) {
             if (diagnostics_.full()) return;
             if (main && block.is_main)
                 diagnostics_.error(block.name.span, "a second 'main' block")
@@ -126,11 +126,29 @@ class LsysLowering {
             if (is_main) main_block_ = &added;
             Environment lets =
                 evaluate_lets(block.lets, lets_, lowering_, is_main ? given_inner() : Environment());
+            if (is_main) apply_settings(block, lets);
             all_lets.insert(lets.begin(), lets.end());
             add_family(added, lets);
             added.grammar = build_grammar(block, std::move(lets), diagnostics_);
         }
-        if (lowering_.at_root_model()) check_set_names(all_lets, lowering_);
+        if (lowering_.at_root_model())
+            check_set_names(all_lets, {"angle", "step", "width", "steps", "seed"}, lowering_);
+    }
+
+    /// `--set angle=40` speaks to the block that is the model.
+    void apply_settings(LsysBlock& block, const Environment& lets) {
+        const std::pair<const char*, std::optional<LsysValue>*> settings[] = {
+            {"angle", &block.angle}, {"step", &block.step}, {"width", &block.width}, {"seed", &block.seed}};
+        const auto literal = [](double value) {
+            Expression expression;
+            expression.number = value;
+            return expression;
+        };
+        for (const auto& [name, setting] : settings)
+            if (const auto value = set_value(name, lets, lowering_))
+                *setting = LsysValue{literal(*value), Span()};
+        if (const auto steps = set_value("steps", lets, lowering_))
+            block.steps = LsysSteps{literal(*steps), Span()};
     }
 
     void add_family(Block& block, const Environment& lets) {

@@ -26,7 +26,7 @@ class OrbitLowering {
     OrbitLowering(const RifsFile& tree, const OrbitBlock& block, Lowering& lowering)
         : block_(block), lowering_(lowering), diagnostics_(lowering.diagnostics) {
         model_.lets = block_lets(evaluate_lets(tree.statements, {}, lowering_));
-        check_set_names(model_.lets, lowering_);
+        check_set_names(model_.lets, {}, lowering_);
         lower_settings(tree.statements, model_.lets, model_.scene, lowering_);
     }
 

@@ -188,7 +188,7 @@ class RifsLowering {
         for (const auto& [used, use] : uses_)
             known.emplace_back(used);
         diagnostics_.error(name.span, fmt::format("'{}' is no primitive and no used model", name.text))
-            .with_hint(did_you_mean(name.text, known));
+            .with_hint(choices(name.text, known) + "; 'use NAME = \"FILE\"' names a model");
         return std::nullopt;
     }
 

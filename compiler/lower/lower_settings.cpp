@@ -196,10 +196,14 @@ Material lower_material(const Fields& fields, const SceneStatement& statement, L
     return material;
 }
 
+constexpr const char* steps_demand = "be a whole number between 0 and 1000000000";
+
+bool are_steps(double x) {
+    return x >= 0 && x <= most_steps && x == std::floor(x);
+}
+
 std::optional<unsigned> lower_steps(const Fields& fields) {
-    const std::optional<double> steps = fields.number(
-        "steps", [](double x) { return x >= 0 && x <= most_steps && x == std::floor(x); },
-        "be a whole number between 0 and 1000000000");
+    const std::optional<double> steps = fields.number("steps", are_steps, steps_demand);
     if (!steps) return std::nullopt;
     return static_cast<unsigned>(*steps);
 }
@@ -231,14 +235,24 @@ void check_inner(std::optional<double>& value, Span span, std::string_view name,
 
 } // namespace
 
-void check_set_names(const Environment& known_lets, Lowering& lowering) {
+std::optional<double> set_value(std::string_view setting, const Environment& lets, const Lowering& lowering) {
+    const auto set = lowering.options.set.find(setting);
+    if (!lowering.at_root_model() || set == lowering.options.set.end() || lets.contains(setting))
+        return std::nullopt;
+    return set->second;
+}
+
+void check_set_names(const Environment& known_lets, const std::vector<std::string>& settings,
+                     Lowering& lowering) {
     std::vector<std::string> known;
     for (const auto& [name, value] : known_lets)
         known.push_back(name);
+    known.insert(known.end(), settings.begin(), settings.end());
     for (const auto& [name, value] : lowering.options.set) {
-        if (!known_lets.contains(name))
-            lowering.diagnostics.error(Span(), fmt::format("--set {}: the model has no 'let {}'", name, name))
-                .with_hint(did_you_mean(name, known));
+        if (std::find(known.begin(), known.end(), name) == known.end())
+            lowering.diagnostics
+                .error(Span(), fmt::format("--set {}: the model has no 'let {}'", name, name))
+                .with_hint(choices(name, known));
         if (!std::isfinite(value))
             lowering.diagnostics.error(Span(), fmt::format("--set {}: the value is not finite", name));
     }
@@ -282,7 +296,7 @@ Environment evaluate_lets(const std::vector<SceneStatement>& statements, Environ
 
 Environment lower_lets(const std::vector<SceneStatement>& statements, Lowering& lowering) {
     Environment lets = evaluate_lets(statements, {}, lowering, lowering.loading.back().inner);
-    if (lowering.at_root_model()) check_set_names(lets, lowering);
+    if (lowering.at_root_model()) check_set_names(lets, {"steps"}, lowering);
     return lets;
 }
 
@@ -316,6 +330,13 @@ void lower_settings(const std::vector<SceneStatement>& statements, const Environ
             break;
         }
     }
+    if (const std::optional<double> steps = set_value("steps", lets, lowering)) {
+        if (are_steps(*steps))
+            graph.settings.steps = static_cast<unsigned>(*steps);
+        else
+            lowering.diagnostics.error(
+                Span(), fmt::format("--set steps: it must {}, not {}", steps_demand, shortest(*steps)));
+    }
     for (const SceneStatement& statement : statements)
         for (const SceneField& field : statement.fields)
             if (statement.kind == Kind::ground && field.keyword == "material")
@@ -329,7 +350,10 @@ std::optional<MaterialId> material_named(std::string_view name, Span span, const
     std::vector<std::string> known;
     for (const Material& material : graph.materials)
         known.push_back(material.name);
-    diagnostics.error(span, fmt::format("unknown material '{}'", name)).with_hint(did_you_mean(name, known));
+    const std::string hint = choices(name, known);
+    diagnostics.error(span, fmt::format("unknown material '{}'", name))
+        .with_hint(hint.empty() ? fmt::format("material {} {{ color: 0.5, 0.4, 0.1 }} defines it", name)
+                                : hint);
     return std::nullopt;
 }
 

@@ -15,8 +15,10 @@ Environment lower_lets(const std::vector<SceneStatement>& statements, Lowering& 
 /// are known. `inner`: values of inner parameters, by name, in place of their own.
 Environment evaluate_lets(const std::vector<SceneStatement>& statements, Environment outer,
                           Lowering& lowering, const Environment& inner = {});
-/// That check: reports names of `--set` that are not among `known`.
-void check_set_names(const Environment& known, Lowering& lowering);
+/// That check: reports names of `--set` that are neither among `known` nor of `settings`.
+void check_set_names(const Environment& known, const std::vector<std::string>& settings, Lowering& lowering);
+/// The value that `--set` gives a setting of the root model; a `let` of that name comes first.
+std::optional<double> set_value(std::string_view setting, const Environment& lets, const Lowering& lowering);
 
 /// Fills `settings` and `materials` of `graph` from all other statements; errors for values out of range and
 /// for duplicates. Material names are then known: use material_named().

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -35,13 +36,17 @@ std::optional<std::array<double, count>> evaluate_all(const std::vector<Expressi
 template<std::size_t count>
 bool in_unit_range(const std::array<double, count>& numbers, const std::vector<Expression>& values,
                    Diagnostics& diagnostics) {
-    bool good = true;
+    bool good = true, too_bright = false;
     for (std::size_t i = 0; i < count; ++i) {
         if (numbers[i] >= 0 && numbers[i] <= 1) continue;
-        const char* what = i == 3 ? "alpha" : "a colour component";
-        diagnostics.error(values[i].span,
-                          fmt::format("{} must lie between 0 and 1, not {}", what, shortest(numbers[i])));
         good = false;
+        // Who counts to 255 does so three times.
+        if (i < 3 && numbers[i] > 1 && std::exchange(too_bright, true)) continue;
+        const char* what = i == 3 ? "alpha" : "a colour component";
+        Diagnostic& error = diagnostics.error(
+            values[i].span, fmt::format("{} must lie between 0 and 1, not {}", what, shortest(numbers[i])));
+        if (i < 3 && numbers[i] >= 2 && numbers[i] <= 255)
+            error.with_hint("colours are linear light: 1 is all of it, where pictures have 255");
     }
     return good;
 }

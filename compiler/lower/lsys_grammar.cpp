@@ -52,7 +52,7 @@ class GrammarBuilder {
         note_times();
         prefer_contexts();
         check_symbols();
-        check_contexts();
+        if (!block_.broken) check_contexts();
         if (diagnostics_.error_count() > errors_before_) return std::nullopt;
         return std::move(grammar_);
     }
@@ -315,21 +315,28 @@ class GrammarBuilder {
         for (const LsysName& module : block_.modules)
             declared.insert(module.text);
         std::set<std::pair<SymbolId, std::size_t>> checked;
+        Word word;
         for (const Use& use : uses_) {
+            const std::string& name = grammar_.symbols[use.symbol];
+            if (!is_letter(name) || use.span.begin != word.end) finish(word);
+            word.text += name;
+            word.end = use.arity == 0 ? use.span.end : 0;
             const bool rewritten = is_rewritten(use.symbol);
             if (grammar_.commands[use.symbol] != TurtleCommand::none) continue;
             if (!checked.emplace(use.symbol, rewritten ? use.arity : 0).second) continue;
-            const std::string& name = grammar_.symbols[use.symbol];
             if (rewritten) {
-                if (!is_rewritten(use.symbol, use.arity)) warn_of_arity(use, name);
+                if (!block_.broken && !is_rewritten(use.symbol, use.arity)) warn_of_arity(use, name);
             } else if (!is_letter(name)) {
                 diagnostics_.error(use.span, fmt::format("'{}' means nothing to the turtle", name))
-                    .with_hint("letters stand for modules; docs/language.md lists the turtle's symbols");
+                    .with_hint(
+                        name == "\""
+                            ? "strings of modules stand without quotes: axiom F"
+                            : "letters stand for modules; docs/language.md lists the turtle's symbols");
             } else if (!seen_by_contexts.contains(use.symbol) && !declared.contains(name)) {
-                diagnostics_.warning(use.span, fmt::format("'{}' has no production and draws nothing", name))
-                    .with_hint(fmt::format("'modules {}' says that this is meant", name));
+                word.idle.push_back(&use);
             }
         }
+        finish(word);
     }
 
     struct Use {
@@ -337,6 +344,49 @@ class GrammarBuilder {
         std::size_t arity;
         Span span;
     };
+
+    /// Letters that follow each other without anything between them: one name, perhaps, read letter by
+    /// letter.
+    struct Word {
+        std::string text;
+        std::uint32_t end = 0;        ///< where the next letter would stand; 0: nowhere
+        std::vector<const Use*> idle; ///< modules without a production, not spoken of before
+    };
+
+    /// Without what could not be read, nobody knows which modules have a production.
+    void finish(Word& word) {
+        if (!word.idle.empty() && !block_.broken) warn_of_idle(word);
+        word = {};
+    }
+
+    void warn_of_idle(const Word& word) {
+        std::string quoted, names;
+        for (const Use* use : word.idle) {
+            const std::string& name = grammar_.symbols[use->symbol];
+            quoted += fmt::format("{}'{}'",
+                                  quoted.empty()            ? ""
+                                  : use == word.idle.back() ? " and "
+                                                            : ", ",
+                                  name);
+            names += " " + name;
+        }
+        const Span span = join(word.idle.front()->span, word.idle.back()->span);
+        if (word.idle.size() == 1) {
+            diagnostics_.warning(span, fmt::format("{} has no production and draws nothing", quoted))
+                .with_hint(fmt::format("'modules{}' says that this is meant", names));
+            return;
+        }
+        std::vector<std::string> declared;
+        for (const LsysName& module : block_.modules)
+            declared.emplace_back(module.text);
+        const std::string meant = did_you_mean(word.text, declared);
+        diagnostics_.warning(span, fmt::format("{} have no production and draw nothing", quoted))
+            .with_hint(
+                !meant.empty()
+                    ? meant
+                    : fmt::format("'modules {}' makes one name of them, 'modules{}' says that this is meant",
+                                  word.text, names));
+    }
 
     void warn_of_arity(const Use& use, const std::string& name) {
         std::set<std::size_t> known;

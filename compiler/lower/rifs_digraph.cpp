@@ -70,7 +70,7 @@ class DigraphResolver {
         for (const RifsSubsystem& block : system_.blocks)
             if (known.size() < most_candidates) known.emplace_back(block.source->name.text);
         diagnostics_.error(from->span, fmt::format("unknown rifs '{}'", from->text))
-            .with_hint(did_you_mean(from->text, known));
+            .with_hint(choices(from->text, known));
         node.from = node.block;
     }
 
@@ -98,7 +98,7 @@ class DigraphResolver {
             known.push_back(system_.nodes[i].name);
         diagnostics_
             .error(name.span, fmt::format("'rifs {}' has no map '{}'", block_->source->name.text, name.text))
-            .with_hint(did_you_mean(name.text, known));
+            .with_hint(choices(name.text, known));
         return std::nullopt;
     }
 

@@ -53,8 +53,9 @@ class SystemBuilder {
         for (const RifsMap& map : block.maps)
             add_node(map, static_cast<std::uint32_t>(system_.nodes.size() - subsystem.first));
         subsystem.end = static_cast<std::uint32_t>(system_.nodes.size());
-        if (block.maps.empty())
-            diagnostics_.error(block.name.span, fmt::format("'rifs {}' has no maps", block.name.text));
+        if (block.maps.empty() && !block.broken)
+            diagnostics_.error(block.name.span, fmt::format("'rifs {}' has no maps", block.name.text))
+                .with_hint("map NAME { scale 1/2  translate 1, 0, 0 }, or rows of 'codes 2d { ... }'");
         check_probabilities(block);
         system_.blocks.push_back(std::move(subsystem));
     }
@@ -96,9 +97,10 @@ class SystemBuilder {
         std::vector<double> numbers;
         for (const Expression& code : map.codes) {
             const std::optional<double> number = evaluate(code, lets_, diagnostics_);
-            if (number) numbers.push_back(*number);
+            if (!number)
+                return std::nullopt; // one mistake for each row, such as one with the names of its columns
+            numbers.push_back(*number);
         }
-        if (numbers.size() < map.codes.size()) return std::nullopt;
         const Affine result = map_from_codes(map.form, numbers);
         if (!is_finite(result)) {
             diagnostics_.error(map.span, "this row gives numbers that are not finite");
@@ -189,8 +191,12 @@ std::optional<MaterialId> RifsLooks::material(const RifsLook& look) const {
     std::vector<std::string> known;
     for (const Material& material : materials_)
         if (known.size() < most_candidates) known.push_back(material.name);
+    const std::string hint = choices(look.material->text, known);
     diagnostics_.error(look.material->span, fmt::format("unknown material '{}'", look.material->text))
-        .with_hint(did_you_mean(look.material->text, known));
+        .with_hint(hint.empty()
+                       ? fmt::format("material {} {{ color: 0.5, 0.4, 0.1 }} before the block defines it",
+                                     look.material->text)
+                       : hint);
     return std::nullopt;
 }
 

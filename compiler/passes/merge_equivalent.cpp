@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cmath>
 #include <compare>
 #include <cstdint>
 #include <functional>
@@ -23,7 +24,7 @@ namespace {
 using Label = std::uint32_t;
 
 /// All of an instance but its master, bit by bit.
-using Placement = std::array<std::uint64_t, 18>;
+using Placement = std::array<std::uint64_t, 19>;
 
 std::uint64_t hash_of(const Placement& placement) {
     std::uint64_t hash = 0;
@@ -32,8 +33,22 @@ std::uint64_t hash_of(const Placement& placement) {
     return hash;
 }
 
-/// `terminal_px`: nothing but of a terminal.
-Placement placement_of(const Instance& instance, std::optional<double> terminal_px) {
+/// The sum of the chances that an object's instances state, which they are relative to; 0: none are stated.
+double chance_sum(const Object& object) {
+    double sum = 0;
+    for (const Instance& instance : object.instances)
+        sum += instance.chance;
+    return sum;
+}
+
+/// Of a sum; rounded, since the chances of equal objects may come by different ways.
+double chance_share(double chance, double sum) {
+    constexpr double digits = 1e12;
+    return sum > 0 && std::isfinite(sum) ? std::round(chance / sum * digits) / digits : chance;
+}
+
+/// `terminal_px`: nothing but of a terminal; `chance`: relative to all of the object.
+Placement placement_of(const Instance& instance, std::optional<double> terminal_px, double chance) {
     Placement placement;
     std::size_t next = 0;
     const auto put = [&](double value) {
@@ -51,13 +66,14 @@ Placement placement_of(const Instance& instance, std::optional<double> terminal_
     const std::uint64_t material = instance.material ? *instance.material + std::uint64_t{1} : 0;
     placement[next++] = material << 1 | (terminal_px ? 1u : 0u);
     put(terminal_px.value_or(0));
+    put(chance);
     return placement;
 }
 
 class Labels {
   public:
-    Label of(const Instance& instance, std::optional<double> terminal_px) {
-        const Placement placement = placement_of(instance, terminal_px);
+    Label of(const Instance& instance, std::optional<double> terminal_px, double chance) {
+        const Placement placement = placement_of(instance, terminal_px, chance);
         const auto next = static_cast<Label>(known_.size());
         const Label label =
             ids_.find_or_add(hash_of(placement), next, [&](Label known) { return known_[known] == placement; });
@@ -95,12 +111,14 @@ Edges edges_of(const Graph& graph) {
     Labels labels;
     for (ObjectId user = 0; user < graph.objects.size(); ++user) {
         const Object& object = graph.objects[user];
+        const double chances = chance_sum(object);
         for (const Instance& instance : object.instances) {
-            edges.labels_of[user].push_back(labels.of(instance, std::nullopt));
+            edges.labels_of[user].push_back(
+                labels.of(instance, std::nullopt, chance_share(instance.chance, chances)));
             ++edges.first_arrival[instance.master + 1];
         }
         if (object.terminal) {
-            edges.labels_of[user].push_back(labels.of(*object.terminal, object.terminal_px));
+            edges.labels_of[user].push_back(labels.of(*object.terminal, object.terminal_px, 0));
             ++edges.first_arrival[object.terminal->master + 1];
         }
     }

@@ -1,32 +1,30 @@
 #include "compiler/support/diagnostics.h"
 
 #include <algorithm>
+#include <cctype>
 
 #include <fmt/format.h>
+
+#include "compiler/support/printable.h"
 
 namespace graftal {
 
 namespace {
 
 constexpr std::size_t widest_excerpt = 160;
+/// More names than fit here would hide the message among them.
+constexpr std::size_t longest_list = 200;
+constexpr std::size_t longest_message = 1000;
 
 std::size_t code_points(std::string_view text) {
     return static_cast<std::size_t>(
         std::count_if(text.begin(), text.end(), [](char c) { return (c & 0xC0) != 0x80; }));
 }
 
-/// Control characters would move the caret or the terminal; tabs become one blank.
-std::string printable(std::string_view text) {
-    std::string out(text);
-    for (char& c : out)
-        if (static_cast<unsigned char>(c) < 0x20 || c == 0x7F) c = c == '\t' ? ' ' : '?';
-    return out;
-}
-
 std::string place(const SourceMap& sources, Span span) {
     if (!span.known()) return "graftal";
     const Position at = sources.position(span.file, span.begin);
-    return fmt::format("{}:{}:{}", sources.name(span.file), at.line, at.column);
+    return fmt::format("{}:{}:{}", escaped(sources.name(span.file)), at.line, at.column);
 }
 
 void append_excerpt(std::string& out, const SourceMap& sources, Span span) {
@@ -52,7 +50,7 @@ void append_excerpt(std::string& out, const SourceMap& sources, Span span) {
     last = std::clamp(last - window_begin, first, window.size());
     const std::size_t indent = code_points(window.substr(0, first));
     const std::size_t width = std::max<std::size_t>(1, code_points(window.substr(first, last - first)));
-    out += fmt::format("    {}\n    {}^{}\n", printable(window), std::string(indent, ' '),
+    out += fmt::format("    {}\n    {}^{}\n", masked(window), std::string(indent, ' '),
                        std::string(width - 1, '~'));
 }
 
@@ -120,11 +118,14 @@ std::string Diagnostics::render(const SourceMap& sources, bool quiet) const {
     for (const Diagnostic& diagnostic : all_) {
         if (quiet && diagnostic.severity == Severity::note) continue;
         const char* severity = name_of(diagnostic.severity);
-        out += fmt::format("{}: {}: {}\n", place(sources, diagnostic.span), severity, diagnostic.message);
+        out += fmt::format("{}: {}: {}\n", place(sources, diagnostic.span), severity,
+                           escaped(diagnostic.message, longest_message));
         append_excerpt(out, sources, diagnostic.span);
-        if (!diagnostic.hint.empty()) out += fmt::format("    hint: {}\n", diagnostic.hint);
+        if (!diagnostic.hint.empty())
+            out += fmt::format("    hint: {}\n", escaped(diagnostic.hint, longest_message));
         for (const Note& note : diagnostic.notes) {
-            out += fmt::format("{}: note: {}\n", place(sources, note.span), note.message);
+            out += fmt::format("{}: note: {}\n", place(sources, note.span),
+                               escaped(note.message, longest_message));
             append_excerpt(out, sources, note.span);
         }
     }
@@ -134,8 +135,14 @@ std::string Diagnostics::render(const SourceMap& sources, bool quiet) const {
 
 namespace {
 
-/// Optimal string alignment distance (Damerau-Levenshtein without overlapping edits).
+char lower(char c) {
+    return static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+}
+
+/// Optimal string alignment distance (Damerau-Levenshtein without overlapping edits), small letters and
+/// capitals alike.
 std::size_t edit_distance(std::string_view a, std::string_view b) {
+    const auto same = [&](std::size_t i, std::size_t j) { return lower(a[i]) == lower(b[j]); };
     std::vector<std::vector<std::size_t>> d(a.size() + 1, std::vector<std::size_t>(b.size() + 1));
     for (std::size_t i = 0; i <= a.size(); ++i)
         d[i][0] = i;
@@ -143,13 +150,20 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
         d[0][j] = j;
     for (std::size_t i = 1; i <= a.size(); ++i) {
         for (std::size_t j = 1; j <= b.size(); ++j) {
-            const std::size_t change = d[i - 1][j - 1] + (a[i - 1] == b[j - 1] ? 0 : 1);
+            const std::size_t change = d[i - 1][j - 1] + (same(i - 1, j - 1) ? 0 : 1);
             d[i][j] = std::min({d[i - 1][j] + 1, d[i][j - 1] + 1, change});
-            if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1])
+            if (i > 1 && j > 1 && same(i - 1, j - 2) && same(i - 2, j - 1))
                 d[i][j] = std::min(d[i][j], d[i - 2][j - 2] + 1);
         }
     }
     return d[a.size()][b.size()];
+}
+
+/// `prob` for `probability`, `lsystem` for `lsys`.
+bool begins_alike(std::string_view a, std::string_view b) {
+    constexpr std::size_t least = 3;
+    const std::size_t size = std::min(a.size(), b.size());
+    return size >= least && edit_distance(a.substr(0, size), b.substr(0, size)) == 0;
 }
 
 } // namespace
@@ -160,19 +174,36 @@ std::string closest_name(std::string_view name, const std::vector<std::string>& 
     std::string best;
     std::size_t best_distance = std::max<std::size_t>(1, name.size() / 3) + 1;
     for (const std::string& candidate : candidates) {
-        if (candidate.size() > longest_name) continue;
+        if (candidate.size() > longest_name || candidate == name) continue;
         const std::size_t distance = edit_distance(name, candidate);
-        if (distance < best_distance && distance < std::max(name.size(), candidate.size())) {
+        if (distance < best_distance && distance < name.size()) {
             best_distance = distance;
             best = candidate;
         }
     }
-    return best;
+    if (!best.empty()) return best;
+    const auto alike = std::find_if(candidates.begin(), candidates.end(), [&](const std::string& candidate) {
+        return candidate != name && begins_alike(name, candidate);
+    });
+    return alike == candidates.end() ? "" : *alike;
 }
 
 std::string did_you_mean(std::string_view name, const std::vector<std::string>& candidates) {
     const std::string best = closest_name(name, candidates);
     return best.empty() ? "" : fmt::format("did you mean '{}'?", best);
+}
+
+std::string choices(std::string_view name, const std::vector<std::string>& candidates) {
+    std::string hint = did_you_mean(name, candidates);
+    std::string list;
+    for (auto it = candidates.begin(); it != candidates.end(); ++it) {
+        const std::string& candidate = *it;
+        if (candidate.empty() || std::find(candidates.begin(), it, candidate) != it) continue;
+        list += (list.empty() ? "" : ", ") + candidate;
+        if (list.size() > longest_list) break;
+    }
+    if (list.empty() || list.size() > longest_list) return hint;
+    return hint + (hint.empty() ? "known here: " : " known here: ") + list;
 }
 
 } // namespace graftal

@@ -63,11 +63,15 @@ class Diagnostics {
     std::size_t warning_count_ = 0;
 };
 
-/// The candidate closest to a misspelt name, or "" if none is close enough to be what was meant
-/// (at most a third of its letters wrong; transpositions count once).
+/// The candidate closest to a misspelt name, or "" if none is close enough to be what was meant: at most a third
+/// of its letters wrong, where transpositions count once and capitals not at all; else one that begins with the
+/// name, or that the name begins with.
 std::string closest_name(std::string_view name, const std::vector<std::string>& candidates);
 
-/// " (did you mean 'x'?)"-style hint for closest_name, or "" if there is none.
+/// The hint "did you mean 'x'?" for closest_name, or "" if there is none.
 std::string did_you_mean(std::string_view name, const std::vector<std::string>& candidates);
+
+/// The same, followed by all candidates where they are few.
+std::string choices(std::string_view name, const std::vector<std::string>& candidates);
 
 } // namespace graftal

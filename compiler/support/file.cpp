@@ -70,7 +70,9 @@ Status PendingFile::commit() {
 Status write_text(const std::string& path, std::string_view text) {
     if (path == "-") {
         const bool written = std::fwrite(text.data(), 1, text.size(), stdout) == text.size();
-        return written && std::fflush(stdout) == 0 ? Status() : system_failure("write", "standard output");
+        if (written && std::fflush(stdout) == 0) return {};
+        if (errno == EPIPE) return {}; // as in `graftal print M | head`: the reader has what it wants
+        return system_failure("write", "standard output");
     }
     PendingFile pending(path);
     OpenFile file(std::fopen(pending.temporary_path().c_str(), "wb"));

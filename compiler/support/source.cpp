@@ -24,6 +24,9 @@ Span join(Span a, Span b) {
 FileId SourceMap::add(std::string name, std::string text) {
     GRAFTAL_CHECK(text.size() < UINT32_MAX, "source text too long");
     File file{std::move(name), std::move(text), {0}};
+    // Lines that end with carriage returns alone, as on computers long ago, would be one line.
+    if (file.text.find('\n') == std::string::npos)
+        std::replace(file.text.begin(), file.text.end(), '\r', '\n');
     for (std::size_t i = 0; i < file.text.size(); ++i)
         if (file.text[i] == '\n') file.line_begins.push_back(static_cast<std::uint32_t>(i + 1));
     files_.push_back(std::move(file));

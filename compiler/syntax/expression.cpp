@@ -48,7 +48,11 @@ class Evaluator {
         std::vector<std::string> candidates = {"pi"};
         for (const auto& [known, value] : environment_)
             candidates.push_back(known);
-        error.with_hint(did_you_mean(e.text, candidates));
+        const bool unit = e.text == "deg" || e.text == "degrees" || e.text == "rad" || e.text == "radians";
+        error.with_hint(unit ? "angles are in degrees, and numbers have no units"
+                        : candidates.size() == 1 && e.text != "PI" && e.text != "Pi"
+                            ? fmt::format("'let {} = ...' names a number", e.text)
+                            : choices(e.text, candidates));
         return std::nullopt;
     }
 
@@ -60,7 +64,8 @@ class Evaluator {
             for (const ExpressionFunction& known : expression_functions())
                 candidates.push_back(known.name);
             diagnostics_.error(e.span, fmt::format("unknown function '{}'", e.text))
-                .with_hint(did_you_mean(e.text, candidates));
+                .with_hint(e.text == "radians" || e.text == "degrees" ? "angles are in degrees everywhere"
+                                                                      : choices(e.text, candidates));
             return std::nullopt;
         }
         if (e.operands.size() != function->arity) return wrong_count(e, function->arity);

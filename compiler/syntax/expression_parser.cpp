@@ -1,5 +1,7 @@
 #include "compiler/syntax/expression_parser.h"
 
+#include <algorithm>
+#include <array>
 #include <utility>
 
 #include <fmt/format.h>
@@ -8,7 +10,15 @@ namespace graftal {
 
 namespace {
 
-enum class Mode { plain, row, angle_brackets };
+/// Where an expression stands: in angle brackets '<' and '>' are no comparisons, in a row nor do signs that
+/// stand off from what is before them go on.
+struct Mode {
+    bool angle_brackets = false;
+    bool row = false;
+    bool list = false; ///< of several numbers, commas or not: a sign that begins a line begins what comes next
+};
+
+constexpr const char* vector_hint = "a vector is written x, y, z or <x, y, z>";
 
 /// How tightly a binary operator binds; 0 for other tokens. The power binds tighter than signs and is
 /// parsed apart.
@@ -35,6 +45,7 @@ class ExpressionParser {
             const int level = binary_level();
             if (level < lowest) break;
             const Token op = stream_.next();
+            if (op.is("%") && !begins_operand()) return refuse_percent(op);
             std::optional<Expression> right = parse(level + 1);
             if (!right || !count(op)) return std::nullopt;
             left = binary(op, std::move(*left), std::move(*right));
@@ -48,10 +59,25 @@ class ExpressionParser {
         const Token& op = stream_.peek();
         if (op.kind != TokenKind::symbol) return 0;
         const int level = precedence(op.text);
-        if (level == comparison && mode_ != Mode::plain && op.text != "==" && op.text != "!=") return 0;
-        if (level == addition && mode_ == Mode::row && op.space_before && !stream_.peek(1).space_before)
-            return 0;
+        const bool bracket = op.text != "==" && op.text != "!=";
+        if (level == comparison && (mode_.row || mode_.angle_brackets) && bracket) return 0;
+        const bool apart = mode_.row ? op.space_before : mode_.list && op.first_on_line;
+        if (level == addition && apart && !stream_.peek(1).space_before) return 0;
         return level;
+    }
+
+    bool begins_operand() const {
+        const Token& token = stream_.peek();
+        if (token.first_on_line) return false;
+        return token.kind == TokenKind::number || token.kind == TokenKind::name || token.is("(") ||
+               token.is("-") || token.is("+") || token.is("!");
+    }
+
+    std::nullopt_t refuse_percent(const Token& op) {
+        stream_.diagnostics()
+            .error(op.span, "'%' is the remainder of a division, and its right side is missing")
+            .with_hint("a share is a number from 0 to 1: 0.5 in place of 50%");
+        return std::nullopt;
     }
 
     std::optional<Expression> parse_signed() {
@@ -80,9 +106,10 @@ class ExpressionParser {
     std::optional<Expression> parse_primary() {
         if (stream_.at("(")) return parse_parenthesis();
         const TokenKind kind = stream_.peek().kind;
-        const bool next_line = stream_.peek(1).is(":"); // a keyword, no value
-        if (kind != TokenKind::number && (kind != TokenKind::name || next_line)) {
-            stream_.expected("a number");
+        if (kind != TokenKind::number && (kind != TokenKind::name || at_keyword())) {
+            const bool equals = stream_.at("=");
+            Diagnostic& error = stream_.expected("a number");
+            if (equals) error.with_hint("values follow their word without '='");
             return std::nullopt;
         }
         const Token token = stream_.next();
@@ -97,11 +124,23 @@ class ExpressionParser {
         return node(Expression::Kind::name, token, token.span);
     }
 
+    /// `scale:`, or on a line of its own `object NAME`, `camera {`: no value.
+    bool at_keyword() const {
+        const Token& after = stream_.peek(1);
+        if (after.is(":")) return true;
+        return !mode_.row && stream_.peek().first_on_line && !after.first_on_line &&
+               (after.kind == TokenKind::name || after.is("{"));
+    }
+
     std::optional<Expression> parse_parenthesis() {
         const Token open = stream_.next();
         const Nested nested(*this);
         if (!nested.ok) return std::nullopt;
         std::optional<Expression> inner = parse();
+        if (inner && stream_.at(",")) {
+            stream_.expected("')'").with_hint(vector_hint).with_note(open.span, "to close this '('");
+            return std::nullopt;
+        }
         if (!inner || !close(open)) return std::nullopt;
         inner->span = stream_.span_from(open.span);
         return inner;
@@ -132,7 +171,7 @@ class ExpressionParser {
     struct Nested {
         explicit Nested(ExpressionParser& parser)
             : ok(parser.enter()), parser_(parser), outer_(parser.mode_) {
-            if (parser.stream_.previous().is("(")) parser.mode_ = Mode::plain;
+            if (parser.stream_.previous().is("(")) parser.mode_ = Mode();
         }
         ~Nested() {
             --parser_.depth_;
@@ -196,39 +235,136 @@ bool begins_number(const Token& token, const Token& after) {
     return token.is("(") || token.is("-") || token.is("+") || token.is("!");
 }
 
+/// Words that begin something else where numbers stand without commas.
+bool is_keyword(const Token& token) {
+    static constexpr std::array<std::string_view, 52> words = {
+        "scale",      "rotate",   "translate", "shear",    "matrix",   "projection",   "union",
+        "instance",   "terminal", "scatter",   "tint",     "material", "below",        "probability",
+        "count",      "over",     "except",    "by",       "apart",    "seed",         "turn",
+        "lean",       "size",     "weights",   "location", "look_at",  "up",           "angle",
+        "width",      "sun",      "color",     "zenith",   "horizon",  "height",       "area",
+        "ambient",    "diffuse",  "specular",  "texture",  "around",   "orthographic", "shadowless",
+        "reflection", "map",      "codes",     "follow",   "start",    "condense",     "object",
+        "roughness",  "members",  "rgb"};
+    return token.kind == TokenKind::name && std::find(words.begin(), words.end(), token.text) != words.end();
+}
+
+/// A list of numbers under way.
+class NumberList {
+  public:
+    NumberList(TokenStream& stream, std::size_t min, std::size_t max)
+        : stream_(stream), first_(stream.peek()), min_(min), max_(max) {
+        mode_.list = max > 1;
+        mode_.angle_brackets = stream.accept("<");
+    }
+
+    /// Nothing after an error, which has been reported; the count is not checked.
+    bool parse() {
+        if (stream_.at("[")) {
+            stream_.expected("a number").with_hint(vector_hint);
+            return false;
+        }
+        const std::size_t begin = stream_.position();
+        do {
+            std::optional<Expression> number = ExpressionParser(stream_, mode_).parse();
+            if (!number) return false;
+            const bool row = max_ > 1 && !mode_.row && numbers_.empty() && !stream_.at(",");
+            if (row) { // read again, now with the signs of a row
+                mode_.row = true;
+                stream_.go_back(begin);
+                number = ExpressionParser(stream_, mode_).parse();
+                if (!number) return false;
+            }
+            numbers_.push_back(std::move(*number));
+        } while (stream_.at(",") ? take_comma() : max_ > 1 && number_follows());
+        return true;
+    }
+
+    std::vector<Expression> numbers() && { return std::move(numbers_); }
+    std::size_t count() const { return numbers_.size(); }
+    const Token& first() const { return first_; }
+    bool angle_brackets() const { return mode_.angle_brackets; }
+
+  private:
+    bool take_comma() {
+        const bool goes_on = mode_.angle_brackets || begins_number(stream_.peek(1), stream_.peek(2));
+        return max_ > 1 && goes_on && count() <= max_ && stream_.accept(",");
+    }
+
+    /// Without a comma; in a list with commas only where one is missed.
+    bool number_follows() const {
+        const Token& token = stream_.peek();
+        const bool needed = count() < min_;
+        if (mode_.angle_brackets) return !token.is(">") && begins_number(token, stream_.peek(1));
+        if (count() >= max_ || (!needed && (!mode_.row || token.first_on_line))) return false;
+        if (token.kind == TokenKind::name && (token.first_on_line || !needed || is_keyword(token)))
+            return false;
+        return !token.is("!") && begins_number(token, stream_.peek(1));
+    }
+
+    TokenStream& stream_;
+    const Token first_;
+    std::size_t min_, max_;
+    Mode mode_;
+    std::vector<Expression> numbers_;
+};
+
+constexpr std::string_view colour_hint = "a colour is red, green and blue from 0 to 1: 1, 0.5, 0 is orange";
+constexpr std::string_view tint_hint = "a tint is a colour and an alpha: r, g, b, a or rgb <r, g, b> a";
+
+/// Names that people try, and what they are here.
+std::string_view named_colour(std::string_view name) {
+    static constexpr std::pair<std::string_view, std::string_view> colours[] = {
+        {"red", "1, 0, 0"},        {"green", "0, 1, 0"},    {"blue", "0, 0, 1"},
+        {"white", "1, 1, 1"},      {"black", "0, 0, 0"},    {"yellow", "1, 1, 0"},
+        {"cyan", "0, 1, 1"},       {"magenta", "1, 0, 1"},  {"gray", "0.2, 0.2, 0.2"},
+        {"grey", "0.2, 0.2, 0.2"}, {"orange", "1, 0.4, 0"}, {"brown", "0.2, 0.08, 0.03"}};
+    for (const auto& [known, numbers] : colours)
+        if (known == name) return numbers;
+    return {};
+}
+
+/// `color: red`, where no list of numbers begins. Reported.
+bool refuse_named_colour(TokenStream& stream) {
+    const Token& token = stream.peek();
+    const Token& after = stream.peek(1);
+    const std::string_view numbers = token.kind == TokenKind::name ? named_colour(token.text) : "";
+    const bool list = after.is(",") || after.kind == TokenKind::number ||
+                      (after.kind == TokenKind::name && !after.first_on_line && !is_keyword(after));
+    if (numbers.empty() || list) return false;
+    stream.diagnostics()
+        .error(token.span, fmt::format("'{}' is no number, and colours have no names here", token.text))
+        .with_hint(fmt::format("{} is {}", token.text, numbers));
+    return true;
+}
+
 } // namespace
 
 std::optional<Expression> parse_expression(TokenStream& stream) {
-    return ExpressionParser(stream, Mode::plain).parse();
+    return ExpressionParser(stream, Mode()).parse();
 }
 
 std::optional<Expression> parse_row_expression(TokenStream& stream) {
-    return ExpressionParser(stream, Mode::row).parse();
+    return ExpressionParser(stream, Mode{.row = true}).parse();
 }
 
 std::optional<std::vector<Expression>> parse_numbers(TokenStream& stream, std::size_t min, std::size_t max,
-                                                     std::string_view what) {
-    const Token first = stream.peek();
-    const bool angle = stream.accept("<");
-    std::vector<Expression> numbers;
-    do {
-        std::optional<Expression> number =
-            ExpressionParser(stream, angle ? Mode::angle_brackets : Mode::plain).parse();
-        if (!number) return std::nullopt;
-        numbers.push_back(std::move(*number));
-    } while (max > 1 && stream.at(",") && (angle || begins_number(stream.peek(1), stream.peek(2))) &&
-             numbers.size() <= max && stream.accept(","));
-    if (numbers.size() < min || numbers.size() > max) {
-        const std::string found = numbers.size() > max ? "more" : std::to_string(numbers.size());
-        stream.diagnostics().error(stream.span_from(first.span),
-                                   fmt::format("{} takes {}, not {}", what, count_words(min, max), found));
+                                                     std::string_view what, std::string_view hint) {
+    NumberList list(stream, min, max);
+    if (!list.parse()) return std::nullopt;
+    if (list.count() < min || list.count() > max) {
+        const std::string found = list.count() > max ? "more" : std::to_string(list.count());
+        stream.diagnostics()
+            .error(stream.span_from(list.first().span),
+                   fmt::format("{} takes {}, not {}", what, count_words(min, max), found))
+            .with_hint(std::string(hint));
         return std::nullopt;
     }
-    if (angle && !stream.accept(">")) {
-        stream.expected("'>'").with_note(first.span, "to close this '<'");
+    if (list.angle_brackets() && !stream.accept(">")) {
+        stream.expected("'>'").with_note(list.first().span, "to close this '<'");
         return std::nullopt;
     }
-    return numbers;
+    return std::move(list).numbers();
 }
 
 bool parse_arguments(TokenStream& stream, std::vector<Expression>& arguments) {
@@ -239,7 +375,9 @@ bool parse_arguments(TokenStream& stream, std::vector<Expression>& arguments) {
         arguments.push_back(std::move(*argument));
     } while (stream.accept(","));
     if (stream.accept(")")) return true;
-    stream.expected("')'").with_note(open.span, "to close this '('");
+    const bool number = begins_number(stream.peek(), stream.peek(1)) && !stream.peek().first_on_line;
+    Diagnostic& error = stream.expected(number ? "',' or ')'" : "')'");
+    error.with_note(open.span, "to close this '('");
     return false;
 }
 
@@ -249,16 +387,22 @@ std::optional<std::vector<Expression>> parse_vector(TokenStream& stream, std::st
 
 std::optional<std::vector<Expression>> parse_color(TokenStream& stream, std::string_view what) {
     stream.accept("rgb");
-    return parse_vector(stream, what);
+    if (refuse_named_colour(stream)) return std::nullopt;
+    return parse_numbers(stream, 3, 3, what, colour_hint);
 }
 
 std::optional<std::vector<Expression>> parse_tint(TokenStream& stream, std::string_view what) {
     stream.accept("rgb");
-    if (!stream.at("<")) return parse_numbers(stream, 4, 4, what);
-    std::optional<std::vector<Expression>> tint = parse_vector(stream, what);
+    if (refuse_named_colour(stream)) return std::nullopt;
+    if (!stream.at("<")) return parse_numbers(stream, 4, 4, what, tint_hint);
+    std::optional<std::vector<Expression>> tint = parse_numbers(stream, 3, 3, what, colour_hint);
     if (!tint) return std::nullopt;
     stream.accept(",");
-    std::optional<Expression> alpha = parse_expression(stream);
+    if (!begins_number(stream.peek(), stream.peek(1))) {
+        stream.expected("an alpha").with_hint(std::string(tint_hint));
+        return std::nullopt;
+    }
+    std::optional<Expression> alpha = parse_row_expression(stream);
     if (!alpha) return std::nullopt;
     tint->push_back(std::move(*alpha));
     return tint;

@@ -37,6 +37,7 @@ struct InstGroup {
     std::vector<InstTint> tints;
     std::optional<std::string> material;
     Span material_span;
+    std::optional<Expression> chance; ///< of each of the masters
     Span span;
 };
 

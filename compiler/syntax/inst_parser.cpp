@@ -20,7 +20,8 @@ constexpr std::size_t max_parameters = 100;
 const std::vector<std::string>& body_keywords() {
     static const std::vector<std::string> keywords = [] {
         std::vector<std::string> words(transform_keywords.begin(), transform_keywords.end());
-        for (const char* word : {"union", "instance", "terminal", "scatter", "tint", "material", "below"})
+        for (const char* word :
+             {"union", "instance", "terminal", "scatter", "tint", "material", "chance", "below"})
             words.emplace_back(word);
         words.insert(words.end(), scatter_keywords().begin(), scatter_keywords().end());
         return words;
@@ -46,8 +47,14 @@ class BodyParser {
         const Token open = stream_.previous();
         while (!diagnostics_.full() && !stream_.accept("}")) {
             if (stream_.at_end() || begins_statement()) {
-                stream_.expected(fmt::format("'}}' at the end of object '{}'", definition_.name))
-                    .with_note(open.span, "to close this '{'");
+                const bool material = stream_.at("material");
+                Diagnostic& error =
+                    stream_.expected(fmt::format("'}}' at the end of object '{}'", definition_.name));
+                if (material)
+                    error.with_hint("a material is defined outside of objects; in them stands its name, "
+                                    "'material: NAME'");
+                error.with_note(open.span, "to close this '{'");
+                closed_ = false;
                 return;
             }
             if (!stream_.accept(",") && !parse_line()) {
@@ -57,6 +64,9 @@ class BodyParser {
         }
         check_not_empty();
     }
+
+    /// Its '}' was there.
+    bool closed() const { return closed_; }
 
   private:
     /// The next token begins a statement of the file: the '}' of this object is missing.
@@ -77,16 +87,24 @@ class BodyParser {
         if (at_transform(stream_)) return parse_transform_line();
         if (stream_.at("tint")) return parse_tint_line();
         if (stream_.at("material")) return parse_material();
+        if (at_chance()) return parse_chance();
         if (at_below()) return parse_below();
         if (stream_.at("union") || stream_.at("instance") || stream_.at("terminal")) return parse_group();
         if (at_scatter()) return parse_group();
         if (in_scatter() && at_scatter_line(stream_)) return parse_line_of_scatter();
         if (stream_.at_name()) return parse_bare_group();
-        const bool open = stream_.at("{");
-        stream_.expected("a line of an object");
+        const bool open = stream_.at("{"), number = stream_.peek().kind == TokenKind::number;
+        Diagnostic& error = stream_.expected("a line of an object");
+        error.with_hint(number ? "is it one number too many?" : choices("", body_lines()));
         stream_.next();
         if (open) stream_.skip_block();
         return false;
+    }
+
+    /// The keywords of lines that any object may have.
+    static std::vector<std::string> body_lines() {
+        const std::vector<std::string>& all = body_keywords();
+        return {all.begin(), all.end() - static_cast<std::ptrdiff_t>(scatter_keywords().size())};
     }
 
     /// `scatter: tree` or `scatter tree`, and not an object of that name.
@@ -133,13 +151,17 @@ class BodyParser {
                 return false;
             }
             diagnostics_.error(name.span, fmt::format("unknown keyword '{}'", name.text))
-                .with_hint(did_you_mean(name.text, body_keywords()));
+                .with_hint(keyword_hint(name));
             return false;
         }
         if (!begins_line) {
             stream_.next();
-            diagnostics_.error(name.span, fmt::format("expected ',' or a new line before '{}'", name.text))
-                .with_hint(did_you_mean(name.text, body_keywords()));
+            const bool value = stream_.peek().kind == TokenKind::number || stream_.at("<");
+            const std::string hint = value ? keyword_hint(name) : did_you_mean(name.text, body_keywords());
+            diagnostics_
+                .error(name.span, value ? fmt::format("unknown keyword '{}'", name.text)
+                                        : fmt::format("expected ',' or a new line before '{}'", name.text))
+                .with_hint(hint);
             return false;
         }
         InstGroup group;
@@ -148,12 +170,22 @@ class BodyParser {
         return add(std::move(group));
     }
 
+    static std::string keyword_hint(const Token& word) {
+        const bool colour = word.is("color") || word.is("colour");
+        if (colour) return "an instance has a 'tint: r, g, b, alpha' or a 'material: NAME'";
+        const std::string meant = did_you_mean(word.text, body_keywords());
+        return meant.empty() ? choices(word.text, body_lines()) : meant;
+    }
+
     bool parse_masters(InstGroup& group, std::string_view keyword) {
         do {
             const bool keyword_next = stream_.peek(1).is(":") && is_keyword(stream_.peek());
             if (!stream_.at_name() || keyword_next) {
-                stream_.expected(fmt::format("the name of an object after '{}'",
-                                             group.masters.empty() ? keyword : stream_.previous().text));
+                const std::string after(group.masters.empty() ? keyword : stream_.previous().text);
+                const bool block = stream_.at("{");
+                Diagnostic& error = stream_.expected(fmt::format("the name of an object after '{}'", after));
+                if (block)
+                    error.with_hint(fmt::format("names stand without braces: '{}: sphere, cube'", after));
                 return false;
             }
             InstReference reference;
@@ -251,6 +283,30 @@ class BodyParser {
         return true;
     }
 
+    /// `chance: 0.8` or `chance 0.8`; else an object may have that name.
+    bool at_chance() const {
+        const Token& after = stream_.peek(1);
+        return stream_.at("chance") && (after.is(":") || after.kind == TokenKind::number);
+    }
+
+    bool parse_chance() {
+        const Token keyword = stream_.next();
+        stream_.accept(":");
+        std::optional<Expression> chance = parse_expression(stream_);
+        if (!chance) return false;
+        InstGroup* group = current(keyword);
+        if (!group) return true;
+        if (group->terminal) {
+            diagnostics_.error(keyword.span, "a terminal has no chance")
+                .with_hint("it stands for the whole object, wherever that is cut");
+        } else if (group->chance) {
+            diagnostics_.error(keyword.span, "duplicate 'chance'")
+                .with_note(group->chance->span, "first given here");
+        }
+        group->chance = std::move(chance);
+        return true;
+    }
+
     /// `below: 12`, or after a terminal `below 12`; else an object may have that name.
     bool at_below() const {
         const bool after_terminal = !definition_.groups.empty() && definition_.groups.back().terminal;
@@ -287,6 +343,7 @@ class BodyParser {
     InstDefinition& definition_;
     std::size_t& scatters_;
     bool failed_ = false;
+    bool closed_ = true;
     bool lost_group_ = false; ///< the last group was in error
 };
 
@@ -325,7 +382,9 @@ class FileParser {
         definition.span = stream_.span_from(name->span);
         stream_.accept(":");
         if (!stream_.expect("{", stream_.previous().text)) return false;
-        BodyParser(stream_, definition, scatters_).parse();
+        BodyParser body(stream_, definition, scatters_);
+        body.parse();
+        open_objects_ += body.closed() ? 0 : 1;
         definition.size = stream_.position() - begin;
         module_.definitions.push_back(std::move(definition));
         return true;
@@ -382,15 +441,20 @@ class FileParser {
     }
 
     void report_stray() {
-        const Token& token = stream_.peek();
+        const Token token = stream_.peek();
         if (token.is("}")) {
-            diagnostics_.error(token.span, "this '}' closes nothing");
+            if (open_objects_ > 0)
+                --open_objects_; // that of an object that was left too early
+            else
+                diagnostics_.error(token.span, "this '}' closes nothing");
             return;
         }
         const bool other_language = token.is("rifs") || token.is("lsys");
+        const bool assigns = token.kind == TokenKind::name && stream_.peek(1).is("=");
         stream_.expected("an object or a scene statement")
             .with_hint(other_language ? fmt::format("the name of such a model ends in .{}", token.text)
-                                      : did_you_mean(token.text, file_keywords()));
+                       : assigns      ? fmt::format("'let {} = ...' names a number", token.text)
+                                      : choices(token.text, file_keywords()));
     }
 
     /// Skips to a token that begins a line and a statement, outside of braces.
@@ -410,12 +474,14 @@ class FileParser {
     Diagnostics& diagnostics_;
     InstModule module_;
     std::size_t scatters_ = 0;
+    std::size_t open_objects_ = 0; ///< whose '}' was missed
 };
 
 } // namespace
 
 InstModule parse_inst(const SourceMap& sources, FileId file, Diagnostics& diagnostics) {
     TokenStream stream(lex(sources, file, diagnostics), diagnostics);
+    stream.drop_semicolons();
     const bool nested_too_deep = stream.at_end() && diagnostics.has_errors();
     InstModule module = FileParser(stream).parse();
     if (nested_too_deep) module.complete = false;

@@ -3,9 +3,15 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <cmath>
+#include <set>
 #include <string>
 
 #include <fmt/format.h>
+
+#include "compiler/support/number.h"
+#include "compiler/support/printable.h"
+#include "compiler/syntax/lookalikes.h"
 
 namespace graftal {
 
@@ -28,6 +34,32 @@ bool is_blank(char c) {
     return c == ' ' || c == '\t' || c == '\r' || c == '\n' || c == '\f' || c == '\v';
 }
 
+bool is_in_name(char c) {
+    return is_letter(c) || is_digit(c);
+}
+
+/// The size of `#rgb`, `#rrggbb` or `#rrggbbaa` at the beginning of a text, or 0.
+std::size_t hex_colour_size(std::string_view text) {
+    const std::size_t end = std::min(text.find_first_not_of("0123456789abcdefABCDEF", 1), text.size());
+    if (end != 4 && end != 7 && end != 9) return 0;
+    return end < text.size() && is_letter(text[end]) ? 0 : end;
+}
+
+/// Of such a text, linear: pictures and the web have sRGB (IEC 61966-2-1).
+std::array<double, 3> hex_colour(std::string_view text) {
+    std::array<double, 3> rgb{};
+    const std::size_t digits = text.size() == 4 ? 1 : 2;
+    for (std::size_t i = 0; i < 3; ++i) {
+        unsigned value = 0;
+        const char* const first = text.data() + 1 + i * digits;
+        std::from_chars(first, first + digits, value, 16);
+        const double share = value / (digits == 1 ? 15.0 : 255.0);
+        const double linear = share <= 0.04045 ? share / 12.92 : std::pow((share + 0.055) / 1.055, 2.4);
+        rgb[i] = std::round(linear * 1000) / 1000;
+    }
+    return rgb;
+}
+
 /// True for a number text too small for a double, false for one too large: by the place of its first
 /// digit that counts.
 bool underflows(std::string_view text) {
@@ -46,6 +78,7 @@ class Lexer {
 
     std::vector<Token> run() {
         if (begin_ == 0 && text_.starts_with("\xEF\xBB\xBF")) at_ = 3;
+        if (text_.starts_with("\xFF\xFE") || text_.starts_with("\xFE\xFF")) refuse_utf16();
         while (skip_blanks() && tokens_.size() < max_tokens && !diagnostics_.full())
             lex_token();
         if (tokens_.size() >= max_tokens)
@@ -75,14 +108,23 @@ class Lexer {
         return tokens_.back();
     }
 
+    void refuse_utf16() {
+        if (begin_ == 0)
+            diagnostics_.error({file_, 0, 0}, "this text is in UTF-16")
+                .with_hint("save it in UTF-8, which most editors call the encoding");
+        at_ = text_.size();
+    }
+
     /// Skips white space and comments; false at the end of the text.
     bool skip_blanks() {
         for (; at_ < text_.size(); space_before_ = true) {
             if (is_blank(peek())) {
                 first_on_line_ |= peek() == '\n';
                 ++at_;
+            } else if (at_hex_colour()) {
+                return true;
             } else if (peek() == '#' || text_.substr(at_, 2) == "//") {
-                at_ = std::min(text_.find('\n', at_), text_.size());
+                skip_line_comment();
             } else if (text_.substr(at_, 2) == "/*") {
                 skip_block_comment();
             } else {
@@ -90,6 +132,25 @@ class Lexer {
             }
         }
         return false;
+    }
+
+    /// Not a comment: it stands where a colour is asked for.
+    bool at_hex_colour() const {
+        if (peek() != '#' || first_on_line_ || tokens_.empty()) return false;
+        const Token& before = tokens_.back();
+        const bool asked = before.is(":") || before.is("rgb") || before.is("color") || before.is("tint") ||
+                           before.is("background") || before.is("zenith") || before.is("horizon");
+        return asked && hex_colour_size(text_.substr(at_)) > 0;
+    }
+
+    void skip_line_comment() {
+        const std::size_t begin = at_;
+        at_ = std::min(text_.find('\n', at_), text_.size());
+        const std::string_view line = text_.substr(begin, at_ - begin);
+        if (!first_on_line_ || (!line.starts_with("#define ") && !line.starts_with("#include "))) return;
+        diagnostics_.warning(span_from(begin), "this line is a comment, since it begins with '#'")
+            .with_hint(line[1] == 'd' ? "'let NAME = VALUE' names a number"
+                                      : "'use NAME = \"FILE\"' takes another model");
     }
 
     void skip_block_comment() {
@@ -112,6 +173,7 @@ class Lexer {
         if (is_letter(c)) return lex_name();
         if (is_digit(c) || (c == '.' && is_digit(peek(1)))) return lex_number();
         if (c == '"') return lex_string();
+        if (c == '#') return lex_hex_colour();
         for (const std::string_view symbol : two_character_symbols)
             if (text_.substr(at_, 2) == symbol) {
                 at_ += 2;
@@ -128,9 +190,42 @@ class Lexer {
 
     void lex_name() {
         const std::size_t begin = at_;
-        while (is_letter(peek()) || is_digit(peek()) || (peek() == '.' && is_letter(peek(1))))
+        while (is_in_name(peek()) || (peek() == '.' && is_letter(peek(1))))
             ++at_;
+        if ((peek() & 0x80) != 0 && is_foreign_letter(code_point(text_, at_).value))
+            return lex_foreign(begin);
         add(TokenKind::name, begin);
+    }
+
+    /// A name with letters of other alphabets: reported, and then read as one name.
+    void lex_foreign(std::size_t begin) {
+        const std::size_t first = at_;
+        while (at_ < text_.size()) {
+            if (!is_in_name(peek()) && !is_foreign_letter(code_point(text_, at_).value)) break;
+            at_ += code_point(text_, at_).size;
+        }
+        report_stray(first, code_point(text_, first).size);
+        add(TokenKind::name, begin);
+    }
+
+    /// Reported, and then read as its three numbers.
+    void lex_hex_colour() {
+        const std::size_t begin = at_;
+        at_ += hex_colour_size(text_.substr(at_));
+        const std::array<double, 3> rgb = hex_colour(text_.substr(begin, at_ - begin));
+        diagnostics_.error(span_from(begin), "a colour is three numbers, and '#' begins a comment")
+            .with_hint(fmt::format("red, green and blue from 0 to 1, linear: {}, {}, {}", shortest(rgb[0]),
+                                   shortest(rgb[1]), shortest(rgb[2])));
+        const auto say = [&](double number) {
+            Token& token = add(TokenKind::number, begin);
+            token.number = number;
+            token.space_before = true;
+        };
+        const std::size_t before = tokens_.size();
+        const bool tint = tokens_[before - 1].is("tint") || (before > 1 && tokens_[before - 2].is("tint"));
+        for (const double part : rgb)
+            say(part);
+        if (tint) say(1); // the alpha is another matter
     }
 
     void lex_number() {
@@ -150,8 +245,8 @@ class Lexer {
         const char* last = token.text.data() + token.text.size();
         const std::from_chars_result result = std::from_chars(token.text.data(), last, token.number);
         if (result.ec != std::errc::result_out_of_range) return;
-        token.number = 0;
-        if (!underflows(token.text)) diagnostics_.error(token.span, "this number is too large");
+        token.number = underflows(token.text) ? 0 : 1; // 1, so that nothing else is said about it
+        if (token.number == 1) diagnostics_.error(token.span, "this number is too large");
     }
 
     void lex_string() {
@@ -159,28 +254,59 @@ class Lexer {
         const std::size_t close = text_.find_first_of("\"\n", at_);
         const bool closed = close != std::string_view::npos && text_[close] == '"';
         at_ = closed ? close + 1 : std::min(close, text_.size());
-        if (!closed) diagnostics_.error(span_from(begin), "this string is not closed on its line");
+        if (!closed)
+            diagnostics_.error(span_from(begin), "this string is not closed on its line")
+                .with_hint("close it with '\"'");
         Token& token = add(TokenKind::string, begin);
         token.text = token.text.substr(1, token.text.size() - (closed ? 2 : 1));
     }
 
-    /// One character, in UTF-8, that starts no token; a run of them is reported once.
-    void lex_stray() {
-        const std::size_t begin = at_++;
-        while ((peek() & 0xC0) == 0x80)
-            ++at_;
-        space_before_ = true;
-        if (last_stray_end_ == begin && begin > 0) {
-            last_stray_end_ = at_;
-            return;
+    /// A string in quotes that are none of ours, if it is closed on its line.
+    bool lex_misquoted() {
+        const std::size_t begin = at_, size = code_point(text_, at_).size;
+        for (std::size_t at = begin + size; at < text_.size() && text_[at] != '\n';) {
+            const CodePoint point = code_point(text_, at);
+            const std::optional<Lookalike> look = lookalike(point.value);
+            if (point.value == '"' || point.value == '\'' || (look && look->meant == "\"")) {
+                at_ = at + point.size;
+                report_stray(begin, size);
+                add(TokenKind::string, begin).text = text_.substr(begin + size, at - begin - size);
+                return true;
+            }
+            at += point.size;
         }
-        last_stray_end_ = at_;
-        const auto byte = static_cast<unsigned char>(text_[begin]);
-        const bool visible = byte > 0x20 && byte < 0x7F;
-        const bool utf8 = byte >= 0xC2 && at_ - begin >= 2 && at_ - begin <= 4;
-        diagnostics_.error(span_from(begin), visible || utf8 ? fmt::format("unexpected character '{}'",
-                                                                           text_.substr(begin, at_ - begin))
-                                                             : fmt::format("unexpected byte 0x{:02X}", byte));
+        return false;
+    }
+
+    /// One character that starts no token; a run of them is reported once. What it was meant as is read, so
+    /// that nothing else is reported for it.
+    void lex_stray() {
+        const std::size_t begin = at_;
+        const CodePoint point = code_point(text_, at_);
+        const std::optional<Lookalike> look = lookalike(point.value);
+        const bool quote = point.value == '\'' || (look && look->meant == "\"");
+        if (quote && lex_misquoted()) return;
+        if (is_foreign_letter(point.value)) return lex_foreign(begin);
+        at_ += point.size;
+        report_stray(begin, point.size);
+        space_before_ = true;
+        if (!look || look->meant == " ") return;
+        const char meant = look->meant[0];
+        if (is_digit(meant)) {
+            add(TokenKind::number, begin).number = meant - '0';
+        } else if (look->meant.size() > 1 || one_character_symbols.find(meant) != std::string_view::npos) {
+            add(TokenKind::symbol, begin).text = look->meant;
+        }
+    }
+
+    /// Each character once, and a run of characters once.
+    void report_stray(std::size_t begin, std::size_t size) {
+        const bool goes_on = begin > 0 && last_stray_end_ == begin;
+        last_stray_end_ = begin + size;
+        const std::string_view character = text_.substr(begin, size);
+        if (!strays_.insert(code_point(character, 0).value).second || goes_on) return;
+        const Span span{file_, static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(begin + size)};
+        diagnostics_.error(span, unexpected_character(character)).with_hint(lookalike_hint(character));
     }
 
     std::string_view text_;
@@ -190,6 +316,7 @@ class Lexer {
     std::vector<Token> tokens_;
     std::size_t at_;
     std::size_t last_stray_end_ = 0;
+    std::set<char32_t> strays_; ///< reported; bytes that are no UTF-8 count as one
     bool first_on_line_ = true;
     bool space_before_ = true;
 };

@@ -106,6 +106,7 @@ struct LsysBlock {
     std::vector<LsysProduction> productions;
     std::vector<LsysProduction> interpret; ///< without contexts, as are those of `decompose`
     std::vector<LsysProduction> decompose;
+    bool broken = false; ///< an error lost a part of it
 };
 
 /// `use NAME = "path"`.

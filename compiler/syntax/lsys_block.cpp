@@ -1,6 +1,7 @@
 #include "compiler/syntax/lsys_block.h"
 
 #include <algorithm>
+#include <array>
 #include <string>
 #include <utility>
 
@@ -13,6 +14,8 @@ namespace graftal {
 
 namespace {
 
+constexpr std::string_view full_width_brace = "\xEF\xBD\x9B";
+
 class BlockParser {
   public:
     BlockParser(LsysText& text, LsysFile& file)
@@ -20,6 +23,7 @@ class BlockParser {
 
     std::size_t parse(const LsysHeader& header) {
         block_.is_main = header.is_main;
+        const std::size_t errors = diagnostics_.error_count();
         std::size_t at = 0;
         const bool opened = parse_head(header, at);
         if (block_.name.text.empty() && !opened) return at;
@@ -30,6 +34,7 @@ class BlockParser {
         if (opened && !axiom_said_)
             diagnostics_.error(block_.name.span, fmt::format("'lsys {}' has no axiom", block_.name.text))
                 .with_hint("axiom F gives the string that the derivation begins with");
+        block_.broken = diagnostics_.error_count() > errors;
         file_.blocks.push_back(std::move(block_));
         return outline.end;
     }
@@ -47,11 +52,32 @@ class BlockParser {
         block_.name = {name, name.empty() ? keyword : scanner_.span(name)};
         if (name.empty()) scanner_.expected("a name after 'lsys'", at, size, "the end of the file");
         at = scanner_.skip_blanks(at + name.size());
+        const auto here = [&](std::string_view open) { return scanner_.text().substr(at).starts_with(open); };
+        const bool stands_here = here("{");
+        if (!stands_here && !name.empty()) report_no_brace(name, at);
+        if (!stands_here && !find_brace(at)) return false;
+        if (name.empty()) block_.name.text = header.keyword;
         open_ = scanner_.span(at, at + 1);
-        if (scanner_.text().substr(at, 1) == "{") return ++at, true;
-        if (!name.empty())
+        at += here(full_width_brace) ? full_width_brace.size() : 1;
+        return true;
+    }
+
+    void report_no_brace(std::string_view name, std::size_t at) {
+        const std::size_t size = scanner_.text().size();
+        const bool dash = at < size && scanner_.text()[at] == '-';
+        Diagnostic& error =
             scanner_.expected(fmt::format("'{{' after '{}'", name), at, size, "the end of the file");
-        return false;
+        if (dash) error.with_hint("a name is made of letters, digits and _");
+    }
+
+    /// `lsys my plant {`: reported; the block is read all the same if its '{' stands on the line.
+    bool find_brace(std::size_t& at) const {
+        const std::string_view text = scanner_.text();
+        const std::string_view line = text.substr(at, text.find('\n', at) - at);
+        const std::size_t brace = std::min(line.find('{'), line.find(full_width_brace));
+        if (brace == std::string_view::npos) return false;
+        at += brace;
+        return true;
     }
 
     void report_open(std::size_t end) {
@@ -189,7 +215,10 @@ class BlockParser {
 
     bool finish_string(LsysStringReader& reader) {
         if (reader.at_end()) return true;
-        reader.expected("a module or the end of the line");
+        const bool arrow = reader.at_arrow() > 0;
+        Diagnostic& error = reader.expected("a module or the end of the line");
+        if (arrow)
+            error.with_hint("every statement and every production stands on its own line, without ';'");
         return false;
     }
 
@@ -204,6 +233,13 @@ class BlockParser {
         TokenStream stream = values(statement);
         std::vector<LsysName> names;
         do {
+            const bool number = stream.peek().kind == TokenKind::number;
+            if (number) {
+                stream.expected("the name of a material")
+                    .with_hint(
+                        "a material of the file has the colour: material petal { color: 0.7, 0.1, 0.3 }");
+                return;
+            }
             const std::optional<Token> name = stream.expect_name("the name of a material");
             if (!name) return;
             names.push_back({name->text, name->span});
@@ -256,20 +292,64 @@ class BlockParser {
     /// A statement without arrow that is none of the block's.
     void parse_other(const LsysStatement& statement) {
         const std::string_view word = statement.word;
+        const bool call = scanner_.text().substr(statement.begin + word.size(), 1) == "(";
         TokenStream stream(
-            word == "use" || is_scene_word(word)
+            !call && (word == "use" || is_scene_word(word))
                 ? lex_range(text_.sources, scanner_.span(statement.begin, statement.end), diagnostics_)
                 : std::vector<Token>(1),
             diagnostics_, lsys_line_end);
         if (!stream.at_end()) return parse_misplaced(stream, word);
-        const Span span = word.empty() ? scanner_.span(statement.begin, statement.end) : scanner_.span(word);
-        const std::string hint = did_you_mean(word, lsys_keywords());
-        if (hint.empty())
-            diagnostics_.error(span, "this is neither a statement nor a production")
-                .with_hint("a production has an arrow: A -> B");
+        if (report_wrong_arrow(statement)) return;
+        if (text_of(statement).ends_with('{')) ++text_.lost_braces;
+        const std::string meant = closest_name(word, lsys_keywords());
+        axiom_said_ |= meant == "axiom";
+        if (statement.begin == statement.end && statement.section != LsysSection::block) {
+            diagnostics_.error(scanner_.span(statement.begin, statement.end), "expected a production or '{'")
+                .with_hint("interpret A -> F, or interpret { with one production a line }");
+        } else if (word.size() > 1) {
+            diagnostics_.error(scanner_.span(word), fmt::format("unknown statement '{}'", word))
+                .with_hint(choices(word, lsys_keywords()));
+        } else {
+            report_no_statement(statement);
+        }
+    }
+
+    void report_no_statement(const LsysStatement& statement) {
+        const char first = text_of(statement).empty() ? ' ' : text_of(statement)[0];
+        if ((first & 0x80) != 0)
+            scanner_.expected("a statement or a production", statement.begin, statement.end, lsys_line_end);
         else
-            diagnostics_.error(span, fmt::format("unknown statement '{}'", word)).with_hint(hint);
-        axiom_said_ |= hint.find("'axiom'") != std::string::npos;
+            diagnostics_
+                .error(scanner_.span(statement.begin, statement.end),
+                       "this is neither a statement nor a production")
+                .with_hint("a production has an arrow: A -> B");
+    }
+
+    /// `A = B`, `A => B`, and arrows of other characters.
+    bool report_wrong_arrow(const LsysStatement& statement) {
+        constexpr std::array<std::string_view, 10> arrows = {"=>",
+                                                             ":=",
+                                                             "- >",
+                                                             "=",
+                                                             "\xE2\x86\x92",
+                                                             "\xE2\x87\x92",
+                                                             "\xE2\x80\x93>",
+                                                             "\xE2\x80\x94>",
+                                                             "\xE2\x88\x92>",
+                                                             "\xEF\xBC\x8D>"};
+        const std::string_view text = text_of(statement);
+        std::string_view found;
+        for (const std::string_view arrow : arrows) {
+            const std::size_t at = text.find(arrow);
+            if (at != std::string_view::npos && (found.empty() || text.data() + at < found.data()))
+                found = text.substr(at, arrow.size());
+        }
+        if (found.empty()) return false;
+        diagnostics_.error(scanner_.span(found), fmt::format("expected '->', found '{}'", found))
+            .with_hint(found == "=" || found == ":="
+                           ? "a production is written A -> B, and 'let a = 3' names a number"
+                           : "a production is written A -> B");
+        return true;
     }
 
     static bool is_scene_word(std::string_view word) {

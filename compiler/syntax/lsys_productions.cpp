@@ -119,6 +119,11 @@ class ProductionParser {
             lsys_name(text_.scanner.text().substr(span.begin, span.end - span.begin));
         if (modules.back().symbol == "-")
             error.with_hint("a probability stands behind the successor: A -> B : 0.5");
+        else if (word.size() > 1 && word.size() + 1 < span.end - span.begin)
+            error.with_hint(
+                fmt::format("a production begins with its module: F -> ...; a name of several letters is "
+                            "declared: modules {}",
+                            word));
         else if (word.size() > 1)
             error.with_hint(fmt::format("longer names are declared: modules {}", word));
         else

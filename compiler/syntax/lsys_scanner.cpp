@@ -1,8 +1,12 @@
 #include "compiler/syntax/lsys_scanner.h"
 
 #include <algorithm>
+#include <utility>
 
 #include <fmt/format.h>
+
+#include "compiler/support/printable.h"
+#include "compiler/syntax/lookalikes.h"
 
 namespace graftal {
 
@@ -65,7 +69,8 @@ class LsysStatementEnd {
     LsysStatementEnd(const LsysScanner& scanner, std::size_t begin, std::string_view word,
                      std::size_t closes_before)
         : scanner_(scanner), at_(begin), closes_before_(closes_before), values_(has_values(word)),
-          production_(!is_lsys_keyword(word) && !values_) {}
+          production_(!is_lsys_keyword(word) && !values_),
+          lists_names_(word == "let" || word == "inner" || word == "colors" || word == "modules") {}
 
     std::size_t find() {
         while (at_ < scanner_.text_.size() && !ends_here())
@@ -77,7 +82,28 @@ class LsysStatementEnd {
     bool ends_here() const {
         const char c = scanner_.at(at_);
         if (c == '}') return parentheses_ + braces_ == 0 && at_ < closes_before_;
-        return c == '\n' && !goes_on();
+        if (c == '\n') return !goes_on();
+        const std::string_view next = second_statement();
+        if (!next.empty()) scanner_.report_second_statement(next);
+        return !next.empty();
+    }
+
+    /// The word of a statement that begins on the same line: `axiom A; steps 3`, `angle 30 steps 3`. No
+    /// module may have such a name.
+    std::string_view second_statement() const {
+        const bool semicolon = scanner_.at(at_) == ';';
+        if (parentheses_ > 0 || (!semicolon && (!is_space(scanner_.at(at_)) || lists_names_))) return {};
+        const std::size_t begin = scanner_.skip_spaces(at_ + 1);
+        const std::string_view word = lsys_name(scanner_.text_.substr(begin));
+        const std::size_t end = begin + word.size();
+        if (!is_lsys_keyword(word) || (!is_space(scanner_.at(end)) && scanner_.at(end) != ':')) return {};
+        if (semicolon) return word;
+        // In `width step * 2` the word is a value.
+        const char before = scanner_.at(at_ - 1), after = scanner_.at(scanner_.skip_spaces(end));
+        const bool ended = is_name_character(before) || before == ')' || before == ']';
+        const bool is_value = values_ && !is_name_character(after) && after != ':';
+        const bool is_first = lsys_name(scanner_.text_.substr(begin_)).size() == at_ - begin_;
+        return ended && !is_value && !is_first ? word : std::string_view();
     }
 
     bool goes_on() const {
@@ -138,15 +164,23 @@ class LsysStatementEnd {
 
     const LsysScanner& scanner_;
     std::size_t at_;
+    std::size_t begin_ = at_;
     std::size_t closes_before_;
     bool values_;
     bool production_;
+    bool lists_names_; ///< which may be those of statements
     bool arrow_ = false;
     bool trailing_ = false; ///< the last character that counts asks for more
     std::size_t parentheses_ = 0;
     std::size_t squares_ = 0;
     std::size_t braces_ = 0;
 };
+
+void LsysScanner::report_second_statement(std::string_view word) const {
+    if (std::exchange(second_statement_said_, true)) return;
+    diagnostics_.error(span(word), fmt::format("'{}' stands behind another statement on its line", word))
+        .with_hint("every statement stands on its own line, and ends without ';'");
+}
 
 std::size_t LsysScanner::line_end(std::size_t place) const {
     return std::min(text_.find('\n', place), text_.size());
@@ -269,6 +303,7 @@ LsysOutline LsysScanner::outline(std::size_t begin) const {
         }
         place = LsysStatementEnd(*this, place, statement.word, closes_before).find();
         statement.end = place;
+        if (at(place) == ';') ++place; // that another statement follows
         result.statements.push_back(statement);
     }
     result.end = place;
@@ -316,8 +351,13 @@ Diagnostic& LsysScanner::expected(std::string_view what, std::size_t place, std:
     if (size == 0) size = std::max<std::size_t>(lsys_name(text_.substr(place, 40)).size(), 1);
     while ((at(place + size) & 0xC0) == 0x80)
         ++size;
-    return diagnostics_.error(span(place, place + size),
-                              fmt::format("expected {}, found '{}'", what, text_.substr(place, size)));
+    const std::string_view found = text_.substr(place, size);
+    const bool foreign = lookalike(code_point(found, 0).value).has_value();
+    Diagnostic& error = diagnostics_.error(span(place, place + size),
+                                           foreign ? unexpected_character(found)
+                                                   : fmt::format("expected {}, found '{}'", what, found));
+    if (foreign) error.with_hint(lookalike_hint(found));
+    return error;
 }
 
 } // namespace graftal

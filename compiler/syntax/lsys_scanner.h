@@ -88,11 +88,13 @@ class LsysScanner {
     bool at_misspelt_block(std::string_view word) const;
     bool has_arrow(std::size_t place) const;
     std::size_t enter_section(std::size_t after_word) const;
+    void report_second_statement(std::string_view word) const;
     friend class LsysStatementEnd;
 
     std::string_view text_;
     FileId file_;
     Diagnostics& diagnostics_;
+    mutable bool second_statement_said_ = false;
 };
 
 } // namespace graftal

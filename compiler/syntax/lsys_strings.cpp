@@ -69,10 +69,16 @@ TokenStream LsysText::tokens(std::size_t begin, std::size_t end, std::string_vie
 
 bool LsysText::finish(TokenStream& stream) {
     if (stream.at_end()) return true;
-    const bool brace = stream.at("}");
-    stray_brace_said |= brace;
-    stream.expected(lsys_line_end)
-        .with_hint(brace ? "the '}' of a block begins a line" : "every statement stands on its own line");
+    const Token& found = stream.peek();
+    stray_brace_said |= found.is("}");
+    const bool unit =
+        found.kind == TokenKind::name && found.text.find_first_not_of("degrainsv") == std::string_view::npos;
+    std::string hint = "every statement stands on its own line";
+    if (found.is("}")) hint = "the '}' of a block begins a line";
+    if (found.is(";")) hint = "a statement ends with its line, without ';'";
+    if (found.is(",")) hint = "this statement has as many numbers as it takes already";
+    if (unit) hint = "angles are in degrees, and numbers have no units";
+    stream.expected(lsys_line_end).with_hint(std::move(hint));
     return false;
 }
 
@@ -186,11 +192,14 @@ bool LsysStringReader::stray() {
     }
     Diagnostic& error = expected("a module");
     if (c == '@') error.with_hint("a directive is '@' and a letter: @o");
-    if (c == '=') error.with_hint("an arrow is written ->");
+    if (c == '=') error.with_hint("an arrow is written ->, and after the word of a statement stands no '='");
     if (c != '(') {
         do
             ++at_;
         while (at_ < end_ && (scanner_.text()[at_] & 0x80) != 0);
+        // What looks like its parameters is no mistake of its own.
+        if (at_ < end_ && scanner_.text()[at_] == '(')
+            at_ = scanner_.parenthesis_end(at_, end_).value_or(end_);
         return false;
     }
     error.with_hint(at_ > 0 && scanner_.text()[at_ - 1] == '>' ? probability_hint
@@ -266,10 +275,19 @@ bool LsysStringReader::read_symbols(std::vector<LsysName>& symbols) {
     return good;
 }
 
+/// `F()`. Reported.
+bool LsysStringReader::refuse_empty(TokenStream& stream, const Raw& raw) {
+    if (!stream.at(")")) return false;
+    text_.diagnostics.error(*raw.parameters, "there is no parameter between these parentheses")
+        .with_hint(fmt::format("a module without parameters is written '{}'", raw.symbol));
+    return true;
+}
+
 bool LsysStringReader::read_parameters(const Raw& raw, std::vector<Expression>& parameters) {
     TokenStream stream = text_.tokens(raw.parameters->begin, raw.parameters->end, lsys_line_end);
     if (stream.at_end()) return false; // said by check of limits
     stream.next();
+    if (refuse_empty(stream, raw)) return false;
     do {
         std::optional<Expression> parameter = parse_expression(stream);
         if (!parameter) return false;
@@ -289,6 +307,7 @@ bool LsysStringReader::read_names(const Raw& raw, std::vector<LsysName>& names) 
     TokenStream stream = text_.tokens(raw.parameters->begin, raw.parameters->end, lsys_line_end);
     if (stream.at_end()) return false;
     stream.next();
+    if (refuse_empty(stream, raw)) return false;
     do {
         const bool number = stream.peek().kind == TokenKind::number;
         if (number) {

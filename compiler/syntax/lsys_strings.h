@@ -39,6 +39,7 @@ struct LsysText {
     std::optional<Span> open_polygon;
     std::optional<Span> closed_polygon;
     bool stray_brace_said = false; ///< a '}' that may have been meant to close the block was reported
+    std::size_t lost_braces = 0;   ///< '{' of statements that are none, whose '}' is left over
 
     /// At the end of a block: reports polygons that never end, or that never began.
     void check_polygons();
@@ -95,6 +96,7 @@ class LsysStringReader {
     template<class Take> bool read(Take take_module);
     bool read_parameters(const Raw& raw, std::vector<Expression>& parameters);
     bool read_names(const Raw& raw, std::vector<LsysName>& names);
+    bool refuse_empty(TokenStream& stream, const Raw& raw);
     std::string_view rest() const { return scanner_.text().substr(at_, end_ - at_); }
 
     LsysText& text_;

@@ -61,8 +61,12 @@ class OrbitParser {
 
     bool unknown(const char* expected, const std::vector<std::string>& words) {
         const Token word = stream_.peek();
+        const bool assigns = stream_.peek(1).is(":") && stream_.peek(2).is("=");
         Diagnostic& error = stream_.expected(expected);
-        if (word.kind == TokenKind::name) error.with_hint(did_you_mean(word.text, words));
+        if (assigns)
+            error.with_hint(fmt::format("a formula is written {} = ...", word.text));
+        else if (word.kind == TokenKind::name)
+            error.with_hint(did_you_mean(word.text, words));
         if (stream_.next().is("{")) stream_.skip_block();
         return false;
     }

@@ -92,6 +92,7 @@ struct RifsBlock {
     std::vector<RifsName> start; ///< empty: all maps
     std::vector<RifsPart> condense;
     std::optional<RifsPart> terminal;
+    bool broken = false; ///< an error lost a part of it
 };
 
 /// `use NAME = "path"`.

@@ -27,11 +27,15 @@ class RifsParser {
 
   private:
     void parse_statement() {
-        if (at_scene_statement(stream_)) return parse_scene_statement(stream_, file_.statements);
+        if (at_scene_statement(stream_)) {
+            lost_ = false;
+            return parse_scene_statement(stream_, file_.statements);
+        }
         if (!parse_definition()) stream_.skip_line();
     }
 
     bool parse_definition() {
+        if (at_block() || stream_.at("use") || stream_.at("orbit")) lost_ = false;
         if (at_block()) return parse_block();
         if (stream_.at("use")) return parse_use();
         if (stream_.at("orbit")) return parse_orbit(stream_, file_.orbits);
@@ -44,10 +48,21 @@ class RifsParser {
         std::vector<std::string> words = scene_keywords();
         words.insert(words.end(), {"rifs", "main", "use", "orbit"});
         const Token& word = stream_.peek();
-        Diagnostic& error = stream_.expected("'rifs', 'use' or a scene statement");
-        if (word.kind == TokenKind::name) error.with_hint(did_you_mean(word.text, words));
+        const bool item = at_rifs_item(stream_);
+        if (!lost_ || (word.kind == TokenKind::name && !item))
+            stream_.expected("'rifs', 'use' or a scene statement").with_hint(hint_outside(word, words));
+        lost_ = true;
         if (stream_.next().is("{")) stream_.skip_block();
         return false;
+    }
+
+    std::string hint_outside(const Token& word, const std::vector<std::string>& words) const {
+        if (word.is("lsys") || word.is("object") || word.is("canonical"))
+            return fmt::format("the name of such a model ends in .{}", word.is("lsys") ? "lsys" : "inst");
+        if (at_rifs_item(stream_))
+            return fmt::format("'{}' stands in a block: rifs NAME {{ ... }}", word.text);
+        if (stream_.peek(1).is("=")) return fmt::format("'let {} = ...' names a number", word.text);
+        return choices(word.kind == TokenKind::name ? word.text : "", words);
     }
 
     bool parse_use() {
@@ -64,22 +79,30 @@ class RifsParser {
         RifsBlock block;
         block.is_main = stream_.accept("main");
         stream_.next();
+        const Token keyword = stream_.previous();
+        const std::size_t errors = diagnostics_.error_count();
         const std::optional<RifsName> name = parse_rifs_name(stream_, "a name after 'rifs'");
-        if (!name) return false;
-        block.name = *name;
+        block.name = name.value_or(RifsName{keyword.text, keyword.span}); // its maps are read all the same
         const Token open = stream_.peek();
-        const bool opened = stream_.expect("{", name->text);
-        if (opened) parse_items(block, open);
+        if (!stream_.accept("{")) {
+            if (name) stream_.expect("{", name->text);
+            while (!stream_.at_end() && !stream_.at("{") && !stream_.peek().first_on_line)
+                stream_.next(); // `rifs my plant {`
+            if (!stream_.accept("{") && !at_rifs_item(stream_)) return false;
+        }
+        parse_items(block, open);
+        block.broken = diagnostics_.error_count() > errors;
         file_.blocks.push_back(std::move(block));
-        return opened;
+        return true;
     }
 
     void parse_items(RifsBlock& block, const Token& open) {
         while (!stream_.accept("}")) {
             if (diagnostics_.full()) return stream_.skip_block();
             if (stream_.at_end() || at_block()) {
-                stream_.expected(fmt::format("'}}' at the end of 'rifs {}'", block.name.text))
-                    .with_note(open.span, "to close this '{'");
+                if (open.is("{")) // else that has been reported
+                    stream_.expected(fmt::format("'}}' at the end of 'rifs {}'", block.name.text))
+                        .with_note(open.span, "to close this '{'");
                 return;
             }
             if (!parse_item(block)) stream_.skip_line();
@@ -91,6 +114,7 @@ class RifsParser {
             parse_scene_statement(stream_, file_.statements);
             return true;
         }
+        if (at_rifs_item(stream_)) lost_ = false;
         if (stream_.at("map")) return parse_map(block);
         if (stream_.at("codes")) return parse_rifs_codes(stream_, block.maps, map_room_);
         if (stream_.at("follow")) return parse_follow(block);
@@ -116,13 +140,19 @@ class RifsParser {
             parse_scene_statement(stream_, file_.statements);
             return true;
         }
-        Diagnostic& error =
-            stream_.expected("'map', 'codes', 'follow', 'start', 'condense', 'terminal' or '}'");
-        if (word.kind == TokenKind::name)
-            error.with_hint(
-                did_you_mean(word.text, {"map", "codes", "follow", "start", "condense", "terminal"}));
+        if (word.kind == TokenKind::name || !lost_)
+            stream_.expected("'map', 'codes', 'follow', 'start', 'condense', 'terminal' or '}'")
+                .with_hint(hint_inside(word));
+        lost_ = true;
         if (stream_.next().is("{")) stream_.skip_block();
         return false;
+    }
+
+    std::string hint_inside(const Token& word) const {
+        if (word.kind == TokenKind::number) return "rows of numbers stand in 'codes 2d { ... }'";
+        if (word.kind != TokenKind::name) return {};
+        if (stream_.peek(1).is("=")) return fmt::format("'let {} = ...' stands before the block", word.text);
+        return did_you_mean(word.text, {"map", "codes", "follow", "start", "condense", "terminal"});
     }
 
     /// `map NAME [from BLOCK] { ... }`.
@@ -237,12 +267,14 @@ class RifsParser {
     Diagnostics& diagnostics_;
     RifsFile& file_;
     std::size_t map_room_ = max_rifs_maps;
+    bool lost_ = false; ///< what is no statement here has been reported, and goes on
 };
 
 } // namespace
 
 RifsFile parse_rifs(const SourceMap& sources, FileId file, Diagnostics& diagnostics) {
     TokenStream stream(lex(sources, file, diagnostics), diagnostics);
+    stream.drop_semicolons();
     RifsFile tree;
     RifsParser(stream, tree).parse();
     return tree;

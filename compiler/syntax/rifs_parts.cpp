@@ -12,27 +12,6 @@ namespace graftal {
 
 namespace {
 
-bool parse_tint_values(TokenStream& stream, std::vector<Expression>& tint) {
-    stream.accept("rgb");
-    if (stream.at("<")) {
-        std::optional<std::vector<Expression>> color = parse_vector(stream, "'tint'");
-        if (!color) return false;
-        tint = std::move(*color);
-        stream.accept(",");
-    }
-    while (tint.size() < 4) {
-        std::optional<Expression> value = parse_row_expression(stream);
-        if (!value) return false;
-        tint.push_back(std::move(*value));
-        if (tint.size() < 4 && !stream.accept(",")) {
-            stream.expected("','").with_hint(
-                "a tint is a colour and an alpha: rgb <r, g, b> a, or r, g, b, a");
-            return false;
-        }
-    }
-    return true;
-}
-
 bool parse_below(TokenStream& stream, std::optional<Expression>& below) {
     const Token keyword = stream.next();
     stream.accept(":");
@@ -89,10 +68,9 @@ bool parse_rifs_look(TokenStream& stream, RifsLook& look) {
         look.material = parse_rifs_name(stream, "a name after 'material'");
         return look.material.has_value();
     }
-    std::vector<Expression> tint;
-    if (!parse_tint_values(stream, tint)) return false;
-    look.tint = std::move(tint);
-    return true;
+    std::optional<std::vector<Expression>> tint = parse_tint(stream, "'tint'");
+    if (tint) look.tint = std::move(*tint);
+    return tint.has_value();
 }
 
 std::optional<RifsPart> parse_rifs_part(TokenStream& stream) {

@@ -27,7 +27,8 @@ const CodeColumns* parse_code_form(TokenStream& stream) {
     if (stream.accept("polar")) return &codes_polar;
     const Token digit = stream.peek();
     const Token letter = stream.peek(1);
-    if (digit.kind == TokenKind::number && letter.is("d") && !letter.space_before &&
+    const bool dimension = letter.is("d") || letter.is("D");
+    if (digit.kind == TokenKind::number && dimension && !letter.space_before &&
         (digit.text == "2" || digit.text == "3")) {
         stream.next();
         stream.next();
@@ -45,6 +46,11 @@ bool at_row_end(const TokenStream& stream) {
 bool parse_row_numbers(TokenStream& stream, const CodeColumns& columns, RifsMap& map) {
     std::size_t count = 0;
     const Token first = stream.peek();
+    const bool bracket = first.is("[") || first.is("(");
+    if (bracket && (first.is("[") || stream.peek(2).kind == TokenKind::number)) {
+        stream.expected("a number").with_hint("the numbers of a row stand without brackets");
+        return false;
+    }
     for (bool begins = true; begins || (!at_row_end(stream) && !at_rifs_look(stream)); begins = false) {
         std::optional<Expression> number = parse_row_expression(stream);
         if (!number) return false;
@@ -104,7 +110,12 @@ RifsMap parse_code_row(TokenStream& stream, const CodeColumns& columns, bool lab
 /// `a -> b, c`; a name after a comma that an arrow follows begins the next edges.
 bool parse_edges_from(TokenStream& stream, RifsFollow& follow) {
     const std::optional<RifsName> from = parse_rifs_name(stream, "the name of a map");
-    if (!from || !stream.expect("->", from->text)) return false;
+    if (!from) return false;
+    if (!stream.accept("->")) {
+        stream.expected(fmt::format("'->' after '{}'", from->text))
+            .with_hint(fmt::format("'{} -> b, c' lets the maps b and c follow {}", from->text, from->text));
+        return false;
+    }
     do {
         const std::optional<RifsName> to = parse_rifs_name(stream, "the name of a map after '->'");
         if (!to) return false;
@@ -184,6 +195,13 @@ bool parse_matrix(TokenStream& stream, RifsFollow& follow) {
 }
 
 bool parse_all(TokenStream& stream, RifsFollow& follow) {
+    if (!stream.at("except") && stream.at_name() && !stream.peek().first_on_line && !at_rifs_item(stream)) {
+        stream.expected("'except' or the end of the line after 'all'")
+            .with_hint("'follow all except self', or edges: 'follow all except a -> b, c'");
+        while (!stream.at_end() && !stream.at("}") && !stream.peek().first_on_line)
+            stream.next();
+        return false;
+    }
     if (!stream.accept("except")) return true;
     follow.kind = RifsFollow::Kind::all_except_self;
     if (stream.accept("self")) return true;
@@ -199,7 +217,18 @@ bool parse_rifs_codes(TokenStream& stream, std::vector<RifsMap>& maps, std::size
     stream.next();
     const CodeColumns* columns = parse_code_form(stream);
     const Token open = stream.peek();
-    if (!columns || !stream.expect("{", stream.previous().text)) return false;
+    if (!columns) {
+        while (!stream.at_end() && !stream.at("{") && !stream.peek().first_on_line)
+            stream.next();
+        if (stream.accept("{")) stream.skip_block();
+        return false;
+    }
+    if (!stream.accept("{")) {
+        stream.expected(fmt::format("'{{' after 'codes {}'", columns->keyword));
+        while (!stream.at_end() && !stream.at("}") && !at_rifs_item(stream))
+            stream.next(); // its rows
+        return false;
+    }
     while (!stream.accept("}")) {
         const bool label = stream.at_name() && stream.peek(1).is(":");
         if (stream.at_end() || (at_rifs_item(stream) && !label)) {

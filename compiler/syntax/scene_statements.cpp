@@ -76,12 +76,12 @@ class StatementParser {
             return parse_lets(keyword.text);
         case Kind::steps:
             stream_.accept(":");
-            return parse_value("steps", keyword.span, Shape::number);
+            return parse_value("steps", keyword.span, Shape::number, "steps");
         case Kind::material:
             return parse_name() && parse_block(keyword);
         case Kind::background:
             stream_.accept(":");
-            if (!stream_.at("{")) return parse_value("zenith", keyword.span, Shape::color);
+            if (!stream_.at("{")) return parse_value("zenith", keyword.span, Shape::color, "background");
             return parse_block(keyword);
         default:
             return parse_block(keyword);
@@ -101,8 +101,8 @@ class StatementParser {
         do {
             const std::optional<Token> name = stream_.expect_name(fmt::format("a name after '{}'", keyword));
             if (!name) return false;
-            if (!stream_.expect("=", name->text) || !parse_value(name->text, name->span, Shape::number) ||
-                !parse_members()) {
+            if (!stream_.expect("=", name->text) ||
+                !parse_value(name->text, name->span, Shape::number, name->text) || !parse_members()) {
                 add_placeholder(*name);
                 statement_.complete = false;
                 while (!stream_.at_end() && !stream_.peek().first_on_line && !stream_.at(","))
@@ -131,9 +131,14 @@ class StatementParser {
     }
 
     bool parse_block(const Token& keyword) {
+        const std::string_view after = stream_.previous().text;
         stream_.accept(":");
         const Token open = stream_.peek();
-        if (!stream_.expect("{", stream_.previous().text)) return false;
+        if (!stream_.at("{")) {
+            stream_.expected(fmt::format("'{{' after '{}'", after)).with_hint(example());
+            return false;
+        }
+        stream_.next();
         while (!stream_.accept("}")) {
             if (stream_.at_end() || (stream_.peek().first_on_line && begins_other_statement())) {
                 stream_.expected(fmt::format("'}}' at the end of '{}'", keyword.text))
@@ -143,10 +148,24 @@ class StatementParser {
             if (stream_.accept(",")) continue;
             if (!parse_field(keyword.text)) {
                 statement_.complete = false;
-                stream_.skip_line();
+                skip_value();
             }
         }
         return true;
+    }
+
+    /// The statement with some of its fields.
+    const char* example() const {
+        switch (statement_.kind) {
+        case Kind::camera:
+            return "camera { location: 3, 2, 5  look_at: 0, 0, 0 }";
+        case Kind::light:
+            return "light { sun: 1, 2, 3 } or light { location: 10, 20, 30 }";
+        case Kind::ground:
+            return "ground { height: 0  color: 0.3, 0.3, 0.25 }";
+        default:
+            return "material stone { color: 0.5, 0.5, 0.5 }";
+        }
     }
 
     /// `ground { material: stone` goes on, `ground {` and then `material stone {` does not.
@@ -168,26 +187,57 @@ class StatementParser {
         const Token keyword = stream_.peek();
         for (const FieldRule& rule : known)
             if (keyword.is(rule.keyword)) {
+                if (defines_material()) return false;
                 stream_.next();
                 stream_.accept(":");
-                return parse_value(keyword.text, keyword.span, rule.shape);
+                return parse_value(keyword.text, keyword.span, rule.shape, keyword.text);
             }
+        return report_unknown(statement);
+    }
+
+    bool report_unknown(std::string_view statement) {
+        const Token word = stream_.peek();
         std::vector<std::string> candidates;
-        for (const FieldRule& rule : known)
+        for (const FieldRule& rule : rules(statement_.kind))
             candidates.emplace_back(rule.keyword);
-        const std::string found = stream_.found();
-        stream_.next();
-        stream_.diagnostics()
-            .error(keyword.span, fmt::format("'{}' has no field {}", statement, found))
-            .with_hint(did_you_mean(keyword.text, candidates));
+        if (word.kind != TokenKind::name) {
+            Diagnostic& error = stream_.expected(fmt::format("a field of '{}' or '}}'", statement));
+            error.with_hint(choices("", candidates));
+        } else {
+            stream_.diagnostics()
+                .error(word.span, fmt::format("'{}' has no field '{}'", statement, word.text))
+                .with_hint(choices(word.text, candidates));
+        }
+        if (stream_.next().is("{")) stream_.skip_block();
+        skip_value();
         return false;
     }
 
-    bool parse_value(std::string_view keyword, Span span, Shape shape) {
+    /// The value of an unknown field, so that the fields behind it on its line are read.
+    void skip_value() {
+        while (!stream_.at_end() && !stream_.at("}") && !stream_.peek().first_on_line &&
+               !is_field(stream_.peek().text))
+            if (stream_.next().is("{")) stream_.skip_block();
+    }
+
+    /// `ground { material stone { ... } }`. Reported and skipped.
+    bool defines_material() {
+        if (!stream_.at("material") || !stream_.peek(2).is("{")) return false;
+        stream_.diagnostics()
+            .error(stream_.peek().span, "a material is defined outside of other statements")
+            .with_hint(fmt::format("here stands its name: 'material: {}'", stream_.peek(1).text));
+        for (int i = 0; i < 3; ++i)
+            stream_.next();
+        stream_.skip_block();
+        return true;
+    }
+
+    /// `written`: what the text has in place of the keyword.
+    bool parse_value(std::string_view keyword, Span span, Shape shape, std::string_view written) {
         SceneField field;
         field.keyword = keyword;
         field.span = span;
-        const std::string what = fmt::format("'{}'", keyword);
+        const std::string what = fmt::format("'{}'", written);
         std::optional<std::vector<Expression>> values(std::in_place);
         switch (shape) {
         case Shape::flag:

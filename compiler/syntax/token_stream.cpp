@@ -12,6 +12,7 @@ namespace graftal {
 namespace {
 
 constexpr std::size_t longest_shown = 40;
+constexpr const char* name_hint = "a name is made of letters, digits and _, and does not begin with a digit";
 
 bool opens(const Token& token) {
     return token.is("{") || token.is("(") || token.is("[");
@@ -49,6 +50,25 @@ void TokenStream::check_nesting() {
     }
 }
 
+void TokenStream::drop_semicolons() {
+    bool reported = false, first_on_line = false;
+    std::size_t kept = 0;
+    for (Token& token : tokens_) {
+        const bool semicolon = token.is(";");
+        if (semicolon && !reported)
+            diagnostics_.error(token.span, "nothing is to be closed with ';'")
+                .with_hint(
+                    "take out every ';': what stands on a line ends with its line, or where the next begins");
+        reported |= semicolon;
+        first_on_line |= token.first_on_line;
+        if (semicolon) continue;
+        token.first_on_line = first_on_line;
+        first_on_line = false;
+        tokens_[kept++] = token;
+    }
+    tokens_.resize(kept);
+}
+
 const Token& TokenStream::peek(std::size_t ahead) const {
     return tokens_[std::min(at_ + ahead, tokens_.size() - 1)];
 }
@@ -67,20 +87,25 @@ bool TokenStream::accept(std::string_view symbol_or_name) {
 
 bool TokenStream::expect(std::string_view symbol_or_name, std::string_view after) {
     if (accept(symbol_or_name)) return true;
-    expected(after.empty() ? fmt::format("'{}'", symbol_or_name)
-                           : fmt::format("'{}' after '{}'", symbol_or_name, shown(after)));
+    Diagnostic& error =
+        expected(after.empty() ? fmt::format("'{}'", symbol_or_name)
+                               : fmt::format("'{}' after '{}'", symbol_or_name, shown(after)));
+    if (at("-") && previous().kind == TokenKind::name && !peek().space_before) error.with_hint(name_hint);
     return false;
 }
 
 std::optional<Token> TokenStream::expect_name(std::string_view what) {
     if (at_name()) return next();
-    expected(what);
+    Diagnostic& error = expected(what);
+    if (peek().kind == TokenKind::number) error.with_hint(name_hint);
+    if (peek().kind == TokenKind::string) error.with_hint("names stand without quotes");
     return std::nullopt;
 }
 
 std::optional<Token> TokenStream::expect_string(std::string_view what) {
     if (peek().kind == TokenKind::string) return next();
-    expected(what);
+    Diagnostic& error = expected(what);
+    if (at_name()) error.with_hint(fmt::format("write \"{}\"", shown(peek().text)));
     return std::nullopt;
 }
 

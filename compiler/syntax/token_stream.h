@@ -23,6 +23,9 @@ class TokenStream {
     TokenStream(std::vector<Token> tokens, Diagnostics& diagnostics,
                 std::string_view end_name = "the end of the file");
 
+    /// Takes every ';' away, and reports the first: for languages that have none.
+    void drop_semicolons();
+
     /// The token `ahead` places after the next one; past the end, the `end` token.
     const Token& peek(std::size_t ahead = 0) const;
     /// Takes a token; the `end` token is never used up.
@@ -56,8 +59,9 @@ class TokenStream {
     /// Skips past the '}' that closes the block just opened (or to the end).
     void skip_block();
 
-    /// Where the parser stands; for measuring how many tokens a definition has.
+    /// Where the parser stands; for measuring how many tokens a definition has, and for going back there.
     std::size_t position() const { return at_; }
+    void go_back(std::size_t position) { at_ = position; }
     Diagnostics& diagnostics() { return diagnostics_; }
 
   private:

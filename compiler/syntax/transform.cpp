@@ -24,6 +24,14 @@ bool is_axis_pair(std::string_view name) {
     return name.size() == 2 && is_axis(name[0]) && is_axis(name[1]) && name[0] != name[1];
 }
 
+/// The number behind the axes; at a keyword or the end of a block it was left out.
+std::optional<Expression> parse_last(TokenStream& stream, std::string_view what, const char* hint) {
+    stream.accept(",");
+    if (!stream.at("}") && !stream.at(":") && !stream.at_end()) return parse_expression(stream);
+    stream.expected(what).with_hint(hint);
+    return std::nullopt;
+}
+
 /// `x, 30` or `<1, 1, 0>, 30`.
 bool parse_rotation(TokenStream& stream, TransformLine& line) {
     if (stream.at_name() && is_axis(stream.peek().text)) {
@@ -33,11 +41,12 @@ bool parse_rotation(TokenStream& stream, TransformLine& line) {
         if (!axis) return false;
         line.numbers = std::move(*axis);
     } else {
-        stream.expected("an axis after 'rotate'").with_hint("write x, y, z or <x, y, z>, then the degrees");
+        stream.expected("an axis after 'rotate'")
+            .with_hint("write x, y, z or <x, y, z>, then the degrees: 'rotate: y, 30'");
         return false;
     }
-    stream.accept(",");
-    std::optional<Expression> degrees = parse_expression(stream);
+    std::optional<Expression> degrees = parse_last(
+        stream, "the degrees", "an axis, then the angle: 'rotate: y, 30'; several turns are several lines");
     if (!degrees) return false;
     line.numbers.push_back(std::move(*degrees));
     return true;
@@ -50,8 +59,7 @@ bool parse_shear(TokenStream& stream, TransformLine& line) {
         return false;
     }
     line.axes = stream.next().text;
-    stream.accept(",");
-    std::optional<Expression> factor = parse_expression(stream);
+    std::optional<Expression> factor = parse_last(stream, "a factor", "'shear: xy, 0.5' adds 0.5 y to x");
     if (!factor) return false;
     line.numbers.push_back(std::move(*factor));
     return true;
@@ -62,8 +70,9 @@ bool parse_operands(TokenStream& stream, TransformLine& line, std::string_view k
     if (line.kind == Kind::shear) return parse_shear(stream, line);
     const std::size_t min = line.kind == Kind::scale ? 1 : line.kind == Kind::translate ? 2 : 12;
     const std::size_t max = std::max<std::size_t>(min, 3);
+    const std::string_view hint = min == 12 ? "three rows: m00, m01, m02, tx, and so on" : "";
     std::optional<std::vector<Expression>> numbers =
-        parse_numbers(stream, min, max, fmt::format("'{}'", keyword));
+        parse_numbers(stream, min, max, fmt::format("'{}'", keyword), hint);
     if (!numbers) return false;
     line.numbers = std::move(*numbers);
     return true;

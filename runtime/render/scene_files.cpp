@@ -81,11 +81,13 @@ Status copy_to_standard_output(std::FILE* file) {
 
 } // namespace
 
-Status write_scene(const CompiledModel& model, const std::string& path, bool include, bool progress) {
+Status write_scene(const CompiledModel& model, const std::string& path, bool include, bool progress,
+                   const std::string& identifier) {
     const PovrayOptions options{.scene_name = model_name(model),
                                 .include = include,
                                 .file_name = std::filesystem::path(path).filename().string(),
-                                .progress = progress};
+                                .progress = progress,
+                                .identifier = identifier};
     PendingFile pending(path);
     const OpenFile file(std::fopen(pending.temporary_path().c_str(), "wb"));
     if (!file) return write_failure(path, errno);

@@ -9,8 +9,9 @@ namespace graftal {
 
 /// Writes the model as SDL to `path`, and the palettes that it refers to beside it, each whole or not at all.
 /// `include` gives the `.inc` form; `progress` adds the marks that the POV-Ray driver reads. An interruption
-/// (interruption.h) ends it early as a failure.
-Status write_scene(const CompiledModel& model, const std::string& path, bool include, bool progress);
+/// (interruption.h) ends it early as a failure. `identifier`: PovrayOptions::identifier.
+Status write_scene(const CompiledModel& model, const std::string& path, bool include, bool progress,
+                   const std::string& identifier = {});
 
 /// The same to standard output. A model that needs palette files fails: there is nowhere to put them.
 Status print_scene(const CompiledModel& model, bool include);

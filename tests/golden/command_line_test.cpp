@@ -9,6 +9,7 @@ namespace {
 
 using testing::AllOf;
 using testing::HasSubstr;
+using testing::Not;
 using testing::StartsWith;
 
 const std::string gasket = "'" + source_path("scenes/hart/sierpinski.inst") + "'";
@@ -20,10 +21,26 @@ TEST_F(CommandLine, UsageErrorsAreStatusTwoAndPointAtTheHelp) {
         std::string arguments, message;
     } cases[] = {
         {"", "graftal: which command?\nTry 'graftal --help' for more information.\n"},
-        {"rendr x.inst", "graftal: there is no command 'rendr' (did you mean 'render'?)\n"},
-        {"render", "Try 'graftal render --help' for more information.\n"},
-        {"render a.inst b.inst", "b.inst"},
-        {"render a.inst --no-such-option", "--no-such-option"},
+        {"rendr x.inst", "graftal: there is no command 'rendr' (did you mean 'render'? known here: render, animate,"},
+        {"fern.rifs", "graftal: a command comes first: 'graftal render fern.rifs'\n"},
+        {"draw x.inst",
+         "there is no command 'draw' (known here: render, animate, points, collage, compile, check"},
+        {"render", "graftal: which model? 'graftal render MODEL'\n"},
+        {"check", "graftal: which model? 'graftal check MODEL'\n"},
+        {"compare", "graftal: 'compare' takes two pictures: 'graftal compare A B'\n"},
+        {"compare one.png two.png three.png",
+         "graftal: 'compare' takes two pictures: 'graftal compare A B'\n"},
+        {"render a.inst b.inst",
+         "graftal: 'b.inst' is one word too many: 'render' takes MODEL; a name with blanks"},
+        {"render a.inst --no-such-option", "graftal: 'render' has no option '--no-such-option'\n"},
+        {"render a.inst --siez 3x4", "graftal: 'render' has no option '--siez' (did you mean '--size'?)\n"},
+        {"render a.inst --size=3x4 --stesp=4",
+         "'render' has no option '--stesp' (did you mean '--steps'?)\n"},
+        {"render a.inst -x", "graftal: 'render' has no option '-x'\n"},
+        {"render a.inst --size", "graftal: --size needs a value: --size WxH\n"},
+        {"render a.inst --set", "graftal: --set needs a value: --set NAME=VALUE\n"},
+        {"compile a.inst --name A", "graftal: --name says what an .inc declares; give '-o FILE.inc', too\n"},
+        {"compile a.inst -o a.inc --name fern", "--name: 'fern' is not a name of at most 24 letters"},
         {"render a.inst --size 0x100", "--size: '0x100' is not a size such as 1280x720"},
         {"render a.inst --size 100", "--size: '100' is not"},
         {"render a.inst --size 99999x2", "--size: '99999x2' is not"},
@@ -32,7 +49,8 @@ TEST_F(CommandLine, UsageErrorsAreStatusTwoAndPointAtTheHelp) {
         {"render a.inst --memory 99999999999999G", "is not a number of bytes"},
         {"render a.inst --error -1", "--error: '-1' is not"},
         {"render a.inst --error nan", "--error: 'nan' is not"},
-        {"render a.inst --error 1 --error-world 1", "--error"},
+        {"render a.inst --error 1 --error-world 1",
+         "graftal: --error and --error-world exclude each other\n"},
         {"render a.inst --steps -3", "--steps: '-3' is not"},
         {"render a.inst --steps 1e3", "--steps: '1e3' is not"},
         {"render a.inst --set x", "--set: 'x' is not of the form NAME=NUMBER"},
@@ -79,8 +97,8 @@ TEST_F(CommandLine, UsageErrorsAreStatusTwoAndPointAtTheHelp) {
         {"compile a.inst -o a.png", "'a.png' ends neither in .pov nor in .inc"},
         {"graph a.inst -o a.pdf", "'a.pdf' ends neither in .dot nor in .svg"},
         {"print a.inst --after drop_unreachabel", "did you mean 'drop_unreachable'?"},
-        {"stats a.inst --dump-after nothing", "there is no pass 'nothing' (see 'graftal --help-passes')"},
-        {"compare one.png", "Try 'graftal compare --help'"},
+        {"stats a.inst --dump-after nothing", "there is no pass 'nothing' (known here: "},
+        {"compare one.png", "graftal: 'compare' takes two pictures: 'graftal compare A B'\n"},
         {"compare a.png b.png --threshold x", "--threshold: 'x' is not"},
     };
     for (const auto& [arguments, message] : cases) {
@@ -156,10 +174,83 @@ TEST_F(CommandLine, ClosedPipeIsNoCrash) {
     const RunResult result =
         shell("{ \"$graftal\" print " + gasket + "; echo $? >status; } | sleep 0; cat status >&2");
     // The reader may be gone before or after the text is written; a signal would show as 141.
-    EXPECT_THAT(result.err, testing::AnyOf(HasSubstr("0\n"), HasSubstr("3\n")));
+    EXPECT_EQ(result.err, "0\n");
+    for (const std::string& command : {"compile " + gasket, "print " + gasket, std::string("render --help")})
+        EXPECT_EQ(shell("\"$graftal\" " + command + " | true").err, "") << command;
     const RunResult many = shell("for i in 1 2 3 4 5; do { \"$graftal\" print " + gasket +
                                  "; echo $? >&3; } 2>/dev/null | true; done 3>&2");
     EXPECT_EQ(many.err.find("141"), std::string::npos);
+}
+
+TEST_F(CommandLine, SettingsCanBeSetLikeLets) {
+    write("koch.lsys",
+          "let size = 2\nlsys koch {\n  angle 60\n  step size\n  steps 1\n  axiom F\n  F -> F+F\n}\n");
+    write("late.lsys", "lsys late {\n  angle 60\n  width 0.1\n  steps 1\n  axiom F\n  F -> F+F\n}\n");
+    const std::string plain = graftal("print koch.lsys").out;
+    for (const std::string set : {"angle=40", "step=3", "width=1", "steps=2", "size=4"})
+        EXPECT_NE(graftal("print koch.lsys --set " + set).out, plain) << set;
+    EXPECT_EQ(graftal("print koch.lsys --set angle=60 --set step=2 --set steps=1").out, plain);
+    EXPECT_EQ(graftal("print koch.lsys --set steps=3").out, graftal("print koch.lsys --steps 3").out);
+    const RunResult wrong = graftal("print koch.lsys --set angel=40");
+    EXPECT_EQ(wrong.status, 1);
+    EXPECT_EQ(wrong.err,
+              "graftal: error: --set angel: the model has no 'let angel'\n"
+              "    hint: did you mean 'angle'? known here: size, angle, step, width, steps, seed\n");
+    EXPECT_THAT(graftal("print koch.lsys --set step=-1").err,
+                HasSubstr("graftal: error: 'step' must be positive, not -1\n"));
+    write("set.inst", "object set { union: set, sphere  scale: 0.5 }\n");
+    EXPECT_EQ(graftal("stats set.inst --json --set steps=3").out,
+              graftal("stats set.inst --json --steps 3").out);
+    EXPECT_THAT(graftal("check set.inst --set steps=2.5").err,
+                HasSubstr("--set steps: it must be a whole number"));
+    EXPECT_THAT(graftal("check set.inst --set angle=4").err, HasSubstr("hint: known here: steps\n"));
+}
+
+/// What is written says neither where nor with how many threads it was made.
+TEST_F(CommandLine, TheSamePictureHasTheSameBytes) {
+    write("a model.inst", "object set { union: set, sphere  scale: 0.5 }\n");
+    std::filesystem::create_directory(path("there"));
+    const std::string there = "'" + path("a model.inst") + "'";
+    const std::string options = " -q --steps 3 --seed 7 --size 32x24 ";
+    for (const auto& [command, ending] : {std::pair("render", ".png --engine native"), std::pair("points", ".ply"),
+                                          std::pair("points", ".png")}) {
+        const std::string begin = command + std::string(" ");
+        ASSERT_EQ(graftal(begin + "'a model.inst'" + options + "--threads 1 -o a" + ending).status, 0);
+        ASSERT_EQ(graftal(begin + there + " --threads 2" + options + "-o '" + path("there/b") + "'" + ending).status,
+                  0);
+        const std::string suffix = std::string(ending).substr(0, 4), bytes = read("a" + suffix);
+        EXPECT_EQ(bytes, read("there/b" + suffix)) << command << ending;
+        EXPECT_EQ(bytes.find(path("")), std::string::npos);
+        if (suffix == ".ply") {
+            EXPECT_THAT(bytes, HasSubstr("graftal points 'a model.inst' --size 32x24 --steps 3 --seed 7\n"));
+        }
+    }
+}
+
+TEST_F(CommandLine, WhatIsNoModelIsNotShown) {
+    write("secret", "root:x:0:0:secret:/root:/bin/bash\n-----BEGIN PRIVATE KEY-----\n");
+    for (const std::string name : {"a.inst", "a.rifs", "a.lsys", "a"}) {
+        ASSERT_EQ(shell("ln -s secret " + name).status, 0);
+        write("user.inst", "use a = \"" + name + "\"\nobject o { a }\n");
+        for (const std::string& model : {name, std::string("user.inst")}) {
+            const RunResult result = graftal("check " + model);
+            EXPECT_EQ(result.status, 1) << model;
+            EXPECT_THAT(result.err, HasSubstr("'" + name + "' is no model")) << model;
+            EXPECT_THAT(result.out + result.err, Not(HasSubstr("root"))) << model;
+        }
+    }
+}
+
+TEST_F(CommandLine, ProbabilitiesGoThroughThePrintedGraph) {
+    const std::string fern = "'" + source_path("scenes/ifs/fern.rifs") + "'";
+    const RunResult printed = graftal("print " + fern);
+    EXPECT_THAT(printed.out, HasSubstr("chance: "));
+    write("fern.inst", printed.out);
+    EXPECT_EQ(graftal("print fern.inst").out, printed.out);
+    const std::string draw = " --points 1e5 --size 60x80 -q -o ";
+    ASSERT_EQ(graftal("points " + fern + draw + "a.png").status, 0);
+    ASSERT_EQ(graftal("points fern.inst" + draw + "b.png").status, 0);
+    EXPECT_EQ(compare_images(picture("a.png"), picture("b.png")).differing, 0u);
 }
 
 TEST_F(CommandLine, UnwritableTemporaryFolderIsStatusThree) {

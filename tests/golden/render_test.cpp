@@ -1,5 +1,6 @@
 #include "tests/golden/command_line.h"
 
+#include <array>
 #include <chrono>
 #include <csignal>
 #include <cstdlib>
@@ -103,6 +104,63 @@ TEST_F(Render, CompiledSceneNeedsNothingElse) {
     ASSERT_EQ(graftal("compile " + gasket + small + "-o gasket.inc -q").status, 0);
     EXPECT_THAT(read("gasket.inc"), HasSubstr("#include \"gasket.inc\"")) << "says how to use itself";
     EXPECT_THAT(read("gasket.inc"), HasSubstr("#declare"));
+}
+
+/// The mean of each channel.
+std::array<double, 3> mean_colour(const Image& image) {
+    std::array<double, 3> sum{};
+    const auto channels = static_cast<std::size_t>(image.channels);
+    for (std::size_t i = 0; i < image.pixels.size(); ++i)
+        if (i % channels < 3) sum[i % channels] += static_cast<double>(image.pixels[i]);
+    for (double& part : sum)
+        part /= static_cast<double>(image.pixels.size() / channels);
+    return sum;
+}
+
+/// An .inc in a folder of its own is used from another, by scenes that put their textures in place of its.
+TEST_F(Render, IncludesTakeTexturesFromTheScenesThatUseThem) {
+    std::filesystem::create_directory(path("parts"));
+    write("two.inst", "material wood { color: 1, 0, 0 }  material leaf { color: 0, 0, 1 }\n"
+                      "object two { instance: sphere  material: wood  instance: sphere  translate: 3, 0, 0  "
+                      "material: leaf }\n");
+    write("one.inst", "object one { instance: sphere  instance: cube  translate: 3, 0, 0 }\n");
+    ASSERT_EQ(graftal("compile two.inst -o parts/two.inc -q").status, 0);
+    ASSERT_EQ(graftal("compile one.inst -o parts/one.inc -q --name Other").status, 0);
+    ASSERT_EQ(graftal("compile " + pound_sign + " --steps 5 -o parts/pound.inc -q").status, 0);
+    ASSERT_TRUE(exists("parts/pound_P_1.png")) << "a palette that must be found";
+    const std::string green = "texture { pigment { rgb y } finish { ambient 1 diffuse 0 } }";
+    const auto draw = [&](const std::string& before, const std::string& file, const std::string& object) {
+        write("by_hand.pov", "#version 3.7;\nglobal_settings { assumed_gamma 1 }\n" + before +
+                                 "\n#include \"" + file +
+                                 "\"\nlight_source { <2, 3, -9> rgb 1 shadowless }\n" +
+                                 "camera { orthographic location <1.5, 0, -9> look_at <1.5, 0, 0> "
+                                 "right 6*x up 3*y }\n" +
+                                 object + "\n");
+        const RunResult result = shell("povray +Iby_hand.pov +Oby_hand.png +Lparts +W80 +H40 -D 2>&1");
+        EXPECT_EQ(result.status, 0) << result.out;
+        return mean_colour(picture("by_hand.png"));
+    };
+    const auto expect_green_only = [](const std::array<double, 3>& mean, const char* what) {
+        EXPECT_LT(mean[0], 0.01) << what;
+        EXPECT_GT(mean[1], 0.1) << what;
+        EXPECT_LT(mean[2], 0.01) << what;
+    };
+    const auto plain = draw("", "two.inc", "object { Two }");
+    EXPECT_GT(plain[0], 0.02);
+    EXPECT_GT(plain[2], 0.02);
+    const auto other_wood = draw("#declare Two_T_wood = " + green + "\n", "two.inc", "object { Two }");
+    EXPECT_LT(other_wood[0], 0.01);
+    EXPECT_GT(other_wood[1], 0.1);
+    EXPECT_NEAR(other_wood[2], plain[2], 1e-6) << "the other material stays";
+    expect_green_only(draw("#declare Two_bare = yes;", "two.inc", "object { Two " + green + " }"),
+                      "all of several");
+    expect_green_only(draw("", "one.inc", "object { Other " + green + " }"), "the only one");
+    expect_green_only(
+        draw("", "one.inc",
+             "box { Other_min, Other_max " + green + " } sphere { Other_min + <1,1,1>, 0.9 " + green + " }"),
+        "corners");
+    const auto palette = draw("", "pound.inc", "object { Pound_sign }");
+    EXPECT_GT(palette[0] + palette[1] + palette[2], 0.05);
 }
 
 TEST_F(Render, SceneWithPalettesHasNoPlaceOnStandardOutput) {

@@ -49,7 +49,7 @@ class Warnings {
 AnimateOptions animate_options(const Options& options) {
     AnimateOptions animate;
     animate.render.compile = compile_options(options);
-    animate.render.metadata = {"graftal " GRAFTAL_VERSION, options.command_line, {}};
+    animate.render.metadata = {"graftal " GRAFTAL_VERSION, options.description, {}};
     animate.render.antialias = options.antialias;
     animate.render.threads = options.threads;
     animate.engine = options.engine;

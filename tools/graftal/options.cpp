@@ -6,13 +6,16 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include "compiler/emit/emit_povray.h"
 #include "compiler/passes/pipeline.h"
 #include "tools/graftal/animate_options.h"
 #include "tools/graftal/commands.h"
 #include "tools/graftal/option_values.h"
+#include "tools/graftal/picture_description.h"
 #include "tools/graftal/points_options.h"
 #include "tools/graftal/report.h"
 #include "tools/graftal/sweep_values.h"
+#include "tools/graftal/usage_errors.h"
 
 namespace graftal {
 
@@ -60,9 +63,7 @@ std::optional<std::string> pass_named(const std::string& text, bool all_allowed)
     for (const Pass& pass : pipeline())
         names.emplace_back(pass.name);
     if (std::find(names.begin(), names.end(), text) != names.end()) return text;
-    const std::string hint = did_you_mean(text, names);
-    throw CLI::ValidationError(
-        fmt::format("there is no pass '{}' ({})", text, hint.empty() ? "see 'graftal --help-passes'" : hint));
+    throw CLI::ValidationError(fmt::format("there is no pass '{}' ({})", text, choices(text, names)));
 }
 
 /// Of every command that reads a model.
@@ -98,8 +99,10 @@ void add_common(CLI::App& app, Options& options) {
             compile.lower.set[setting->first] = setting->second;
         }
     };
-    app.add_option_function<std::vector<std::string>>(
-           "--set", set, "Replace the value of a 'let' of the model (may be repeated)")
+    app.add_option_function<std::vector<std::string>>("--set", set,
+                                                      "Replace the value of a 'let' of the model, or of a "
+                                                      "setting: steps; of an .lsys also angle, step, width, "
+                                                      "seed (may be repeated)")
         ->allow_extra_args(false)
         ->type_name(sweeps ? "NAME=VALUE[..VALUE[:STEP]]" : "NAME=VALUE");
     add_swept(
@@ -287,11 +290,20 @@ void add_compile(CLI::App& app, Options& options) {
                    "Scene: .pov draws the model, .inc declares it for use in a scene of your own; palettes "
                    "appear beside it (default: the scene on standard output)")
         ->type_name("FILE");
+    add_value(
+        app, "--name", "NAME",
+        "What an .inc declares, and what its names begin with (default: as the model's file)",
+        "a name of at most 24 letters, digits and '_' that begins with a capital, as POV-Ray's own words do "
+        "not",
+        [](const std::string& text) -> std::optional<std::string> {
+            return is_model_identifier(text) ? std::optional(text) : std::nullopt;
+        },
+        [&](const std::string& name) { options.identifier = name; });
     add_view(app, options);
     add_common(app, options);
     app.footer("Examples:\n"
                "  graftal compile fern.rifs -o fern.pov && povray +Ifern.pov +W640 +H480\n"
-               "  graftal compile fern.rifs -o fern.inc --error-world 0.001\n"
+               "  graftal compile fern.rifs -o far_fern.inc --name FarFern --error-world 0.001\n"
                "  graftal compile fern.rifs | less");
 }
 
@@ -401,19 +413,6 @@ int usage_error(const std::string& message, const std::string& command) {
     return exit_usage;
 }
 
-/// A wrong first word is most likely a misspelt command.
-std::string wrong_command(int argc, const char* const* argv) {
-    if (argc < 2) return "which command?";
-    const std::string word = argv[1];
-    std::vector<std::string> names;
-    for (const CommandEntry& entry : commands)
-        names.emplace_back(entry.name);
-    if (word.empty() || word.front() == '-' || std::find(names.begin(), names.end(), word) != names.end())
-        return {};
-    const std::string hint = did_you_mean(word, names);
-    return fmt::format("there is no command '{}'{}", word, hint.empty() ? "" : " (" + hint + ")");
-}
-
 std::string passes_text() {
     std::string text;
     for (const Pass& pass : pipeline())
@@ -454,6 +453,8 @@ std::string complete(Options& options) {
     const bool to_stdout = options.output == "-";
     if (options.command == Command::compile && !to_stdout && extension != ".pov" && extension != ".inc")
         return fmt::format("'{}' ends neither in .pov nor in .inc", options.output);
+    if (!options.identifier.empty() && extension != ".inc")
+        return "--name says what an .inc declares; give '-o FILE.inc', too";
     if (options.command == Command::graph && !to_stdout && extension != ".dot" && extension != ".svg")
         return fmt::format("'{}' ends neither in .dot nor in .svg", options.output);
     return {};
@@ -477,7 +478,10 @@ ParsedCommandLine parse_command_line(int argc, const char* const* argv) {
         command->callback([&options, &entry] { options.command = entry.command; });
     }
 
-    const std::string wrong = wrong_command(argc, argv);
+    std::vector<std::string> names;
+    for (const CommandEntry& entry : commands)
+        names.emplace_back(entry.name);
+    const std::string wrong = wrong_command(argc, argv, names);
     if (!wrong.empty()) return {std::nullopt, usage_error(wrong, "")};
     const auto chosen = [&]() -> std::string {
         return app.get_subcommands().empty() ? "" : app.get_subcommands().front()->get_name();
@@ -491,7 +495,8 @@ ParsedCommandLine parse_command_line(int argc, const char* const* argv) {
     } catch (const CLI::CallForVersion& version) {
         return {std::nullopt, print_output(std::string(version.what()) + "\n")};
     } catch (const CLI::ParseError& error) {
-        return {std::nullopt, usage_error(error.what(), chosen())};
+        const CLI::App& command = chosen().empty() ? app : *app.get_subcommand(chosen());
+        return {std::nullopt, usage_error(usage_message(error, command), chosen())};
     }
     if (help_passes) return {std::nullopt, print_output(passes_text())};
     if (chosen().empty()) return {std::nullopt, usage_error("which command?", "")};
@@ -499,9 +504,7 @@ ParsedCommandLine parse_command_line(int argc, const char* const* argv) {
     if (!problem.empty()) return {std::nullopt, usage_error(problem, chosen())};
 
     options.animation.identity = frame_identity(*app.get_subcommands().front(), options.engine);
-    std::vector<std::string> words(argv, argv + argc);
-    words.front() = "graftal";
-    options.command_line = shell_quoted(words);
+    options.description = picture_description(*app.get_subcommands().front(), options.engine);
     return {std::move(options), exit_done};
 }
 

@@ -53,12 +53,13 @@ struct Options {
     SampleFormat format = SampleFormat::srgb8;
     std::optional<int> antialias = 2;
     std::string keep;
+    std::string identifier; ///< of `compile` to an .inc; "": as the model's file
     AnimationOptions animation;
     PointsSettings points;
     bool json = false;
     double threshold = 0;
 
-    std::string command_line; ///< for the metadata of a picture
+    std::string description; ///< for the metadata of a picture: picture_description.h
 };
 
 struct ParsedCommandLine {

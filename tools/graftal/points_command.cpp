@@ -13,7 +13,7 @@ PointsOptions points_options(const Options& options) {
     PointsOptions points;
     points.compile = compile_options(options);
     points.output = options.output;
-    points.metadata = {"graftal " GRAFTAL_VERSION, options.command_line, {}};
+    points.metadata = {"graftal " GRAFTAL_VERSION, options.description, {}};
     points.points = options.points.points;
     points.colour = options.points.colour;
     points.tone = options.points.tone;

@@ -34,7 +34,7 @@ RenderOptions render_options(const Options& options) {
     RenderOptions render;
     render.compile = compile_options(options);
     render.output = options.output;
-    render.metadata = {"graftal " GRAFTAL_VERSION, options.command_line};
+    render.metadata = {"graftal " GRAFTAL_VERSION, options.description};
     render.format = options.format;
     render.antialias = options.antialias;
     render.threads = options.threads;
@@ -55,7 +55,7 @@ std::string native_text(const NativeReport& report) {
     std::string text = report.finished ? "" : "unfinished: ";
     text += samples_text(report.samples_a_pixel);
     if (report.finer_share > 0)
-        text += fmt::format(", and in {:.2g} % of it {},", 100 * report.finer_share,
+        text += fmt::format(", in {:.2g} % of the picture {},", 100 * report.finer_share,
                             samples_text(report.finer_samples_a_pixel));
     text += fmt::format(" in {:.2f} s, {}", report.seconds, rays_text(report.rays, report.seconds));
     if (report.pictures > 1)
@@ -107,8 +107,9 @@ int run_compile(const Options& options) {
     if (model) {
         const Interruption interruption;
         const bool include = options.output.ends_with(".inc");
-        compilation.status = options.output == "-" ? print_scene(*model, include)
-                                                   : write_scene(*model, options.output, include, false);
+        compilation.status = options.output == "-"
+                                 ? print_scene(*model, include)
+                                 : write_scene(*model, options.output, include, false, options.identifier);
     }
     const int status = conclude(options, compilation);
     if (status == exit_done && !options.quiet && options.output != "-")

@@ -7,18 +7,26 @@
 
 #include "compiler/graph/print.h"
 #include "compiler/support/file.h"
+#include "compiler/support/printable.h"
 #include "runtime/image/texture.h"
 #include "runtime/povray/interruption.h"
 #include "tools/graftal/commands.h"
 
 namespace graftal {
 
+namespace {
+
+/// Names of files come from outside; what follows one in a message must still be seen.
+constexpr std::size_t longest_complaint = 2000;
+
+} // namespace
+
 void say(const std::string& text) {
     std::fputs(text.c_str(), stderr);
 }
 
 void complain(std::string_view text) {
-    say(fmt::format("graftal: {}\n", text));
+    say(fmt::format("graftal: {}\n", escaped(text, longest_complaint)));
 }
 
 int conclude(const Options& options, const Compilation& compilation) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -199,6 +200,9 @@ TEST(EmitPovray, LargePalettesArePicturesBesideTheScene) {
     EXPECT_EQ(scene.pictures[1].file_name, "a_b_c_P_2.png");
     EXPECT_EQ(count(text, "image_map { png \"a_b_c_P_1.png\" gamma 1.0 }"), 1u);
     EXPECT_EQ(scene.pictures[0].pixels[7], many[7]);
+    scene.options = {.scene_name = "a.rifs", .include = true, .file_name = "far.inc"};
+    scene.text();
+    EXPECT_EQ(scene.pictures[0].file_name, "far_P_1.png") << "beside others of the same model";
 }
 
 TEST(EmitPovray, TextOfTheModelNeverBecomesSdl) {
@@ -206,6 +210,7 @@ TEST(EmitPovray, TextOfTheModelNeverBecomesSdl) {
     const std::string evil = "x\n#include \"secret\"\n} */ ; #declare Sphere";
     scene.options.scene_name = evil;
     scene.group(scene.palette({Rgb(0.1), Rgb(1)}), {{scene.mesh(evil, 2), {}}}).material.name = evil;
+    scene.options.file_name = evil;
     for (const bool include : {false, true}) {
         scene.options.include = include;
         const std::string text = scene.text();
@@ -217,23 +222,62 @@ TEST(EmitPovray, TextOfTheModelNeverBecomesSdl) {
     }
 }
 
+/// What POV-Ray reads.
+std::string without_comments(const std::string& text) {
+    std::string out;
+    std::istringstream lines(text);
+    for (std::string line; std::getline(lines, line);)
+        if (!line.starts_with("//")) out += line + "\n";
+    return out;
+}
+
 TEST(EmitPovray, IncludesDeclareTheObjectAndDrawNothing) {
     Scene scene = one_sphere();
-    scene.options = {.scene_name = "union", .include = true};
+    scene.options = {.scene_name = "union.rifs", .include = true, .file_name = "a.inc"};
+    scene.cut.bounds = {{-1, 0, 0.1}, {1, 2, 3}};
     scene.group(scene.palette({Rgb(0.1), Rgb(1)}), {{scene.mesh("leaf", 2), place({1, 0, 0}, Vec3(1))}});
-    const std::string text = scene.text();
+    const std::string text = scene.text(), sdl = without_comments(text);
     for (const char* const word : {"camera {", "light_source", "background", "sky_sphere", "global_settings"})
         EXPECT_THAT(text, Not(HasSubstr(word)));
-    EXPECT_THAT(text, HasSubstr("#declare Union =\nunion {\nsphere { <0,0,0>, 1\n"));
-    EXPECT_THAT(text, HasSubstr("object { Union_M_leaf matrix <1,0,0,0,1,0,0,0,1,1,0,0>"));
-    EXPECT_EQ(count(text, "#declare Union"), count(text, "#declare"));
-    EXPECT_EQ(count(text, "{") - count(text, "//     object {"),
-              count(text, "}") - count(text, "//     object {"));
+    EXPECT_THAT(sdl, HasSubstr("#declare Union =\nunion {\nsphere { <0,0,0>, 1\n"));
+    EXPECT_THAT(sdl, HasSubstr("object { Union_M_leaf matrix <1,0,0,0,1,0,0,0,1,1,0,0>"));
+    EXPECT_THAT(sdl, HasSubstr("#declare Union_min = <-1,0,0.1>;\n#declare Union_max = <1,2,3>;\n"));
+    EXPECT_EQ(count(sdl, "#declare Union"), count(sdl, "#declare")) << "no name but its own";
+    EXPECT_EQ(count(sdl, "{"), count(sdl, "}"));
+    EXPECT_THAT(text, HasSubstr("//     #include \"a.inc\"\n"));
+    EXPECT_THAT(text, HasSubstr("povray +LFOLDER"));
 
     // A union of one would be a warning.
     Scene single = one_sphere();
     single.options = {.scene_name = "ball", .include = true};
     EXPECT_THAT(single.text(), HasSubstr("#declare Ball =\nsphere {"));
+
+    scene.options.identifier = "Other";
+    EXPECT_EQ(count(without_comments(scene.text()), "Union"), 0u);
+}
+
+TEST(EmitPovray, TexturesOfIncludesCanBeDeclaredBefore) {
+    Scene scene = one_sphere();
+    scene.options = {.scene_name = "tree", .include = true};
+    const std::uint32_t grey = scene.palette({Rgb(0.5)}), ball = scene.body(PrimitiveKind::sphere);
+    const std::string one = scene.text();
+    EXPECT_THAT(one, HasSubstr("#ifndef (Tree_T_default)\n#declare Tree_T_default = texture {"));
+    EXPECT_THAT(one, HasSubstr("\n  texture { Tree_T_default } }\n"))
+        << "its own, so that one around it hides it";
+    EXPECT_THAT(one, HasSubstr("// For a texture of your own: object { Tree texture { ... } }\n"));
+
+    // Two materials, one of them under two tints; a third that looks like the second.
+    scene.group(grey, {{ball, {}}}).material.name = "wood";
+    scene.group(grey, {{ball, {}}}, PathTint(Tint{Rgb(1, 0, 0), 0.5})).material.name = "wood";
+    scene.group(grey, {{ball, {}}}).material.name = "leaf";
+    const std::string text = scene.text(), sdl = without_comments(text);
+    EXPECT_THAT(sdl, HasSubstr("#ifndef (Tree_T_wood)\n#declare Tree_T_wood_2 = texture {"));
+    EXPECT_THAT(sdl, HasSubstr("#else\n#declare Tree_T_wood_2 = texture { Tree_T_wood }\n"
+                               "#declare Tree_T_wood_3 = texture { Tree_T_wood }\n#end\n"));
+    EXPECT_THAT(sdl, HasSubstr("#ifndef (Tree_T_leaf)\n#declare Tree_T_leaf = texture {"));
+    EXPECT_THAT(sdl, HasSubstr("#ifndef (Tree_bare) texture { Tree_T_leaf } #end"));
+    EXPECT_THAT(text, HasSubstr("//     #declare Tree_T_wood = texture { ... }\n"));
+    EXPECT_THAT(text, HasSubstr("//     #declare Tree_bare = yes;"));
 }
 
 TEST(EmitPovray, ProgressCountsToAHundred) {
@@ -320,13 +364,13 @@ TEST(EmitPovray, PicturesLieBehindTints) {
     }
     const std::string text = scene.text();
     EXPECT_THAT(text, HasSubstr("uv_vectors { 4,\n    <0,0>,<1,0>,<1,1>,<0,1> }"));
-    EXPECT_THAT(text, HasSubstr("#declare T_1 = pigment { image_map { png \"model_T_1.png\" } }"));
-    EXPECT_THAT(text, HasSubstr("[0.5 pigment { T_1 } finish { F_default }] } }"));
-    EXPECT_THAT(text, HasSubstr("{ average pigment_map { [0.75 T_1] [0.25 rgb <0,1,0>] } } finish"));
+    EXPECT_THAT(text, HasSubstr("#declare I_1 = pigment { image_map { png \"model_I_1.png\" } }"));
+    EXPECT_THAT(text, HasSubstr("[0.5 pigment { I_1 } finish { F_default }] } }"));
+    EXPECT_THAT(text, HasSubstr("{ average pigment_map { [0.75 I_1] [0.25 rgb <0,1,0>] } } finish"));
     EXPECT_THAT(text, HasSubstr("[0.5 pigment { rgb <0,1,0> } finish"));
     EXPECT_THAT(text, Not(HasSubstr("any")));
     ASSERT_EQ(scene.pictures.size(), 1u);
-    EXPECT_EQ(scene.pictures[0].file_name, "model_T_1.png");
+    EXPECT_EQ(scene.pictures[0].file_name, "model_I_1.png");
     EXPECT_EQ(scene.pictures[0].texture, "any \"picture\".png");
 }
 

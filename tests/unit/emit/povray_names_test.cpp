@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include "compiler/emit/emit_povray.h"
+
 namespace graftal {
 namespace {
 
@@ -30,6 +32,13 @@ TEST(PovrayNames, ModelsAreNeverPovrayWords) {
     EXPECT_EQ(model_identifier("2d"), "Model_2d");
     EXPECT_EQ(model_identifier(""), "Model_");
     EXPECT_EQ(model_identifier("-"), "Model_");
+    EXPECT_EQ(model_identifier("crystal.rifs"), "Crystal") << "without the ending";
+    EXPECT_EQ(model_identifier("a.b.lsys"), "A_b");
+    for (const char* const good : {"Crystal", "A", "Far_fern_2"})
+        EXPECT_TRUE(is_model_identifier(good)) << good;
+    for (const char* const bad :
+         {"", "union", "2d", "A b", "A_", "_A", "\xc3\x84", "Aaaaaaaaaaaaaaaaaaaaaaaaaaa"})
+        EXPECT_FALSE(is_model_identifier(bad)) << bad;
 }
 
 TEST(PovrayNames, NamesDifferWhateverIsWished) {

@@ -67,6 +67,26 @@ TEST(Print, MatricesGoRowByRowAndFlatOnesAreProjections) {
                             "}\n\n");
 }
 
+TEST(Print, ChancesThatAreStated) {
+    Graph graph;
+    const ObjectId cone = graph.primitive(PrimitiveKind::cone);
+    Instance rare = instance_of(cone), never = rare, often = rare;
+    rare.chance = 0.1;
+    often.chance = 2;
+    graph.root = add_union(graph, "a", {rare, rare, never, often});
+    EXPECT_EQ(print(graph), "object a {\n"
+                            "  union: cone, cone\n"
+                            "    chance: 0.1\n"
+                            "  instance: cone\n"
+                            "  instance: cone\n"
+                            "    chance: 2\n"
+                            "}\n\n");
+    Graph other = graph;
+    EXPECT_TRUE(equal(graph, other));
+    other.objects[other.root].instances[3].chance = 1;
+    EXPECT_FALSE(equal(graph, other));
+}
+
 TEST(Print, TintsAndMaterials) {
     Graph graph;
     graph.materials.push_back({});

@@ -290,6 +290,26 @@ TEST(Inst, a_printed_graph_reads_back_to_the_last_bit) {
         object other { union: top, kept scale: 1/3 })"));
 }
 
+TEST(Inst, chances_hold_for_each_instance_of_their_group_and_read_back) {
+    const Model model("let half = 1/2\n"
+                      "object a { union: b, chance  scale: 0.5  chance: half/2\n"
+                      "           instance: b  chance 3  scale: 0.1\n"
+                      "           chance }\n" // a name, where no number follows
+                      "canonical object b { sphere }  canonical object chance { cube }\n");
+    ASSERT_TRUE(model.graph) << model.errors();
+    std::vector<double> chances;
+    for (const Instance& instance : model.object("a").instances)
+        chances.push_back(instance.chance);
+    EXPECT_THAT(chances, ElementsAre(0.25, 0.25, 3, 0));
+    expect_round_trip(model);
+    EXPECT_THAT(Model("object a { sphere  chance: -1 }").errors(),
+                HasSubstr("m.inst:1:28: error: a chance must not be negative, but is -1\n"));
+    EXPECT_THAT(Model("object a { sphere  terminal: cube  chance: 1 }").errors(),
+                HasSubstr("m.inst:1:36: error: a terminal has no chance\n"));
+    EXPECT_THAT(Model("object a { sphere  chance: 1  chance: 2 }").errors(),
+                HasSubstr("m.inst:1:31: error: duplicate 'chance'\n"));
+}
+
 TEST(Inst, a_root_that_is_instanced_itself_reads_back) {
     expect_round_trip(
         Model("object top { union: part, top scale: 0.5 } canonical object part { union: top, cube "

@@ -263,7 +263,7 @@ TEST(LowerRifs, namesThatAreNotThere) {
     EXPECT_EQ(lower(two_maps("follow a -> bb")).messages, "m.rifs:4:13: error: 'rifs r' has no map 'bb'\n"
                                                           "    follow a -> bb\n"
                                                           "                ^~\n"
-                                                          "    hint: did you mean 'b'?\n");
+                                                          "    hint: did you mean 'b'? known here: a, b\n");
     EXPECT_EQ(complaints(two_maps("start q\nterminal cbue\ncondense leaf")),
               "5:10: 'cbue' is no primitive and no used model\n"
               "6:10: 'leaf' is no primitive and no used model\n"

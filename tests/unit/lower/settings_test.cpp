@@ -92,7 +92,7 @@ TEST(Settings, set_of_an_unknown_let_is_an_error_with_a_suggestion) {
     const Model model("let length = 2", options);
     EXPECT_FALSE(model.graph);
     EXPECT_EQ(model.errors(), "graftal: error: --set lenght: the model has no 'let lenght'\n"
-                              "    hint: did you mean 'length'?\n");
+                              "    hint: did you mean 'length'? known here: length, steps\n");
 }
 
 TEST(Settings, set_of_nothing_finite_is_an_error) {

@@ -56,6 +56,27 @@ TEST(DropUnreachable, KeepsWhatTheRootLeadsToByInstancesAndTerminals) {
     EXPECT_TRUE(equal(drop_unreachable(kept), kept));
 }
 
+TEST(MergeEquivalent, KeepsApartWhatRandomPointsTellApart) {
+    const auto merged_count = [](double a, double b, double c, double d) {
+        Graph graph;
+        const ObjectId cone = graph.primitive(PrimitiveKind::cone),
+                       cube = graph.primitive(PrimitiveKind::cube);
+        std::vector<ObjectId> parts;
+        for (const auto& [first, second] : {std::pair(a, b), std::pair(c, d)}) {
+            Instance one = instance_of(cone), other = instance_of(cube);
+            one.chance = first, other.chance = second;
+            parts.push_back(add_union(graph, "part" + std::to_string(parts.size()), {one, other}));
+        }
+        graph.root = add_union(graph, "root", {instance_of(parts[0]), instance_of(parts[1])});
+        return merge_equivalent(graph).objects.size();
+    };
+    EXPECT_EQ(merged_count(0, 0, 0, 0), 4u);
+    EXPECT_EQ(merged_count(0.2, 0.8, 0.2, 0.8), 4u);
+    EXPECT_EQ(merged_count(0.1, 0.4, 0.2, 0.8), 4u) << "the same, relative to each other";
+    EXPECT_EQ(merged_count(0.2, 0.8, 0.8, 0.2), 5u);
+    EXPECT_EQ(merged_count(0.2, 0.8, 0, 0), 5u) << "by size";
+}
+
 TEST(DropUnreachable, KeepsTheMaterialsThatAreUsedAndTheGrounds) {
     Graph graph;
     for (const char* name : {"unused", "of_instance", "of_terminal", "of_ground", "of_lost"}) {

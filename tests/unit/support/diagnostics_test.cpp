@@ -176,6 +176,41 @@ TEST(Diagnostics, AFloodOfWarningsHidesNoError) {
     EXPECT_LE(diagnostics.all().size(), Diagnostics::max_errors + 1);
 }
 
+TEST(Diagnostics, WhatIsEchoedIsShortAndGivesTheTerminalNoOrders) {
+    Diagnostics diagnostics;
+    diagnostics.error({}, "escape \x1b[31m, line\nend, C1 \u009b31m, turned \u202e, byte \xff, tab\t.")
+        .with_hint("hidden \u200b")
+        .with_note({}, "bell \a");
+    diagnostics.error({}, "cannot open '" + std::string(50'000'000, 'x') + "': No such file or directory");
+    const std::string out = diagnostics.render(SourceMap());
+    EXPECT_THAT(
+        out, HasSubstr("escape \\x1b[31m, line\\nend, C1 \\u009b31m, turned \\u202e, byte \\xff, tab .\n"));
+    EXPECT_THAT(out, HasSubstr("hint: hidden \\u200b\n"));
+    EXPECT_THAT(out, HasSubstr("note: bell \\x07\n"));
+    EXPECT_THAT(out, HasSubstr("xxx...xxx"));
+    EXPECT_THAT(out, EndsWith("xxx': No such file or directory\n"));
+    EXPECT_LT(out.size(), 1500u);
+
+    SourceMap sources;
+    const FileId file = sources.add("a\x1b]0;b", "x \x1b[2J \u202e \u009b y");
+    Diagnostics at_text;
+    at_text.error({file, 13, 14}, "here");
+    EXPECT_EQ(at_text.render(sources), "a\\x1b]0;b:1:11: error: here\n"
+                                       "    x ?[2J ? ? y\n"
+                                       "              ^\n");
+}
+
+TEST(Choices, NameTheNearestAndAllWhereTheyAreFew) {
+    EXPECT_EQ(choices("colour", {"color", "ambient"}), "did you mean 'color'? known here: color, ambient");
+    EXPECT_EQ(choices("fov", {"angle", "up"}), "known here: angle, up");
+    EXPECT_EQ(choices("fov", {}), "");
+    EXPECT_EQ(choices("scael", std::vector<std::string>(100, "scale")), "did you mean 'scale'?");
+    EXPECT_EQ(closest_name("Lsystem", {"rifs", "lsys"}), "lsys") << "begins so, in other letters";
+    EXPECT_EQ(closest_name("prob", {"tint", "probability"}), "probability");
+    EXPECT_EQ(closest_name("PI", {"e", "pi"}), "pi");
+    EXPECT_EQ(closest_name("b", {"by", "a"}), "") << "any letter is as near";
+}
+
 TEST(ClosestName, FindsWhatWasMeant) {
     const std::vector<std::string> names = {"scale", "rotate", "translate", "tint"};
     EXPECT_EQ(closest_name("scael", names), "scale") << "a transposition";

@@ -98,7 +98,7 @@ TEST(Expression, errors_say_what_is_wrong_and_where) {
     EXPECT_EQ(error("1 + lenght", {{"length", 1}}), "t:1:5: error: unknown name 'lenght'\n"
                                                     "    1 + lenght\n"
                                                     "        ^~~~~~\n"
-                                                    "    hint: did you mean 'length'?\n");
+                                                    "    hint: did you mean 'length'? known here: pi, length\n");
     EXPECT_THAT(error("1/(2-2)"), HasSubstr("t:1:1: error: division by zero"));
     EXPECT_THAT(error("5 % 0"), HasSubstr("division by zero"));
     EXPECT_THAT(error("mod(5, 0)"), HasSubstr("division by zero"));
@@ -169,6 +169,24 @@ TEST(ExpressionLists, rows_need_no_commas) {
     EXPECT_THAT(numbers("1 -2 3-1 4 - 1 1/3*3 -(2 -1) .5", row), ElementsAre(1, -2, 2, 3, 1, -1, 0.5));
 }
 
+TEST(ExpressionLists, every_list_of_numbers_may_be_a_row) {
+    const auto vector = [](TokenStream& s) { return parse_vector(s, "v"); };
+    EXPECT_THAT(numbers("0 -1 0 rotate", vector), ElementsAre(0, -1, 0));
+    EXPECT_THAT(numbers("<0 -1 0>", vector), ElementsAre(0, -1, 0));
+    EXPECT_THAT(numbers("1 - 2 3*2 (4) scale 2", vector), ElementsAre(-1, 6, 4));
+    EXPECT_THAT(numbers("1 -2, 3, 4", vector), ElementsAre(-1, 3, 4)) << "where commas stand it is a difference";
+    EXPECT_THAT(numbers("1, 2 3", vector), ElementsAre(1, 2, 3));
+    EXPECT_THAT(numbers("1 2\n3 4", vector), ElementsAre(1, 2, 3)) << "on the next line what is missing";
+    EXPECT_THAT(numbers("1 pi 2", vector).size(), 3u);
+    EXPECT_THAT(numbers("1, 0 .5 .25", [](TokenStream& s) { return parse_tint(s, "tint"); }),
+                ElementsAre(1, 0, 0.5, 0.25));
+    const auto scale = [](TokenStream& s) { return parse_numbers(s, 1, 3, "scale"); };
+    EXPECT_THAT(numbers("2 -3", scale), ElementsAre(2, -3));
+    EXPECT_THAT(numbers("2 rotate 3", scale), ElementsAre(2));
+    EXPECT_THAT(numbers("2\n3", scale), ElementsAre(2)) << "a row that may end does so with its line";
+    EXPECT_THAT(numbers("3 -1", [](TokenStream& s) { return parse_numbers(s, 1, 1, "steps"); }), ElementsAre(2));
+}
+
 TEST(ExpressionLists, wrong_counts_are_errors) {
     const auto errors = [](const std::string& text) {
         SourceMap sources;
@@ -180,6 +198,9 @@ TEST(ExpressionLists, wrong_counts_are_errors) {
     EXPECT_THAT(errors("1, 2, 3, 4"), HasSubstr("'scale' takes 1 to 3 numbers, not more"));
     EXPECT_THAT(errors("<1, 2"), HasSubstr("expected '>', found the end of the file"));
     EXPECT_THAT(errors("{"), HasSubstr("expected a number, found '{'"));
+    EXPECT_THAT(errors("[1 2]"), HasSubstr("a vector is written x, y, z or <x, y, z>"));
+    EXPECT_THAT(errors("(1, 2)"), HasSubstr("a vector is written x, y, z or <x, y, z>"));
+    EXPECT_THAT(errors("50%"), HasSubstr("0.5 in place of 50%"));
 }
 
 } // namespace

@@ -79,7 +79,7 @@ TEST(Lexer, tiny_numbers_are_zero_and_huge_ones_errors) {
 
 TEST(Lexer, goes_on_after_each_error) {
     const Lexed lexed("a $$$ b \x01 \"open\nc \xC3\xA9 d");
-    EXPECT_THAT(lexed.texts(), ElementsAre("a", "b", "open", "c", "d"));
+    EXPECT_THAT(lexed.texts(), ElementsAre("a", "b", "open", "c", "\xC3\xA9", "d"));
     EXPECT_EQ(lexed.errors(), "t.inst:1:3: error: unexpected character '$'\n"
                               "    a $$$ b ? \"open\n"
                               "      ^\n"
@@ -89,9 +89,26 @@ TEST(Lexer, goes_on_after_each_error) {
                               "t.inst:1:11: error: this string is not closed on its line\n"
                               "    a $$$ b ? \"open\n"
                               "              ^~~~~\n"
+                              "    hint: close it with '\"'\n"
                               "t.inst:2:3: error: unexpected character '\xC3\xA9'\n"
                               "    c \xC3\xA9 d\n"
-                              "      ^\n");
+                              "      ^\n"
+                              "    hint: names are made of the letters a to z and A to Z, digits and _\n");
+}
+
+TEST(Lexer, reads_lookalikes_as_what_they_were_meant_as_and_reports_each_once) {
+    const Lexed lexed("use a = \u201Cb.inst\u201D 'c' \uFF5B \uFF13, \u22122 \u2192 \u00D7 x\u00A0y\u00A0z\u00A0 \uFF5D");
+    EXPECT_THAT(lexed.texts(), ElementsAre("use", "a", "=", "b.inst", "c", "{", "\uFF13", ",", "-", "2", "->", "*", "x",
+                                           "y", "z", "}"));
+    EXPECT_EQ(lexed.tokens[3].kind, TokenKind::string);
+    EXPECT_EQ(lexed.tokens[6].number, 3);
+    EXPECT_EQ(lexed.diagnostics.error_count(), 9u) << lexed.errors();
+    EXPECT_THAT(lexed.errors(), HasSubstr("unexpected character U+00A0"));
+    EXPECT_THAT(lexed.errors(), HasSubstr("hint: it is a no-break space; write a blank"));
+    EXPECT_THAT(Lexed("color: #ff8000").texts(), ElementsAre("color", ":", "#ff8000", "#ff8000", "#ff8000"));
+    EXPECT_EQ(Lexed("color: #ff8000").tokens[3].number, 0.216) << "linear";
+    EXPECT_THAT(Lexed("color: #ffx\nscale #fff").texts(), ElementsAre("color", ":", "scale")) << "comments";
+    EXPECT_THAT(Lexed("\xFF\xFEo\0").errors(), HasSubstr("this text is in UTF-16"));
 }
 
 TEST(Lexer, an_open_comment_ends_the_file) {

@@ -152,9 +152,10 @@ m.lsys:3:3: note: first named here
     A(x, x) -> F
       ^
 )e"},
-        {R"e(A() -> F())e", R"e(m.lsys:3:3: error: expected the name of a parameter, found ')'
+        {R"e(A() -> F())e", R"e(m.lsys:3:2: error: there is no parameter between these parentheses
     A() -> F()
-      ^
+     ^~
+    hint: a module without parameters is written 'A'
 )e"},
         {R"e(A(x) : x = 1 -> F)e", R"e(m.lsys:3:10: error: expected '->', found '='
     A(x) : x = 1 -> F
@@ -261,17 +262,17 @@ TEST(LsysErrors, statements) {
         {R"e(angel 60)e", R"e(m.lsys:3:1: error: unknown statement 'angel'
     angel 60
     ^~~~~
-    hint: did you mean 'angle'?
+    hint: did you mean 'angle'? known here: let, inner, angle, step, width, steps, seed, ignore, consider, tropism, colors, modules, axiom, interpret, homomorphism, decompose, decomposition
 )e"},
-        {R"e(F = F+F)e", R"e(m.lsys:3:1: error: this is neither a statement nor a production
+        {R"e(F = F+F)e", R"e(m.lsys:3:3: error: expected '->', found '='
     F = F+F
-    ^
-    hint: a production has an arrow: A -> B
+      ^
+    hint: a production is written A -> B, and 'let a = 3' names a number
 )e"},
-        {R"e(F → F)e", R"e(m.lsys:3:1: error: this is neither a statement nor a production
+        {R"e(F → F)e", R"e(m.lsys:3:3: error: expected '->', found '→'
     F → F
-    ^
-    hint: a production has an arrow: A -> B
+      ^
+    hint: a production is written A -> B
 )e"},
         {R"e(angle
 angle: 60 70
@@ -343,6 +344,7 @@ m.lsys:6:7: error: expected symbols after 'ignore', found the end of the line
 m.lsys:7:10: error: expected a module or the end of the line, found '->'
     ignore F -> G
              ^~
+    hint: every statement and every production stands on its own line, without ';'
 m.lsys:9:1: error: a block has either 'ignore' or 'consider'
     consider G
     ^~~~~~~~
@@ -395,10 +397,10 @@ m.lsys:4:2: error: only productions stand in 'interpret', not 'angle'
      ^~~~~
     hint: close it with '}' before
 )e"},
-        {R"e(interpret)e", R"e(m.lsys:3:10: error: this is neither a statement nor a production
+        {R"e(interpret)e", R"e(m.lsys:3:10: error: expected a production or '{'
     interpret
              ^
-    hint: a production has an arrow: A -> B
+    hint: interpret A -> F, or interpret { with one production a line }
 )e"},
         {R"e(interpret A > B -> F)e",
          R"e(m.lsys:3:11: error: productions of 'interpret' and 'decompose' have no context
@@ -505,7 +507,7 @@ axoim F
          R"e(m.lsys:2:1: error: unknown statement 'axoim'
     axoim F
     ^~~~~
-    hint: did you mean 'axiom'?
+    hint: did you mean 'axiom'? known here: let, inner, angle, step, width, steps, seed, ignore, consider, tropism, colors, modules, axiom, interpret, homomorphism, decompose, decomposition
 )e"},
         {R"e(lsysx a {
 axiom ''
@@ -519,6 +521,7 @@ light 3
 m.lsys:4:7: error: expected '{' after 'light', found '3'
     light 3
           ^
+    hint: light { sun: 1, 2, 3 } or light { location: 10, 20, 30 }
 )e"},
         {R"e(foo { $ }
 lsys a {
@@ -531,6 +534,7 @@ axiom F }
 m.lsys:1:1: error: expected 'lsys', 'use' or a scene statement, found 'foo'
     foo { $ }
     ^~~
+    hint: a block begins with its kind: lsys foo {
 m.lsys:3:9: error: '}' without '{'
     axiom F }
             ^

@@ -18,6 +18,7 @@
 #include "compiler/cut/run_cells.h"
 #include "compiler/cut/tessellate.h"
 #include "compiler/cut/texture_space.h"
+#include "compiler/cut/work.h"
 #include "compiler/support/id_table.h"
 
 namespace graftal {
@@ -62,17 +63,25 @@ class Unfolding {
         : cut_(cut), symmetry_(symmetry), projection_(projection), choice_(choice), weights_(weights),
           seen_(cut.nodes[cut.root].ball.radius) {}
 
-    bool run(const Piece& root, std::size_t max_placements) {
+    bool run(const Piece& root, AssemblyLimits& limits) {
         std::vector<Piece> stack = {root};
         std::vector<Piece> children;
         while (!stack.empty()) {
             const Piece piece = stack.back();
             stack.pop_back();
-            if (placed.size() > max_placements) return false;
+            limits.work_seconds -= 1 / WorkRates::leaves;
+            if (placed.size() > limits.max_placements || limits.work_seconds < 0) return false;
             visit(piece, children);
             stack.insert(stack.end(), children.rbegin(), children.rend());
         }
         return true;
+    }
+
+    /// How large the details of a request look in its middle, as a share of where they are largest.
+    double seen_share(const BakeRequest& request) const {
+        if (!request.shell) return 1;
+        const auto number = static_cast<std::size_t>(&request - requests.data());
+        return std::min(1.0, seen_share_[number] / request.detail_per_unit);
     }
 
     std::vector<Placed> placed;
@@ -99,7 +108,7 @@ class Unfolding {
             return place_primitive(PrimitiveKind::sphere, piece.world_from_node * node.node_from_proxy, piece,
                                    node.mean.over(piece.inherited));
         const Weights::Weight weight = weights_.of(kind);
-        if (!node.unbounded && weight.leaves > 1 && weight.triangles <= choice_.threshold)
+        if (!node.unbounded && weight.leaves > 1 && (weight.triangles <= choice_.threshold || weights_.is_shell(kind)))
             return place_mesh(piece, kind);
         bool placeable = true;
         for_each_edge(node, cut, [&](const CutEdge& edge) {
@@ -148,7 +157,8 @@ class Unfolding {
     }
 
     void place_mesh(const Piece& piece, const PieceKind& kind) {
-        const NodeId representative = symmetry_.representative[piece.node];
+        const bool shell = weights_.of(kind).crowded;
+        const NodeId representative = shell ? piece.node : symmetry_.representative[piece.node];
         const std::int64_t finish = piece.material ? static_cast<std::int64_t>(*piece.material) : -1;
         const auto [request, added] =
             request_of_.emplace(RequestKey{representative, kind.steps, weights_.mesh_bin(kind), finish, own_painter(piece)},
@@ -160,20 +170,28 @@ class Unfolding {
             requests.back().material = piece.material;
             requests.back().error_px = projection_.error_px();
             requests.back().expected_leaves = weights_.of(kind).leaves;
+            requests.back().shell = shell;
         }
         BakeRequest& bake = requests[request->second];
         const Ball ball = world_ball(cut_, piece);
         bake.detail_per_unit =
             std::max(bake.detail_per_unit, projection_.detail_per_unit(ball) * piece.scale);
+        if (shell) {
+            // The eye may lie within its ball, where a unit looks as large as can be.
+            const double here = projection_.detail_per_unit({ball.centre, 0}) * piece.scale;
+            seen_share_.resize(requests.size());
+            seen_share_[request->second] = std::max(seen_share_[request->second], here);
+        }
         bake.pixels_per_unit =
             std::max(bake.pixels_per_unit, projection_.pixels_that_matter(ball) * piece.scale);
 
         Placed thing;
         thing.request = request->second;
-        thing.world_from_thing = piece.world_from_node * symmetry_.node_from_representative[piece.node];
+        thing.world_from_thing = piece.world_from_node;
+        if (!shell) thing.world_from_thing = thing.world_from_thing * symmetry_.node_from_representative[piece.node];
         if (!seen_.insert(thing.request + primitive_kind_count, thing.world_from_thing)) return;
         note_finest(ball);
-        thing.painter = painter(request->second, piece);
+        thing.painter = painter(request->second, shell ? 0 : symmetry_.pair[piece.node], piece.inherited);
         thing.tint = piece.tint;
         thing.material = piece.material;
         placed.push_back(thing);
@@ -191,12 +209,11 @@ class Unfolding {
         return PainterKey{0, symmetry_.pair[piece.node], as_array(piece.inherited)};
     }
 
-    std::uint32_t painter(std::uint32_t request, const Piece& piece) {
+    std::uint32_t painter(std::uint32_t request, std::uint32_t pair, const Rgb& inherited) {
         std::vector<Painter>& painters = requests[request].painters;
-        const std::uint32_t pair = symmetry_.pair[piece.node];
-        const auto [place, added] = painter_of_.emplace(PainterKey{request, pair, as_array(piece.inherited)},
+        const auto [place, added] = painter_of_.emplace(PainterKey{request, pair, as_array(inherited)},
                                                         static_cast<std::uint32_t>(painters.size()));
-        if (added) painters.push_back({pair, piece.inherited});
+        if (added) painters.push_back({pair, inherited});
         return place->second;
     }
 
@@ -208,6 +225,7 @@ class Unfolding {
     std::map<TexturedPrimitive, std::uint32_t> textured_of_;
     PlacedSet seen_;
     std::map<RequestKey, std::uint32_t> request_of_;
+    std::vector<double> seen_share_; ///< by request, of shells: the detail of a unit at the middle
     std::map<PainterKey, std::uint32_t> painter_of_;
 };
 
@@ -383,19 +401,25 @@ class Grouping {
 
 std::optional<Cut> assemble(const CutGraph& cut, const Symmetry& symmetry, const Projection& projection,
                             const Piece& root, const Choice& choice, Weights& weights,
-                            bool limit_normals, const AssemblyLimits& limits) {
+                            bool limit_normals, AssemblyLimits& limits) {
     Unfolding unfolding(cut, symmetry, projection, choice, weights);
-    if (!unfolding.run(root, limits.max_placements)) return std::nullopt;
+    if (!unfolding.run(root, limits)) return std::nullopt;
     std::vector<Baked> baked;
     std::size_t triangles = 0;
     double culled_detail = unfolding.culled_detail;
     double tessellation_px = 0;
     for (BakeRequest& request : unfolding.requests) {
         request.limit_normals = limit_normals;
+        // A second try of the last grid may follow.
+        request.most_shell_work = static_cast<std::uint64_t>(std::min(limits.work_seconds, 1e6) * WorkRates::shell_points / 2);
+        request.most_visits = static_cast<std::uint64_t>(std::min(limits.work_seconds, 1e6) * WorkRates::leaves);
         baked.push_back(bake(cut, symmetry, request, limits.max_triangles - triangles));
         triangles += baked.back().triangles;
+        limits.work_seconds -= static_cast<double>(baked.back().visits) / WorkRates::leaves +
+                               static_cast<double>(baked.back().shell_work) / WorkRates::shell_points;
+        if (limits.work_seconds < 0) return std::nullopt;
         if (!baked.back().complete || triangles > limits.max_triangles) return std::nullopt;
-        culled_detail = std::max(culled_detail, baked.back().culled_detail);
+        culled_detail = std::max(culled_detail, baked.back().culled_detail * unfolding.seen_share(request));
         tessellation_px = std::max(tessellation_px, baked.back().tessellation_px);
     }
     Grouping grouping(cut, unfolding.requests, baked, unfolding.textured);

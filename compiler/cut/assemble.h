@@ -11,12 +11,13 @@ namespace graftal {
 struct AssemblyLimits {
     std::size_t max_placements = 0;
     std::size_t max_triangles = 0;
+    double work_seconds = 0; ///< by WorkRates (work.h)
 };
 
 /// Unfolds the graph down to the chosen threshold and bakes what lies below: placements in depth-first order,
-/// which keeps neighbours together. Nothing if a limit is passed on the way.
+/// which keeps neighbours together. Nothing if a limit is passed on the way. Takes what was done off the work that is left.
 std::optional<Cut> assemble(const CutGraph& cut, const Symmetry& symmetry, const Projection& projection,
                             const Piece& root, const Choice& choice, Weights& weights,
-                            bool limit_normals, const AssemblyLimits& limits);
+                            bool limit_normals, AssemblyLimits& limits);
 
 } // namespace graftal

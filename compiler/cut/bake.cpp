@@ -16,6 +16,7 @@
 #include "compiler/cut/leaf_walk.h"
 #include "compiler/cut/mesh_builder.h"
 #include "compiler/cut/placed_set.h"
+#include "compiler/cut/shell.h"
 #include "compiler/cut/slot_table.h"
 #include "compiler/cut/tessellate.h"
 #include "compiler/cut/texture_space.h"
@@ -126,6 +127,7 @@ class Baker {
         WalkedLeaf leaf;
         std::size_t triangles = 0;
         for (std::uint64_t number = 0; walk.next(leaf); ++number) {
+            baked_.visits = walk.visits();
             if (walk.visits() > request_.most_visits) {
                 baked_.complete = false;
                 return;
@@ -294,7 +296,16 @@ Affine thickened(const Affine& place, double thickness) {
 
 Baked bake(const CutGraph& cut, const Symmetry& symmetry, const BakeRequest& request,
            std::size_t max_triangles) {
-    return Baker(cut, symmetry, request, max_triangles).bake();
+    if (!request.shell) return Baker(cut, symmetry, request, max_triangles).bake();
+    ShellRequest shell;
+    shell.node = request.representative;
+    shell.steps = request.steps;
+    shell.detail_per_unit = request.detail_per_unit;
+    shell.most_work = std::min(shell.most_work, request.most_shell_work);
+    shell.material = request.material;
+    for (const Painter& painter : request.painters)
+        shell.inherited.push_back(painter.inherited);
+    return bake_shell(cut, shell, max_triangles);
 }
 
 } // namespace graftal

@@ -27,6 +27,8 @@ struct BakeRequest {
     std::vector<Painter> painters;
     double expected_leaves = 0; ///< about; what is known of it saves memory
     bool limit_normals = false; ///< of proxies, where nothing was crushed
+    std::uint64_t most_shell_work = UINT64_MAX; ///< points moved for a shell: it gets coarser by that
+    bool shell = false;         ///< a shell (shell.h) of this very node, of whose painters the colour alone counts
     bool pictures = true;       ///< else what has a texture shows its material's colour
     std::uint64_t most_visits = UINT64_MAX; ///< of the walk through the subtree
 };
@@ -50,6 +52,8 @@ struct Baked {
     std::size_t triangles = 0;
     double culled_detail = 0; ///< largest detail of a culled part
     double tessellation_px = 0;
+    std::uint64_t visits = 0;     ///< of the walk
+    std::uint64_t shell_work = 0; ///< points moved for a shell
     bool complete = true; ///< false: stopped at max_triangles, or at most_visits
 };
 

@@ -103,7 +103,7 @@ class Chooser {
     }
 
     bool splits(const PieceKind& kind) {
-        return weights_.of(kind).leaves > 1 && !cut_.nodes[kind.node].sealed;
+        return weights_.of(kind).leaves > 1 && !cut_.nodes[kind.node].sealed && !weights_.is_shell(kind);
     }
 
     Bucket& bucket_for(const PieceKind& kind) {

@@ -464,9 +464,8 @@ std::uint64_t fit_proxies(CutGraph& cut, const Symmetry& symmetry) {
 
 bool is_flat(const CutNode& node) {
     // The ellipsoid in the box, which is a fiftieth as thick as long at least.
-    const Mat3& linear = node.node_from_proxy.linear;
-    const auto [least, most] = std::minmax({linear[0][0], linear[1][1], linear[2][2]});
-    return least <= 0.021 * most;
+    const Vec3 axes = singular_values(node.node_from_proxy.linear); // it may be turned
+    return axes.z <= 0.021 * axes.x;
 }
 
 } // namespace graftal

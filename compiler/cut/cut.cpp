@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include <fmt/format.h>
 
@@ -20,6 +21,9 @@ namespace {
 constexpr double coarser = 1.25;
 /// A cut is tried that is estimated to take this much more than there is: what is assembled is then counted.
 constexpr double estimate_slack = 1.25;
+
+/// Of the work allowed, what graftal itself may take: the rest is for the rays.
+constexpr double share_of_work = 0.5;
 
 std::string readable_count(double count) {
     if (!std::isfinite(count)) return "more than 1e308";
@@ -42,6 +46,8 @@ class Cutter {
           cut_(prepared_.cut), symmetry_(prepared_.symmetry) {}
 
     std::optional<Cut> run() {
+        // Of what is not to be culled nobody knows a coarser picture.
+        work_seconds_left_ = culls() ? share_of_work * options_.work_seconds : std::numeric_limits<double>::infinity();
         cube_triangles_ = visible_cube_triangles(cut_, symmetry_, prepared_.root_steps);
         if (std::optional<Cut> cut = attempt(0)) return finish(std::move(*cut), 0);
         if (!culls()) return refuse_size();
@@ -57,13 +63,18 @@ class Cutter {
         }
         if (!best) return refuse_size();
         int fits = next;
+        if (work_seconds_left_ < 0.5 * share_of_work * options_.work_seconds) return finish(std::move(*best), fits);
         while (fits - fails > 1) {
             const int half = (fails + fits) / 2;
             best.reset(); // two cuts of this size would take more memory than POV-Ray itself
             best = attempt(half);
             (best ? fits : fails) = half;
         }
-        if (!best) best = attempt(fits);
+        if (!best) {
+            work_seconds_left_ = std::numeric_limits<double>::infinity(); // it was not too much before
+            best = attempt(fits);
+        }
+        if (!best) return refuse_size();
         return finish(std::move(*best), fits);
     }
 
@@ -108,11 +119,15 @@ class Cutter {
     std::optional<Cut> assembled(const Piece& root, const Projection& projection, Weights& weights, double memory) {
         grain_ = weights.grain();
         if (!(choice_.bytes <= estimate_slack * memory)) return std::nullopt;
-        const AssemblyLimits limits{
+        // What is tried last still has half of what is left.
+        const double work_seconds = 0.5 * work_seconds_left_;
+        AssemblyLimits limits{
             static_cast<std::size_t>(std::max(0.0, memory) / PovrayCosts::least_placement) + 1,
-            static_cast<std::size_t>(std::max(0.0, memory) / PovrayCosts::triangle) + 1};
+            static_cast<std::size_t>(std::max(0.0, memory) / PovrayCosts::triangle) + 1, work_seconds};
         std::optional<Cut> cut = assemble(cut_, symmetry_, projection, root, choice_, weights,
                                           options_.limit_normals(), limits);
+        if (limits.work_seconds < 0) worked_too_much_ = true;
+        if (options_.culls()) work_seconds_left_ -= work_seconds - std::max(0.0, limits.work_seconds);
         if (!cut) return std::nullopt;
         const double bytes = povray_bytes(*cut);
         cut->estimated_bytes = static_cast<std::uint64_t>(bytes + picture_bytes());
@@ -148,13 +163,24 @@ class Cutter {
         const double unit_px = cut.error_asked_px * factor_after(coarser_steps);
         cut.error_px *= unit_px;
         if (cut.error_px > 0) note_shadowless(cut_, graph_, diagnostics_);
+        constexpr double step_of_details = 1.5; // one mesh serves sizes of about an octave
         if (coarser_steps > 0)
             diagnostics_
                 .warning(graph_.objects[graph_.root].span,
-                         fmt::format("{} of memory allow an error of {:.2f} px, not {:.2f} px",
-                                     readable_bytes(static_cast<double>(options_.memory_bytes)), unit_px,
+                         fmt::format("{} {} allow an error of {:.2f} px, not {:.2f} px",
+                                     worked_too_much_ ? fmt::format("{:g} seconds", options_.work_seconds)
+                                                      : readable_bytes(static_cast<double>(options_.memory_bytes)),
+                                     worked_too_much_ ? "of work" : "of memory", std::max(unit_px, cut.error_px),
                                      cut.error_asked_px))
-                .with_hint("give more with --memory, or ask for less with --error or --steps");
+                .with_hint(fmt::format("give more with {}, or ask for less with --error or --steps",
+                                       worked_too_much_ ? "--work" : "--memory"));
+        else if (cut.error_px > step_of_details * unit_px)
+            diagnostics_
+                .warning(graph_.objects[graph_.root].span,
+                         fmt::format("copies lie in each other so often that their surface is drawn with an error of "
+                                     "{:.2f} px, not {:.2f} px",
+                                     cut.error_px, cut.error_asked_px))
+                .with_hint("a smaller picture, or fewer --steps, need fewer points of the surface");
         return cut;
     }
 
@@ -189,6 +215,8 @@ class Cutter {
     const Symmetry& symmetry_;
     double cube_triangles_ = 0; ///< visible_cube_triangles(), whatever the error
     int grain_ = 1;             ///< of the last weights
+    double work_seconds_left_ = 0;
+    bool worked_too_much_ = false; ///< some try ended for its work
     Choice choice_;
 };
 

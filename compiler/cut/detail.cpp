@@ -8,6 +8,7 @@
 #include <glm/geometric.hpp>
 
 #include "compiler/cut/bake.h"
+#include "compiler/cut/coverage.h"
 #include "compiler/cut/povray_costs.h"
 #include "compiler/cut/run_cells.h"
 #include "compiler/cut/tessellate.h"
@@ -23,6 +24,18 @@ constexpr std::size_t max_known_kinds = 1'000'000;
 constexpr int coarser_grain = 4;
 /// Details beyond this are not told apart.
 constexpr std::int32_t largest_step = 1 << 24;
+
+/// Octaves of details in which copies may begin to lie in each other.
+constexpr int most_octaves = 16;
+/// A shell of this many octaves has as many points as one may have, about; larger ones are coarser.
+constexpr int whole_octaves = 11;
+constexpr double most_shell_cells = 7e5;
+/// Shells that a ray may go through, where a node is too large for one.
+constexpr double most_shells_a_ray = 64;
+/// What multiplies faster is never parted: a coarser shell of the whole is better than many of the parts.
+constexpr double most_parted_dimension = 4;
+/// Where leaves are counted to know how fast they multiply: far apart, since equal maps multiply them by leaps.
+constexpr int few_octaves = 5, many_octaves = 13;
 
 /// Steps of a detail, or of a factor.
 double steps_of(double detail) {
@@ -71,6 +84,13 @@ double cut_detail(const CutNode& node, double error_px) {
     return error_px > 0 ? std::max(1.0, node.terminal_px / error_px) : 1;
 }
 
+bool is_crowded(double leaves, double detail, bool flat) {
+    // A leaf is at least half as long as what is culled, about, or its parent would have been: an eighth of a cell.
+    constexpr double leaves_a_cell = 32;
+    const double cells = flat ? detail * detail : detail * detail * detail;
+    return leaves > leaves_a_cell * std::max(cells, 1.0);
+}
+
 bool is_cut(const CutNode& node, std::uint32_t steps, double detail, double error_px) {
     return ends(node, steps, detail <= cut_detail(node, error_px));
 }
@@ -82,6 +102,7 @@ Weights::Weights(const CutGraph& cut, double cube_triangles, double px, double e
     for (const CutNode& node : cut.nodes) {
         diameter_step_.push_back(steps_of(2 * node.ball.radius));
         cut_step_.push_back(steps_of(cut_detail(node, error_px)) + 1e-6);
+        flat_.push_back(is_flat(node));
     }
 }
 
@@ -114,7 +135,11 @@ PieceKind Weights::normalised(PieceKind kind) const {
 }
 
 std::int32_t Weights::mesh_bin(const PieceKind& kind) {
-    return static_cast<std::int32_t>(std::lround(std::log2(std::clamp(of(kind).leaves, 1.0, 1e300))));
+    constexpr std::int32_t first_of_shells = 1 << 20; // whose octaves are those of sizes
+    const Weight weight = of(kind);
+    if (weight.crowded)
+        return first_of_shells + static_cast<std::int32_t>(std::lround(detail_step(kind) / PieceKind::steps_an_octave));
+    return static_cast<std::int32_t>(std::lround(std::log2(std::clamp(weight.leaves, 1.0, 1e300))));
 }
 
 PieceKind Weights::child_kind(const PieceKind& parent, const CutEdge& edge) const {
@@ -158,6 +183,51 @@ void Weights::squeeze(const PieceKind& kind, Weight& weight) const {
         *sum = std::isfinite(*sum) ? share * *sum : most * 8;
 }
 
+/// A shell has as many triangles as its cells have faces outside.
+void Weights::crowd(const PieceKind& kind, Weight& weight) const {
+    if (kind.unit_step == PieceKind::endless_detail || kind.unit_step == PieceKind::tiny) return;
+    const CutNode& node = cut_.nodes[kind.node];
+    if (node.primitive || node.unbounded) return;
+    const double detail = std::exp2(detail_step(kind) / PieceKind::steps_an_octave);
+    if (!is_crowded(weight.leaves, detail, flat_[kind.node])) return;
+    constexpr double triangles_a_sheet_cell = 1, triangles_a_face_cell = 6;
+    const double cells = std::min(detail * detail, most_shell_cells);
+    weight.crowded = true;
+    weight.triangles = std::min(weight.triangles, (flat_[kind.node] ? triangles_a_sheet_cell : triangles_a_face_cell) * cells);
+}
+
+ShellSizes Weights::shell_sizes(NodeId node, std::uint32_t steps) {
+    const PieceKind whole = normalised({node, steps, 0});
+    const auto [place, added] = shell_sizes_.try_emplace({node, whole.steps});
+    if (!added) return place->second;
+    const double diameter = 2 * cut_.nodes[node].ball.radius;
+    if (!(diameter > 0) || cut_.nodes[node].unbounded) return {};
+    const auto leaves = [&](int octave) {
+        return of({node, whole.steps, PieceKind::step_of(std::exp2(octave) / diameter)}).leaves;
+    };
+    ShellSizes sizes;
+    for (int octave = 1; octave <= most_octaves && !sizes.any(); ++octave)
+        if (is_crowded(leaves(octave), std::exp2(octave), flat_[node])) sizes.least = std::exp2(octave);
+    if (!sizes.any()) return {};
+    sizes.most = std::exp2(whole_octaves);
+    const double dimension =
+        std::log2(leaves(many_octaves) / leaves(few_octaves)) / (many_octaves - few_octaves);
+    // A square of a picture shows (size ratio)^dimension parts on (size ratio)^2 of its places.
+    const double ratio =
+        dimension < most_parted_dimension ? std::pow(most_shells_a_ray, 1 / std::max(dimension - 2, 1e-2)) : 1;
+    sizes.parted = sizes.most * ratio;
+    shell_sizes_[{node, whole.steps}] = sizes;
+    return sizes;
+}
+
+bool Weights::is_shell(const PieceKind& kind) {
+    const CutNode& node = cut_.nodes[kind.node];
+    if (node.primitive || node.unbounded || kind.unit_step == PieceKind::endless_detail || kind.unit_step == PieceKind::tiny)
+        return false;
+    if (!of(kind).crowded) return false;
+    return shell_sizes(kind.node, kind.steps).has(std::exp2(detail_step(kind) / PieceKind::steps_an_octave));
+}
+
 Weights::Weight Weights::of(const PieceKind& asked) {
     struct Frame {
         PieceKind kind;
@@ -194,6 +264,7 @@ Weights::Weight Weights::of(const PieceKind& asked) {
                 frame.sum.leaves += found->second.leaves;
                 frame.sum.curved_leaves += found->second.curved_leaves;
                 frame.sum.flat_bytes += found->second.flat_bytes;
+                frame.sum.crowded = frame.sum.crowded || found->second.crowded;
                 ++frame.next_edge;
             } else if (known_.size() < max_known_kinds || grain_ > PieceKind::steps_an_octave) {
                 known_.emplace(child, proxy);
@@ -212,6 +283,7 @@ Weights::Weight Weights::of(const PieceKind& asked) {
         else if (edges.empty())
             frame.sum = proxy;
         if (node.sealed) squeeze(frame.kind, frame.sum);
+        crowd(frame.kind, frame.sum);
         known_[frame.kind] = frame.sum;
         stack.pop_back();
     }

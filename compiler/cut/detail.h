@@ -5,7 +5,9 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <map>
 #include <unordered_map>
+#include <utility>
 #include <vector>
 
 #include <glm/geometric.hpp>
@@ -120,6 +122,17 @@ struct PieceKindHash {
     std::size_t operator()(const PieceKind& kind) const;
 };
 
+/// The details of its diameter at which a crowded node is drawn as its shell (shell.h): from `least` to `most`. Of larger
+/// ones the parts are drawn, up to `parted`, from where a ray would meet too many of them.
+struct ShellSizes {
+    double least = std::numeric_limits<double>::infinity();
+    double most = 0;
+    double parted = 0;
+
+    bool any() const { return least < std::numeric_limits<double>::infinity(); }
+    bool has(double detail) const { return detail >= least && (detail <= most || detail > parted); }
+};
+
 /// Estimates what an unfolded piece holds, by one memoised sweep: O(kinds reached).
 class Weights {
   public:
@@ -134,6 +147,9 @@ class Weights {
         double leaves = 0;
         double curved_leaves = 0; ///< those whose meshes only come near them
         double flat_bytes = 0;    ///< of POV-Ray's memory, where every leaf is a placement of its own
+        /// Somewhere in it so many leaves lie in each other that nobody could unfold them: what becomes one mesh becomes
+        /// a shell (shell.h).
+        bool crowded = false;
     };
 
     /// Saturates at infinity; kinds that lead back to themselves without losing detail count as one leaf. Where there
@@ -152,6 +168,11 @@ class Weights {
     /// The step of the detail of its diameter: what is at most 0 may be culled.
     double detail_step(const PieceKind& kind) const;
 
+    /// Requires a node that is no primitive.
+    ShellSizes shell_sizes(NodeId node, std::uint32_t steps);
+    /// Whether a shell is drawn of the kind, whatever it costs: rays would walk through all that lies in each other.
+    bool is_shell(const PieceKind& kind);
+
     /// True if the kind is drawn by its stop edges or proxy.
     bool is_cut(const PieceKind& kind) const;
 
@@ -160,16 +181,22 @@ class Weights {
 
   private:
     Weight of_primitive(const PieceKind& kind) const;
+    void crowd(const PieceKind& kind, Weight& weight) const;
     void squeeze(const PieceKind& kind, Weight& weight) const;
 
     const CutGraph& cut_;
     std::vector<double> diameter_step_; ///< by node
     std::vector<double> cut_step_;      ///< by node, of cut_detail()
+    std::vector<bool> flat_;            ///< by node
     double cube_triangles_;
     double px_;
     int grain_; ///< details are told apart by so many steps
     std::unordered_map<PieceKind, Weight, PieceKindHash> known_;
+    std::map<std::pair<NodeId, std::uint32_t>, ShellSizes> shell_sizes_;
 };
+
+/// Whether so many leaves cannot all lie side by side in a set of this detail across.
+bool is_crowded(double leaves, double detail, bool flat);
 
 /// The detail from which down a cullable node is cut, 1 at least: more if its terminal takes its place before it is
 /// culled. `error_px`: as Projection::error_px().

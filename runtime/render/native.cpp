@@ -4,10 +4,12 @@
 #include <utility>
 #include <vector>
 
+#include <fmt/format.h>
 #include <tbb/parallel_for.h>
 
 #include "compiler/emit/povray_view.h"
 #include "runtime/povray/interruption.h"
+#include "runtime/render/fit_work.h"
 #include "runtime/render/scene_files.h"
 #include "runtime/render/stopwatch.h"
 
@@ -27,6 +29,40 @@ ShaderLimits limits_of(const TraceModel& model) {
     ShaderLimits limits;
     limits.farthest = farthest_in_povray / choose_units(cut, model.view.camera).scale;
     return limits;
+}
+
+/// Says what the work allowed has cost, or what a picture that leaves nothing out will take.
+void report_work(const FittedModel& fitted, const ViewedModel& viewed, Diagnostics& diagnostics) {
+    const Span& span = viewed.model.graph.objects[viewed.model.graph.root].span;
+    const double allowed = viewed.cut.work_seconds;
+    if (!(fitted.whole_seconds > allowed)) return;
+    if (!viewed.cut.culls()) {
+        diagnostics
+            .note(span, fmt::format("this picture takes about {:.2g} seconds of one processor: nothing is left out",
+                                    fitted.whole_seconds))
+            .with_hint("--error 0.5 leaves out what nobody can see");
+        return;
+    }
+    std::string message = fmt::format("{:g} seconds of work allow an error of {:.2f} px, not {:.2f} px", allowed,
+                                      fitted.error_px, viewed.cut.error_px);
+    if (fitted.rays_cut) message += ", and rays that meet too much are given up";
+    diagnostics.warning(span, message)
+        .with_hint(fmt::format("the picture as asked would take about {:.2g} seconds of one processor: give them with "
+                               "--work, or ask for less with --error or --steps",
+                               fitted.whole_seconds));
+}
+
+/// Says how coarse the shells had to be.
+void report_shells(const TraceModel& model, const ViewedModel& viewed, Diagnostics& diagnostics) {
+    constexpr double step_of_details = 1.5; // a shell serves sizes of half an octave
+    const double coarsest = model.meshes.coarsest_shell();
+    if (!(coarsest > step_of_details)) return;
+    diagnostics
+        .warning(viewed.model.graph.objects[viewed.model.graph.root].span,
+                 fmt::format("copies lie in each other so often that their surface is drawn with an error of {:.2f} px, "
+                             "not {:.2f} px",
+                             coarsest * model.options.error_px, viewed.cut.error_px))
+        .with_hint("a smaller picture, or fewer --steps, need fewer points of the surface");
 }
 
 /// From coarse to fine; only the last if it is the only one that is wanted.
@@ -167,16 +203,23 @@ std::optional<NativeReport> trace_model(ViewedModel viewed, const NativeOptions&
         return std::nullopt;
 
     const Stopwatch watch;
-    const TraceModel model(prepare_cut(analysed.graph, analysed.components, analysed.bounds, viewed.cut),
-                           viewed.view, viewed.cut);
+    const Interruption interruption; // from here on something may be half written
+    double samples_a_pixel = 0;
+    for (const Sampling& sampling : samplings(options.render, options.progressive))
+        samples_a_pixel += sampling.samples_a_pixel();
+    const FittedModel fitted =
+        fit_work(prepare_cut(analysed.graph, analysed.components, analysed.bounds, viewed.cut), viewed.view, viewed.cut,
+                 samples_a_pixel, limits_of, options.render.threads, [] { return Interruption::signal() != 0; });
+    const TraceModel& model = *fitted.model;
+    report_work(fitted, viewed, compilation.diagnostics);
     compilation.times.push_back({"prepare", watch.seconds()});
     if (viewed.cut.culls() && !viewed.cut.steps)
         note_shadowless(model.prepared.cut, analysed.graph, compilation.diagnostics);
-    const Interruption interruption; // from here on something may be half written
     const Stopwatch drawing_watch;
     Drawing drawing(model, options);
     compilation.status = drawing.run();
     compilation.times.push_back({"trace", drawing_watch.seconds()});
+    report_shells(model, viewed, compilation.diagnostics);
     NativeReport report = drawing.report();
     report.first_picture_seconds += watch.seconds() - drawing_watch.seconds();
     if (!compilation.status.ok() && report.pictures == 0) return std::nullopt;

@@ -14,6 +14,7 @@ namespace {
 
 /// More than fits on any picture: what is crushed coincides, and is drawn once.
 constexpr std::size_t most_triangles = 2'000'000;
+constexpr std::size_t most_shell_triangles = 6'000'000;
 /// Thinner than this share of its diameter no part is drawn: what is crushed has to be unfolded first, and
 /// coincides only then.
 constexpr double thinnest_share = 1.0 / 512;
@@ -41,18 +42,35 @@ void add_part(const BakedPart& part, const Affine& frame_from_body, TraceMesh& m
             {part.palettes[0][slot], part.palettes[1][slot] - part.palettes[0][slot], part.material});
     const Mesh& source = part.mesh;
     const Mat3 normal_map = glm::transpose(inverse(frame_from_body).linear);
+    const auto first_vertex = static_cast<std::uint32_t>(mesh.vertices.size());
+    for (const Vec3& vertex : source.vertices)
+        mesh.vertices.push_back(frame_from_body(vertex));
+    for (const Vec3& normal : source.normals)
+        mesh.normals.push_back(glm::normalize(normal_map * normal));
+    mesh.normals.resize(mesh.vertices.size(), Vec3(0.0));
     for (std::size_t i = 0; i < source.triangles.size(); ++i) {
-        TraceMesh::Triangle triangle;
-        triangle.colour = first_colour + (source.slot_count > 1 ? source.slot_of_triangle[i] : 0);
-        for (std::size_t k = 0; k < 3; ++k) {
-            const std::uint32_t vertex = source.triangles[i][k];
-            triangle.corners[k] = frame_from_body(source.vertices[vertex]);
-            triangle.normals[k] = source.normals.empty()
-                                      ? Vec3(0.0)
-                                      : glm::normalize(normal_map * source.normals[vertex]);
-        }
-        mesh.triangles.push_back(triangle);
+        const auto& [a, b, c] = source.triangles[i];
+        mesh.corners.push_back({first_vertex + a, first_vertex + b, first_vertex + c});
+        mesh.colour_of_triangle.push_back(first_colour +
+                                          (source.slot_count > 1 ? source.slot_of_triangle[i] : 0));
     }
+}
+
+std::unique_ptr<TraceMesh> trace_mesh(const Baked& baked, const Affine& frame_from_representative) {
+    const Affine frame_from_body = frame_from_representative * baked.representative_from_body;
+    auto mesh = std::make_unique<TraceMesh>();
+    mesh->culled_detail = baked.culled_detail;
+    for (const BakedPart& part : baked.parts)
+        add_part(part, frame_from_body, *mesh);
+    std::vector<BoxedItem> items;
+    for (std::uint32_t i = 0; i < mesh->corners.size(); ++i) {
+        Box box;
+        for (const std::uint32_t corner : mesh->corners[i])
+            box.include(mesh->vertices[corner]);
+        items.emplace_back(box, 1, i);
+    }
+    mesh->tree = build_box_tree(items, mesh->boxes);
+    return mesh;
 }
 
 } // namespace
@@ -71,15 +89,15 @@ bool intersect(const TraceMesh::Triangle& triangle, const Ray& ray, const RayRan
     if (!(u >= -rounding && v >= -rounding && u + v <= 1 + rounding)) return false;
     const double t = glm::dot(b, q) / volume;
     if (!(t > range.least && t < range.most)) return false;
-    Vec3 normal =
-        (1 - u - v) * triangle.normals[0] + u * triangle.normals[1] + v * triangle.normals[2];
+    Vec3 normal = (1 - u - v) * triangle.normals[0] + u * triangle.normals[1] + v * triangle.normals[2];
     if (!(glm::dot(normal, normal) > 0)) normal = glm::cross(a, b);
     const double length = glm::length(normal);
     hit = {t, length > 0 ? normal / length : Vec3(0, 1, 0)};
     return true;
 }
 
-MeshStore::MeshStore(const PreparedCut& prepared, double error_px) : prepared_(prepared), error_px_(error_px) {}
+MeshStore::MeshStore(const PreparedCut& prepared, double error_px)
+    : prepared_(prepared), error_px_(error_px) {}
 
 double MeshStore::finest_detail(NodeId node) const {
     return 1 / (2 * prepared_.cut.nodes[node].ball.radius * thinnest_share);
@@ -98,12 +116,27 @@ MeshStore::Key MeshStore::key(NodeId node, const Affine& graph_from_frame, std::
             steps_of(detail_per_unit / unit, detail_step), steps_of(pixels_per_unit / unit, pixel_step)};
 }
 
+MeshStore::Key MeshStore::shell_key(NodeId node, const Affine& graph_from_frame, std::uint32_t steps,
+                                    double detail_per_unit) const {
+    return {node, prepared_.cut.nodes[node].unending ? steps : unlimited_steps,
+            steps_of(detail_per_unit / graph_from_frame.linear[0][0], detail_step), 0, true};
+}
+
+void MeshStore::note_shell(const TraceMesh& mesh, double detail_per_unit, double here) {
+    const double seen = mesh.culled_detail * std::min(1.0, here / detail_per_unit);
+    double before = coarsest_shell_;
+    while (before < seen && !coarsest_shell_.compare_exchange_weak(before, seen)) {
+    }
+}
+
 const TraceMesh& MeshStore::mesh(const Key& key, const Affine& graph_from_frame) {
     std::unique_lock lock(mutex_);
     Entry& entry = meshes_[key];
     lock.unlock();
     // Others may bake other meshes meanwhile.
-    std::call_once(entry.baked, [&] { entry.mesh = bake_mesh(key, graph_from_frame); });
+    std::call_once(entry.baked, [&] {
+        entry.mesh = key.shell ? bake_shell(key, graph_from_frame) : bake_mesh(key, graph_from_frame);
+    });
     return *entry.mesh;
 }
 
@@ -126,20 +159,19 @@ std::unique_ptr<TraceMesh> MeshStore::bake_mesh(const Key& key, const Affine& gr
         request.most_visits /= 2;
         baked = bake(prepared_.cut, symmetry, request, most_triangles);
     }
-    const Affine frame_from_body = inverse(graph_from_frame) *
-                                   symmetry.node_from_representative[key.node] * baked.representative_from_body;
-    auto mesh = std::make_unique<TraceMesh>();
-    for (const BakedPart& part : baked.parts)
-        add_part(part, frame_from_body, *mesh);
-    std::vector<BoxedItem> items;
-    for (std::size_t i = 0; i < mesh->triangles.size(); ++i) {
-        Box box;
-        for (const Vec3& corner : mesh->triangles[i].corners)
-            box.include(corner);
-        items.emplace_back(box, 1, static_cast<std::uint32_t>(i));
-    }
-    mesh->tree = build_box_tree(items, mesh->boxes);
-    return mesh;
+    return trace_mesh(baked, inverse(graph_from_frame) * symmetry.node_from_representative[key.node]);
+}
+
+std::unique_ptr<TraceMesh> MeshStore::bake_shell(const Key& key, const Affine& graph_from_frame) const {
+    BakeRequest request;
+    request.shell = true;
+    request.representative = key.node;
+    request.steps = key.steps;
+    request.detail_per_unit = value_of(key.detail, detail_step);
+    request.painters = {{0, Rgb(0.0)}, {0, Rgb(1.0)}};
+    const Baked baked = bake(prepared_.cut, prepared_.symmetry, request, most_shell_triangles);
+    shell_work_ += baked.shell_work;
+    return trace_mesh(baked, inverse(graph_from_frame));
 }
 
 } // namespace graftal

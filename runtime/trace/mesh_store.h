@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <atomic>
 #include <cstdint>
 #include <map>
 #include <memory>
@@ -19,7 +20,6 @@ struct TraceMesh {
     struct Triangle {
         std::array<Vec3, 3> corners;
         std::array<Vec3, 3> normals; ///< of unit length; all zero: flat
-        std::uint32_t colour = 0;
     };
     /// fixed + open * (the colour that the node inherits), without the tints on the way to the node.
     struct Colour {
@@ -28,10 +28,23 @@ struct TraceMesh {
         std::optional<MaterialId> material; ///< nothing: the one that the node inherits
     };
 
-    std::vector<Triangle> triangles;
+    std::vector<Vec3> vertices;
+    std::vector<Vec3> normals; ///< by vertex, of unit length or 0
+    std::vector<std::array<std::uint32_t, 3>> corners;
+    std::vector<std::uint32_t> colour_of_triangle;
     std::vector<Colour> colours;
     std::vector<BoxNode> boxes;
     std::uint32_t tree = no_tree; ///< its root in `boxes`
+    double culled_detail = 0;     ///< largest detail of what is left out (Baked), as the key has it
+
+    Triangle triangle(std::uint32_t number) const {
+        Triangle triangle;
+        for (std::size_t k = 0; k < 3; ++k) {
+            triangle.corners[k] = vertices[corners[number][k]];
+            triangle.normals[k] = normals[corners[number][k]];
+        }
+        return triangle;
+    }
 };
 
 /// Meets a triangle from either side, as intersect() of intersect.h does a primitive (T. Moeller and B. Trumbore,
@@ -52,8 +65,19 @@ class MeshStore {
         std::uint32_t steps = 0;
         int detail = 0; ///< in steps, on a logarithmic scale,
         int pixels = 0; ///< as these
+        bool shell = false; ///< a shell (cut/shell.h)
         auto operator<=>(const Key&) const = default;
     };
+
+    /// The shell of a crowded node where a unit of its frame has this detail.
+    Key shell_key(NodeId node, const Affine& graph_from_frame, std::uint32_t steps, double detail_per_unit) const;
+    /// That a shell was seen; `here`: the detail of a unit in its middle.
+    void note_shell(const TraceMesh& mesh, double detail_per_unit, double here);
+
+    /// The largest detail of a cell of the shells so far, 0 if there are none: more than 1 where they had to be coarser.
+    double coarsest_shell() const { return coarsest_shell_; }
+    /// Points moved for shells so far.
+    std::uint64_t shell_work() const { return shell_work_; }
 
     /// The node as it is drawn where a unit of its frame has this detail and so many pixels (detail.h).
     Key key(NodeId node, const Affine& graph_from_frame, std::uint32_t steps, double detail_per_unit,
@@ -72,11 +96,14 @@ class MeshStore {
     /// Of a unit of the node: where it is drawn no finer.
     double finest_detail(NodeId node) const;
     std::unique_ptr<TraceMesh> bake_mesh(const Key& key, const Affine& graph_from_frame) const;
+    std::unique_ptr<TraceMesh> bake_shell(const Key& key, const Affine& graph_from_frame) const;
 
     const PreparedCut& prepared_;
     const double error_px_;
     std::mutex mutex_;
     std::map<Key, Entry> meshes_;
+    std::atomic<double> coarsest_shell_ = 0;
+    mutable std::atomic<std::uint64_t> shell_work_ = 0;
 };
 
 } // namespace graftal

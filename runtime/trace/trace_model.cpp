@@ -9,6 +9,7 @@
 
 #include <glm/geometric.hpp>
 
+#include "compiler/cut/choose.h"
 #include "compiler/cut/texture_space.h"
 #include "runtime/trace/drawn_bounds.h"
 #include "runtime/trace/unroll.h"
@@ -234,6 +235,23 @@ double least_detail(const TraceModel& model) {
     return model.projection.detail_per_unit(far) / Projection::coarser_out_of_sight;
 }
 
+/// Where copies lie in each other so often that rays would not come through.
+void find_shells(TraceModel& model) {
+    if (!model.projection.culls()) return;
+    const CutGraph& cut = model.prepared.cut;
+    Weights weights(cut, 12, 0, model.projection.error_px());
+    Piece root;
+    root.node = cut.root;
+    root.steps = model.prepared.root_steps;
+    if (!weights.of(kind_of(cut, model.projection, root)).crowded) return;
+    for (std::size_t i = 0; i < model.nodes.size(); ++i) {
+        const NodeId source = model.layers.source[i];
+        if (cut.nodes[source].primitive) continue;
+        model.nodes[i].shell = weights.shell_sizes(source, model.prepared.root_steps);
+        model.has_shells = model.has_shells || model.nodes[i].shell.any();
+    }
+}
+
 } // namespace
 
 std::uint32_t TraceRun::edge_of(PrimitiveKind kind, std::uint16_t colour) const {
@@ -254,6 +272,7 @@ TraceModel::TraceModel(PreparedCut ready, const View& seen, const CutOptions& cu
         clear_texels = clear_texels || (textures.back() && textures.back()->coverage < 1);
     }
     Builder(*this).build();
+    find_shells(*this);
     add_unrollings(*this);
 }
 

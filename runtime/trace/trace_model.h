@@ -66,6 +66,7 @@ struct TraceNode {
     PrimitiveKind primitive = PrimitiveKind::sphere;
     bool unending = false;
     bool cullable = true;
+    ShellSizes shell;
     double cut_detail = 1;             ///< from which down a cullable node is cut (detail.h)
     std::uint32_t tree = no_tree;      ///< of its edges, or its items of the run
     std::uint32_t run = 0;             ///< of TraceModel::runs
@@ -114,6 +115,10 @@ struct TraceModel {
     std::vector<Affine> graph_from_frame; ///< by node
     mutable MeshStore meshes;
     std::vector<std::shared_ptr<const Texture>> textures; ///< by material; null where there is none
+    /// Nodes and primitives that one ray may go into. Sound models need some tens or hundreds; where thousands of
+    /// parts coincide, a ray would not come to an end.
+    std::uint64_t most_visits = 1 << 17;
+    bool has_shells = false;                              ///< some node may be drawn as one
     bool clear_texels = false;                            ///< some texture has them
 
     /// The node as the cut has it.

@@ -82,14 +82,16 @@ void Traversal::append_to_path(std::uint32_t edge) {
     append_to_path(whole.last);
 }
 
-const TraceMesh& Traversal::mesh_of(const Frame& frame) {
+const TraceMesh& Traversal::mesh_of(const Frame& frame, bool shell) {
     const TraceNode& node = model_.nodes[frame.node];
     const Affine world_from_node = frame.world_from_node.affine();
     const Ball ball{world_from_node(vec3_of(node.ball_centre)), frame.scale * node.ball_radius};
     const Affine& graph_from_frame = model_.graph_from_frame[frame.node];
-    const MeshStore::Key key =
+    const double detail_per_unit = frame.scale * model_.projection.detail_per_unit(ball);
+    const MeshStore::Key key = shell ?
+        model_.meshes.shell_key(model_.layers.source[frame.node], graph_from_frame, frame.steps, detail_per_unit) :
         model_.meshes.key(model_.layers.source[frame.node], graph_from_frame, frame.steps,
-                          frame.scale * model_.projection.detail_per_unit(ball),
+                          detail_per_unit,
                           frame.scale * model_.projection.pixels_that_matter(ball));
     const auto hash = static_cast<std::size_t>(key.detail) * 31 + static_cast<std::size_t>(key.pixels) * 7 +
                       key.node * 13 + key.steps;
@@ -97,6 +99,8 @@ const TraceMesh& Traversal::mesh_of(const Frame& frame) {
     if (!mesh || known != key) {
         mesh = &model_.meshes.mesh(key, graph_from_frame);
         known = key;
+        if (shell)
+            model_.meshes.note_shell(*mesh, detail_per_unit, frame.scale * model_.projection.detail_per_unit({ball.centre, 0}));
     }
     return *mesh;
 }

@@ -77,7 +77,7 @@ class Traversal final : public Surfaces {
         const TraceMesh::Colour* mesh_colour = nullptr; ///< of a triangle
     };
 
-    const TraceMesh& mesh_of(const Frame& frame);
+    const TraceMesh& mesh_of(const Frame& frame, bool shell);
     bool run(const Ray& ray, const RayRange& range, bool any);
     /// Appends an edge to the path; of an unrolling's edge those that it stands for.
     void append_to_path(std::uint32_t edge);

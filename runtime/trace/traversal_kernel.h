@@ -15,9 +15,6 @@
 
 namespace graftal {
 
-/// Nodes and primitives that one ray may go into. Sound models need some tens or hundreds; where thousands of
-/// parts coincide, a ray would not come to an end.
-inline constexpr std::uint64_t most_visits = 1 << 17;
 /// Parts smaller than this are nothing: their inverse maps would not be numbers.
 inline constexpr double least_scale = 1e-150;
 /// A ray crosses no primitive's surface more often: the torus.
@@ -107,7 +104,7 @@ template<Instructions instructions> struct Traversal::Kernel {
         self.entry_count_ = 0;
         self.best_.found = false;
         self.best_.t = range.most;
-        const std::uint64_t limit = self.visits_ + most_visits;
+        const std::uint64_t limit = self.visits_ + model.most_visits;
         push_world(ray);
         try_edge(self.frames_.front(), 0);
         Entry entry;
@@ -292,11 +289,12 @@ template<Instructions instructions> struct Traversal::Kernel {
                 try_edge(frame, node.first_edge + i);
             return false;
         }
-        const bool baked = node.kind == TraceNode::Kind::mesh || too_flat(node, frame);
+        const bool shell = is_shell(node, frame);
+        const bool baked = shell || node.kind == TraceNode::Kind::mesh || too_flat(node, frame);
         frame.margin = baked ? thickness(node, frame) : 0;
         ready_for_boxes(frame);
         if (baked) {
-            meet_mesh(self.mesh_of(frame), number);
+            meet_mesh(self.mesh_of(frame, shell), number);
             return false;
         }
         if (frame.cut && node.stop_edge_count == 1) { // about as large as the node: no box to test
@@ -337,8 +335,17 @@ template<Instructions instructions> struct Traversal::Kernel {
         return diameter * model.projection.detail_per_unit(world_ball(node, frame, node.ball_radius)) <= node.cut_detail;
     }
 
+    /// Whether copies lie in each other in it so often that its shell is drawn.
+    GRAFTAL_INLINE bool is_shell(const TraceNode& node, const Frame& frame) const {
+        if (!model.has_shells || frame.cut || !node.shell.any()) return false;
+        const double detail = 2 * frame.scale * node.ball_radius *
+                              model.projection.detail_per_unit(world_ball(node, frame, node.ball_radius));
+        return node.shell.has(detail);
+    }
+
     /// The parts that are farthest down, of those that are drawn for sure if none is cut.
     GRAFTAL_INLINE std::uint32_t tree_of(const TraceNode& node, const Frame& frame) const {
+        if (model.has_shells) return node.tree;
         double detail = model.least_detail_per_unit;
         bool known = false;
         for (std::uint32_t i = 0; i < node.unrolling_count; ++i) {
@@ -376,24 +383,23 @@ template<Instructions instructions> struct Traversal::Kernel {
         while (more || pop(others, entry)) {
             more = entry.entry & BoxNode::inner &&
                    test_boxes(mesh.boxes, entry.entry & ~BoxNode::inner, frame_number, entry);
-            if (!more && !(entry.entry & BoxNode::inner)) meet_triangle(mesh, mesh.triangles[entry.entry], entry);
+            if (!more && !(entry.entry & BoxNode::inner)) meet_triangle(mesh, entry.entry, entry);
         }
     }
 
-    GRAFTAL_INLINE void meet_triangle(const TraceMesh& mesh, const TraceMesh::Triangle& triangle,
-                                      const Entry& entry) {
+    GRAFTAL_INLINE void meet_triangle(const TraceMesh& mesh, std::uint32_t triangle, const Entry& entry) {
         ++self.visits_;
         const Frame& frame = self.frames_[entry.frame];
         const Double4 near = frame.origin + splat(entry.at) * frame.direction;
         const double base = t_of(entry);
         PrimitiveHit hit;
-        if (!intersect(triangle, {vec3_of(near), vec3_of(frame.direction)}, range_from(base, frame.speed), hit))
+        if (!intersect(mesh.triangle(triangle), {vec3_of(near), vec3_of(frame.direction)}, range_from(base, frame.speed), hit))
             return;
         if (!set_best(base + hit.t * frame.unit)) return;
         self.best_.normal = hit.normal;
         self.best_.world_from_leaf = frame.world_from_node;
         self.best_.proxy_node = no_edge;
-        self.best_.mesh_colour = &mesh.colours[triangle.colour];
+        self.best_.mesh_colour = &mesh.colours[mesh.colour_of_triangle[triangle]];
         keep_way(entry.frame);
     }
 

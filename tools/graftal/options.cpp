@@ -176,6 +176,11 @@ void add_view(CLI::App& app, Options& options) {
     add_value(app, "--memory", "BYTES", "Memory that POV-Ray may need; suffixes K M G (default 2G)",
               "a number of bytes such as 512M", parse_bytes,
               [&](std::uint64_t bytes) { compile.cut.memory_bytes = bytes; });
+    add_value(app, "--work", "SECONDS",
+              "Work for the picture, about so many seconds of one processor; what takes more is drawn coarser "
+              "(default 60)",
+              "a number of seconds above 0", [](const std::string& text) { return parse_at_least(text, 1e-3); },
+              [&](double seconds) { compile.cut.work_seconds = seconds; });
     app.add_flag("--visible-only", compile.cut.visible_only,
                  "Leave out what the camera does not see, with the shadows that it would throw");
     app.add_flag("--flatten", compile.cut.flatten,

@@ -1,0 +1,99 @@
+#include "runtime/render/fit_work.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "compiler/cut/work.h"
+#include "runtime/trace/picture_tracer.h"
+
+namespace graftal {
+
+namespace {
+
+/// Sides of the blocks of pixels that one ray is tried for: the first look is short whatever comes.
+constexpr int first_block = 64, second_block = 16;
+/// A first look this far from what is allowed needs no second.
+constexpr double clear_factor = 8;
+constexpr double coarser = 1.5;
+constexpr int most_coarser_steps = 9;
+constexpr std::uint64_t fewest_visits = 64;
+
+class Fitting {
+  public:
+    Fitting(const View& view, const CutOptions& options, double samples_a_pixel,
+            const std::function<ShaderLimits(const TraceModel&)>& limits_of, int threads,
+            const std::function<bool()>& cancelled)
+        : view_(view), options_(options), samples_(samples_a_pixel * view.size.width * view.size.height),
+          limits_of_(limits_of), threads_(threads), cancelled_(cancelled) {}
+
+    FittedModel run(PreparedCut prepared) {
+        FittedModel fitted;
+        CutOptions options = options_;
+        fitted.model = std::make_unique<TraceModel>(std::move(prepared), view_, options);
+        fitted.error_px = options.error_px;
+        fitted.seconds = fitted.whole_seconds = seconds_for(*fitted.model);
+        if (!options.culls()) return fitted;
+        for (int step = 0; step < most_coarser_steps && too_much(fitted.seconds); ++step) {
+            options.error_px *= coarser;
+            if (options.error_world) *options.error_world *= coarser;
+            prepared = std::move(fitted.model->prepared);
+            fitted.model.reset();
+            fitted.model = std::make_unique<TraceModel>(std::move(prepared), view_, options);
+            fitted.error_px = options.error_px;
+            fitted.seconds = seconds_for(*fitted.model);
+        }
+        while (too_much(fitted.seconds) && fitted.model->most_visits > fewest_visits) {
+            fitted.model->most_visits /= 2;
+            fitted.rays_cut = true;
+            fitted.seconds = seconds_for(*fitted.model);
+        }
+        return fitted;
+    }
+
+  private:
+    bool too_much(double seconds) const { return seconds > options_.work_seconds && !cancelled_(); }
+
+    double seconds_for(const TraceModel& model) const {
+        const double first = seconds_by(model, first_block);
+        if (first > clear_factor * options_.work_seconds || clear_factor * first < options_.work_seconds)
+            return first;
+        return seconds_by(model, second_block);
+    }
+
+    double seconds_by(const TraceModel& model, int block) const {
+        PictureTracer tracer(model, limits_of_(model));
+        Image picture;
+        picture.width = view_.size.width;
+        picture.height = view_.size.height;
+        picture.channels = 3;
+        picture.pixels.resize(3 * static_cast<std::size_t>(picture.width) *
+                              static_cast<std::size_t>(picture.height));
+        TraceControl control;
+        control.threads = threads_;
+        control.cancelled = cancelled_;
+        tracer.trace({block, {}}, control, picture);
+        const TraceStatistics& tried = tracer.statistics();
+        const double visits =
+            static_cast<double>(tried.visits) / std::max<double>(1, static_cast<double>(tried.camera_rays));
+        return visits * samples_ / WorkRates::ray_parts +
+               static_cast<double>(model.meshes.shell_work()) / WorkRates::shell_points;
+    }
+
+    const View& view_;
+    const CutOptions& options_;
+    const double samples_;
+    const std::function<ShaderLimits(const TraceModel&)>& limits_of_;
+    const int threads_;
+    const std::function<bool()>& cancelled_;
+};
+
+} // namespace
+
+FittedModel fit_work(PreparedCut prepared, const View& view, const CutOptions& options,
+                     double samples_a_pixel, const std::function<ShaderLimits(const TraceModel&)>& limits_of,
+                     int threads, const std::function<bool()>& cancelled) {
+    return Fitting(view, options, samples_a_pixel, limits_of, threads, cancelled).run(std::move(prepared));
+}
+
+} // namespace graftal

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+
+#include "runtime/trace/shade.h"
+#include "runtime/trace/trace_model.h"
+
+namespace graftal {
+
+/// A model that can be traced within the work allowed, and what that took.
+struct FittedModel {
+    std::unique_ptr<TraceModel> model;
+    double seconds = 0;       ///< of one processor that the picture will take, about (cut/work.h)
+    double whole_seconds = 0; ///< that it would have taken as it was asked for
+    double error_px = 0;      ///< of what is culled now
+    bool rays_cut = false;    ///< each ray goes into fewer parts than it wants, too
+};
+
+/// Tries rays over the whole picture, one for each block of pixels, and predicts what all of them take:
+/// `samples_a_pixel` in the end. Where that is more than the view's work_seconds, first what is culled grows,
+/// then rays are given up sooner. Nothing but counts decides, so the result is the same whatever the machine
+/// and its threads. `cancelled` is asked often; once it says true, any model comes back.
+FittedModel fit_work(PreparedCut prepared, const View& view, const CutOptions& options,
+                     double samples_a_pixel, const std::function<ShaderLimits(const TraceModel&)>& limits_of,
+                     int threads, const std::function<bool()>& cancelled);
+
+} // namespace graftal

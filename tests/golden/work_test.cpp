@@ -1,0 +1,83 @@
+// Models whose parts lie in each other, and the work that a picture may take: every command comes to an end.
+
+#include "tests/golden/command_line.h"
+
+#include <gmock/gmock.h>
+
+#include "runtime/image/image.h"
+
+namespace graftal {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+
+/// Hart's limit of a tree: 3^n branches of 0.9^n.
+const char* const tree_limit = R"(
+object trunk { cylinder scale: 0.05, 1, 0.05 }
+object tree {
+    union: trunk, branch_1, branch_2, branch_3
+}
+object branch_1 { tree rotate: x, 18.95 scale: 0.9 translate: 0, 1, 0 }
+object branch_2 { tree rotate: x, 18.95 rotate: y, 94.74 scale: 0.9 translate: 0, 1, 0 }
+object branch_3 { tree rotate: x, 18.95 rotate: y, 227.37 scale: 0.9 translate: 0, 1, 0 }
+)";
+
+const char* const crowd_in_the_plane = R"(
+rifs crowd {
+  codes 2d {
+    0.7  0.1 -0.1 0.7  0.3  0.1
+    0.6 -0.3  0.3 0.6 -0.5  0.2
+    0.7  0.2 -0.2 0.7  0.1 -0.6
+    0.65 0    0   0.65 0.8  0.4
+    0.6  0.3 -0.3 0.6 -0.2 -0.3
+    0.7 -0.2  0.2 0.7  0.5 -0.7
+  }
+}
+)";
+
+class Work : public CommandLine {};
+
+TEST_F(Work, WhatLiesInEachOtherIsDrawnByBothEngines) {
+    write("tree.inst", tree_limit);
+    write("crowd.rifs", crowd_in_the_plane);
+    for (const char* const model : {"tree.inst", "crowd.rifs"}) {
+        const RunResult native =
+            shell(std::string("\"$graftal\" render --engine native --size 96x54 -o native.png ") + model);
+        EXPECT_EQ(native.status, 0) << native.err;
+        EXPECT_THAT(native.err, Not(HasSubstr("given up")));
+        const RunResult povray =
+            shell(std::string("\"$graftal\" render --size 96x54 -o povray.png ") + model);
+        EXPECT_EQ(povray.status, 0) << povray.err;
+        // Each has a shell of its own: as fine as its octave, or half octave, of sizes asks for.
+        const Image a = picture("native.png"), b = picture("povray.png");
+        double sum = 0;
+        for (std::size_t i = 0; i < a.pixels.size(); ++i)
+            sum += std::abs(a.pixels[i] - b.pixels[i]);
+        EXPECT_LT(255 * sum / static_cast<double>(a.pixels.size()), 4) << model;
+    }
+}
+
+TEST_F(Work, LessWorkMakesACoarserPictureAndSaysSo) {
+    write("tree.inst", tree_limit);
+    const RunResult result =
+        shell("\"$graftal\" render --engine native --size 160x90 --work 0.05 tree.inst -o a.png --threads 1");
+    EXPECT_EQ(result.status, 0) << result.err;
+    EXPECT_THAT(result.err, HasSubstr("warning: 0.05 seconds of work allow an error of"));
+    EXPECT_THAT(result.err, HasSubstr("give them with --work, or ask for less with --error or --steps"));
+    EXPECT_EQ(
+        shell("\"$graftal\" render --engine native --size 160x90 --work 0.05 tree.inst -o b.png --threads 2")
+            .status,
+        0);
+    EXPECT_EQ(compare_images(picture("a.png"), picture("b.png")).differing, 0u) << "threads decide nothing";
+}
+
+TEST_F(Work, IsAPositiveNumber) {
+    write("tree.inst", tree_limit);
+    const RunResult result = shell("\"$graftal\" render --work 0 tree.inst");
+    EXPECT_EQ(result.status, 2);
+    EXPECT_THAT(result.err, HasSubstr("--work"));
+}
+
+} // namespace
+} // namespace graftal

@@ -1,0 +1,191 @@
+// Shells of sets whose copies lie in each other (compiler/cut/shell.h).
+
+#include "compiler/cut/shell.h"
+
+#include <map>
+#include <random>
+#include <set>
+#include <string>
+
+#include <glm/geometric.hpp>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "compiler/cut/coverage.h"
+#include "compiler/cut/detail.h"
+#include "compiler/cut/prepare.h"
+#include "tests/unit/cut/models.h"
+
+namespace graftal {
+namespace {
+
+/// Maps x -> share (x + corner) over the corners of the square or cube; beyond 1/2 the copies lie in each
+/// other.
+Graph corners_graph(int dimensions, double share, int copies = 1) {
+    Graph graph;
+    Object set{"corners", {}, {}, {}, {}};
+    for (int copy = 0; copy < copies; ++copy)
+        for (int j = 0; j < 1 << dimensions; ++j) {
+            Vec3 corner(j & 1 ? 1 : -1, j & 2 ? 1 : -1, j & 4 ? 1 : -1);
+            if (dimensions == 2) corner.z = 0;
+            // Copies that differ by less than anybody sees, but differ.
+            set.instances.push_back({0, {Mat3(share), (1 - share) * (1 + 1e-4 * copy) * corner}, {}, {}, {}});
+        }
+    graph.root = graph.add(std::move(set));
+    return graph;
+}
+
+PreparedCut prepared(const Graph& graph, const CutOptions& options = {}) {
+    return prepare_cut(graph, strong_components(graph), test::bounds_of(graph), options);
+}
+
+double detail_for(const CutGraph& cut, double cells_across) {
+    return cells_across / (2 * cut.nodes[cut.root].ball.radius);
+}
+
+TEST(Shell, PointsAreTrueAndNoTruePointOutsideIsFar) {
+    const PreparedCut ready = prepared(corners_graph(3, 0.7));
+    const CutGraph& cut = ready.cut;
+    const auto set = point_set(cut, cut.root, unlimited_steps, detail_for(cut, 120), {});
+    ASSERT_TRUE(set);
+    EXPECT_FALSE(set->flat);
+    std::set<std::array<int, 3>> cells;
+    for (const auto& p : set->points) {
+        std::array<int, 3> cell{};
+        for (std::size_t k = 0; k < 3; ++k) {
+            ASSERT_LE(std::abs(p[k] + static_cast<float>(set->middle[static_cast<int>(k)])), 1 + 1e-5)
+                << "not in the cube, which the set is";
+            cell[k] = static_cast<int>(std::floor(static_cast<double>(p[k]) / set->cell));
+        }
+        EXPECT_TRUE(cells.insert(cell).second) << "two points in one cell";
+    }
+    // The set is the cube: random points of its sides.
+    std::mt19937 random(5);
+    std::uniform_real_distribution<double> side(-1, 1);
+    for (int i = 0; i < 2000; ++i) {
+        Vec3 p(side(random), side(random), side(random));
+        p[i % 3] = i % 2 ? 1 : -1;
+        bool near = false;
+        const Vec3 q = (p - set->middle) / set->cell;
+        for (int dx = -3; dx <= 3 && !near; ++dx)
+            for (int dy = -3; dy <= 3 && !near; ++dy)
+                for (int dz = -3; dz <= 3 && !near; ++dz)
+                    near = cells.contains({static_cast<int>(std::floor(q.x)) + dx,
+                                           static_cast<int>(std::floor(q.y)) + dy,
+                                           static_cast<int>(std::floor(q.z)) + dz});
+        EXPECT_TRUE(near) << p.x << " " << p.y << " " << p.z;
+    }
+}
+
+TEST(Shell, WhatNobodySeesIsLeftOut) {
+    const PreparedCut ready = prepared(corners_graph(3, 0.7));
+    const CutGraph& cut = ready.cut;
+    const auto set = point_set(cut, cut.root, unlimited_steps, detail_for(cut, 200), {});
+    ASSERT_TRUE(set);
+    const double side_cells = 2 / set->cell;
+    EXPECT_LT(static_cast<double>(set->points.size()), 0.5 * side_cells * side_cells * side_cells);
+    EXPECT_TRUE(set->is_inside({0, 0, 0}));
+}
+
+TEST(Shell, WorkGrowsWithCellsAndNotWithCopies) {
+    for (const double share : {0.6, 0.8, 0.9}) {
+        const PreparedCut ready = prepared(corners_graph(2, share));
+        const CutGraph& cut = ready.cut;
+        const auto set = point_set(cut, cut.root, unlimited_steps, detail_for(cut, 300), {});
+        ASSERT_TRUE(set);
+        EXPECT_TRUE(set->flat);
+        // Four maps move each point of the last grid once; those before are sixth parts of it and of each
+        // other, or less, except the first.
+        EXPECT_LT(set->work, 3 * 4 * set->points.size()) << share;
+        const double side_cells = 2 / set->cell;
+        EXPECT_GT(static_cast<double>(set->points.size()), 0.9 * side_cells * side_cells) << share;
+    }
+}
+
+TEST(Shell, LimitsMakeItCoarserAndNotLess) {
+    const PreparedCut ready = prepared(corners_graph(2, 0.8));
+    const CutGraph& cut = ready.cut;
+    PointLimits limits;
+    limits.points = 20'000;
+    const auto set = point_set(cut, cut.root, unlimited_steps, detail_for(cut, 2000), limits);
+    ASSERT_TRUE(set);
+    EXPECT_LE(set->points.size(), limits.points);
+    EXPECT_GT(set->points.size(), limits.points / 8);
+    EXPECT_GT(set->cell * detail_for(cut, 2000), 5);
+}
+
+TEST(Shell, IsAClosedSurface) {
+    const PreparedCut ready = prepared(corners_graph(3, 0.65));
+    const CutGraph& cut = ready.cut;
+    ShellRequest request;
+    request.node = cut.root;
+    request.detail_per_unit = detail_for(cut, 60);
+    request.inherited = {Rgb(0.5)};
+    const Baked baked = bake_shell(cut, request, 10'000'000);
+    ASSERT_TRUE(baked.complete);
+    ASSERT_EQ(baked.parts.size(), 1u);
+    const Mesh& mesh = baked.parts.front().mesh;
+    EXPECT_EQ(mesh.triangles.size(), baked.triangles);
+    // Each edge is passed as often in one direction as in the other.
+    std::map<std::pair<std::uint32_t, std::uint32_t>, int> passed;
+    double volume = 0;
+    for (const auto& [a, b, c] : mesh.triangles) {
+        for (const auto& [from, to] : {std::pair{a, b}, std::pair{b, c}, std::pair{c, a}})
+            passed[std::minmax(from, to)] += from < to ? 1 : -1;
+        volume += glm::dot(mesh.vertices[a], glm::cross(mesh.vertices[b], mesh.vertices[c])) / 6;
+    }
+    for (const auto& [edge, balance] : passed)
+        ASSERT_EQ(balance, 0);
+    // The cube's, and no more than a cell or so around it.
+    const double unit = baked.representative_from_body.linear[0][0];
+    EXPECT_NEAR(std::cbrt(volume) * unit, 2, 3 / request.detail_per_unit);
+}
+
+TEST(Shell, CrowdsAreToldFromSetsThatOnlyFillSpace) {
+    const struct {
+        int dimensions;
+        double share;
+        bool crowded;
+    } cases[] = {{2, 0.5, false}, {3, 0.5, false}, {2, 0.45, false}, {2, 0.75, true}, {3, 0.7, true}};
+    for (const auto& c : cases) {
+        const PreparedCut ready = prepared(corners_graph(c.dimensions, c.share));
+        Weights weights(ready.cut);
+        const double unit = detail_for(ready.cut, 500);
+        EXPECT_EQ(weights.of({ready.cut.root, unlimited_steps, PieceKind::step_of(unit)}).crowded, c.crowded)
+            << c.dimensions << " dimensions, " << c.share;
+        EXPECT_EQ(weights.shell_sizes(ready.cut.root, unlimited_steps).any(), c.crowded);
+    }
+}
+
+TEST(Shell, TintsAndMaterialsAreTheLeaves) {
+    Graph graph;
+    graph.materials.resize(1);
+    graph.materials[0].rgb = Rgb(0.2, 0.4, 0.1);
+    const ObjectId cube = graph.primitive(PrimitiveKind::cube);
+    Object set{"set", {}, {}, {}, {}};
+    const auto self = static_cast<ObjectId>(graph.objects.size());
+    set.instances.push_back({cube, Affine::scale(Vec3(0.2)), Tint{Rgb(1, 0, 0), 0.5}, MaterialId{0}, {}});
+    for (int j = 0; j < 8; ++j)
+        set.instances.push_back(
+            {self, {Mat3(0.7), 0.3 * Vec3(j & 1 ? 1 : -1, j & 2 ? 1 : -1, j & 4 ? 1 : -1)}, {}, {}, {}});
+    graph.root = graph.add(std::move(set));
+    const PreparedCut ready = prepared(graph);
+    ShellRequest request;
+    request.node = ready.cut.root;
+    request.detail_per_unit = detail_for(ready.cut, 40);
+    request.inherited = {Rgb(0.0), Rgb(1.0)};
+    const Baked baked = bake_shell(ready.cut, request, 10'000'000);
+    ASSERT_TRUE(baked.complete);
+    for (const BakedPart& part : baked.parts) {
+        EXPECT_EQ(part.material, MaterialId{0});
+        for (const Palette& palette : part.palettes)
+            for (const Rgb& rgb : palette) {
+                EXPECT_NEAR(rgb.r, 0.6, 1.0 / 255);
+                EXPECT_NEAR(rgb.g, 0.2, 1.0 / 255);
+                EXPECT_NEAR(rgb.b, 0.05, 1.0 / 255);
+            }
+    }
+}
+
+} // namespace
+} // namespace graftal

@@ -20,8 +20,8 @@ CompiledModel parted_at(const CompiledModel& model, double mesh_triangles) {
     Weights weights(cut);
     Choice choice;
     choice.threshold = mesh_triangles;
-    std::optional<Cut> result =
-        assemble(cut, symmetry, projection, root, choice, weights, false, {1'000'000, 4'000'000});
+    AssemblyLimits limits{1'000'000, 4'000'000, 60};
+    std::optional<Cut> result = assemble(cut, symmetry, projection, root, choice, weights, false, limits);
     EXPECT_TRUE(result.has_value());
     CompiledModel parted = model;
     if (result) parted.cut = std::move(*result);

@@ -85,10 +85,10 @@ double cut_detail(const CutNode& node, double error_px) {
 }
 
 bool is_crowded(double leaves, double detail, bool flat) {
-    // A leaf is at least half as long as what is culled, about, or its parent would have been: an eighth of a cell.
-    constexpr double leaves_a_cell = 32;
-    const double cells = flat ? detail * detail : detail * detail * detail;
-    return leaves > leaves_a_cell * std::max(cells, 1.0);
+    // In a plane a ray goes through all leaves of a cell. In space, where it goes through a row of cells, the first ends it.
+    constexpr double leaves_a_sheet_cell = 256, leaves_a_cell = 32;
+    const double most = flat ? leaves_a_sheet_cell * detail * detail : leaves_a_cell * detail * detail * detail;
+    return leaves > std::max(most, leaves_a_cell);
 }
 
 bool is_cut(const CutNode& node, std::uint32_t steps, double detail, double error_px) {
@@ -187,7 +187,8 @@ void Weights::squeeze(const PieceKind& kind, Weight& weight) const {
 void Weights::crowd(const PieceKind& kind, Weight& weight) const {
     if (kind.unit_step == PieceKind::endless_detail || kind.unit_step == PieceKind::tiny) return;
     const CutNode& node = cut_.nodes[kind.node];
-    if (node.primitive || node.unbounded) return;
+    if (node.sealed) weight.crowded = false; // what is crushed is baked as leaves
+    if (node.primitive || node.unbounded || node.sealed) return;
     const double detail = std::exp2(detail_step(kind) / PieceKind::steps_an_octave);
     if (!is_crowded(weight.leaves, detail, flat_[kind.node])) return;
     constexpr double triangles_a_sheet_cell = 1, triangles_a_face_cell = 6;
@@ -201,7 +202,7 @@ ShellSizes Weights::shell_sizes(NodeId node, std::uint32_t steps) {
     const auto [place, added] = shell_sizes_.try_emplace({node, whole.steps});
     if (!added) return place->second;
     const double diameter = 2 * cut_.nodes[node].ball.radius;
-    if (!(diameter > 0) || cut_.nodes[node].unbounded) return {};
+    if (!(diameter > 0) || cut_.nodes[node].unbounded || cut_.nodes[node].sealed) return {};
     const auto leaves = [&](int octave) {
         return of({node, whole.steps, PieceKind::step_of(std::exp2(octave) / diameter)}).leaves;
     };

@@ -92,6 +92,10 @@ bool equal(const Graph& a, const Object& x, const Graph& b, const Object& y) {
     return true;
 }
 
+bool has_run(const Graph& graph) {
+    return std::ranges::any_of(graph.objects, [](const Object& object) { return object.run != nullptr; });
+}
+
 std::size_t union_count(const Graph& graph) {
     return static_cast<std::size_t>(
         std::ranges::count_if(graph.objects, [](const Object& object) { return !object.primitive; }));
@@ -164,6 +168,8 @@ std::size_t run_part_count(const Graph& graph) {
 
 bool equal(const Graph& a, const Graph& b) {
     if (union_count(a) != union_count(b) || !(a.settings == b.settings)) return false;
+    // Runs name kinds of primitives and not objects.
+    if (!has_run(a) && !has_run(b) && a.objects.size() != b.objects.size()) return false;
     if (a.materials != b.materials || a.objects[a.root].name != b.objects[b.root].name) return false;
     const ObjectsByName others = by_name(b);
     for (const Object& object : a.objects) {

@@ -47,7 +47,8 @@ TEST_F(Native, MakesAPictureNamedAfterTheModelHere) {
     EXPECT_EQ(files(), "sierpinski.png");
     EXPECT_EQ(temporary_files(), "");
     expect_size("sierpinski.png", 96, 54);
-    EXPECT_THAT(read("sierpinski.png"), HasSubstr("render --engine native")) << "says which command made it";
+    EXPECT_THAT(read("sierpinski.png"), HasSubstr("graftal render sierpinski.inst --engine native"))
+        << "says which command made it";
 }
 
 TEST_F(Native, SaysHowManySamplesThereAre) {

@@ -344,9 +344,9 @@ TEST(EmitPovray, APictureLiesOnTheGround) {
     View view;
     view.ground = Ground{.height = 3, .material = {.texture = "soil.png", .around = 4}};
     const std::string text = scene.text(view);
-    EXPECT_THAT(text, HasSubstr("image_map { png \"model_T_1.png\" }"));
-    EXPECT_THAT(text, HasSubstr("pigment_pattern { T_1_shape }"));
-    EXPECT_THAT(text, HasSubstr("[0.5 pigment { T_1 } finish"));
+    EXPECT_THAT(text, HasSubstr("image_map { png \"model_I_1.png\" }"));
+    EXPECT_THAT(text, HasSubstr("pigment_pattern { I_1_shape }"));
+    EXPECT_THAT(text, HasSubstr("[0.5 pigment { I_1 } finish"));
     EXPECT_THAT(text, HasSubstr("}] } matrix <"));
     ASSERT_EQ(scene.pictures.size(), 1u);
     EXPECT_EQ(scene.pictures[0].texture, "soil.png");

@@ -204,7 +204,11 @@ TEST(Choices, NameTheNearestAndAllWhereTheyAreFew) {
     EXPECT_EQ(choices("colour", {"color", "ambient"}), "did you mean 'color'? known here: color, ambient");
     EXPECT_EQ(choices("fov", {"angle", "up"}), "known here: angle, up");
     EXPECT_EQ(choices("fov", {}), "");
-    EXPECT_EQ(choices("scael", std::vector<std::string>(100, "scale")), "did you mean 'scale'?");
+    EXPECT_EQ(choices("scael", {"scale", "scale"}), "did you mean 'scale'? known here: scale");
+    std::vector<std::string> many = {"scale"};
+    for (int i = 0; i < 100; ++i)
+        many.push_back("another" + std::to_string(i));
+    EXPECT_EQ(choices("scael", many), "did you mean 'scale'?");
     EXPECT_EQ(closest_name("Lsystem", {"rifs", "lsys"}), "lsys") << "begins so, in other letters";
     EXPECT_EQ(closest_name("prob", {"tint", "probability"}), "probability");
     EXPECT_EQ(closest_name("PI", {"e", "pi"}), "pi");

@@ -9,7 +9,7 @@
 
 namespace graftal {
 
-/// The box that an item fills, its ball included. Exact but for rounding, which it allows for.
+/// The box that an item fills, its ball included. Exact except for rounding, which it allows for.
 Box box_of(const RunItem& item);
 
 /// Boxes about ranges of a run. Items that follow each other were drawn one after the other, and so lie near
@@ -30,7 +30,7 @@ class RunBounds {
     std::size_t level_count() const { return levels_.size(); }
     /// The ranges of a level, the lowest first; the last level has one.
     const std::vector<Box>& boxes(std::size_t level) const { return levels_[level]; }
-    /// How many items a range of the level has, but for its last.
+    /// How many items a range of the level has, except its last.
     static std::size_t range_size(std::size_t level);
 
     /// A point of the run that is farthest along `direction`; about O(log items).

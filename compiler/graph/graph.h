@@ -114,8 +114,9 @@ std::size_t instance_count(const Graph& graph);
 /// The primitives that its runs hold, each run once.
 std::size_t run_part_count(const Graph& graph);
 
-/// Equal structure: the same objects but for primitives, names, instances (in order), transforms to the last bit, tints,
-/// materials, settings and root. A run equals the instances that it means. Ids may differ, spans do not count.
+/// Equal structure: the same unions, names, instances (in order), transforms to the last bit, tints, chances, materials,
+/// settings and root, and as many primitives. A run equals the instances that it means; it names kinds and not objects,
+/// so where a graph has one, primitives are not counted. Ids may differ, spans do not count.
 bool equal(const Graph& a, const Graph& b);
 
 }  // namespace graftal

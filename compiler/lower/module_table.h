@@ -14,7 +14,7 @@ using SymbolId = std::uint16_t;
 using ModuleId = std::uint32_t;
 using ModuleString = std::vector<ModuleId>;
 
-/// What a number would be but for rounding, where that can be told: the decimal of some twelve digits that it is
+/// What a number would be without rounding, where that can be told: the decimal of some twelve digits that it is
 /// within 8e-15 of itself of; else itself. So 1 + 0.2 + 0.2 + 0.2 + 0.2 + 0.2 is 2, whatever was computed before.
 double unrounded(double number);
 

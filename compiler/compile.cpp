@@ -11,6 +11,7 @@
 
 #include "compiler/frame_model.h"
 #include "compiler/graph/verify.h"
+#include "compiler/support/check.h"
 #include "compiler/support/number.h"
 
 namespace graftal {
@@ -24,10 +25,14 @@ class Stages {
 
     template<typename Work> auto run(const char* stage, const Work& work) {
         const auto begin = std::chrono::steady_clock::now();
-        auto result = work();
-        const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - begin;
-        times_.push_back({stage, elapsed.count()});
-        return result;
+        try {
+            auto result = work();
+            const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - begin;
+            times_.push_back({stage, elapsed.count()});
+            return result;
+        } catch (const std::exception&) {
+            rethrow_in_stage(stage);
+        }
     }
 
   private:

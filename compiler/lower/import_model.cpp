@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "compiler/lower/lowering.h"
+#include "compiler/support/check.h"
 #include "compiler/support/file.h"
 
 namespace graftal {
@@ -82,10 +83,12 @@ std::optional<FileId> read_used(Span use_span, const std::string& path, Lowering
 std::shared_ptr<const Graph> lower_used(FileId file, const LoadingFile& loading, Lowering& lowering) {
     const std::size_t known = lowering.diagnostics.all().size();
     std::shared_ptr<const Graph> result;
+    const std::size_t failures = lowering.failures();
     lowering.loading.push_back(loading);
     if (std::optional<Graph> graph = lower_file(file, loading.use_span, lowering))
         result = std::make_shared<const Graph>(std::move(*graph));
     lowering.loading.pop_back();
+    GRAFTAL_CHECK(result || lowering.failures() > failures, "lower: " + loading.path);
     if (!loading.inner.empty()) lowering.diagnostics.drop_repeated_remarks(known);
     return result;
 }
@@ -95,7 +98,10 @@ std::shared_ptr<const Graph> load(const ModelUse& use, const Environment& inner,
     if (!check_chain(use.span, path, lowering)) return nullptr;
     const auto key = std::pair(path, inner);
     const auto known = lowering.lowered.find(key);
-    if (known != lowering.lowered.end()) return known->second;
+    if (known != lowering.lowered.end()) {
+        if (!known->second) ++lowering.known_failures;
+        return known->second;
+    }
     std::shared_ptr<const Graph> result;
     if (const std::optional<FileId> file = read_used(use.span, path, lowering))
         result = lower_used(*file, {path, use.span, inner}, lowering);

@@ -105,6 +105,10 @@ std::string model_language(FileId file, const SourceMap& sources) {
 }
 
 std::optional<Graph> lower_file(FileId file, Span asked_for, Lowering& lowering) {
+    if (lowering.diagnostics.full()) { // front-ends stop there, so that none may begin
+        ++lowering.known_failures;
+        return std::nullopt;
+    }
     const std::string_view name = lowering.sources.name(file);
     const std::string language = model_language(file, lowering.sources);
     // Without the text: of what is no model nothing is shown.

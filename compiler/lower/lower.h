@@ -12,6 +12,7 @@
 #include "compiler/support/diagnostics.h"
 #include "compiler/support/source.h"
 #include "compiler/support/status.h"
+#include "compiler/support/texture_facts.h"
 
 namespace graftal {
 
@@ -44,9 +45,8 @@ struct OrbitModel;
 struct LowerOptions {
     std::map<std::string, double, std::less<>> set; ///< `--set NAME=VALUE`: replaces the value of a `let`
     std::optional<unsigned> steps;     ///< derivation steps of an L-system, in place of what the model says
-    /// Looks at the picture that a material names: the mean of its linear colours, and the share of it that is
-    /// not clear. Without this, textures are taken on trust.
-    std::function<Status(const std::string& path, Rgb& mean, double& coverage)> look_at_texture;
+    /// Looks at the picture that a material names. Without this, textures are taken on trust.
+    std::function<Status(const std::string& path, TextureFacts& facts)> look_at_texture;
     /// The same between steps: L-systems whose drawing reads the time are drawn as old as this, after as many
     /// steps as are done by then; others after `steps`, or if these are not given, too. Other languages have
     /// no time: without `steps` it is an error.

@@ -62,9 +62,10 @@ std::string abridged_chain(const std::vector<std::string_view>& names) {
 
 class InstLowerer {
   public:
-    InstLowerer(const InstModule& module, Lowering& lowering)
-        : module_(module), lowering_(lowering), diagnostics_(lowering.diagnostics),
-          index_(module, diagnostics_) {}
+    InstLowerer(FileId file, Lowering& lowering)
+        : failures_before_(lowering.failures()),
+          module_(parse_inst(lowering.sources, file, lowering.diagnostics)), lowering_(lowering),
+          diagnostics_(lowering.diagnostics), index_(module_, diagnostics_) {}
 
     std::optional<Graph> run() && {
         lets_ = lower_lets(module_.scene, lowering_);
@@ -78,11 +79,13 @@ class InstLowerer {
             if (!diagnostics_.full()) check_names(definition);
         enumerate();
         choose_root();
-        if (diagnostics_.has_errors()) return std::nullopt;
+        if (failed()) return std::nullopt;
         return std::move(graph_);
     }
 
   private:
+    bool failed() const { return lowering_.failures() > failures_before_; }
+
     // Names
 
     void import_used(const InstUse& use) {
@@ -415,7 +418,7 @@ class InstLowerer {
             if (reached.definition->rendered) rendered.push_back(&reached);
         if (rendered.size() == 1) graph_.root = rendered.front()->id;
         if (rendered.size() > 1) add_scene(rendered);
-        if (!rendered.empty() || !module_.complete || diagnostics_.has_errors()) return;
+        if (!rendered.empty() || !module_.complete || failed()) return;
         const Span place = module_.definitions.empty() ? module_.end : module_.definitions.back().span;
         diagnostics_.error(place, "the model renders nothing: no object stands without 'canonical'")
             .with_hint("write 'object NAME { ... }' for what the picture shows");
@@ -432,7 +435,8 @@ class InstLowerer {
         graph_.root = graph_.add(std::move(scene));
     }
 
-    const InstModule& module_;
+    std::size_t failures_before_;
+    InstModule module_;
     Lowering& lowering_;
     Diagnostics& diagnostics_;
     InstIndex index_;
@@ -458,8 +462,7 @@ class InstLowerer {
 } // namespace
 
 std::optional<Graph> lower_inst(FileId file, Lowering& lowering) {
-    const InstModule module = parse_inst(lowering.sources, file, lowering.diagnostics);
-    return InstLowerer(module, lowering).run();
+    return InstLowerer(file, lowering).run();
 }
 
 } // namespace graftal

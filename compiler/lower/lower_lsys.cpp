@@ -28,7 +28,7 @@ constexpr unsigned max_block_nesting = 256;
 class LsysLowering {
   public:
     LsysLowering(FileId file, Lowering& lowering)
-        : file_(file), errors_before_(lowering.diagnostics.error_count()), lowering_(lowering),
+        : file_(file), failures_before_(lowering.failures()), lowering_(lowering),
           diagnostics_(lowering.diagnostics), tree_(parse_lsys(lowering.sources, file, lowering.diagnostics)),
           pool_(graph_) {}
 
@@ -74,7 +74,7 @@ class LsysLowering {
     /// The values that who uses this file gives its inner parameters.
     const Environment& given_inner() const { return lowering_.loading.back().inner; }
 
-    bool failed() const { return diagnostics_.error_count() > errors_before_; }
+    bool failed() const { return lowering_.failures() > failures_before_; }
 
     void import_models() {
         for (const LsysUse& use : tree_.uses) {
@@ -381,7 +381,7 @@ class LsysLowering {
     }
 
     FileId file_;
-    std::size_t errors_before_;
+    std::size_t failures_before_;
     Lowering& lowering_;
     Diagnostics& diagnostics_;
     LsysFile tree_;

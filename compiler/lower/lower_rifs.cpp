@@ -46,7 +46,7 @@ Tint composed(const Tint& parent, const Tint& child) {
 class RifsLowering {
   public:
     RifsLowering(FileId file, Lowering& lowering)
-        : file_(file), errors_before_(lowering.diagnostics.error_count()), lowering_(lowering),
+        : file_(file), failures_before_(lowering.failures()), lowering_(lowering),
           diagnostics_(lowering.diagnostics),
           tree_(parse_rifs(lowering.sources, file, lowering.diagnostics)) {}
 
@@ -81,7 +81,7 @@ class RifsLowering {
         std::optional<ModelFamily> family; ///< if it has inner parameters
     };
 
-    bool failed() const { return diagnostics_.error_count() > errors_before_; }
+    bool failed() const { return lowering_.failures() > failures_before_; }
 
     void import_models() {
         for (const RifsUse& use : tree_.uses) {
@@ -301,7 +301,7 @@ class RifsLowering {
     }
 
     FileId file_;
-    std::size_t errors_before_;
+    std::size_t failures_before_;
     Lowering& lowering_;
     Diagnostics& diagnostics_;
     RifsFile tree_;

@@ -162,10 +162,17 @@ void read_texture(const SceneField& field, bool take_colour, Lowering& lowering,
     if (!path) return;
     material.texture = *path;
     if (!lowering.options.look_at_texture) return;
-    Rgb mean;
-    const Status status = lowering.options.look_at_texture(*path, mean, material.coverage);
+    TextureFacts facts;
+    const Status status = lowering.options.look_at_texture(*path, facts);
     if (!status.ok()) lowering.diagnostics.error(field.name_span, status.message());
-    if (take_colour) material.rgb = mean;
+    material.coverage = facts.coverage;
+    if (take_colour) material.rgb = facts.mean;
+    if (facts.width < facts.file_width)
+        lowering.diagnostics
+            .warning(field.name_span,
+                     fmt::format("this picture of {} x {} pixels is used at {} x {}", facts.file_width,
+                                 facts.file_height, facts.width, facts.height))
+            .with_hint("a texture keeps at most 33 million pixels, and all of a model 134 million");
 }
 
 /// How the picture lies.

@@ -25,7 +25,7 @@ struct LoadingFile {
 /// What lowering one model shares between its files and front-ends.
 ///
 /// A front-end is a function `std::optional<Graph> lower_LANGUAGE(FileId file, Lowering& lowering)`: nothing
-/// after an error in `diagnostics`, else a graph that verify() accepts.
+/// if it has added to failures(), else a graph that verify() accepts.
 struct Lowering {
     SourceMap& sources;
     Diagnostics& diagnostics;
@@ -36,10 +36,14 @@ struct Lowering {
     std::map<std::pair<std::string, Environment>, std::shared_ptr<const Graph>> lowered = {};
     std::map<std::string, FileId> files = {};  ///< used files that were read, by path
     std::size_t use_count = 0;                 ///< `use` statements so far, in all files
+    std::size_t known_failures = 0;            ///< models that were asked for and had failed before
     std::optional<Derivation> derivation = {}; ///< of the root model
 
     /// `--set` speaks to the root model only.
     bool at_root_model() const { return loading.size() <= 1; }
+    /// Grows whenever a part of a model fails, also where nothing is said since it was said before. A
+    /// front-end fails if this has grown since it began: errors alone are those of other files too.
+    std::size_t failures() const { return diagnostics.error_count() + known_failures; }
 };
 
 /// Lowers a file by the front-end that its name asks for. `asked_for` is where errors about the choice

@@ -1,14 +1,26 @@
 #include "compiler/support/check.h"
 
-#include <cstdio>
-#include <cstdlib>
+#include <fmt/format.h>
 
 namespace graftal {
 
 void invariant_broken(const char* file, int line, const char* condition, std::string_view context) {
-    std::fprintf(stderr, "graftal: internal error at %s:%d: '%s' does not hold (%.*s)\n", file, line,
-                 condition, static_cast<int>(context.size()), context.data());
-    std::abort();
+    throw BrokenInvariant(
+        fmt::format("internal error at {}:{}: '{}' does not hold ({})", file, line, condition, context));
+}
+
+void rethrow_in_stage(std::string_view stage) {
+    try {
+        throw;
+    } catch (const BrokenInvariant&) {
+        throw;
+    } catch (const OutOfMemory&) {
+        throw;
+    } catch (const std::bad_alloc&) {
+        throw OutOfMemory(stage);
+    } catch (const std::exception& fault) {
+        throw BrokenInvariant(fmt::format("internal error in the stage {}: {}", stage, fault.what()));
+    }
 }
 
 } // namespace graftal

@@ -1,17 +1,41 @@
 #pragma once
 
+#include <new>
+#include <stdexcept>
+#include <string>
 #include <string_view>
 
 namespace graftal {
 
-/// Ends the process after printing where and why. A broken invariant is a bug of graftal, never of a model.
-/// `context` names the stage or pass and the object, e.g. "merge_equivalent: object llr".
+/// A broken invariant is a bug of graftal, never of a model. It is thrown so that outputs are tidied on the
+/// way, and nobody catches it except main(). The text says where and why.
+class BrokenInvariant : public std::logic_error {
+  public:
+    using std::logic_error::logic_error;
+};
+
+/// Memory that could not be had, with the stage that asked for it.
+class OutOfMemory : public std::bad_alloc {
+  public:
+    explicit OutOfMemory(std::string_view stage) : text_("out of memory in the stage ") { text_ += stage; }
+    const char* what() const noexcept override { return text_.c_str(); }
+
+  private:
+    std::string text_;
+};
+
+/// Throws a BrokenInvariant. `context` names the stage or pass and the object, e.g. "merge_equivalent: object
+/// llr".
 [[noreturn]] void invariant_broken(const char* file, int line, const char* condition,
                                    std::string_view context);
 
+/// To be called where an exception is being handled: throws it again as one that names the stage. Exceptions
+/// of libraries become broken invariants; one that has a stage keeps it.
+[[noreturn]] void rethrow_in_stage(std::string_view stage);
+
 } // namespace graftal
 
-/// Aborts with `context` unless `condition` holds; active in every build type.
+/// Throws a BrokenInvariant with `context` unless `condition` holds; active in every build type.
 #define GRAFTAL_CHECK(condition, context)                                                                    \
     do {                                                                                                     \
         if (!(condition)) ::graftal::invariant_broken(__FILE__, __LINE__, #condition, context);              \

@@ -7,6 +7,7 @@
 
 #include "compiler/support/status.h"
 #include "compiler/support/tint.h"
+#include "runtime/image/row_sink.h"
 
 namespace graftal {
 
@@ -45,7 +46,23 @@ inline constexpr const char* stamp_keyword = "graftal:stamp";
 /// A linear value as sRGB encodes it (IEC 61966-2-1); clamped to [0, 1], 0 for NaN.
 float srgb_encoded(float linear);
 
-/// Reads any format that OpenImageIO knows; refuses pictures of more than 2^29 samples.
+/// Keeps all of a picture; refuses one of more than `most_samples`.
+class ImageSink : public RowSink {
+  public:
+    ImageSink(Image& image, std::uint64_t most_samples) : image_(image), most_samples_(most_samples) {}
+    std::string begin(int width, int height, int channels) override;
+    void take(const float* samples) override;
+
+  private:
+    Image& image_;
+    std::uint64_t most_samples_;
+    std::size_t row_samples_ = 0;
+};
+
+/// Reads a regular file in any format that OpenImageIO knows, row by row where the format allows it.
+Status read_rows(const std::string& path, RowSink& sink);
+
+/// The same, all of it; refuses pictures of more than 2^28 samples (1 GiB).
 Status read_image(const std::string& path, Image& image);
 
 /// Writes `.png` or `.exr`, whole or not at all. Requires is_picture_name(path). The bytes depend on the

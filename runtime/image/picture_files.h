@@ -1,18 +1,18 @@
 #pragma once
 
-#include <cstdint>
 #include <functional>
 #include <string>
 #include <vector>
 
 #include "runtime/image/image.h"
+#include "runtime/image/row_sink.h"
 
 namespace graftal {
 
 /// Pictures in files other than PNG (png_files.h), by OpenImageIO; image.h is the interface to use. The code
 /// lies in a module that image.cpp loads. Each function returns what went wrong, in words, or "".
 struct PictureFiles {
-    std::string (*read)(const std::string& path, std::uint64_t most_samples, Image& image);
+    std::string (*read)(const std::string& path, RowSink& sink);
     std::string (*write_exr)(const std::string& path, const Image& image, const ImageMetadata& metadata);
     /// Pictures of one size as an animated GIF. `on_frame` is called before each; false gives up, with
     /// "interrupted".

@@ -184,28 +184,24 @@ class Reader {
     Reader(const Reader&) = delete;
     Reader& operator=(const Reader&) = delete;
 
-    std::string read(std::uint64_t most_samples, Image& image) {
+    std::string read(RowSink& sink) {
         if (!info_) return std::strerror(ENOMEM);
         if (!succeeds(png_, [&] { get_head(); })) return complaint_.text;
         const std::size_t width = png_get_image_width(png_, info_),
                           height = png_get_image_height(png_, info_);
-        const int channels = png_get_channels(png_, info_), bits = png_get_bit_depth(png_, info_);
-        const std::size_t row_samples = width * static_cast<std::size_t>(channels);
-        if (row_samples > most_samples / height) return "it is too large";
-        const std::size_t samples = row_samples * height;
-        // Not cleared, so that a file that promises much and holds little takes little memory.
-        const auto bytes = std::make_unique_for_overwrite<png_byte[]>(
-            samples * static_cast<std::size_t>(bytes_per_sample(bits)));
-        if (!succeeds(png_, [&] { get_pixels(bytes.get(), height, png_get_rowbytes(png_, info_)); }))
-            return complaint_.text;
-        image = {static_cast<int>(width), static_cast<int>(height), channels, std::vector<float>(samples)};
-        if (bits == 8)
-            std::transform(bytes.get(), bytes.get() + samples, image.pixels.begin(),
-                           [](png_byte value) { return static_cast<float>(value) / 255.0f; });
-        else
-            for (std::size_t i = 0; i < samples; ++i)
-                image.pixels[i] = static_cast<float>(bytes[2 * i] << 8 | bytes[2 * i + 1]) / 65535.0f;
-        return {};
+        const int channels = png_get_channels(png_, info_);
+        if (std::string error = sink.begin(static_cast<int>(width), static_cast<int>(height), channels);
+            !error.empty())
+            return error;
+        const std::size_t row_bytes = png_get_rowbytes(png_, info_);
+        std::vector<float> samples(width * static_cast<std::size_t>(channels));
+        if (passes_ > 1) return read_interlaced(height, row_bytes, samples, sink);
+        std::vector<png_byte> row(row_bytes);
+        for (std::size_t y = 0; y < height; ++y) {
+            if (!succeeds(png_, [&] { png_read_row(png_, row.data(), nullptr); })) return complaint_.text;
+            hand_on(row.data(), samples, sink);
+        }
+        return succeeds(png_, [&] { png_read_end(png_, nullptr); }) ? "" : complaint_.text;
     }
 
   private:
@@ -217,11 +213,33 @@ class Reader {
         png_read_update_info(png_, info_);
     }
 
-    void get_pixels(png_byte* bytes, std::size_t height, std::size_t row_bytes) {
-        for (int pass = 0; pass < passes_; ++pass)
-            for (std::size_t y = 0; y < height; ++y)
-                png_read_row(png_, bytes + y * row_bytes, nullptr);
-        png_read_end(png_, nullptr);
+    /// Every pass goes over the whole picture.
+    std::string read_interlaced(std::size_t height, std::size_t row_bytes, std::vector<float>& samples,
+                                RowSink& sink) {
+        constexpr std::size_t most_bytes = 256u << 20;
+        if (row_bytes > most_bytes / height) return "it is interlaced and too large for that";
+        // Not cleared, so that a file that promises much and holds little takes little memory.
+        const auto bytes = std::make_unique_for_overwrite<png_byte[]>(row_bytes * height);
+        const auto get_passes = [&] {
+            for (int pass = 0; pass < passes_; ++pass)
+                for (std::size_t y = 0; y < height; ++y)
+                    png_read_row(png_, bytes.get() + y * row_bytes, nullptr);
+            png_read_end(png_, nullptr);
+        };
+        if (!succeeds(png_, get_passes)) return complaint_.text;
+        for (std::size_t y = 0; y < height; ++y)
+            hand_on(bytes.get() + y * row_bytes, samples, sink);
+        return {};
+    }
+
+    void hand_on(const png_byte* bytes, std::vector<float>& samples, RowSink& sink) const {
+        if (png_get_bit_depth(png_, info_) == 8)
+            std::transform(bytes, bytes + samples.size(), samples.begin(),
+                           [](png_byte value) { return static_cast<float>(value) / 255.0f; });
+        else
+            for (std::size_t i = 0; i < samples.size(); ++i)
+                samples[i] = static_cast<float>(bytes[2 * i] << 8 | bytes[2 * i + 1]) / 65535.0f;
+        sink.take(samples.data());
     }
 
     Complaint complaint_;
@@ -239,9 +257,9 @@ bool is_png_file(const std::string& path) {
            std::equal(start, start + sizeof start, png_signature.begin());
 }
 
-std::string read_png(const std::string& path, std::uint64_t most_samples, Image& image) {
+std::string read_png(const std::string& path, RowSink& sink) {
     const OpenFile file(std::fopen(path.c_str(), "rb"));
-    return file ? Reader(file.get()).read(most_samples, image) : std::strerror(errno);
+    return file ? Reader(file.get()).read(sink) : std::strerror(errno);
 }
 
 std::string write_png(const std::string& path, const Image& image, SampleFormat format,

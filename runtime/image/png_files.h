@@ -5,6 +5,7 @@
 #include <string>
 
 #include "runtime/image/image.h"
+#include "runtime/image/row_sink.h"
 
 namespace graftal {
 
@@ -14,8 +15,8 @@ namespace graftal {
 /// True if the file begins as a PNG does, whatever its name.
 bool is_png_file(const std::string& path);
 
-/// Reads a PNG of any kind, as Image says; refuses pictures of more than `most_samples`.
-std::string read_png(const std::string& path, std::uint64_t most_samples, Image& image);
+/// Reads a PNG of any kind. An interlaced one is held whole on the way and must have less than 256 MiB.
+std::string read_png(const std::string& path, RowSink& sink);
 
 /// Samples are clamped to [0, 1] and rounded to the nearest level, halves up; NaN becomes 0. Requires one to
 /// four channels.

@@ -1,8 +1,10 @@
 #include "runtime/image/texture.h"
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <mutex>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -17,29 +19,113 @@ std::uint8_t level_of(float sample, bool linear) {
     return encoded > 0 ? static_cast<std::uint8_t>(std::lround(255 * std::min(encoded, 1.0f))) : 0;
 }
 
-Texture texture_of(const Image& image, bool linear) {
-    Texture texture;
-    texture.width = image.width;
-    texture.height = image.height;
-    const auto channels = static_cast<std::size_t>(image.channels);
-    const bool has_alpha = channels == 2 || channels == 4;
-    std::size_t solid = 0;
-    texture.texels.resize(image.pixels.size() / channels);
-    for (std::size_t i = 0; i < texture.texels.size(); ++i) {
-        const float* const samples = image.pixels.data() + i * channels;
-        Texture::Texel& texel = texture.texels[i];
-        for (std::size_t c = 0; c < 3; ++c)
-            texel.srgb[c] = level_of(samples[channels >= 3 ? c : 0], linear);
-        texel.clear = has_alpha && !(samples[channels - 1] >= 0.5f);
-        if (texel.clear) continue;
-        ++solid;
-        for (int c = 0; c < 3; ++c)
-            texture.mean[c] += srgb_decoded(texel.srgb[static_cast<std::size_t>(c)]);
-    }
-    if (solid > 0) texture.mean /= static_cast<double>(solid);
-    texture.coverage = static_cast<double>(solid) / static_cast<double>(texture.texels.size());
-    return texture;
+constexpr std::uint64_t most_texels = 1u << 25;
+constexpr std::uint64_t most_texels_of_all = 1u << 27;
+constexpr std::uint64_t least_texels = 1u << 12;
+/// Reading takes time by the size of the file's picture, whatever is kept of it.
+constexpr std::uint64_t most_file_texels = 1u << 28;
+
+std::uint64_t texel_count(int width, int height) {
+    return static_cast<std::uint64_t>(width) * static_cast<std::uint64_t>(height);
 }
+
+/// Makes a texture of the rows of a file, reduced to at most so many texels.
+class TextureSink : public RowSink {
+  public:
+    TextureSink(bool linear, std::uint64_t most) : linear_(linear), most_(most) {
+        for (int level = 0; level < 256; ++level)
+            decoded_[static_cast<std::size_t>(level)] = srgb_decoded(static_cast<std::uint8_t>(level));
+    }
+
+    std::string begin(int width, int height, int channels) override {
+        if (texel_count(width, height) > most_file_texels) return "it is too large";
+        texture_.file_width = width;
+        texture_.file_height = height;
+        rows_left_ = height;
+        channels_ = static_cast<std::size_t>(channels);
+        const auto across = [this](int size) { return (size + reduced_ - 1) / reduced_; };
+        while (texel_count(across(width), across(height)) > most_)
+            ++reduced_;
+        texture_.width = across(width);
+        texture_.height = across(height);
+        texture_.texels.reserve(texel_count(texture_.width, texture_.height));
+        cells_.resize(static_cast<std::size_t>(texture_.width));
+        return {};
+    }
+
+    void take(const float* samples) override {
+        for (int x = 0; x < texture_.file_width; ++x)
+            cells_[static_cast<std::size_t>(x / reduced_)].add(
+                texel_of(samples + static_cast<std::size_t>(x) * channels_), decoded_);
+        --rows_left_;
+        if (++rows_ < reduced_ && rows_left_ > 0) return;
+        rows_ = 0;
+        for (Cell& cell : cells_) {
+            texture_.texels.push_back(cell.texel());
+            cell = Cell();
+        }
+    }
+
+    Texture finished() && {
+        std::size_t solid = 0;
+        for (const Texture::Texel& texel : texture_.texels) {
+            if (texel.clear) continue;
+            ++solid;
+            for (int c = 0; c < 3; ++c)
+                texture_.mean[c] += decoded_[texel.srgb[static_cast<std::size_t>(c)]];
+        }
+        if (solid > 0) texture_.mean /= static_cast<double>(solid);
+        texture_.coverage = static_cast<double>(solid) / static_cast<double>(texture_.texels.size());
+        return std::move(texture_);
+    }
+
+  private:
+    using Decoded = std::array<double, 256>;
+
+    /// The texels of the file that become one.
+    struct Cell {
+        Texture::Texel first;
+        Rgb light{0.0}; ///< of the solid ones
+        int solid = 0;
+        int count = 0;
+
+        void add(const Texture::Texel& texel, const Decoded& decoded) {
+            ++count;
+            if (texel.clear) return;
+            if (solid++ == 0) first = texel;
+            for (int c = 0; c < 3; ++c)
+                light[c] += decoded[texel.srgb[static_cast<std::size_t>(c)]];
+        }
+        Texture::Texel texel() const {
+            Texture::Texel mean = first;
+            mean.clear = 2 * solid < count;
+            if (solid > 1)
+                for (int c = 0; c < 3; ++c)
+                    mean.srgb[static_cast<std::size_t>(c)] =
+                        level_of(static_cast<float>(light[c] / solid), true);
+            return mean;
+        }
+    };
+
+    Texture::Texel texel_of(const float* samples) const {
+        Texture::Texel texel;
+        for (std::size_t c = 0; c < 3; ++c)
+            texel.srgb[c] = level_of(samples[channels_ >= 3 ? c : 0], linear_);
+        const bool has_alpha = channels_ == 2 || channels_ == 4;
+        texel.clear = has_alpha && !(samples[channels_ - 1] >= 0.5f);
+        return texel;
+    }
+
+    bool linear_;
+    std::uint64_t most_;
+    Decoded decoded_;
+    Texture texture_;
+    int reduced_ = 1; ///< a texel is the mean of so many texels of the file across, and up
+    int rows_left_ = 0;
+    int rows_ = 0; ///< of the file, in the cells
+    std::size_t channels_ = 0;
+    std::vector<Cell> cells_;
+};
 
 /// The number of the texel that holds x, of n from 0 to 1, repeated.
 std::size_t texel_number(double x, int n) {
@@ -63,23 +149,28 @@ double srgb_decoded(std::uint8_t level) {
 std::shared_ptr<const Texture> load_texture(const std::string& path, Status& status) {
     static std::mutex mutex;
     static std::map<std::string, std::shared_ptr<const Texture>> known;
+    static std::uint64_t texels_of_all = 0;
     const std::lock_guard lock(mutex);
     std::shared_ptr<const Texture>& texture = known[path];
     if (texture) return texture;
-    Image image;
-    status = read_image(path, image);
-    if (status.ok() && (image.width <= 0 || image.height <= 0 || image.channels <= 0))
-        status = Status::failure(fmt::format("cannot read picture '{}': it is empty", path));
-    if (status.ok()) texture = std::make_shared<const Texture>(texture_of(image, is_exr_name(path)));
+    const std::uint64_t room = most_texels_of_all - std::min(texels_of_all, most_texels_of_all);
+    TextureSink sink(is_exr_name(path), std::clamp(room, least_texels, most_texels));
+    status = read_rows(path, sink);
+    if (!status.ok()) return texture;
+    texture = std::make_shared<const Texture>(std::move(sink).finished());
+    texels_of_all += texture->texels.size();
     return texture;
 }
 
-Status look_at_texture(const std::string& path, Rgb& mean, double& coverage) {
+Status look_at_texture(const std::string& path, TextureFacts& facts) {
     Status status;
-    if (const auto texture = load_texture(path, status)) {
-        mean = texture->mean;
-        coverage = texture->coverage;
-    }
+    if (const auto texture = load_texture(path, status))
+        facts = {.mean = texture->mean,
+                 .coverage = texture->coverage,
+                 .file_width = texture->file_width,
+                 .file_height = texture->file_height,
+                 .width = texture->width,
+                 .height = texture->height};
     return status;
 }
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "compiler/support/status.h"
+#include "compiler/support/texture_facts.h"
 #include "compiler/support/tint.h"
 
 namespace graftal {
@@ -20,8 +21,8 @@ struct Texture {
         bool clear = false; ///< alpha below 1/2
     };
 
-    int width = 0;
-    int height = 0;
+    int file_width = 0, file_height = 0;
+    int width = 0, height = 0; ///< of the file, or less by a whole number and rounded up
     std::vector<Texel> texels; ///< row by row, top first
     Rgb mean{0.0};             ///< linear, of the texels that are not clear
     double coverage = 0;       ///< their share
@@ -33,12 +34,13 @@ struct Texture {
 /// Linear light of an sRGB level.
 double srgb_decoded(std::uint8_t level);
 
-/// The picture in a file, read once in the life of the process; null after a failure. Samples of EXR files are
-/// linear, all others sRGB.
+/// The picture in a file, read once in the life of the process; null after a failure. Samples of EXR files
+/// are linear, all others sRGB. One picture has at most 2^25 texels, and all together 2^27 (512 MiB): larger
+/// ones are reduced while they are read, but not below 2^12 texels.
 std::shared_ptr<const Texture> load_texture(const std::string& path, Status& status);
 
 /// What a compiler asks of it (LowerOptions).
-Status look_at_texture(const std::string& path, Rgb& mean, double& coverage);
+Status look_at_texture(const std::string& path, TextureFacts& facts);
 
 /// Writes it as POV-Ray is to read it: PNG, 8 bit, sRGB, alpha 0 or 1.
 Status write_texture(const std::string& path, const Texture& texture);

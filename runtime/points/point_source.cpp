@@ -5,11 +5,12 @@
 #include <chrono>
 #include <mutex>
 
-#include <tbb/global_control.h>
 #include <tbb/info.h>
 #include <tbb/parallel_for.h>
 #include <tbb/parallel_pipeline.h>
 #include <tbb/task_arena.h>
+
+#include "runtime/threads/worker_threads.h"
 
 namespace graftal {
 
@@ -97,11 +98,7 @@ int worker_count(int threads) {
 bool take_points(const PointSource& source, const PointWork& work,
                  const std::function<void(int worker, std::span<const ChaosPoint>)>& take) {
     Progress progress(work);
-    const int workers = worker_count(work.threads);
-    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
-                                    static_cast<std::size_t>(workers));
-    tbb::task_arena arena(workers);
-    arena.execute([&] {
+    WorkerThreads(work.threads).run([&] {
         tbb::parallel_for(std::uint64_t{0}, stream_count(source, work), [&](std::uint64_t number) {
             if (progress.stopped()) return;
             const int worker = tbb::this_task_arena::current_thread_index();
@@ -130,28 +127,29 @@ bool write_points(const PointSource& source, const PointWork& work,
         put(bytes);
         return !progress.stopped();
     }
-    const int workers = worker_count(work.threads);
-    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
-                                    static_cast<std::size_t>(workers));
+    WorkerThreads threads(work.threads);
     const std::uint64_t streams = stream_count(source, work);
     std::uint64_t next = 0;
-    tbb::parallel_pipeline(
-        static_cast<std::size_t>(2 * workers),
-        tbb::make_filter<void, std::uint64_t>(tbb::filter_mode::serial_in_order,
-                                              [&](tbb::flow_control& control) -> std::uint64_t {
-                                                  if (next == streams || progress.stopped()) control.stop();
-                                                  return next++;
-                                              }) &
-            tbb::make_filter<std::uint64_t, std::vector<char>>(
-                tbb::filter_mode::parallel,
-                [&](std::uint64_t number) {
-                    std::vector<char> bytes;
-                    if (number < streams)
-                        play(source, work, number, progress,
-                             [&](std::span<const ChaosPoint> points) { make(points, bytes); });
-                    return bytes;
-                }) &
-            tbb::make_filter<std::vector<char>, void>(tbb::filter_mode::serial_in_order, put));
+    threads.run([&] {
+        tbb::parallel_pipeline(
+            static_cast<std::size_t>(2 * threads.count()),
+            tbb::make_filter<void, std::uint64_t>(tbb::filter_mode::serial_in_order,
+                                                  [&](tbb::flow_control& control) -> std::uint64_t {
+                                                      if (next == streams || progress.stopped())
+                                                          control.stop();
+                                                      return next++;
+                                                  }) &
+                tbb::make_filter<std::uint64_t, std::vector<char>>(
+                    tbb::filter_mode::parallel,
+                    [&](std::uint64_t number) {
+                        std::vector<char> bytes;
+                        if (number < streams)
+                            play(source, work, number, progress,
+                                 [&](std::span<const ChaosPoint> points) { make(points, bytes); });
+                        return bytes;
+                    }) &
+                tbb::make_filter<std::vector<char>, void>(tbb::filter_mode::serial_in_order, put));
+    });
     return !progress.stopped();
 }
 

@@ -62,7 +62,7 @@ bool write_points(const PointSource& source, const PointWork& work,
                   const std::function<void(std::span<const ChaosPoint>, std::vector<char>&)>& make,
                   const std::function<bool(const std::vector<char>&)>& write);
 
-/// How many threads will be at work.
+/// How many threads will be at work, or fewer.
 int worker_count(int threads);
 
 } // namespace graftal

@@ -77,7 +77,7 @@ class ExecTables {
     ::setpgid(0, 0);
     ::prctl(PR_SET_PDEATHSIG, SIGKILL);
     bool ready = ::getppid() == parent;
-    for (const int number : {SIGINT, SIGTERM, SIGHUP, SIGPIPE})
+    for (const int number : {SIGINT, SIGTERM, SIGHUP, SIGPIPE, SIGXFSZ})
         std::signal(number, SIG_DFL);
     ready = ready && (options.directory.empty() || ::chdir(options.directory.c_str()) == 0);
     ready = ready && ::dup2(null_device, STDIN_FILENO) >= 0 && ::dup2(null_device, STDOUT_FILENO) >= 0 &&

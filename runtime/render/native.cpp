@@ -12,6 +12,7 @@
 #include "runtime/render/fit_work.h"
 #include "runtime/render/scene_files.h"
 #include "runtime/render/stopwatch.h"
+#include "runtime/threads/worker_threads.h"
 
 namespace graftal {
 
@@ -162,11 +163,13 @@ class Drawing {
     Image encoded() const {
         Image image = picture_;
         constexpr std::size_t grain = 4096;
-        tbb::parallel_for(tbb::blocked_range<std::size_t>(0, image.pixels.size(), grain),
-                          [&](const tbb::blocked_range<std::size_t>& range) {
-                              for (std::size_t i = range.begin(); i < range.end(); ++i)
-                                  image.pixels[i] = srgb_encoded(image.pixels[i]);
-                          });
+        const auto encode = [&](const tbb::blocked_range<std::size_t>& range) {
+            for (std::size_t i = range.begin(); i < range.end(); ++i)
+                image.pixels[i] = srgb_encoded(image.pixels[i]);
+        };
+        WorkerThreads(options_.render.threads).run([&] {
+            tbb::parallel_for(tbb::blocked_range<std::size_t>(0, image.pixels.size(), grain), encode);
+        });
         return image;
     }
 

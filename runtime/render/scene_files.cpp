@@ -96,7 +96,8 @@ Status write_scene(const CompiledModel& model, const std::string& path, bool inc
     std::future<Status> written; // meanwhile
     const auto on_text = [&] {
         if (written.valid() || palettes.empty()) return;
-        written = std::async(std::launch::async, write_palettes, std::cref(folder), std::cref(palettes));
+        written = std::async(std::launch::async | std::launch::deferred, write_palettes, std::cref(folder),
+                             std::cref(palettes));
     };
     Status status = emit_to(file.get(), path, model, options, palettes, on_text);
     if (written.valid()) {

@@ -7,12 +7,10 @@
 #include <vector>
 
 #include <tbb/enumerable_thread_specific.h>
-#include <tbb/global_control.h>
-#include <tbb/info.h>
 #include <tbb/parallel_for.h>
-#include <tbb/task_arena.h>
 
 #include "compiler/support/check.h"
+#include "runtime/threads/worker_threads.h"
 #include "runtime/trace/camera_rays.h"
 #include "runtime/trace/traversal.h"
 
@@ -168,11 +166,9 @@ bool PictureTracer::trace(const Sampling& sampling, const TraceControl& control,
         const std::lock_guard lock(telling);
         control.on_tile(tiles[number]);
     };
-    const int threads = control.threads > 0 ? control.threads : tbb::info::default_concurrency();
-    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
-                                    static_cast<std::size_t>(threads));
-    tbb::task_arena(threads).execute(
-        [&] { tbb::parallel_for(std::size_t{0}, tiles.size(), trace_tile, tbb::simple_partitioner()); });
+    WorkerThreads(control.threads).run([&] {
+        tbb::parallel_for(std::size_t{0}, tiles.size(), trace_tile, tbb::simple_partitioner());
+    });
     for (const std::unique_ptr<Worker>& worker : workers)
         if (worker) statistics_ += worker->statistics();
     return complete;

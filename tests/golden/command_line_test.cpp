@@ -21,7 +21,8 @@ TEST_F(CommandLine, UsageErrorsAreStatusTwoAndPointAtTheHelp) {
         std::string arguments, message;
     } cases[] = {
         {"", "graftal: which command?\nTry 'graftal --help' for more information.\n"},
-        {"rendr x.inst", "graftal: there is no command 'rendr' (did you mean 'render'? known here: render, animate,"},
+        {"rendr x.inst",
+         "graftal: there is no command 'rendr' (did you mean 'render'? known here: render, animate,"},
         {"fern.rifs", "graftal: a command comes first: 'graftal render fern.rifs'\n"},
         {"draw x.inst",
          "there is no command 'draw' (known here: render, animate, points, collage, compile, check"},
@@ -159,6 +160,27 @@ TEST_F(CommandLine, EnvironmentIsStatusThree) {
     EXPECT_EQ(temporary_files(), "");
 }
 
+TEST_F(CommandLine, AFileThatMayNotGrowIsAFullDisk) {
+    for (const std::string& arguments :
+         {"render " + gasket + " --engine native -o x.png",
+          "compile " + pound_sign + " -o x.pov", "points " + gasket + " --points 1e5 -o x.ply"}) {
+        const RunResult result = shell("ulimit -f 1; \"$graftal\" " + arguments);
+        EXPECT_EQ(result.status, 3) << arguments << result.err;
+        EXPECT_THAT(result.err, HasSubstr("File too large")) << arguments;
+        EXPECT_EQ(files(), "") << arguments;
+    }
+}
+
+TEST_F(CommandLine, PicturesToReadAreRegularFiles) {
+    shell("mkfifo pipe.png; ln -s /dev/zero zero.png");
+    for (const char* name : {"pipe.png", "zero.png"}) {
+        const RunResult result = graftal(std::string("compare pipe.png ") + name);
+        EXPECT_EQ(result.status, 3) << name;
+        EXPECT_THAT(result.err, HasSubstr("not a regular file")) << name;
+        EXPECT_EQ(graftal("collage " + std::string(name) + " " + gasket).status, 3) << name;
+    }
+}
+
 TEST_F(CommandLine, MissingProgramsAreNamedWithTheirPackages) {
     const RunResult povray = shell("PATH=/nowhere \"$graftal\" render " + gasket + " -o a.png");
     EXPECT_EQ(povray.status, 3);
@@ -212,11 +234,12 @@ TEST_F(CommandLine, TheSamePictureHasTheSameBytes) {
     std::filesystem::create_directory(path("there"));
     const std::string there = "'" + path("a model.inst") + "'";
     const std::string options = " -q --steps 3 --seed 7 --size 32x24 ";
-    for (const auto& [command, ending] : {std::pair("render", ".png --engine native"), std::pair("points", ".ply"),
-                                          std::pair("points", ".png")}) {
+    for (const auto& [command, ending] : {std::pair("render", ".png --engine native"),
+                                          std::pair("points", ".ply"), std::pair("points", ".png")}) {
         const std::string begin = command + std::string(" ");
         ASSERT_EQ(graftal(begin + "'a model.inst'" + options + "--threads 1 -o a" + ending).status, 0);
-        ASSERT_EQ(graftal(begin + there + " --threads 2" + options + "-o '" + path("there/b") + "'" + ending).status,
+        ASSERT_EQ(graftal(begin + there + " --threads 2" + options + "-o '" + path("there/b") + "'" + ending)
+                      .status,
                   0);
         const std::string suffix = std::string(ending).substr(0, 4), bytes = read("a" + suffix);
         EXPECT_EQ(bytes, read("there/b" + suffix)) << command << ending;

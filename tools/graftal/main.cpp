@@ -1,9 +1,12 @@
 #include <csignal>
+#include <exception>
 #include <new>
+#include <string>
 
 #include <fcntl.h>
 #include <unistd.h>
 
+#include "compiler/support/check.h"
 #include "tools/graftal/commands.h"
 #include "tools/graftal/options.h"
 #include "tools/graftal/report.h"
@@ -50,12 +53,20 @@ int run(const graftal::Options& options) {
 
 int main(int argc, char** argv) {
     occupy_standard_streams();
-    std::signal(SIGPIPE, SIG_IGN); // a closed pipe is a failed write, and reported as one
+    // A closed pipe and a file that may not grow are failed writes, and reported as such.
+    std::signal(SIGPIPE, SIG_IGN);
+    std::signal(SIGXFSZ, SIG_IGN);
     try {
         const graftal::ParsedCommandLine parsed = graftal::parse_command_line(argc, argv);
         return parsed.options ? run(*parsed.options) : parsed.exit_status;
+    } catch (const graftal::OutOfMemory& fault) {
+        graftal::complain(fault.what());
     } catch (const std::bad_alloc&) {
         graftal::complain("out of memory");
-        return graftal::exit_environment;
+    } catch (const graftal::BrokenInvariant& fault) {
+        graftal::complain(fault.what());
+    } catch (const std::exception& fault) {
+        graftal::complain(std::string("internal error: ") + fault.what());
     }
+    return graftal::exit_environment;
 }

@@ -4,7 +4,9 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
+#include <exception>
 #include <memory>
+#include <string_view>
 #include <utility>
 
 #include <OpenImageIO/filesystem.h>
@@ -72,37 +74,106 @@ template<typename Work> std::string write_checked(const std::string& path, const
     return file_error.empty() ? error : file_error;
 }
 
-bool read_floats(OIIO::ImageInput& input, Image& image) {
-    return input.read_image(0, 0, 0, image.channels, OIIO::TypeDesc::FLOAT, image.pixels.data());
+/// The rows of an open file, in bands that are as high as its tiles.
+class Bands {
+  public:
+    explicit Bands(OIIO::ImageInput& input)
+        : input_(input), spec_(input.spec()), channels_(std::min(spec_.nchannels, 4)),
+          height_(spec_.tile_width ? spec_.tile_height : rows_at_once),
+          whole_(spec_.format == OIIO::TypeDesc::UINT8 || spec_.format == OIIO::TypeDesc::UINT16) {}
+
+    int channels() const { return channels_; }
+    std::uint64_t samples() const { return row_samples() * static_cast<std::uint64_t>(height_); }
+
+    bool hand_on(RowSink& sink) {
+        samples_.resize(samples());
+        if (whole_) levels_.resize(samples());
+        for (int y = 0; y < spec_.height; y += height_) {
+            const int rows = std::min(height_, spec_.height - y);
+            if (!(whole_ ? read_levels(y, rows) : read(y, rows, OIIO::TypeDesc::FLOAT, samples_.data())))
+                return false;
+            for (int row = 0; row < rows; ++row)
+                sink.take(samples_.data() + row_samples() * static_cast<std::uint64_t>(row));
+        }
+        return true;
+    }
+
+  private:
+    static constexpr int rows_at_once = 16;
+
+    std::uint64_t row_samples() const {
+        return static_cast<std::uint64_t>(spec_.width) * static_cast<std::uint64_t>(channels_);
+    }
+
+    bool read(int y, int rows, OIIO::TypeDesc type, void* samples) {
+        const int top = spec_.y + y, bottom = top + rows;
+        if (!spec_.tile_width)
+            return input_.read_scanlines(0, 0, top, bottom, spec_.z, 0, channels_, type, samples);
+        return input_.read_tiles(0, 0, spec_.x, spec_.x + spec_.width, top, bottom, spec_.z, spec_.z + 1, 0,
+                                 channels_, type, samples);
+    }
+
+    /// Whole numbers become the float nearest to level / largest, which OpenImageIO's own conversion misses
+    /// by a last bit. 8-bit levels arrive as 257 times themselves, 65535 = 255 * 257.
+    bool read_levels(int y, int rows) {
+        if (!read(y, rows, OIIO::TypeDesc::UINT16, levels_.data())) return false;
+        std::transform(levels_.begin(), levels_.end(), samples_.begin(),
+                       [](std::uint16_t level) { return static_cast<float>(level) / 65535.0f; });
+        return true;
+    }
+
+    OIIO::ImageInput& input_;
+    const OIIO::ImageSpec& spec_;
+    int channels_;
+    int height_;
+    bool whole_;
+    std::vector<std::uint16_t> levels_;
+    std::vector<float> samples_;
+};
+
+/// Larger pictures must come row by row, or in bands of less than this, out of their file.
+constexpr std::uint64_t most_held_samples = 1u << 26;
+
+/// Whether the format's reader takes the picture out of its file a row at a time.
+bool comes_in_rows(const OIIO::ImageInput& input) {
+    static constexpr std::string_view formats[] = {"openexr", "tiff", "jpeg", "hdr", "targa", "bmp", "pnm"};
+    return std::find(std::begin(formats), std::end(formats), input.format_name()) != std::end(formats);
 }
 
-/// Whole numbers become the float nearest to level / largest, which OpenImageIO's own conversion misses by a
-/// last bit. 8-bit levels arrive as 257 times themselves, 65535 = 255 * 257.
-bool read_levels(OIIO::ImageInput& input, Image& image) {
-    std::vector<std::uint16_t> levels(image.pixels.size());
-    if (!input.read_image(0, 0, 0, image.channels, OIIO::TypeDesc::UINT16, levels.data())) return false;
-    std::transform(levels.begin(), levels.end(), image.pixels.begin(),
-                   [](std::uint16_t level) { return static_cast<float>(level) / 65535.0f; });
-    return true;
+/// OpenImageIO makes a GIF's canvas when it opens it: 23 bytes may ask for 16 GiB.
+bool is_huge_gif(const std::string& path) {
+    unsigned char head[10] = {};
+    const std::unique_ptr<std::FILE, decltype([](std::FILE* file) { std::fclose(file); })> file(
+        std::fopen(path.c_str(), "rb"));
+    if (!file || std::fread(head, 1, sizeof head, file.get()) != sizeof head) return false;
+    if (std::memcmp(head, "GIF8", 4) != 0) return false;
+    const auto number = [&](int at) { return static_cast<std::uint64_t>(head[at] | head[at + 1] << 8); };
+    return 4 * number(6) * number(8) > most_held_samples;
 }
 
-std::string read(const std::string& path, std::uint64_t most_samples, Image& image) {
-    OIIO::ImageSpec config;
-    config.attribute("oiio:UnassociatedAlpha", 1);
-    const std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::open(path, &config);
-    if (!input) return complaint({});
-    const OIIO::ImageSpec& spec = input->spec();
-    if (spec.width < 1 || spec.height < 1 || spec.depth > 1 || spec.nchannels < 1)
+std::string read_open(OIIO::ImageInput& input, RowSink& sink) {
+    const OIIO::ImageSpec& spec = input.spec();
+    if (spec.width < 1 || spec.height < 1 || spec.depth > 1 || spec.nchannels < 1 || spec.deep)
         return "it has no pixels in two dimensions";
-    if (spec.image_pixels() > most_samples / static_cast<std::uint64_t>(spec.nchannels))
-        return "it is too large";
-    const int channels = std::min(spec.nchannels, 4);
-    image = {spec.width, spec.height, channels, {}};
-    image.pixels.resize(spec.image_pixels() * static_cast<std::uint64_t>(channels));
-    const bool whole = spec.format == OIIO::TypeDesc::UINT8 || spec.format == OIIO::TypeDesc::UINT16;
-    if (!(whole ? read_levels(*input, image) : read_floats(*input, image)))
-        return complaint(input->geterror());
-    return {};
+    Bands bands(input);
+    const std::uint64_t held = comes_in_rows(input) ? bands.samples() : spec.image_pixels() * 4;
+    if (held > most_held_samples) return "it is too large";
+    std::string error = sink.begin(spec.width, spec.height, bands.channels());
+    if (error.empty() && !bands.hand_on(sink)) error = complaint(input.geterror());
+    return error;
+}
+
+/// Readers of formats throw what they like at what they did not expect.
+std::string read(const std::string& path, RowSink& sink) {
+    try {
+        if (is_huge_gif(path)) return "it is too large";
+        OIIO::ImageSpec config;
+        config.attribute("oiio:UnassociatedAlpha", 1);
+        const std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::open(path, &config);
+        return input ? read_open(*input, sink) : complaint({});
+    } catch (const std::exception& fault) {
+        return std::string("its reader failed: ") + fault.what();
+    }
 }
 
 std::string write_exr(const std::string& path, const Image& image, const ImageMetadata& metadata) {

@@ -1,4 +1,5 @@
 #include "compiler/cut/unfold.h"
+#include "tests/unit/broken_invariant.h"
 
 #include <optional>
 #include <string>
@@ -188,10 +189,10 @@ TEST(Unfold, AnEndlessFirstBranchDoesNotHideTheLimit) {
                         [](const UnfoldedLeaf&) { return true; }));
 }
 
-TEST(UnfoldDeath, AnUnendingGraphWithoutStepsIsABug) {
+TEST(Unfold, AnUnendingGraphWithoutStepsIsABug) {
     Graph graph;
     graph.root = add_union(graph, "loop", {instance_of(0)});
-    EXPECT_DEATH(leaves(graph, {}), "an unending graph without steps");
+    EXPECT_BROKEN(leaves(graph, {}), "an unending graph without steps");
 }
 
 } // namespace

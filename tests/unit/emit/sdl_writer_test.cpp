@@ -1,4 +1,5 @@
 #include "compiler/emit/sdl_writer.h"
+#include "tests/unit/broken_invariant.h"
 
 #include <charconv>
 #include <clocale>
@@ -143,9 +144,9 @@ TEST(SdlWriter, AStoppedSinkIsNotCalledAgain) {
     EXPECT_EQ(calls, 1);
 }
 
-TEST(SdlWriterDeathTest, NumbersAreFinite) {
-    EXPECT_DEATH(number(std::nan(""), 9), "finite");
-    EXPECT_DEATH(number(INFINITY, 9), "finite");
+TEST(SdlWriter, NumbersAreFinite) {
+    EXPECT_BROKEN(number(std::nan(""), 9), "finite");
+    EXPECT_BROKEN(number(INFINITY, 9), "finite");
 }
 
 } // namespace

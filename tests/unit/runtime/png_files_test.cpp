@@ -31,7 +31,8 @@ class PngFiles : public testing::Test {
     }
     Image read(const std::string& name) const {
         Image image;
-        EXPECT_EQ(read_png(path(name), plenty, image), "") << name;
+        ImageSink sink(image, plenty);
+        EXPECT_EQ(read_png(path(name), sink), "") << name;
         return image;
     }
     Image read_bytes(const std::string& file) const {
@@ -41,7 +42,8 @@ class PngFiles : public testing::Test {
     std::string error_of(const std::string& file) const {
         put(file);
         Image image;
-        return read_png(path("bytes.png"), plenty, image);
+        ImageSink sink(image, plenty);
+        return read_png(path("bytes.png"), sink);
     }
 
     TemporaryDirectory directory_;

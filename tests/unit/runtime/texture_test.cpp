@@ -1,6 +1,8 @@
 #include "runtime/image/texture.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include "compiler/support/file.h"
 #include "runtime/image/image.h"
@@ -59,9 +61,49 @@ TEST_F(TextureFiles, WhatIsNoneIsSaid) {
     Status status;
     EXPECT_FALSE(load_texture(path("d.png"), status));
     EXPECT_FALSE(status.ok());
-    Rgb mean;
-    double coverage = 0;
-    EXPECT_FALSE(look_at_texture(path("nowhere.png"), mean, coverage).ok());
+    TextureFacts facts;
+    EXPECT_FALSE(look_at_texture(path("nowhere.png"), facts).ok());
+}
+
+/// White, the first column black.
+TEST_F(TextureFiles, LargePicturesAreReducedAsTheyAreRead) {
+    const int width = 8193, height = 8192;
+    Image image{width, height, 2, {}};
+    image.pixels.assign(2u * width * height, 1);
+    for (int y = 0; y < height; ++y)
+        image.pixels[2u * static_cast<std::size_t>(y) * width] = 0;
+    ASSERT_TRUE(write_image(path("large.png"), image, SampleFormat::srgb8).ok());
+    Status status;
+    const auto texture = load_texture(path("large.png"), status);
+    ASSERT_TRUE(texture) << status.message();
+    EXPECT_EQ(texture->file_width, width);
+    EXPECT_EQ(texture->width, 4097);
+    EXPECT_EQ(texture->height, 4096);
+    EXPECT_EQ(texture->texels.size(), 4097u * 4096u);
+    EXPECT_EQ(texture->at(0, 0.5).srgb[0], 188); // half the light
+    EXPECT_EQ(texture->at(0.5, 0.5).srgb[0], 255);
+    EXPECT_EQ(texture->coverage, 1);
+    TextureFacts facts;
+    ASSERT_TRUE(look_at_texture(path("large.png"), facts).ok());
+    EXPECT_EQ(facts.file_height, height);
+    EXPECT_EQ(facts.height, 4096);
+}
+
+TEST_F(TextureFiles, APictureOfManyPixelsInFewBytesIsRefused) {
+    const unsigned char gif[23] = {'G', 'I', 'F', '8', '9', 'a', 255, 255, 255, 255};
+    ASSERT_TRUE(write_text(path("bomb.gif"), {reinterpret_cast<const char*>(gif), sizeof gif}).ok());
+    Status status;
+    EXPECT_FALSE(load_texture(path("bomb.gif"), status));
+    EXPECT_THAT(status.message(), testing::HasSubstr("too large"));
+}
+
+TEST_F(TextureFiles, AreRegularFiles) {
+    ASSERT_EQ(::mkfifo(path("pipe.png").c_str(), 0600), 0);
+    for (const std::string& name : {path("pipe.png"), std::string("/dev/zero")}) {
+        Status status;
+        EXPECT_FALSE(load_texture(name, status));
+        EXPECT_THAT(status.message(), testing::HasSubstr("not a regular file"));
+    }
 }
 
 TEST(Srgb, DecodingInvertsEncoding) {

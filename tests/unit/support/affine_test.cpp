@@ -1,4 +1,5 @@
 #include "compiler/support/affine.h"
+#include "tests/unit/broken_invariant.h"
 
 #include <cmath>
 #include <limits>
@@ -140,8 +141,8 @@ TEST(Affine, FiniteLooksAtEveryEntry) {
     }
 }
 
-TEST(AffineDeath, AZeroAxisIsABug) {
-    EXPECT_DEATH(Affine::rotate(Vec3(0.0), 30), "rotation about a zero axis");
+TEST(Affine, AZeroAxisIsABug) {
+    EXPECT_BROKEN(Affine::rotate(Vec3(0.0), 30), "rotation about a zero axis");
 }
 
 } // namespace

@@ -3,15 +3,34 @@
 #include <gtest/gtest.h>
 
 #include "compiler/support/status.h"
+#include "tests/unit/broken_invariant.h"
 
 namespace graftal {
 namespace {
 
-TEST(CheckDeath, SaysWhereAndWhatAndForWhom) {
+TEST(Check, SaysWhereAndWhatAndForWhom) {
     const int one = 1;
-    EXPECT_DEATH(GRAFTAL_CHECK(one == 2, "merge_equivalent: object llr"),
-                 "graftal: internal error at .*check_test.cpp:[0-9]+: 'one == 2' does not hold "
-                 "\\(merge_equivalent: object llr\\)");
+    EXPECT_BROKEN(GRAFTAL_CHECK(one == 2, "merge_equivalent: object llr"),
+                  "^internal error at .*check_test.cpp:[0-9]+: 'one == 2' does not hold "
+                  "\\(merge_equivalent: object llr\\)$");
+}
+
+/// What `fault` becomes in a stage.
+template<typename Fault> void in_stage(const Fault& fault) {
+    try {
+        throw fault;
+    } catch (const std::exception&) {
+        rethrow_in_stage("cut");
+    }
+}
+
+TEST(Check, ExceptionsNameTheStage) {
+    EXPECT_BROKEN(in_stage(std::length_error("too long")), "^internal error in the stage cut: too long$");
+    EXPECT_BROKEN(in_stage(BrokenInvariant("lower: x")), "^lower: x$");
+    EXPECT_THAT([] { in_stage(std::bad_alloc()); },
+                testing::ThrowsMessage<OutOfMemory>("out of memory in the stage cut"));
+    EXPECT_THAT([] { in_stage(OutOfMemory("lower")); },
+                testing::ThrowsMessage<OutOfMemory>("out of memory in the stage lower"));
 }
 
 TEST(Check, EvaluatesItsConditionOnceAndGoesOn) {

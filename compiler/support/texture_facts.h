@@ -1,0 +1,15 @@
+#pragma once
+
+#include "compiler/support/tint.h"
+
+namespace graftal {
+
+/// What a compiler wants to know of a picture that a material names.
+struct TextureFacts {
+    Rgb mean{0.0};       ///< of its linear colours, where it is not clear
+    double coverage = 1; ///< the share of it that is not clear
+    int file_width = 0, file_height = 0;
+    int width = 0, height = 0; ///< as it is used: smaller, where the file holds more than there is room for
+};
+
+} // namespace graftal

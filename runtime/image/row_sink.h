@@ -1,0 +1,19 @@
+#pragma once
+
+#include <string>
+
+namespace graftal {
+
+/// Takes a picture row by row, the top one first, as it comes out of its file: a small file may hold a huge
+/// picture, and who takes it decides what to keep of it.
+class RowSink {
+  public:
+    virtual ~RowSink() = default;
+    /// Called once, before the rows, with what the head of the file says; at most four channels. "" to go on,
+    /// else the complaint that the reading ends with.
+    virtual std::string begin(int width, int height, int channels) = 0;
+    /// width * channels samples, as Image has them.
+    virtual void take(const float* samples) = 0;
+};
+
+} // namespace graftal

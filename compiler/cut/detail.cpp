@@ -25,8 +25,6 @@ constexpr int coarser_grain = 4;
 /// Details beyond this are not told apart.
 constexpr std::int32_t largest_step = 1 << 24;
 
-/// Octaves of details in which copies may begin to lie in each other.
-constexpr int most_octaves = 16;
 /// A shell of this many octaves has as many points as one may have, about; larger ones are coarser.
 constexpr int whole_octaves = 11;
 constexpr double most_shell_cells = 7e5;
@@ -206,17 +204,17 @@ ShellSizes Weights::shell_sizes(NodeId node, std::uint32_t steps) {
     const auto leaves = [&](int octave) {
         return of({node, whole.steps, PieceKind::step_of(std::exp2(octave) / diameter)}).leaves;
     };
+    const auto crowded = [&](int octave) { return is_crowded(leaves(octave), std::exp2(octave), flat_[node]); };
     ShellSizes sizes;
-    for (int octave = 1; octave <= most_octaves && !sizes.any(); ++octave)
-        if (is_crowded(leaves(octave), std::exp2(octave), flat_[node])) sizes.least = std::exp2(octave);
-    if (!sizes.any()) return {};
-    sizes.most = std::exp2(whole_octaves);
-    const double dimension =
-        std::log2(leaves(many_octaves) / leaves(few_octaves)) / (many_octaves - few_octaves);
-    // A square of a picture shows (size ratio)^dimension parts on (size ratio)^2 of its places.
-    const double ratio =
-        dimension < most_parted_dimension ? std::pow(most_shells_a_ray, 1 / std::max(dimension - 2, 1e-2)) : 1;
-    sizes.parted = sizes.most * ratio;
+    for (int octave = 1; octave < whole_octaves; ++octave)
+        if (crowded(octave)) sizes.octaves |= 1u << octave;
+    if (crowded(many_octaves)) {
+        const double dimension = std::log2(leaves(many_octaves) / leaves(few_octaves)) / (many_octaves - few_octaves);
+        // A square of a picture shows (size ratio)^dimension parts on (size ratio)^2 of its places.
+        const double ratio =
+            dimension < most_parted_dimension ? std::pow(most_shells_a_ray, 1 / std::max(dimension - 2, 1e-2)) : 1;
+        sizes.parted = std::exp2(whole_octaves) * ratio;
+    }
     shell_sizes_[{node, whole.steps}] = sizes;
     return sizes;
 }

@@ -122,15 +122,19 @@ struct PieceKindHash {
     std::size_t operator()(const PieceKind& kind) const;
 };
 
-/// The details of its diameter at which a crowded node is drawn as its shell (shell.h): from `least` to `most`. Of larger
-/// ones the parts are drawn, up to `parted`, from where a ray would meet too many of them.
+/// The details of its diameter at which a node is drawn as its shell (shell.h): where it is crowded itself, and not only
+/// some small part of it, and not too large for one. Of larger ones the parts are drawn, up to `parted`, from where a ray
+/// would meet too many of them.
 struct ShellSizes {
-    double least = std::numeric_limits<double>::infinity();
-    double most = 0;
-    double parted = 0;
+    std::uint32_t octaves = 0; ///< bit i: details from 2^i to 2^(i + 1)
+    double parted = std::numeric_limits<double>::infinity();
 
-    bool any() const { return least < std::numeric_limits<double>::infinity(); }
-    bool has(double detail) const { return detail >= least && (detail <= most || detail > parted); }
+    bool any() const { return octaves != 0 || parted < std::numeric_limits<double>::infinity(); }
+    bool has(double detail) const {
+        if (detail > parted) return true;
+        const int octave = std::ilogb(detail);
+        return octave >= 0 && octave < 32 && (octaves >> octave & 1) != 0;
+    }
 };
 
 /// Estimates what an unfolded piece holds, by one memoised sweep: O(kinds reached).

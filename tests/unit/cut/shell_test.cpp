@@ -157,6 +157,32 @@ TEST(Shell, CrowdsAreToldFromSetsThatOnlyFillSpace) {
     }
 }
 
+/// A wood in which every bush is a crowd from afar is none itself: it was drawn as one lump.
+TEST(Shell, ACrowdSomewhereInsideMakesNoneOfTheWhole) {
+    std::mt19937 random(3);
+    std::uniform_real_distribution<double> side(-1, 1);
+    Graph graph;
+    const ObjectId ball = graph.primitive(PrimitiveKind::sphere);
+    Object bush{"bush", {}, {}, {}, {}}, wood{"wood", {}, {}, {}, {}};
+    for (int i = 0; i < 300; ++i)
+        bush.instances.push_back(
+            {ball, {Mat3(0.02), Vec3(side(random), side(random), side(random))}, {}, {}, {}});
+    const ObjectId master = graph.add(std::move(bush));
+    for (int i = 0; i < 2000; ++i)
+        wood.instances.push_back(
+            {master, Affine::translate(1000.0 * Vec3(side(random), 0, side(random))), {}, {}, {}});
+    graph.root = graph.add(std::move(wood));
+    const PreparedCut ready = prepared(graph);
+    Weights weights(ready.cut);
+    const PieceKind near{ready.cut.root, unlimited_steps, PieceKind::step_of(detail_for(ready.cut, 1000))};
+    EXPECT_TRUE(weights.of(near).crowded) << "its bushes are";
+    EXPECT_FALSE(weights.is_shell(near));
+    const ShellSizes sizes = weights.shell_sizes(ready.cut.root, unlimited_steps);
+    EXPECT_TRUE(sizes.has(3)) << "its bushes lie in each other";
+    EXPECT_FALSE(sizes.has(1000));
+    EXPECT_FALSE(sizes.has(1e9));
+}
+
 TEST(Shell, TintsAndMaterialsAreTheLeaves) {
     Graph graph;
     graph.materials.resize(1);

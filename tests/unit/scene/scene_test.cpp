@@ -134,6 +134,18 @@ TEST(Frame, FlatModelsAreSeenFaceOnWithoutPerspective) {
     }
 }
 
+/// Rays through the middle of a picture run along the edges of many a symmetric figure: what the bounds do not know must
+/// not decide on which side of them.
+TEST(Frame, NoiseOfTheBoundsMovesNoEye) {
+    const double root3 = std::sqrt(3.0);
+    for (const double noise : {0.0, 3e-15, -3e-13, 8e-13}) {
+        const Box figure{{-root3 / 2 - noise, -0.5, 0}, {root3 / 2, 1 + noise, 0}};
+        const Camera camera = frame(model(), figure, {48, 27}).camera;
+        EXPECT_EQ(camera.location.x, 0) << noise;
+        EXPECT_EQ(camera.location.y, 0.25) << noise;
+    }
+}
+
 TEST(Frame, ModelsInSpaceAreSeenFromTheFrontRightAndAbove) {
     const Camera camera = frame(model(), unit_cube, {100, 100}).camera;
     EXPECT_FALSE(camera.orthographic);

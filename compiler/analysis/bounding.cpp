@@ -19,8 +19,11 @@ namespace graftal {
 
 namespace {
 
-constexpr double exact = 1e-12; // tolerance of box faces, relative to the size
-constexpr double rough = 1e-3;  // of a first pass over a cycle, which makes the second fast
+/// Tolerances of box faces, relative to the size. A cycle's boxes are found in passes: each makes the next
+/// one fast, as what is known of all objects decides how many pieces of one must be looked at.
+constexpr double exact = 1e-12;
+constexpr std::array<double, 7> passes_of_cycle = {0.3, 0.1, 0.03, 0.01, 0.003, 0.001, exact};
+constexpr std::uint64_t faces = 6;
 
 /// Pieces to spend on support functions, dealt out so that all objects get some and what one leaves over
 /// the next may use.
@@ -31,21 +34,24 @@ class Effort {
     std::uint64_t allowance() const {
         return std::clamp<std::uint64_t>(8 * left_ / std::max<std::uint64_t>(queries_left_, 1), 16, 400'000);
     }
+    std::uint64_t spent() const { return spent_; }
     void spend(std::uint64_t pieces) {
+        spent_ += pieces;
         left_ -= std::min(left_, pieces);
         if (queries_left_ > 0) --queries_left_;
     }
 
   private:
-    std::uint64_t left_ = 8'000'000;
+    std::uint64_t left_ = 8'000'000, spent_ = 0;
     std::uint64_t queries_left_;
 };
 
-/// Six faces for each object, twice within cycles.
+/// So many faces will be looked for.
 std::uint64_t queries(const Graph& graph, const Components& components) {
     std::uint64_t count = 0;
     for (ObjectId id = 0; id < graph.objects.size(); ++id)
-        if (!graph.objects[id].primitive) count += components.cyclic[components.component_of[id]] ? 12 : 6;
+        if (!graph.objects[id].primitive)
+            count += faces * (components.cyclic[components.component_of[id]] ? passes_of_cycle.size() : 1);
     return count;
 }
 
@@ -71,10 +77,12 @@ class Bounder {
         return result;
     }
 
+    std::uint64_t pieces() const { return effort_.spent(); }
+
   private:
     void bound_component(const CycleGraph& cycle) {
         bound_cycle(cycle, components_, contraction_.certificate, outers_);
-        for (const double tolerance : {rough, exact})
+        for (const double tolerance : passes_of_cycle)
             for (const ObjectId id : cycle.objects)
                 find_box(id, tolerance);
         for (const ObjectId id : cycle.objects)
@@ -199,10 +207,13 @@ class Bounder {
 } // namespace
 
 std::vector<ObjectBounds> bound_objects(const Graph& graph, const Components& components,
-                                        const Contraction& contraction) {
+                                        const Contraction& contraction, std::uint64_t* pieces) {
     GRAFTAL_CHECK(contraction.verdict == Verdict::proved || contraction.verdict == Verdict::acyclic,
                   "bound_objects: needs a contraction that is proved or acyclic");
-    return Bounder(graph, components, contraction).run();
+    Bounder bounder(graph, components, contraction);
+    std::vector<ObjectBounds> bounds = bounder.run();
+    if (pieces != nullptr) *pieces = bounder.pieces();
+    return bounds;
 }
 
 } // namespace graftal

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <memory>
 #include <vector>
 
@@ -33,8 +34,8 @@ double primitive_support(PrimitiveKind kind, Vec3 direction);
 /// Bounds by object, masters before their users: ending objects from exact support functions of what they
 /// hold; unending ones by best-first support functions over balls that are first made invariant in the
 /// certificate's metric. Terminals do not count: the bounds are those of the limit set. Requires a
-/// contraction that is proved or acyclic.
+/// contraction that is proved or acyclic. `pieces`: how many the search for box faces has looked at.
 std::vector<ObjectBounds> bound_objects(const Graph& graph, const Components& components,
-                                        const Contraction& contraction);
+                                        const Contraction& contraction, std::uint64_t* pieces = nullptr);
 
 } // namespace graftal

@@ -4,6 +4,7 @@
 #include <bit>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -27,7 +28,7 @@ std::uint64_t mixed(std::uint64_t hash, std::uint64_t value) {
 Support SupportSearch::run(ObjectId object, Vec3 direction, double tolerance, std::uint64_t most_pieces) {
     arena_.clear();
     heap_.clear();
-    filled_ = 0;
+    filled_ = mask_ = 0;
     ++run_;
     pieces_ = 0;
     tolerance_ = tolerance;
@@ -114,13 +115,14 @@ bool SupportSearch::merge(const Piece& piece, std::uint32_t number) {
     constexpr std::uint32_t worth_merging = 48;
     if (number < worth_merging) return true;
     const Key key = key_of(piece);
-    Slot& slot = slot_for(key);
+    const std::uint32_t hash = hash_of(key);
+    Slot& slot = slot_for(key, hash);
     if (slot.run == run_) {
         if (arena_[slot.piece].at_centre >= piece.at_centre) return false;
         arena_[slot.piece].dominated = true;
     } else {
         slot.run = run_;
-        slot.key = key;
+        slot.hash = hash;
         ++filled_;
     }
     slot.piece = number;
@@ -148,22 +150,34 @@ SupportSearch::Key SupportSearch::key_of(const Piece& piece) {
     return key;
 }
 
-SupportSearch::Slot& SupportSearch::slot_for(const Key& key) {
-    if (2 * (filled_ + 1) > table_.size()) grow_table();
+std::uint32_t SupportSearch::hash_of(const Key& key) {
     std::uint64_t hash = key.object;
     for (const std::int64_t part : {key.x, key.y, key.z, std::int64_t{key.exponent}})
         hash = mixed(hash, static_cast<std::uint64_t>(part));
-    std::size_t at = (hash ^ (hash >> 32)) & (table_.size() - 1);
-    while (table_[at].run == run_ && !(table_[at].key == key))
-        at = (at + 1) & (table_.size() - 1);
+    return static_cast<std::uint32_t>(hash ^ (hash >> 32));
+}
+
+SupportSearch::Slot& SupportSearch::slot_for(const Key& key, std::uint32_t hash) {
+    if (2 * (filled_ + 1) > mask_ + 1) grow_table();
+    std::size_t at = hash & mask_;
+    while (table_[at].run == run_ && !(table_[at].hash == hash && key_of(arena_[table_[at].piece]) == key))
+        at = (at + 1) & mask_;
     return table_[at];
 }
 
 void SupportSearch::grow_table() {
-    std::vector<Slot> old(std::max<std::size_t>(64, 2 * table_.size()));
-    std::swap(old, table_);
-    for (const Slot& slot : old)
-        if (slot.run == run_) slot_for(slot.key) = slot;
+    constexpr std::size_t fewest_slots = 64;
+    std::vector<Slot> kept;
+    for (std::size_t i = 0; i <= mask_ && filled_ > 0; ++i)
+        if (table_[i].run == run_) kept.push_back(std::exchange(table_[i], {}));
+    mask_ = std::max(fewest_slots, 2 * (mask_ + 1)) - 1;
+    if (table_.size() <= mask_) table_.resize(mask_ + 1);
+    for (const Slot& slot : kept) {
+        std::size_t at = slot.hash & mask_;
+        while (table_[at].run == run_)
+            at = (at + 1) & mask_;
+        table_[at] = slot;
+    }
 }
 
 Vec3 SupportSearch::point_in_root(std::uint32_t parent, std::uint32_t instance, Vec3 point) const {

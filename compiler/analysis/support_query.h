@@ -50,8 +50,9 @@ class SupportSearch {
         ObjectId object = 0;
         bool operator==(const Key&) const = default;
     };
+    /// Small, as most of what a search waits for is memory: the key is made again from the piece.
     struct Slot {
-        Key key;
+        std::uint32_t hash = 0;
         std::uint32_t piece = 0;
         std::uint32_t run = 0; // the run that filled it
     };
@@ -63,8 +64,9 @@ class SupportSearch {
     bool nearer(std::uint32_t a, std::uint32_t b) const {
         return arena_[a].upper != arena_[b].upper ? arena_[a].upper < arena_[b].upper : a > b;
     }
-    Slot& slot_for(const Key& key);
+    Slot& slot_for(const Key& key, std::uint32_t hash);
     void grow_table();
+    static std::uint32_t hash_of(const Key& key);
     Vec3 point_in_root(std::uint32_t parent, std::uint32_t instance, Vec3 point) const;
     static Key key_of(const Piece& piece);
 
@@ -73,6 +75,7 @@ class SupportSearch {
     std::vector<Piece> arena_;
     std::vector<std::uint32_t> heap_;
     std::vector<Slot> table_;
+    std::size_t mask_ = 0; // of the part of the table that this run uses: small runs stay in the cache
     std::size_t filled_ = 0;
     std::uint32_t run_ = 0;
     std::uint64_t pieces_ = 0;

@@ -128,7 +128,7 @@ class Baker {
         std::size_t triangles = 0;
         for (std::uint64_t number = 0; walk.next(leaf); ++number) {
             baked_.visits = walk.visits();
-            if (walk.visits() > request_.most_visits) {
+            if (baked_.visits > request_.most_visits) {
                 baked_.complete = false;
                 return;
             }

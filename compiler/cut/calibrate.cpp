@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <set>
 
 #include "compiler/cut/bake.h"
 #include "compiler/cut/choose.h"
@@ -11,7 +12,10 @@ namespace {
 
 constexpr double fewest_leaves = 300;
 constexpr double most_leaves = 6000;
+constexpr std::size_t most_samples = 16;
 constexpr std::size_t max_sample_triangles = 200'000;
+/// Where maps shear, many times the leaves may be unfolded that were expected, one upon another.
+constexpr std::uint64_t most_visits = 50 * static_cast<std::uint64_t>(most_leaves);
 
 /// A kind of the node with about the right number of leaves, by levels if the model is cut by levels.
 bool find_sample(Weights& weights, const CutGraph& cut, NodeId node, bool by_levels, PieceKind& sample) {
@@ -28,14 +32,18 @@ bool find_sample(Weights& weights, const CutGraph& cut, NodeId node, bool by_lev
 
 } // namespace
 
-double visible_cube_triangles(const CutGraph& cut, const Symmetry& symmetry, std::uint32_t steps) {
+double visible_cube_triangles(const CutGraph& cut, const Symmetry& symmetry, std::uint32_t steps,
+                              std::uint64_t* visits) {
     constexpr double whole_cube = 12;
     const bool cubes = std::any_of(cut.nodes.begin(), cut.nodes.end(),
                                    [](const CutNode& node) { return node.primitive == PrimitiveKind::cube; });
     if (!cubes) return whole_cube;
     Weights weights(cut);
+    std::set<NodeId> tried;
     for (const CutEdge& edge : cut.nodes[cut.root].edges) {
         const NodeId node = symmetry.representative[edge.child];
+        if (tried.size() >= most_samples) break;
+        if (!tried.insert(node).second) continue;
         PieceKind sample;
         if (!cut.nodes[node].unending || cut.nodes[node].unbounded ||
             !find_sample(weights, cut, node, steps != unlimited_steps, sample))
@@ -47,8 +55,10 @@ double visible_cube_triangles(const CutGraph& cut, const Symmetry& symmetry, std
             sample.unit_step == PieceKind::endless_detail
                 ? std::numeric_limits<double>::infinity()
                 : std::exp2(static_cast<double>(sample.unit_step) / PieceKind::steps_an_octave);
+        request.most_visits = most_visits;
         request.painters = {{symmetry.pair[node], Rgb(0.0)}};
         const Baked baked = bake(cut, symmetry, request, max_sample_triangles);
+        if (visits != nullptr) *visits += baked.visits;
         const double nominal = weights.of(sample).triangles;
         if (baked.complete && nominal > 0)
             return whole_cube * std::min(1.0, static_cast<double>(baked.triangles) / nominal);

@@ -37,8 +37,12 @@ struct MeshKind {
 
 class Chooser {
   public:
-    Chooser(const CutGraph& cut, const Symmetry& symmetry, const Projection& projection, Weights& weights)
-        : cut_(cut), symmetry_(symmetry), projection_(projection), weights_(weights) {
+    Chooser(const CutGraph& cut, const Symmetry& symmetry, const Projection& projection, Weights& weights,
+            double most_bytes)
+        : cut_(cut), symmetry_(symmetry), projection_(projection), weights_(weights), most_bytes_(most_bytes),
+          placement_bytes_(PovrayCosts::placement +
+                           (cut.tinted ? PovrayCosts::own_texture + PovrayCosts::own_layer : 0)),
+          placement_text_(SdlLengths::placement + (cut.tinted ? SdlLengths::own_texture : 0)) {
         const bool crowded = std::ranges::any_of(
             cut.nodes, [](const CutNode& node) { return node.edges.size() > many_edges; });
         if (crowded) grain_ = PieceKind::steps_an_octave / coarse_steps_an_octave;
@@ -46,8 +50,6 @@ class Chooser {
 
     Choice choose(const Piece& root) {
         add_piece(root);
-        placement_bytes_ =
-            PovrayCosts::placement + (cut_.tinted ? PovrayCosts::own_texture + PovrayCosts::own_layer : 0);
         Choice best = current(std::numeric_limits<double>::infinity());
         std::size_t splits = 0;
         while (!queue_.empty() && splits < max_splits) {
@@ -59,8 +61,8 @@ class Chooser {
             }
             const double next = queue_.empty() ? 0 : queue_.top().weight;
             const Choice now = current(next);
-            if (now.bytes < best.bytes || !std::isfinite(best.bytes)) best = now;
-            if (!(placements_ * placement_bytes_ <= best.bytes)) break;
+            if (is_better(now, best)) best = now;
+            if (!may_get_better(best)) break;
         }
         best.leaves = weights_.of(kind_of(root)).leaves;
         return best;
@@ -85,6 +87,20 @@ class Chooser {
         std::optional<MeshKind> mesh; ///< that serves its pieces; weights may be told apart less finely later
         double triangles = 0;         ///< that its pieces ask of the mesh
     };
+
+    bool fits(const Choice& choice) const { return choice.bytes <= most_bytes_; }
+
+    bool is_better(const Choice& now, const Choice& best) const {
+        if (fits(now) != fits(best)) return fits(now);
+        return fits(now) ? now.text < best.text : now.bytes < best.bytes || !std::isfinite(best.bytes);
+    }
+
+    /// By the placements there are, of which there will never be fewer.
+    bool may_get_better(const Choice& best) const {
+        const double bytes = placements_ * placement_bytes_;
+        if (fits(best)) return bytes <= most_bytes_ && placements_ * placement_text_ <= best.text;
+        return bytes <= best.bytes;
+    }
 
     PieceKind kind_of(const Piece& piece) const {
         return grained(weights_.normalised(graftal::kind_of(cut_, projection_, piece)));
@@ -175,10 +191,13 @@ class Chooser {
     Choice current(double threshold) const {
         const double per_triangle =
             PovrayCosts::triangle + PovrayCosts::vertex + PovrayCosts::normal + (cut_.tinted ? PovrayCosts::slot : 0);
+        const double text_a_triangle =
+            SdlLengths::triangle + SdlLengths::normal + (cut_.tinted ? SdlLengths::slot : 0);
         Choice choice;
         choice.threshold = threshold;
         choice.placements = placements_;
         choice.triangles = triangles_;
+        choice.text = placements_ * placement_text_ + triangles_ * text_a_triangle;
         choice.bytes = PovrayCosts::base + placements_ * placement_bytes_ + triangles_ * per_triangle;
         return choice;
     }
@@ -187,8 +206,9 @@ class Chooser {
     const Symmetry& symmetry_;
     const Projection& projection_;
     Weights& weights_;
+    double most_bytes_;
+    double placement_bytes_, placement_text_;
     int grain_ = 1; ///< kinds' details are multiples of it
-    double placement_bytes_ = 0;
     double placements_ = 0;
     double triangles_ = 0;
     double most_triangles_ = 0; ///< since they were last summed
@@ -242,8 +262,8 @@ PieceKind kind_of(const CutGraph& cut, const Projection& projection, const Piece
 }
 
 Choice choose_cut(const CutGraph& cut, const Symmetry& symmetry, const Projection& projection,
-                  const Piece& root, Weights& weights) {
-    return Chooser(cut, symmetry, projection, weights).choose(root);
+                  const Piece& root, Weights& weights, double most_bytes) {
+    return Chooser(cut, symmetry, projection, weights, most_bytes).choose(root);
 }
 
 } // namespace graftal

@@ -35,19 +35,24 @@ PieceKind kind_of(const CutGraph& cut, const Projection& projection, const Piece
 struct Choice {
     double threshold = 0; ///< pieces that weigh more triangles than this become placements of their parts
     double bytes = 0;     ///< of POV-Ray's memory, estimated
+    double text = 0;      ///< bytes of SDL, estimated
     double placements = 0;
     double triangles = 0;
     double leaves = 0;
 };
 
 /// How many of a cube's 12 triangles stay visible, on average, where cubes are baked together: measured on a
-/// piece of some thousand cubes. 12 if the graph bakes no cubes.
-double visible_cube_triangles(const CutGraph& cut, const Symmetry& symmetry, std::uint32_t steps);
+/// piece of some thousand cubes. 12 if the graph bakes no cubes, or none that is soon baked. `visits`: of
+/// nodes and leaves, what this has cost.
+double visible_cube_triangles(const CutGraph& cut, const Symmetry& symmetry, std::uint32_t steps,
+                              std::uint64_t* visits = nullptr);
 
-/// Finds the threshold at which placements and meshes together cost least. Pieces are split heaviest first,
-/// as real pieces while there are few, then as counts; the cost of placements only grows, so the search ends
-/// where they alone cost more than the best found.
+/// Finds the threshold at which the text is shortest, of those that take at most `most_bytes` of POV-Ray's
+/// memory; if none does, the one that takes least. Where memory does not lack, time does: text is what both
+/// programs spend it on, and what is shortest takes at most a few times the least memory. Pieces are split
+/// heaviest first, as real pieces while there are few, then as counts; the cost of placements only grows, so
+/// the search ends where they alone cost more than the best found.
 Choice choose_cut(const CutGraph& cut, const Symmetry& symmetry, const Projection& projection,
-                  const Piece& root, Weights& weights);
+                  const Piece& root, Weights& weights, double most_bytes);
 
 } // namespace graftal

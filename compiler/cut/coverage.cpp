@@ -220,8 +220,10 @@ class Fitter {
     void run() {
         const Components components = components_of_groups();
         std::size_t groups = 0;
+        const std::vector<bool> wanted = wanted_roots(components);
         for (const auto& members : components.members)
-            groups += members.size();
+            groups += static_cast<std::size_t>(
+                std::ranges::count_if(members, [&](NodeId id) { return wanted[id]; }));
         effort_.pieces =
             std::clamp(all_pieces / std::max<std::size_t>(groups, 1), fewest_pieces, most_pieces);
         Measurer measurer(cut_, groups > many_nodes ? 6 : 16);
@@ -230,7 +232,7 @@ class Fitter {
         fit_ = &fit;
         for (std::size_t c = 0; c < components.members.size(); ++c) {
             roots_ = components.members[c];
-            std::erase_if(roots_, [&](NodeId root) { return !fittable(root); });
+            std::erase_if(roots_, [&](NodeId root) { return !fittable(root) || !wanted[root]; });
             if (roots_.empty()) continue;
             if (components.cyclic[c])
                 fit_cycle();
@@ -250,6 +252,21 @@ class Fitter {
         const CutNode& node = cut_.nodes[id];
         return !node.primitive && !node.edges.empty() && node.edges.size() <= most_edges &&
                node.ball.radius > 0;
+    }
+
+    /// Those whose proxies may be drawn, and what these are measured by. A crowd of thousands of small things
+    /// keeps the ellipsoid in its box, and none of them is ever drawn by another.
+    std::vector<bool> wanted_roots(const Components& components) const {
+        std::vector<bool> wanted(cut_.nodes.size(), false);
+        for (NodeId id = 0; id < cut_.nodes.size(); ++id)
+            if (cut_.nodes[id].cullable || cut_.nodes[id].unending) wanted[congruence_.root[id]] = true;
+        wanted[congruence_.root[cut_.root]] = true;
+        for (std::size_t c = components.members.size(); c-- > 0;) // users before their masters
+            for (const NodeId id : components.members[c])
+                if (wanted[id] && fittable(id))
+                    for (const CutEdge& edge : cut_.nodes[id].edges)
+                        wanted[congruence_.root[edge.child]] = true;
+        return wanted;
     }
 
     /// One object a group of congruent nodes; an edge where some node of the one leads to one of the other.

@@ -21,6 +21,8 @@ namespace {
 constexpr double coarser = 1.25;
 /// A cut is tried that is estimated to take this much more than there is: what is assembled is then counted.
 constexpr double estimate_slack = 1.25;
+/// Of the memory there is, what may be spent on what makes POV-Ray faster.
+constexpr double share_of_memory = 0.6;
 
 /// Of the work allowed, what graftal itself may take: the rest is for the rays.
 constexpr double share_of_work = 0.5;
@@ -111,7 +113,7 @@ class Cutter {
             std::optional<Cut> cut = assembled(root, projection, weights, memory);
             if (cut || options.flatten) return cut;
         }
-        choice_ = choose_cut(cut_, symmetry_, projection, root, weights);
+        choice_ = choose_cut(cut_, symmetry_, projection, root, weights, share_of_memory * memory);
         return assembled(root, projection, weights, memory);
     }
 
@@ -152,7 +154,7 @@ class Cutter {
     /// Twigs, leaves and balls are best spelt out where they are few enough: they are drawn exactly, and
     /// POV-Ray traces them several times as fast as their meshes in boxes that overlap.
     static bool better_flat(const Weights::Weight& whole, double memory) {
-        constexpr double share_of_memory = 0.6, share_of_leaves = 0.125;
+        constexpr double share_of_leaves = 0.125;
         return flat_choice(whole).bytes <= share_of_memory * memory &&
                whole.curved_leaves > share_of_leaves * whole.leaves;
     }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <string_view>
 #include <unordered_map>
 #include <utility>
 #include <vector>
@@ -30,8 +31,12 @@ struct Factor {
     Instance instance; ///< master, map, tint and material to compose with
     Box box;           ///< of the object once the map is taken out
     Ball ball;
+    bool unbounded = false;
     std::shared_ptr<const RunBounds> run; ///< of an object that has one
 };
+
+/// Names point into the graph that was there first.
+using FactorsByName = std::unordered_map<std::string_view, const Factor*>;
 
 Tint composed(const Tint& parent, const Tint& child) {
     const PathTint path = PathTint(parent) * PathTint(child);
@@ -77,12 +82,17 @@ std::vector<Factor> take_out_factors(Graph& graph, const Components& components,
         for (const ObjectId id : members) {
             Object& object = graph.objects[id];
             Factor& factor = factors[id];
-            factor = {{id, {}, {}, {}, object.span}, bounds[id].box, bounds[id].ball, bounds[id].run};
+            factor = {{id, {}, {}, {}, object.span},
+                      bounds[id].box,
+                      bounds[id].ball,
+                      bounds[id].unbounded,
+                      bounds[id].run};
             if (id == graph.root || !factorable(object)) continue;
             const Instance first = object.instances.front();
             if (object.instances.size() == 1 && !components.unending[id] && !object.terminal) {
                 const Factor& master = factors[first.master];
-                factor = {composed(first, master.instance), master.box, master.ball, nullptr};
+                factor = {composed(first, master.instance), master.box, master.ball, factor.unbounded,
+                          nullptr};
                 continue;
             }
             factor.instance.parent_from_child = first.parent_from_child;
@@ -132,8 +142,7 @@ class Builder {
   public:
     Builder(const Graph& graph, const Components& components) : graph_(graph), components_(components) {}
 
-    CutGraph build(const std::unordered_map<std::string, const Factor*>& factor_of,
-                   const std::unordered_map<std::string, bool>& unbounded) {
+    CutGraph build(const FactorsByName& factor_of) {
         const auto count = graph_.objects.size();
         cut_.nodes.resize(count);
         cut_.root = graph_.root;
@@ -146,7 +155,7 @@ class Builder {
             node.name = object.name;
             node.primitive = object.primitive;
             node.unending = components_.unending[id];
-            node.unbounded = unbounded.at(object.name);
+            node.unbounded = factor.unbounded;
             node.terminal_px = object.terminal_px;
             node.cullable = node.unending || leaves[id] > uncullable_leaves || node.terminal_px > 0;
             node.ball = factor.ball.empty() ? Ball{Vec3(0.0), 0.0} : factor.ball;
@@ -256,29 +265,6 @@ void weigh_by_reach(CutGraph& cut) {
         }
 }
 
-/// Every node once, and after the nodes it leads to but for those that lead back to it.
-std::vector<NodeId> masters_first(const CutGraph& cut) {
-    std::vector<NodeId> order;
-    std::vector<bool> met(cut.nodes.size(), false);
-    std::vector<std::pair<NodeId, std::size_t>> path;
-    for (NodeId start = 0; start < cut.nodes.size(); ++start) {
-        if (!met[start]) path.emplace_back(start, 0);
-        met[start] = true;
-        while (!path.empty()) {
-            const std::vector<CutEdge>& edges = cut.nodes[path.back().first].edges;
-            if (path.back().second == edges.size()) {
-                order.push_back(path.back().first);
-                path.pop_back();
-                continue;
-            }
-            const NodeId child = edges[path.back().second++].child;
-            if (!met[child]) path.emplace_back(child, 0);
-            met[child] = true;
-        }
-    }
-    return order;
-}
-
 void mark_textured(CutGraph& cut) {
     const std::vector<NodeId> order = masters_first(cut);
     const auto has_picture = [&](const std::optional<MaterialId>& material) {
@@ -315,6 +301,28 @@ MeanColour mean_of(const CutGraph& cut, const CutNode& node) {
 
 } // namespace
 
+std::vector<NodeId> masters_first(const CutGraph& cut) {
+    std::vector<NodeId> order;
+    std::vector<bool> met(cut.nodes.size(), false);
+    std::vector<std::pair<NodeId, std::size_t>> path;
+    for (NodeId start = 0; start < cut.nodes.size(); ++start) {
+        if (!met[start]) path.emplace_back(start, 0);
+        met[start] = true;
+        while (!path.empty()) {
+            const std::vector<CutEdge>& edges = cut.nodes[path.back().first].edges;
+            if (path.back().second == edges.size()) {
+                order.push_back(path.back().first);
+                path.pop_back();
+                continue;
+            }
+            const NodeId child = edges[path.back().second++].child;
+            if (!met[child]) path.emplace_back(child, 0);
+            met[child] = true;
+        }
+    }
+    return order;
+}
+
 void set_mean_colours(CutGraph& cut) {
     constexpr int sweeps = 48;
     const std::vector<NodeId> order = masters_first(cut);
@@ -335,17 +343,15 @@ CutGraph build_cut_graph(const Graph& graph, const Components& components,
                          const std::vector<ObjectBounds>& bounds) {
     Graph factored = graph;
     const std::vector<Factor> factors = take_out_factors(factored, components, bounds);
-    std::unordered_map<std::string, const Factor*> factor_of;
-    std::unordered_map<std::string, bool> unbounded;
-    for (ObjectId id = 0; id < graph.objects.size(); ++id) {
+    FactorsByName factor_of;
+    factor_of.reserve(graph.objects.size());
+    for (ObjectId id = 0; id < graph.objects.size(); ++id)
         factor_of.emplace(graph.objects[id].name, &factors[id]);
-        unbounded.emplace(graph.objects[id].name, bounds[id].unbounded);
-    }
     apply_factors(factored, factors);
     factored = merge_equivalent(drop_unreachable(std::move(factored)));
 
     const Components merged = strong_components(factored);
-    CutGraph cut = Builder(factored, merged).build(factor_of, unbounded);
+    CutGraph cut = Builder(factored, merged).build(factor_of);
     mark_textured(cut);
     weigh_by_reach(cut);
     set_mean_colours(cut);

@@ -69,6 +69,9 @@ struct CutGraph {
     bool contractive = true; ///< every edge within a cycle has stretch < 1: products of stretches end
 };
 
+/// Every node once, and after the nodes it leads to except those that lead back to it.
+std::vector<NodeId> masters_first(const CutGraph& cut);
+
 /// Requires what cut_graph() requires. O(graph).
 CutGraph build_cut_graph(const Graph& graph, const Components& components,
                          const std::vector<ObjectBounds>& bounds);

@@ -19,8 +19,9 @@ namespace {
 
 /// A proxy's mesh is an octahedron.
 const Weights::Weight proxy{8, 1, 0, PovrayCosts::primitive(PrimitiveKind::sphere) + PovrayCosts::matrix};
-/// More kinds than these are not told apart: the steps of their details get coarser by so much.
-constexpr std::size_t max_known_kinds = 1'000'000;
+/// More kinds than have so many edges are not told apart, or so many times those of the graph: the steps of
+/// their details get coarser by so much.
+constexpr std::uint64_t max_visits = 4'000'000, max_visits_an_edge = 8;
 constexpr int coarser_grain = 4;
 /// Details beyond this are not told apart.
 constexpr std::int32_t largest_step = 1 << 24;
@@ -101,6 +102,7 @@ Weights::Weights(const CutGraph& cut, double cube_triangles, double px, double e
         diameter_step_.push_back(steps_of(2 * node.ball.radius));
         cut_step_.push_back(steps_of(cut_detail(node, error_px)) + 1e-6);
         flat_.push_back(is_flat(node));
+        edges_ += node.edges.size();
     }
 }
 
@@ -204,15 +206,19 @@ ShellSizes Weights::shell_sizes(NodeId node, std::uint32_t steps) {
     const auto leaves = [&](int octave) {
         return of({node, whole.steps, PieceKind::step_of(std::exp2(octave) / diameter)}).leaves;
     };
-    const auto crowded = [&](int octave) { return is_crowded(leaves(octave), std::exp2(octave), flat_[node]); };
+    const auto crowded = [&](int octave) {
+        return is_crowded(leaves(octave), std::exp2(octave), flat_[node]);
+    };
     ShellSizes sizes;
     for (int octave = 1; octave < whole_octaves; ++octave)
         if (crowded(octave)) sizes.octaves |= 1u << octave;
     if (crowded(many_octaves)) {
-        const double dimension = std::log2(leaves(many_octaves) / leaves(few_octaves)) / (many_octaves - few_octaves);
+        const double dimension =
+            std::log2(leaves(many_octaves) / leaves(few_octaves)) / (many_octaves - few_octaves);
         // A square of a picture shows (size ratio)^dimension parts on (size ratio)^2 of its places.
-        const double ratio =
-            dimension < most_parted_dimension ? std::pow(most_shells_a_ray, 1 / std::max(dimension - 2, 1e-2)) : 1;
+        const double ratio = dimension < most_parted_dimension
+                                 ? std::pow(most_shells_a_ray, 1 / std::max(dimension - 2, 1e-2))
+                                 : 1;
         sizes.parted = std::exp2(whole_octaves) * ratio;
     }
     shell_sizes_[{node, whole.steps}] = sizes;
@@ -227,66 +233,82 @@ bool Weights::is_shell(const PieceKind& kind) {
     return shell_sizes(kind.node, kind.steps).has(std::exp2(detail_step(kind) / PieceKind::steps_an_octave));
 }
 
+Weights::Weight& Weights::Weight::operator+=(const Weight& other) {
+    triangles += other.triangles;
+    leaves += other.leaves;
+    curved_leaves += other.curved_leaves;
+    flat_bytes += other.flat_bytes;
+    crowded = crowded || other.crowded;
+    return *this;
+}
+
 Weights::Weight Weights::of(const PieceKind& asked) {
-    struct Frame {
-        PieceKind kind;
-        std::size_t next_edge;
-        Weight sum;
-    };
-    PieceKind start = normalised(asked);
-    if (const auto found = known_.find(start); found != known_.end()) return found->second;
-    std::vector<Frame> stack = {{start, 0, {}}};
-    known_.emplace(start, proxy); // what a kind under way counts as
-    while (!stack.empty()) {
-        Frame& frame = stack.back();
-        const CutNode& node = cut_.nodes[frame.kind.node];
-        const bool cut = is_cut(frame.kind);
+    for (;;) {
+        const std::size_t before = known_.size();
+        const std::uint32_t start = number_of(normalised(asked));
+        if (known_.size() == before || weigh(start)) return known_[start].weight;
+        forget_kinds();
+    }
+}
+
+/// A new kind counts as a proxy until it is weighed.
+std::uint32_t Weights::number_of(const PieceKind& kind) {
+    const auto next = static_cast<std::uint32_t>(known_.size());
+    const std::uint32_t number = numbers_.find_or_add(
+        PieceKindHash()(kind), next, [&](std::uint32_t other) { return known_[other].kind == kind; });
+    if (number == next) known_.push_back({kind, proxy});
+    return number;
+}
+
+/// False if there are too many kinds under it.
+bool Weights::weigh(std::uint32_t start) {
+    stack_.assign(1, {start, 0, {}});
+    while (!stack_.empty()) {
+        Frame& frame = stack_.back();
+        const PieceKind kind = known_[frame.number].kind;
+        const CutNode& node = cut_.nodes[kind.node];
+        const bool cut = is_cut(kind);
         const auto& edges = followed_edges(node, cut);
-        if (node.cell && !cut) {
-            for_each_edge(node, false, [&](const CutEdge& edge) {
-                const Weight part = of_primitive(child_kind(frame.kind, edge));
-                frame.sum.triangles += part.triangles;
-                frame.sum.leaves += part.leaves;
-                frame.sum.curved_leaves += part.curved_leaves;
-                frame.sum.flat_bytes += part.flat_bytes;
-            });
-            known_[frame.kind] = frame.sum;
-            stack.pop_back();
-            continue;
+        if (node.cell && !cut && frame.next_edge == 0) {
+            for_each_edge(node, false,
+                          [&](const CutEdge& edge) { frame.sum += of_primitive(child_kind(kind, edge)); });
+            visits_ += node.cell->count;
         }
         if (frame.next_edge < edges.size()) {
-            const CutEdge& edge = edges[frame.next_edge];
-            const PieceKind child = child_kind(frame.kind, edge);
-            const auto found = known_.find(child);
-            if (found != known_.end()) {
-                frame.sum.triangles += found->second.triangles;
-                frame.sum.leaves += found->second.leaves;
-                frame.sum.curved_leaves += found->second.curved_leaves;
-                frame.sum.flat_bytes += found->second.flat_bytes;
-                frame.sum.crowded = frame.sum.crowded || found->second.crowded;
-                ++frame.next_edge;
-            } else if (known_.size() < max_known_kinds || grain_ > PieceKind::steps_an_octave) {
-                known_.emplace(child, proxy);
-                stack.push_back({child, 0, {}});
+            const std::size_t before = known_.size();
+            const std::uint32_t child = number_of(child_kind(kind, edges[frame.next_edge++]));
+            ++visits_;
+            if (known_.size() == before) {
+                frame.sum += known_[child].weight;
             } else {
-                known_.clear();
-                grain_ *= coarser_grain;
-                start = normalised(asked);
-                known_.emplace(start, proxy);
-                stack = {{start, 0, {}}};
+                if (too_many_kinds()) return false;
+                stack_.push_back({child, 0, {}});
             }
             continue;
         }
         if (node.primitive && *node.primitive != PrimitiveKind::plane)
-            frame.sum = of_primitive(frame.kind);
-        else if (edges.empty())
+            frame.sum = of_primitive(kind);
+        else if (edges.empty() && (!node.cell || cut))
             frame.sum = proxy;
-        if (node.sealed) squeeze(frame.kind, frame.sum);
-        crowd(frame.kind, frame.sum);
-        known_[frame.kind] = frame.sum;
-        stack.pop_back();
+        if (node.sealed) squeeze(kind, frame.sum);
+        crowd(kind, frame.sum);
+        const Weight sum = known_[frame.number].weight = frame.sum;
+        stack_.pop_back();
+        if (!stack_.empty()) stack_.back().sum += sum;
     }
-    return known_.at(start);
+    return true;
+}
+
+bool Weights::too_many_kinds() const {
+    return visits_ - visits_before_ > std::max(max_visits, max_visits_an_edge * edges_) &&
+           grain_ <= PieceKind::steps_an_octave;
+}
+
+void Weights::forget_kinds() {
+    known_.clear();
+    numbers_.clear();
+    visits_before_ = visits_;
+    grain_ *= coarser_grain;
 }
 
 } // namespace graftal

@@ -6,7 +6,6 @@
 #include <cstdint>
 #include <limits>
 #include <map>
-#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -14,6 +13,7 @@
 
 #include "compiler/cut/cut.h"
 #include "compiler/cut/cut_graph.h"
+#include "compiler/support/id_table.h"
 
 namespace graftal {
 
@@ -122,9 +122,9 @@ struct PieceKindHash {
     std::size_t operator()(const PieceKind& kind) const;
 };
 
-/// The details of its diameter at which a node is drawn as its shell (shell.h): where it is crowded itself, and not only
-/// some small part of it, and not too large for one. Of larger ones the parts are drawn, up to `parted`, from where a ray
-/// would meet too many of them.
+/// The details of its diameter at which a node is drawn as its shell (shell.h): where it is crowded itself,
+/// and not only some small part of it, and not too large for one. Of larger ones the parts are drawn, up to
+/// `parted`, from where a ray would meet too many of them.
 struct ShellSizes {
     std::uint32_t octaves = 0; ///< bit i: details from 2^i to 2^(i + 1)
     double parted = std::numeric_limits<double>::infinity();
@@ -137,7 +137,8 @@ struct ShellSizes {
     }
 };
 
-/// Estimates what an unfolded piece holds, by one memoised sweep: O(kinds reached).
+/// Estimates what an unfolded piece holds, by one memoised sweep: O(edges of the kinds reached), and of those
+/// no more than some millions.
 class Weights {
   public:
     /// `cube_triangles`: how many of a cube's triangles stay visible in a mesh, on average. `px`: pixels of a
@@ -154,13 +155,18 @@ class Weights {
         /// Somewhere in it so many leaves lie in each other that nobody could unfold them: what becomes one mesh becomes
         /// a shell (shell.h).
         bool crowded = false;
+
+        Weight& operator+=(const Weight& other);
     };
 
-    /// Saturates at infinity; kinds that lead back to themselves without losing detail count as one leaf. Where there
-    /// are too many kinds, details are told apart less finely from then on.
+    /// Saturates at infinity; kinds that lead back to themselves without losing detail count as one leaf.
+    /// Where there are too many kinds, as many unequal scales make them, details are told apart less finely
+    /// from then on.
     Weight of(const PieceKind& kind);
 
     int grain() const { return grain_; }
+    /// Edges of kinds followed so far: what all this costs.
+    std::uint64_t visits() const { return visits_; }
 
     /// Kinds are the same where levels do not matter.
     PieceKind normalised(PieceKind kind) const;
@@ -184,6 +190,20 @@ class Weights {
     PieceKind child_kind(const PieceKind& parent, const CutEdge& edge) const;
 
   private:
+    struct Known {
+        PieceKind kind;
+        Weight weight;
+    };
+    struct Frame {
+        std::uint32_t number = 0;
+        std::size_t next_edge = 0;
+        Weight sum;
+    };
+
+    std::uint32_t number_of(const PieceKind& kind);
+    bool weigh(std::uint32_t start);
+    bool too_many_kinds() const;
+    void forget_kinds();
     Weight of_primitive(const PieceKind& kind) const;
     void crowd(const PieceKind& kind, Weight& weight) const;
     void squeeze(const PieceKind& kind, Weight& weight) const;
@@ -195,8 +215,12 @@ class Weights {
     double cube_triangles_;
     double px_;
     int grain_; ///< details are told apart by so many steps
-    std::unordered_map<PieceKind, Weight, PieceKindHash> known_;
     std::map<std::pair<NodeId, std::uint32_t>, ShellSizes> shell_sizes_;
+    std::vector<Known> known_;
+    IdTable numbers_; ///< of known kinds
+    std::vector<Frame> stack_;
+    std::uint64_t edges_ = 0;                      ///< of the graph
+    std::uint64_t visits_ = 0, visits_before_ = 0; ///< all; those when kinds were last forgotten
 };
 
 /// Whether so many leaves cannot all lie side by side in a set of this detail across.

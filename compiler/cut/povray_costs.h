@@ -26,6 +26,16 @@ struct PovrayCosts {
     static double primitive(PrimitiveKind kind);
 };
 
+/// Bytes of SDL, which take most of the time to write and to parse: measured on the tetrahedron of
+/// docs/benchmarks/giants.md, normals on balls.
+struct SdlLengths {
+    static constexpr double placement = 131;   ///< of a mesh, with its matrix
+    static constexpr double own_texture = 130; ///< more, for a palette and a tint in front of it
+    static constexpr double triangle = 47;     ///< its corners' numbers, and half a vertex
+    static constexpr double normal = 18;       ///< half of one
+    static constexpr double slot = 27;         ///< its corners' numbers in a palette
+};
+
 /// POV-Ray's peak for this scene, the picture aside.
 double povray_bytes(const Cut& cut);
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <map>
 #include <tuple>
 
@@ -19,6 +20,9 @@ namespace {
 constexpr double tolerance = 1e-9;
 constexpr std::size_t max_pairs_a_check = 4096;
 constexpr std::size_t max_checks = 20'000;
+/// Pairs of edges that may be compared: a node of n of them has n squared.
+constexpr std::uint64_t max_comparisons = 10'000'000;
+constexpr std::uint64_t max_visits_for_centres = 20'000'000;
 constexpr std::uint32_t no_pair = UINT32_MAX;
 
 /// The 48 signed permutations of the axes, the identity first.
@@ -87,9 +91,14 @@ std::vector<Vec3> equivariant_centres(const CutGraph& cut) {
             kind && (*kind == PrimitiveKind::cylinder || *kind == PrimitiveKind::cone ||
                      family_of(*kind) == PrimitiveKind::frustum))
             centre[id] = Vec3(0, 0.5, 0);
-    for (int sweep = 0; sweep < 200; ++sweep) {
+    const std::vector<NodeId> order = masters_first(cut);
+    std::uint64_t edges = 1;
+    for (const CutNode& node : cut.nodes)
+        edges += node.edges.size();
+    const auto sweeps = static_cast<int>(std::clamp<std::uint64_t>(max_visits_for_centres / edges, 4, 200));
+    for (int sweep = 0; sweep < sweeps; ++sweep) {
         double change = 0;
-        for (NodeId id = 0; id < cut.nodes.size(); ++id) {
+        for (const NodeId id : order) {
             const CutNode& node = cut.nodes[id];
             if (node.primitive || node.edges.empty()) continue;
             Vec3 mean(0.0);
@@ -106,7 +115,8 @@ std::vector<Vec3> equivariant_centres(const CutGraph& cut) {
 
 class Finder {
   public:
-    explicit Finder(const CutGraph& cut) : cut_(cut), centres_(equivariant_centres(cut)) {}
+    explicit Finder(const CutGraph& cut)
+        : cut_(cut), centres_(equivariant_centres(cut)), identity_pair_(cut.nodes.size(), no_pair) {}
 
     Symmetry find() {
         const auto count = static_cast<NodeId>(cut_.nodes.size());
@@ -117,7 +127,8 @@ class Finder {
         for (NodeId id = 0; id < count; ++id) {
             auto& bucket = representatives[signature(id)];
             // Without checks left nothing joins, and the buckets may be long.
-            if (checks_ >= max_checks || std::none_of(bucket.begin(), bucket.end(), [&](NodeId other) { return joins(other, id); })) {
+            if (out_of_checks() ||
+                std::none_of(bucket.begin(), bucket.end(), [&](NodeId other) { return joins(other, id); })) {
                 bucket.push_back(id);
                 result_.representative[id] = id;
                 result_.pair[id] = identity_pair(id);
@@ -131,7 +142,8 @@ class Finder {
         const CutNode& node = cut_.nodes[id];
         if (!node.unending || node.sealed || node.edges.size() < 4 || node.edges.size() % 2 != 0) return {};
         for (const Mat3& linear : candidates()) {
-            if (linear * linear != Mat3(1.0) || linear == Mat3(1.0) || checks_++ >= max_checks) continue;
+            if (linear * linear != Mat3(1.0) || linear == Mat3(1.0) || out_of_checks()) continue;
+            ++checks_;
             const std::size_t before = result_.pairs.size();
             const Affine moved{linear, centres_[id] - linear * centres_[id]};
             const std::uint32_t pair = congruent(id, id, moved);
@@ -154,10 +166,20 @@ class Finder {
         return all;
     }
 
+    bool out_of_checks() const { return checks_ >= max_checks || result_.comparisons > max_comparisons; }
+
+    static bool is_identity(const NodePair& pair) { return pair.a == pair.b && pair.b_from_a == Affine(); }
+
     void forget(std::size_t pairs_to_keep) {
-        for (; keys_.size() > pairs_to_keep; keys_.pop_back())
-            known_.erase(keys_.back());
-        result_.pairs.resize(pairs_to_keep);
+        while (result_.pairs.size() > pairs_to_keep) {
+            if (is_identity(result_.pairs.back())) {
+                identity_pair_[result_.pairs.back().a] = no_pair;
+            } else {
+                known_.erase(keys_.back());
+                keys_.pop_back();
+            }
+            result_.pairs.pop_back();
+        }
     }
 
     /// Equal for congruent nodes. Balls are not: the search for them is no more symmetric than it must be.
@@ -180,7 +202,8 @@ class Finder {
 
     bool joins(NodeId representative, NodeId node) {
         for (const Mat3& linear : candidates()) {
-            if (checks_++ >= max_checks) return false;
+            if (out_of_checks()) return false;
+            ++checks_;
             const Affine moved{linear, centres_[node] - linear * centres_[representative]};
             const std::size_t before = result_.pairs.size();
             const std::uint32_t pair = congruent(representative, node, moved);
@@ -208,7 +231,9 @@ class Finder {
     }
 
     std::uint32_t add_pair(NodeId a, NodeId b, const Affine& b_from_a) {
-        const PairKey k = key(a, b, b_from_a, cut_.nodes[b].ball.radius);
+        const double scale = cut_.nodes[b].ball.radius;
+        if (a == b && (b_from_a == Affine() || is_nearly_identity(b_from_a, scale))) return add_identity(a);
+        const PairKey k = key(a, b, b_from_a, scale);
         if (const auto found = known_.find(k); found != known_.end()) return found->second;
         NodePair pair;
         pair.a = a;
@@ -221,6 +246,24 @@ class Finder {
         return index;
     }
 
+    /// As key() rounds.
+    static bool is_nearly_identity(const Affine& a, double scale) {
+        constexpr double half = 0.5e-6;
+        for (int row = 0; row < 3; ++row)
+            if (std::abs(a.translation[row]) >= half * std::max(scale, 1e-300)) return false;
+        return largest_entry(a.linear - Mat3(1.0)) < half;
+    }
+
+    /// Every node has one: they must be cheap.
+    std::uint32_t add_identity(NodeId id) {
+        std::uint32_t& index = identity_pair_[id];
+        if (index != no_pair) return index;
+        index = static_cast<std::uint32_t>(result_.pairs.size());
+        result_.pairs.emplace_back();
+        result_.pairs.back().a = result_.pairs.back().b = id;
+        return index;
+    }
+
     std::uint32_t identity_pair(NodeId id) { return congruent(id, id, Affine()); }
 
     /// The pair, with all the pairs that it rests on, or no_pair. Each new pair is assumed while its children
@@ -229,9 +272,8 @@ class Finder {
         const std::size_t before = result_.pairs.size();
         const std::uint32_t root = add_pair(a, b, b_from_a);
         for (std::size_t next = before; next < result_.pairs.size(); ++next) {
-            const bool trivial =
-                result_.pairs[next].a == result_.pairs[next].b && result_.pairs[next].b_from_a == Affine();
-            if (!trivial && result_.pairs.size() - before > max_pairs_a_check) return no_pair;
+            if (!is_identity(result_.pairs[next]) && result_.pairs.size() - before > max_pairs_a_check)
+                return no_pair;
             if (!match(next)) return no_pair;
         }
         return root;
@@ -244,7 +286,7 @@ class Finder {
         if (a.primitive != b.primitive || a.cell != b.cell || a.unending != b.unending || a.sealed != b.sealed ||
             a.unbounded != b.unbounded || a.cullable != b.cullable || a.terminal_px != b.terminal_px)
             return false;
-        if (pair.a == pair.b && pair.b_from_a == Affine()) return match_itself(index);
+        if (is_identity(pair)) return match_itself(index);
         if (a.sealed) return false;
         if (a.primitive) return preserves(*a.primitive, pair.b_from_a);
         // Proxies must be congruent too where they are drawn.
@@ -281,7 +323,9 @@ class Finder {
             const Affine b_from_child_a = b_from_a * from.node_from_child;
             std::size_t found = b.size();
             Affine child_b_from_a;
+            if (result_.comparisons > max_comparisons) return false;
             for (std::size_t j = 0; j < b.size() && found == b.size(); ++j) {
+                ++result_.comparisons;
                 if (taken[j] || !compatible(from, b[j])) continue;
                 child_b_from_a = inverse(b[j].node_from_child) * b_from_child_a;
                 if (plausible(from.child, b[j].child, child_b_from_a)) found = j;
@@ -322,6 +366,7 @@ class Finder {
     std::map<PairKey, std::uint32_t> known_;
     std::vector<PairKey> keys_; ///< by pair
     Symmetry result_;
+    std::vector<std::uint32_t> identity_pair_; ///< by node
     std::size_t checks_ = 0;
 };
 

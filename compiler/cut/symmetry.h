@@ -27,6 +27,7 @@ struct Symmetry {
     std::vector<Affine> node_from_representative;
     std::vector<std::uint32_t> pair; ///< by node: (representative, node) in `pairs`
     std::vector<NodePair> pairs;
+    std::uint64_t comparisons = 0; ///< of two edges: what finding all this has cost
 };
 
 /// Where a node is its own image under a half turn or mirror that leaves none of its edges in place, it is

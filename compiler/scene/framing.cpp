@@ -48,8 +48,8 @@ struct Subject {
     Vec3 world(Vec3 local) const { return centre + scale * local; }
 };
 
-/// What nobody knows of the bounds is rounded off: a symmetric model is seen from its very middle, and from one place by
-/// both engines, of which POV-Ray reads 12 digits. Rays along edges then meet them in both.
+/// What nobody knows of the bounds is rounded off: a symmetric model is seen from its very middle, and from
+/// one place by both engines, of which POV-Ray reads 12 digits. Rays along edges then meet them in both.
 Vec3 without_noise(Vec3 place, const Subject& subject) {
     const double grain = place_grain * std::exp2(std::ceil(std::log2(subject.scale)));
     for (int axis = 0; axis < 3; ++axis) {

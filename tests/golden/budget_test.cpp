@@ -57,5 +57,21 @@ TEST_F(Budget, WoodsShareMeshesHoweverManyKindsTheyAre) {
     EXPECT_LT(std::stod(run.err.substr(at + 8)), 5) << "85 where they were not counted";
 }
 
+/// One placement more or one triangle less: where half of the text is meshes it is shortest. Placements
+/// double from one choice to the next here, and triangles halve.
+TEST_F(Budget, NeitherMeshesNorPlacementsMakeMostOfTheText) {
+    for (const int steps : {10, 13}) {
+        const RunResult run = graftal("compile '" + source_path("scenes/ifs/sierpinski_tetrahedron.rifs") +
+                                      "' --error 0 -o a.pov --steps " + std::to_string(steps));
+        ASSERT_EQ(run.status, 0) << run.err;
+        const std::string text = read("a.pov");
+        const std::size_t begin = text.find("mesh2 {"), end = text.find("\n}\n", begin);
+        ASSERT_NE(end, std::string::npos);
+        const double share = static_cast<double>(end - begin) / static_cast<double>(text.size());
+        EXPECT_GT(share, 0.3) << steps;
+        EXPECT_LT(share, 0.7) << steps;
+    }
+}
+
 } // namespace
 } // namespace graftal

@@ -134,8 +134,8 @@ TEST(Frame, FlatModelsAreSeenFaceOnWithoutPerspective) {
     }
 }
 
-/// Rays through the middle of a picture run along the edges of many a symmetric figure: what the bounds do not know must
-/// not decide on which side of them.
+/// Rays through the middle of a picture run along the edges of many a symmetric figure: what the bounds do
+/// not know must not decide on which side of them.
 TEST(Frame, NoiseOfTheBoundsMovesNoEye) {
     const double root3 = std::sqrt(3.0);
     for (const double noise : {0.0, 3e-15, -3e-13, 8e-13}) {

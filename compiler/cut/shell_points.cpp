@@ -17,45 +17,21 @@
 
 namespace graftal {
 
-/// Bits of a cubic grid about the middle.
-struct PointSet::Inside {
-    double cell = 0;
-    std::int64_t reach = 0; ///< cells from the middle to either side
-    std::vector<bool> bits;
-
-    std::size_t index(std::int64_t x, std::int64_t y, std::int64_t z) const {
-        const std::int64_t side = 2 * reach;
-        return static_cast<std::size_t>(((z + reach) * side + y + reach) * side + x + reach);
-    }
-    bool has(const std::array<float, 3>& p) const {
-        std::int64_t at[3];
-        for (std::size_t k = 0; k < 3; ++k) {
-            at[k] = static_cast<std::int64_t>(std::floor(static_cast<double>(p[k]) / cell));
-            if (at[k] < -reach || at[k] >= reach) return false;
-        }
-        return bits[index(at[0], at[1], at[2])];
-    }
-};
-
 namespace {
 
 using Point = std::array<float, 3>;
-using Inside = PointSet::Inside;
 
 /// States and their relaxations: more are not worth the points.
 constexpr std::size_t most_states = 200'000;
 constexpr std::size_t most_relaxations = 2'000'000;
 /// Samples of a surface lie closer than cells are wide, so that none is missed.
 constexpr double sample_spacing = 0.6;
-/// Grids that tell inside from outside: coarser than the points', and no larger than this.
+/// Grids that tell inside from outside are coarser than the points'.
 constexpr double first_cells_across = 96, coarse_step = 2.5;
 /// Of the points allowed, what is aimed at.
 constexpr double share_of_points = 0.45;
-constexpr double most_inside_cells = 3e7;
-/// Cells that are flooded in the time of moving a point.
-constexpr std::int64_t cells_a_move = 8;
 /// A set this many cells wide is not worth a look inside.
-constexpr double least_cells_across = 48, least_inside_cells_across = 12;
+constexpr double least_cells_across = 48;
 /// A limit point is as good as found once the maps on the way to it have shrunk everything by this.
 constexpr double seed_accuracy = 1e-7;
 constexpr int most_seed_steps = 4000;
@@ -68,7 +44,7 @@ using StateKey = std::pair<NodeId, std::uint32_t>;
 
 /// What a run on a coarse grid leaves to the next.
 struct Coarse {
-    std::shared_ptr<const Inside> inside;
+    std::shared_ptr<const InsideGrid> inside;
     std::vector<Point> points; ///< that are not inside
     std::vector<PointPaint> paints;
 };
@@ -111,7 +87,7 @@ struct State {
         const CutEdge* edge;
     };
     std::vector<Use> uses;
-    std::shared_ptr<const Inside> inside;
+    std::shared_ptr<const InsideGrid> inside;
 };
 
 class PointSystem {
@@ -189,7 +165,7 @@ class PointSystem {
         CoarseStates found;
         for (State& state : states_) {
             // Where a finer look takes too much room, the last one will do.
-            auto inside = inside_of(state);
+            auto inside = find_inside(state.points, state.cell, state.inside.get(), work_);
             if (!inside) inside = state.inside;
             if (!inside) continue;
             Coarse& coarse = found[state.key];
@@ -405,71 +381,6 @@ class PointSystem {
         return true;
     }
 
-    /// Floods the grid from outside; what lies a cell behind all that the flood wets is inside.
-    std::shared_ptr<const Inside> inside_of(const State& state) {
-        double far = 0;
-        for (const Point& p : state.points)
-            far = std::max({far, std::abs(double(p[0])), std::abs(double(p[1])), std::abs(double(p[2]))});
-        const std::int64_t reach = static_cast<std::int64_t>(far / state.cell) + 3;
-        const auto side = static_cast<double>(2 * reach);
-        if (side < least_inside_cells_across || side * side * side > most_inside_cells) return nullptr;
-        work_ += static_cast<std::uint64_t>(side * side * side) / cells_a_move;
-        auto inside = std::make_shared<Inside>();
-        inside->cell = state.cell;
-        inside->reach = reach;
-        const std::int64_t n = 2 * reach;
-        enum : std::uint8_t { empty, taken, wet, damp };
-        std::vector<std::uint8_t> grid(static_cast<std::size_t>(n * n * n), empty);
-        for (const Point& p : state.points) {
-            std::int64_t at[3];
-            for (std::size_t k = 0; k < 3; ++k)
-                at[k] = static_cast<std::int64_t>(std::floor(static_cast<double>(p[k]) / state.cell));
-            grid[inside->index(at[0], at[1], at[2])] = taken;
-        }
-        // What was left out is no hole.
-        if (state.inside)
-            for (std::int64_t z = -reach; z < reach; ++z)
-                for (std::int64_t y = -reach; y < reach; ++y)
-                    for (std::int64_t x = -reach; x < reach; ++x)
-                        if (state.inside->has(point_of(state.cell * (Vec3(x, y, z) + 0.5))))
-                            grid[inside->index(x, y, z)] = taken;
-        const std::int64_t strides[3] = {1, n, n * n};
-        std::vector<std::int64_t> front = {0}, next;
-        grid[0] = wet;
-        while (!front.empty()) {
-            next.clear();
-            for (const std::int64_t cell : front)
-                for (int axis = 0; axis < 3; ++axis) {
-                    const std::int64_t place = cell / strides[axis] % n;
-                    for (const int step : {-1, 1}) {
-                        if (place + step < 0 || place + step >= n) continue;
-                        std::uint8_t& there = grid[static_cast<std::size_t>(cell + step * strides[axis])];
-                        if (there != empty) continue;
-                        there = wet;
-                        next.push_back(cell + step * strides[axis]);
-                    }
-                }
-            front.swap(next);
-        }
-        // Dry cells with a wet neighbour, also across edges and corners, are the shell.
-        std::size_t count = 0;
-        inside->bits.resize(grid.size());
-        for (std::int64_t z = 1; z + 1 < n; ++z)
-            for (std::int64_t y = 1; y + 1 < n; ++y)
-                for (std::int64_t x = 1; x + 1 < n; ++x) {
-                    const std::int64_t here = (z * n + y) * n + x;
-                    bool dry = grid[static_cast<std::size_t>(here)] != wet;
-                    for (std::int64_t dz = -1; dry && dz <= 1; ++dz)
-                        for (std::int64_t dy = -1; dry && dy <= 1; ++dy)
-                            for (std::int64_t dx = -1; dry && dx <= 1; ++dx)
-                                dry = grid[static_cast<std::size_t>(here + (dz * n + dy) * n + dx)] != wet;
-                    if (!dry) continue;
-                    inside->bits[static_cast<std::size_t>(here)] = true;
-                    ++count;
-                }
-        return count > 0 ? inside : nullptr;
-    }
-
     const CutGraph& cut_;
     PointLimits limits_;
     std::vector<bool> solid_; ///< by node: some primitive is drawn of it
@@ -533,10 +444,6 @@ PointPaint PointPaint::through(const CutEdge& edge, const CutNode* parent,
     }
     seen.open *= through;
     return seen;
-}
-
-bool PointSet::is_inside(const std::array<float, 3>& point) const {
-    return inside && inside->has(point);
 }
 
 std::optional<PointSet> point_set(const CutGraph& cut, NodeId node, std::uint32_t steps,

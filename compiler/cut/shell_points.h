@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "compiler/cut/cut_graph.h"
+#include "compiler/cut/inside_grid.h"
 
 namespace graftal {
 
@@ -37,13 +38,11 @@ struct PointSet {
     bool flat = false;                        ///< all points lie in z = middle.z
     std::vector<std::array<float, 3>> points; ///< from the middle, in the node's units
     std::vector<PointPaint> paints;           ///< by point; empty: all plain
-    /// Cells that no eye outside can see into, as bits of a coarser grid; empty if there are none.
-    struct Inside;
-    std::shared_ptr<const Inside> inside;
+    std::shared_ptr<const InsideGrid> inside; ///< what no eye outside can see; none if nothing is
     std::uint64_t work = 0;
 
     /// Whether the point (from the middle) is well inside.
-    bool is_inside(const std::array<float, 3>& point) const;
+    bool is_inside(const std::array<float, 3>& point) const { return inside && inside->has(point); }
 };
 
 /// Draws a node as points, cells of the side 1 / `detail_per_unit` apart, or more where the limits do not

@@ -8,6 +8,7 @@
 
 #include "compiler/cut/assemble.h"
 #include "compiler/cut/choose.h"
+#include "compiler/cut/coarser.h"
 #include "compiler/cut/coverage.h"
 #include "compiler/cut/cut_graph.h"
 #include "compiler/cut/povray_costs.h"
@@ -166,24 +167,18 @@ class Cutter {
         cut.error_px *= unit_px;
         if (cut.error_px > 0) note_shadowless(cut_, graph_, diagnostics_);
         constexpr double step_of_details = 1.5; // one mesh serves sizes of about an octave
+        const Span& root = graph_.objects[graph_.root].span;
+        const CoarserError error{std::max(unit_px, cut.error_px), cut.error_asked_px};
         if (coarser_steps > 0)
-            diagnostics_
-                .warning(graph_.objects[graph_.root].span,
-                         fmt::format("{} {} allow an error of {:.2f} px, not {:.2f} px",
-                                     worked_too_much_ ? fmt::format("{:g} seconds", options_.work_seconds)
-                                                      : readable_bytes(static_cast<double>(options_.memory_bytes)),
-                                     worked_too_much_ ? "of work" : "of memory", std::max(unit_px, cut.error_px),
-                                     cut.error_asked_px))
-                .with_hint(fmt::format("give more with {}, or ask for less with --error or --steps",
-                                       worked_too_much_ ? "--work" : "--memory"));
+            warn_of_limit(root, passed_limit(), error, diagnostics_);
         else if (cut.error_px > step_of_details * unit_px)
-            diagnostics_
-                .warning(graph_.objects[graph_.root].span,
-                         fmt::format("copies lie in each other so often that their surface is drawn with an error of "
-                                     "{:.2f} px, not {:.2f} px",
-                                     cut.error_px, cut.error_asked_px))
-                .with_hint("a smaller picture, or fewer --steps, need fewer points of the surface");
+            warn_of_shells(root, error, diagnostics_);
         return cut;
+    }
+
+    Limit passed_limit() const {
+        if (worked_too_much_) return limit_of_work(options_.work_seconds);
+        return {readable_bytes(static_cast<double>(options_.memory_bytes)) + " of memory", "--memory"};
     }
 
     double root_pixels_per_unit() const {

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 #include <tbb/parallel_for.h>
 
+#include "compiler/cut/coarser.h"
 #include "compiler/emit/povray_view.h"
 #include "runtime/povray/interruption.h"
 #include "runtime/render/fit_work.h"
@@ -44,26 +45,20 @@ void report_work(const FittedModel& fitted, const ViewedModel& viewed, Diagnosti
             .with_hint("--error 0.5 leaves out what nobody can see");
         return;
     }
-    std::string message = fmt::format("{:g} seconds of work allow an error of {:.2f} px, not {:.2f} px", allowed,
-                                      fitted.error_px, viewed.cut.error_px);
-    if (fitted.rays_cut) message += ", and rays that meet too much are given up";
-    diagnostics.warning(span, message)
-        .with_hint(fmt::format("the picture as asked would take about {:.2g} seconds of one processor: give them with "
-                               "--work, or ask for less with --error or --steps",
-                               fitted.whole_seconds));
+    Limit limit = limit_of_work(allowed);
+    if (fitted.rays_cut) limit.besides = ", and rays that meet too much are given up";
+    limit.need = fmt::format("the picture as asked would take about {:.2g} seconds of one processor",
+                             fitted.whole_seconds);
+    warn_of_limit(span, limit, {fitted.error_px, viewed.cut.error_px}, diagnostics);
 }
 
 /// Says how coarse the shells had to be.
 void report_shells(const TraceModel& model, const ViewedModel& viewed, Diagnostics& diagnostics) {
     constexpr double step_of_details = 1.5; // a shell serves sizes of half an octave
     const double coarsest = model.meshes.coarsest_shell();
-    if (!(coarsest > step_of_details)) return;
-    diagnostics
-        .warning(viewed.model.graph.objects[viewed.model.graph.root].span,
-                 fmt::format("copies lie in each other so often that their surface is drawn with an error of {:.2f} px, "
-                             "not {:.2f} px",
-                             coarsest * model.options.error_px, viewed.cut.error_px))
-        .with_hint("a smaller picture, or fewer --steps, need fewer points of the surface");
+    if (coarsest > step_of_details)
+        warn_of_shells(viewed.model.graph.objects[viewed.model.graph.root].span,
+                       {coarsest * model.options.error_px, viewed.cut.error_px}, diagnostics);
 }
 
 /// From coarse to fine; only the last if it is the only one that is wanted.

@@ -1,0 +1,29 @@
+#include "compiler/cut/coarser.h"
+
+#include <fmt/format.h>
+
+namespace graftal {
+
+Limit limit_of_work(double seconds) {
+    return {fmt::format("{:g} seconds of work", seconds), "--work"};
+}
+
+void warn_of_limit(const Span& root, const Limit& limit, const CoarserError& error,
+                   Diagnostics& diagnostics) {
+    const std::string give = limit.need.empty() ? "give more with " : limit.need + ": give them with ";
+    diagnostics
+        .warning(root, fmt::format("{} allow an error of {:.2f} px, not {:.2f} px{}", limit.allowed, error.px,
+                                   error.asked_px, limit.besides))
+        .with_hint(give + limit.option + ", or ask for less with --error or --steps");
+}
+
+void warn_of_shells(const Span& root, const CoarserError& error, Diagnostics& diagnostics) {
+    diagnostics
+        .warning(root,
+                 fmt::format("copies lie in each other so often that their surface is drawn with an error of "
+                             "{:.2f} px, not {:.2f} px",
+                             error.px, error.asked_px))
+        .with_hint("a smaller picture, or fewer --steps, need fewer points of the surface");
+}
+
+} // namespace graftal

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <string>
+
+#include "compiler/support/diagnostics.h"
+
+namespace graftal {
+
+/// The error of a picture that had to be drawn coarser than it was asked for, in pixels.
+struct CoarserError {
+    double px = 0;
+    double asked_px = 0;
+};
+
+/// What did not allow a finer picture.
+struct Limit {
+    std::string allowed;   ///< such as "2 GiB of memory"
+    std::string option;    ///< that gives more
+    std::string besides{}; ///< what else was done to the picture, or ""
+    std::string need{};    ///< a sentence on what the picture as asked would take, or ""
+};
+
+/// The limit of CutOptions::work_seconds.
+Limit limit_of_work(double seconds);
+
+/// Warns that a limit made the picture coarser. `root`: the place of the model's root.
+void warn_of_limit(const Span& root, const Limit& limit, const CoarserError& error, Diagnostics& diagnostics);
+
+/// Warns that shells (shell.h) have not as many points as they should.
+void warn_of_shells(const Span& root, const CoarserError& error, Diagnostics& diagnostics);
+
+} // namespace graftal

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <utility>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include "tools/graftal/options.h"
+
+namespace graftal {
+
+/// Adds an option whose text `read` turns into a value; what it refuses is a usage error saying `expected`.
+template<typename Read, typename Store>
+CLI::Option* add_value(CLI::App& app, const std::string& name, const std::string& value_name,
+                       const std::string& help, const std::string& expected, Read read, Store store) {
+    const auto apply = [=](const std::string& text) {
+        auto value = read(text);
+        if (!value) throw CLI::ValidationError(fmt::format("{}: '{}' is not {}", name, text, expected));
+        store(std::move(*value));
+    };
+    return app.add_option_function<std::string>(name, apply, help)->type_name(value_name)->take_last();
+}
+
+/// A pass of the pipeline, or "all" if that is allowed; else a usage error.
+std::optional<std::string> pass_named(const std::string& text, bool all_allowed);
+
+/// The file of the model.
+void add_model(CLI::App& app, Options& options);
+/// What every command takes that reads a model.
+void add_common(CLI::App& app, Options& options);
+/// What those take that look at it from a camera.
+void add_camera(CLI::App& app, Options& options);
+/// The same, and how much of the model is drawn.
+void add_view(CLI::App& app, Options& options);
+/// What those take that make pictures.
+void add_drawing(CLI::App& app, Options& options);
+
+} // namespace graftal

@@ -162,6 +162,8 @@ std::optional<AnalysedModel> analyse_model(const std::string& path, const Compil
         return lower_model(path, lower_options, compilation.sources, diagnostics, compilation.status,
                            &model.derivation);
     });
+    if (!lowered && model.derivation && lower_options.may_draw_nothing && !diagnostics.has_errors())
+        return model;
     if (!lowered) return std::nullopt;
     check_verified(*lowered, "after lowering");
     model.written = {lowered->objects.size(), instance_count(*lowered) + run_part_count(*lowered)};

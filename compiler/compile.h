@@ -81,7 +81,8 @@ struct Compilation {
 };
 
 /// text -> graph -> passes -> analysis. A cycle that does not contract is an error, unless `for_report`:
-/// then the verdict is part of the result.
+/// then the verdict is part of the result. A model that draws nothing, where LowerOptions allow it, has a
+/// graph without objects.
 std::optional<AnalysedModel> analyse_model(const std::string& path, const CompileOptions& options,
                                            Compilation& compilation, bool for_report = false);
 

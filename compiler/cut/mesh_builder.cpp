@@ -46,6 +46,17 @@ Vec3 unit_or(Vec3 sum, Vec3 otherwise) {
     return length > 1e-6 ? sum / length : otherwise;
 }
 
+/// The inverse transpose up to a positive factor, by the cofactors: a segment 1e100 times as long as thick
+/// has an inverse that doubles do not hold.
+Mat3 normals_by(const Mat3& linear) {
+    const double size = largest_entry(linear);
+    const Vec3 x = linear[0] / size, y = linear[1] / size, z = linear[2] / size;
+    const Mat3 cofactors(glm::cross(y, z), glm::cross(z, x), glm::cross(x, y));
+    const double largest = largest_entry(cofactors);
+    const double mirror = glm::dot(x, cofactors[0]) < 0 ? -1 : 1;
+    return cofactors * (mirror / largest);
+}
+
 } // namespace
 
 void MeshBuilder::add(PrimitiveKind kind, int fineness, const Affine& body_from_leaf, std::uint32_t leaf,
@@ -64,7 +75,7 @@ void MeshBuilder::add(PrimitiveKind kind, int fineness, const Affine& body_from_
 void MeshBuilder::add_smooth(PrimitiveKind kind, int fineness, const Affine& body_from_leaf,
                              std::uint32_t leaf, const NormalField& normals) {
     const TessellatedPrimitive& shape = tessellated(kind, fineness);
-    const Mat3 normal_map = glm::transpose(glm::inverse(body_from_leaf.linear));
+    const Mat3 normal_map = normals_by(body_from_leaf.linear);
     const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
     for (std::size_t i = 0; i < shape.vertices.size(); ++i) {
         mesh.vertices.push_back(body_from_leaf(shape.vertices[i]));
@@ -79,7 +90,7 @@ void MeshBuilder::add_textured(PrimitiveKind kind, int fineness, const Affine& b
                                const TextureSpace& space, std::uint32_t leaf) {
     GRAFTAL_CHECK(smooth_, "texture in a flat mesh");
     const TessellatedPrimitive& shape = tessellated(kind, fineness);
-    const Mat3 normal_map = glm::transpose(glm::inverse(body_from_leaf.linear));
+    const Mat3 normal_map = normals_by(body_from_leaf.linear);
     for (const auto& triangle : shape.triangles) {
         std::array<Vec3, 3> corner;
         for (std::size_t k = 0; k < 3; ++k)

@@ -89,8 +89,8 @@ std::optional<Graph> lower_root(FileId file, const LowerOptions& options, Source
     const std::filesystem::path path(sources.name(file));
     lowering.loading.push_back({path.lexically_normal().string(), Span()});
     std::optional<Graph> graph = lower_file(file, Span{file, 0, 0}, lowering);
-    if (!graph || diagnostics.has_errors() || !check_graph(*graph, diagnostics)) return std::nullopt;
-    check_verified(*graph, "lower");
+    if (diagnostics.has_errors() || (graph && !check_graph(*graph, diagnostics))) return std::nullopt;
+    if (graph) check_verified(*graph, "lower");
     if (derivation) *derivation = std::move(lowering.derivation);
     return graph;
 }

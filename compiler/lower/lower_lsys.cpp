@@ -331,22 +331,48 @@ class LsysLowering {
                                                         .seed = seed,
                                                         .exact = options.exact,
                                                         .max_modules = options.max_modules,
+                                                        .inner = inner_counts(models),
+                                                        .has_other_models = has_other_models(models),
                                                         .max_parts = options.max_objects,
                                                         .run_from = options.run_from},
                                                        graph_, pool_, diagnostics_);
         if (!drawing) return std::nullopt;
-        if (drawing->instances.empty() && !drawing->run) {
-            diagnostics_.error(source.name.span, fmt::format("'lsys {}' draws nothing{}", source.name.text,
-                                                             steps ? fmt::format(" after {} step{}", *steps,
-                                                                                 *steps == 1 ? "" : "s")
-                                                                   : std::string()));
-            return std::nullopt;
-        }
         if (is_root(block)) {
             lowering_.derivation = std::move(drawing->derivation);
             lowering_.derivation->families = families();
         }
+        if (drawing->instances.empty() && !drawing->run) {
+            report_nothing(block, steps);
+            return std::nullopt;
+        }
         return add_root(source, std::move(*drawing));
+    }
+
+    static std::map<SymbolId, std::size_t> inner_counts(const std::map<SymbolId, Model>& models) {
+        std::map<SymbolId, std::size_t> counts;
+        for (const auto& [symbol, model] : models)
+            if (model.family) counts.emplace(symbol, model.family->parameters().size());
+        return counts;
+    }
+
+    /// Than primitives of finite size.
+    bool has_other_models(const std::map<SymbolId, Model>& models) const {
+        return std::ranges::any_of(models, [&](const auto& entry) {
+            const Model& model = entry.second;
+            if (!model.root) return true;
+            const auto kind = graph_.objects[*model.root].primitive;
+            return !kind || *kind == PrimitiveKind::plane;
+        });
+    }
+
+    void report_nothing(const Block& block, std::optional<unsigned> steps) {
+        const LsysName& name = block.source->name;
+        std::string message = fmt::format("'lsys {}' draws nothing", name.text);
+        if (steps) message += fmt::format(" after {} step{}", *steps, *steps == 1 ? "" : "s");
+        if (is_root(block) && lowering_.options.may_draw_nothing)
+            diagnostics_.note(name.span, std::move(message));
+        else
+            diagnostics_.error(name.span, std::move(message));
     }
 
     std::vector<FamilyReport> families() const {

@@ -8,6 +8,9 @@
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
 
+#include "compiler/lower/turtle_range.h"
+#include "compiler/support/number.h"
+
 namespace graftal {
 
 namespace {
@@ -24,9 +27,9 @@ double angle_between(Vec3 a, Vec3 b) {
 
 void place_piece(Turtle& turtle, ModuleId piece, const TurtlePart& part, Span span, double snap) {
     if (FoldedWord::is_branch(piece))
-        turtle.append_branch(part, span, snap);
+        turtle.append_branch(part, span, {.snap = snap});
     else
-        turtle.append(part, span, snap);
+        turtle.append(part, span, {.snap = snap});
 }
 
 } // namespace
@@ -41,11 +44,16 @@ Mat3 chord_frame(Vec3 exit) {
 LsysComposer::LsysComposer(LsysRewriter& rewriter, TurtleContext& turtle, ObjectPool& pool,
                            const ModelPlacer& models, Variants variants, const LsysLimits& limits)
     : rewriter_(rewriter), context_(turtle), pool_(pool), models_(models), variants_(variants),
-      max_parts_(limits.max_parts), give_up_from_(limits.give_up_from), snaps_(limits.snap_angle > 0),
+      max_parts_(limits.max_parts), give_up_from_(limits.give_up_from), refuse_from_(limits.refuse_from),
+      stop_from_(limits.stop_from), max_bytes_(limits.max_bytes), snaps_(limits.snap_angle > 0),
+      sizes_(limits.sizes), size_step_(limits.size_step), steps_unit_(limits.steps_unit),
       directions_(std::max(limits.snap_angle, DirectionTable::rounding)),
       uses_directions_(rewriter.grammar().uses({TurtleCommand::level, TurtleCommand::tropism})),
       decomposes_(rewriter.grammar().has_rules(RuleKind::decompose)),
-      is_timed_(rewriter.grammar().time(RuleKind::interpret) != 0) {}
+      is_timed_(rewriter.grammar().time(RuleKind::interpret) != 0) {
+    for (SymbolId symbol = 0; symbol < rewriter.grammar().symbols.size(); ++symbol)
+        rewritten_.push_back(rewriter.grammar().is_rewritten(symbol));
+}
 
 std::optional<TurtlePart> LsysComposer::compose(unsigned steps, const TurtleState& start, double share) {
     steps_ = steps;
@@ -203,22 +211,28 @@ bool LsysComposer::advance(Task& task) {
             variants_.child(task.start.variant, chance_module(task.module),
                             chance_stage(task.string_stage, task.interprets), task.at);
         const std::uint32_t birth = birth_of(module, task);
-        Unfolded unfolded;
-        if (!unfold(module, task.string_stage, birth, variant, unfolded)) return false;
-        if (unfolded.aged) task.turtle.read_birth();
-        if (!unfolded.by || task.turtle.passing_over()) {
-            if (!draw(task, module)) return false;
+        const bool absolute = sizes_ && task.rule && sizes_->is_absolute(*task.rule, task.at);
+        if (!rewritten_[rewriter_.modules().symbol(module)] || task.turtle.passing_over()) {
+            if (!draw(task, module, absolute)) return false;
             continue;
         }
+        Lookup found{.module = module, .state = {}, .placing = {}};
+        if (sizes_ && !resize(found, task, absolute)) return false;
+        Unfolded unfolded;
+        if (!unfold(found.module, task.string_stage, birth, variant, unfolded)) return false;
+        if (unfolded.aged) task.turtle.read_birth();
+        if (!unfolded.by) {
+            if (!draw(task, module, absolute)) return false;
+            continue;
+        }
+        if (!sizes_) found.state = state_of(task.turtle, found.placing.snap);
         const Stage stage = unfolded.kind == RuleKind::interpret ? 0 : task.string_stage;
-        double snap = 0;
-        TurtleState state = state_of(task.turtle, snap);
-        state.variant = variant;
-        state.birth = birth;
-        const TurtlePart* part = find(module, stage, state);
-        if (!part) return start_task(module, stage, state, unfolded);
+        found.state.variant = variant;
+        found.state.birth = birth;
+        const TurtlePart* part = find(found.module, stage, found.state);
+        if (!part) return start_task(found.module, stage, found.state, unfolded);
         if (stage > 0) ++served_;
-        task.turtle.append(*part, task.span, snap);
+        task.turtle.append(*part, task.span, found.placing);
         if (!task.turtle.within_limits(task.span)) return false;
     }
     return true;
@@ -265,16 +279,121 @@ std::optional<Instance> LsysComposer::line_for(const TurtlePart& part, const Tas
     return context_.bodies.line(part.start_from_exit.translation, task.start.colour, task.span);
 }
 
-bool LsysComposer::draw(Task& task, ModuleId module) {
+std::vector<double> LsysComposer::parameters_of(ModuleId module) const {
+    const std::span<const double> parameters = rewriter_.modules().parameters(module);
+    return {parameters.begin(), parameters.end()};
+}
+
+/// A module whose sizes are in units, with its sizes as long as they are here.
+ModuleId LsysComposer::in_units(ModuleId module, double unit) {
+    if (unit == 1) return module;
+    ModuleTable& modules = rewriter_.modules();
+    const SymbolId symbol = modules.symbol(module);
+    std::vector<double> parameters = parameters_of(module);
+    const std::span<const ParameterRole> roles = sizes_->roles(symbol, parameters.size());
+    for (std::size_t i = 0; i < roles.size(); ++i)
+        if (roles[i] != ParameterRole::number) parameters[i] *= unit;
+    return modules.intern(symbol, parameters, modules.birth(module));
+}
+
+/// The module, and the state that it finds, in a frame in which its first length is 1; without a length, its
+/// first width; without any, the unit. False after an error.
+bool LsysComposer::resize(Lookup& found, const Task& task, bool absolute) {
+    ModuleTable& modules = rewriter_.modules();
+    const SymbolId symbol = modules.symbol(found.module);
+    found.state = state_of(task.turtle, found.placing.snap);
+    std::vector<double> parameters = parameters_of(found.module);
+    const std::span<const ParameterRole> roles = sizes_->roles(symbol, parameters.size());
+    const double unit = found.state.unit;
+    constexpr std::size_t nothing = SIZE_MAX;
+    std::size_t leading = nothing;
+    for (const ParameterRole role : {ParameterRole::length, ParameterRole::width})
+        for (std::size_t i = 0; i < roles.size() && leading == nothing; ++i)
+            if (roles[i] == role && parameters[i] != 0) leading = i;
+    Placing& placing = found.placing;
+    placing.scale = leading == nothing ? unit : std::abs(parameters[leading]) * (absolute ? unit : 1);
+    if (!(placing.scale >= least_size && placing.scale <= largest_size)) {
+        placing.scale = unit; // it is drawn as it is, or the turtle says why not
+        leading = nothing;
+    }
+    placing.absolute = absolute || leading == nothing;
+    const double factor = 1 / placing.scale;
+    for (std::size_t i = 0; i < roles.size(); ++i) {
+        if (roles[i] == ParameterRole::number) continue;
+        parameters[i] *= (absolute ? unit : 1) * factor;
+        if (i == leading)
+            parameters[i] = std::copysign(1.0, parameters[i]);
+        else if (roles[i] == ParameterRole::width)
+            parameters[i] = stepped(parameters[i], placing.size_error);
+    }
+    if (!roles.empty()) found.module = modules.intern(symbol, parameters, modules.birth(found.module));
+    found.state = scaled(found.state, factor);
+    found.state.width = stepped(found.state.width, placing.width_error);
+    found.state.control_width = sizes_known_.representative(found.state.control_width);
+    if (found.state.in_cylinder) found.state.control_point = representative(found.state.control_point);
+    found.state.unit = steps_unit_ ? stepped(found.state.unit, placing.unit_error)
+                                   : sizes_known_.representative(found.state.unit);
+    if (found.state.unit <= largest_size && found.state.width <= largest_size) return true;
+    context_.diagnostics
+        .error(task.span,
+               fmt::format("a size here is less than {} of what the model began with", shortest(least_size)))
+        .with_hint("fewer steps keep the model within the range of numbers");
+    return false;
+}
+
+/// The size that stands for one: of the steps in which its logarithm is counted, the nearest.
+double LsysComposer::stepped(double size, double& error) {
+    if (size_step_ == 0 || !(size > 0)) return sizes_known_.representative(size);
+    const double log_size = std::log(size);
+    const double nearest = size_step_ * std::round(log_size / size_step_);
+    error = std::max(error, std::abs(log_size - nearest));
+    return std::exp(nearest);
+}
+
+bool LsysComposer::draw(Task& task, ModuleId module, bool absolute) {
     const SymbolId symbol = rewriter_.modules().symbol(module);
     const TurtleCommand command = rewriter_.grammar().commands[symbol];
-    const std::span<const double> parameters = rewriter_.modules().parameters(module);
+    const double unit = task.turtle.unit();
+    if (absolute) module = in_units(module, unit);
+    std::span<const double> parameters = rewriter_.modules().parameters(module);
+    std::vector<double> resized;
     std::optional<PlacedModel> model;
     if (command == TurtleCommand::model && !task.turtle.passing_over()) {
         model = models_(symbol, parameters, task.span);
         if (!model) return false;
+        if (sizes_ && !sizes_->gives_scale(symbol, parameters.size())) {
+            model->scale *= unit;
+            absolute = true;
+        }
     }
-    return task.turtle.run(command, parameters, model, task.span);
+    if (sizes_ && size_role(command) && !parameters.empty() &&
+        sizes_->roles(symbol, parameters.size())[0] == ParameterRole::number) {
+        resized.assign(1, unit * parameters[0]);
+        parameters = resized;
+        absolute = true;
+    }
+    return task.turtle.run(command, parameters, model, task.span, absolute);
+}
+
+/// For another part; if not, it is given up, or an error.
+bool LsysComposer::has_room(Span span) {
+    const std::size_t count = parts_.size();
+    gave_up_ = count >= stop_from_ || (count >= give_up_from_ && few_serve_twice());
+    if (gave_up_) return false;
+    const bool hopeless = count >= refuse_from_ && few_serve_twice();
+    const bool too_large = count * sizeof(KnownPart) + pool_.bytes() > max_bytes_;
+    too_many_parts_ = hopeless || too_large || count + tasks_.size() > max_parts_;
+    if (!too_many_parts_) return true;
+    context_.diagnostics
+        .error(span, fmt::format("the model has more than {} different parts{}",
+                                 hopeless    ? refuse_from_
+                                 : too_large ? count
+                                             : max_parts_,
+                                 hopeless    ? ", and hardly any serves twice"
+                                 : too_large ? fmt::format(", and they take over {} MiB", max_bytes_ >> 20)
+                                             : std::string()))
+        .with_hint(rewriter_.explosion_hint());
+    return false;
 }
 
 bool LsysComposer::start_task(ModuleId module, Stage stage, const TurtleState& start,
@@ -291,18 +410,12 @@ bool LsysComposer::start_task(ModuleId module, Stage stage, const TurtleState& s
                 "these productions are applied again and again until none fits: a condition must end it");
         return false;
     }
-    gave_up_ = parts_.size() >= give_up_from_ && served_ < parts_.size() + parts_.size() / 8; // once each
-    if (gave_up_) return false;
-    if (parts_.size() + tasks_.size() > max_parts_) {
-        context_.diagnostics
-            .error(span, fmt::format("the model has more than {} different parts", max_parts_))
-            .with_hint(rewriter_.explosion_hint());
-        return false;
-    }
+    if (!has_room(span)) return false;
     const bool interprets = unfolded.kind == RuleKind::interpret;
     tasks_.push_back({.module = module,
                       .stage = stage,
                       .start = start,
+                      .rule = unfolded.by->rule,
                       .string = unfolded.by->successor,
                       .string_stage = unfolded.stage,
                       .birth = interprets ? start.birth : birth_at(unfolded.stage),
@@ -367,14 +480,16 @@ const TurtlePart* LsysComposer::find(ModuleId module, Stage stage, const TurtleS
     return nullptr;
 }
 
+/// Of control points that differ by rounding only.
+Vec3 LsysComposer::representative(Vec3 point) {
+    const double length = lengths_.representative(glm::length(point));
+    return length > 0 ? length * ways_.representative(glm::normalize(point)) : point;
+}
+
 /// `snap`: the angle between the directions and those in their place.
 TurtleState LsysComposer::state_of(const Turtle& turtle, double& snap) {
     TurtleState state = turtle.state();
-    if (state.in_cylinder) {
-        const double length = lengths_.representative(glm::length(state.control_point));
-        if (length > 0)
-            state.control_point = length * ways_.representative(glm::normalize(state.control_point));
-    }
+    if (state.in_cylinder) state.control_point = representative(state.control_point);
     if (!uses_directions_) return state;
     const TurtleState exact = state;
     state.tropism = directions_.representative(state.tropism);

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <deque>
 #include <optional>
 #include <span>
 #include <string>
@@ -10,6 +11,7 @@
 
 #include "compiler/lower/folded_word.h"
 #include "compiler/lower/lsys_rewriter.h"
+#include "compiler/lower/lsys_sizes.h"
 #include "compiler/lower/model_placer.h"
 #include "compiler/lower/object_pool.h"
 #include "compiler/lower/turtle.h"
@@ -30,6 +32,18 @@ struct LsysLimits {
     double snap_angle = 0;
     /// With so many parts of which few serve twice, composing gives up: module by module it is done sooner.
     std::size_t give_up_from = SIZE_MAX;
+    /// And with so many, that is an error: there will be too many.
+    std::size_t refuse_from = SIZE_MAX;
+    /// With so many it gives up, whatever the number that serve twice.
+    std::size_t stop_from = SIZE_MAX;
+    std::size_t max_bytes = std::size_t{1} << 30; ///< of the parts and their objects; more are an error
+    /// Modules that differ in their size only are composed once, and placed as large as they are; null: not.
+    const LsysSizes* sizes = nullptr;
+    /// Then the width and the unit that a part finds, relative to its own size, are taken for equal where
+    /// their logarithms differ by less than this, and parameters that reach nothing but widths. The
+    /// displacement is bounded in TurtlePart::error.
+    double size_step = 0;
+    bool steps_unit = true; ///< or the width alone
 };
 
 /// Compiles a derivation without deriving it (Hart 1992, section 4, made automatic): what a module becomes
@@ -54,8 +68,12 @@ class LsysComposer {
                                            double share = 0);
 
     std::size_t part_count() const { return parts_.size(); }
-    /// Whether compose() gave nothing for that reason, without an error.
+    /// Whether most of them were placed once only.
+    bool few_serve_twice() const { return served_ < parts_.size() + parts_.size() / 8; }
+    /// Whether compose() gave nothing without an error, as it may by the limits.
     bool gave_up() const { return gave_up_; }
+    /// Whether it was given up because of them.
+    bool too_many_parts() const { return too_many_parts_; }
 
     /// The first part that made an object.
     struct Origin {
@@ -67,6 +85,13 @@ class LsysComposer {
   private:
     /// 0: being drawn; 2k: before a step, of k that are left; 2k + 1: being decomposed before that.
     using Stage = std::uint32_t;
+
+    /// A module as it is looked up, with the state that it finds, and how its part is placed.
+    struct Lookup {
+        ModuleId module = 0;
+        TurtleState state;
+        Placing placing;
+    };
 
     /// What is drawn in place of a module.
     struct Unfolded {
@@ -84,7 +109,8 @@ class LsysComposer {
         ModuleId module = 0; ///< or a piece of the word
         Stage stage = 0;     ///< of the module
         TurtleState start;
-        ModuleString drawn; ///< the string, if it has random numbers
+        const LsysRule* rule = nullptr; ///< that the string comes from; null: the axiom, or a word
+        ModuleString drawn;             ///< the string, if it has random numbers
         std::span<const ModuleId> string;
         Stage string_stage = 0;
         std::uint32_t birth = 0; ///< of the modules of the string, where they do not say
@@ -120,7 +146,12 @@ class LsysComposer {
     std::optional<TurtlePart> run_from(Task first);
     bool run_tasks();
     bool advance(Task& task);
-    bool draw(Task& task, ModuleId module);
+    bool draw(Task& task, ModuleId module, bool absolute);
+    ModuleId in_units(ModuleId module, double unit);
+    bool resize(Lookup& found, const Task& task, bool absolute);
+    double stepped(double size, double& error);
+    std::vector<double> parameters_of(ModuleId module) const;
+    bool has_room(Span span);
     bool start_task(ModuleId module, Stage stage, const TurtleState& start, const Unfolded& unfolded);
     std::optional<Instance> line_for(const TurtlePart& part, const Task& task);
     bool draw_piece(Task& task, ModuleId piece);
@@ -129,6 +160,7 @@ class LsysComposer {
     void remember(ModuleId module, Stage stage, const TurtleState& start, TurtlePart part);
     const TurtlePart* find(ModuleId module, Stage stage, const TurtleState& start) const;
     TurtleState state_of(const Turtle& turtle, double& snap);
+    Vec3 representative(Vec3 point);
     std::string name_of_part(const Task& task) const;
 
     LsysRewriter& rewriter_;
@@ -138,21 +170,30 @@ class LsysComposer {
     Variants variants_;
     std::size_t max_parts_;
     std::size_t give_up_from_;
+    std::size_t refuse_from_;
+    std::size_t stop_from_;
+    std::size_t max_bytes_;
     std::size_t served_ = 0; ///< how often a part was placed that had steps left
     bool gave_up_ = false;
     bool snaps_;
+    const LsysSizes* sizes_;
+    double size_step_;
+    bool steps_unit_;
+    bool too_many_parts_ = false;
     const FoldedWord* word_ = nullptr;
     std::vector<Task> tasks_;
-    std::vector<KnownPart> parts_;
+    std::deque<KnownPart> parts_;
     IdTable part_ids_;
     std::unordered_map<ObjectId, Origin> origins_;
     std::vector<PartKind> kinds_;
     IdTable kind_ids_;
     DirectionTable directions_;
     RotationTable rotations_; ///< of exits
+    NumberTable sizes_known_; ///< widths and units
     // Of control points; never snapped.
     NumberTable lengths_;
     DirectionTable ways_;
+    std::vector<bool> rewritten_; ///< by symbol
     bool uses_directions_;
     bool decomposes_;
     bool is_timed_;           ///< what is drawn depends on the time

@@ -11,6 +11,7 @@
 #include <glm/geometric.hpp>
 
 #include "compiler/lower/lower_transform.h"
+#include "compiler/lower/turtle_range.h"
 #include "compiler/support/number.h"
 
 namespace graftal {
@@ -75,12 +76,22 @@ class GrammarBuilder {
         return std::nullopt;
     }
 
+    /// A size that the turtle can take.
+    std::optional<double> size(const std::optional<LsysValue>& value, std::string_view name) {
+        const auto known = setting(
+            value, [](double x) { return x > 0; }, name, "be positive");
+        if (!known || (*known >= least_size && *known <= largest_size)) return known;
+        diagnostics_.error(value->value.span,
+                           fmt::format("'{}' must lie between {} and {}, not {}", name, shortest(least_size),
+                                       shortest(largest_size), shortest(*known)));
+        return std::nullopt;
+    }
+
     void add_settings() {
         const auto any = [](double) { return true; };
-        const auto positive = [](double x) { return x > 0; };
         grammar_.angle_deg = setting(block_.angle, any, "angle", "").value_or(grammar_.angle_deg);
-        grammar_.step = setting(block_.step, positive, "step", "be positive").value_or(grammar_.step);
-        grammar_.width = setting(block_.width, positive, "width", "be positive");
+        grammar_.step = size(block_.step, "step").value_or(grammar_.step);
+        grammar_.width = size(block_.width, "width");
         const auto seed = setting(
             block_.seed, [](double x) { return x >= 0 && x <= largest_seed && x == std::floor(x); }, "seed",
             "be a whole number from 0 to 2^53");
@@ -411,6 +422,10 @@ class GrammarBuilder {
 };
 
 } // namespace
+
+bool LsysGrammar::is_rewritten(SymbolId symbol) const {
+    return std::ranges::any_of(rules_of, [&](const auto& of_kind) { return !of_kind[symbol].empty(); });
+}
 
 bool LsysGrammar::has_rules(RuleKind kind) const {
     return std::ranges::any_of(rules_of[static_cast<std::size_t>(kind)],

@@ -101,6 +101,8 @@ struct LsysGrammar {
     }
     bool has_rules(RuleKind kind, SymbolId symbol) const { return !candidates(kind, symbol).empty(); }
     bool has_rules(RuleKind kind) const;
+    /// By rules of any kind.
+    bool is_rewritten(SymbolId symbol) const;
     TimeMask time(RuleKind kind, SymbolId symbol) const {
         return time_of[static_cast<std::size_t>(kind)][symbol];
     }

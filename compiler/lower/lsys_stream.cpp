@@ -32,12 +32,17 @@ LsysStream::LsysStream(LsysRewriter& rewriter, const ModelPlacer& models, Diagno
       in_word_(options.steps + std::size_t{1}) {}
 
 bool LsysStream::derive(Turtle& turtle) {
+    turtle_ = &turtle;
+    return count();
+}
+
+bool LsysStream::count() {
     frames_.push_back({.string = &grammar_.axiom});
-    return run(turtle);
+    return run();
 }
 
 /// Until no string is under way.
-bool LsysStream::run(Turtle& turtle) {
+bool LsysStream::run() {
     while (!frames_.empty()) {
         Frame& frame = frames_.back();
         if (frame.at == frame.string->size()) {
@@ -49,8 +54,7 @@ bool LsysStream::run(Turtle& turtle) {
         if (!read_module(frame, module)) return false;
         // The frame may move now.
         const std::size_t slots_end = frame.slots + frame.slot_count, depth = frames_.size();
-        if (!(frame.interprets ? emit(turtle, module, frame.repeated) : meet(turtle, module, frame.word)))
-            return false;
+        if (!(frame.interprets ? emit(module, frame.repeated) : meet(module, frame.word))) return false;
         if (frames_.size() == depth) values_.resize(slots_end);
     }
     return true;
@@ -79,7 +83,7 @@ bool LsysStream::read_module(Frame& frame, Module& module) {
 }
 
 /// A module of the word after so many steps.
-bool LsysStream::meet(Turtle& turtle, const Module& module, std::uint32_t word) {
+bool LsysStream::meet(const Module& module, std::uint32_t word) {
     if (grammar_.has_rules(RuleKind::produce, module.symbol)) {
         const bool waits = grammar_.time(RuleKind::produce, module.symbol) != 0;
         for (; word < options_.steps; ++word) {
@@ -94,7 +98,7 @@ bool LsysStream::meet(Turtle& turtle, const Module& module, std::uint32_t word) 
             return true;
         }
     }
-    return count_from(word) && emit(turtle, module, 0);
+    return count_from(word) && emit(module, 0);
 }
 
 /// Counts a module that stays as it is from that step on.
@@ -117,7 +121,7 @@ bool LsysStream::refuse_length(std::uint32_t word) {
 }
 
 /// Draws a module of the last word, or of what one is drawn as.
-bool LsysStream::emit(Turtle& turtle, const Module& module, std::uint32_t repeated) {
+bool LsysStream::emit(const Module& module, std::uint32_t repeated) {
     if (grammar_.has_rules(RuleKind::interpret, module.symbol)) {
         Moment moment = moment_of(options_.steps, module.birth);
         moment = {moment.step + options_.share, moment.age + options_.share};
@@ -142,13 +146,14 @@ bool LsysStream::emit(Turtle& turtle, const Module& module, std::uint32_t repeat
             return false;
         }
     }
+    if (!turtle_) return ++drawn_ <= options_.max_modules;
     const TurtleCommand command = grammar_.commands[module.symbol];
     std::optional<PlacedModel> model;
-    if (command == TurtleCommand::model && !turtle.passing_over()) {
+    if (command == TurtleCommand::model && !turtle_->passing_over()) {
         model = models_(module.symbol, parameters(module), module.span);
         if (!model) return false;
     }
-    return turtle.run(command, parameters(module), model, module.span);
+    return turtle_->run(command, parameters(module), model, module.span);
 }
 
 /// Goes on with what a rule makes of the module.
@@ -216,11 +221,12 @@ bool LsysStream::choose(RuleKind kind, const Module& module, const Moment& momen
 }
 
 bool LsysStream::draw(const FoldedWord& word, Turtle& turtle) {
-    return draw(word, word.trunk(), turtle);
+    turtle_ = &turtle;
+    return draw(word, word.trunk());
 }
 
 /// Pieces are nested as deep as branches are.
-bool LsysStream::draw(const FoldedWord& word, std::span<const ModuleId> string, Turtle& turtle) {
+bool LsysStream::draw(const FoldedWord& word, std::span<const ModuleId> string) {
     struct Level {
         std::span<const ModuleId> rest;
         bool is_branch;
@@ -229,7 +235,7 @@ bool LsysStream::draw(const FoldedWord& word, std::span<const ModuleId> string, 
     std::vector<Level> levels = {{string, false}};
     while (!levels.empty()) {
         if (levels.back().rest.empty()) {
-            if (levels.back().is_branch && !draw_bracket(TurtleCommand::close_branch, turtle)) return false;
+            if (levels.back().is_branch && !draw_bracket(TurtleCommand::close_branch)) return false;
             levels.pop_back();
             continue;
         }
@@ -237,7 +243,7 @@ bool LsysStream::draw(const FoldedWord& word, std::span<const ModuleId> string, 
         levels.back().rest = levels.back().rest.subspan(1);
         if (FoldedWord::is_piece(id)) {
             const bool is_branch = FoldedWord::is_branch(id);
-            if (is_branch && !draw_bracket(TurtleCommand::open_branch, turtle)) return false;
+            if (is_branch && !draw_bracket(TurtleCommand::open_branch)) return false;
             levels.push_back({word.piece(id), is_branch});
             continue;
         }
@@ -247,15 +253,15 @@ bool LsysStream::draw(const FoldedWord& word, std::span<const ModuleId> string, 
         const Module module{modules.symbol(id), static_cast<std::uint32_t>(known.size()), birth,
                             grammar_.source->axiom->span};
         ++modules_;
-        if (!emit(turtle, module, 0) || !run(turtle)) return false;
+        if (!emit(module, 0) || !run()) return false;
         values_.clear();
     }
     return true;
 }
 
-bool LsysStream::draw_bracket(TurtleCommand command, Turtle& turtle) {
+bool LsysStream::draw_bracket(TurtleCommand command) {
     ++modules_;
-    return turtle.run(command, {}, std::nullopt, grammar_.source->axiom->span);
+    return turtle_->run(command, {}, std::nullopt, grammar_.source->axiom->span);
 }
 
 } // namespace graftal

@@ -40,6 +40,9 @@ class LsysStream {
     /// Derives the word and draws it by the turtle; false after an error. Requires can_derive() and
     /// can_draw().
     bool derive(Turtle& turtle);
+    /// Derives the word without drawing it; false if it has more than max_modules, interpretations included,
+    /// or after another error. Requires can_derive().
+    bool count();
     /// Draws a word that is derived already. Requires can_draw().
     bool draw(const FoldedWord& word, Turtle& turtle);
 
@@ -76,12 +79,12 @@ class LsysStream {
         double probability;
     };
 
-    bool run(Turtle& turtle);
+    bool run();
     bool read_module(Frame& frame, Module& module);
-    bool meet(Turtle& turtle, const Module& module, std::uint32_t word);
-    bool emit(Turtle& turtle, const Module& module, std::uint32_t repeated);
-    bool draw(const FoldedWord& word, std::span<const ModuleId> string, Turtle& turtle);
-    bool draw_bracket(TurtleCommand command, Turtle& turtle);
+    bool meet(const Module& module, std::uint32_t word);
+    bool emit(const Module& module, std::uint32_t repeated);
+    bool draw(const FoldedWord& word, std::span<const ModuleId> string);
+    bool draw_bracket(TurtleCommand command);
     void push(const Chosen& chosen, const Module& module, const Moment& moment, Frame frame);
     bool choose(RuleKind kind, const Module& module, const Moment& moment, std::uint64_t draw,
                 Chosen& chosen);
@@ -96,6 +99,7 @@ class LsysStream {
     const ModelPlacer& models_;
     Diagnostics& diagnostics_;
     Options options_;
+    Turtle* turtle_ = nullptr; ///< that draws; null: none does
     CounterRandom random_;
     bool chooses_ = false; ///< by chance, in steps
     std::vector<Frame> frames_;
@@ -105,6 +109,7 @@ class LsysStream {
     std::vector<Competitor> competitors_;
     std::uint64_t modules_ = 0;
     std::uint64_t interpreted_ = 0; ///< choices made when drawing
+    std::uint64_t drawn_ = 0;       ///< by count(): modules that a turtle would run
 };
 
 } // namespace graftal

@@ -146,6 +146,8 @@ std::vector<Instance> ObjectPool::share(std::vector<Instance> instances, std::op
         id = static_cast<std::uint32_t>(shared_.size());
         if (looked <= most_looked_at) ids_.add(mixed(looks, static_cast<std::uint64_t>(cell)), id);
         object.name = unique_name(name);
+        object.instances.shrink_to_fit();
+        bytes_ += sizeof(Object) + object.instances.size() * sizeof(Instance) + 3 * object.name.size();
         shared_.push_back(graph_.add(std::move(object)));
     }
     return {Instance{shared_[id], {size * frame, Vec3(0.0)}, Tint(), std::nullopt, span}};

@@ -30,6 +30,9 @@ class ObjectPool {
     std::vector<Instance> share(std::vector<Instance> instances, std::optional<Instance> terminal,
                                 std::string_view name, Span span, const Mat3& frame = Mat3(1.0));
 
+    /// About how much memory the objects take.
+    std::size_t bytes() const { return bytes_; }
+
     /// Like `name`, with a number at the end if that name was given before.
     std::string unique_name(std::string_view name);
 
@@ -39,6 +42,7 @@ class ObjectPool {
 
     Graph& graph_;
     std::vector<ObjectId> shared_;
+    std::size_t bytes_ = 0;
     IdTable ids_;
     std::unordered_map<std::string, unsigned> names_;
 };

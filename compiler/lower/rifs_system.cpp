@@ -70,7 +70,9 @@ class SystemBuilder {
             node.map = evaluate_map(map).value_or(Affine());
             node.tint = looks_.tint(map.look);
             node.material = looks_.material(map.look);
-            node.probability = evaluate_probability(map.probability, lets_, diagnostics_);
+            const bool is_row = map.form != RifsForm::transforms;
+            node.probability =
+                evaluate_probability(map.probability, lets_, diagnostics_, is_row ? index + 1 : 0);
             sum_ += node.probability.value_or(0);
         }
         system_.nodes.push_back(std::move(node));
@@ -162,13 +164,19 @@ Affine from_columns_2d(Vec3 x, Vec3 y, Vec3 offset) {
 
 } // namespace
 
-std::optional<double> evaluate_probability(const std::optional<Expression>& probability, const Environment& lets,
-                                           Diagnostics& diagnostics) {
+std::optional<double> evaluate_probability(const std::optional<Expression>& probability,
+                                           const Environment& lets, Diagnostics& diagnostics,
+                                           std::size_t row) {
     if (!probability) return std::nullopt;
     const std::optional<double> p = evaluate(*probability, lets, diagnostics);
     if (!p || (*p >= 0 && *p <= 1)) return p;
-    diagnostics.error(probability->span,
-                      fmt::format("a probability must lie between 0 and 1, not {}", shortest(*p)));
+    Diagnostic& error = diagnostics.error(
+        probability->span, fmt::format("a probability must lie between 0 and 1, not {}", shortest(*p)));
+    if (row > 0)
+        error.with_hint(
+            fmt::format("it is the last number of row {}: leave the last number out of all rows, and "
+                        "the maps are chosen by their size",
+                        row));
     return std::nullopt;
 }
 

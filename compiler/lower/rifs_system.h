@@ -45,9 +45,11 @@ struct RifsSystem {
     std::uint32_t block_under(const RifsNode& node) const { return node.from.value_or(node.block); }
 };
 
-/// A probability of random iteration; nothing if it is not stated. Errors are reported and give nothing.
-std::optional<double> evaluate_probability(const std::optional<Expression>& probability, const Environment& lets,
-                                           Diagnostics& diagnostics);
+/// A probability of random iteration; nothing if it is not stated. Errors are reported and give nothing;
+/// their hint says what to do. `row`: of `codes` that it stands in, counted from 1; 0: in none.
+std::optional<double> evaluate_probability(const std::optional<Expression>& probability,
+                                           const Environment& lets, Diagnostics& diagnostics,
+                                           std::size_t row = 0);
 
 /// Evaluates the tints and materials that the tree names. Errors are reported and give the neutral ones.
 class RifsLooks {

@@ -10,6 +10,7 @@
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 
+#include "compiler/lower/turtle_range.h"
 #include "compiler/support/angle.h"
 #include "compiler/support/number.h"
 
@@ -20,17 +21,33 @@ namespace {
 /// `!` without an argument: the areas of two such branches sum to that of their parent.
 constexpr double thinning = std::numbers::sqrt2 / 2;
 
-/// Squares of lengths must be numbers too.
-constexpr double farthest_place = 1e150;
 /// They are cut into triangles in a time that goes with the square.
 constexpr std::size_t max_polygon_vertices = 10'000;
 /// Parts keep the vertices of those that they leave open.
 constexpr std::size_t max_polygon_nesting = 1000;
-/// In one run; each takes 64 bytes.
-constexpr std::size_t max_run_items = 32'000'000;
 
 double first_or(std::span<const double> parameters, double otherwise) {
     return parameters.empty() ? otherwise : parameters[0];
+}
+
+/// What the first parameter of a command is, where it must stay in the range of numbers.
+const char* size_name(TurtleCommand command) {
+    switch (command) {
+    case TurtleCommand::draw:
+    case TurtleCommand::draw_unrecorded:
+    case TurtleCommand::move:
+    case TurtleCommand::move_unrecorded:
+        return "a length";
+    case TurtleCommand::width:
+        return "a width";
+    case TurtleCommand::sphere:
+    case TurtleCommand::disc:
+        return "a diameter";
+    case TurtleCommand::tropism:
+        return "an elasticity";
+    default:
+        return nullptr;
+    }
 }
 
 } // namespace
@@ -39,24 +56,26 @@ Turtle::Turtle(TurtleContext& context, const TurtleState& start, Run* run)
     : context_(context), run_(run), state_(start) {}
 
 bool Turtle::run(TurtleCommand command, std::span<const double> parameters,
-                 const std::optional<PlacedModel>& model, Span span) {
+                 const std::optional<PlacedModel>& model, Span span, bool absolute) {
     if (cut_depth_ > 0) return pass_over(command);
     ++modules_;
+    if (absolute) note(reads_unit);
+    if (!in_range(command, parameters, model, span)) return false;
     const double angle_deg = first_or(parameters, context_.angle_deg);
     switch (command) {
     case TurtleCommand::none:
         return true;
     case TurtleCommand::draw:
-        move(first_or(parameters, context_.step), true, true, span);
+        move(parameters, absolute, true, true, span);
         break;
     case TurtleCommand::draw_unrecorded:
-        move(first_or(parameters, context_.step), true, false, span);
+        move(parameters, absolute, true, false, span);
         break;
     case TurtleCommand::move:
-        move(first_or(parameters, context_.step), false, true, span);
+        move(parameters, absolute, false, true, span);
         break;
     case TurtleCommand::move_unrecorded:
-        move(first_or(parameters, context_.step), false, false, span);
+        move(parameters, absolute, false, false, span);
         break;
     case TurtleCommand::turn_left:
         turn(Axis::up, angle_deg);
@@ -83,7 +102,7 @@ bool Turtle::run(TurtleCommand command, std::span<const double> parameters,
         level();
         return true;
     case TurtleCommand::width:
-        return set_width(parameters, span);
+        return set_width(parameters, absolute, span);
     case TurtleCommand::colour_up:
         set_colour(parameters, 1);
         return true;
@@ -121,23 +140,32 @@ bool Turtle::run(TurtleCommand command, std::span<const double> parameters,
     case TurtleCommand::end_cylinder:
         add_control_point(span);
         state_.in_cylinder = false;
+        writes_ |= reads_cylinder;
         break;
     case TurtleCommand::sphere:
-        part_.has_bodies = true;
-        context_.bodies.add_sphere(start_from_turtle_, parameters.empty() ? read_width() : parameters[0],
-                                   read_colour(), span, sink(parameters.empty()));
-        break;
     case TurtleCommand::disc:
-        part_.has_bodies = true;
-        context_.bodies.add_disc(start_from_turtle_, parameters.empty() ? read_width() : parameters[0],
-                                 read_colour(), span, sink(parameters.empty()));
+        add_ball(command, parameters, absolute, span);
         break;
     case TurtleCommand::model:
-        part_.has_bodies = true;
-        if (model) context_.bodies.add_model(*model, start_from_turtle_, span, sink(false));
+        if (model) add_model(*model, absolute, span);
         break;
     }
     return within_limits(span);
+}
+
+bool Turtle::in_range(TurtleCommand command, std::span<const double> parameters,
+                      const std::optional<PlacedModel>& model, Span span) {
+    const char* name = size_name(command);
+    double size = name && !parameters.empty() ? parameters[0] : 0;
+    if (command == TurtleCommand::model && model) {
+        name = "the scale of a model";
+        size = largest_entry(model->scale);
+    }
+    if (std::abs(size) <= largest_size) return true;
+    context_.diagnostics
+        .error(span, fmt::format("{} is at most {}, not {}", name, shortest(largest_size), shortest(size)))
+        .with_hint("smaller factors or fewer steps keep the model within the range of numbers");
+    return false;
 }
 
 bool Turtle::pass_over(TurtleCommand command) {
@@ -172,23 +200,30 @@ bool Turtle::within_limits(Span span) {
         return false;
     }
     const Vec3 place = glm::abs(start_from_turtle_.translation);
-    if (place.x <= farthest_place && place.y <= farthest_place && place.z <= farthest_place) return true;
+    if (place.x <= largest_size && place.y <= largest_size && place.z <= largest_size) return true;
     context_.diagnostics.error(span, "the turtle goes farther than numbers reach")
         .with_hint("fewer steps, or a 'step' that shrinks with them, keep the model small");
     return false;
 }
 
-void Turtle::move(double length, bool draw, bool record, Span span) {
+void Turtle::move(std::span<const double> parameters, bool absolute, bool draw, bool record, Span span) {
+    absolute = absolute || parameters.empty();
+    const double length = at_least_size(parameters.empty() ? context_.step * read_unit() : parameters[0]);
     const bool fills = !polygons_.empty() || (note(reads_polygons), state_.open_polygons > 0);
     if (draw) ++segments_;
-    if (draw && !fills && !(note(reads_cylinder), state_.in_cylinder))
-        context_.bodies.add_segment(start_from_turtle_, length, line_width(length), read_colour(), span,
-                                    sink(true));
+    if (absolute) unit_shift_ += std::abs(length);
+    if (draw && !fills && !(note(reads_cylinder), state_.in_cylinder)) {
+        const double width = line_width(length);
+        context_.bodies.add_segment(start_from_turtle_, length, width, read_colour(), span, sink(true));
+        note_radius(width / 2, width_source_);
+        if (context_.tallies && length != 0) part_.lengths.add(std::abs(length));
+    }
+    part_.unit_sensitivity.farthest = std::max(part_.unit_sensitivity.farthest, unit_shift_);
     start_from_turtle_.translation += length * start_from_turtle_.linear[1];
     part_.reach = std::max(part_.reach, glm::length(start_from_turtle_.translation));
     for (auto [drift, total] :
          {std::pair(&error_, &part_.error), std::pair(&sensitivity_, &part_.sensitivity)}) {
-        drift->shift += drift->turn * std::abs(length);
+        drift->shift = bounded(drift->shift + drift->turn * std::abs(length));
         total->farthest = std::max(total->farthest, drift->shift);
     }
     if (fills && record) record_vertex(start_from_turtle_.translation);
@@ -219,7 +254,7 @@ void Turtle::level() {
     constexpr double least_sine = 1e-9;
     if (!(glm::length(left) > least_sine)) return;
     // The roll turns about the heading by the angle that the vertical turns about it.
-    sensitivity_.turn += (1 + sensitivity_.turn) / glm::length(left);
+    sensitivity_.turn = bounded(sensitivity_.turn + (1 + sensitivity_.turn) / glm::length(left));
     const Vec3 x = -glm::normalize(left);
     start_from_turtle_.linear = Mat3(x, heading, glm::cross(x, heading));
 }
@@ -231,30 +266,65 @@ void Turtle::bend() {
     note(reads_tropism);
     const Vec3 axis = glm::cross(start_from_turtle_.linear[1], state_.tropism);
     const double sine = glm::length(axis);
-    sensitivity_.turn += std::abs(state_.elasticity) * (1 + sensitivity_.turn);
+    sensitivity_.turn = bounded(sensitivity_.turn + std::abs(state_.elasticity) * (1 + sensitivity_.turn));
     if (!(sine > 0)) return;
     const double angle_deg = state_.elasticity * sine * 180 / std::numbers::pi;
     start_from_turtle_.linear = Affine::rotate(axis, angle_deg).linear * start_from_turtle_.linear;
 }
 
-bool Turtle::set_width(std::span<const double> parameters, Span span) {
+/// Of something round that is drawn here.
+void Turtle::note_radius(double radius, WidthSource source) {
+    part_.thickest = std::max(part_.thickest, radius);
+    const double own_error = source == width_source_ ? width_error_ * radius : 0;
+    part_.error.farthest = std::max(part_.error.farthest, error_.shift + own_error);
+    if (source == WidthSource::start) part_.width_sensitivity = std::max(part_.width_sensitivity, radius);
+    const double by_unit = source == WidthSource::unit ? radius : 0;
+    part_.unit_sensitivity.farthest = std::max(part_.unit_sensitivity.farthest, unit_shift_ + by_unit);
+}
+
+void Turtle::add_ball(TurtleCommand command, std::span<const double> parameters, bool absolute, Span span) {
+    part_.has_bodies = true;
+    ++bodies_;
+    const double diameter = parameters.empty() ? read_width() : parameters[0];
+    if (command == TurtleCommand::sphere)
+        context_.bodies.add_sphere(start_from_turtle_, diameter, read_colour(), span,
+                                   sink(parameters.empty()));
+    else
+        context_.bodies.add_disc(start_from_turtle_, diameter, read_colour(), span, sink(parameters.empty()));
+    if (parameters.empty())
+        note_radius(diameter / 2, width_source_);
+    else
+        note_radius(std::abs(diameter) / 2, absolute ? WidthSource::unit : WidthSource::sizes);
+}
+
+void Turtle::add_model(const PlacedModel& model, bool absolute, Span span) {
+    part_.has_bodies = true;
+    ++bodies_;
+    context_.bodies.add_model(model, start_from_turtle_, span, sink(false));
+    // Of primitives no point lies farther from their origin; with others the unit is never off.
+    constexpr double farthest = 2;
+    if (absolute) note_radius(farthest * largest_entry(model.scale), WidthSource::unit);
+}
+
+bool Turtle::set_width(std::span<const double> parameters, bool absolute, Span span) {
     const double width = parameters.empty() ? thinning * read_width() : parameters[0];
     if (width < 0) {
         context_.diagnostics.error(span,
                                    fmt::format("a width must not be negative, but is {}", shortest(width)));
         return false;
     }
-    state_.width = width;
+    state_.width = at_least_size(width);
+    if (!parameters.empty()) {
+        width_source_ = absolute ? WidthSource::unit : WidthSource::sizes;
+        if (!state_.in_cylinder) width_error_ = 0; // a taper has the width before, too
+    }
     writes_ |= reads_width;
     return true;
 }
 
 void Turtle::set_colour(std::span<const double> parameters, int step) {
-    constexpr double most = 1e6;
-    if (parameters.empty())
-        state_.colour = read_colour() + step;
-    else
-        state_.colour = static_cast<int>(std::min(most, std::max(-most, std::floor(parameters[0]))));
+    const double number = parameters.empty() ? read_colour() + step : std::floor(parameters[0]);
+    state_.colour = context_.bodies.colour_index(number);
     writes_ |= reads_colour;
 }
 
@@ -266,7 +336,8 @@ void Turtle::cut() {
 }
 
 void Turtle::open_branch() {
-    branches_.push_back({start_from_turtle_, state_, writes_, error_, sensitivity_, polygons_.size()});
+    branches_.push_back({start_from_turtle_, state_, writes_, error_, sensitivity_, unit_shift_, width_error_,
+                         width_source_, polygons_.size()});
 }
 
 void Turtle::close_branch() {
@@ -278,6 +349,9 @@ void Turtle::close_branch() {
     writes_ = branches_.back().writes;
     error_ = branches_.back().error;
     sensitivity_ = branches_.back().sensitivity;
+    unit_shift_ = branches_.back().unit_shift;
+    width_error_ = branches_.back().width_error;
+    width_source_ = branches_.back().width_source;
     branches_.pop_back();
 }
 
@@ -295,46 +369,34 @@ void Turtle::record_vertex(Vec3 vertex) {
 void Turtle::close_polygon(int colour, Span span) {
     if (!polygons_.empty()) {
         part_.has_bodies = true;
+        ++bodies_;
         context_.bodies.add_polygon(polygons_.back(), colour, span, sink(false));
         polygons_.pop_back();
         return;
     }
-    note(reads_polygons);
+    note(reads_polygon_count);
     if (state_.open_polygons == 0) return;
     --state_.open_polygons;
     part_.polygon_ends.push_back({std::exchange(part_.vertices, {}), colour});
-}
-
-/// Polygons may begin in one part and end in another, as branches do not.
-void Turtle::append_polygons(const TurtlePart& part, Span span) {
-    const auto record = [&](const std::vector<Vec3>& vertices) {
-        for (const Vec3& vertex : vertices)
-            record_vertex(start_from_turtle_(vertex));
-    };
-    for (const TurtlePart::PolygonEnd& end : part.polygon_ends) {
-        record(end.vertices);
-        close_polygon(end.colour, span);
-    }
-    record(part.vertices);
-    for (const std::vector<Vec3>& polygon : part.polygons) {
-        polygons_.emplace_back();
-        record(polygon);
-    }
 }
 
 void Turtle::start_cylinder() {
     state_.in_cylinder = true;
     state_.control_point = start_from_turtle_.translation;
     state_.control_width = read_width();
-    writes_ |= reads_cylinder;
+    writes_ |= reads_cylinder | reads_control;
 }
 
 /// Also of the end: draws the piece of the cylinder that reaches to here.
 void Turtle::add_control_point(Span span) {
     note(reads_cylinder);
     if (!state_.in_cylinder) return;
-    context_.bodies.add_taper(start_from_turtle_, state_.control_point, state_.control_width, read_width(),
+    note(reads_control);
+    const double width = read_width();
+    context_.bodies.add_taper(start_from_turtle_, state_.control_point, state_.control_width, width,
                               read_colour(), span, sink(true));
+    for (const WidthSource source : {WidthSource::start, WidthSource::unit, WidthSource::sizes})
+        note_radius(std::max(width, state_.control_width) / 2, source); // its two widths may have any
     start_cylinder();
 }
 
@@ -349,58 +411,20 @@ TurtleState Turtle::state() const {
     return result;
 }
 
-void Turtle::append(const TurtlePart& part, Span span, double snap) {
-    append_branch(part, span, snap);
-    const double length = glm::length(part.start_from_exit.translation);
-    const double stir = 1 + sensitivity_.turn; // of the part's directions
-    error_ = {error_.turn + part.error.exit_turn + snap * part.sensitivity.exit_turn,
-              error_.at(length) + part.error.exit_shift + snap * part.sensitivity.exit_shift};
-    sensitivity_ = {sensitivity_.turn + stir * part.sensitivity.exit_turn,
-                    sensitivity_.at(length) + stir * part.sensitivity.exit_shift};
-    if (part.writes & reads_width) state_.width = part.exit.width;
-    if (part.writes & reads_colour) state_.colour = part.exit.colour;
-    if (part.writes & reads_elasticity) state_.elasticity = part.exit.elasticity;
-    if (part.writes & reads_cylinder) {
-        state_.in_cylinder = part.exit.in_cylinder;
-        state_.control_point = start_from_turtle_(part.exit.control_point);
-        state_.control_width = part.exit.control_width;
-    }
-    writes_ |= part.writes;
-    start_from_turtle_ = start_from_turtle_ * part.start_from_exit;
-    if (part.cut) cut();
-}
-
-void Turtle::append_branch(const TurtlePart& part, Span span, double snap) {
-    part_.error.farthest = std::max(part_.error.farthest, error_.at(part.reach) + part.error.farthest +
-                                                              snap * part.sensitivity.farthest);
-    part_.sensitivity.farthest =
-        std::max(part_.sensitivity.farthest,
-                 sensitivity_.at(part.reach) + (1 + sensitivity_.turn) * part.sensitivity.farthest);
-    TurtleStateMask reads = part.reads;
-    // Whether polygons are open outside of this part does not matter where enough were opened inside.
-    if (polygons_.size() > part.polygon_ends.size()) reads &= static_cast<TurtleStateMask>(~reads_polygons);
-    note(reads);
-    for (const Instance& instance : part.instances) {
-        part_.instances.push_back(instance);
-        part_.instances.back().parent_from_child = start_from_turtle_ * instance.parent_from_child;
-    }
-    append_polygons(part, span);
-    part_.reach = std::max(part_.reach, glm::length(start_from_turtle_.translation) + part.reach);
-    part_.has_bodies = part_.has_bodies || part.has_bodies;
-    part_.modules += part.modules;
-    part_.segments += part.segments;
-}
-
 TurtlePart Turtle::finish() && {
     part_.start_from_exit = start_from_turtle_;
     part_.exit = state_;
     part_.polygons = std::move(polygons_);
     part_.error = {error_.turn, error_.shift, part_.error.farthest};
     part_.sensitivity = {sensitivity_.turn, sensitivity_.shift, part_.sensitivity.farthest};
+    part_.unit_sensitivity.exit_shift = unit_shift_;
+    part_.exit_width_source = width_source_;
+    part_.exit_width_error = width_error_;
     part_.writes = writes_;
     part_.cut = cut_depth_ > 0;
     part_.modules += modules_;
     part_.segments += segments_;
+    part_.bodies += bodies_;
     return std::move(part_);
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -7,6 +8,7 @@
 
 #include <boost/multiprecision/cpp_int.hpp>
 
+#include "compiler/lower/length_tally.h"
 #include "compiler/lower/model_placer.h"
 #include "compiler/lower/turtle_bodies.h"
 #include "compiler/lower/turtle_command.h"
@@ -24,6 +26,13 @@ struct Displacement {
     double exit_turn = 0;  ///< of the exit's orientation, radians
     double exit_shift = 0; ///< of the exit's position
     double farthest = 0;   ///< of any point
+};
+
+/// Where a width comes from, and so what it is off by if that is off.
+enum class WidthSource : std::uint8_t {
+    start, ///< the width that came in
+    unit,  ///< the text: so many units
+    sizes, ///< parameters that are sizes
 };
 
 /// What a string of modules draws, in the frame of the turtle at its start, and how it leaves the turtle.
@@ -45,10 +54,32 @@ struct TurtlePart {
     double reach = 0;         ///< the turtle goes no farther from the start
     Displacement error;       ///< from directions that were snapped (LsysComposer)
     Displacement sensitivity; ///< to the directions at the start, per radian, to first order
-    bool has_bodies = false;  ///< there are more than segments to see
+    /// To the width that came in, and to the unit, by the logarithms of these (LsysComposer).
+    double width_sensitivity = 0;  ///< of any point
+    Displacement unit_sensitivity; ///< its turn is 0
+    double thickest = 0;           ///< the largest radius that is drawn
+    WidthSource exit_width_source = WidthSource::start;
+    double exit_width_error = 0; ///< of the logarithm
+    bool has_bodies = false;     ///< there are more than segments to see
+    LengthTally lengths;         ///< of the segments, if TurtleContext::tallies
     BigCount modules = 0;
     BigCount segments = 0;
+    BigCount bodies = 0; ///< spheres, discs, models and polygons
 };
+
+/// How a part is placed.
+struct Placing {
+    double snap = 0;       ///< by this angle its directions are off
+    double scale = 1;      ///< it is drawn so many times as large
+    bool absolute = false; ///< the scale is one in units
+    // By so much the logarithms are off of what the part was composed for:
+    double width_error = 0; ///< of the width that came in
+    double unit_error = 0;  ///< of the unit
+    double size_error = 0;  ///< of parameters that reach nothing but widths
+};
+
+/// In one run; each takes 64 bytes.
+inline constexpr std::size_t max_run_items = 32'000'000;
 
 /// What all turtles of a model share.
 struct TurtleContext {
@@ -60,8 +91,15 @@ struct TurtleContext {
     bool limit = false; ///< only proportions count: lines are as thick as their lengths ask, and parts that
                         ///< differ by a rotation in the plane are made equal
     bool open_width = false; ///< how thick lines are is not known yet (turtle_bodies.h)
+    bool tallies = false;    ///< the lengths of segments are tallied
     std::size_t max_instances = 4'000'000; ///< of one part, its polygons' vertices too
 };
+
+/// Sensitivities multiply from turn to turn: without a bound they would come to be infinite, and no number
+/// once they are multiplied by an angle of 0.
+inline double bounded(double sensitivity) {
+    return std::min(sensitivity, 1e100);
+}
 
 /// Follows commands and gathers what they draw.
 class Turtle {
@@ -70,15 +108,16 @@ class Turtle {
     /// instances.
     Turtle(TurtleContext& context, const TurtleState& start, Run* run = nullptr);
 
-    /// Carries out one module; false after an error. What `~` places is given by `model`.
+    /// Carries out one module; false after an error. What `~` places is given by `model`. `absolute`: the
+    /// parameter is a size in units.
     bool run(TurtleCommand command, std::span<const double> parameters,
-             const std::optional<PlacedModel>& model, Span span);
+             const std::optional<PlacedModel>& model, Span span, bool absolute = false);
 
-    /// Places a part whose entry state was state(), but for directions that are off by the angle `snap`:
-    /// draws it, and goes where it leaves the turtle.
-    void append(const TurtlePart& part, Span span, double snap = 0);
+    /// Places a part whose entry state was scaled(state(), 1 / scale), but for what the placing says: draws
+    /// it, and goes where it leaves the turtle.
+    void append(const TurtlePart& part, Span span, const Placing& placing = {});
     /// The same, but the turtle stays as it is: a branch.
-    void append_branch(const TurtlePart& part, Span span, double snap = 0);
+    void append_branch(const TurtlePart& part, Span span, const Placing& placing = {});
 
     /// Notes that what is drawn depends on state().variant.
     void read_variant() { note(reads_variant); }
@@ -91,6 +130,7 @@ class Turtle {
 
     /// The state of a part that begins here.
     TurtleState state() const;
+    double unit() const { return state_.unit; }
     const Affine& start_from_turtle() const { return start_from_turtle_; }
     /// True where modules are cut off: run() and append() pass over them, but watch the brackets.
     bool passing_over() const { return cut_depth_ > 0; }
@@ -114,30 +154,40 @@ class Turtle {
         TurtleState state;
         TurtleStateMask writes;
         Drift error, sensitivity;
+        double unit_shift, width_error;
+        WidthSource width_source;
         std::size_t polygons = 0; ///< open ones
     };
 
     /// Of the turtle, by columns.
     enum class Axis { right, ahead, up };
 
+    bool in_range(TurtleCommand command, std::span<const double> parameters,
+                  const std::optional<PlacedModel>& model, Span span);
     bool pass_over(TurtleCommand command);
-    void move(double length, bool draw, bool record, Span span);
+    void move(std::span<const double> parameters, bool absolute, bool draw, bool record, Span span);
     void turn(Axis axis, double angle_deg);
     void level();
     void bend();
-    bool set_width(std::span<const double> parameters, Span span);
+    bool set_width(std::span<const double> parameters, bool absolute, Span span);
+    void add_ball(TurtleCommand command, std::span<const double> parameters, bool absolute, Span span);
+    void add_model(const PlacedModel& model, bool absolute, Span span);
+    void note_radius(double radius, WidthSource source);
+    void place_errors(const TurtlePart& part, const Placing& placing);
+    void take_exit_width(const TurtlePart& part, const Placing& placing);
     void set_colour(std::span<const double> parameters, int step);
     void cut();
     void open_branch();
     void close_branch();
     void close_polygon(int colour, Span span);
     void record_vertex(Vec3 vertex);
-    void append_polygons(const TurtlePart& part, Span span);
+    void append_polygons(const TurtlePart& part, double scale, Span span);
     void start_cylinder();
     void add_control_point(Span span);
 
     double line_width(double length);
     double read_width() { return note(reads_width), state_.width; }
+    double read_unit() { return note(reads_unit), state_.unit; }
     int read_colour() { return note(reads_colour), state_.colour; }
     void note(TurtleStateMask bits) { part_.reads |= static_cast<TurtleStateMask>(bits & ~writes_); }
 
@@ -151,12 +201,15 @@ class Turtle {
     TurtleStateMask writes_ = 0;
     Drift error_;       ///< from parts before that were snapped
     Drift sensitivity_; ///< per radian of the directions at the start
+    double unit_shift_ = 0; ///< how far the place moves with the logarithm of the unit
+    WidthSource width_source_ = WidthSource::start; ///< of the width now
+    double width_error_ = 0;                        ///< of its logarithm, by parts before
     std::vector<Branch> branches_;
     std::vector<std::vector<Vec3>> polygons_; ///< open ones, by their vertices
     std::size_t cut_depth_ = 0;               ///< 1 + branches opened since the cut; 0: no cut
     std::size_t vertex_count_ = 0;
     std::size_t longest_polygon_ = 0;          ///< by vertices seen here
-    std::uint64_t modules_ = 0, segments_ = 0; ///< of run(); not of parts
+    std::uint64_t modules_ = 0, segments_ = 0, bodies_ = 0; ///< of run(); not of parts
     TurtlePart part_;
 };
 

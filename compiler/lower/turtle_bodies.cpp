@@ -8,6 +8,7 @@
 #include <glm/geometric.hpp>
 
 #include "compiler/lower/triangulate.h"
+#include "compiler/lower/turtle_range.h"
 
 namespace graftal {
 
@@ -35,13 +36,14 @@ void widen(Run& run, double factor) {
     }
 }
 
-std::size_t TurtleBodies::palette_index(int colour) const {
-    const auto size = static_cast<int>(palette_.size());
-    return static_cast<std::size_t>(((colour % size) + size) % size);
+int TurtleBodies::colour_index(double number) const {
+    const auto size = static_cast<double>(palette_.size());
+    const double index = std::fmod(number, size);
+    return static_cast<int>(index < 0 ? index + size : index);
 }
 
 MaterialId TurtleBodies::material(int colour) {
-    const std::size_t index = palette_index(colour);
+    const auto index = static_cast<std::size_t>(colour);
     if (ids_[index]) return *ids_[index];
     const auto known = std::ranges::find(graph_.materials, palette_[index].name, &Material::name);
     ids_[index] = static_cast<MaterialId>(known - graph_.materials.begin());
@@ -58,7 +60,7 @@ Instance TurtleBodies::body(PrimitiveKind kind, const Affine& place, int colour,
 /// `x`: of unit length, where the body's x axis points.
 void TurtleBodies::add_item(PrimitiveKind kind, Vec3 base, Vec3 axis, double radius, Vec3 x, bool ball, int colour,
                             const BodySink& sink) {
-    const std::size_t index = palette_index(colour);
+    const auto index = static_cast<std::size_t>(colour);
     material(colour);
     RunItem item{base, axis, std::abs(radius), 0, kind, ball, static_cast<std::uint16_t>(index)};
     if (!is_sound(item)) return; // too small for numbers
@@ -117,6 +119,7 @@ std::optional<Instance> TurtleBodies::line(Vec3 end, int colour, Span span) {
 
 void TurtleBodies::add_sphere(const Affine& start_from_turtle, double diameter, int colour, Span span,
                               BodySink sink) {
+    diameter = at_least_size(diameter);
     if (diameter == 0) return;
     if (sink.run) {
         const double radius = std::abs(diameter) / 2;
@@ -130,6 +133,7 @@ void TurtleBodies::add_sphere(const Affine& start_from_turtle, double diameter, 
 
 void TurtleBodies::add_disc(const Affine& start_from_turtle, double diameter, int colour, Span span,
                             BodySink sink) {
+    diameter = at_least_size(diameter);
     if (diameter == 0) return;
     const Affine upright = start_from_turtle * Affine::rotate({1, 0, 0}, 90);
     const double thickness = disc_thickness * diameter;
@@ -155,9 +159,11 @@ void TurtleBodies::add_polygon(std::span<const Vec3> corners, int colour, Span s
 
 void TurtleBodies::add_model(const PlacedModel& model, const Affine& start_from_turtle, Span span,
                              BodySink sink) {
-    if (model.scale.x == 0 || model.scale.y == 0) return;
+    const Vec3 scale(at_least_size(model.scale.x), at_least_size(model.scale.y),
+                     at_least_size(model.scale.z));
+    if (scale.x == 0 || scale.y == 0) return;
     sink.instances.push_back(
-        {model.root, start_from_turtle * Affine::scale(model.scale), Tint(), std::nullopt, span});
+        {model.root, start_from_turtle * Affine::scale(scale), Tint(), std::nullopt, span});
 }
 
 } // namespace graftal

@@ -37,6 +37,9 @@ class TurtleBodies {
         ids_.resize(palette_.size());
     }
 
+    /// The place in the palette, from 0 on, of a whole number that is counted around it.
+    int colour_index(double number) const;
+
     /// A cylinder with a ball at its far end, which fills the gap to what goes on from there.
     void add_segment(const Affine& start_from_turtle, double length, double width, int colour, Span span,
                      BodySink sink);
@@ -62,7 +65,6 @@ class TurtleBodies {
     std::vector<std::optional<MaterialId>> run_materials() const { return ids_; }
 
   private:
-    std::size_t palette_index(int colour) const;
     MaterialId material(int colour);
     void add_item(PrimitiveKind kind, Vec3 base, Vec3 axis, double radius, Vec3 x, bool ball, int colour,
                   const BodySink& sink);

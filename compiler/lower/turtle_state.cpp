@@ -22,18 +22,27 @@ std::uint64_t mixed_vector(std::uint64_t hash, const Vec3& v) {
 
 } // namespace
 
+TurtleState scaled(TurtleState state, double factor) {
+    state.width *= factor;
+    state.unit *= factor;
+    state.control_point *= factor;
+    state.control_width *= factor;
+    return state;
+}
+
 bool equal(const TurtleState& a, const TurtleState& b, TurtleStateMask mask) {
     return (!(mask & reads_width) || a.width == b.width) &&
            (!(mask & reads_colour) || a.colour == b.colour) &&
            (!(mask & reads_elasticity) || a.elasticity == b.elasticity) &&
            (!(mask & reads_tropism) || a.tropism == b.tropism) &&
            (!(mask & reads_vertical) || a.vertical == b.vertical) &&
-           (!(mask & reads_polygons) || a.open_polygons == b.open_polygons) &&
+           (!(mask & reads_polygons) || (a.open_polygons > 0) == (b.open_polygons > 0)) &&
+           (!(mask & reads_polygon_count) || a.open_polygons == b.open_polygons) &&
            (!(mask & reads_variant) || a.variant == b.variant) &&
-           (!(mask & reads_birth) || a.birth == b.birth) &&
-           (!(mask & reads_cylinder) ||
-            (a.in_cylinder == b.in_cylinder &&
-             (!a.in_cylinder || (a.control_point == b.control_point && a.control_width == b.control_width))));
+           (!(mask & reads_birth) || a.birth == b.birth) && (!(mask & reads_unit) || a.unit == b.unit) &&
+           (!(mask & reads_cylinder) || a.in_cylinder == b.in_cylinder) &&
+           (!(mask & reads_control) ||
+            (a.control_point == b.control_point && a.control_width == b.control_width));
 }
 
 std::uint64_t hash(const TurtleState& state, TurtleStateMask mask) {
@@ -43,14 +52,14 @@ std::uint64_t hash(const TurtleState& state, TurtleStateMask mask) {
     if (mask & reads_elasticity) hash = mixed_number(hash, state.elasticity);
     if (mask & reads_tropism) hash = mixed_vector(hash, state.tropism);
     if (mask & reads_vertical) hash = mixed_vector(hash, state.vertical);
-    if (mask & reads_polygons) hash = mixed(hash, state.open_polygons);
+    if (mask & reads_polygons) hash = mixed(hash, state.open_polygons > 0);
+    if (mask & reads_polygon_count) hash = mixed(hash, state.open_polygons);
     if (mask & reads_variant) hash = mixed(hash, state.variant);
     if (mask & reads_birth) hash = mixed(hash, state.birth);
-    if (mask & reads_cylinder) {
-        hash = mixed(hash, state.in_cylinder);
-        if (state.in_cylinder)
-            hash = mixed_number(mixed_vector(hash, state.control_point), state.control_width);
-    }
+    if (mask & reads_unit) hash = mixed_number(hash, state.unit);
+    if (mask & reads_cylinder) hash = mixed(hash, state.in_cylinder);
+    if (mask & reads_control)
+        hash = mixed_number(mixed_vector(hash, state.control_point), state.control_width);
     return hash;
 }
 

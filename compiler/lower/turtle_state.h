@@ -12,7 +12,7 @@ namespace graftal {
 /// comes in. Directions are given in the frame that the part starts in.
 struct TurtleState {
     double width = 0;
-    int colour = 0;
+    int colour = 0;        ///< a place in the palette: what is counted goes around it
     double elasticity = 0; ///< of tropism
     Vec3 tropism{0.0};     ///< unit vector that segments bend towards
     Vec3 vertical{0.0};    ///< unit vector that `$` looks at
@@ -22,6 +22,7 @@ struct TurtleState {
     double control_width = 0;
     std::uint32_t variant = 0; ///< of what is random (lsys_composer.h)
     std::uint32_t birth = 0;   ///< the step in which the module came into being
+    double unit = 1;           ///< how long a length of 1 is that the model writes (lsys_composer.h)
 };
 
 /// The members of a TurtleState, as a set.
@@ -32,11 +33,17 @@ enum TurtleStateBit : TurtleStateMask {
     reads_elasticity = 4,
     reads_tropism = 8,
     reads_vertical = 16,
-    reads_polygons = 32,
+    reads_polygons = 32, ///< whether some are open
     reads_variant = 64,
-    reads_cylinder = 128,
+    reads_cylinder = 128, ///< whether there is one
     reads_birth = 256,
+    reads_control = 512, ///< its last control point, with the width there
+    reads_unit = 1024,
+    reads_polygon_count = 2048, ///< how many are open
 };
+
+/// The same in a frame in which all is this many times as long.
+TurtleState scaled(TurtleState state, double factor);
 
 /// True if the members of `mask` are equal.
 bool equal(const TurtleState& a, const TurtleState& b, TurtleStateMask mask);

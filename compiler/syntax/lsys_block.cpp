@@ -254,11 +254,18 @@ class BlockParser {
     void parse_modules(const LsysStatement& statement) {
         TokenStream stream = values(statement);
         do {
-            const std::optional<Token> name = stream.expect_name("the name of a module");
+            const std::optional<Token> name =
+                at_digit(stream) ? std::optional(stream.next()) : stream.expect_name("the name of a module");
             if (!name) return;
             declare({name->text, name->span});
-        } while (stream.accept(",") || stream.at_name());
+        } while (stream.accept(",") || stream.at_name() || at_digit(stream));
         text_.finish(stream);
+    }
+
+    /// A single one is a module's name, like a letter.
+    static bool at_digit(const TokenStream& stream) {
+        const Token& token = stream.peek();
+        return token.kind == TokenKind::number && token.text.size() == 1;
     }
 
     void declare(LsysName name) {

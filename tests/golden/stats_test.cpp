@@ -91,6 +91,28 @@ TEST_F(Stats, NameTheCycleThatDoesNotContract) {
     EXPECT_EQ(graftal("check grow.inst").status, 1);
 }
 
+TEST_F(Stats, OfAWordThatDrawsNothing) {
+    write("word.lsys", "lsys word {\nsteps 3\nmodules A, 4\naxiom A4\nA -> AA\n}\n");
+    const Json json = stats("word.lsys");
+    EXPECT_EQ(json["modules"], "9");
+    EXPECT_EQ(json["segments"], "0");
+    EXPECT_EQ(json["leaves"], "0");
+    EXPECT_EQ(json["objects"], 0);
+    EXPECT_TRUE(json["bounds"].is_null());
+    EXPECT_THAT(graftal("stats word.lsys").err,
+                ::testing::HasSubstr("note: 'lsys word' draws nothing after 3 steps"));
+    EXPECT_EQ(graftal("check word.lsys").status, 1);
+    EXPECT_EQ(graftal("print word.lsys").status, 1);
+}
+
+TEST_F(Stats, DriftIsThatOfAllThatIsDrawn) {
+    for (const char* body : {"~sphere(0.5)", "@O", "@o(2)", "{f.+f.+f.}", "F"}) {
+        write("rare.lsys", std::string("lsys rare {\nsteps 40\naxiom S\nS -> ") + body +
+                               "f S : 0.9\nS -> [+S]S : 0.1\n}\n");
+        EXPECT_GT(stats("rare.lsys")["compiled"]["drift"].get<double>(), 0) << body;
+    }
+}
+
 TEST_F(Stats, CountTheMembersOfFamilies) {
     write("leaf.inst", "inner k = 0 members 5\nobject leaf { sphere scale: 1, lerp(1, 2, k), 1 }\n");
     write("a.lsys", "use leaf = \"leaf.inst\"\nlsys a { steps 0\naxiom ~leaf(0.26)~leaf(0.3)~leaf(1)\n}\n");

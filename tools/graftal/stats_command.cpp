@@ -73,6 +73,7 @@ Json families_json(const Derivation& derivation) {
 
 Json stats_json(const AnalysedModel& model, const SourceMap& sources) {
     const Graph& graph = model.graph;
+    const bool empty = graph.objects.empty();
     const bool converges =
         model.contraction.verdict == Verdict::proved || model.contraction.verdict == Verdict::acyclic;
     Json json = {
@@ -82,9 +83,10 @@ Json stats_json(const AnalysedModel& model, const SourceMap& sources) {
         {"instances", instance_count(graph) + run_part_count(graph)},
         {"written", {{"objects", model.written.objects}, {"instances", model.written.instances}}},
         {"steps", or_null(model.derivation ? model.derivation->steps : model.steps)},
-        {"leaves", or_null(count_leaves(graph, model.components, model.steps))},
+        {"leaves", empty ? Json("0") : or_null(count_leaves(graph, model.components, model.steps))},
         {"contraction", contraction_json(model)},
-        {"dimension", converges ? or_null(similarity_dimension(graph, model.components)) : Json(nullptr)},
+        {"dimension",
+         converges && !empty ? or_null(similarity_dimension(graph, model.components)) : Json(nullptr)},
         {"bounds", bounds_json(model)},
         {"unbounded", !model.bounds.empty() && model.bounds[graph.root].unbounded},
         {"error", model.derivation ? model.derivation->error : 0},
@@ -95,6 +97,7 @@ Json stats_json(const AnalysedModel& model, const SourceMap& sources) {
         json["modules"] = finite ? Json(derivation->modules) : Json(nullptr);
         json["segments"] = finite ? Json(derivation->segments) : Json(nullptr);
         json["compiled"] = {{"way", derivation->way}, {"parts", derivation->parts}};
+        if (derivation->size_step > 0) json["compiled"]["size_step"] = derivation->size_step;
         if (derivation->variants > 1) {
             json["compiled"]["variants"] = derivation->variants;
             json["compiled"]["drift"] = derivation->drift;
@@ -127,8 +130,10 @@ void append_lines(const Json& json, const std::string& prefix, std::string& out)
 
 int run_stats(const Options& options) {
     Compilation compilation;
+    CompileOptions compile = compile_options(options);
+    compile.lower.may_draw_nothing = true;
     const std::optional<AnalysedModel> model =
-        analyse_model(options.operands.front(), compile_options(options), compilation, true);
+        analyse_model(options.operands.front(), compile, compilation, true);
     const int status = conclude(options, compilation);
     if (!model || status != exit_done) return status;
     const Json json = stats_json(*model, compilation.sources);

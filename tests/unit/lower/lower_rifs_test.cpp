@@ -331,6 +331,16 @@ TEST(LowerRifs, mapsThatCannotBe) {
     EXPECT_EQ(complaints("rifs r { map a { scale 1/2 probability -.1 } codes 2d { 1 0 0 1 0 0 1.5 } }"),
               "1:40: a probability must lie between 0 and 1, not -0.1\n"
               "1:69: a probability must lie between 0 and 1, not 1.5\n");
+    const auto hint = [](const std::string& text) {
+        SourceMap sources;
+        Diagnostics diagnostics;
+        lower_text("m.rifs", text, {}, sources, diagnostics);
+        return diagnostics.all().empty() ? "" : diagnostics.all().front().hint;
+    };
+    EXPECT_EQ(
+        hint("rifs r { codes 2d {\n.5 0 0 .5 0 0 1\n.5 0 0 .5 1 0 -.2\n} }"),
+        "it is the last number of row 2: leave the last number out of all rows, and the maps are chosen by "
+        "their size");
     EXPECT_EQ(complaints("rifs r { codes 2d {\n.5 0 0 .5 0 0 .3\n.5 0 0 .5 1 0 .3\n} }"),
               "w 1:6: the probabilities of 'rifs r' add up to 0.6, not 1\n");
     EXPECT_EQ(complaints("rifs r { codes 2d {\n 0 0 0 .5 0 0\n .5 0 0 .5 0 1\n }\n"

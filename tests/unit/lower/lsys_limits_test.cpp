@@ -66,6 +66,54 @@ TEST(LsysLimits, distances) {
     EXPECT_EQ(said(block("steps 300\naxiom F\nF -> FF")), "");
 }
 
+TEST(LsysLimits, sizesBeyondTheRange) {
+    // Each was a broken invariant of the verifier, or of the writer.
+    EXPECT_EQ(said(block("steps 2200\nwidth 0.1\naxiom X\nX -> F!X")), "");
+    EXPECT_EQ(said(block("steps 0\naxiom !(5e-324)F")), "");
+    EXPECT_EQ(said(block("steps 0\naxiom F(5e-324)@O(5e-324)~sphere(5e-324)~cube(5e-324,1)")), "");
+    EXPECT_THAT(said(block("steps 0\nwidth 5e-324\naxiom F")),
+                HasSubstr("m.lsys:3:7: error: 'width' must lie between 1e-100 and 1e+100, not 5e-324"));
+    EXPECT_THAT(said(block("steps 0\nstep 1e101\naxiom F")),
+                HasSubstr("'step' must lie between 1e-100 and 1e+100, not 1e+101"));
+    EXPECT_THAT(said(block("steps 600\naxiom A(1)\nA(w) -> A(w*2)\ninterpret A(w) -> !(w)F")),
+                HasSubstr("m.lsys:5:11: error: a width is at most 1e+100, not "));
+    EXPECT_THAT(said(block("steps 0\naxiom [f(1e101)]F")),
+                HasSubstr("a length is at most 1e+100, not 1e+101"));
+    EXPECT_THAT(said(block("steps 0\naxiom @o(0-1e101)")), HasSubstr("a diameter is at most 1e+100"));
+    EXPECT_THAT(said(block("steps 0\naxiom ~cube(1e200,1e-200)")),
+                HasSubstr("the scale of a model is at most"));
+    EXPECT_THAT(said(block("steps 0\naxiom T(1e308)F~sphere")), HasSubstr("an elasticity is at most 1e+100"));
+}
+
+/// Different parts that a block makes.
+std::size_t parts_of(const std::string& statements) {
+    SourceMap sources;
+    Diagnostics diagnostics;
+    std::optional<Derivation> derivation;
+    lower_text("m.lsys", block(statements), {}, sources, diagnostics, &derivation);
+    EXPECT_TRUE(derivation) << diagnostics.render(sources);
+    return derivation ? derivation->parts : 0;
+}
+
+TEST(LsysLimits, stateOfTheTurtleThatGoesOnForEver) {
+    // Each made a part for every module of the word.
+    EXPECT_LT(parts_of("steps 30\nangle 60\naxiom X\nX -> FX+FX-FX;"), 300u); // colours are counted around
+    EXPECT_LT(parts_of("steps 30\naxiom X\nX -> F;(1e9)X+,FX,"), 300u);
+    EXPECT_LT(parts_of("steps 30\nangle 60\naxiom @GsX@Ge\nX -> FX+FX"), 100u); // far from a control point
+    EXPECT_LT(parts_of("steps 30\nwidth 1\naxiom X\nX -> F!X+F![X]-X"), 3000u); // ever thinner
+    EXPECT_LT(parts_of("steps 300\naxiom X\nX -> [{f+f+f.X}]+X"), 1000u);       // polygons in polygons
+}
+
+TEST(LsysLimits, coloursGoAroundInTheLimit) {
+    EXPECT_EQ(said(block("angle 60\nsteps infinite\naxiom F\nF -> F+;F-F")), "");
+}
+
+TEST(LsysLimits, limitsThatDoNotRepeatAreGivenUpSoon) {
+    // All of its directions were composed, for minutes.
+    EXPECT_THAT(said(block("angle 68\ntropism 1,-1,0\nsteps infinite\naxiom T(0.86)F\nL -> F$F\nF -> F+FL")),
+                HasSubstr("has no limit that was found: its levels do not repeat"));
+}
+
 TEST(LsysLimits, symbols) {
     const std::string names = numbered(66'000, ", ", "m");
     const std::string text =

@@ -92,6 +92,7 @@ INSTANTIATE_TEST_SUITE_P(
              "tropism 0, -1, 0\naxiom !(0.2)T(0.1)A(1)\nA(l) -> "
              "F(l)!;[+(20*l)$A(l*0.9)],@O(0.1)@o(0.3)[/(50)&(30)A(l*0.8)]f(l)",
              6},
+        Case{"OpenWidth", "axiom A(20)\nA(l) -> F(l)![+(l)A(l*1.2)][-(10)A(l*1.1)]@O", 9},
         Case{"Polygons", "width 0.1\naxiom A(1)\nA(l) -> F(l)[{.f(l)+f(l)+f(l).}][+A(l*0.9)][-(31)A(l*0.77)]",
              5},
         Case{"GeneralisedCylinders",
@@ -158,6 +159,31 @@ TEST(LsysRuns, StopAtTooLongAWord) {
                       std::string::npos)
                 << error.what();
         }
+    }
+}
+
+constexpr const char* no_two_alike =
+    "axiom A(1, 1)\nA(l, k) -> F(l)[+(30 + k*0.001)A(l*0.9, 2*k)][-(25 + k*0.001)A(l*0.8, 2*k + 1)]";
+
+TEST(LsysRuns, RoundNoSizes) {
+    const CompiledLsys model(no_two_alike, 15);
+    EXPECT_EQ(run_items(model.graph), 32767u);
+    EXPECT_EQ(model.derivation->size_step, 0);
+    EXPECT_EQ(model.derivation->error, 0);
+}
+
+TEST(LsysRuns, PartsOnceEachOfTooLongAWordAreRefusedSoon) {
+    // It was composed into a million parts first, in 2.3 GB.
+    LowerOptions options;
+    options.max_modules = 20'000;
+    try {
+        const CompiledLsys model(no_two_alike, 30, options);
+        FAIL();
+    } catch (const std::runtime_error& error) {
+        EXPECT_NE(std::string(error.what())
+                      .find("the model has more than 131072 different parts, and hardly any serves twice"),
+                  std::string::npos)
+            << error.what();
     }
 }
 

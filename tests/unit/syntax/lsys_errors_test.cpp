@@ -359,7 +359,7 @@ m.lsys:8:1: note: first given here
     ^~~~~~
 )e"},
         {R"e(modules axiom, a.b, Bud
-modules Bud 3)e",
+modules Bud 33)e",
          R"e(m.lsys:3:9: error: 'axiom' is a word of the language and no module's name
     modules axiom, a.b, Bud
             ^~~~~
@@ -367,14 +367,14 @@ m.lsys:3:16: error: the name of a module has no dots
     modules axiom, a.b, Bud
                    ^~~
 m.lsys:4:9: error: duplicate module 'Bud'
-    modules Bud 3
+    modules Bud 33
             ^~~
 m.lsys:3:21: note: first declared here
     modules axiom, a.b, Bud
                         ^~~
-m.lsys:4:13: error: expected the end of the line, found '3'
-    modules Bud 3
-                ^
+m.lsys:4:13: error: expected the end of the line, found '33'
+    modules Bud 33
+                ^~
     hint: every statement stands on its own line
 )e"},
         {R"e(let a = , b = 2

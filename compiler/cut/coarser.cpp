@@ -4,6 +4,18 @@
 
 namespace graftal {
 
+std::string readable_bytes(double bytes) {
+    const char* const units[] = {"bytes", "KiB", "MiB", "GiB", "TiB", "PiB"};
+    int unit = 0;
+    for (; bytes >= 1024 && unit < 5; ++unit)
+        bytes /= 1024;
+    return fmt::format("{:.3g} {}", bytes, units[unit]);
+}
+
+Limit limit_of_memory(std::uint64_t bytes) {
+    return {readable_bytes(static_cast<double>(bytes)) + " of memory", "--memory"};
+}
+
 Limit limit_of_work(double seconds) {
     return {fmt::format("{:g} seconds of work", seconds), "--work"};
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <string>
 
 #include "compiler/support/diagnostics.h"
@@ -20,6 +21,11 @@ struct Limit {
     std::string need{};    ///< a sentence on what the picture as asked would take, or ""
 };
 
+/// Three digits and a unit.
+std::string readable_bytes(double bytes);
+
+/// The limit of CutOptions::memory_bytes.
+Limit limit_of_memory(std::uint64_t bytes);
 /// The limit of CutOptions::work_seconds.
 Limit limit_of_work(double seconds);
 

@@ -33,14 +33,6 @@ std::string readable_count(double count) {
     return count < 1e15 ? fmt::format("{:.0f}", count) : fmt::format("{:.3g}", count);
 }
 
-std::string readable_bytes(double bytes) {
-    const char* const units[] = {"bytes", "KiB", "MiB", "GiB", "TiB", "PiB"};
-    int unit = 0;
-    for (; bytes >= 1024 && unit < 5; ++unit)
-        bytes /= 1024;
-    return fmt::format("{:.3g} {}", bytes, units[unit]);
-}
-
 class Cutter {
   public:
     Cutter(const Graph& graph, const Components& components, const std::vector<ObjectBounds>& bounds,
@@ -94,8 +86,17 @@ class Cutter {
     /// How much coarser the error is after so many steps.
     static double factor_after(int steps) { return std::pow(coarser, steps); }
 
-    /// The cut with an error that many steps coarser than asked for; nothing if it takes too much memory.
+    /// The cut with an error that many steps coarser than asked for; nothing if it takes too much memory,
+    /// POV-Ray's or our own.
     std::optional<Cut> attempt(int coarser_steps) {
+        try {
+            return attempt_within(coarser_steps);
+        } catch (const std::bad_alloc&) {
+            return std::nullopt;
+        }
+    }
+
+    std::optional<Cut> attempt_within(int coarser_steps) {
         CutOptions options = options_;
         const double error_px = options_.error_px * factor_after(coarser_steps);
         if (options.error_world) options.error_world = *options_.error_world * factor_after(coarser_steps);
@@ -178,7 +179,7 @@ class Cutter {
 
     Limit passed_limit() const {
         if (worked_too_much_) return limit_of_work(options_.work_seconds);
-        return {readable_bytes(static_cast<double>(options_.memory_bytes)) + " of memory", "--memory"};
+        return limit_of_memory(options_.memory_bytes);
     }
 
     double root_pixels_per_unit() const {

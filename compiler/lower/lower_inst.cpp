@@ -319,17 +319,22 @@ class InstLowerer {
         const std::size_t most = lowering_.options.max_objects * max_instances_per_object;
         const ScatterContext context{environment_, graph_.settings, scatter_seed(),
                                      most - std::min(most, instance_count_)};
-        const auto places = lower_scatter(group, context, scratch_);
         const double chance = lower_chance(group);
-        if (!places || !placement || std::ranges::count(masters, std::optional<ObjectId>()) > 0) return;
-        instance_count_ += places->size();
+        const bool good = placement && std::ranges::count(masters, std::optional<ObjectId>()) == 0;
         bool lost = false;
-        for (const ScatteredPlace& place : *places) {
+        const auto begin = [&](std::size_t count) {
+            if (!good) return;
+            instance_count_ += count;
+            object.instances.reserve(object.instances.size() + count);
+        };
+        const auto take = [&](const ScatteredPlace& place) {
+            if (!good) return;
             const Affine map = placement->parent_from_child * place.parent_from_child;
             lost = lost || !is_finite(map) || map.linear == Mat3(0.0);
             object.instances.push_back({*masters[place.master], map, place.tint, placement->material,
                                         group.masters[place.master].span, chance});
-        }
+        };
+        lower_scatter(group, context, {begin, take}, scratch_);
         if (lost) scratch_.error(group.span, "the sizes or places of these leave the range of numbers");
     }
 

@@ -70,21 +70,20 @@ class ScatterLowerer {
     ScatterLowerer(const InstGroup& group, const ScatterContext& context, Diagnostics& diagnostics)
         : group_(group), scatter_(*group.scatter), context_(context), diagnostics_(diagnostics), random_(0) {}
 
-    std::optional<std::vector<ScatteredPlace>> run() {
-        if (!scatter_.complete) return std::nullopt;
+    void run(const ScatterTaker& taker) {
+        if (!scatter_.complete) return;
         const std::size_t errors = diagnostics_.error_count();
         lower_seed();
         lower_numbers();
         lower_weights();
         lower_tints();
         const std::optional<ScatterArea> area = lower_areas();
-        if (diagnostics_.error_count() > errors || !area) return std::nullopt;
+        if (diagnostics_.error_count() > errors || !area) return;
         const std::optional<std::vector<Vec2>> points = choose_points(*area);
-        if (!points) return std::nullopt;
-        std::vector<ScatteredPlace> result;
+        if (!points) return;
+        taker.begin(points->size());
         for (std::size_t i = 0; i < points->size(); ++i)
-            result.push_back(place(i, (*points)[i]));
-        return result;
+            taker.take(place(i, (*points)[i]));
     }
 
   private:
@@ -329,9 +328,9 @@ class ScatterLowerer {
 
 } // namespace
 
-std::optional<std::vector<ScatteredPlace>>
-lower_scatter(const InstGroup& group, const ScatterContext& context, Diagnostics& diagnostics) {
-    return ScatterLowerer(group, context, diagnostics).run();
+void lower_scatter(const InstGroup& group, const ScatterContext& context, const ScatterTaker& taker,
+                   Diagnostics& diagnostics) {
+    ScatterLowerer(group, context, diagnostics).run(taker);
 }
 
 Tint composed(const std::vector<Tint>& tints) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -25,10 +26,16 @@ struct ScatteredPlace {
     Tint tint;
 };
 
+/// Takes what a scatter makes: how many at first, then one after the other, of which there may be millions.
+struct ScatterTaker {
+    std::function<void(std::size_t count)> begin;
+    std::function<void(const ScatteredPlace&)> take;
+};
+
 /// Chooses the places of the group, which must be a scatter, and what stands on each. Errors: numbers out of
-/// range, areas that are empty or unknown, and places that do not fit.
-std::optional<std::vector<ScatteredPlace>>
-lower_scatter(const InstGroup& group, const ScatterContext& context, Diagnostics& diagnostics);
+/// range, areas that are empty or unknown, and places that do not fit; then nothing is taken.
+void lower_scatter(const InstGroup& group, const ScatterContext& context, const ScatterTaker& taker,
+                   Diagnostics& diagnostics);
 
 /// Later tints in front. A single one keeps its bits.
 Tint composed(const std::vector<Tint>& tints);

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <unordered_map>
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -40,23 +39,30 @@ class Draws {
 /// Places by cell, so that those near a place are found at once.
 class NearGrid {
   public:
-    NearGrid(const FlatArea& area, double apart)
-        : low_(area.low), apart_(apart),
-          cell_(std::max(apart, std::max(area.high.x - area.low.x, area.high.y - area.low.y) * 0x1p-20)) {}
+    /// For some `count` places, which may be many more than fit.
+    NearGrid(const FlatArea& area, double apart, std::size_t count) : low_(area.low), apart_(apart) {
+        const Vec2 extent = area.high - area.low;
+        const double most_cells = 4 * static_cast<double>(count) + 4;
+        cell_ = std::max({apart, std::sqrt(extent.x * extent.y / most_cells), extent.x / most_cells,
+                          extent.y / most_cells});
+        columns_ = static_cast<int>(extent.x / cell_) + 1;
+        rows_ = static_cast<int>(extent.y / cell_) + 1;
+        first_.assign(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_), none);
+    }
 
     bool free(Vec2 p) const {
         const glm::ivec2 c = cell_of(p);
-        for (int x = c.x - 1; x <= c.x + 1; ++x)
-            for (int y = c.y - 1; y <= c.y + 1; ++y)
+        for (int y = std::max(c.y - 1, 0); y <= std::min(c.y + 1, rows_ - 1); ++y)
+            for (int x = std::max(c.x - 1, 0); x <= std::min(c.x + 1, columns_ - 1); ++x)
                 if (occupied(x, y, p)) return false;
         return true;
     }
 
     void add(Vec2 p) {
         const glm::ivec2 c = cell_of(p);
-        const auto [first, fresh] = first_.try_emplace(key(c.x, c.y), none);
-        next_.push_back(first->second);
-        first->second = static_cast<std::uint32_t>(points_.size());
+        std::uint32_t& first = first_[index(c.x, c.y)];
+        next_.push_back(first);
+        first = static_cast<std::uint32_t>(points_.size());
         points_.push_back(p);
     }
 
@@ -65,15 +71,15 @@ class NearGrid {
   private:
     static constexpr std::uint32_t none = UINT32_MAX;
 
-    glm::ivec2 cell_of(Vec2 p) const { return glm::ivec2(glm::floor((p - low_) / cell_)); }
-    static std::uint64_t key(int x, int y) {
-        return std::uint64_t{static_cast<std::uint32_t>(x)} << 32 | static_cast<std::uint32_t>(y);
+    glm::ivec2 cell_of(Vec2 p) const {
+        return glm::clamp(glm::ivec2((p - low_) / cell_), glm::ivec2(0), glm::ivec2(columns_ - 1, rows_ - 1));
+    }
+    std::size_t index(int x, int y) const {
+        return static_cast<std::size_t>(y) * static_cast<std::size_t>(columns_) + static_cast<std::size_t>(x);
     }
 
     bool occupied(int x, int y, Vec2 p) const {
-        const auto first = first_.find(key(x, y));
-        if (first == first_.end()) return false;
-        for (std::uint32_t i = first->second; i != none; i = next_[i]) {
+        for (std::uint32_t i = first_[index(x, y)]; i != none; i = next_[i]) {
             const Vec2 d = points_[i] - p;
             if (d.x * d.x + d.y * d.y < apart_ * apart_) return true;
         }
@@ -82,8 +88,9 @@ class NearGrid {
 
     Vec2 low_;
     double apart_, cell_;
-    std::unordered_map<std::uint64_t, std::uint32_t> first_;
-    std::vector<std::uint32_t> next_; ///< the one added to its cell before, by place
+    int columns_, rows_;
+    std::vector<std::uint32_t> first_; ///< place of a cell
+    std::vector<std::uint32_t> next_;  ///< the one added to its cell before, by place
     std::vector<Vec2> points_;
 };
 
@@ -185,7 +192,7 @@ double loose_distance(double area_size, std::size_t count) {
 std::vector<Vec2> poisson_points(const ScatterArea& area, std::size_t count, double apart,
                                  CounterRandom random) {
     Draws draws(random);
-    NearGrid grid(area.within, apart);
+    NearGrid grid(area.within, apart, count);
     throw_darts(area, count, draws, grid);
     if (grid.points().size() < count) fill_gaps(area, count, apart, draws, grid);
     return grid.points();

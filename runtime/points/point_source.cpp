@@ -10,7 +10,7 @@
 #include <tbb/parallel_pipeline.h>
 #include <tbb/task_arena.h>
 
-#include "runtime/threads/worker_threads.h"
+#include "runtime/system/worker_threads.h"
 
 namespace graftal {
 

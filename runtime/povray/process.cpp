@@ -18,6 +18,7 @@
 #include <unistd.h>
 
 #include "runtime/povray/interruption.h"
+#include "runtime/system/memory_limit.h"
 
 extern char** environ;
 
@@ -76,6 +77,7 @@ class ExecTables {
     // A group of its own: Ctrl-C at the terminal reaches us alone, and we pass it on once.
     ::setpgid(0, 0);
     ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+    restore_memory_limit();
     bool ready = ::getppid() == parent;
     for (const int number : {SIGINT, SIGTERM, SIGHUP, SIGPIPE, SIGXFSZ})
         std::signal(number, SIG_DFL);

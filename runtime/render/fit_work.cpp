@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <new>
 #include <utility>
 
 #include "compiler/cut/work.h"
@@ -27,21 +28,22 @@ class Fitting {
         : view_(view), options_(options), samples_(samples_a_pixel * view.size.width * view.size.height),
           limits_of_(limits_of), threads_(threads), cancelled_(cancelled) {}
 
-    FittedModel run(PreparedCut prepared) {
+    FittedModel run(const std::function<PreparedCut()>& prepare) {
         FittedModel fitted;
         CutOptions options = options_;
-        fitted.model = std::make_unique<TraceModel>(std::move(prepared), view_, options);
-        fitted.error_px = options.error_px;
-        fitted.seconds = fitted.whole_seconds = seconds_for(*fitted.model);
+        int steps_left = options.culls() ? most_coarser_steps : 0;
+        while (!make(prepare, options, fitted)) {
+            fitted.out_of_memory = true;
+            if (steps_left == 0) throw std::bad_alloc();
+            make_coarser(options, steps_left);
+        }
+        fitted.whole_seconds = fitted.seconds;
         if (!options.culls()) return fitted;
-        for (int step = 0; step < most_coarser_steps && too_much(fitted.seconds); ++step) {
-            options.error_px *= coarser;
-            if (options.error_world) *options.error_world *= coarser;
-            prepared = std::move(fitted.model->prepared);
+        while (steps_left > 0 && too_much(fitted.seconds)) {
+            make_coarser(options, steps_left);
+            PreparedCut prepared = std::move(fitted.model->prepared);
             fitted.model.reset();
-            fitted.model = std::make_unique<TraceModel>(std::move(prepared), view_, options);
-            fitted.error_px = options.error_px;
-            fitted.seconds = seconds_for(*fitted.model);
+            if (!make([&] { return std::move(prepared); }, options, fitted)) throw std::bad_alloc();
         }
         while (too_much(fitted.seconds) && fitted.model->most_visits > fewest_visits) {
             fitted.model->most_visits /= 2;
@@ -52,6 +54,25 @@ class Fitting {
     }
 
   private:
+    static void make_coarser(CutOptions& options, int& steps_left) {
+        --steps_left;
+        options.error_px *= coarser;
+        if (options.error_world) *options.error_world *= coarser;
+    }
+
+    /// False where it takes more memory than there is.
+    bool make(const std::function<PreparedCut()>& prepare, const CutOptions& options,
+              FittedModel& fitted) const {
+        try {
+            fitted.model = std::make_unique<TraceModel>(prepare(), view_, options);
+        } catch (const std::bad_alloc&) {
+            return false;
+        }
+        fitted.error_px = options.error_px;
+        fitted.seconds = seconds_for(*fitted.model);
+        return true;
+    }
+
     bool too_much(double seconds) const { return seconds > options_.work_seconds && !cancelled_(); }
 
     double seconds_for(const TraceModel& model) const {
@@ -90,10 +111,10 @@ class Fitting {
 
 } // namespace
 
-FittedModel fit_work(PreparedCut prepared, const View& view, const CutOptions& options,
+FittedModel fit_work(const std::function<PreparedCut()>& prepare, const View& view, const CutOptions& options,
                      double samples_a_pixel, const std::function<ShaderLimits(const TraceModel&)>& limits_of,
                      int threads, const std::function<bool()>& cancelled) {
-    return Fitting(view, options, samples_a_pixel, limits_of, threads, cancelled).run(std::move(prepared));
+    return Fitting(view, options, samples_a_pixel, limits_of, threads, cancelled).run(prepare);
 }
 
 } // namespace graftal

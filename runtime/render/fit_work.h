@@ -15,13 +15,16 @@ struct FittedModel {
     double whole_seconds = 0; ///< that it would have taken as it was asked for
     double error_px = 0;      ///< of what is culled now
     bool rays_cut = false;    ///< each ray goes into fewer parts than it wants, too
+    bool out_of_memory = false; ///< it was not for the work alone
 };
 
 /// Tries rays over the whole picture, one for each block of pixels, and predicts what all of them take:
 /// `samples_a_pixel` in the end. Where that is more than the view's work_seconds, first what is culled grows,
-/// then rays are given up sooner. Nothing but counts decides, so the result is the same whatever the machine
-/// and its threads. `cancelled` is asked often; once it says true, any model comes back.
-FittedModel fit_work(PreparedCut prepared, const View& view, const CutOptions& options,
+/// then rays are given up sooner. What is culled grows also where a model takes more memory than there is
+/// (`out_of_memory`); if none fits, std::bad_alloc is thrown. Nothing but counts decides, so the result is
+/// the same whatever the machine and its threads. `cancelled` is asked often; once it says true, any model
+/// comes back.
+FittedModel fit_work(const std::function<PreparedCut()>& prepare, const View& view, const CutOptions& options,
                      double samples_a_pixel, const std::function<ShaderLimits(const TraceModel&)>& limits_of,
                      int threads, const std::function<bool()>& cancelled);
 

@@ -13,7 +13,7 @@
 #include "runtime/render/fit_work.h"
 #include "runtime/render/scene_files.h"
 #include "runtime/render/stopwatch.h"
-#include "runtime/threads/worker_threads.h"
+#include "runtime/system/worker_threads.h"
 
 namespace graftal {
 
@@ -37,6 +37,9 @@ ShaderLimits limits_of(const TraceModel& model) {
 void report_work(const FittedModel& fitted, const ViewedModel& viewed, Diagnostics& diagnostics) {
     const Span& span = viewed.model.graph.objects[viewed.model.graph.root].span;
     const double allowed = viewed.cut.work_seconds;
+    if (fitted.out_of_memory)
+        warn_of_limit(span, limit_of_memory(viewed.cut.memory_bytes), {fitted.error_px, viewed.cut.error_px},
+                      diagnostics);
     if (!(fitted.whole_seconds > allowed)) return;
     if (!viewed.cut.culls()) {
         diagnostics
@@ -205,9 +208,11 @@ std::optional<NativeReport> trace_model(ViewedModel viewed, const NativeOptions&
     double samples_a_pixel = 0;
     for (const Sampling& sampling : samplings(options.render, options.progressive))
         samples_a_pixel += sampling.samples_a_pixel();
-    const FittedModel fitted =
-        fit_work(prepare_cut(analysed.graph, analysed.components, analysed.bounds, viewed.cut), viewed.view, viewed.cut,
-                 samples_a_pixel, limits_of, options.render.threads, [] { return Interruption::signal() != 0; });
+    const auto prepare = [&] {
+        return prepare_cut(analysed.graph, analysed.components, analysed.bounds, viewed.cut);
+    };
+    const FittedModel fitted = fit_work(prepare, viewed.view, viewed.cut, samples_a_pixel, limits_of,
+                                        options.render.threads, [] { return Interruption::signal() != 0; });
     const TraceModel& model = *fitted.model;
     report_work(fitted, viewed, compilation.diagnostics);
     compilation.times.push_back({"prepare", watch.seconds()});

@@ -10,7 +10,7 @@
 #include <tbb/parallel_for.h>
 
 #include "compiler/support/check.h"
-#include "runtime/threads/worker_threads.h"
+#include "runtime/system/worker_threads.h"
 #include "runtime/trace/camera_rays.h"
 #include "runtime/trace/traversal.h"
 

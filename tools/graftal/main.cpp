@@ -1,12 +1,12 @@
 #include <csignal>
 #include <exception>
-#include <new>
 #include <string>
 
 #include <fcntl.h>
 #include <unistd.h>
 
 #include "compiler/support/check.h"
+#include "runtime/system/memory_limit.h"
 #include "tools/graftal/commands.h"
 #include "tools/graftal/options.h"
 #include "tools/graftal/report.h"
@@ -58,11 +58,11 @@ int main(int argc, char** argv) {
     std::signal(SIGXFSZ, SIG_IGN);
     try {
         const graftal::ParsedCommandLine parsed = graftal::parse_command_line(argc, argv);
-        return parsed.options ? run(*parsed.options) : parsed.exit_status;
-    } catch (const graftal::OutOfMemory& fault) {
-        graftal::complain(fault.what());
-    } catch (const std::bad_alloc&) {
-        graftal::complain("out of memory");
+        if (!parsed.options) return parsed.exit_status;
+        graftal::limit_memory(parsed.options->compile.cut.memory_bytes);
+        return run(*parsed.options);
+    } catch (const std::bad_alloc& fault) {
+        return graftal::conclude_out_of_memory(fault);
     } catch (const graftal::BrokenInvariant& fault) {
         graftal::complain(fault.what());
     } catch (const std::exception& fault) {

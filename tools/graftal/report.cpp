@@ -6,10 +6,12 @@
 #include <fmt/format.h>
 
 #include "compiler/graph/print.h"
+#include "compiler/support/check.h"
 #include "compiler/support/file.h"
 #include "compiler/support/printable.h"
 #include "runtime/image/texture.h"
 #include "runtime/povray/interruption.h"
+#include "runtime/system/memory_limit.h"
 #include "tools/graftal/commands.h"
 
 namespace graftal {
@@ -38,6 +40,17 @@ int conclude(const Options& options, const Compilation& compilation) {
     if (Interruption::signal()) return 128 + Interruption::signal();
     if (compilation.diagnostics.has_errors()) return exit_fault;
     return compilation.status.ok() ? exit_done : exit_environment;
+}
+
+int conclude_out_of_memory(const std::bad_alloc& fault) {
+    const auto* known = dynamic_cast<const OutOfMemory*>(&fault);
+    std::string text = known ? known->what() : "out of memory";
+    if (memory_limit() > 0)
+        text += fmt::format(": graftal may take {} MiB itself; allow more with --memory, or draw less with "
+                            "--steps or --error",
+                            memory_limit() >> 20);
+    complain(text);
+    return exit_environment;
 }
 
 int print_output(std::string_view text) {

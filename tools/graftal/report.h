@@ -1,5 +1,6 @@
 #pragma once
 
+#include <new>
 #include <string>
 #include <string_view>
 
@@ -18,6 +19,9 @@ void complain(std::string_view text);
 /// Prints the diagnostics, the failed status if there is one, and the times if they were asked for; returns
 /// the exit status that follows.
 int conclude(const Options& options, const Compilation& compilation);
+
+/// Says that the memory did not suffice, and for what; returns the exit status that follows.
+int conclude_out_of_memory(const std::bad_alloc& fault);
 
 /// Writes to standard output; exit status 0, or 3 with a complaint if it is closed or full.
 int print_output(std::string_view text);

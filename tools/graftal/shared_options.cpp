@@ -92,6 +92,10 @@ void add_common(CLI::App& app, Options& options) {
         [&](std::uint64_t seed) { compile.lower.seed = seed; });
     app.add_flag("--exact", compile.lower.exact,
                  "Derive L-systems module by module, so that a random one is one honest sample");
+    add_value(app, "--memory", "BYTES",
+              "Memory that graftal may take, and POV-Ray after it; suffixes K M G (default 2G)",
+              "a number of bytes such as 512M", parse_bytes,
+              [&](std::uint64_t bytes) { compile.cut.memory_bytes = bytes; });
     add_value(
         app, "--threads", "N", "Threads to use (default: all processors)", "a whole number from 1 to 512",
         [](const std::string& text) { return parse_whole(text, 1, 512); },
@@ -152,9 +156,6 @@ void add_view(CLI::App& app, Options& options) {
         [](const std::string& text) { return parse_at_least(text, 0); },
         [&](double error) { compile.cut.error_world = error; })
         ->excludes(pixels);
-    add_value(app, "--memory", "BYTES", "Memory that POV-Ray may need; suffixes K M G (default 2G)",
-              "a number of bytes such as 512M", parse_bytes,
-              [&](std::uint64_t bytes) { compile.cut.memory_bytes = bytes; });
     add_value(app, "--work", "SECONDS",
               "Work for the picture, about so many seconds of one processor; what takes more is drawn coarser "
               "(default 60)",

@@ -1,4 +1,4 @@
-#include "runtime/threads/worker_threads.h"
+#include "runtime/system/worker_threads.h"
 
 #include <atomic>
 #include <cstdlib>

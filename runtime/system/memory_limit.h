@@ -1,0 +1,21 @@
+#pragma once
+
+#include <cstdint>
+
+namespace graftal {
+
+/// The least that limit_memory() leaves a process.
+inline constexpr std::uint64_t least_memory_bytes = 512u << 20;
+
+/// From now on this process may have so much more memory than it has; asking for more than that throws
+/// std::bad_alloc. The kernel counts (RLIMIT_DATA), so that nothing is left out and nothing is slower.
+void limit_memory(std::uint64_t bytes);
+
+/// What limit_memory() was given last; 0: never called.
+std::uint64_t memory_limit();
+
+/// Gives a child the limit that this process had at first. Only system calls: for the time between fork and
+/// exec.
+void restore_memory_limit();
+
+} // namespace graftal

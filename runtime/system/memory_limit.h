@@ -4,9 +4,6 @@
 
 namespace graftal {
 
-/// The least that limit_memory() leaves a process.
-inline constexpr std::uint64_t least_memory_bytes = 512u << 20;
-
 /// From now on this process may have so much more memory than it has; asking for more than that throws
 /// std::bad_alloc. The kernel counts (RLIMIT_DATA), so that nothing is left out and nothing is slower.
 void limit_memory(std::uint64_t bytes);

@@ -1,4 +1,6 @@
+#include <algorithm>
 #include <csignal>
+#include <cstdint>
 #include <exception>
 #include <string>
 
@@ -12,6 +14,10 @@
 #include "tools/graftal/report.h"
 
 namespace {
+
+/// What graftal has itself, however little POV-Ray may have: a cut for a small scene may take as much as one
+/// for a large scene.
+constexpr std::uint64_t least_memory_bytes = 2ull << 30;
 
 /// A file that we open must never become a standard stream that the caller has closed: such a stream is
 /// opened the wrong way round, so that its use still fails.
@@ -59,7 +65,7 @@ int main(int argc, char** argv) {
     try {
         const graftal::ParsedCommandLine parsed = graftal::parse_command_line(argc, argv);
         if (!parsed.options) return parsed.exit_status;
-        graftal::limit_memory(parsed.options->compile.cut.memory_bytes);
+        graftal::limit_memory(std::max(parsed.options->compile.cut.memory_bytes, least_memory_bytes));
         return run(*parsed.options);
     } catch (const std::bad_alloc& fault) {
         return graftal::conclude_out_of_memory(fault);

@@ -50,7 +50,7 @@ int conclude_out_of_memory(const std::bad_alloc& fault) {
                             "--steps or --error",
                             memory_limit() >> 20);
     complain(text);
-    return exit_environment;
+    return memory_limit() > 0 ? exit_fault : exit_environment;
 }
 
 int print_output(std::string_view text) {

@@ -163,7 +163,8 @@ bool Turtle::in_range(TurtleCommand command, std::span<const double> parameters,
     }
     if (std::abs(size) <= largest_size) return true;
     context_.diagnostics
-        .error(span, fmt::format("{} is at most {}, not {}", name, shortest(largest_size), shortest(size)))
+        .error(span, fmt::format("{} is at most {}, not {}", name, shortest(largest_size),
+                                 std::isfinite(size) ? shortest(size) : "one beyond all numbers"))
         .with_hint("smaller factors or fewer steps keep the model within the range of numbers");
     return false;
 }

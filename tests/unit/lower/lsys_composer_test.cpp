@@ -267,39 +267,42 @@ TEST(LsysComposer, countsAreExactAtAnyDepth) {
     EXPECT_EQ(BigCount(dragon.derivation->modules), 3 * (BigCount(1) << 200) - 2);
 }
 
+/// A composer with all that it needs.
+struct Composing {
+    Composing(const std::string& statements, const LsysLimits& limits)
+        : model(statements), bodies(graph, {Material()}), context{bodies, model.diagnostics()}, pool(graph),
+          composer(model.rewriter(), context, pool, no_models, Variants(0, 1), limits) {}
+
+    testing::LsysModel model;
+    Graph graph;
+    TurtleBodies bodies;
+    TurtleContext context;
+    ObjectPool pool;
+    ModelPlacer no_models;
+    LsysComposer composer;
+};
+
 TEST(LsysComposer, PartsThatTakeTooMuchRoomAreAnError) {
     // A million of them took 3 GB.
-    testing::LsysModel model("axiom A(1, 1)\nA(l, k) -> F(l)[+(k)A(l*0.9, 2*k)][-A(l*0.8, 2*k + 1)]");
-    Graph graph;
-    TurtleBodies bodies(graph, {Material()});
-    TurtleContext context{bodies, model.diagnostics()};
-    ObjectPool pool(graph);
-    const ModelPlacer no_models;
-    LsysComposer composer(model.rewriter(), context, pool, no_models, Variants(0, 1),
-                          {.max_bytes = std::size_t{1} << 20});
-    EXPECT_FALSE(composer.compose(30, {}));
-    EXPECT_TRUE(composer.too_many_parts());
-    EXPECT_LT(composer.part_count(), 2000u);
-    EXPECT_NE(model.errors().find("different parts, and they take over 1 MiB"), std::string::npos)
-        << model.errors();
+    Composing composing("axiom A(1, 1)\nA(l, k) -> F(l)[+(k)A(l*0.9, 2*k)][-A(l*0.8, 2*k + 1)]",
+                        {.max_bytes = std::size_t{1} << 20});
+    EXPECT_FALSE(composing.composer.compose(30, {}));
+    EXPECT_TRUE(composing.composer.too_many_parts());
+    EXPECT_LT(composing.composer.part_count(), 2000u);
+    EXPECT_NE(composing.model.errors().find("different parts, and they take over 1 MiB"), std::string::npos)
+        << composing.model.errors();
 }
 
 /// Composes with directions snapped to an angle; gives the bound and the farthest stroke from its place.
 std::pair<double, double> snapped(const std::string& statements, unsigned steps, double angle_deg) {
-    testing::LsysModel model(statements);
-    Graph graph;
-    TurtleBodies bodies(graph, {Material()});
-    TurtleContext context{bodies, model.diagnostics()};
-    ObjectPool pool(graph);
-    const ModelPlacer no_models;
-    LsysComposer composer(model.rewriter(), context, pool, no_models, Variants(0, 1),
-                          {1'000'000, angle_deg * std::numbers::pi / 180});
+    Composing composing(statements, {.snap_angle = angle_deg * std::numbers::pi / 180});
+    Graph& graph = composing.graph;
     TurtleState start;
     start.width = width;
     start.tropism = Vec3(0, -1, 0);
     start.vertical = Vec3(0, 1, 0);
-    auto part = composer.compose(steps, start);
-    if (!part) throw std::runtime_error(model.errors());
+    auto part = composing.composer.compose(steps, start);
+    if (!part) throw std::runtime_error(composing.model.errors());
     Object root;
     root.name = "root";
     root.instances = part->instances;

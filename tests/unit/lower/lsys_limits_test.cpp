@@ -82,6 +82,7 @@ TEST(LsysLimits, sizesBeyondTheRange) {
     EXPECT_THAT(said(block("steps 0\naxiom @o(0-1e101)")), HasSubstr("a diameter is at most 1e+100"));
     EXPECT_THAT(said(block("steps 0\naxiom ~cube(1e200,1e-200)")),
                 HasSubstr("the scale of a model is at most"));
+    EXPECT_THAT(said(block("steps 0\naxiom ~cube(1e200,1e200)")), HasSubstr("not one beyond all numbers"));
     EXPECT_THAT(said(block("steps 0\naxiom T(1e308)F~sphere")), HasSubstr("an elasticity is at most 1e+100"));
 }
 

@@ -10,8 +10,10 @@
 #include <unordered_map>
 
 #include <glm/common.hpp>
+#include <glm/matrix.hpp>
 
 #include "compiler/analysis/bounding.h"
+#include "compiler/cut/alike_set.h"
 #include "compiler/cut/bake.h"
 #include "compiler/cut/mesh_builder.h"
 #include "compiler/cut/placed_set.h"
@@ -50,6 +52,15 @@ struct TexturedPrimitive {
 using PainterKey = std::tuple<std::uint32_t, std::uint32_t, std::array<double, 3>>;
 /// Meshes with pictures have one painter each, others any number.
 using RequestKey = std::tuple<NodeId, std::uint32_t, std::int32_t, std::int64_t, std::optional<PainterKey>>;
+
+/// Places whose maps differ by no more than this factor in any direction share a mesh whose parts are drawn
+/// wider than they are, so that these come out as wide to within it.
+constexpr double most_width_ratio = 1.3;
+
+bool nearly_as_wide(const Mat3& a, const Mat3& b) {
+    const Vec3 sigma = singular_values(a * glm::inverse(b));
+    return sigma.x <= most_width_ratio && sigma.z >= 1 / most_width_ratio;
+}
 
 std::array<double, 3> as_array(const Rgb& rgb) {
     return {rgb.r, rgb.g, rgb.b};
@@ -103,22 +114,55 @@ class Unfolding {
         const bool cut = is_cut(node, piece.steps, detail, projection_.error_px());
         const PieceKind kind = weights_.normalised(kind_of(cut_, projection_, piece));
         if (cut && detail <= 1) culled_detail = std::max(culled_detail, detail);
-        if (node.sealed) return place_mesh(piece, kind);
-        if (edge_count(node, cut) == 0)
-            return place_primitive(PrimitiveKind::sphere, piece.world_from_node * node.node_from_proxy, piece,
-                                   node.mean.over(piece.inherited));
+        const bool hair = is_hair(piece);
+        const bool bakes = !hair && !choice_.spelt_out;
+        if (node.sealed && bakes && place_mesh(piece, kind)) return;
+        if (edge_count(node, cut) == 0) return place_proxy(node, piece);
         const Weights::Weight weight = weights_.of(kind);
-        if (!node.unbounded && weight.leaves > 1 && (weight.triangles <= choice_.threshold || weights_.is_shell(kind)))
-            return place_mesh(piece, kind);
+        if (!node.unbounded && !piece.faint && !hair && weight.leaves > 1 &&
+            (weight.triangles <= choice_.threshold || weights_.is_shell(kind)) && place_mesh(piece, kind))
+            return;
         bool placeable = true;
         for_each_edge(node, cut, [&](const CutEdge& edge) {
             children.push_back(descend(cut_, piece, edge, cut));
-            const Affine& world_from_child = children.back().world_from_node;
-            placeable = placeable && (edge.similarity || !is_singular(world_from_child, flattest_placement));
+            children.back().faint = piece.faint || (cut && detail <= 1 && node.shadowless);
+            placeable = placeable && (edge.similarity || is_placeable(children.back()));
         });
-        if (placeable || node.unbounded) return;
-        children.clear();
-        place_mesh(piece, kind);
+        if (!placeable && !node.unbounded && bakes && place_mesh(piece, kind)) return children.clear();
+        if (hair || spells_out_specks_)
+            std::erase_if(children, [&](const Piece& child) { return !is_new(child); });
+    }
+
+    /// Whether the piece is drawn wider than it is, and so much flatter than its node that few would share
+    /// its mesh. It is spelt out.
+    bool is_hair(const Piece& piece) const {
+        constexpr double flattest_shape = 1e-2;
+        return cut_.nodes[piece.node].widens && projection_.culls() && !choice_.spelt_out &&
+               is_singular(piece.world_from_node, flattest_shape);
+    }
+
+    /// Whether POV-Ray can place it, or what it becomes.
+    bool is_placeable(const Piece& piece) const {
+        const bool widens = piece.faint || cut_.nodes[piece.node].widens;
+        return (widens && projection_.culls()) || !is_singular(piece.world_from_node, flattest_placement);
+    }
+
+    /// Where parts of sets without area pile up, one of those that lie alike to a quarter of a pixel stands
+    /// for all.
+    bool is_new(const Piece& piece) {
+        if (!cut_.nodes[piece.node].widens) return true;
+        const Ball ball = world_ball(cut_, piece);
+        const double cell = 0.5 * projection_.least_half_width(ball);
+        const double size = std::max(cut_.nodes[piece.node].ball.radius, 1e-280);
+        const Affine cells{(size / cell) * piece.world_from_node.linear, ball.centre / cell};
+        return specks_.insert(alike_kind(piece.node, piece.steps, piece.faint), cells, piece.scale);
+    }
+
+    void place_proxy(const CutNode& node, const Piece& piece) {
+        Piece proxy = piece;
+        proxy.faint = piece.faint || node.shadowless;
+        place_primitive(PrimitiveKind::sphere, piece.world_from_node * node.node_from_proxy, proxy,
+                        node.mean.over(piece.inherited));
     }
 
     void place_primitive(PrimitiveKind kind, const Affine& world_from_primitive, const Piece& piece,
@@ -126,20 +170,28 @@ class Unfolding {
         Placed thing;
         thing.kind = kind;
         const Ball ball = world_ball(cut_, piece);
-        thing.world_from_thing = thickened(
-            world_from_primitive, leaf_thickness(world_from_primitive, projection_.detail_per_unit(ball)));
-        if (!seen_.insert(static_cast<std::uint32_t>(kind), thing.world_from_thing)) return;
+        thing.world_from_thing = drawn(kind, world_from_primitive, piece);
+        const double half_width = projection_.least_half_width(ball);
+        const bool speck =
+            piece.faint && !choice_.spelt_out && norm(world_from_primitive.linear) <= half_width;
+        const Affine mark = speck ? speck_mark(thing.world_from_thing, half_width) : thing.world_from_thing;
+        if (!seen_.insert(static_cast<std::uint32_t>(kind), mark)) return;
         note_finest(ball);
         thing.rgb = piece.tint.over(base);
         thing.material = piece.material;
         placed.push_back(thing);
     }
 
+    Affine drawn(PrimitiveKind kind, const Affine& world_from_primitive, const Piece& piece) const {
+        if (kind == PrimitiveKind::plane) return world_from_primitive;
+        return drawn_leaf(kind, world_from_primitive, piece.faint,
+                          projection_.least_half_width(world_ball(cut_, piece)));
+    }
+
     void place_textured(PrimitiveKind kind, const Piece& piece) {
         const Ball ball = world_ball(cut_, piece);
         Placed thing;
-        thing.world_from_thing = thickened(
-            piece.world_from_node, leaf_thickness(piece.world_from_node, projection_.detail_per_unit(ball)));
+        thing.world_from_thing = drawn(kind, piece.world_from_node, piece);
         const double px = norm(thing.world_from_thing.linear) * projection_.pixels_that_matter(ball);
         const TextureSpace space = texture_space(kind, cut_.materials[*piece.material].around, piece.turns);
         const TexturedPrimitive shape{
@@ -156,23 +208,50 @@ class Unfolding {
         placed.push_back(thing);
     }
 
-    void place_mesh(const Piece& piece, const PieceKind& kind) {
+    /// The mesh that serves the piece, and whether it is a new one. As for parts that are drawn wider than
+    /// they are, one that lies alike; nothing where there are too many that do not, and a mesh would not be
+    /// shared.
+    std::optional<std::pair<std::uint32_t, bool>> request_for(const RequestKey& key, const Piece& piece,
+                                                              bool shell) {
+        std::vector<std::uint32_t>& alike = request_of_[key];
+        Mat3 shape(0.0);
+        if (cut_.nodes[piece.node].widens && projection_.culls() && !shell) {
+            const Affine place = piece.world_from_node * symmetry_.node_from_representative[piece.node];
+            const Mat3 linear = is_singular(place, flattest_leaf) ? Mat3(piece.scale) : place.linear;
+            shape = linear / projection_.least_half_width(world_ball(cut_, piece));
+        }
+        for (const std::uint32_t request : alike)
+            if (shape == Mat3(0.0) || nearly_as_wide(shape, requests[request].half_widths_from_unit))
+                return std::pair(request, false);
+        constexpr std::size_t most_shapes = 8;
+        if (alike.size() == most_shapes) return std::nullopt;
+        alike.push_back(static_cast<std::uint32_t>(requests.size()));
+        requests.emplace_back();
+        requests.back().half_widths_from_unit = shape;
+        return std::pair(alike.back(), true);
+    }
+
+    /// False where the piece is to be spelt out.
+    bool place_mesh(const Piece& piece, const PieceKind& kind) {
         const bool shell = weights_.of(kind).crowded;
         const NodeId representative = shell ? piece.node : symmetry_.representative[piece.node];
         const std::int64_t finish = piece.material ? static_cast<std::int64_t>(*piece.material) : -1;
-        const auto [request, added] =
-            request_of_.emplace(RequestKey{representative, kind.steps, weights_.mesh_bin(kind), finish, own_painter(piece)},
-                                static_cast<std::uint32_t>(requests.size()));
-        if (added) {
-            requests.emplace_back();
-            requests.back().representative = representative;
-            requests.back().steps = kind.steps;
-            requests.back().material = piece.material;
-            requests.back().error_px = projection_.error_px();
-            requests.back().expected_leaves = weights_.of(kind).leaves;
-            requests.back().shell = shell;
+        const RequestKey key{representative, kind.steps, weights_.mesh_bin(kind), finish, own_painter(piece)};
+        const auto found = request_for(key, piece, shell);
+        if (!found) {
+            spells_out_specks_ = true;
+            return false;
         }
-        BakeRequest& bake = requests[request->second];
+        const auto [request, added] = *found;
+        if (added) {
+            requests[request].representative = representative;
+            requests[request].steps = kind.steps;
+            requests[request].material = piece.material;
+            requests[request].error_px = projection_.error_px();
+            requests[request].expected_leaves = weights_.of(kind).leaves;
+            requests[request].shell = shell;
+        }
+        BakeRequest& bake = requests[request];
         const Ball ball = world_ball(cut_, piece);
         bake.detail_per_unit =
             std::max(bake.detail_per_unit, projection_.detail_per_unit(ball) * piece.scale);
@@ -180,21 +259,22 @@ class Unfolding {
             // The eye may lie within its ball, where a unit looks as large as can be.
             const double here = projection_.detail_per_unit({ball.centre, 0}) * piece.scale;
             seen_share_.resize(requests.size());
-            seen_share_[request->second] = std::max(seen_share_[request->second], here);
+            seen_share_[request] = std::max(seen_share_[request], here);
         }
         bake.pixels_per_unit =
             std::max(bake.pixels_per_unit, projection_.pixels_that_matter(ball) * piece.scale);
 
         Placed thing;
-        thing.request = request->second;
+        thing.request = request;
         thing.world_from_thing = piece.world_from_node;
         if (!shell) thing.world_from_thing = thing.world_from_thing * symmetry_.node_from_representative[piece.node];
-        if (!seen_.insert(thing.request + primitive_kind_count, thing.world_from_thing)) return;
+        if (!seen_.insert(thing.request + primitive_kind_count, thing.world_from_thing)) return true;
         note_finest(ball);
-        thing.painter = painter(request->second, shell ? 0 : symmetry_.pair[piece.node], piece.inherited);
+        thing.painter = painter(request, shell ? 0 : symmetry_.pair[piece.node], piece.inherited);
         thing.tint = piece.tint;
         thing.material = piece.material;
         placed.push_back(thing);
+        return true;
     }
 
     bool has_picture(MaterialId material) const { return !cut_.materials[material].texture.empty(); }
@@ -224,8 +304,10 @@ class Unfolding {
     Weights& weights_;
     std::map<TexturedPrimitive, std::uint32_t> textured_of_;
     PlacedSet seen_;
-    std::map<RequestKey, std::uint32_t> request_of_;
     std::vector<double> seen_share_; ///< by request, of shells: the detail of a unit at the middle
+    AlikeSet specks_;                ///< parts of sets without area
+    bool spells_out_specks_ = false;
+    std::map<RequestKey, std::vector<std::uint32_t>> request_of_;
     std::map<PainterKey, std::uint32_t> painter_of_;
 };
 

@@ -8,12 +8,12 @@
 #include <numbers>
 #include <span>
 
-#include <Eigen/SVD>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 
 #include "compiler/cut/leaf_walk.h"
+#include "compiler/cut/least_width.h"
 #include "compiler/cut/mesh_builder.h"
 #include "compiler/cut/placed_set.h"
 #include "compiler/cut/shell.h"
@@ -26,8 +26,6 @@ namespace graftal {
 
 namespace {
 
-/// A map flatter than this is given a thickness before it is drawn.
-constexpr double flattest_leaf = 1e-6;
 /// Room is made for so many leaves beforehand, at most.
 constexpr double most_expected_leaves = 1 << 20;
 constexpr std::size_t fewest_leaves_for_a_thread = 10'000;
@@ -58,14 +56,6 @@ struct Part {
     Mesh mesh;
     std::vector<std::uint32_t> leaf_of_triangle;
 };
-
-/// The same for all crushed leaves in one cell of half a thickness, of one size to a factor of 2.
-Affine crushed_mark(const Affine& place, double thickness) {
-    Affine mark{Mat3(std::exp2(std::round(std::log2(norm(place.linear))))), {}};
-    for (int k = 0; k < 3; ++k)
-        mark.translation[k] = 0.5 * thickness * std::round(place.translation[k] / (0.5 * thickness));
-    return mark;
-}
 
 /// Turns spread evenly over all (M. Alexa, "Super-Fibonacci Spirals", CVPR 2022). The shadows of an
 /// octahedron differ by a quarter with the direction; those of many that are turned in so many ways hardly
@@ -132,12 +122,8 @@ class Baker {
                 baked_.complete = false;
                 return;
             }
-            const double thickness = leaf_thickness(
-                leaf.representative_from_leaf, request_.detail_per_unit, leaf.crushed_length);
-            const Affine place = thickened(leaf.representative_from_leaf, thickness);
-            // What a singular map crushes onto a line or a sheet piles up there: one leaf a thickness will
-            // do.
-            const Affine mark = thickness > 0 ? crushed_mark(place, thickness) : place;
+            Affine mark;
+            const Affine place = drawn(leaf, mark);
             if (!seen.insert(static_cast<std::uint32_t>(leaf.kind), mark)) continue;
             const auto [place_of_part, added] = part_of_.emplace(key_of(leaf), parts_.size());
             if (added) add_part(leaf);
@@ -154,6 +140,27 @@ class Baker {
                 return;
             }
         }
+    }
+
+    /// The place of the leaf, as wide as it is drawn, and what it has in common with those that it stands
+    /// for.
+    Affine drawn(const WalkedLeaf& leaf, Affine& mark) const {
+        const Affine& place = leaf.representative_from_leaf;
+        const bool culls = request_.half_widths_from_unit != Mat3(0.0);
+        if (!leaf.faint && !is_singular(place, flattest_leaf)) return mark = place;
+        const Affine seen_from_unit{culls ? request_.half_widths_from_unit : Mat3(1.0), Vec3(0.0)};
+        const Affine seen = seen_from_unit * place;
+        const double half_width = half_width_needed(seen, leaf.faint, culls ? 1 : 0);
+        if (!(half_width > 0)) return mark = place;
+        const Affine unit_from_seen = inverse(seen_from_unit);
+        const Affine wide = widened(leaf.kind, seen, half_width);
+        // What a singular map crushes onto a line or a sheet piles up there, and specks do: one leaf a cell
+        // will do.
+        const bool speck = leaf.faint && norm(seen.linear) <= half_width;
+        mark = unit_from_seen * wide;
+        if (leaf.crushed || speck)
+            mark = Affine::scale(Vec3(norm(unit_from_seen.linear))) * speck_mark(wide, half_width);
+        return unit_from_seen * wide;
     }
 
     /// Walks once more, for all painters.
@@ -268,30 +275,6 @@ class Baker {
 
 PathTint rounded(const PathTint& tint, double grain) {
     return {glm::round(tint.premultiplied / grain) * grain, std::round(tint.alpha / grain) * grain};
-}
-
-double leaf_thickness(const Affine& place, double detail_per_unit, double crushed_length) {
-    if (!is_singular(place, flattest_leaf)) return 0;
-    constexpr double thinnest_share = 1e-3;
-    if (!std::isfinite(detail_per_unit)) return thinnest_share * norm(place.linear);
-    const double error = 1 / detail_per_unit;
-    return crushed_length > 0 ? std::min(error, thickest_share * crushed_length) : error;
-}
-
-Affine thickened(const Affine& place, double thickness) {
-    if (!(thickness > 0)) return place;
-    Eigen::Matrix3d linear;
-    for (int column = 0; column < 3; ++column)
-        for (int row = 0; row < 3; ++row)
-            linear(row, column) = place.linear[column][row];
-    const Eigen::JacobiSVD<Eigen::Matrix3d> svd(linear, Eigen::ComputeFullU | Eigen::ComputeFullV);
-    const Eigen::Vector3d sigma = svd.singularValues().cwiseMax(thickness);
-    const Eigen::Matrix3d thick = svd.matrixU() * sigma.asDiagonal() * svd.matrixV().transpose();
-    Affine result = place;
-    for (int column = 0; column < 3; ++column)
-        for (int row = 0; row < 3; ++row)
-            result.linear[column][row] = thick(row, column);
-    return result;
 }
 
 Baked bake(const CutGraph& cut, const Symmetry& symmetry, const BakeRequest& request,

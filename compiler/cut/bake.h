@@ -23,6 +23,9 @@ struct BakeRequest {
     double detail_per_unit = 0;         ///< of the representative's frame, where it is seen largest
     double pixels_per_unit = 0;         ///< likewise; decides how finely curved surfaces are meshed
     double error_px = 0;                ///< Projection::error_px()
+    /// Where the representative lies, less the place, in units of the least half width there (least_width.h):
+    /// what is too thin is widened as it is seen. All zero: nothing is culled.
+    Mat3 half_widths_from_unit{0.0};
     std::optional<MaterialId> material; ///< the finish of what names no material
     std::vector<Painter> painters;
     double expected_leaves = 0; ///< about; what is known of it saves memory
@@ -61,20 +64,6 @@ struct Baked {
 /// not drawn at all, nobody can see them. Deterministic.
 Baked bake(const CutGraph& cut, const Symmetry& symmetry, const BakeRequest& request,
            std::size_t max_triangles);
-
-/// The thickness that a leaf needs where a unit has this detail: 0 unless the map is singular or nearly so
-/// (then POV-Ray would lose it); the error allowed to either side, or a thousandth of its size where nothing
-/// is culled. Of what was crushed together with a longer part (`crushed_length` > 0) no more than
-/// `thickest_share` of that: the stems of small fronds are thin.
-double leaf_thickness(const Affine& place, double detail_per_unit, double crushed_length = 0);
-
-inline constexpr double thickest_share = 1.0 / 8;
-
-/// The map with no singular value under `thickness`.
-Affine thickened(const Affine& place, double thickness);
-
-/// Pieces whose map is flatter than this are not placed but baked into a neighbour above.
-inline constexpr double flattest_placement = 1e-5;
 
 /// What curved surfaces may be off by; and where parts of this many pixels are culled: were the surfaces of
 /// those that are left much finer than that, no one would see it, and few would fit the memory.

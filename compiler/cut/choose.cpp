@@ -234,6 +234,7 @@ Piece descend(const CutGraph& cut, const Piece& piece, const CutEdge& edge, bool
     const CutNode& node = cut.nodes[piece.node];
     child.inherited = piece_is_cut && node.terminal ? node.mean.over(piece.inherited) : piece.inherited;
     child.material = piece.material;
+    child.faint = piece.faint;
     if (cut.nodes[edge.child].primitive) child.turns = length_in_turns(edge.node_from_child.linear);
     if (edge.material) {
         child.material = edge.material;

@@ -19,6 +19,7 @@ struct Piece {
     Rgb inherited{0.8};                 ///< the colour that what names no material shows
     std::optional<MaterialId> material; ///< whose finish it shows
     double turns = 1;                   ///< of a primitive: length_in_turns() of its instance
+    bool faint = false;                 ///< it stands for a set without area that was culled
 };
 
 /// Steps down one edge. What stands for a cut node takes on the node's mean colour.
@@ -39,6 +40,7 @@ struct Choice {
     double placements = 0;
     double triangles = 0;
     double leaves = 0;
+    bool spelt_out = false; ///< nothing becomes a mesh, except for shells
 };
 
 /// How many of a cube's 12 triangles stay visible, on average, where cubes are baked together: measured on a

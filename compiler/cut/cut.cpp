@@ -112,6 +112,7 @@ class Cutter {
         const Weights::Weight weight = weights.of(whole);
         if (options.flatten || better_flat(weight, memory)) {
             choice_ = flat_choice(weight);
+            choice_.spelt_out = options.flatten;
             std::optional<Cut> cut = assembled(root, projection, weights, memory);
             if (cut || options.flatten) return cut;
         }

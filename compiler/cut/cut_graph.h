@@ -51,6 +51,7 @@ struct CutNode {
     bool cullable = true;    ///< worth a proxy; a handful of primitives is drawn as it is
     bool textured = false;   ///< some material within it has a picture
     bool shadowless = false; ///< its limit covers no area: it looks the fainter the deeper it is unfolded
+    bool widens = false;     ///< some part of it may be drawn wider than it is (least_width.h)
     Ball ball;
     Affine node_from_proxy; ///< places the unit sphere: the ellipsoid in the node's box, until fit_proxies()
     MeanColour mean;

@@ -168,10 +168,10 @@ Weights::Weight Weights::of_primitive(const PieceKind& asked) const {
 }
 
 /// What a singular map crushes coincides: along a line or in a plane there are about as many different leaves
-/// as it has lengths or squares of half the error (bake.cpp, crushed_mark).
+/// as it has lengths or squares of half the error (least_width.h, speck_mark()).
 void Weights::squeeze(const PieceKind& kind, Weight& weight) const {
     constexpr double leaves_an_error = 4; // in two sizes, halves of the error apart
-    constexpr double fewest_lengths = 1 / thickest_share;
+    constexpr double fewest_lengths = 8;
     if (kind.unit_step == PieceKind::endless_detail || kind.unit_step == PieceKind::tiny) return;
     const double lengths = std::max(fewest_lengths, std::exp2(detail_step(kind) / PieceKind::steps_an_octave));
     const Vec3 sigma = singular_values(cut_.nodes[kind.node].edges.front().node_from_child.linear);

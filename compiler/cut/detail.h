@@ -13,6 +13,7 @@
 
 #include "compiler/cut/cut.h"
 #include "compiler/cut/cut_graph.h"
+#include "compiler/cut/least_width.h"
 #include "compiler/support/id_table.h"
 
 namespace graftal {
@@ -32,6 +33,12 @@ class Projection {
     double detail_per_unit(const Ball& world_ball) const;
     /// No ball within the region has less detail_per_unit().
     double least_detail_per_unit(const Ball& region) const;
+
+    /// Half of what a part measures at least that has no width of its own (least_width.h), in scene units:
+    /// where the error is a length, that length. 0 where nothing is culled.
+    double least_half_width(const Ball& world_ball) const;
+    /// No ball within the region has more.
+    double most_half_width(const Ball& region) const;
 
     /// False if no point of the ball can be in the picture.
     bool sees(const Ball& world_ball) const;
@@ -99,6 +106,20 @@ inline double Projection::detail_per_unit(const Ball& ball) const {
     if (!culls_) return std::numeric_limits<double>::infinity();
     if (error_world_ > 0) return 1 / (error_world_ * (sees(ball) ? 1 : coarser_out_of_sight));
     return pixels_that_matter(ball) / error_px_;
+}
+
+inline double Projection::least_half_width(const Ball& ball) const {
+    if (!culls_) return 0;
+    return error_world_ > 0 ? error_world_ : std::min(least_half_width_px, error_px_) / pixels_per_unit(ball);
+}
+
+inline double Projection::most_half_width(const Ball& region) const {
+    if (!culls_ || error_world_ > 0) return error_world_;
+    const double px = std::min(least_half_width_px, error_px_);
+    if (camera_.orthographic) return px * camera_.width / width_px_;
+    const Vec3 from_eye = region.centre - camera_.location;
+    const double depth = std::max(glm::dot(from_eye, camera_.direction), 0.5 * glm::length(from_eye));
+    return px * std::max(depth + region.radius, near_) / pixels_per_tangent_;
 }
 
 /// A node with the levels it has left and the detail of a unit of its frame: what is baked as one mesh.

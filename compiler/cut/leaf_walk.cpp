@@ -7,11 +7,19 @@
 
 namespace graftal {
 
+namespace {
+
+/// Parts are compared after so many visits, where most walks are at their end.
+constexpr std::uint64_t most_patience = 4096;
+constexpr double cell_half_widths = 0.5;
+
+} // namespace
+
 LeafWalk::LeafWalk(const CutGraph& cut, const Symmetry& symmetry, const BakeRequest& request,
                    std::span<const Painter> painters)
-    : cut_(cut), symmetry_(symmetry),
-      detail_per_unit_(request.detail_per_unit), error_px_(request.error_px), limit_normals_(request.limit_normals),
-      visit_{request.representative, request.steps, {}, 1, 0} {
+    : cut_(cut), symmetry_(symmetry), detail_per_unit_(request.detail_per_unit), error_px_(request.error_px),
+      limit_normals_(request.limit_normals), visit_{request.representative, request.steps, {}, 1, 0},
+      cells_from_unit_(request.half_widths_from_unit / cell_half_widths) {
     for (const Painter& painter : painters)
         paints_.push_back({painter.pair, {}, painter.inherited, request.material});
     stack_.push_back(visit_);
@@ -24,7 +32,8 @@ bool LeafWalk::next(WalkedLeaf& leaf) {
         const CutNode& shape = cut_.nodes[visit_.shape];
         leaf.material = paints_.front().material;
         leaf.culled_detail = visit_.culled_detail;
-        leaf.crushed_length = visit_.crushed_length;
+        leaf.crushed = visit_.crushed;
+        leaf.faint = visit_.faint || (!shape.primitive && shape.shadowless);
         leaf.colours.clear();
         leaf.normals = {};
         leaf.proxy = !shape.primitive;
@@ -72,7 +81,7 @@ void LeafWalk::enter_ball(const CutNode& shape) {
 
 NormalField LeafWalk::normals() const {
     NormalField field;
-    if (visit_.crushed_length > 0) return field;
+    if (visit_.crushed) return field;
     for (std::uint32_t level = 1; level <= limit_normal_levels && level <= visit_.depth; ++level) {
         const Ball& ball = balls_[visit_.depth - level];
         field.add(static_cast<int>(level), ball.centre, ball.radius);
@@ -85,6 +94,10 @@ void LeafWalk::push_children(bool is_cut, double detail) {
     const auto& edges = followed_edges(cut_.nodes[visit_.shape], is_cut);
     for (std::size_t i = edges.size(); i-- > 0;) {
         fill_child(edges[i], is_cut, detail, stack_.emplace_back());
+        if (!is_new(stack_.back())) {
+            stack_.pop_back();
+            continue;
+        }
         for (const Paint& paint : paints_)
             fill_child(paint, i, is_cut, paint_stack_.emplace_back());
     }
@@ -110,6 +123,17 @@ void LeafWalk::push_items() {
     }
 }
 
+/// False for what lies as another part did, as nearly as can be seen.
+bool LeafWalk::is_new(const Visit& child) {
+    if (visits_ < most_patience || cells_from_unit_ == Mat3(0.0) || !cut_.nodes[child.shape].widens)
+        return true;
+    const double size = std::max(cut_.nodes[child.shape].ball.radius, 1e-280);
+    const Vec3 centre = child.representative_from_node(cut_.nodes[child.shape].ball.centre);
+    const Affine cells{size * (cells_from_unit_ * child.representative_from_node.linear),
+                       cells_from_unit_ * centre};
+    return met_.insert(alike_kind(child.shape, child.steps, child.faint), cells, child.scale);
+}
+
 void LeafWalk::fill_child(const CutEdge& edge, bool is_cut, double detail, Visit& child) const {
     child.shape = edge.child;
     child.steps = steps_after(visit_.steps, edge);
@@ -118,9 +142,8 @@ void LeafWalk::fill_child(const CutEdge& edge, bool is_cut, double detail, Visit
     child.depth = visit_.depth;
     if (cut_.nodes[edge.child].primitive) child.turns = length_in_turns(edge.node_from_child.linear);
     child.culled_detail = is_cut && detail <= 1 ? detail : visit_.culled_detail;
-    child.crushed_length = visit_.crushed_length;
-    if (child.crushed_length == 0 && cut_.nodes[visit_.shape].sealed)
-        child.crushed_length = 2 * child.scale * cut_.nodes[edge.child].ball.radius;
+    child.crushed = visit_.crushed || cut_.nodes[visit_.shape].sealed;
+    child.faint = visit_.faint || (is_cut && detail <= 1 && cut_.nodes[visit_.shape].shadowless);
 }
 
 void LeafWalk::fill_child(const Paint& paint, std::size_t edge, bool is_cut, Paint& child) const {

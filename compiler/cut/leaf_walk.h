@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "compiler/cut/alike_set.h"
 #include "compiler/cut/bake.h"
 #include "compiler/cut/limit_normal.h"
 
@@ -17,7 +18,8 @@ struct WalkedLeaf {
     std::vector<Rgb> colours;           ///< by painter; opaque, all tints of the walk in front
     std::optional<MaterialId> material; ///< by the first painter
     double culled_detail = 0;           ///< > 0: it stands for a part of that detail
-    double crushed_length = 0;          ///< > 0: of the part that a singular map crushed, and it with it
+    bool crushed = false;               ///< by a singular map
+    bool faint = false;                 ///< of a set without area (least_width.h)
     NormalField normals;                ///< of a proxy, in the representative's frame, if asked for
     bool proxy = false;
     PathTint tint;                      ///< all tints of the walk, by the first painter
@@ -25,7 +27,8 @@ struct WalkedLeaf {
 };
 
 /// Visits the leaves of a baked subtree in one fixed order: geometry as the representative has it, colours as
-/// the painters' nodes have them. The order does not depend on the painters.
+/// the painters' nodes have them. The order does not depend on the painters. Where parts of sets without area
+/// pile up, one of those that lie alike to a quarter of a pixel stands for all.
 class LeafWalk {
   public:
     /// `painters`: of the request, the first or all.
@@ -44,7 +47,8 @@ class LeafWalk {
         Affine representative_from_node;
         double scale = 1; ///< norm of the linear part
         double culled_detail = 0;
-        double crushed_length = 0;
+        bool crushed = false;
+        bool faint = false;
         std::uint32_t depth = 0; ///< unending nodes above it
         double turns = 1;        ///< of a primitive
     };
@@ -62,6 +66,7 @@ class LeafWalk {
     NormalField normals() const;
     void push_children(bool is_cut, double detail);
     void push_items();
+    bool is_new(const Visit& child);
     // Where they lie: to build them elsewhere and to copy them would take twice the time.
     void fill_child(const CutEdge& edge, bool is_cut, double detail, Visit& child) const;
     void fill_child(const Paint& paint, std::size_t edge, bool is_cut, Paint& child) const;
@@ -77,6 +82,8 @@ class LeafWalk {
     std::vector<Ball> balls_;        ///< of the unending nodes above it, from the root on
     std::vector<Paint> paints_;
     std::uint64_t visits_ = 0;
+    Mat3 cells_from_unit_; ///< within which parts lie alike; all zero: none do
+    AlikeSet met_;
 };
 
 } // namespace graftal

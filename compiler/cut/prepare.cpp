@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <utility>
+#include <vector>
 
 #include "compiler/cut/coverage.h"
 #include "compiler/support/check.h"
@@ -28,6 +29,29 @@ void use_up_levels(CutGraph& cut, const std::vector<unsigned>& root_levels) {
     cut.nodes.push_back(std::move(root));
 }
 
+/// Parts that are drawn wider than they are make what holds them wider, too.
+void mark_wide(CutGraph& cut) {
+    std::vector<std::vector<NodeId>> users(cut.nodes.size());
+    std::vector<NodeId> wide;
+    for (NodeId id = 0; id < cut.nodes.size(); ++id) {
+        CutNode& node = cut.nodes[id];
+        for (const std::vector<CutEdge>* edges : {&node.edges, &node.stop_edges})
+            for (const CutEdge& edge : *edges)
+                users[edge.child].push_back(id);
+        node.widens = node.sealed || node.shadowless;
+        if (node.widens) wide.push_back(id);
+    }
+    while (!wide.empty()) {
+        const NodeId id = wide.back();
+        wide.pop_back();
+        for (const NodeId user : users[id]) {
+            if (cut.nodes[user].widens) continue;
+            cut.nodes[user].widens = true;
+            wide.push_back(user);
+        }
+    }
+}
+
 } // namespace
 
 PreparedCut prepare_cut(const Graph& graph, const Components& components,
@@ -40,6 +64,8 @@ PreparedCut prepare_cut(const Graph& graph, const Components& components,
     prepared.symmetry = find_symmetry(cut);
     if (options.culls() || (components.unending[graph.root] && options.steps))
         fit_proxies(cut, prepared.symmetry);
+    mark_wide(cut);
+    prepared.bounds = bounds[graph.root].box;
     if (options.steps) prepared.root_steps = *options.steps + (options.root_levels.empty() ? 0 : 1);
     return prepared;
 }
@@ -55,18 +81,18 @@ bool refuse_endless(const Graph& graph, const Components& components, const CutO
 }
 
 void note_shadowless(const CutGraph& cut, const Graph& graph, Diagnostics& diagnostics) {
-    const auto wants_leaf = [](const CutNode& node) {
-        return node.shadowless && node.cullable && node.stop_edges.empty() && !is_flat(node);
+    const auto widens_proxy = [&](const CutEdge& edge) { // the root itself is always drawn whole
+        const CutNode& node = cut.nodes[edge.child];
+        return node.shadowless && node.cullable && !node.terminal;
     };
-    bool wanted = false;
-    for (const CutNode& user : cut.nodes) // the root itself is always drawn whole
-        for (const CutEdge& edge : user.edges)
-            wanted = wanted || wants_leaf(cut.nodes[edge.child]);
-    if (!wanted) return;
+    if (std::ranges::none_of(
+            cut.nodes, [&](const CutNode& user) { return std::ranges::any_of(user.edges, widens_proxy); }))
+        return;
     diagnostics
-        .note(graph.objects[graph.root].span, "some set here has no area (its dimension is at most 2): "
-                                              "how dense it looks depends on --error")
-        .with_hint("name what its smallest parts look like: a 'terminal'");
+        .note(graph.objects[graph.root].span, "some set here has no area (its dimension is at most 2): its "
+                                              "smallest parts are drawn a pixel wide")
+        .with_hint(
+            "name what they look like, and up to how many pixels they look so: 'terminal sphere below 4'");
 }
 
 double nearest_to_eye(const CutGraph& cut) {

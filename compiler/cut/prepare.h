@@ -12,6 +12,7 @@ struct PreparedCut {
     CutGraph cut;
     Symmetry symmetry;
     std::uint32_t root_steps = unlimited_steps; ///< levels that the root has
+    Box bounds;                                 ///< of the limit set
 };
 
 /// Requires what cut_graph() requires. O(graph).
@@ -22,8 +23,8 @@ PreparedCut prepare_cut(const Graph& graph, const Components& components,
 bool refuse_endless(const Graph& graph, const Components& components, const CutOptions& options,
                     Diagnostics& diagnostics);
 
-/// Notes that how faint a set without area looks depends on how large its parts are drawn. For models of which
-/// something is culled. Flat figures and curves are drawn as one wants them, in lines as wide as the error.
+/// Notes that parts of a set without area are drawn wider than they are (least_width.h), where the model does
+/// not say what they look like, and how it can. For models of which something is culled.
 void note_shadowless(const CutGraph& cut, const Graph& graph, Diagnostics& diagnostics);
 
 /// The least distance from the eye that counts (Projection), so that the eye may lie on the model.

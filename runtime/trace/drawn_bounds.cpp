@@ -6,7 +6,6 @@
 
 #include "compiler/analysis/bounding.h"
 #include "compiler/analysis/contraction.h"
-#include "compiler/cut/bake.h"
 #include "compiler/cut/run_cells.h"
 #include "compiler/graph/components.h"
 
@@ -74,7 +73,6 @@ class Bounder {
                 for (const CutEdge& edge : *edges)
                     if (needs_object(edge)) add_object(edge);
         bound();
-        if (add_thickness()) bound();
         DrawnBounds result;
         std::size_t next = nodes + 2;
         for (const CutNode& node : cut_.nodes) {
@@ -118,25 +116,6 @@ class Bounder {
                     transformed(instances[i].parent_from_child, bounds[instances[i].master].box));
         }
         return bounds;
-    }
-
-    /// What is crushed is drawn thicker than it is: a box about it stands for that. True if there is any.
-    bool add_thickness() {
-        bool any = false;
-        for (NodeId id = 0; id < cut_.nodes.size(); ++id) {
-            if (!cut_.nodes[id].sealed) continue;
-            const CutEdge& edge = cut_.nodes[id].edges.front();
-            const Box crushed = transformed(edge.node_from_child, bounds_[edge.child].box);
-            if (crushed.empty()) continue;
-            const double thickness = thickest_share * 2 * edge.stretch * cut_.nodes[edge.child].ball.radius;
-            Instance about;
-            about.master = static_cast<ObjectId>(cut_.nodes.size() + 1);
-            about.parent_from_child = Affine::translate(crushed.centre()) *
-                                      Affine::scale(0.5 * crushed.size() + Vec3(thickness));
-            graph_.objects[id].instances.push_back(about);
-            any = true;
-        }
-        return any;
     }
 
     bool needs_object(const CutEdge& edge) const {

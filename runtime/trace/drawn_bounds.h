@@ -8,7 +8,8 @@
 namespace graftal {
 
 /// Boxes of all that may be drawn of a prepared graph, however deep it is cut: besides the limit set, the
-/// terminals and the proxies.
+/// terminals and the proxies. Without what thin parts are widened by (least_width.h): that depends on the
+/// view.
 struct DrawnBounds {
     std::vector<Box> node;                   ///< in the node's frame; empty: nothing but planes
     std::vector<std::vector<Box>> edge;      ///< by node and edge: the child, in the node's frame

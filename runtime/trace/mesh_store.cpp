@@ -12,25 +12,18 @@ namespace graftal {
 
 namespace {
 
-/// More than fits on any picture: what is crushed coincides, and is drawn once.
-constexpr std::size_t most_triangles = 2'000'000;
-constexpr std::size_t most_shell_triangles = 6'000'000;
-/// Thinner than this share of its diameter no part is drawn: what is crushed has to be unfolded first, and
-/// coincides only then.
-constexpr double thinnest_share = 1.0 / 512;
-/// What is crushed may coincide so often that the walk through it would not end in hours.
-constexpr std::uint64_t most_visits = 500'000;
+constexpr std::size_t most_triangles = 6'000'000;
 constexpr int endless = 1 << 20;
 /// How many octaves of sizes share a mesh.
-constexpr double detail_step = 0.5, pixel_step = 1;
+constexpr double octaves = 0.5;
 
 /// Rounded up to steps.
-int steps_of(double value, double octaves) {
+int steps_of(double value) {
     if (!std::isfinite(value)) return endless;
     return static_cast<int>(std::ceil(std::log2(std::max(value, 1e-300)) / octaves));
 }
 
-double value_of(int steps, double octaves) {
+double value_of(int steps) {
     return steps == endless ? INFINITY : std::exp2(steps * octaves);
 }
 
@@ -96,33 +89,16 @@ bool intersect(const TraceMesh::Triangle& triangle, const Ray& ray, const RayRan
     return true;
 }
 
-MeshStore::MeshStore(const PreparedCut& prepared, double error_px)
-    : prepared_(prepared), error_px_(error_px) {}
-
-double MeshStore::finest_detail(NodeId node) const {
-    return 1 / (2 * prepared_.cut.nodes[node].ball.radius * thinnest_share);
-}
+MeshStore::MeshStore(const PreparedCut& prepared) : prepared_(prepared) {}
 
 MeshStore::Key MeshStore::key(NodeId node, const Affine& graph_from_frame, std::uint32_t steps,
-                              double detail_per_unit, double pixels_per_unit) const {
+                              double detail_per_unit) const {
     // From the units of the frame to those of the graph.
-    const double unit = graph_from_frame.linear[0][0];
-    if (std::isfinite(detail_per_unit)) {
-        const double finest = unit * finest_detail(node);
-        detail_per_unit = std::min(detail_per_unit, finest);
-        pixels_per_unit = std::min(pixels_per_unit, finest);
-    }
     return {node, prepared_.cut.nodes[node].unending ? steps : unlimited_steps,
-            steps_of(detail_per_unit / unit, detail_step), steps_of(pixels_per_unit / unit, pixel_step)};
+            steps_of(detail_per_unit / graph_from_frame.linear[0][0])};
 }
 
-MeshStore::Key MeshStore::shell_key(NodeId node, const Affine& graph_from_frame, std::uint32_t steps,
-                                    double detail_per_unit) const {
-    return {node, prepared_.cut.nodes[node].unending ? steps : unlimited_steps,
-            steps_of(detail_per_unit / graph_from_frame.linear[0][0], detail_step), 0, true};
-}
-
-void MeshStore::note_shell(const TraceMesh& mesh, double detail_per_unit, double here) {
+void MeshStore::note(const TraceMesh& mesh, double detail_per_unit, double here) {
     const double seen = mesh.culled_detail * std::min(1.0, here / detail_per_unit);
     double before = coarsest_shell_;
     while (before < seen && !coarsest_shell_.compare_exchange_weak(before, seen)) {
@@ -134,32 +110,8 @@ const TraceMesh& MeshStore::mesh(const Key& key, const Affine& graph_from_frame)
     Entry& entry = meshes_[key];
     lock.unlock();
     // Others may bake other meshes meanwhile.
-    std::call_once(entry.baked, [&] {
-        entry.mesh = key.shell ? bake_shell(key, graph_from_frame) : bake_mesh(key, graph_from_frame);
-    });
+    std::call_once(entry.baked, [&] { entry.mesh = bake_shell(key, graph_from_frame); });
     return *entry.mesh;
-}
-
-std::unique_ptr<TraceMesh> MeshStore::bake_mesh(const Key& key, const Affine& graph_from_frame) const {
-    const Symmetry& symmetry = prepared_.symmetry;
-    BakeRequest request;
-    request.representative = symmetry.representative[key.node];
-    request.steps = key.steps;
-    request.detail_per_unit = value_of(key.detail, detail_step);
-    request.pixels_per_unit = value_of(key.pixels, pixel_step);
-    request.error_px = error_px_;
-    const std::uint32_t pair = symmetry.pair[key.node];
-    request.painters = {{pair, Rgb(0.0)}, {pair, Rgb(1.0)}};
-    request.pictures = false; // what is crushed is a pixel or two wide
-    request.most_visits = most_visits;
-    Baked baked = bake(prepared_.cut, symmetry, request, most_triangles);
-    // Coarser, until it fits: much coarser soon, for sizes beyond all bounds are not what they say.
-    for (double factor = 0.5; !baked.complete && request.detail_per_unit > 0; factor *= factor) {
-        request.detail_per_unit = factor * std::min(request.detail_per_unit, finest_detail(key.node));
-        request.most_visits /= 2;
-        baked = bake(prepared_.cut, symmetry, request, most_triangles);
-    }
-    return trace_mesh(baked, inverse(graph_from_frame) * symmetry.node_from_representative[key.node]);
 }
 
 std::unique_ptr<TraceMesh> MeshStore::bake_shell(const Key& key, const Affine& graph_from_frame) const {
@@ -167,9 +119,9 @@ std::unique_ptr<TraceMesh> MeshStore::bake_shell(const Key& key, const Affine& g
     request.shell = true;
     request.representative = key.node;
     request.steps = key.steps;
-    request.detail_per_unit = value_of(key.detail, detail_step);
+    request.detail_per_unit = value_of(key.detail);
     request.painters = {{0, Rgb(0.0)}, {0, Rgb(1.0)}};
-    const Baked baked = bake(prepared_.cut, prepared_.symmetry, request, most_shell_triangles);
+    const Baked baked = bake(prepared_.cut, prepared_.symmetry, request, most_triangles);
     shell_work_ += baked.shell_work;
     return trace_mesh(baked, inverse(graph_from_frame));
 }

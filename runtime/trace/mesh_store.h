@@ -51,37 +51,30 @@ struct TraceMesh {
 /// "Fast, Minimum Storage Ray/Triangle Intersection", 1997).
 bool intersect(const TraceMesh::Triangle& triangle, const Ray& ray, const RayRange& range, PrimitiveHit& hit);
 
-/// Bakes what rays cannot be taken into, where they come to it: maps that crush space have no inverse. Baked
-/// as the cut bakes it (bake.h), once for each half octave of sizes. Used by many threads.
+/// Bakes the shells (cut/shell.h) of what rays would not come through, where they come to it, once for each
+/// half octave of sizes. Used by many threads.
 class MeshStore {
   public:
     /// Keeps a reference.
-    /// `error_px`: as Projection::error_px().
-    MeshStore(const PreparedCut& prepared, double error_px);
+    explicit MeshStore(const PreparedCut& prepared);
 
     /// What one mesh serves.
     struct Key {
         NodeId node = 0;
         std::uint32_t steps = 0;
-        int detail = 0; ///< in steps, on a logarithmic scale,
-        int pixels = 0; ///< as these
-        bool shell = false; ///< a shell (cut/shell.h)
+        int detail = 0; ///< in steps, on a logarithmic scale
         auto operator<=>(const Key&) const = default;
     };
 
-    /// The shell of a crowded node where a unit of its frame has this detail.
-    Key shell_key(NodeId node, const Affine& graph_from_frame, std::uint32_t steps, double detail_per_unit) const;
+    /// The shell of a crowded node where a unit of its frame has this detail (detail.h).
+    Key key(NodeId node, const Affine& graph_from_frame, std::uint32_t steps, double detail_per_unit) const;
     /// That a shell was seen; `here`: the detail of a unit in its middle.
-    void note_shell(const TraceMesh& mesh, double detail_per_unit, double here);
+    void note(const TraceMesh& mesh, double detail_per_unit, double here);
 
     /// The largest detail of a cell of the shells so far, 0 if there are none: more than 1 where they had to be coarser.
     double coarsest_shell() const { return coarsest_shell_; }
     /// Points moved for shells so far.
     std::uint64_t shell_work() const { return shell_work_; }
-
-    /// The node as it is drawn where a unit of its frame has this detail and so many pixels (detail.h).
-    Key key(NodeId node, const Affine& graph_from_frame, std::uint32_t steps, double detail_per_unit,
-            double pixels_per_unit) const;
 
     /// The node in its frame. The same node, with as many steps, is always asked for in the same frame. The
     /// reference stays.
@@ -93,13 +86,9 @@ class MeshStore {
         std::unique_ptr<TraceMesh> mesh;
     };
 
-    /// Of a unit of the node: where it is drawn no finer.
-    double finest_detail(NodeId node) const;
-    std::unique_ptr<TraceMesh> bake_mesh(const Key& key, const Affine& graph_from_frame) const;
     std::unique_ptr<TraceMesh> bake_shell(const Key& key, const Affine& graph_from_frame) const;
 
     const PreparedCut& prepared_;
-    const double error_px_;
     std::mutex mutex_;
     std::map<Key, Entry> meshes_;
     std::atomic<double> coarsest_shell_ = 0;

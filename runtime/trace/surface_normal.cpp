@@ -1,5 +1,7 @@
 #include "runtime/trace/surface_normal.h"
 
+#include <vector>
+
 #include <glm/geometric.hpp>
 
 #include "compiler/cut/limit_normal.h"
@@ -39,6 +41,26 @@ Vec3 limit_normal(const TraceModel& model, std::span<const std::uint32_t> path, 
         sum += weight / parent.ball_radius * (at - vec3_of(parent.ball_centre));
     }
     return glm::normalize(sum);
+}
+
+Vec3 limit_normal_in_world(const TraceModel& model, std::span<const std::uint32_t> path, Vec3 normal,
+                           Vec3 point) {
+    std::vector<Ball> balls; // of the unending nodes above the proxy
+    Affine world_from_node;
+    for (std::size_t i = 0; i + 1 < path.size(); ++i) {
+        const TraceEdge& edge = model.edges[path[i] & ~from_cut];
+        world_from_node = world_from_node * edge.parent_from_child.affine();
+        const TraceNode& node = model.nodes[edge.child];
+        if (node.unending)
+            balls.push_back({world_from_node(vec3_of(node.ball_centre)),
+                             norm(world_from_node.linear) * node.ball_radius});
+    }
+    NormalField field;
+    for (int level = 1; level <= limit_normal_levels && !balls.empty(); ++level, balls.pop_back())
+        field.add(level, balls.back().centre, balls.back().radius);
+    const Vec3 sum = normal + field.at(point);
+    const double length = glm::length(sum);
+    return length > 1e-6 ? sum / length : normal;
 }
 
 } // namespace graftal

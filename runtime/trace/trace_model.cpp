@@ -7,6 +7,7 @@
 #include <set>
 #include <utility>
 
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
 #include "compiler/cut/choose.h"
@@ -34,7 +35,7 @@ TraceNode::Kind kind_of(const CutNode& node) {
     if (node.primitive) return TraceNode::Kind::primitive;
     if (node.cell) return TraceNode::Kind::run;
     if (node.unbounded) return TraceNode::Kind::unbounded;
-    return node.sealed ? TraceNode::Kind::mesh : TraceNode::Kind::parts;
+    return node.sealed ? TraceNode::Kind::crushed : TraceNode::Kind::parts;
 }
 
 /// Fills in nodes, edges and boxes of a model.
@@ -71,9 +72,15 @@ class Builder {
         node.primitive = source.primitive.value_or(PrimitiveKind::sphere);
         node.unending = source.unending;
         node.cullable = source.cullable;
+        node.faint = source.shadowless;
+        node.widens = source.widens;
         node.cut_detail = cut_detail(source, model_.projection.error_px());
         node.ball_centre = lanes_of(frame_from_graph(source.ball.centre));
         node.ball_radius = frame_from_graph.linear[0][0] * source.ball.radius;
+        if (!bounds_.node[id].empty()) {
+            const Box drawn = transformed(frame_from_graph, bounds_.node[id]);
+            node.drawn_radius = glm::length(glm::max(glm::abs(drawn.min), glm::abs(drawn.max)));
+        }
         const Affine frame_from_proxy = frame_from_graph * source.node_from_proxy;
         node.node_from_proxy = LaneMap(frame_from_proxy);
         if (!is_singular(frame_from_proxy)) node.proxy_from_node = LaneMap(inverse(frame_from_proxy));
@@ -86,6 +93,9 @@ class Builder {
                 static_cast<std::uint32_t>(model_.edges.size()) - node.first_edge - node.edge_count;
         } else if (node.kind == TraceNode::Kind::run) {
             add_cell(*source.cell, frame_from_graph, node);
+        } else if (node.kind == TraceNode::Kind::crushed) {
+            node.tree = add_edges(id, source.edges, bounds_.edge[id]);
+            node.edge_count = static_cast<std::uint32_t>(model_.edges.size()) - node.first_edge;
         } else if (node.kind == TraceNode::Kind::unbounded) {
             add_edges(id, source.edges, bounds_.edge[id]);
             node.edge_count = static_cast<std::uint32_t>(model_.edges.size()) - node.first_edge;
@@ -203,7 +213,7 @@ class Builder {
         edge.parent_from_child = LaneMap(parent_from_child);
         const Vec3 sigma = singular_values(parent_from_child.linear);
         edge.flatness = sigma.x > 0 ? sigma.z / sigma.x : 0;
-        edge.child_from_parent = LaneMap(inverse(parent_from_child));
+        if (!is_singular(parent_from_child)) edge.child_from_parent = LaneMap(inverse(parent_from_child));
         edge.stretch = stretch;
         edge.growth = 1 / stretch;
     }
@@ -235,6 +245,21 @@ double least_detail(const TraceModel& model) {
     return model.projection.detail_per_unit(far) / Projection::coarser_out_of_sight;
 }
 
+/// How far terminals reach from the middle of what they stand for, where it is just cut, in lengths of the
+/// error.
+double farthest_terminal(const TraceModel& model) {
+    double farthest = 0;
+    for (const TraceNode& node : model.nodes)
+        for (std::uint32_t i = 0; i < node.stop_edge_count; ++i) {
+            const Box& box = model.edges[node.first_edge + node.edge_count + i].box;
+            if (!(node.ball_radius > 0) || box.empty()) continue;
+            const Vec3 centre = vec3_of(node.ball_centre);
+            const Vec3 corner = glm::max(glm::abs(box.min - centre), glm::abs(box.max - centre));
+            farthest = std::max(farthest, 0.5 * node.cut_detail * glm::length(corner) / node.ball_radius);
+        }
+    return farthest;
+}
+
 /// Where copies lie in each other so often that rays would not come through.
 void find_shells(TraceModel& model) {
     if (!model.projection.culls()) return;
@@ -262,18 +287,40 @@ std::uint32_t TraceRun::edge_of(PrimitiveKind kind, std::uint16_t colour) const 
 
 TraceModel::TraceModel(PreparedCut ready, const View& seen, const CutOptions& cut_options)
     : prepared(std::move(ready)), layers(layered(prepared.cut, prepared.root_steps)), view(seen),
-      options(cut_options),
-      projection(view, options, options.error_px, nearest_to_eye(prepared.cut)),
-      meshes(prepared, projection.error_px()) {
+      options(cut_options), projection(view, options, options.error_px, nearest_to_eye(prepared.cut)),
+      meshes(prepared) {
     least_detail_per_unit = least_detail(*this);
+    const CutNode& root = prepared.cut.nodes[prepared.cut.root];
+    for (const CutNode& node : prepared.cut.nodes)
+        if (node.primitive && node.primitive != PrimitiveKind::plane)
+            widest = std::max(widest, widened_reach(*node.primitive));
+    if (root.widens) most_half_width = projection.most_half_width(root.ball);
     for (const Material& material : prepared.cut.materials) {
         Status ignored;
         textures.push_back(material.texture.empty() ? nullptr : load_texture(material.texture, ignored));
         clear_texels = clear_texels || (textures.back() && textures.back()->coverage < 1);
     }
     Builder(*this).build();
+    terminal_reach = farthest_terminal(*this);
     find_shells(*this);
     add_unrollings(*this);
+}
+
+double TraceModel::near_enough(const Ray& ray, double share) const {
+    constexpr double before_all = -std::numeric_limits<double>::infinity();
+    const Box& box = prepared.bounds;
+    if (!(most_half_width > 0) || prepared.root_steps != unlimited_steps || box.empty()) return before_all;
+    const Vec3 size = box.size();
+    for (int axis = 0; axis < 3; ++axis) {
+        if (size[axis] > 0.1 * most_half_width || ray.direction[axis] == 0) continue;
+        const double slope = std::abs(ray.direction[axis]);
+        const double middle = (box.centre()[axis] - ray.origin[axis]) / ray.direction[axis];
+        const Ball here{ray(middle), 2 * most_half_width};
+        const double half_width = std::min(most_half_width, projection.most_half_width(here));
+        const double height = std::max(half_width, terminal_reach / projection.detail_per_unit(here));
+        return middle - height / slope + share * half_width / glm::length(ray.direction);
+    }
+    return before_all;
 }
 
 Status load_textures(const std::vector<Material>& materials) {

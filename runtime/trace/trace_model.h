@@ -15,8 +15,16 @@
 #include "runtime/trace/lanes.h"
 #include "runtime/trace/layers.h"
 #include "runtime/trace/mesh_store.h"
+#include "runtime/trace/ray.h"
 
 namespace graftal {
+
+/// What a ray has met after so many parts of a set without thickness will do, if none can be nearer by more
+/// than this share of the half width that they are drawn with: thousands may lie in each other.
+inline constexpr std::uint64_t most_patience = 256;
+inline constexpr double near_enough_share = 0.25;
+/// As near as this will do at once: flat tops of parts in one plane are all as near.
+inline constexpr double plenty_share = 1e-4;
 
 inline constexpr std::uint32_t no_edge = UINT32_MAX;
 /// Marks an edge of a path that starts at a cut node.
@@ -34,7 +42,8 @@ struct TraceEdge {
     std::uint32_t child = 0;
     unsigned levels = 0;
     bool similarity = false; ///< then a path's norm is the product of its stretches
-    double flatness = 1;     ///< the least stretch, as a share of the largest
+    double flatness = 1; ///< the least stretch, as a share of the largest; child_from_parent is only used if
+                         ///< it is not too little
     PathTint tint;
     std::optional<MaterialId> material;
     double turns = 1; ///< of a primitive: length_in_turns() of the graph's instance
@@ -59,7 +68,8 @@ struct TraceNode {
         parts,     ///< a union
         unbounded, ///< a union that holds planes: its edges are tried one after the other
         run,       ///< a range of a run
-        mesh,      ///< leads through a singular map: always baked (CutNode::sealed)
+        crushed,   ///< leads through a singular map (CutNode::sealed): its edges are met in the world
+                   ///< (flat_walk.cpp)
     };
 
     Kind kind = Kind::parts;
@@ -67,6 +77,8 @@ struct TraceNode {
     bool unending = false;
     bool cullable = true;
     ShellSizes shell;
+    bool faint = false;                ///< of no area (CutNode::shadowless)
+    bool widens = false;               ///< as CutNode's
     double cut_detail = 1;             ///< from which down a cullable node is cut (detail.h)
     std::uint32_t tree = no_tree;      ///< of its edges, or its items of the run
     std::uint32_t run = 0;             ///< of TraceModel::runs
@@ -80,6 +92,7 @@ struct TraceNode {
     std::uint32_t stop_edge_count = 0; ///< which follow those
     Double4 ball_centre{};
     double ball_radius = 0;
+    double drawn_radius = 0; ///< about the frame's origin; of what it draws, but for widening
     LaneMap node_from_proxy; ///< places the unit sphere
     LaneMap proxy_from_node;
 };
@@ -106,6 +119,9 @@ struct TraceModel {
     CutOptions options;
     Projection projection;
     double least_detail_per_unit = 0; ///< of Projection, anywhere on the model
+    double most_half_width = 0;       ///< likewise, where something is drawn wider than it is
+    double terminal_reach = 0;        ///< of terminals from the middle of what they stand for, in errors
+    double widest = 1;                ///< of all primitives: widened_reach()
 
     std::vector<TraceNode> nodes; ///< as layers.cut.nodes
     std::vector<TraceEdge> edges; ///< the first leads to the root, from world space
@@ -113,13 +129,17 @@ struct TraceModel {
     std::vector<Unrolling> unrollings;
     std::vector<TraceRun> runs;
     std::vector<Affine> graph_from_frame; ///< by node
-    mutable MeshStore meshes;
+    mutable MeshStore meshes;             ///< of shells
     std::vector<std::shared_ptr<const Texture>> textures; ///< by material; null where there is none
     /// Nodes and primitives that one ray may go into. Sound models need some tens or hundreds; where thousands of
     /// parts coincide, a ray would not come to an end.
     std::uint64_t most_visits = 1 << 17;
     bool has_shells = false;                              ///< some node may be drawn as one
     bool clear_texels = false;                            ///< some texture has them
+
+    /// Up to where a hit will do, if none can be nearer by more than this share of the half width: of a model
+    /// in a plane that is drawn in specks; else before all.
+    double near_enough(const Ray& ray, double share) const;
 
     /// The node as the cut has it.
     const CutNode& source(std::uint32_t node) const { return prepared.cut.nodes[layers.source[node]]; }
@@ -129,6 +149,12 @@ struct TraceModel {
     TraceModel(const TraceModel&) = delete;
     TraceModel& operator=(const TraceModel&) = delete;
 };
+
+/// The rule of the cut (detail.h). `detail`: of the part's diameter.
+inline bool is_cut(const TraceNode& node, std::uint32_t steps, double detail) {
+    if (node.kind == TraceNode::Kind::unbounded || node.kind == TraceNode::Kind::crushed) return false;
+    return (node.unending && steps == 0) || (node.cullable && detail <= node.cut_detail);
+}
 
 /// Reads the textures of the materials, as the model will; or says which cannot be read.
 Status load_textures(const std::vector<Material>& materials);

@@ -82,25 +82,21 @@ void Traversal::append_to_path(std::uint32_t edge) {
     append_to_path(whole.last);
 }
 
-const TraceMesh& Traversal::mesh_of(const Frame& frame, bool shell) {
+const TraceMesh& Traversal::shell_of(const Frame& frame) {
     const TraceNode& node = model_.nodes[frame.node];
     const Affine world_from_node = frame.world_from_node.affine();
     const Ball ball{world_from_node(vec3_of(node.ball_centre)), frame.scale * node.ball_radius};
     const Affine& graph_from_frame = model_.graph_from_frame[frame.node];
     const double detail_per_unit = frame.scale * model_.projection.detail_per_unit(ball);
-    const MeshStore::Key key = shell ?
-        model_.meshes.shell_key(model_.layers.source[frame.node], graph_from_frame, frame.steps, detail_per_unit) :
-        model_.meshes.key(model_.layers.source[frame.node], graph_from_frame, frame.steps,
-                          detail_per_unit,
-                          frame.scale * model_.projection.pixels_that_matter(ball));
-    const auto hash = static_cast<std::size_t>(key.detail) * 31 + static_cast<std::size_t>(key.pixels) * 7 +
-                      key.node * 13 + key.steps;
+    const MeshStore::Key key =
+        model_.meshes.key(model_.layers.source[frame.node], graph_from_frame, frame.steps, detail_per_unit);
+    const auto hash = static_cast<std::size_t>(key.detail) * 31 + key.node * 13 + key.steps;
     auto& [known, mesh] = meshes_[hash % meshes_.size()];
     if (!mesh || known != key) {
         mesh = &model_.meshes.mesh(key, graph_from_frame);
         known = key;
-        if (shell)
-            model_.meshes.note_shell(*mesh, detail_per_unit, frame.scale * model_.projection.detail_per_unit({ball.centre, 0}));
+        const double here = frame.scale * model_.projection.detail_per_unit({ball.centre, 0});
+        model_.meshes.note(*mesh, detail_per_unit, here);
     }
     return *mesh;
 }
@@ -126,6 +122,14 @@ bool Traversal::is_clear(std::uint32_t edge, std::uint32_t frame, double turns, 
         material = material_of(frames_[i].edge);
     if (!material || !model_.textures[*material] || model_.textures[*material]->coverage == 1) return false;
     return texel(*material, edge, turns, point).clear;
+}
+
+Vec3 Traversal::normal_at_best() const {
+    const bool limit = best_.proxy_node != no_edge && model_.options.limit_normals() && !best_.crushed;
+    if (!limit) return transformed_normal(best_.world_from_leaf, best_.normal);
+    if (!best_.in_world) return limit_normal(model_, path_, best_.proxy_node, best_.normal);
+    const Vec3 normal = transformed_normal(best_.world_from_leaf, best_.normal);
+    return limit_normal_in_world(model_, path_, normal, ray_(best_.t));
 }
 
 void Traversal::surface_at_best(SurfaceHit& hit) const {
@@ -157,9 +161,7 @@ void Traversal::surface_at_best(SurfaceHit& hit) const {
         inherited = model_.source(best_.proxy_node).mean.over(inherited);
     hit.t = best_.t;
     hit.rgb = tint.over(inherited);
-    hit.normal = best_.proxy_node != no_edge && model_.options.limit_normals()
-                     ? limit_normal(model_, path_, best_.proxy_node, best_.normal)
-                     : transformed_normal(best_.world_from_leaf, best_.normal);
+    hit.normal = normal_at_best();
 }
 
 } // namespace graftal

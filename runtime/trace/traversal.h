@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "compiler/cut/alike_set.h"
 #include "runtime/trace/intersect.h"
 #include "runtime/trace/surfaces.h"
 #include "runtime/trace/trace_model.h"
@@ -16,6 +17,22 @@ enum class Instructions { portable, avx2 };
 
 /// The fastest that this machine has.
 Instructions best_instructions();
+
+/// The line or the plane in which the image of a singular map lies, as a ray sees it.
+class FlatImage {
+  public:
+    FlatImage() = default;
+    FlatImage(const Ray& ray, const Mat3& map, Vec3 point);
+
+    /// Where the ray is no farther from it; empty where least > most.
+    RayRange within(double width) const;
+    /// How thick the image of the unit ball is yet, half.
+    double thickness() const { return thickness_; }
+
+  private:
+    double a_ = 0, b_ = 0, c_ = 0, thickness_ = 0;
+    bool parallel_ = true;
+};
 
 /// Takes rays through the graph itself (J. Hart and T. DeFanti, "Efficient Antialiased Rendering of 3-D Linear
 /// Fractals", 1991): depth first, the nearest child first, into each child's frame, and only as deep as the
@@ -48,9 +65,10 @@ class Traversal final : public Surfaces {
         std::uint32_t edge = 0;
         std::uint32_t node = 0;
         std::uint32_t steps = 0;
-        bool cut = false; ///< drawn by its stop edges
+        bool cut = false;   ///< drawn by its stop edges
         bool items = false; ///< its entries are items of a run, not edges
-        float margin = 0; ///< by which parts may reach out of their boxes
+        bool faint = false; ///< they stand for a set without area (least_width.h)
+        Vec3 margin{0.0};   ///< by which parts may reach out of their boxes
         float least = 0;  ///< where the ray begins, in units from the base
         /// By axis: the side of boxes where the ray goes in, the origin less the margin as that and the other side see
         /// it, and the reciprocal of the direction.
@@ -73,15 +91,45 @@ class Traversal final : public Surfaces {
         Vec3 point{0.0};  ///< of a primitive, likewise
         double turns = 1; ///< of a primitive (TraceEdge)
         LaneMap world_from_leaf;
-        std::uint32_t proxy_node = 0;                 ///< or no_edge
+        std::uint32_t proxy_node = 0;                   ///< or no_edge
         const TraceMesh::Colour* mesh_colour = nullptr; ///< of a triangle
+        bool in_world = false; ///< the proxy was met there: so are its normal and point
+        bool crushed = false;  ///< what was crushed shows the proxies' own normals
     };
 
-    const TraceMesh& mesh_of(const Frame& frame, bool shell);
+    const TraceMesh& shell_of(const Frame& frame);
+    /// A part that is met in the world.
+    struct FlatPart {
+        LaneMap world_from_node;
+        double scale = 1;
+        std::uint32_t edge = 0; ///< that leads to it, marked if from a cut node
+        std::uint32_t steps = 0;
+        std::uint32_t depth = 0; ///< edges on the way from the frame before it
+        bool faint = false;
+    };
+
+    /// Meets the child of a frame's edge where no ray can be taken into the child's frame (flat_walk.cpp).
+    void meet_flat(std::uint32_t frame_number, std::uint32_t edge, const RayRange& range, bool any);
+    void meet_flat_part(const FlatPart& part, const RayRange& range, std::uint32_t frame_number);
+    void meet_flat_items(const FlatPart& part, const Ball& ball, const RayRange& range,
+                         std::uint32_t frame_number);
+    /// The edges to a part that was met in the world.
+    void keep_flat_way(std::uint32_t frame_number);
+    FlatPart flat_child(const LaneMap& world_from_node, double scale, std::uint32_t edge, std::uint32_t steps,
+                        bool cut) const;
+    double flat_width(const Ball& ball, double scale) const;
+    bool is_new(const FlatPart& part, double width);
+    /// Meets a proxy or primitive in the world, as it is drawn (least_width.h); true if it is the nearest so
+    /// far, and its way is to be kept. `ball`: of the node that it is or stands for, in the world.
+    bool meet_leaf(PrimitiveKind kind, const Affine& world_from_leaf, bool faint, const Ball& ball,
+                   const RayRange& range);
+    /// The edges to a frame's node.
+    void keep_way(std::uint32_t frame_number);
     bool run(const Ray& ray, const RayRange& range, bool any);
     /// Appends an edge to the path; of an unrolling's edge those that it stands for.
     void append_to_path(std::uint32_t edge);
     void surface_at_best(SurfaceHit& hit) const;
+    Vec3 normal_at_best() const;
     /// The material that an edge gives, the nearest to its child if it stands for several.
     std::optional<MaterialId> material_of(std::uint32_t edge) const;
     const Texture::Texel& texel(MaterialId material, std::uint32_t edge, double turns, Vec3 point) const;
@@ -95,8 +143,15 @@ class Traversal final : public Surfaces {
     std::vector<Entry> entries_;
     std::size_t entry_count_ = 0; ///< in use
     Best best_;
-    /// Meshes asked for lately, by a hash of their keys: the store has to be locked.
+    /// Shells asked for lately, by a hash of their keys: the store has to be locked.
     std::array<std::pair<MeshStore::Key, const TraceMesh*>, 64> meshes_{};
+    Ray ray_;                          ///< in the world
+    std::vector<FlatPart> flat_parts_; ///< to be met
+    FlatImage flat_image_;
+    AlikeSet flat_met_;                   ///< once patience is at its end
+    std::uint64_t patience_ = 0;          ///< of the ray: visits
+    std::vector<std::uint32_t> flat_way_; ///< edges from the frame to the part under way
+    std::uint64_t visit_limit_ = 0;       ///< of the ray
     std::vector<std::uint32_t> way_;  ///< edges through the frames to the best hit, those from cut nodes marked
     std::vector<std::uint32_t> path_; ///< of the graph, likewise, once the ray is done
     std::uint64_t visits_ = 0;

@@ -7,10 +7,12 @@
 #include <cmath>
 #include <vector>
 
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
-#include "compiler/cut/bake.h"
+#include "compiler/cut/least_width.h"
 #include "compiler/cut/texture_space.h"
+#include "runtime/trace/stretch.h"
 #include "runtime/trace/traversal.h"
 
 namespace graftal {
@@ -56,40 +58,9 @@ GRAFTAL_INLINE RayRange range_in(const Box& box, const Ray& ray, RayRange range)
     return range;
 }
 
-/// norm(), to about 1e-8, and an order of magnitude faster: the root of the largest eigenvalue of A^T A, which
-/// solves a cubic (O. Smith, "Eigenvalues of a symmetric 3x3 matrix", 1961).
-inline double largest_stretch(const LaneMap& map) {
-    const Vec3 a = vec3_of(map.column[0]), b = vec3_of(map.column[1]), c = vec3_of(map.column[2]);
-    const double aa = glm::dot(a, a), bb = glm::dot(b, b), cc = glm::dot(c, c);
-    const double mean = (aa + bb + cc) / 3;
-    if (!(mean > 1e-250)) return norm(map.affine().linear);
-    // Of the matrix less its mean eigenvalue, in units of that.
-    const double x = aa / mean - 1, y = bb / mean - 1, z = cc / mean - 1;
-    const double xy = glm::dot(a, b) / mean, yz = glm::dot(b, c) / mean, zx = glm::dot(c, a) / mean;
-    const double p2 = (x * x + y * y + z * z + 2 * (xy * xy + yz * yz + zx * zx)) / 6;
-    if (!(p2 > 0)) return std::sqrt(mean);
-    const double p = std::sqrt(p2);
-    const double determinant =
-        x * (y * z - yz * yz) - xy * (xy * z - yz * zx) + zx * (xy * yz - y * zx);
-    const double angle = std::acos(std::clamp(0.5 * determinant / (p2 * p), -1.0, 1.0)) / 3;
-    return std::sqrt(mean * (1 + 2 * p * std::cos(angle)));
-}
-
-inline bool has_flat_part(const TraceModel& model, const TraceNode& node, const LaneMap& world_from_node, bool cut) {
-    const std::uint32_t first = node.first_edge + (cut ? node.edge_count : 0);
-    const std::uint32_t count = cut ? node.stop_edge_count : node.edge_count;
-    const Affine place = world_from_node.affine();
-    for (std::uint32_t i = first; i < first + count; ++i) {
-        const TraceEdge& edge = model.edges[i];
-        if (!edge.similarity && is_singular(place * edge.parent_from_child.affine(), flattest_placement))
-            return true;
-    }
-    return false;
-}
-
-/// The box, larger by what rounding and thickened parts may need.
-inline Box enlarged(const Box& box, double margin) {
-    const Vec3 more = 1e-9 * box.size() + Vec3(margin);
+/// The box, larger by what rounding and widened parts may need.
+inline Box enlarged(const Box& box, Vec3 margin) {
+    const Vec3 more = 1e-9 * box.size() + margin;
     return {box.min - more, box.max + more};
 }
 
@@ -104,7 +75,12 @@ template<Instructions instructions> struct Traversal::Kernel {
         self.entry_count_ = 0;
         self.best_.found = false;
         self.best_.t = range.most;
-        const std::uint64_t limit = self.visits_ + model.most_visits;
+        self.ray_ = ray;
+        self.visit_limit_ = self.visits_ + model.most_visits;
+        self.patience_ = self.visits_ + most_patience;
+        if (!self.flat_met_.empty()) self.flat_met_.clear();
+        const double enough = model.near_enough(ray, near_enough_share),
+                     plenty = model.near_enough(ray, plenty_share);
         push_world(ray);
         try_edge(self.frames_.front(), 0);
         Entry entry;
@@ -112,7 +88,8 @@ template<Instructions instructions> struct Traversal::Kernel {
         while (more || pop(0, entry)) {
             more = go_into(entry);
             if (any && self.best_.found) return true;
-            if (self.visits_ > limit) {
+            if (self.best_.t <= plenty || (self.best_.t <= enough && self.visits_ > self.patience_)) break;
+            if (self.visits_ > self.visit_limit_) {
                 ++self.given_up_;
                 break;
             }
@@ -161,7 +138,8 @@ template<Instructions instructions> struct Traversal::Kernel {
         frame.cut = false;
         frame.items = false;
         frame.flatness = 1;
-        frame.margin = 0;
+        frame.faint = false;
+        frame.margin = Vec3(model.widest * model.most_half_width);
     }
 
     /// Where boxes are few or infinite: in double precision.
@@ -240,6 +218,15 @@ template<Instructions instructions> struct Traversal::Kernel {
         self.depth_ = entry.frame + 1;
         const TraceEdge& edge = model.edges[entry.entry];
         const TraceNode& node = model.nodes[edge.child];
+        double flatness = self.frames_[entry.frame].flatness;
+        if (!edge.similarity) {
+            flatness *= edge.flatness;
+            if (!(flatness > flattest_placement)) flatness = true_flatness(self.frames_[entry.frame], edge);
+            if (!(flatness > flattest_placement)) {
+                self.meet_flat(entry.frame, entry.entry, range, any);
+                return false;
+            }
+        }
         Frame& frame = push(); // parents may move, but no more after this
         const Frame& parent = self.frames_[entry.frame];
         const Double4 near = parent.origin + splat(entry.at) * parent.direction;
@@ -260,10 +247,21 @@ template<Instructions instructions> struct Traversal::Kernel {
             frame.unit = parent.unit * shrink;
         }
         if (node.kind == TraceNode::Kind::primitive) {
-            meet_primitive(node.primitive, parent, frame, entry);
+            if (parent.faint && node.primitive != PrimitiveKind::plane)
+                meet_faint(node, edge, parent, entry);
+            else
+                meet_primitive(node.primitive, parent, frame, entry);
             return false;
         }
+        frame.flatness = flatness;
         return enter_node(edge, node, parent, frame, entry);
+    }
+
+    /// What the product of many flat maps need not be.
+    GRAFTAL_INLINE static double true_flatness(const Frame& parent, const TraceEdge& edge) {
+        const Vec3 sigma =
+            singular_values(parent.world_from_node.affine().linear * edge.parent_from_child.affine().linear);
+        return sigma.x > 0 ? sigma.z / sigma.x : 0;
     }
 
     /// The frame has its ray.
@@ -275,28 +273,36 @@ template<Instructions instructions> struct Traversal::Kernel {
         frame.steps = parent.steps == unlimited_steps ? parent.steps : parent.steps - edge.levels;
         frame.scale = edge.similarity ? parent.scale * edge.stretch : largest_stretch(frame.world_from_node);
         if (!(frame.scale > least_scale)) return false;
-        frame.flatness = parent.flatness * (edge.similarity ? 1 : edge.flatness);
+        frame.faint = parent.faint;
         frame.cut = is_cut(node, frame);
         frame.items = node.kind == TraceNode::Kind::run;
         if (frame.cut && node.stop_tree == no_tree) {
-            meet_proxy(node, frame);
+            if (frame.faint || node.faint)
+                meet_faint_proxy(node, frame);
+            else
+                meet_proxy(node, frame);
             return false;
         }
+        if (frame.cut && node.faint && !frame.faint) frame.faint = detail_of(node, frame) <= 1;
         const auto number = static_cast<std::uint32_t>(self.depth_ - 1);
+        frame.margin = margin_of(node, frame);
         if (node.kind == TraceNode::Kind::unbounded) {
-            frame.margin = 0;
             for (std::uint32_t i = 0; i < node.edge_count; ++i)
                 try_edge(frame, node.first_edge + i);
             return false;
         }
-        const bool shell = is_shell(node, frame);
-        const bool baked = shell || node.kind == TraceNode::Kind::mesh || too_flat(node, frame);
-        frame.margin = baked ? thickness(node, frame) : 0;
-        ready_for_boxes(frame);
-        if (baked) {
-            meet_mesh(self.mesh_of(frame, shell), number);
+        if (node.kind == TraceNode::Kind::crushed) {
+            for (std::uint32_t i = 0; i < node.edge_count; ++i)
+                self.meet_flat(number, node.first_edge + i, range, any);
             return false;
         }
+        if (is_shell(node, frame)) {
+            frame.margin = Vec3(shell_margin(node, frame));
+            ready_for_boxes(frame);
+            meet_shell(self.shell_of(frame), number);
+            return false;
+        }
+        ready_for_boxes(frame);
         if (frame.cut && node.stop_edge_count == 1) { // about as large as the node: no box to test
             entry = {0, node.first_edge + node.edge_count, number};
             return true;
@@ -314,7 +320,8 @@ template<Instructions instructions> struct Traversal::Kernel {
         const Float4 magnitude = direction < 0 ? -direction : direction;
         frame.reciprocal = 1 / (magnitude > least ? direction : least);
         const Int4 falling = frame.reciprocal < 0;
-        const Float4 margin = frame.margin - Float4{};
+        const Float4 margin = {static_cast<float>(frame.margin.x), static_cast<float>(frame.margin.y),
+                               static_cast<float>(frame.margin.z), 0};
         const Float4 inwards = falling ? -margin : margin;
         frame.side_in = -falling;
         frame.origin_in = origin + inwards;
@@ -325,14 +332,16 @@ template<Instructions instructions> struct Traversal::Kernel {
         return {vec3_of(point_through(frame.world_from_node, node.ball_centre)), frame.scale * radius};
     }
 
+    GRAFTAL_INLINE double detail_of(const TraceNode& node, const Frame& frame) const {
+        const Ball ball = world_ball(node, frame, node.ball_radius);
+        return 2 * ball.radius * model.projection.detail_per_unit(ball);
+    }
+
     /// The rule of the cut (detail.h).
     GRAFTAL_INLINE bool is_cut(const TraceNode& node, const Frame& frame) const {
-        if (node.kind == TraceNode::Kind::unbounded) return false;
-        if (node.unending && frame.steps == 0) return true;
-        if (!node.cullable) return false;
         const double diameter = 2 * frame.scale * node.ball_radius;
-        if (diameter * model.least_detail_per_unit > node.cut_detail) return false;
-        return diameter * model.projection.detail_per_unit(world_ball(node, frame, node.ball_radius)) <= node.cut_detail;
+        const bool surely_large = !node.cullable || diameter * model.least_detail_per_unit > node.cut_detail;
+        return graftal::is_cut(node, frame.steps, surely_large ? INFINITY : detail_of(node, frame));
     }
 
     /// Whether copies lie in each other in it so often that its shell is drawn.
@@ -362,21 +371,13 @@ template<Instructions instructions> struct Traversal::Kernel {
         return node.tree;
     }
 
-    /// Whether some part could not be placed by itself, it is so flat: the cut bakes the node then
-    /// (assemble.cpp).
-    GRAFTAL_INLINE bool too_flat(const TraceNode& node, const Frame& frame) const {
-        if (frame.flatness * node.flattest_edge > flattest_placement) return false;
-        return has_flat_part(model, node, frame.world_from_node, frame.cut);
+    /// What a shell may reach out of the boxes of its parts by, in the frame.
+    GRAFTAL_INLINE double shell_margin(const TraceNode& node, const Frame& frame) const {
+        return 1.5 /
+               (frame.scale * model.projection.detail_per_unit(world_ball(node, frame, node.ball_radius)));
     }
 
-    /// What parts may be thickened by, in the frame (bake.h, leaf_thickness).
-    GRAFTAL_INLINE float thickness(const TraceNode& node, const Frame& frame) const {
-        const double detail =
-            frame.scale * model.projection.detail_per_unit(world_ball(node, frame, node.ball_radius));
-        return std::isfinite(detail) ? static_cast<float>(1.5 / detail) : 2e-3f;
-    }
-
-    GRAFTAL_INLINE void meet_mesh(const TraceMesh& mesh, std::uint32_t frame_number) {
+    GRAFTAL_INLINE void meet_shell(const TraceMesh& mesh, std::uint32_t frame_number) {
         const std::size_t others = self.entry_count_;
         Entry entry;
         bool more = mesh.tree != no_tree && test_boxes(mesh.boxes, mesh.tree, frame_number, entry);
@@ -400,7 +401,30 @@ template<Instructions instructions> struct Traversal::Kernel {
         self.best_.world_from_leaf = frame.world_from_node;
         self.best_.proxy_node = no_edge;
         self.best_.mesh_colour = &mesh.colours[mesh.colour_of_triangle[triangle]];
-        keep_way(entry.frame);
+        self.keep_way(entry.frame);
+    }
+
+    /// By how much parts may reach out of their boxes, in the frame: what is too thin is drawn wider
+    /// (least_width.h).
+    GRAFTAL_INLINE Vec3 margin_of(const TraceNode& node, const Frame& frame) const {
+        constexpr double flat = 1e-3; // some levels below, parts may be flat enough
+        if (!node.widens && frame.flatness > flat) return Vec3(0.0);
+        constexpr double unculled = 4e-3; // more than half_width_needed() gives
+        const double half_width = model.projection.culls()
+                                      ? model.widest * model.projection.most_half_width(
+                                                           world_ball(node, frame, 2 * node.ball_radius))
+                                      : unculled * frame.scale;
+        if (frame.flatness == 1) return Vec3(half_width / frame.scale);
+        // What a ball measures along the axes: the rows of the inverse, of which the columns' products are
+        // cofactors.
+        const LaneMap& map = frame.world_from_node;
+        const Vec3 a = vec3_of(map.column[0]), b = vec3_of(map.column[1]), c = vec3_of(map.column[2]);
+        const Vec3 bc = glm::cross(b, c);
+        const double scale = half_width / std::abs(glm::dot(a, bc));
+        constexpr double most = 1e18; // far beyond all boxes, and a number yet when it is multiplied
+        return glm::min(
+            scale * Vec3(glm::length(bc), glm::length(glm::cross(c, a)), glm::length(glm::cross(a, b))),
+            Vec3(most));
     }
 
     /// What counts of a ray that starts there.
@@ -413,14 +437,9 @@ template<Instructions instructions> struct Traversal::Kernel {
         self.best_.t = t;
         self.best_.found = true;
         self.best_.mesh_colour = nullptr;
+        self.best_.in_world = false;
+        self.best_.crushed = false;
         return !any;
-    }
-
-    /// The edges to a frame's node.
-    GRAFTAL_INLINE void keep_way(std::uint32_t frame_number) {
-        self.way_.clear();
-        for (std::size_t i = 1; i <= frame_number; ++i)
-            self.way_.push_back(self.frames_[i].edge);
     }
 
     /// Meets a child whose ray is in `frame`.
@@ -442,7 +461,7 @@ template<Instructions instructions> struct Traversal::Kernel {
         self.best_.turns = model.edges[entry.entry].turns;
         self.best_.proxy_node = no_edge;
         compose(parent.world_from_node, model.edges[entry.entry].parent_from_child, self.best_.world_from_leaf);
-        keep_way(entry.frame);
+        self.keep_way(entry.frame);
         self.way_.push_back(entry.entry | (parent.cut ? from_cut : 0));
     }
 
@@ -497,8 +516,31 @@ template<Instructions instructions> struct Traversal::Kernel {
         self.best_.proxy_node = no_edge;
         compose(frame.world_from_node,
                 LaneMap(inverse(model.graph_from_frame[frame.node]) * run_from_body), self.best_.world_from_leaf);
-        keep_way(entry.frame);
+        self.keep_way(entry.frame);
         self.way_.push_back(look);
+    }
+
+    /// A primitive of what stands for a set without area.
+    GRAFTAL_INLINE void meet_faint(const TraceNode& node, const TraceEdge& edge, const Frame& parent,
+                                   const Entry& entry) {
+        LaneMap place;
+        compose(parent.world_from_node, edge.parent_from_child, place);
+        const TraceNode& speck = model.nodes[parent.node];
+        const Ball ball = world_ball(speck, parent, speck.ball_radius);
+        if (!self.meet_leaf(node.primitive, place.affine(), true, ball, range)) return;
+        self.best_.turns = edge.turns;
+        self.keep_way(entry.frame);
+        self.way_.push_back(entry.entry | (parent.cut ? from_cut : 0));
+    }
+
+    GRAFTAL_INLINE void meet_faint_proxy(const TraceNode& node, const Frame& frame) {
+        LaneMap place;
+        compose(frame.world_from_node, node.node_from_proxy, place);
+        if (!self.meet_leaf(PrimitiveKind::sphere, place.affine(), true,
+                            world_ball(node, frame, node.ball_radius), range))
+            return;
+        self.best_.proxy_node = frame.node;
+        self.keep_way(static_cast<std::uint32_t>(self.depth_ - 1));
     }
 
     /// Meets what stands for the frame's own node.
@@ -514,7 +556,7 @@ template<Instructions instructions> struct Traversal::Kernel {
         self.best_.normal = hit.normal;
         self.best_.proxy_node = frame.node;
         compose(frame.world_from_node, node.node_from_proxy, self.best_.world_from_leaf);
-        keep_way(static_cast<std::uint32_t>(self.depth_ - 1));
+        self.keep_way(static_cast<std::uint32_t>(self.depth_ - 1));
     }
 };
 

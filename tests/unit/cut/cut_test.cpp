@@ -194,7 +194,7 @@ TEST(Cut, ASmallBudgetGivesACoarserPictureAndSaysSo) {
     EXPECT_NE(diagnostics.all()[0].message.find("memory allow an error of"), std::string::npos);
 }
 
-TEST(Cut, ASetWithoutAreaOrLeafIsNoted) {
+TEST(Cut, ThatASetWithoutAreaIsDrawnWiderThanItIsIsNoted) {
     const auto noted = [](Graph graph, bool terminal, double error_px) {
         if (!terminal)
             for (Object& object : graph.objects)
@@ -206,13 +206,20 @@ TEST(Cut, ASetWithoutAreaOrLeafIsNoted) {
         EXPECT_TRUE(cut(graph, options, diagnostics).has_value());
         EXPECT_FALSE(diagnostics.has_errors());
         EXPECT_EQ(diagnostics.render(SourceMap(), true), "") << "quiet";
-        return diagnostics.all().size() == 1 && diagnostics.all().front().severity == Severity::note;
+        EXPECT_LE(diagnostics.all().size(), 1u);
+        if (diagnostics.all().empty()) return std::string();
+        const Diagnostic& note = diagnostics.all().front();
+        EXPECT_EQ(note.severity, Severity::note);
+        EXPECT_NE(note.message.find("drawn a pixel wide"), std::string::npos) << note.message;
+        return note.hint;
     };
-    EXPECT_TRUE(noted(test::gasket(true), false, 4));
-    EXPECT_FALSE(noted(test::gasket(true), false, 0)) << "nothing is culled";
-    EXPECT_FALSE(noted(test::gasket(true), true, 4));
-    EXPECT_FALSE(noted(test::gasket(false), false, 4)) << "flat";
-    EXPECT_FALSE(noted(test::pound_sign(3, false), false, 4)) << "of dimension 2.8";
+    // The hint says how to draw it larger.
+    EXPECT_NE(noted(test::gasket(true), false, 4).find("'terminal sphere below 4'"), std::string::npos);
+    EXPECT_NE(noted(test::gasket(false), false, 4).find("'terminal sphere below 4'"), std::string::npos)
+        << "flat";
+    EXPECT_EQ(noted(test::gasket(true), false, 0), "") << "nothing is culled";
+    EXPECT_EQ(noted(test::gasket(true), true, 4), "");
+    EXPECT_EQ(noted(test::pound_sign(3, false), false, 4), "") << "of dimension 2.8";
 }
 
 TEST(Cut, WithoutCullingABudgetThatCannotBeKeptIsRefused) {

@@ -227,7 +227,7 @@ TEST(Traversal, DrawsWhatIsFlattenedOrCrushed) {
 }
 
 // Thirty half-size copies in one place are as many leaves as no walk can visit, and look like one.
-TEST(Traversal, CrushedPartsThatCoincideForEverAreDrawnCoarser) {
+TEST(Traversal, CrushedPartsThatCoincideForEverAreMetOnce) {
     Graph graph = empty_graph();
     const ObjectId self = graph.add({"self", {}, {}, {}, {}});
     place(graph, self, graph.primitive(PrimitiveKind::cube), {});
@@ -236,9 +236,14 @@ TEST(Traversal, CrushedPartsThatCoincideForEverAreDrawnCoarser) {
     place(graph, graph.root, self, Affine::scale({1, 1, 0}));
     const auto model = traced(graph, culled());
     Traversal traversal(*model);
-    EXPECT_TRUE(traversal.meets_any({{0.5, 0.5, 10}, {0, 0, -1}}, {}));
-    EXPECT_TRUE(traversal.meets_any({{1.2, 0.3, 10}, {0, 0, -1}}, {}));
-    EXPECT_FALSE(traversal.meets_any({{1.2, 0.95, 10}, {0, 0, -1}}, {}));
+    // All of it lies in the largest cube.
+    for (const Vec3& within : {Vec3(0.5, 0.5, 10), Vec3(0.98, 0.3, 10), Vec3(-0.98, -0.98, 10)})
+        EXPECT_TRUE(traversal.meets_any({within, {0, 0, -1}}, {}));
+    for (const Vec3& beside :
+         {Vec3(1.05, 0.3, 10), Vec3(1.2, 0.3, 10), Vec3(1.2, 0.95, 10), Vec3(0, 1.05, 10)})
+        EXPECT_FALSE(traversal.meets_any({beside, {0, 0, -1}}, {}));
+    EXPECT_EQ(traversal.given_up(), 0u);
+    EXPECT_LT(traversal.visits(), 100'000u);
 }
 
 // Found by random graphs: the proof that the model contracts takes paths of 1000 instances, and in the

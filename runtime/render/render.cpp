@@ -94,6 +94,16 @@ Status prepare(const CompiledModel& model, const RenderOptions& options, Tempora
     return status;
 }
 
+/// What POV-Ray takes: fitted to scenes of 0.06 to 41 MB of 1280x720 pixels, which took 1.2 to 14 s.
+double expected_seconds(const PovrayJob& job) {
+    std::error_code error;
+    const auto bytes = std::filesystem::file_size(job.directory + "/" + job.scene, error);
+    const double megabytes = error ? 0 : 1e-6 * static_cast<double>(bytes);
+    const double pictures = static_cast<double>(job.width) * job.height / (1280.0 * 720.0);
+    const double samples = job.antialias ? 1 : 0.4;
+    return 0.1 * megabytes + pictures * samples * (1 + 0.3 * megabytes);
+}
+
 } // namespace
 
 std::optional<RenderReport> render_model(const std::string& path, const RenderOptions& options,
@@ -122,6 +132,7 @@ std::optional<RenderReport> draw_model(CompiledModel compiled, const RenderOptio
     model.reset(); // POV-Ray may need the memory
     return_free_memory();
 
+    if (options.on_start) options.on_start(expected_seconds(job));
     const auto trace = [&] {
         const PovrayResult result = run_povray(job);
         report.peak_bytes = result.process.peak_bytes;

@@ -22,6 +22,9 @@ struct RenderOptions {
     int threads = 0;                           ///< 0: as many as POV-Ray likes
     std::string keep;                          ///< a directory for the scene, to stay; empty: a temporary one
     std::function<void(const PovrayProgress&)> on_progress;
+    /// Called before POV-Ray starts, with the seconds of one processor that it will take: within a factor of
+    /// two or so, by the size of the scene's text and of the picture.
+    std::function<void(double seconds)> on_start;
 };
 
 /// What came of a rendering, for the summary.

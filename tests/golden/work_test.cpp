@@ -72,6 +72,14 @@ TEST_F(Work, LessWorkMakesACoarserPictureAndSaysSo) {
     EXPECT_EQ(compare_images(picture("a.png"), picture("b.png")).differing, 0u) << "threads decide nothing";
 }
 
+TEST_F(Work, OfPovrayIsSaidBeforeItStarts) {
+    write("ball.inst", "object ball { sphere }\n");
+    const std::string render = "render ball.inst -q -o a.png --size ";
+    EXPECT_EQ(graftal(render + "64x36").err, "");
+    EXPECT_THAT(graftal(render + "64x36 --work 0.001").err,
+                HasSubstr("graftal: POV-Ray will take about 0.002"));
+}
+
 TEST_F(Work, IsAPositiveNumber) {
     write("tree.inst", tree_limit);
     const RunResult result = shell("\"$graftal\" render --work 0 tree.inst");

@@ -86,6 +86,14 @@ int run_render(const Options& options) {
     ProgressBar bar(!options.quiet);
     RenderOptions render = render_options(options);
     render.on_progress = [&](const PovrayProgress& progress) { bar.show(progress); };
+    render.on_start = [&](double seconds) {
+        if (!(seconds > options.compile.cut.work_seconds)) return;
+        bar.clear();
+        say(fmt::format(
+            "graftal: POV-Ray will take about {:.2g} seconds of one processor; '--engine native' is "
+            "faster, and a larger --error or a smaller --memory or --size means less work\n",
+            seconds));
+    };
 
     Compilation compilation;
     bar.show("compiling...");

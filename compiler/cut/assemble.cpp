@@ -482,8 +482,8 @@ class Grouping {
 } // namespace
 
 std::optional<Cut> assemble(const CutGraph& cut, const Symmetry& symmetry, const Projection& projection,
-                            const Piece& root, const Choice& choice, Weights& weights,
-                            bool limit_normals, AssemblyLimits& limits) {
+                            const Piece& root, const Choice& choice, Weights& weights, bool limit_normals,
+                            ShellStore& shells, AssemblyLimits& limits) {
     Unfolding unfolding(cut, symmetry, projection, choice, weights);
     if (!unfolding.run(root, limits)) return std::nullopt;
     std::vector<Baked> baked;
@@ -492,6 +492,7 @@ std::optional<Cut> assemble(const CutGraph& cut, const Symmetry& symmetry, const
     double tessellation_px = 0;
     for (BakeRequest& request : unfolding.requests) {
         request.limit_normals = limit_normals;
+        request.shells = &shells;
         // A second try of the last grid may follow.
         request.most_shell_work = static_cast<std::uint64_t>(std::min(limits.work_seconds, 1e6) * WorkRates::shell_points / 2);
         request.most_visits = static_cast<std::uint64_t>(std::min(limits.work_seconds, 1e6) * WorkRates::leaves);

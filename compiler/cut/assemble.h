@@ -14,10 +14,13 @@ struct AssemblyLimits {
     double work_seconds = 0; ///< by WorkRates (work.h)
 };
 
+class ShellStore;
+
 /// Unfolds the graph down to the chosen threshold and bakes what lies below: placements in depth-first order,
-/// which keeps neighbours together. Nothing if a limit is passed on the way. Takes what was done off the work that is left.
+/// which keeps neighbours together. Nothing if a limit is passed on the way. Takes what was done off the work
+/// that is left. `shells`: of this graph.
 std::optional<Cut> assemble(const CutGraph& cut, const Symmetry& symmetry, const Projection& projection,
-                            const Piece& root, const Choice& choice, Weights& weights,
-                            bool limit_normals, AssemblyLimits& limits);
+                            const Piece& root, const Choice& choice, Weights& weights, bool limit_normals,
+                            ShellStore& shells, AssemblyLimits& limits);
 
 } // namespace graftal

@@ -286,6 +286,7 @@ Baked bake(const CutGraph& cut, const Symmetry& symmetry, const BakeRequest& req
     shell.detail_per_unit = request.detail_per_unit;
     shell.most_work = std::min(shell.most_work, request.most_shell_work);
     shell.material = request.material;
+    shell.store = request.shells;
     for (const Painter& painter : request.painters)
         shell.inherited.push_back(painter.inherited);
     return bake_shell(cut, shell, max_triangles);

@@ -16,6 +16,8 @@ struct Painter {
     Rgb inherited{0.8};
 };
 
+class ShellStore;
+
 /// One subtree to become meshes, in the frame of its class's representative.
 struct BakeRequest {
     NodeId representative = 0;
@@ -32,6 +34,7 @@ struct BakeRequest {
     bool limit_normals = false; ///< of proxies, where nothing was crushed
     std::uint64_t most_shell_work = UINT64_MAX; ///< points moved for a shell: it gets coarser by that
     bool shell = false;         ///< a shell (shell.h) of this very node, of whose painters the colour alone counts
+    ShellStore* shells = nullptr; ///< where its points are kept; none: they are made anew
     bool pictures = true;       ///< else what has a texture shows its material's colour
     std::uint64_t most_visits = UINT64_MAX; ///< of the walk through the subtree
 };

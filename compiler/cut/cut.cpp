@@ -130,7 +130,7 @@ class Cutter {
             static_cast<std::size_t>(std::max(0.0, memory) / PovrayCosts::least_placement) + 1,
             static_cast<std::size_t>(std::max(0.0, memory) / PovrayCosts::triangle) + 1, work_seconds};
         std::optional<Cut> cut = assemble(cut_, symmetry_, projection, root, choice_, weights,
-                                          options_.limit_normals(), limits);
+                                          options_.limit_normals(), *prepared_.shells, limits);
         if (limits.work_seconds < 0) worked_too_much_ = true;
         if (options_.culls()) work_seconds_left_ -= work_seconds - std::max(0.0, limits.work_seconds);
         if (!cut) return std::nullopt;

@@ -19,6 +19,7 @@ class InsideGrid {
 
     /// Whether the point lies in such a cell. False beyond the grid.
     bool has(const std::array<float, 3>& point) const;
+    std::size_t bytes() const { return hidden_.size() / 8; }
 
   private:
     double cell_;

@@ -1,7 +1,10 @@
 #pragma once
 
+#include <memory>
+
 #include "compiler/cut/cut.h"
 #include "compiler/cut/cut_graph.h"
+#include "compiler/cut/shell_store.h"
 #include "compiler/cut/symmetry.h"
 
 namespace graftal {
@@ -13,6 +16,7 @@ struct PreparedCut {
     Symmetry symmetry;
     std::uint32_t root_steps = unlimited_steps; ///< levels that the root has
     Box bounds;                                 ///< of the limit set
+    std::unique_ptr<ShellStore> shells = std::make_unique<ShellStore>(); ///< of this graph
 };
 
 /// Requires what cut_graph() requires. O(graph).

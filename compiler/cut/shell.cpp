@@ -284,8 +284,9 @@ Baked bake_shell(const CutGraph& cut, const ShellRequest& request, std::size_t m
     limits.work = std::min(limits.work, request.most_work);
     limits.points = std::min(
         limits.points, static_cast<std::size_t>(static_cast<double>(max_triangles) / triangles_a_point));
-    const std::optional<PointSet> set =
-        point_set(cut, request.node, request.steps, request.detail_per_unit, limits);
+    ShellStore of_this_shell;
+    ShellStore& store = request.store ? *request.store : of_this_shell;
+    const auto set = store.points(cut, request.node, request.steps, request.detail_per_unit, limits);
     if (set) baked.shell_work = set->work;
     baked.complete = set && !set->points.empty();
     if (!baked.complete) return baked;

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "compiler/cut/bake.h"
-#include "compiler/cut/shell_points.h"
+#include "compiler/cut/shell_store.h"
 
 namespace graftal {
 
@@ -18,7 +18,8 @@ struct ShellRequest {
     double detail_per_unit = 0;         ///< of the node's frame; a cell of the shell has the detail 1
     std::optional<MaterialId> material; ///< the finish of what names no material
     std::uint64_t most_work = PointLimits().work;
-    std::vector<Rgb> inherited; ///< by painter: the colour of what names no material
+    std::vector<Rgb> inherited;  ///< by painter: the colour of what names no material
+    ShellStore* store = nullptr; ///< of what was made already; none: it is made anew
 };
 
 /// The node as a closed surface, in the node's frame (Baked::representative_from_body reads node_from_body):

@@ -396,20 +396,20 @@ class PointSystem {
 class Growth {
   public:
     /// `flat`: in a plane.
-    void add(double factor, double points, bool flat) {
+    void add(double cell, double points, bool flat) {
         // What is inside of a set in space is left out sooner or later, so that no growth that was seen can
         // be relied on.
         power_ = flat ? 2 : 2.6;
-        last_factor_ = factor;
+        last_cell_ = cell;
         last_points_ = std::max(1.0, points);
     }
-    /// The least factor with so many points.
+    /// The least cell with so many points.
     double finest_for(double points) const {
-        return last_factor_ * std::pow(last_points_ / points, 1 / power_);
+        return last_cell_ * std::pow(last_points_ / points, 1 / power_);
     }
 
   private:
-    double last_factor_ = 0, last_points_ = 0;
+    double last_cell_ = 0, last_points_ = 0;
     double power_ = 3;
 };
 
@@ -451,38 +451,42 @@ std::optional<PointSet> point_set(const CutGraph& cut, NodeId node, std::uint32_
     const CutNode& root = cut.nodes[node];
     if (root.unbounded || root.primitive || !(detail_per_unit > 0) || !std::isfinite(detail_per_unit))
         return std::nullopt;
-    const double across = 2 * root.ball.radius * detail_per_unit;
+    const double asked = 1 / detail_per_unit, diameter = 2 * root.ball.radius;
     PointSystem system(cut, limits);
     CoarseStates coarse;
     Growth growth;
-    double factor = 1;
-    if (across >= least_cells_across) {
+    double cell = asked;
+    bool limited = false;
+    if (diameter >= least_cells_across * asked) {
         // Coarse grids first: they say how many points a finer one will have, and what nobody can see.
-        for (factor = std::max(1.0, across / first_cells_across); factor > 1;) {
-            if (!system.run(node, steps, factor / detail_per_unit, coarse)) return std::nullopt;
+        for (cell = std::max(asked, diameter / first_cells_across); cell > asked;) {
+            if (!system.run(node, steps, cell, coarse)) return std::nullopt;
             const bool flat = in_one_plane(system.root().points, root.ball.radius);
-            growth.add(factor, static_cast<double>(system.kept()), flat);
+            growth.add(cell, static_cast<double>(system.kept()), flat);
             if (!flat) coarse = system.take_coarse();
             const double moves_a_point = static_cast<double>(system.work()) /
                                          static_cast<double>(std::max<std::size_t>(1, system.kept()));
             const double points = std::min(static_cast<double>(limits.points),
                                            static_cast<double>(limits.work) / moves_a_point);
             const double finest = growth.finest_for(share_of_points * points);
-            if (finest >= factor) break;
-            factor = std::max({1.0, finest, factor / coarse_step});
+            limited = finest >= cell;
+            if (limited) break;
+            cell = std::max({asked, finest, cell / coarse_step});
         }
     }
+    const double serves_from = cell;
     // What is predicted is not certain.
     constexpr double coarser = 1.5;
     constexpr int most_tries = 12;
-    for (int tries = 0;
-         !system.run(node, steps, factor / detail_per_unit, coarse) || !system.add_large_parts(); ++tries) {
+    for (int tries = 0; !system.run(node, steps, cell, coarse) || !system.add_large_parts(); ++tries) {
         if (tries == most_tries || system.all_work() > 2 * limits.work) return std::nullopt;
-        factor *= coarser;
+        cell *= coarser;
     }
     State& state = system.root();
     PointSet set;
     set.cell = state.cell;
+    set.finest_asked = limited ? 0 : asked;
+    set.coarsest_asked = serves_from;
     set.middle = state.middle;
     set.flat = in_one_plane(state.points, root.ball.radius);
     set.points = std::move(state.points);

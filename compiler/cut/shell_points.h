@@ -40,6 +40,9 @@ struct PointSet {
     std::vector<PointPaint> paints;           ///< by point; empty: all plain
     std::shared_ptr<const InsideGrid> inside; ///< what no eye outside can see; none if nothing is
     std::uint64_t work = 0;
+    /// Who asks for cells of a side between these gets the same points: where the limits decide, however
+    /// fine.
+    double finest_asked = 0, coarsest_asked = 0;
 
     /// Whether the point (from the middle) is well inside.
     bool is_inside(const std::array<float, 3>& point) const { return inside && inside->has(point); }

@@ -21,7 +21,9 @@ CompiledModel parted_at(const CompiledModel& model, double mesh_triangles) {
     Choice choice;
     choice.threshold = mesh_triangles;
     AssemblyLimits limits{1'000'000, 4'000'000, 60};
-    std::optional<Cut> result = assemble(cut, symmetry, projection, root, choice, weights, false, limits);
+    ShellStore shells;
+    std::optional<Cut> result =
+        assemble(cut, symmetry, projection, root, choice, weights, false, shells, limits);
     EXPECT_TRUE(result.has_value());
     CompiledModel parted = model;
     if (result) parted.cut = std::move(*result);

@@ -183,6 +183,52 @@ TEST(Shell, ACrowdSomewhereInsideMakesNoneOfTheWhole) {
     EXPECT_FALSE(sizes.has(1e9));
 }
 
+TEST(ShellStore, GivesWhatIsMadeAnewAndMakesItOnce) {
+    const PreparedCut ready = prepared(corners_graph(3, 0.65));
+    const CutGraph& cut = ready.cut;
+    ShellStore store;
+    const PointLimits limits;
+    for (const double across : {60.0, 20.0, 60.0, 20.0}) {
+        const auto kept = store.points(cut, cut.root, unlimited_steps, detail_for(cut, across), limits);
+        const auto anew = point_set(cut, cut.root, unlimited_steps, detail_for(cut, across), limits);
+        ASSERT_TRUE(kept && anew);
+        EXPECT_EQ(kept->points, anew->points);
+        EXPECT_EQ(kept->cell, anew->cell);
+        EXPECT_EQ(kept->work, anew->work);
+    }
+    EXPECT_EQ(store.made(), 2u);
+}
+
+/// A native picture that is tried at ten errors asked ten times for one shell that is as fine as it may be.
+TEST(ShellStore, OneGridServesAllThatAskForAFinerOneThanTheLimitsAllow) {
+    const PreparedCut ready = prepared(corners_graph(2, 0.8));
+    const CutGraph& cut = ready.cut;
+    ShellStore store;
+    PointLimits limits;
+    limits.points = 20'000;
+    for (const double across : {1e7, 4e6, 2000.0, 1e9}) {
+        const auto kept = store.points(cut, cut.root, unlimited_steps, detail_for(cut, across), limits);
+        const auto anew = point_set(cut, cut.root, unlimited_steps, detail_for(cut, across), limits);
+        ASSERT_TRUE(kept && anew);
+        EXPECT_EQ(kept->points, anew->points);
+        EXPECT_EQ(kept->cell, anew->cell);
+    }
+    EXPECT_EQ(store.made(), 1u);
+    const auto coarse = store.points(cut, cut.root, unlimited_steps, detail_for(cut, 40), limits);
+    ASSERT_TRUE(coarse);
+    EXPECT_NEAR(coarse->cell, 1 / detail_for(cut, 40), 1e-12);
+    EXPECT_EQ(store.made(), 2u);
+}
+
+TEST(ShellStore, KeepsTheLastThatItHasRoomFor) {
+    const PreparedCut ready = prepared(corners_graph(3, 0.65));
+    const CutGraph& cut = ready.cut;
+    ShellStore none(0);
+    for (int i = 0; i < 2; ++i)
+        ASSERT_TRUE(none.points(cut, cut.root, unlimited_steps, detail_for(cut, 20), {}));
+    EXPECT_EQ(none.made(), 2u);
+}
+
 TEST(Shell, TintsAndMaterialsAreTheLeaves) {
     Graph graph;
     graph.materials.resize(1);

@@ -117,6 +117,7 @@ const TraceMesh& MeshStore::mesh(const Key& key, const Affine& graph_from_frame)
 std::unique_ptr<TraceMesh> MeshStore::bake_shell(const Key& key, const Affine& graph_from_frame) const {
     BakeRequest request;
     request.shell = true;
+    request.shells = prepared_.shells.get();
     request.representative = key.node;
     request.steps = key.steps;
     request.detail_per_unit = value_of(key.detail);

@@ -4,6 +4,7 @@
 
 #include "compiler/cut/assemble.h"
 #include "compiler/cut/coverage.h"
+#include "compiler/cut/shell_store.h"
 
 namespace graftal {
 

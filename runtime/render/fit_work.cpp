@@ -18,6 +18,8 @@ constexpr int first_block = 64, second_block = 16;
 constexpr double clear_factor = 8;
 constexpr double coarser = 1.5;
 constexpr int most_coarser_steps = 9;
+/// All is made anew after the memory did not suffice: few tries must do.
+constexpr int steps_after_memory = 3;
 constexpr std::uint64_t fewest_visits = 64;
 
 class Fitting {
@@ -32,10 +34,11 @@ class Fitting {
         FittedModel fitted;
         CutOptions options = options_;
         int steps_left = options.culls() ? most_coarser_steps : 0;
-        while (!make(prepare, options, fitted)) {
+        while (!make(prepare(), options, fitted)) {
             fitted.out_of_memory = true;
             if (steps_left == 0) throw std::bad_alloc();
-            make_coarser(options, steps_left);
+            for (int i = 0; i < steps_after_memory && steps_left > 0; ++i)
+                make_coarser(options, steps_left);
         }
         fitted.whole_seconds = fitted.seconds;
         if (!options.culls()) return fitted;
@@ -43,7 +46,7 @@ class Fitting {
             make_coarser(options, steps_left);
             PreparedCut prepared = std::move(fitted.model->prepared);
             fitted.model.reset();
-            if (!make([&] { return std::move(prepared); }, options, fitted)) throw std::bad_alloc();
+            if (!make(std::move(prepared), options, fitted)) throw std::bad_alloc();
         }
         while (too_much(fitted.seconds) && fitted.model->most_visits > fewest_visits) {
             fitted.model->most_visits /= 2;
@@ -61,16 +64,16 @@ class Fitting {
     }
 
     /// False where it takes more memory than there is.
-    bool make(const std::function<PreparedCut()>& prepare, const CutOptions& options,
-              FittedModel& fitted) const {
+    bool make(PreparedCut prepared, const CutOptions& options, FittedModel& fitted) const {
         try {
-            fitted.model = std::make_unique<TraceModel>(prepare(), view_, options);
+            fitted.model = std::make_unique<TraceModel>(std::move(prepared), view_, options);
+            fitted.error_px = options.error_px;
+            fitted.seconds = seconds_for(*fitted.model);
+            return true;
         } catch (const std::bad_alloc&) {
+            fitted.model.reset();
             return false;
         }
-        fitted.error_px = options.error_px;
-        fitted.seconds = seconds_for(*fitted.model);
-        return true;
     }
 
     bool too_much(double seconds) const { return seconds > options_.work_seconds && !cancelled_(); }

@@ -11,8 +11,8 @@ namespace {
 
 class FitWork : public testing::Test {
   protected:
-    /// What fits after the model was too large for the memory that many times.
-    FittedModel fitted(int failures, const CutOptions& options) const {
+    /// What fits where a model with an error of less than so many pixels takes too much memory.
+    FittedModel fitted(double too_fine_px, const CutOptions& options) {
         const Graph graph = test::tetrahedron();
         const Components components = strong_components(graph);
         const auto bounds = bound_objects(graph, components, decide_contraction(graph, components));
@@ -20,13 +20,18 @@ class FitWork : public testing::Test {
         view.size = {64, 48};
         view.camera.location = Vec3(0, 0, 5);
         const auto prepare = [&] {
-            if (failures-- > 0) throw std::bad_alloc();
+            if (++prepared_ > most_prepared_) throw std::bad_alloc();
             return prepare_cut(graph, components, bounds, options);
         };
-        return fit_work(
-            prepare, view, options, 1, [](const TraceModel&) { return ShaderLimits(); }, 1,
-            [] { return false; });
+        const auto limits = [&](const TraceModel& model) {
+            if (model.options.error_px < too_fine_px) throw std::bad_alloc();
+            return ShaderLimits();
+        };
+        return fit_work(prepare, view, options, 1, limits, 1, [] { return false; });
     }
+
+    int prepared_ = 0;
+    int most_prepared_ = 100;
 };
 
 TEST_F(FitWork, KeepsWhatFits) {
@@ -40,11 +45,20 @@ TEST_F(FitWork, KeepsWhatFits) {
 
 TEST_F(FitWork, CoarsensWhatTakesTooMuchMemory) {
     const CutOptions options;
-    const FittedModel model = fitted(2, options);
-    EXPECT_EQ(model.error_px, 1.5 * 1.5 * options.error_px);
+    const FittedModel model = fitted(1, options);
+    EXPECT_EQ(model.error_px, 1.5 * 1.5 * 1.5 * options.error_px);
     EXPECT_EQ(model.model->options.error_px, model.error_px);
     EXPECT_TRUE(model.out_of_memory);
-    EXPECT_THROW(fitted(100, options), std::bad_alloc);
+    EXPECT_EQ(prepared_, 2);
+    EXPECT_THROW(fitted(1000, options), std::bad_alloc);
+    EXPECT_EQ(prepared_, 6);
+}
+
+/// A coarser picture would need all of it too.
+TEST_F(FitWork, GivesUpWhatCannotBePrepared) {
+    most_prepared_ = 0;
+    EXPECT_THROW(fitted(0, CutOptions()), std::bad_alloc);
+    EXPECT_EQ(prepared_, 1);
 }
 
 TEST_F(FitWork, CoarsensNothingOfWhichNothingIsLeftOut) {

@@ -137,10 +137,11 @@ Affine ellipsoid_in(const Box& box) {
     return Affine::translate(box.centre()) * Affine::scale(half);
 }
 
-/// Builds the nodes of a factored graph.
+/// Builds the nodes of a factored graph, which it uses up: with millions of instances each must lie in memory
+/// once.
 class Builder {
   public:
-    Builder(const Graph& graph, const Components& components) : graph_(graph), components_(components) {}
+    Builder(Graph graph, const Components& components) : graph_(std::move(graph)), components_(components) {}
 
     CutGraph build(const FactorsByName& factor_of) {
         const auto count = graph_.objects.size();
@@ -149,7 +150,7 @@ class Builder {
         cut_.materials = graph_.materials;
         const std::vector<double> leaves = approximate_leaves();
         for (ObjectId id = 0; id < count; ++id) {
-            const Object& object = graph_.objects[id];
+            Object& object = graph_.objects[id];
             const Factor& factor = *factor_of.at(object.name);
             CutNode node;
             node.name = object.name;
@@ -161,7 +162,9 @@ class Builder {
             node.ball = factor.ball.empty() ? Ball{Vec3(0.0), 0.0} : factor.ball;
             node.node_from_proxy = ellipsoid_in(factor.box);
             if (object.run) add_run(object, *factor.run, node);
-            for (const Instance& instance : object.instances)
+            const std::vector<Instance> instances = std::exchange(object.instances, {});
+            node.edges.reserve(instances.size());
+            for (const Instance& instance : instances)
                 node.edges.push_back(edge(instance, node, id));
             if (object.terminal) {
                 node.stop_edges.push_back(edge(*object.terminal, node, id));
@@ -251,7 +254,7 @@ class Builder {
         return leaves;
     }
 
-    const Graph& graph_;
+    Graph graph_;
     const Components& components_;
     CutGraph cut_;
 };
@@ -351,7 +354,7 @@ CutGraph build_cut_graph(const Graph& graph, const Components& components,
     factored = merge_equivalent(drop_unreachable(std::move(factored)));
 
     const Components merged = strong_components(factored);
-    CutGraph cut = Builder(factored, merged).build(factor_of);
+    CutGraph cut = Builder(std::move(factored), merged).build(factor_of);
     mark_textured(cut);
     weigh_by_reach(cut);
     set_mean_colours(cut);

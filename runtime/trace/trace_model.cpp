@@ -38,13 +38,21 @@ TraceNode::Kind kind_of(const CutNode& node) {
     return node.sealed ? TraceNode::Kind::crushed : TraceNode::Kind::parts;
 }
 
+/// Of more edges small groups are not spelt out where they are used: each use would take memory of its own.
+constexpr std::size_t most_edges_spelt_out = 200'000;
+
 /// Fills in nodes, edges and boxes of a model.
 class Builder {
   public:
     explicit Builder(TraceModel& model)
         : model_(model), cut_(model.layers.cut), bounds_(drawn_bounds(cut_)) {
-        for (NodeId id = 0; id < cut_.nodes.size(); ++id)
+        std::size_t edges = 0;
+        for (NodeId id = 0; id < cut_.nodes.size(); ++id) {
             model_.graph_from_frame.push_back(graph_from_frame(cut_.nodes[id], bounds_.node[id]));
+            edges += cut_.nodes[id].edges.size() + cut_.nodes[id].stop_edges.size();
+        }
+        spells_out_groups_ = edges <= most_edges_spelt_out;
+        if (!spells_out_groups_) model_.edges.reserve(edges + cut_.nodes.size());
     }
 
     void build() {
@@ -185,7 +193,8 @@ class Builder {
     /// A handful of primitives, which is never cut.
     bool is_small_group(NodeId id) const {
         const CutNode& node = cut_.nodes[id];
-        return !node.primitive && !node.cell && !node.unending && !node.unbounded && !node.sealed && !node.cullable;
+        return spells_out_groups_ && !node.primitive && !node.cell && !node.unending && !node.unbounded &&
+               !node.sealed && !node.cullable;
     }
 
     void add_group(const CutEdge& group, std::vector<Part>& parts) const {
@@ -230,6 +239,7 @@ class Builder {
     }
 
     TraceModel& model_;
+    bool spells_out_groups_ = true;
     const CutGraph& cut_;
     DrawnBounds bounds_;
     std::map<const RunSource*, std::uint32_t> run_of_;

@@ -189,6 +189,14 @@ class Cutter {
     }
 
     std::nullopt_t refuse_size() {
+        if (worked_too_much_) {
+            diagnostics_
+                .error(graph_.objects[graph_.root].span,
+                       fmt::format("{} leaves take more than the {:g} seconds of work allowed, however coarse",
+                                   readable_count(choice_.leaves), options_.work_seconds))
+                .with_hint("give more with --work, lower --steps, or draw it with --engine native");
+            return std::nullopt;
+        }
         const auto memory = static_cast<double>(options_.memory_bytes);
         // Where the estimate fitted but what was unfolded did not, nobody knows how much it would have been.
         std::string need;

@@ -12,6 +12,8 @@ namespace {
 /// Parts are compared after so many visits, where most walks are at their end.
 constexpr std::uint64_t most_patience = 4096;
 constexpr double cell_half_widths = 0.5;
+/// What a comparison takes, measured: it finds singular values, and a cell of a table.
+constexpr std::uint64_t visits_of_a_comparison = 4;
 
 } // namespace
 
@@ -127,6 +129,7 @@ void LeafWalk::push_items() {
 bool LeafWalk::is_new(const Visit& child) {
     if (visits_ < most_patience || cells_from_unit_ == Mat3(0.0) || !cut_.nodes[child.shape].widens)
         return true;
+    visits_ += visits_of_a_comparison;
     const double size = std::max(cut_.nodes[child.shape].ball.radius, 1e-280);
     const Vec3 centre = child.representative_from_node(cut_.nodes[child.shape].ball.centre);
     const Affine cells{size * (cells_from_unit_ * child.representative_from_node.linear),

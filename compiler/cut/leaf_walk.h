@@ -37,7 +37,7 @@ class LeafWalk {
 
     /// The next leaf, or false at the end. Memory O(depth).
     bool next(WalkedLeaf& leaf);
-    /// Nodes and leaves so far.
+    /// Nodes and leaves so far, and what comparing them took.
     std::uint64_t visits() const { return visits_; }
 
   private:

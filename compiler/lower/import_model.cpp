@@ -60,11 +60,9 @@ bool check_chain(Span use_span, const std::string& path, Lowering& lowering) {
 
 Status check_regular(const std::string& path) {
     std::error_code code;
-    const std::filesystem::file_status status = std::filesystem::status(path, code);
-    if (!std::filesystem::exists(status))
+    if (!std::filesystem::exists(path, code))
         return Status::failure(fmt::format("cannot open '{}': {}", path, std::strerror(ENOENT)));
-    if (!std::filesystem::is_regular_file(status))
-        return Status::failure(fmt::format("'{}' is not a regular file", path));
+    if (is_special_file(path)) return Status::failure(fmt::format("'{}' is not a regular file", path));
     return {};
 }
 

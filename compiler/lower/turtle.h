@@ -113,8 +113,8 @@ class Turtle {
     bool run(TurtleCommand command, std::span<const double> parameters,
              const std::optional<PlacedModel>& model, Span span, bool absolute = false);
 
-    /// Places a part whose entry state was scaled(state(), 1 / scale), but for what the placing says: draws
-    /// it, and goes where it leaves the turtle.
+    /// Places a part whose entry state was scaled(state(), 1 / scale), except for what the placing says:
+    /// draws it, and goes where it leaves the turtle.
     void append(const TurtlePart& part, Span span, const Placing& placing = {});
     /// The same, but the turtle stays as it is: a branch.
     void append_branch(const TurtlePart& part, Span span, const Placing& placing = {});

@@ -37,12 +37,15 @@ Status read_stream(std::FILE* stream, const std::string& path, std::string& text
 
 } // namespace
 
-Status read_text(const std::string& path, std::string& text, std::size_t max_bytes) {
-    if (path == "-") return read_stream(stdin, "standard input", text, max_bytes);
-    // Looked at before it is opened: opening a pipe that nobody writes would wait for ever.
+bool is_special_file(const std::string& path) {
     std::error_code error;
     const std::filesystem::file_status status = std::filesystem::status(path, error);
-    if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status))
+    return std::filesystem::exists(status) && !std::filesystem::is_regular_file(status);
+}
+
+Status read_text(const std::string& path, std::string& text, std::size_t max_bytes) {
+    if (path == "-") return read_stream(stdin, "standard input", text, max_bytes);
+    if (is_special_file(path))
         return Status::failure(fmt::format("cannot read '{}': not a regular file", path));
     const OpenFile file(std::fopen(path.c_str(), "rb"));
     if (!file) return system_failure("open", path);

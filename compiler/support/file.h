@@ -7,6 +7,10 @@
 
 namespace graftal {
 
+/// True for what is there and is no regular file. To be asked before a file is opened: opening a pipe that
+/// nobody writes would wait for ever.
+bool is_special_file(const std::string& path);
+
 /// Reads a regular file, or standard input for "-". Refuses more than `max_bytes`, so that a model cannot
 /// be a device or a disk image.
 Status read_text(const std::string& path, std::string& text, std::size_t max_bytes = 256u << 20);

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
-#include <filesystem>
-#include <system_error>
 
 #include <dlfcn.h>
 #include <fmt/format.h>
@@ -85,11 +83,7 @@ float srgb_encoded(float linear) {
 }
 
 Status read_rows(const std::string& path, RowSink& sink) {
-    // Looked at before it is opened: opening a pipe that nobody writes would wait for ever.
-    std::error_code code;
-    const std::filesystem::file_status file = std::filesystem::status(path, code);
-    if (std::filesystem::exists(file) && !std::filesystem::is_regular_file(file))
-        return failure("read", path, "it is not a regular file");
+    if (is_special_file(path)) return failure("read", path, "it is not a regular file");
     const std::string error = read(path, sink);
     return error.empty() ? Status() : failure("read", path, error);
 }

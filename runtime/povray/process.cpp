@@ -6,7 +6,6 @@
 #include <csignal>
 #include <cstdlib>
 #include <cstring>
-#include <fstream>
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -19,6 +18,7 @@
 
 #include "runtime/povray/interruption.h"
 #include "runtime/system/memory_limit.h"
+#include "runtime/system/process_memory.h"
 
 extern char** environ;
 
@@ -88,15 +88,6 @@ class ExecTables {
     const int reason = errno;
     if (::write(report, &reason, sizeof reason) < 0) ::_exit(126);
     ::_exit(127);
-}
-
-/// The number of kilobytes behind a word such as "VmHWM:" in /proc/PID/status, as bytes; 0 if it is not
-/// there.
-std::uint64_t memory_of(const std::string& process, std::string_view word) {
-    std::ifstream file("/proc/" + process + "/status");
-    for (std::string line; std::getline(file, line);)
-        if (line.starts_with(word)) return 1024 * std::strtoull(line.c_str() + word.size(), nullptr, 10);
-    return 0;
 }
 
 class Descriptor {

@@ -1,15 +1,15 @@
 #include "runtime/system/memory_limit.h"
 
 #include <algorithm>
-#include <fstream>
 #include <optional>
-#include <string>
 #include <thread>
 
 #ifdef __GLIBC__
 #include <malloc.h>
 #endif
 #include <sys/resource.h>
+
+#include "runtime/system/process_memory.h"
 
 namespace graftal {
 
@@ -19,18 +19,6 @@ namespace {
 std::optional<rlimit> limit_at_first;
 std::uint64_t bytes_given = 0;
 
-/// What counts against the limit already: the figure behind "VmData:", in kB.
-std::uint64_t data_bytes() {
-    std::ifstream file("/proc/self/status");
-    std::uint64_t kilobytes = 0;
-    for (std::string word; file >> word;)
-        if (word == "VmData:") {
-            file >> kilobytes;
-            break;
-        }
-    return kilobytes << 10;
-}
-
 } // namespace
 
 void limit_memory(std::uint64_t bytes) {
@@ -38,8 +26,8 @@ void limit_memory(std::uint64_t bytes) {
     if (::getrlimit(RLIMIT_DATA, &limit) != 0) return;
     if (!limit_at_first) limit_at_first = limit;
     constexpr std::uint64_t stack_bytes = 8u << 20; // reserved for each thread, and hardly used
-    const std::uint64_t wanted =
-        data_bytes() + bytes + stack_bytes * std::max(1u, std::thread::hardware_concurrency());
+    const std::uint64_t wanted = memory_of("self", "VmData:") + bytes +
+                                 stack_bytes * std::max(1u, std::thread::hardware_concurrency());
 #ifdef __GLIBC__
     // What is large goes back to the kernel at once. Else holes that stages leave behind count against the
     // next: the cut of a wood took 2.0 GiB where it now takes 1.7.

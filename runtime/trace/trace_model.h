@@ -92,7 +92,7 @@ struct TraceNode {
     std::uint32_t stop_edge_count = 0; ///< which follow those
     Double4 ball_centre{};
     double ball_radius = 0;
-    double drawn_radius = 0; ///< about the frame's origin; of what it draws, but for widening
+    double drawn_radius = 0; ///< about the frame's origin; of what it draws, except for widening
     LaneMap node_from_proxy; ///< places the unit sphere
     LaneMap proxy_from_node;
 };

@@ -222,6 +222,8 @@ void Turtle::move(std::span<const double> parameters, bool absolute, bool draw, 
     part_.unit_sensitivity.farthest = std::max(part_.unit_sensitivity.farthest, unit_shift_);
     start_from_turtle_.translation += length * start_from_turtle_.linear[1];
     part_.reach = std::max(part_.reach, glm::length(start_from_turtle_.translation));
+    way_ += std::abs(length);
+    part_.longest_way = std::max(part_.longest_way, way_);
     for (auto [drift, total] :
          {std::pair(&error_, &part_.error), std::pair(&sensitivity_, &part_.sensitivity)}) {
         drift->shift = bounded(drift->shift + drift->turn * std::abs(length));
@@ -277,6 +279,7 @@ void Turtle::bend() {
 void Turtle::note_radius(double radius, WidthSource source) {
     part_.thickest = std::max(part_.thickest, radius);
     const double own_error = source == width_source_ ? width_error_ * radius : 0;
+    part_.size_error.farthest = std::max(part_.size_error.farthest, size_shift_ + own_error);
     part_.error.farthest = std::max(part_.error.farthest, error_.shift + own_error);
     if (source == WidthSource::start) part_.width_sensitivity = std::max(part_.width_sensitivity, radius);
     const double by_unit = source == WidthSource::unit ? radius : 0;
@@ -337,8 +340,8 @@ void Turtle::cut() {
 }
 
 void Turtle::open_branch() {
-    branches_.push_back({start_from_turtle_, state_, writes_, error_, sensitivity_, unit_shift_, width_error_,
-                         width_source_, polygons_.size()});
+    branches_.push_back({start_from_turtle_, state_, writes_, error_, sensitivity_, way_, size_shift_,
+                         unit_shift_, width_error_, width_source_, polygons_.size()});
 }
 
 void Turtle::close_branch() {
@@ -350,6 +353,8 @@ void Turtle::close_branch() {
     writes_ = branches_.back().writes;
     error_ = branches_.back().error;
     sensitivity_ = branches_.back().sensitivity;
+    way_ = branches_.back().way;
+    size_shift_ = branches_.back().size_shift;
     unit_shift_ = branches_.back().unit_shift;
     width_error_ = branches_.back().width_error;
     width_source_ = branches_.back().width_source;
@@ -416,7 +421,9 @@ TurtlePart Turtle::finish() && {
     part_.start_from_exit = start_from_turtle_;
     part_.exit = state_;
     part_.polygons = std::move(polygons_);
+    part_.exit_way = way_;
     part_.error = {error_.turn, error_.shift, part_.error.farthest};
+    part_.size_error.exit_shift = size_shift_;
     part_.sensitivity = {sensitivity_.turn, sensitivity_.shift, part_.sensitivity.farthest};
     part_.unit_sensitivity.exit_shift = unit_shift_;
     part_.exit_width_source = width_source_;

@@ -52,7 +52,10 @@ struct TurtlePart {
     TurtleStateMask writes = 0;
     bool cut = false;         ///< what follows in the branch is cut off
     double reach = 0;         ///< the turtle goes no farther from the start
-    Displacement error;       ///< from directions that were snapped (LsysComposer)
+    double longest_way = 0;   ///< nor is any way that it goes longer
+    double exit_way = 0;      ///< how long the way to the exit is
+    Displacement error;      ///< from directions that were snapped and sizes that were rounded (LsysComposer)
+    Displacement size_error; ///< the sizes' share in it; its turn is 0
     Displacement sensitivity; ///< to the directions at the start, per radian, to first order
     /// To the width that came in, and to the unit, by the logarithms of these (LsysComposer).
     double width_sensitivity = 0;  ///< of any point
@@ -94,6 +97,10 @@ struct TurtleContext {
     bool tallies = false;    ///< the lengths of segments are tallied
     std::size_t max_instances = 4'000'000; ///< of one part, its polygons' vertices too
 };
+
+/// Two directions are no farther apart than this, as ends of unit vectors. So what an angle displaces is at
+/// most twice the way that is gone under it, however large a bound of first order is.
+inline constexpr double farthest_directions = 2;
 
 /// Sensitivities multiply from turn to turn: without a bound they would come to be infinite, and no number
 /// once they are multiplied by an angle of 0.
@@ -154,7 +161,7 @@ class Turtle {
         TurtleState state;
         TurtleStateMask writes;
         Drift error, sensitivity;
-        double unit_shift, width_error;
+        double way, size_shift, unit_shift, width_error;
         WidthSource width_source;
         std::size_t polygons = 0; ///< open ones
     };
@@ -199,6 +206,8 @@ class Turtle {
     Affine start_from_turtle_;
     TurtleState state_; ///< directions in the frame of the start, as they came in
     TurtleStateMask writes_ = 0;
+    double way_ = 0;        ///< how far the turtle has gone to here
+    double size_shift_ = 0; ///< the share of rounded sizes in error_.shift
     Drift error_;       ///< from parts before that were snapped
     Drift sensitivity_; ///< per radian of the directions at the start
     double unit_shift_ = 0; ///< how far the place moves with the logarithm of the unit

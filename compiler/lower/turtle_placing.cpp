@@ -14,10 +14,13 @@ void Turtle::append(const TurtlePart& part, Span span, const Placing& placing) {
     const double scale = placing.scale;
     const double length = scale * glm::length(part.start_from_exit.translation);
     const double stir = 1 + sensitivity_.turn; // of the part's directions
-    const double shift = part.error.exit_shift + placing.snap * part.sensitivity.exit_shift +
-                         placing.unit_error * part.unit_sensitivity.exit_shift;
-    error_ = {bounded(error_.turn + part.error.exit_turn + placing.snap * part.sensitivity.exit_turn),
-              bounded(error_.at(length) + scale * shift)};
+    const double unit_shift = placing.unit_error * part.unit_sensitivity.exit_shift;
+    const double shift = part.error.exit_shift + placing.snap * part.sensitivity.exit_shift + unit_shift;
+    const double turn = error_.turn + part.error.exit_turn + placing.snap * part.sensitivity.exit_turn;
+    way_ += scale * part.exit_way;
+    size_shift_ += scale * (part.size_error.exit_shift + unit_shift);
+    error_ = {std::min(turn, farthest_directions),
+              std::min(error_.at(length) + scale * shift, farthest_directions * way_ + size_shift_)};
     sensitivity_ = {bounded(sensitivity_.turn + stir * part.sensitivity.exit_turn),
                     bounded(sensitivity_.at(length) + stir * scale * part.sensitivity.exit_shift)};
     unit_shift_ += placing.absolute ? length : scale * part.unit_sensitivity.exit_shift;
@@ -55,11 +58,16 @@ void Turtle::take_exit_width(const TurtlePart& part, const Placing& placing) {
 /// Each kind of displacement is bounded by itself, and the bounds are added.
 void Turtle::place_errors(const TurtlePart& part, const Placing& placing) {
     const double scale = placing.scale, reach = scale * part.reach;
-    const double own = part.error.farthest + placing.snap * part.sensitivity.farthest +
-                       (width_error_ + placing.width_error) * part.width_sensitivity +
-                       placing.unit_error * part.unit_sensitivity.farthest +
-                       placing.size_error * part.thickest;
-    part_.error.farthest = std::max(part_.error.farthest, error_.at(reach) + scale * own);
+    const double of_sizes = (width_error_ + placing.width_error) * part.width_sensitivity +
+                            placing.unit_error * part.unit_sensitivity.farthest +
+                            placing.size_error * part.thickest;
+    const double own = part.error.farthest + placing.snap * part.sensitivity.farthest + of_sizes;
+    const double all_sizes = size_shift_ + scale * (part.size_error.farthest + of_sizes);
+    const double way = way_ + scale * part.longest_way;
+    part_.size_error.farthest = std::max(part_.size_error.farthest, all_sizes);
+    part_.error.farthest = std::max(part_.error.farthest, std::min(error_.at(reach) + scale * own,
+                                                                   farthest_directions * way + all_sizes));
+    part_.longest_way = std::max(part_.longest_way, way);
     part_.sensitivity.farthest = std::max(
         part_.sensitivity.farthest,
         bounded(sensitivity_.at(reach) + (1 + sensitivity_.turn) * scale * part.sensitivity.farthest));

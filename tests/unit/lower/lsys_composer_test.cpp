@@ -333,5 +333,16 @@ TEST(LsysComposer, snappedDirectionsStayWithinTheBound) {
     }
 }
 
+TEST(LsysComposer, theBoundIsNoLargerThanTheWaysGone) {
+    // '$' turns a heading that is nearly vertical by any angle, however little the heading is off.
+    const std::string upright =
+        "axiom A(3)\nA(k) -> F(1)[&(k)/(7)$[&(40)F(1)]A(k*0.8+1)][^(k)/(130)$A(k*0.7+2)]\n";
+    const auto [bound, worst] = snapped(upright, 7, 4);
+    constexpr double longest_way = 8; // a segment a step, and one aside
+    EXPECT_GT(worst, 0);
+    EXPECT_LE(worst, bound);
+    EXPECT_LE(bound, 2 * longest_way * (1 + 1e-12));
+}
+
 } // namespace
 } // namespace graftal

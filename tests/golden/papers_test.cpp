@@ -1,6 +1,7 @@
 // Models of the papers, held to what the papers print.
 
 #include <algorithm>
+#include <filesystem>
 #include <regex>
 #include <set>
 
@@ -87,6 +88,85 @@ TEST_F(Papers, TreeWithoutChanceIsSymmetric) {
     const Json bounds = stats("tree.inst")["bounds"];
     for (const int axis : {0, 2})
         EXPECT_NEAR(bounds["min"][axis].get<double>(), -bounds["max"][axis].get<double>(), 1e-9);
+}
+
+TEST_F(Papers, LeavesAreMirrorImagesOfThemselves) {
+    // A leaf that is one polygon about its midrib: a wrong turn at its tip makes it a gull.
+    int leaves = 0;
+    for (const char* folder : {"abop", "papers", "plants"})
+        for (const auto& entry :
+             std::filesystem::directory_iterator(source_path("scenes/" + std::string(folder)))) {
+            std::string text;
+            ASSERT_TRUE(read_text(entry.path().string(), text).ok());
+            const std::size_t begin = text.find("lsys blade {");
+            if (entry.path().extension() != ".lsys" || begin == std::string::npos) continue;
+            const std::size_t end = text.find("\n}", begin);
+            const std::string block = text.substr(begin, end + 2 - begin);
+            if (block.find("random") != std::string::npos || block.find("inner") != std::string::npos)
+                continue;
+            write("leaf.lsys", std::regex_replace(block, std::regex("\n *colors [^\n]*"), "") + "\n");
+            const Json bounds = stats("leaf.lsys")["bounds"];
+            const double left = bounds["min"][0].get<double>(), right = bounds["max"][0].get<double>();
+            EXPECT_NEAR(left, -right, 0.05 * (right - left)) << entry.path();
+            ++leaves;
+        }
+    EXPECT_GE(leaves, 10);
+}
+
+/// In some rows of a picture what lies between each row's first dark pixel and its last.
+struct Trunk {
+    double dark_share = 0;
+    int narrowest = 0, widest = 0; ///< rows, in pixels
+};
+Trunk trunk_in(const Image& image, int first_row, int last_row) {
+    Trunk trunk{.narrowest = image.width};
+    int dark = 0, between = 0;
+    for (int y = first_row; y < last_row; ++y) {
+        int begin = image.width, end = 0;
+        for (int x = 0; x < image.width; ++x) {
+            if (image.pixels[image.channels * (y * image.width + x) + 2] >= 0.4f) continue;
+            begin = std::min(begin, x);
+            end = x + 1;
+            ++dark;
+        }
+        const int width = std::max(end - begin, 0);
+        between += width;
+        trunk.narrowest = std::min(trunk.narrowest, width);
+        trunk.widest = std::max(trunk.widest, width);
+    }
+    trunk.dark_share = between == 0 ? 0 : static_cast<double>(dark) / between;
+    return trunk;
+}
+
+class Trunks : public Papers {
+  protected:
+    /// Of the rows between two heights of a used model's object; the background is white.
+    Trunk trunk(const std::string& scene, const std::string& instance, double low, double high) {
+        write("tree.inst",
+              "use m = \"" + source_path(scene) +
+                  "\"\ncamera { location: 0, 0.5, 9  look_at: 0, 0.5, 0  orthographic  width: 1 }\n"
+                  "background: 1, 1, 1\nlight { sun: 0, 0, 1  color: 0.5, 0.5, 0.5 }\n"
+                  "object top { instance: m." +
+                  instance + " }\n");
+        const int size = 120;
+        EXPECT_EQ(
+            graftal("render -q --engine native --antialias off --size 120x120 -o a.png tree.inst").status, 0);
+        return trunk_in(picture("a.png"), static_cast<int>(size * (1 - high)),
+                        static_cast<int>(size * (1 - low)));
+    }
+};
+
+TEST_F(Trunks, OfElmsAreNoThreads) {
+    for (int kind = 1; kind <= 5; ++kind)
+        EXPECT_GT(trunk("scenes/plants/fractal_forest.inst", "elm(" + std::to_string(kind) + ")", 0.05, 0.2)
+                      .dark_share,
+                  0.95);
+}
+
+TEST_F(Trunks, OfTheTreeOfFiveMapsHasNoStubs) {
+    const Trunk rows = trunk("scenes/plants/five_map_tree.rifs", "scene.it  scale: 0.2, 0.2, 0.2", 0.05, 0.4);
+    EXPECT_GT(rows.dark_share, 0.97);
+    EXPECT_LT(rows.widest, 1.5 * rows.narrowest);
 }
 
 } // namespace

@@ -167,6 +167,21 @@ Weights::Weight Weights::of_primitive(const PieceKind& asked) const {
     return {static_cast<double>(mesh.triangles.size()), 1, mesh.normals.empty() ? 0.0 : 1.0, flat_bytes};
 }
 
+/// Of a cell that is not cut. Cells are many, and hardly any is met twice: they are sooner weighed than
+/// remembered.
+Weights::Weight Weights::of_cell(const PieceKind& kind, const RunCell& cell) {
+    Weight sum;
+    for (const RunCell::Alike& alike : cell.alike) {
+        CutEdge edge;
+        edge.child = cell.source->child[static_cast<std::size_t>(alike.kind)];
+        edge.stretch = edge.volume_stretch = std::exp2(0.25 * (alike.quarter_octave + 0.5));
+        sum += alike.count * of_primitive(child_kind(kind, edge));
+    }
+    visits_ += cell.alike.size();
+    crowd(kind, sum);
+    return sum;
+}
+
 /// What a singular map crushes coincides: along a line or in a plane there are about as many different leaves
 /// as it has lengths or squares of half the error (least_width.h, speck_mark()).
 void Weights::squeeze(const PieceKind& kind, Weight& weight) const {
@@ -269,15 +284,16 @@ bool Weights::weigh(std::uint32_t start) {
         const CutNode& node = cut_.nodes[kind.node];
         const bool cut = is_cut(kind);
         const auto& edges = followed_edges(node, cut);
-        if (node.cell && !cut && frame.next_edge == 0) {
-            for_each_edge(node, false,
-                          [&](const CutEdge& edge) { frame.sum += of_primitive(child_kind(kind, edge)); });
-            visits_ += node.cell->count;
-        }
+        if (node.cell && !cut) frame.sum = of_cell(kind, *node.cell);
         if (frame.next_edge < edges.size()) {
-            const std::size_t before = known_.size();
-            const std::uint32_t child = number_of(child_kind(kind, edges[frame.next_edge++]));
+            const PieceKind next = child_kind(kind, edges[frame.next_edge++]);
             ++visits_;
+            if (const RunCell* const cell = cut_.nodes[next.node].cell.get(); cell && !is_cut(next)) {
+                frame.sum += of_cell(next, *cell);
+                continue;
+            }
+            const std::size_t before = known_.size();
+            const std::uint32_t child = number_of(next);
             if (known_.size() == before) {
                 frame.sum += known_[child].weight;
             } else {
@@ -291,7 +307,7 @@ bool Weights::weigh(std::uint32_t start) {
         else if (edges.empty() && (!node.cell || cut))
             frame.sum = proxy;
         if (node.sealed) squeeze(kind, frame.sum);
-        crowd(kind, frame.sum);
+        if (!node.cell || cut) crowd(kind, frame.sum);
         const Weight sum = known_[frame.number].weight = frame.sum;
         stack_.pop_back();
         if (!stack_.empty()) stack_.back().sum += sum;

@@ -178,6 +178,12 @@ class Weights {
         bool crowded = false;
 
         Weight& operator+=(const Weight& other);
+        friend Weight operator*(double count, Weight weight) {
+            for (double* const sum :
+                 {&weight.triangles, &weight.leaves, &weight.curved_leaves, &weight.flat_bytes})
+                *sum *= count;
+            return weight;
+        }
     };
 
     /// Saturates at infinity; kinds that lead back to themselves without losing detail count as one leaf.
@@ -226,6 +232,7 @@ class Weights {
     bool too_many_kinds() const;
     void forget_kinds();
     Weight of_primitive(const PieceKind& kind) const;
+    Weight of_cell(const PieceKind& kind, const RunCell& cell);
     void crowd(const PieceKind& kind, Weight& weight) const;
     void squeeze(const PieceKind& kind, Weight& weight) const;
 

@@ -102,6 +102,8 @@ class Builder {
             const double area = mean_shadow(item);
             shadow += area;
             leaves += item.ball ? 2 : 1;
+            note(*cell, item.kind, std::max(item.radius, glm::length(item.axis)));
+            if (item.ball) note(*cell, PrimitiveKind::sphere, item.radius);
             if (const std::optional<MaterialId>& material = source_->materials[item.colour])
                 mean.fixed += area * materials_[*material].rgb;
             else
@@ -116,6 +118,17 @@ class Builder {
         const double dark = 1 - std::exp(-shadow / mean_shadow(half));
         node.node_from_proxy = Affine::translate(centre) * Affine::scale(std::sqrt(dark) * half);
         node.cell = std::move(cell);
+    }
+
+    static void note(RunCell& cell, PrimitiveKind kind, double stretch) {
+        const double square = stretch * stretch;
+        const std::int32_t quarter_octave = std::ilogb(square * square);
+        for (RunCell::Alike& alike : cell.alike)
+            if (alike.kind == kind && alike.quarter_octave == quarter_octave) {
+                ++alike.count;
+                return;
+            }
+        cell.alike.push_back({kind, quarter_octave, 1});
     }
 
     static Vec3 half_of(const Box& box) {

@@ -27,6 +27,13 @@ struct RunCell {
     std::shared_ptr<const RunSource> source;
     std::size_t first = 0, count = 0;
     Box box;
+    /// Its parts by what they weigh: of one kind, and of one size within a quarter of an octave.
+    struct Alike {
+        PrimitiveKind kind{};
+        std::int32_t quarter_octave = 0; ///< of the stretch of their edges
+        std::uint32_t count = 0;
+    };
+    std::vector<Alike> alike;
 };
 
 /// The level of RunBounds whose ranges become cells, if there are so many items.

@@ -62,6 +62,15 @@ Affine run_from_ball(const RunItem& item) {
     return {Mat3(item.radius * x, item.radius * y, item.radius * glm::cross(x, y)), item.base + item.axis};
 }
 
+Affine run_from_round_body(const RunItem& item) {
+    const Vec3 y = unit_along(item.axis), x = across(y);
+    return {Mat3(item.radius * x, item.axis, item.radius * glm::cross(x, y)), item.base};
+}
+
+Affine run_from_round_ball(const RunItem& item) {
+    return {Mat3(item.radius), item.base + item.axis};
+}
+
 void Run::grow() {
     auto chunk = std::make_unique_for_overwrite<RunItem[]>(chunk_size);
     const std::size_t used = size_ & (chunk_size - 1);

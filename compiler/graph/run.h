@@ -44,6 +44,10 @@ Affine run_from_body(const RunItem& item);
 /// Where the ball at its end lies.
 Affine run_from_ball(const RunItem& item);
 
+/// The same, turned anyhow about the axis: sooner found, and what is round looks alike.
+Affine run_from_round_body(const RunItem& item);
+Affine run_from_round_ball(const RunItem& item);
+
 /// A list of items that grows without ever being copied.
 class Run {
   public:

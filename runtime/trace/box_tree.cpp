@@ -11,7 +11,7 @@ namespace {
 constexpr float infinity = std::numeric_limits<float>::infinity();
 /// Compares false with all: an empty box would be turned inside out by the signs of a ray.
 constexpr float nowhere = std::numeric_limits<float>::quiet_NaN();
-constexpr int width = 8;
+constexpr std::size_t width = 8;
 constexpr int bins = 16;
 /// Deeper than this, halves by number take the place of the heuristic.
 constexpr int deepest_by_area = 32;
@@ -44,6 +44,12 @@ FloatBox box_of(Items items) {
 
 float middle(const BoxedItem& item, std::size_t axis) {
     return 0.5f * item.lower[axis] + 0.5f * item.upper[axis];
+}
+
+/// The size of a first part nearest to the one wanted: a multiple of `grain`, neither nothing nor all.
+std::size_t in_grains(std::size_t size, std::size_t all, std::size_t grain) {
+    const std::size_t most = (all - 1) / grain * grain;
+    return std::clamp((size + grain / 2) / grain * grain, grain, most);
 }
 
 struct Split {
@@ -94,8 +100,9 @@ Split best_split(Items items, const FloatBox& middles) {
     return best;
 }
 
-/// Splits more than one item into two parts that are not empty; returns the size of the first.
-std::size_t split(Items items, int depth) {
+/// Splits more than `grain` items into two parts that are not empty, the first of a multiple of `grain`;
+/// returns its size.
+std::size_t split(Items items, int depth, std::size_t grain) {
     FloatBox middles;
     for (const BoxedItem& item : items) {
         const std::array<float, 3> point{middle(item, 0), middle(item, 1), middle(item, 2)};
@@ -109,15 +116,21 @@ std::size_t split(Items items, int depth) {
                 return bin_of(middle(item, best.axis)) < best.bin;
             });
             const auto size = static_cast<std::size_t>(part - items.begin());
-            if (size > 0 && size < items.size()) return size;
+            const std::size_t whole = in_grains(size, items.size(), grain);
+            if (whole == size) return size;
+            std::ranges::nth_element(items, items.begin() + static_cast<std::ptrdiff_t>(whole), {},
+                                     [&](const BoxedItem& item) { return middle(item, best.axis); });
+            return whole;
         }
     }
-    return items.size() / 2; // in one place, or too deep: any halves will do
+    return in_grains(items.size() / 2, items.size(), grain); // in one place, or too deep: any halves will do
 }
 
 class Builder {
   public:
-    explicit Builder(std::vector<BoxNode>& nodes) : nodes_(nodes) {}
+    /// `packed`: takes the items, unless it is null.
+    explicit Builder(std::vector<BoxNode>& nodes, std::vector<PackedNode>* packed = nullptr)
+        : nodes_(nodes), packed_(packed) {}
 
     std::uint32_t build(Items items, int depth) {
         struct Part {
@@ -126,15 +139,19 @@ class Builder {
         };
         std::vector<Part> parts = {{items, infinity}};
         int levels = 0;
+        // Where items are packed, nodes below are full.
+        std::size_t grain = packed_ ? width : 1;
+        while (packed_ && grain * width < items.size())
+            grain *= width;
         while (parts.size() < width) {
             // The largest that can be split: it is the likeliest to be met.
             auto largest = parts.end();
             for (auto part = parts.begin(); part != parts.end(); ++part)
-                if (part->items.size() > 1 && (largest == parts.end() || part->area > largest->area))
+                if (part->items.size() > grain && (largest == parts.end() || part->area > largest->area))
                     largest = part;
             if (largest == parts.end()) break;
             const Items whole = largest->items;
-            const std::size_t first = split(whole, depth + levels++ / 3);
+            const std::size_t first = split(whole, depth + levels++ / 3, grain);
             *largest = {whole.first(first), box_of(whole.first(first)).half_area()};
             parts.push_back({whole.subspan(first), box_of(whole.subspan(first)).half_area()});
         }
@@ -142,8 +159,7 @@ class Builder {
         nodes_.push_back(empty_node());
         for (std::size_t lane = 0; lane < parts.size(); ++lane) {
             const Items part = parts[lane].items;
-            const std::uint32_t entry =
-                part.size() == 1 ? part.front().item : build(part, depth + 3) | BoxNode::inner;
+            const std::uint32_t entry = entry_of(part, depth);
             const FloatBox box = box_of(part);
             for (std::size_t axis = 0; axis < 3; ++axis) {
                 nodes_[number].side[0][axis][lane] = box.lower[axis];
@@ -154,18 +170,71 @@ class Builder {
         return number;
     }
 
+    std::uint32_t pack(Items items) {
+        PackedNode node;
+        const FloatBox box = box_of(items);
+        node.count = static_cast<std::uint8_t>(items.size());
+        node.first = std::ranges::min(items, {}, &BoxedItem::item).item;
+        for (std::size_t lane = 0; lane < width; ++lane)
+            node.offset[lane] =
+                static_cast<std::uint8_t>(items[std::min(lane, items.size() - 1)].item - node.first);
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            node.origin[axis] = box.lower[axis];
+            node.step[axis] = step_between(box.lower[axis], box.upper[axis]);
+            for (std::size_t lane = 0; lane < width; ++lane) {
+                const BoxedItem& item = items[std::min(lane, items.size() - 1)];
+                node.side[0][axis][lane] = byte_below(node, axis, item.lower[axis]);
+                node.side[1][axis][lane] = byte_above(node, axis, item.upper[axis]);
+            }
+        }
+        packed_->push_back(node);
+        return static_cast<std::uint32_t>(packed_->size() - 1) | BoxNode::packed;
+    }
+
   private:
+    std::uint32_t entry_of(Items part, int depth) {
+        if (packed_ && part.size() <= width) return pack(part) | BoxNode::inner;
+        return part.size() == 1 ? part.front().item : build(part, depth + 3) | BoxNode::inner;
+    }
+
+    /// So that the last byte lies beyond the upper end, as it is computed.
+    static float step_between(float lower, float upper) {
+        float step = (upper - lower) / last_byte;
+        while (lower + last_byte * step < upper)
+            step = std::nextafter(step, infinity);
+        return step;
+    }
+
+    static std::uint8_t byte_below(const PackedNode& node, std::size_t axis, float value) {
+        if (!(node.step[axis] > 0)) return 0;
+        float byte = std::clamp(std::floor((value - node.origin[axis]) / node.step[axis]), 0.0f, last_byte);
+        while (byte > 0 && node.origin[axis] + byte * node.step[axis] > value)
+            --byte;
+        return static_cast<std::uint8_t>(byte);
+    }
+
+    static std::uint8_t byte_above(const PackedNode& node, std::size_t axis, float value) {
+        if (!(node.step[axis] > 0)) return 0;
+        float byte = std::clamp(std::ceil((value - node.origin[axis]) / node.step[axis]), 0.0f, last_byte);
+        while (byte < last_byte && node.origin[axis] + byte * node.step[axis] < value)
+            ++byte;
+        return static_cast<std::uint8_t>(byte);
+    }
+
     static BoxNode empty_node() {
         BoxNode node{};
         for (int axis = 0; axis < 3; ++axis)
-            for (int lane = 0; lane < width; ++lane) {
+            for (std::size_t lane = 0; lane < width; ++lane) {
                 node.side[0][axis][lane] = nowhere;
                 node.side[1][axis][lane] = nowhere;
             }
         return node;
     }
 
+    static constexpr float last_byte = 255;
+
     std::vector<BoxNode>& nodes_;
+    std::vector<PackedNode>* packed_;
 };
 
 } // namespace
@@ -181,6 +250,13 @@ BoxedItem::BoxedItem(const Box& box, double extent, std::uint32_t number) : item
 
 std::uint32_t build_box_tree(std::vector<BoxedItem>& items, std::vector<BoxNode>& nodes) {
     return items.empty() ? no_tree : Builder(nodes).build(items, 0);
+}
+
+std::uint32_t build_packed_tree(std::vector<BoxedItem>& items, std::vector<BoxNode>& nodes,
+                                std::vector<PackedNode>& packed) {
+    if (items.empty()) return no_tree;
+    Builder builder(nodes, &packed);
+    return items.size() <= width ? builder.pack(items) : builder.build(items, 0);
 }
 
 } // namespace graftal

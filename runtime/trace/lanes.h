@@ -14,6 +14,7 @@ namespace graftal {
 using Double4 = double __attribute__((vector_size(32), aligned(32)));
 using Float4 = float __attribute__((vector_size(16), aligned(16)));
 using Float8 = float __attribute__((vector_size(32), aligned(32)));
+using Byte8 = std::uint8_t __attribute__((vector_size(8), aligned(8)));
 using Int4 = std::int32_t __attribute__((vector_size(16), aligned(16)));
 using Int8 = std::int32_t __attribute__((vector_size(32), aligned(32)));
 

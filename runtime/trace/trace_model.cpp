@@ -120,7 +120,7 @@ class Builder {
         for (std::size_t i = cell.first; i < cell.first + cell.count; ++i)
             items.emplace_back(transformed(frame_from_graph, box_of((*cell.source->run)[i])), 1,
                                static_cast<std::uint32_t>(i));
-        node.tree = build_box_tree(items, model_.boxes);
+        node.tree = build_packed_tree(items, model_.boxes, model_.packed_boxes);
     }
 
     std::uint32_t run_of(const RunSource& source) {
@@ -128,12 +128,25 @@ class Builder {
         if (!added) return place->second;
         TraceRun& run = model_.runs.emplace_back();
         run.run = source.run.get();
+        run.pictured = std::ranges::any_of(source.materials, [&](const std::optional<MaterialId>& material) {
+            return material && model_.textures[*material];
+        });
+        reserve_boxes(run.run->size());
         for (std::size_t i = 0; i < source.run->size(); ++i) {
             const RunItem& item = (*source.run)[i];
             add_look(source, item.kind, item.colour, run);
             if (item.ball) add_look(source, PrimitiveKind::sphere, item.colour, run);
         }
         return place->second;
+    }
+
+    /// Room for the boxes of so many items more: growing in between would take twice as much.
+    void reserve_boxes(std::size_t items) {
+        constexpr std::size_t items_a_packed_node = 8,
+                              items_a_node = 48; // a little more nodes than there are
+        model_.packed_boxes.reserve(model_.packed_boxes.size() + items / items_a_packed_node +
+                                    cut_.nodes.size());
+        model_.boxes.reserve(model_.boxes.size() + items / items_a_node + 8 * cut_.nodes.size());
     }
 
     void add_look(const RunSource& source, PrimitiveKind kind, std::uint16_t colour, TraceRun& run) {

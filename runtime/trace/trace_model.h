@@ -107,6 +107,8 @@ struct TraceRun {
 
     const Run* run = nullptr;
     std::vector<Look> looks;
+    bool pictured =
+        false; ///< some part of it has a texture, so that it matters how it is turned about its axis
 
     std::uint32_t edge_of(PrimitiveKind kind, std::uint16_t colour) const;
 };
@@ -126,6 +128,7 @@ struct TraceModel {
     std::vector<TraceNode> nodes; ///< as layers.cut.nodes
     std::vector<TraceEdge> edges; ///< the first leads to the root, from world space
     std::vector<BoxNode> boxes;
+    std::vector<PackedNode> packed_boxes; ///< of runs
     std::vector<Unrolling> unrollings;
     std::vector<TraceRun> runs;
     std::vector<Affine> graph_from_frame; ///< by node

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <cstring>
 #include <vector>
 
 #include <glm/common.hpp>
@@ -115,6 +116,8 @@ template<Instructions instructions> struct Traversal::Kernel {
     GRAFTAL_INLINE bool go_into(Entry& entry) {
         if (!(entry.entry & BoxNode::inner)) return enter(entry);
         self.depth_ = entry.frame + 1;
+        if (entry.entry & BoxNode::packed)
+            return test_packed(entry.entry & ~(BoxNode::inner | BoxNode::packed), entry.frame, entry);
         return test_boxes(model.boxes, entry.entry & ~BoxNode::inner, entry.frame, entry);
     }
 
@@ -167,11 +170,31 @@ template<Instructions instructions> struct Traversal::Kernel {
         return node.kind == TraceNode::Kind::primitive && node.primitive == PrimitiveKind::plane;
     }
 
-    /// Sorts the boxes that the ray meets, the nearest last but for the very nearest, which becomes `nearest`; false
-    /// if there is none.
     GRAFTAL_INLINE bool test_boxes(const std::vector<BoxNode>& boxes, std::uint32_t number,
                                    std::uint32_t frame_number, Entry& nearest) {
         const BoxNode& node = boxes[number];
+        return test_lanes([&](std::size_t side, int axis) { return node.side[side][axis]; },
+                          [&](std::size_t lane) { return node.entry[lane]; }, ~0u, frame_number, nearest);
+    }
+
+    GRAFTAL_INLINE bool test_packed(std::uint32_t number, std::uint32_t frame_number, Entry& nearest) {
+        const PackedNode& node = model.packed_boxes[number];
+        const auto side_of = [&](std::size_t side, int axis) {
+            const auto i = static_cast<std::size_t>(axis);
+            Byte8 bytes;
+            std::memcpy(&bytes, node.side[side][i].data(), sizeof(bytes));
+            return splat8(node.origin[i]) + __builtin_convertvector(bytes, Float8) * splat8(node.step[i]);
+        };
+        return test_lanes(
+            side_of, [&](std::size_t lane) { return node.first + node.offset[lane]; }, (1u << node.count) - 1,
+            frame_number, nearest);
+    }
+
+    /// Sorts the boxes that the ray meets, the nearest last but for the very nearest, which becomes
+    /// `nearest`; false if there is none. `used`: the lanes that hold boxes, others may.
+    template<typename SideOf, typename EntryOf>
+    GRAFTAL_INLINE bool test_lanes(const SideOf& side_of, const EntryOf& number_of, std::uint32_t used,
+                                   std::uint32_t frame_number, Entry& nearest) {
         const Frame& frame = self.frames_[frame_number];
         // A little more, for what single precision leaves out.
         const float most = static_cast<float>((self.best_.t - frame.base) * frame.speed) + 2e-6f;
@@ -180,14 +203,14 @@ template<Instructions instructions> struct Traversal::Kernel {
             const auto in = static_cast<std::size_t>(frame.side_in[axis]);
             const Float8 reciprocal = splat8(frame.reciprocal[axis]);
             // Lanes of no numbers stay so by the last axis.
-            enters = greater(enters, (node.side[in][axis] - splat8(frame.origin_in[axis])) * reciprocal);
-            leaves = lesser(leaves, (node.side[1 - in][axis] - splat8(frame.origin_out[axis])) * reciprocal);
+            enters = greater(enters, (side_of(in, axis) - splat8(frame.origin_in[axis])) * reciprocal);
+            leaves = lesser(leaves, (side_of(1 - in, axis) - splat8(frame.origin_out[axis])) * reciprocal);
         }
-        std::uint32_t lanes = bits_of<instructions>(enters <= leaves);
+        std::uint32_t lanes = bits_of<instructions>(enters <= leaves) & used;
         if (lanes == 0) return false;
         const auto entry_of = [&](std::uint32_t bits) {
             const auto lane = static_cast<std::size_t>(std::countr_zero(bits));
-            return Entry{static_cast<double>(enters[lane]), node.entry[lane], frame_number};
+            return Entry{static_cast<double>(enters[lane]), number_of(lane), frame_number};
         };
         nearest = entry_of(lanes);
         reserve_entries(7);
@@ -308,7 +331,10 @@ template<Instructions instructions> struct Traversal::Kernel {
             return true;
         }
         const std::uint32_t tree = frame.cut ? node.stop_tree : tree_of(node, frame);
-        return tree != no_tree && test_boxes(model.boxes, tree, number, entry);
+        if (tree == no_tree) return false;
+        if (frame.items && !frame.cut && (tree & BoxNode::packed))
+            return test_packed(tree & ~BoxNode::packed, number, entry);
+        return test_boxes(model.boxes, tree, number, entry);
     }
 
     GRAFTAL_INLINE void ready_for_boxes(Frame& frame) {
@@ -474,8 +500,30 @@ template<Instructions instructions> struct Traversal::Kernel {
         const Affine& run_from_frame = model.graph_from_frame[frame.node];
         const Ray ray{run_from_frame(vec3_of(frame.origin + splat(entry.at) * frame.direction)),
                       run_from_frame.linear * vec3_of(frame.direction)};
-        meet_body(item.kind, run_from_body(item), run, item, ray, entry);
-        if (item.ball) meet_body(PrimitiveKind::sphere, run_from_ball(item), run, item, ray, entry);
+        const Vec3 from_base = ray.origin - item.base;
+        if (item.kind == PrimitiveKind::sphere ||
+            !passes_line(ray.direction, from_base, item.axis, item.radius))
+            meet_body(item.kind, run.pictured ? run_from_body(item) : run_from_round_body(item), run, item,
+                      ray, entry);
+        if (item.ball && !passes_point(ray.direction, from_base - item.axis, item.radius))
+            meet_body(PrimitiveKind::sphere, run.pictured ? run_from_ball(item) : run_from_round_ball(item),
+                      run, item, ray, entry);
+    }
+
+    // Most boxes that are met are met beside their part, and that is sooner told than where a ray meets it.
+    static constexpr double surely_beside = 1 + 1e-9;
+
+    /// Whether a ray goes by a line at this distance or more, for sure.
+    GRAFTAL_INLINE static bool passes_line(Vec3 direction, Vec3 from_line, Vec3 along, double distance) {
+        const Vec3 upright = glm::cross(direction, along);
+        const double apart = glm::dot(from_line, upright);
+        return apart * apart > surely_beside * distance * distance * glm::dot(upright, upright);
+    }
+
+    GRAFTAL_INLINE static bool passes_point(Vec3 direction, Vec3 from_point, double distance) {
+        const Vec3 moment = glm::cross(direction, from_point);
+        return glm::dot(moment, moment) >
+               surely_beside * distance * distance * glm::dot(direction, direction);
     }
 
     /// `ray`: from where the entry begins, in units of the frame's.

@@ -16,6 +16,7 @@
 #include "compiler/cut/alike_set.h"
 #include "compiler/cut/bake.h"
 #include "compiler/cut/mesh_builder.h"
+#include "compiler/cut/placed_runs.h"
 #include "compiler/cut/placed_set.h"
 #include "compiler/cut/run_cells.h"
 #include "compiler/cut/tessellate.h"
@@ -81,8 +82,11 @@ class Unfolding {
             const Piece piece = stack.back();
             stack.pop_back();
             limits.work_seconds -= 1 / WorkRates::leaves;
-            if (placed.size() > limits.max_placements || limits.work_seconds < 0) return false;
+            if (placed.size() + runs.part_count() > limits.max_placements || limits.work_seconds < 0)
+                return false;
+            const std::size_t before = runs.part_count();
             visit(piece, children);
+            limits.work_seconds -= static_cast<double>(runs.part_count() - before) / WorkRates::leaves;
             stack.insert(stack.end(), children.rbegin(), children.rend());
         }
         return true;
@@ -96,6 +100,7 @@ class Unfolding {
     }
 
     std::vector<Placed> placed;
+    PlacedRuns runs;
     std::vector<BakeRequest> requests;
     std::vector<TexturedPrimitive> textured;
     double culled_detail = 0;
@@ -122,6 +127,7 @@ class Unfolding {
         if (!node.unbounded && !piece.faint && !hair && weight.leaves > 1 &&
             (weight.triangles <= choice_.threshold || weights_.is_shell(kind)) && place_mesh(piece, kind))
             return;
+        if (!cut && PlacedRuns::can_hold(cut_, piece)) return runs.add(piece, *node.cell);
         bool placeable = true;
         for_each_edge(node, cut, [&](const CutEdge& edge) {
             children.push_back(descend(cut_, piece, edge, cut));
@@ -351,6 +357,30 @@ class Grouping {
         }
     }
 
+    void add(const PlacedRuns::Range& range) {
+        const Run& run = *range.source->run;
+        RunPlacements parts{range.source->run,           range.first, range.count,   0,
+                            range.piece.world_from_node, {},          range.left_out};
+        std::vector<bool> colours(range.source->materials.size());
+        for (std::size_t i = range.first; i < range.first + range.count; ++i) {
+            const RunItem& item = run[i];
+            colours[item.colour] = true;
+            parts.body[static_cast<std::size_t>(item.kind)] = body_of(item.kind);
+            if (item.ball)
+                parts.body[static_cast<std::size_t>(PrimitiveKind::sphere)] = body_of(PrimitiveKind::sphere);
+            include(transformed(range.piece.world_from_node, graftal::box_of(item)));
+        }
+        for (std::size_t colour_number = 0; colour_number < colours.size(); ++colour_number) {
+            if (!colours[colour_number]) continue;
+            const std::optional<MaterialId>& own = range.source->materials[colour_number];
+            const Rgb base = own ? cut_.materials[*own].rgb : range.piece.inherited;
+            parts.colour = static_cast<std::uint16_t>(colour_number);
+            group_of(colour(range.piece.tint.over(base)), {}, own ? own : range.piece.material)
+                .runs.push_back(parts);
+            result_.placement_count += part_count(parts);
+        }
+    }
+
     Cut take() {
         result_.palettes = std::move(palettes_);
         return std::move(result_);
@@ -394,20 +424,25 @@ class Grouping {
 
     void place_picture(std::uint32_t body, const Affine& world_from_body, const PathTint& tint,
                        MaterialId material) {
-        place_in_group(body, world_from_body, colour(Rgb(1.0)), rounded(tint, texture_tint_grain),
-                       cut_.materials[material]);
+        group_of(colour(Rgb(1.0)), rounded(tint, texture_tint_grain), cut_.materials[material])
+            .placements.push_back({body, world_from_body});
+        ++result_.placement_count;
     }
 
     void add_primitive(const Placed& thing) {
-        const auto kind = static_cast<std::size_t>(thing.kind);
-        if (primitive_body_[kind] == no_palette) {
-            primitive_body_[kind] = static_cast<std::uint32_t>(result_.bodies.size());
-            box_.push_back(thing.kind == PrimitiveKind::plane ? Box() : primitive_bounds(thing.kind).box);
-            result_.bodies.push_back({name_of(thing.kind), thing.kind});
-        }
-        const std::uint32_t body = primitive_body_[kind];
+        const std::uint32_t body = body_of(thing.kind);
         place(body, thing.world_from_thing, colour(thing.rgb), {}, thing.material);
         include(transformed(thing.world_from_thing, box_[body]));
+    }
+
+    std::uint32_t body_of(PrimitiveKind primitive) {
+        const auto kind = static_cast<std::size_t>(primitive);
+        if (primitive_body_[kind] == no_palette) {
+            primitive_body_[kind] = static_cast<std::uint32_t>(result_.bodies.size());
+            box_.push_back(primitive == PrimitiveKind::plane ? Box() : primitive_bounds(primitive).box);
+            result_.bodies.push_back({name_of(primitive), primitive});
+        }
+        return primitive_body_[kind];
     }
 
     /// What no picture shows makes no textures of its own.
@@ -415,14 +450,19 @@ class Grouping {
 
     void place(std::uint32_t body, const Affine& world_from_body, std::uint32_t palette,
                const PathTint& exact_tint, const std::optional<MaterialId>& material) {
+        group_of(palette, exact_tint, material).placements.push_back({body, world_from_body});
+        ++result_.placement_count;
+    }
+
+    PlacementGroup& group_of(std::uint32_t palette, const PathTint& exact_tint,
+                             const std::optional<MaterialId>& material) {
         Material finish;
         if (material) finish = cut_.materials[*material];
         finish.texture.clear(); // pictures are placed by place_picture()
-        place_in_group(body, world_from_body, palette, rounded(exact_tint, tint_grain), finish);
+        return group_of(palette, rounded(exact_tint, tint_grain), finish);
     }
 
-    void place_in_group(std::uint32_t body, const Affine& world_from_body, std::uint32_t palette,
-                        const PathTint& tint, const Material& finish) {
+    PlacementGroup& group_of(std::uint32_t palette, const PathTint& tint, const Material& finish) {
         std::uint64_t hash = mixed(0, palette);
         for (const double number :
              {tint.premultiplied.r, tint.premultiplied.g, tint.premultiplied.b, tint.alpha, finish.ambient,
@@ -434,9 +474,8 @@ class Grouping {
             const PlacementGroup& group = result_.groups[other];
             return group.palette == palette && group.tint == tint && share_finish(group.material, finish);
         });
-        if (id == next) result_.groups.push_back({palette, tint, finish, {}});
-        result_.groups[id].placements.push_back({body, world_from_body});
-        ++result_.placement_count;
+        if (id == next) result_.groups.push_back({palette, tint, finish, {}, {}});
+        return result_.groups[id];
     }
 
     std::uint32_t colour(const Rgb& rgb) {
@@ -508,10 +547,13 @@ std::optional<Cut> assemble(const CutGraph& cut, const Symmetry& symmetry, const
     Grouping grouping(cut, unfolding.requests, baked, unfolding.textured);
     for (const Placed& thing : unfolding.placed)
         grouping.add(thing);
+    const double finest_of_runs = unfolding.runs.sift(cut, projection);
+    for (const PlacedRuns::Range& range : unfolding.runs.ranges())
+        grouping.add(range);
     Cut result = grouping.take();
     result.error_px = culled_detail;
     result.tessellation_px = tessellation_px;
-    result.finest = unfolding.finest;
+    result.finest = std::min(unfolding.finest, finest_of_runs);
     result.leaf_count = choice.leaves;
     return result;
 }

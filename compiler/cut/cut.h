@@ -15,6 +15,7 @@
 
 #include "compiler/analysis/bounding.h"
 #include "compiler/analysis/contraction.h"
+#include "compiler/cut/run_placements.h"
 #include "compiler/graph/components.h"
 #include "compiler/scene/scene.h"
 #include "compiler/support/diagnostics.h"
@@ -73,7 +74,24 @@ struct PlacementGroup {
     PathTint tint;
     Material material;
     std::vector<Placement> placements;
+    std::vector<RunPlacements> runs; ///< more placements, see for_each_placement()
 };
+
+/// Calls `visit` on a Placement for each part.
+template<typename Visit> void for_each_placement(const RunPlacements& parts, const Visit& visit) {
+    for_each_part(parts, [&](PrimitiveKind kind, const RunItem& item, bool ball) {
+        const Affine run_from_part = ball ? run_from_round_ball(item) : run_from_round_body(item);
+        visit(Placement{parts.body[static_cast<std::size_t>(kind)], parts.world_from_run * run_from_part});
+    });
+}
+
+/// Calls `visit` on each Placement of the group, those of runs too, which are made for it one by one.
+template<typename Visit> void for_each_placement(const PlacementGroup& group, const Visit& visit) {
+    for (const Placement& placement : group.placements)
+        visit(placement);
+    for (const RunPlacements& parts : group.runs)
+        for_each_placement(parts, visit);
+}
 
 struct Cut {
     std::vector<Body> bodies;

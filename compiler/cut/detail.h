@@ -45,6 +45,9 @@ class Projection {
     /// True if the ball is out of the picture, and such parts are to be left out.
     bool drops(const Ball& world_ball) const { return visible_only_ && !sees(world_ball); }
 
+    /// Whether there may be such parts.
+    bool drops_any() const { return visible_only_; }
+
     bool culls() const { return culls_; }
     /// Pixels of a detail of 1; 0 where the error is a length in the scene, so that a detail tells no pixels.
     double error_px() const { return error_world_ > 0 ? 0 : error_px_; }

@@ -70,8 +70,9 @@ double povray_bytes(const Cut& cut) {
     for (const PlacementGroup& group : cut.groups) {
         bytes += PovrayCosts::own_texture;
         if (cut.palettes[group.palette].size() > 1 && group.tint.alpha > 0) bytes += PovrayCosts::own_layer;
-        for (const Placement& placement : group.placements)
+        for_each_placement(group, [&](const Placement& placement) {
             bytes += placement_bytes(cut.bodies[placement.body], placement.world_from_body);
+        });
     }
     for (const Palette& palette : cut.palettes)
         if (palette.size() > 1) bytes += PovrayCosts::slot * static_cast<double>(palette.size());

@@ -102,7 +102,9 @@ class Builder {
             const double area = mean_shadow(item);
             shadow += area;
             leaves += item.ball ? 2 : 1;
-            note(*cell, item.kind, std::max(item.radius, glm::length(item.axis)));
+            const double length = glm::length(item.axis);
+            note(*cell, item.kind, std::max(item.radius, length));
+            cell->flattest = std::min(cell->flattest, std::min(item.radius / length, length / item.radius));
             if (item.ball) note(*cell, PrimitiveKind::sphere, item.radius);
             if (const std::optional<MaterialId>& material = source_->materials[item.colour])
                 mean.fixed += area * materials_[*material].rgb;

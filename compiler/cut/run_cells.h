@@ -34,6 +34,7 @@ struct RunCell {
         std::uint32_t count = 0;
     };
     std::vector<Alike> alike;
+    double flattest = 1; ///< of all parts the least length along an axis, as a share of the largest
 };
 
 /// The level of RunBounds whose ranges become cells, if there are so many items.

@@ -24,7 +24,7 @@ constexpr double default_bailout = 1.0 / 255;
 constexpr std::string_view fine_bailout = "adc_bailout 1e-6";
 
 /// Placements begin to end - 1 of one group.
-struct Run {
+struct Range {
     std::uint32_t group;
     std::size_t begin, end;
 };
@@ -32,7 +32,8 @@ struct Run {
 /// What becomes one union: all placements of one texture, whatever groups they come from.
 struct Bucket {
     std::uint32_t texture;
-    std::vector<Run> runs;
+    std::vector<Range> ranges;
+    std::vector<const RunPlacements*> runs;
     std::uint64_t count = 0;
 };
 
@@ -90,7 +91,7 @@ void Emitter::sort_into_buckets() {
     std::vector<std::uint32_t> bucket_of_texture;
     for (std::uint32_t g = 0; g < cut_.groups.size(); ++g) {
         const PlacementGroup& group = cut_.groups[g];
-        if (group.placements.empty()) continue;
+        if (group.placements.empty() && group.runs.empty()) continue;
         const std::uint32_t texture = textures_.texture_of(group);
         if (texture == bucket_of_texture.size()) {
             bucket_of_texture.push_back(static_cast<std::uint32_t>(buckets_.size()));
@@ -98,17 +99,21 @@ void Emitter::sort_into_buckets() {
         }
         Bucket& bucket = buckets_[bucket_of_texture[texture]];
         std::size_t begin = 0;
-        const auto close_run = [&](std::size_t end) {
-            if (end > begin) bucket.runs.push_back({g, begin, end});
+        const auto close_range = [&](std::size_t end) {
+            if (end > begin) bucket.ranges.push_back({g, begin, end});
             bucket.count += end - begin;
             begin = end + 1;
         };
         for (std::size_t i = 0; i < group.placements.size(); ++i) {
             if (!bodies_.is_plane(group.placements[i].body)) continue;
             planes_.push_back({texture, &group.placements[i]});
-            close_run(i);
+            close_range(i);
         }
-        close_run(group.placements.size());
+        close_range(group.placements.size());
+        for (const RunPlacements& parts : group.runs) {
+            bucket.runs.push_back(&parts);
+            bucket.count += part_count(parts);
+        }
     }
     std::erase_if(buckets_, [](const Bucket& bucket) { return bucket.count == 0; });
 }
@@ -125,13 +130,20 @@ bool Emitter::write_bucket(const Bucket& bucket) {
     const Affine pov_from_world = units_.pov_from_world();
     const bool single = bucket.count == 1;
     if (!single) out_ << "union {\n";
-    for (const Run& run : bucket.runs)
-        for (std::size_t i = run.begin; i < run.end && !out_.stopped(); ++i) {
-            const Placement& placement = cut_.groups[run.group].placements[i];
-            bodies_.place(out_, placement.body, pov_from_world * placement.world_from_body,
-                          single ? std::string_view(texture) : std::string_view());
-            progress_.step();
+    const auto write = [&](std::uint32_t body, const Affine& world_from_body) {
+        if (out_.stopped()) return;
+        bodies_.place(out_, body, pov_from_world * world_from_body,
+                      single ? std::string_view(texture) : std::string_view());
+        progress_.step();
+    };
+    for (const Range& range : bucket.ranges)
+        for (std::size_t i = range.begin; i < range.end; ++i) {
+            const Placement& placement = cut_.groups[range.group].placements[i];
+            write(placement.body, placement.world_from_body);
         }
+    for (const RunPlacements* const parts : bucket.runs)
+        for_each_placement(
+            *parts, [&](const Placement& placement) { write(placement.body, placement.world_from_body); });
     if (!single) out_ << "  " << texture << "\n}\n";
     return !out_.stopped();
 }

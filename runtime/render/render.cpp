@@ -63,6 +63,9 @@ std::uint64_t finite_objects(const Cut& cut) {
             const auto* primitive = std::get_if<PrimitiveKind>(&cut.bodies[placement.body].shape);
             count += !primitive || *primitive != PrimitiveKind::plane;
         }
+    for (const PlacementGroup& group : cut.groups)
+        for (const RunPlacements& parts : group.runs)
+            count += part_count(parts);
     return count;
 }
 

@@ -116,14 +116,14 @@ std::vector<Drawn> drawn(const Cut& cut) {
     std::vector<Drawn> all;
     const auto digits = [](double x) { return std::llround(x * 1e8); };
     for (const PlacementGroup& group : cut.groups)
-        for (const Placement& placement : group.placements) {
+        for_each_placement(group, [&](const Placement& placement) {
             const Affine& place = placement.world_from_body;
             const auto* kind = std::get_if<PrimitiveKind>(&cut.bodies[placement.body].shape);
             all.push_back({kind ? static_cast<long long>(*kind) : -1, digits(place.translation.x),
                            digits(place.translation.y), digits(place.translation.z),
                            digits(glm::length(place.linear[0])), digits(glm::length(place.linear[1])),
                            digits(cut.palettes[group.palette][0].r)});
-        }
+        });
     std::ranges::sort(all);
     return all;
 }
@@ -136,6 +136,42 @@ TEST(RunCut, EverySizeOfRunIsDrawnWhole) {
         EXPECT_EQ(run.placement_count, spelt.placement_count) << count;
         EXPECT_EQ(drawn(run), drawn(spelt)) << count;
     }
+}
+
+TEST(RunCut, PartsArePlacedWhereTheRunHasThem) {
+    const Cut cut = cut_of(Bounded(two_branches(3000, false)), {.error_px = 0, .flatten = true});
+    std::uint64_t parts = 0;
+    std::size_t ranges = 0;
+    for (const PlacementGroup& group : cut.groups) {
+        EXPECT_TRUE(group.placements.empty()); // each would take as much as three parts do
+        for (const RunPlacements& run : group.runs) {
+            parts += part_count(run);
+            ++ranges;
+        }
+    }
+    EXPECT_EQ(parts, cut.placement_count);
+    EXPECT_EQ(ranges, 4u); // two colours, two branches
+}
+
+TEST(RunCut, PartsThatCoincideArePlacedOnce) {
+    auto run = std::make_shared<graftal::Run>();
+    for (int i = 0; i < 300; ++i) {
+        RunItem item;
+        item.base = {i % 3 == 0 ? 0.0 : 1.0, 2, 3};
+        item.axis = {0.5, 0.25, 1};
+        item.radius = 0.1;
+        item.turn = static_cast<std::uint32_t>(i); // nobody sees how what is round is turned
+        item.kind = PrimitiveKind::cylinder;
+        item.ball = i % 2 == 0;
+        run->add(item);
+    }
+    Graph graph = with_materials();
+    Object object;
+    object.name = "pile";
+    object.run = run;
+    object.run_materials = {MaterialId{0}};
+    graph.root = graph.add(std::move(object));
+    EXPECT_EQ(cut_of(Bounded(std::move(graph)), {.error_px = 0, .flatten = true}).placement_count, 4u);
 }
 
 TEST(RunCut, MeshesHaveAsManyTriangles) {

@@ -1,0 +1,43 @@
+#pragma once
+
+// Parts of a run (graph/run.h) that are placed one by one, as they lie there: a Placement of each would take three
+// times the memory of the run.
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "compiler/graph/graph.h"
+#include "compiler/graph/run.h"
+
+namespace graftal {
+
+/// The parts of one colour of a range of a run.
+struct RunPlacements {
+    std::shared_ptr<const Run> run;
+    std::size_t first = 0, count = 0; ///< items
+    std::uint16_t colour = 0;
+    Affine world_from_run;
+    std::array<std::uint32_t, primitive_kind_count> body{}; ///< by kind of primitive
+    /// Of the range's items the bodies and the balls, in turn: what is drawn elsewhere, or not in sight. Empty if nothing
+    /// is.
+    std::shared_ptr<const std::vector<bool>> left_out;
+};
+
+/// Calls `visit(kind, item, ball)` on each part, bodies before their balls.
+template<typename Visit> void for_each_part(const RunPlacements& parts, const Visit& visit) {
+    const auto left_out = [&](std::size_t i) { return parts.left_out && (*parts.left_out)[i]; };
+    for (std::size_t i = 0; i < parts.count; ++i) {
+        const RunItem& item = (*parts.run)[parts.first + i];
+        if (item.colour != parts.colour) continue;
+        if (!left_out(2 * i)) visit(item.kind, item, false);
+        if (item.ball && !left_out(2 * i + 1)) visit(PrimitiveKind::sphere, item, true);
+    }
+}
+
+/// How many parts these are.
+std::uint64_t part_count(const RunPlacements& parts);
+
+} // namespace graftal

@@ -26,7 +26,7 @@ void warn_of_limit(const Span& root, const Limit& limit, const CoarserError& err
     diagnostics
         .warning(root, fmt::format("{} allow an error of {:.2f} px, not {:.2f} px{}", limit.allowed, error.px,
                                    error.asked_px, limit.besides))
-        .with_hint(give + limit.option + ", or ask for less with --error or --steps");
+        .with_hint(give + limit.option + limit.or_else + ", or ask for less with --error or --steps");
 }
 
 void warn_of_shells(const Span& root, const CoarserError& error, Diagnostics& diagnostics) {

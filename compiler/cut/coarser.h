@@ -19,6 +19,7 @@ struct Limit {
     std::string option;    ///< that gives more
     std::string besides{}; ///< what else was done to the picture, or ""
     std::string need{};    ///< a sentence on what the picture as asked would take, or ""
+    std::string or_else{}; ///< another way to a finer picture, or ""
 };
 
 /// Three digits and a unit.

@@ -179,8 +179,23 @@ class Cutter {
     }
 
     Limit passed_limit() const {
-        if (worked_too_much_) return limit_of_work(options_.work_seconds);
-        return limit_of_memory(options_.memory_bytes);
+        Limit limit =
+            worked_too_much_ ? limit_of_work(options_.work_seconds) : limit_of_memory(options_.memory_bytes);
+        if (!options_.visible_only && reaches_out_of_sight())
+            limit.or_else = ", leave out what the picture does not show with --visible-only";
+        return limit;
+    }
+
+    /// Whether some of it only throws shadows into the picture, or is reflected there.
+    bool reaches_out_of_sight() const {
+        const Projection projection(view_, options_, 1, nearest_to_eye(cut_));
+        for (int corner = 0; corner < 8; ++corner) {
+            Vec3 point;
+            for (int axis = 0; axis < 3; ++axis)
+                point[axis] = (corner >> axis & 1 ? prepared_.bounds.max : prepared_.bounds.min)[axis];
+            if (!projection.sees({point, 0})) return true;
+        }
+        return false;
     }
 
     double root_pixels_per_unit() const {

@@ -21,8 +21,8 @@ struct RunPlacements {
     std::uint16_t colour = 0;
     Affine world_from_run;
     std::array<std::uint32_t, primitive_kind_count> body{}; ///< by kind of primitive
-    /// Of the range's items the bodies and the balls, in turn: what is drawn elsewhere, or not in sight. Empty if nothing
-    /// is.
+    /// Of the range's items the bodies and the balls, in turn: what is drawn elsewhere, or not in sight. Null
+    /// if nothing is.
     std::shared_ptr<const std::vector<bool>> left_out;
 };
 

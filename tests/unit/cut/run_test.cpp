@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <random>
+#include <string>
 #include <vector>
 
 #include <glm/geometric.hpp>
@@ -191,6 +192,26 @@ TEST(RunCut, RangesAreCulledBeforeTheWhole) {
     EXPECT_GT(near.placement_count + near.triangle_count, 10 * (far.placement_count + far.triangle_count));
     EXPECT_GT(far.error_px, 0);
     EXPECT_LE(far.error_px, 4);
+}
+
+TEST(RunCut, WhatIsOutOfSightIsNamedWhereMemoryLacks) {
+    const Bounded model(two_branches(20'000, false));
+    CutOptions options{.error_px = 0.5};
+    options.memory_bytes = 30'000'000;
+    const auto hints = [&](double distance) {
+        Diagnostics diagnostics;
+        EXPECT_TRUE(cut_graph(model.graph, model.components, model.bounds, front_view(model, distance),
+                              options, diagnostics));
+        return diagnostics.render(SourceMap());
+    };
+    const std::string near = hints(0.05), far = hints(3);
+    EXPECT_NE(near.find("--memory, leave out what the picture does not show with --visible-only"),
+              std::string::npos)
+        << near;
+    EXPECT_NE(far.find("allow an error of"), std::string::npos) << far;
+    EXPECT_EQ(far.find("--visible-only"), std::string::npos) << far;
+    options.visible_only = true;
+    EXPECT_EQ(hints(0.05).find("--visible-only"), std::string::npos);
 }
 
 TEST(RunCut, CellsHoldNoEdges) {

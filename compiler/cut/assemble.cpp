@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <deque>
 #include <functional>
 #include <limits>
 #include <map>
@@ -23,6 +24,7 @@
 #include "compiler/cut/texture_space.h"
 #include "compiler/cut/work.h"
 #include "compiler/support/id_table.h"
+#include "compiler/support/stretch.h"
 
 namespace graftal {
 
@@ -59,7 +61,11 @@ using RequestKey = std::tuple<NodeId, std::uint32_t, std::int32_t, std::int64_t,
 constexpr double most_width_ratio = 1.3;
 
 bool nearly_as_wide(const Mat3& a, const Mat3& b) {
-    const Vec3 sigma = singular_values(a * glm::inverse(b));
+    const Mat3 a_from_b = a * glm::inverse(b);
+    constexpr double most_volume = most_width_ratio * most_width_ratio * most_width_ratio;
+    const double volume = std::abs(glm::determinant(a_from_b));
+    if (!(volume <= most_volume && volume >= 1 / most_volume)) return false; // most differ by far
+    const Vec3 sigma = singular_values(a_from_b);
     return sigma.x <= most_width_ratio && sigma.z >= 1 / most_width_ratio;
 }
 
@@ -81,7 +87,8 @@ class Unfolding {
         while (!stack.empty()) {
             const Piece piece = stack.back();
             stack.pop_back();
-            limits.work_seconds -= 1 / WorkRates::leaves;
+            limits.work_seconds -= (1 + more_work_) / WorkRates::leaves;
+            more_work_ = 0;
             if (placed.size() + runs.part_count() > limits.max_placements || limits.work_seconds < 0)
                 return false;
             const std::size_t before = runs.part_count();
@@ -99,7 +106,7 @@ class Unfolding {
         return std::min(1.0, seen_share_[number] / request.detail_per_unit);
     }
 
-    std::vector<Placed> placed;
+    std::deque<Placed> placed; ///< no room for twice as many while it grows
     PlacedRuns runs;
     std::vector<BakeRequest> requests;
     std::vector<TexturedPrimitive> textured;
@@ -107,6 +114,9 @@ class Unfolding {
     double finest = std::numeric_limits<double>::infinity();
 
   private:
+    /// Of pieces that may lie alike, in leaves.
+    static constexpr double work_of_comparison = 2, work_of_widening = 3;
+
     void visit(const Piece& piece, std::vector<Piece>& children) {
         children.clear();
         const CutNode& node = cut_.nodes[piece.node];
@@ -135,8 +145,9 @@ class Unfolding {
             placeable = placeable && (edge.similarity || is_placeable(children.back()));
         });
         if (!placeable && !node.unbounded && bakes && place_mesh(piece, kind)) return children.clear();
-        if (hair || spells_out_specks_)
-            std::erase_if(children, [&](const Piece& child) { return !is_new(child); });
+        if (!hair && !spells_out_specks_) return;
+        more_work_ += work_of_comparison * static_cast<double>(children.size());
+        std::erase_if(children, [&](const Piece& child) { return !is_new(child); });
     }
 
     /// Whether the piece is drawn wider than it is, and so much flatter than its node that few would share
@@ -177,9 +188,10 @@ class Unfolding {
         thing.kind = kind;
         const Ball ball = world_ball(cut_, piece);
         thing.world_from_thing = drawn(kind, world_from_primitive, piece);
+        if (thing.world_from_thing != world_from_primitive) more_work_ += work_of_widening;
         const double half_width = projection_.least_half_width(ball);
         const bool speck =
-            piece.faint && !choice_.spelt_out && norm(world_from_primitive.linear) <= half_width;
+            piece.faint && !choice_.spelt_out && largest_stretch(world_from_primitive.linear) <= half_width;
         const Affine mark = speck ? speck_mark(thing.world_from_thing, half_width) : thing.world_from_thing;
         if (!seen_.insert(static_cast<std::uint32_t>(kind), mark)) return;
         note_finest(ball);
@@ -226,6 +238,7 @@ class Unfolding {
             const Mat3 linear = is_singular(place, flattest_leaf) ? Mat3(piece.scale) : place.linear;
             shape = linear / projection_.least_half_width(world_ball(cut_, piece));
         }
+        more_work_ += work_of_comparison * static_cast<double>(alike.size());
         for (const std::uint32_t request : alike)
             if (shape == Mat3(0.0) || nearly_as_wide(shape, requests[request].half_widths_from_unit))
                 return std::pair(request, false);
@@ -313,6 +326,7 @@ class Unfolding {
     std::vector<double> seen_share_; ///< by request, of shells: the detail of a unit at the middle
     AlikeSet specks_;                ///< parts of sets without area
     bool spells_out_specks_ = false;
+    double more_work_ = 0; ///< in leaves, for the piece under way
     std::map<RequestKey, std::vector<std::uint32_t>> request_of_;
     std::map<PainterKey, std::uint32_t> painter_of_;
 };

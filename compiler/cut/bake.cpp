@@ -21,6 +21,7 @@
 #include "compiler/cut/tessellate.h"
 #include "compiler/cut/texture_space.h"
 #include "compiler/support/check.h"
+#include "compiler/support/stretch.h"
 
 namespace graftal {
 
@@ -156,10 +157,10 @@ class Baker {
         const Affine wide = widened(leaf.kind, seen, half_width);
         // What a singular map crushes onto a line or a sheet piles up there, and specks do: one leaf a cell
         // will do.
-        const bool speck = leaf.faint && norm(seen.linear) <= half_width;
+        const bool speck = leaf.faint && largest_stretch(seen.linear) <= half_width;
         mark = unit_from_seen * wide;
         if (leaf.crushed || speck)
-            mark = Affine::scale(Vec3(norm(unit_from_seen.linear))) * speck_mark(wide, half_width);
+            mark = Affine::scale(Vec3(largest_stretch(unit_from_seen.linear))) * speck_mark(wide, half_width);
         return unit_from_seen * wide;
     }
 

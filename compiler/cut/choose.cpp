@@ -14,6 +14,7 @@
 #include "compiler/cut/povray_costs.h"
 #include "compiler/cut/run_cells.h"
 #include "compiler/cut/texture_space.h"
+#include "compiler/support/stretch.h"
 
 namespace graftal {
 
@@ -229,7 +230,8 @@ Piece descend(const CutGraph& cut, const Piece& piece, const CutEdge& edge, bool
     child.node = edge.child;
     child.steps = steps_after(piece.steps, edge);
     child.world_from_node = piece.world_from_node * edge.node_from_child;
-    child.scale = edge.similarity ? piece.scale * edge.stretch : norm(child.world_from_node.linear);
+    child.scale =
+        edge.similarity ? piece.scale * edge.stretch : largest_stretch(child.world_from_node.linear);
     child.tint = piece.tint * edge.tint;
     const CutNode& node = cut.nodes[piece.node];
     child.inherited = piece_is_cut && node.terminal ? node.mean.over(piece.inherited) : piece.inherited;

@@ -26,7 +26,7 @@ constexpr double estimate_slack = 1.25;
 constexpr double share_of_memory = 0.6;
 
 /// Of the work allowed, what graftal itself may take: the rest is for the rays.
-constexpr double share_of_work = 0.5;
+constexpr double share_of_work = 0.75;
 
 std::string readable_count(double count) {
     if (!std::isfinite(count)) return "more than 1e308";

@@ -4,6 +4,7 @@
 
 #include "compiler/cut/run_cells.h"
 #include "compiler/cut/texture_space.h"
+#include "compiler/support/stretch.h"
 
 namespace graftal {
 
@@ -141,7 +142,8 @@ void LeafWalk::fill_child(const CutEdge& edge, bool is_cut, double detail, Visit
     child.shape = edge.child;
     child.steps = steps_after(visit_.steps, edge);
     child.representative_from_node = visit_.representative_from_node * edge.node_from_child;
-    child.scale = edge.similarity ? visit_.scale * edge.stretch : norm(child.representative_from_node.linear);
+    child.scale = edge.similarity ? visit_.scale * edge.stretch
+                                  : largest_stretch(child.representative_from_node.linear);
     child.depth = visit_.depth;
     if (cut_.nodes[edge.child].primitive) child.turns = length_in_turns(edge.node_from_child.linear);
     child.culled_detail = is_cut && detail <= 1 ? detail : visit_.culled_detail;

@@ -234,7 +234,7 @@ class PointSystem {
     bool start(std::uint32_t number) {
         State& state = states_[number];
         const CutNode& node = node_of(state);
-        if (state.tiny) return add(number, {0, 0, 0}, mean_of(node));
+        if (state.tiny) return add(number, {0, 0, 0}, ended(node));
         if (edge_count(node, state.cut) == 0)
             return sample(number, PrimitiveKind::sphere, node.node_from_proxy, mean_of(node));
         bool fits = true;
@@ -283,6 +283,13 @@ class PointSystem {
         return paint;
     }
 
+    /// What is drawn where parts end: the terminal, if there is one, by its own material.
+    PointPaint ended(const CutNode& node) const {
+        if (!node.terminal || node.stop_edges.empty()) return mean_of(node);
+        const CutEdge& edge = node.stop_edges.front();
+        return mean_of(cut_.nodes[edge.child]).through(edge, &node, cut_.materials);
+    }
+
     PointPaint paint_through(const PointPaint& paint, const CutEdge& edge, const State& parent) const {
         if (!painted_) return paint;
         const CutNode& node = node_of(parent);
@@ -320,7 +327,7 @@ class PointSystem {
             node_from_here = node_from_here * next->node_from_child;
             here = next->child;
         }
-        PointPaint paint = mean_of(cut_.nodes[here]);
+        PointPaint paint = ended(cut_.nodes[here]);
         if (painted_)
             for (std::size_t i = way.size(); i-- > 0;)
                 paint = paint.through(*way[i], nullptr, cut_.materials);

@@ -1,13 +1,23 @@
 #pragma once
 
+#include <cstdint>
+
 namespace graftal {
 
 /// Work is counted, not timed, so that a picture does not depend on the machine or on what else it does.
 /// These many steps stand for a second of one processor of 2024.
 struct WorkRates {
-    static constexpr double ray_parts = 1.2e7;  ///< parts that rays go into, shading included
+    static constexpr double ray_steps = 2e7;    ///< of rays, shading included (RayWork)
     static constexpr double shell_points = 6e6; ///< points of shells moved (shell_points.h)
     static constexpr double leaves = 4e6;       ///< leaves unfolded into meshes and placements
+};
+
+/// Steps that rays take, each about as long as others: what a part takes depends on how it is placed.
+struct RayWork {
+    static constexpr std::uint64_t part = 2;      ///< gone into
+    static constexpr std::uint64_t stretched = 1; ///< more, for one that a map other than a similarity places
+    static constexpr std::uint64_t widened = 6;   ///< a leaf that is drawn larger than it is
+    static constexpr std::uint64_t crushed = 3;   ///< looked at in the world: no ray is taken into its frame
 };
 
 } // namespace graftal

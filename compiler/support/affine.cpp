@@ -10,6 +10,7 @@
 
 #include "compiler/support/angle.h"
 #include "compiler/support/check.h"
+#include "compiler/support/stretch.h"
 
 namespace graftal {
 
@@ -53,8 +54,8 @@ Vec3 singular_values(const Mat3& linear) {
             if (sweep >= enough_sweeps && std::min(alpha, beta) < 1e-30 * std::max(alpha, beta)) continue;
             rotated = true;
             const double zeta = (beta - alpha) / (2 * gamma);
-            const double t = std::copysign(1.0, zeta) / (std::abs(zeta) + std::hypot(1.0, zeta));
-            const double c = 1 / std::hypot(1.0, t);
+            const double t = std::copysign(1.0, zeta) / (std::abs(zeta) + std::sqrt(1 + zeta * zeta));
+            const double c = 1 / std::sqrt(1 + t * t);
             const Vec3 column = a[p];
             a[p] = c * column - c * t * a[q];
             a[q] = c * t * column + c * a[q];
@@ -80,14 +81,7 @@ bool is_finite(const Affine& a) {
 }
 
 bool is_singular(const Affine& a, double relative) {
-    // The two longer stretches make at most half of the sum of squares, and the longest is at most its root.
-    // So a determinant this large, with room for rounding, leaves the shortest more than its share.
-    const double squares = glm::dot(a.linear[0], a.linear[0]) + glm::dot(a.linear[1], a.linear[1]) +
-                           glm::dot(a.linear[2], a.linear[2]);
-    const double cube = squares * std::sqrt(squares);
-    if (cube > 1e-270 && std::abs(glm::determinant(a.linear)) > std::max(relative, 1e-9) * cube) return false;
-    const Vec3 sigma = singular_values(a.linear);
-    return !(sigma.z > relative * sigma.x);
+    return flatness_over(relative, a.linear) == 0;
 }
 
 double largest_entry(Vec3 v) {

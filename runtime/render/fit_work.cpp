@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <new>
 #include <utility>
 
@@ -20,7 +21,10 @@ constexpr double coarser = 1.5;
 constexpr int most_coarser_steps = 9;
 /// All is made anew after the memory did not suffice: few tries must do.
 constexpr int steps_after_memory = 3;
-constexpr std::uint64_t fewest_visits = 64;
+constexpr std::uint64_t fewest_visits = 16;
+/// By how much a coarser picture may take less: more where crowds are seen, hardly any where surfaces
+/// overlap.
+constexpr double most_gain = coarser * coarser * coarser;
 
 class Fitting {
   public:
@@ -41,18 +45,24 @@ class Fitting {
                 make_coarser(options, steps_left);
         }
         fitted.whole_seconds = fitted.seconds;
+        fitted.allowed_seconds = std::numeric_limits<double>::infinity();
         if (!options.culls()) return fitted;
+        fitted.work_cut = too_much(fitted.seconds);
         while (steps_left > 0 && too_much(fitted.seconds)) {
-            make_coarser(options, steps_left);
+            const double steps = std::log(excess(fitted.seconds)) / std::log(most_gain);
+            for (int i = 0; i == 0 || (i < steps && steps_left > 0); ++i)
+                make_coarser(options, steps_left);
             PreparedCut prepared = std::move(fitted.model->prepared);
             fitted.model.reset();
             if (!make(std::move(prepared), options, fitted)) throw std::bad_alloc();
         }
         while (too_much(fitted.seconds) && fitted.model->most_visits > fewest_visits) {
-            fitted.model->most_visits /= 2;
+            const std::uint64_t fewer = excess(fitted.seconds) > 4 ? 4 : 2;
+            fitted.model->most_visits = std::max(fitted.model->most_visits / fewer, fewest_visits);
             fitted.rays_cut = true;
             fitted.seconds = seconds_for(*fitted.model);
         }
+        fitted.allowed_seconds = allowed();
         return fitted;
     }
 
@@ -64,7 +74,7 @@ class Fitting {
     }
 
     /// False where it takes more memory than there is.
-    bool make(PreparedCut prepared, const CutOptions& options, FittedModel& fitted) const {
+    bool make(PreparedCut prepared, const CutOptions& options, FittedModel& fitted) {
         try {
             fitted.model = std::make_unique<TraceModel>(std::move(prepared), view_, options);
             fitted.error_px = options.error_px;
@@ -76,16 +86,27 @@ class Fitting {
         }
     }
 
-    bool too_much(double seconds) const { return seconds > options_.work_seconds && !cancelled_(); }
+    /// Trying takes its share, too; the picture keeps half in any case.
+    double allowed() const {
+        return std::max(options_.work_seconds - tried_seconds_, 0.5 * options_.work_seconds);
+    }
 
-    double seconds_for(const TraceModel& model) const {
+    double excess(double seconds) const { return seconds / allowed(); }
+
+    bool too_much(double seconds) const { return excess(seconds) > 1 && !cancelled_(); }
+
+    static double shell_seconds(const TraceModel& model) {
+        return static_cast<double>(model.meshes.shell_work()) / WorkRates::shell_points;
+    }
+
+    double seconds_for(const TraceModel& model) {
         const double first = seconds_by(model, first_block);
-        if (first > clear_factor * options_.work_seconds || clear_factor * first < options_.work_seconds)
-            return first;
+        if (excess(first) > clear_factor || clear_factor * excess(first) < 1) return first;
         return seconds_by(model, second_block);
     }
 
-    double seconds_by(const TraceModel& model, int block) const {
+    double seconds_by(const TraceModel& model, int block) {
+        const double shells_before = shell_seconds(model);
         PictureTracer tracer(model, limits_of_(model));
         Image picture;
         picture.width = view_.size.width;
@@ -98,10 +119,10 @@ class Fitting {
         control.cancelled = cancelled_;
         tracer.trace({block, {}}, control, picture);
         const TraceStatistics& tried = tracer.statistics();
-        const double visits =
-            static_cast<double>(tried.visits) / std::max<double>(1, static_cast<double>(tried.camera_rays));
-        return visits * samples_ / WorkRates::ray_parts +
-               static_cast<double>(model.meshes.shell_work()) / WorkRates::shell_points;
+        const double shells = shell_seconds(model);
+        const double rays = static_cast<double>(tried.work) / WorkRates::ray_steps;
+        tried_seconds_ += rays + shells - shells_before;
+        return rays * samples_ / std::max<double>(1, static_cast<double>(tried.camera_rays)) + shells;
     }
 
     const View& view_;
@@ -110,6 +131,7 @@ class Fitting {
     const std::function<ShaderLimits(const TraceModel&)>& limits_of_;
     const int threads_;
     const std::function<bool()>& cancelled_;
+    double tried_seconds_ = 0; ///< that rays took
 };
 
 } // namespace

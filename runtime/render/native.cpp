@@ -34,22 +34,28 @@ ShaderLimits limits_of(const TraceModel& model) {
 }
 
 /// Says what the work allowed has cost, or what a picture that leaves nothing out will take.
-void report_work(const FittedModel& fitted, const ViewedModel& viewed, Diagnostics& diagnostics) {
+void report_work(const FittedModel& fitted, const Sampling& wanted, const Sampling& finest,
+                 const ViewedModel& viewed, Diagnostics& diagnostics) {
     const Span& span = viewed.model.graph.objects[viewed.model.graph.root].span;
     const double allowed = viewed.cut.work_seconds;
     if (fitted.out_of_memory)
         warn_of_limit(span, limit_of_memory(viewed.cut.memory_bytes), {fitted.error_px, viewed.cut.error_px},
                       diagnostics);
-    if (!(fitted.whole_seconds > allowed)) return;
     if (!viewed.cut.culls()) {
+        if (!(fitted.whole_seconds > allowed)) return;
         diagnostics
             .note(span, fmt::format("this picture takes about {:.2g} seconds of one processor: nothing is left out",
                                     fitted.whole_seconds))
             .with_hint("--error 0.5 leaves out what nobody can see");
         return;
     }
+    if (!fitted.work_cut) return;
     Limit limit = limit_of_work(allowed);
     if (fitted.rays_cut) limit.besides = ", and rays that meet too much are given up";
+    if (finest.block > 1)
+        limit.besides += fmt::format(", one for {0} by {0} pixels", finest.block);
+    else if (wanted.antialias && !finest.antialias)
+        limit.besides += ", one for each pixel";
     limit.need = fmt::format("the picture as asked would take about {:.2g} seconds of one processor",
                              fitted.whole_seconds);
     warn_of_limit(span, limit, {fitted.error_px, viewed.cut.error_px}, diagnostics);
@@ -74,17 +80,38 @@ std::vector<Sampling> samplings(const RenderOptions& options, bool progressive) 
     return all;
 }
 
+double samples_a_pixel(const std::vector<Sampling>& samplings) {
+    double sum = 0;
+    for (const Sampling& sampling : samplings)
+        sum += sampling.samples_a_pixel();
+    return sum;
+}
+
+/// Leaves out the finest, or looks less closely where there is one alone, until the picture takes no more
+/// than is allowed.
+std::vector<Sampling> within_work(std::vector<Sampling> all, const FittedModel& fitted) {
+    constexpr int coarsest_block = 8;
+    const double seconds_a_sample = fitted.seconds / samples_a_pixel(all);
+    while (fitted.rays_cut && seconds_a_sample * samples_a_pixel(all) > fitted.allowed_seconds) {
+        const Sampling finest = all.back();
+        if (!finest.antialias && finest.block >= coarsest_block) break;
+        all.pop_back();
+        if (all.empty()) all.push_back({finest.antialias ? 1 : 2 * finest.block, {}});
+    }
+    return all;
+}
+
 /// One picture, from the first sample to the last file.
 class Drawing {
   public:
-    Drawing(const TraceModel& model, const NativeOptions& options)
-        : options_(options), samplings_(samplings(options.render, options.progressive)), tracer_(model, limits_of(model)), size_(model.view.size) {
+    Drawing(const TraceModel& model, std::vector<Sampling> samplings, const NativeOptions& options)
+        : options_(options), samplings_(std::move(samplings)), tracer_(model, limits_of(model)),
+          size_(model.view.size) {
         picture_.width = size_.width;
         picture_.height = size_.height;
         picture_.channels = 3;
         picture_.pixels.resize(3 * pixels());
-        for (const Sampling& sampling : samplings_)
-            work_ += sampling.samples_a_pixel();
+        work_ = samples_a_pixel(samplings_);
     }
 
     Status run() {
@@ -205,21 +232,20 @@ std::optional<NativeReport> trace_model(ViewedModel viewed, const NativeOptions&
 
     const Stopwatch watch;
     const Interruption interruption; // from here on something may be half written
-    double samples_a_pixel = 0;
-    for (const Sampling& sampling : samplings(options.render, options.progressive))
-        samples_a_pixel += sampling.samples_a_pixel();
+    const std::vector<Sampling> wanted = samplings(options.render, options.progressive);
     const auto prepare = [&] {
         return prepare_cut(analysed.graph, analysed.components, analysed.bounds, viewed.cut);
     };
-    const FittedModel fitted = fit_work(prepare, viewed.view, viewed.cut, samples_a_pixel, limits_of,
+    const FittedModel fitted = fit_work(prepare, viewed.view, viewed.cut, samples_a_pixel(wanted), limits_of,
                                         options.render.threads, [] { return Interruption::signal() != 0; });
     const TraceModel& model = *fitted.model;
-    report_work(fitted, viewed, compilation.diagnostics);
+    std::vector<Sampling> affordable = within_work(wanted, fitted);
+    report_work(fitted, wanted.back(), affordable.back(), viewed, compilation.diagnostics);
     compilation.times.push_back({"prepare", watch.seconds()});
     if (viewed.cut.culls() && !viewed.cut.steps)
         note_shadowless(model.prepared.cut, analysed.graph, compilation.diagnostics);
     const Stopwatch drawing_watch;
-    Drawing drawing(model, options);
+    Drawing drawing(model, std::move(affordable), options);
     compilation.status = drawing.run();
     compilation.times.push_back({"trace", drawing_watch.seconds()});
     report_shells(model, viewed, compilation.diagnostics);

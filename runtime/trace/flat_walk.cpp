@@ -8,7 +8,7 @@
 
 #include "compiler/cut/least_width.h"
 #include "compiler/cut/texture_space.h"
-#include "runtime/trace/stretch.h"
+#include "compiler/support/stretch.h"
 #include "runtime/trace/traversal.h"
 
 namespace graftal {
@@ -36,7 +36,7 @@ FlatImage::FlatImage(const Ray& ray, const Mat3& map, Vec3 point) {
     const double size = glm::length(longest);
     if (!(size > 0)) return;
     const Vec3 from_point = ray.origin - point;
-    const Vec3 sigma = singular_values(map);
+    const Vec3 sigma = most_singular_values(map);
     if (glm::length(across) > flattest_placement * size * size) {
         const Vec3 normal = glm::normalize(across);
         const double height = glm::dot(from_point, normal), slope = glm::dot(ray.direction, normal);
@@ -81,15 +81,36 @@ RayRange in_ball(const Ray& ray, const Ball& ball) {
 
 } // namespace
 
-Traversal::FlatPart Traversal::flat_child(const LaneMap& world_from_node, double scale, std::uint32_t number,
+double Traversal::placed_flatness(const LaneMap& world_from_node, const TraceEdge& edge) {
+    return flatness_over(flattest_placement,
+                         world_from_node.affine().linear * edge.parent_from_child.affine().linear);
+}
+
+Traversal::FlatPart Traversal::flat_child(const LaneMap& world_from_node, std::uint32_t number,
                                           std::uint32_t steps, bool cut) const {
     const TraceEdge& edge = model_.edges[number];
     FlatPart child;
     compose(world_from_node, edge.parent_from_child, child.world_from_node);
-    child.scale = edge.similarity ? scale * edge.stretch : largest_stretch(child.world_from_node);
     child.edge = number | (cut ? from_cut : 0);
     child.steps = steps == unlimited_steps ? steps : steps - edge.levels;
     return child;
+}
+
+void Traversal::scale_child(FlatPart& child, double scale) const {
+    const TraceEdge& edge = model_.edges[child.edge & ~from_cut];
+    child.scale = edge.similarity ? scale * edge.stretch : largest_stretch(linear_of(child.world_from_node));
+}
+
+bool Traversal::may_meet(const FlatPart& part, const RayRange& range) const {
+    const TraceNode& node = model_.nodes[model_.edges[part.edge & ~from_cut].child];
+    const double most_scale = most_stretch(linear_of(part.world_from_node));
+    Ball ball{vec3_of(part.world_from_node.translation), most_scale * node.drawn_radius};
+    if (node.kind == TraceNode::Kind::primitive)
+        ball = {vec3_of(point_through(part.world_from_node, node.ball_centre)),
+                most_scale * node.ball_radius};
+    ball.radius += flat_width(ball, most_scale);
+    const RayRange inside = both({range.least, best_.t}, in_ball(ray_, ball));
+    return inside.least <= inside.most;
 }
 
 bool Traversal::meet_leaf(PrimitiveKind kind, const Affine& world_from_leaf, bool faint, const Ball& ball,
@@ -99,6 +120,7 @@ bool Traversal::meet_leaf(PrimitiveKind kind, const Affine& world_from_leaf, boo
     const RayRange near =
         both({range.least, best_.t}, in_ball(ray_, widened_ball(kind, world_from_leaf, half_width)));
     if (!(near.least <= near.most)) return false;
+    more_work_ += RayWork::widened;
     const Affine drawn = drawn_leaf(kind, world_from_leaf, faint, half_width);
     const Affine leaf_from_world = inverse(drawn);
     const Vec3 direction = leaf_from_world.linear * ray_.direction;
@@ -159,8 +181,10 @@ void Traversal::keep_flat_way(std::uint32_t frame_number) {
 }
 
 void Traversal::meet_flat(std::uint32_t frame_number, std::uint32_t number, const RayRange& range, bool any) {
+    more_work_ += RayWork::crushed;
     const Frame& frame = frames_[frame_number];
-    FlatPart start = flat_child(frame.world_from_node, frame.scale, number, frame.steps, frame.cut);
+    FlatPart start = flat_child(frame.world_from_node, number, frame.steps, frame.cut);
+    scale_child(start, frame.scale);
     start.faint = frame.faint;
     const TraceNode& node = model_.nodes[model_.edges[number].child];
     const Affine place = start.world_from_node.affine();
@@ -172,7 +196,7 @@ void Traversal::meet_flat(std::uint32_t frame_number, std::uint32_t number, cons
     const RayRange left = both({range.least, best_.t}, image);
     if (!(left.least <= left.most)) return;
     flat_parts_.assign(1, start);
-    while (!flat_parts_.empty() && !(any && best_.found) && visits_ <= visit_limit_) {
+    while (!flat_parts_.empty() && !(any && best_.found) && goes_on()) {
         if (best_.t <= enough && visits_ > patience_) break;
         const FlatPart part = flat_parts_.back();
         flat_parts_.pop_back();
@@ -200,7 +224,7 @@ void Traversal::meet_flat_part(const FlatPart& part, const RayRange& range, std:
         return keep_flat_way(frame_number);
     }
     const double detail = 2 * ball.radius * model_.projection.detail_per_unit(ball);
-    const bool cut = is_cut(node, part.steps, detail);
+    const bool cut = (hurries_ && node.cullable) || is_cut(node, part.steps, detail);
     if (cut && node.stop_edge_count == 0) {
         const bool met = meet_leaf(PrimitiveKind::sphere, place * node.node_from_proxy.affine(),
                                    part.faint || node.faint, ball, range);
@@ -211,8 +235,11 @@ void Traversal::meet_flat_part(const FlatPart& part, const RayRange& range, std:
     if (node.kind == TraceNode::Kind::run && !cut) return meet_flat_items(part, ball, range, frame_number);
     const std::uint32_t first = node.first_edge + (cut ? node.edge_count : 0);
     const std::uint32_t count = cut ? node.stop_edge_count : node.edge_count;
+    more_work_ += RayWork::crushed * count;
     for (std::uint32_t i = 0; i < count; ++i) {
-        FlatPart child = flat_child(part.world_from_node, part.scale, first + i, part.steps, cut);
+        FlatPart child = flat_child(part.world_from_node, first + i, part.steps, cut);
+        if (!may_meet(child, range)) continue;
+        scale_child(child, part.scale);
         child.depth = part.depth + 1;
         child.faint = part.faint || (cut && detail <= 1 && node.faint);
         if (visits_ > patience_ && !is_new(child, width)) continue;

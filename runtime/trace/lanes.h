@@ -73,6 +73,10 @@ GRAFTAL_INLINE Vec3 vec3_of(const Double4& v) {
     return {v[0], v[1], v[2]};
 }
 
+GRAFTAL_INLINE Mat3 linear_of(const LaneMap& map) {
+    return {vec3_of(map.column[0]), vec3_of(map.column[1]), vec3_of(map.column[2])};
+}
+
 GRAFTAL_INLINE Float8 lesser(const Float8& a, const Float8& b) {
     return a < b ? a : b;
 }

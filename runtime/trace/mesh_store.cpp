@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
@@ -89,7 +90,8 @@ bool intersect(const TraceMesh::Triangle& triangle, const Ray& ray, const RayRan
     return true;
 }
 
-MeshStore::MeshStore(const PreparedCut& prepared) : prepared_(prepared) {}
+MeshStore::MeshStore(const PreparedCut& prepared, std::uint64_t most_shell_work)
+    : prepared_(prepared), most_shell_work_(most_shell_work) {}
 
 MeshStore::Key MeshStore::key(NodeId node, const Affine& graph_from_frame, std::uint32_t steps,
                               double detail_per_unit) const {
@@ -121,8 +123,13 @@ std::unique_ptr<TraceMesh> MeshStore::bake_shell(const Key& key, const Affine& g
     request.representative = key.node;
     request.steps = key.steps;
     request.detail_per_unit = value_of(key.detail);
+    request.most_shell_work = most_shell_work_;
     request.painters = {{0, Rgb(0.0)}, {0, Rgb(1.0)}};
-    const Baked baked = bake(prepared_.cut, prepared_.symmetry, request, most_triangles);
+    Baked baked = bake(prepared_.cut, prepared_.symmetry, request, most_triangles);
+    if (!baked.complete) { // whatever it takes: nobody is to see a gap
+        request.most_shell_work = std::numeric_limits<std::uint64_t>::max();
+        baked = bake(prepared_.cut, prepared_.symmetry, request, most_triangles);
+    }
     shell_work_ += baked.shell_work;
     return trace_mesh(baked, inverse(graph_from_frame));
 }

@@ -55,8 +55,8 @@ bool intersect(const TraceMesh::Triangle& triangle, const Ray& ray, const RayRan
 /// half octave of sizes. Used by many threads.
 class MeshStore {
   public:
-    /// Keeps a reference.
-    explicit MeshStore(const PreparedCut& prepared);
+    /// Keeps a reference. `most_shell_work`: points moved for one shell; it gets coarser by that.
+    MeshStore(const PreparedCut& prepared, std::uint64_t most_shell_work);
 
     /// What one mesh serves.
     struct Key {
@@ -89,6 +89,7 @@ class MeshStore {
     std::unique_ptr<TraceMesh> bake_shell(const Key& key, const Affine& graph_from_frame) const;
 
     const PreparedCut& prepared_;
+    const std::uint64_t most_shell_work_;
     std::mutex mutex_;
     std::map<Key, Entry> meshes_;
     std::atomic<double> coarsest_shell_ = 0;

@@ -39,7 +39,7 @@ class Worker {
         return trace_lattice(steps_of(sampling), tile, picture);
     }
 
-    TraceStatistics statistics() const { return {camera_rays_, traversal_.visits(), traversal_.given_up()}; }
+    TraceStatistics statistics() const { return {camera_rays_, traversal_.work(), traversal_.given_up()}; }
 
   private:
     Rgb look(double x, double y) {
@@ -138,7 +138,7 @@ double Sampling::samples_a_pixel() const {
 
 TraceStatistics& TraceStatistics::operator+=(const TraceStatistics& other) {
     camera_rays += other.camera_rays;
-    visits += other.visits;
+    work += other.work;
     given_up += other.given_up;
     return *this;
 }

@@ -27,7 +27,7 @@ struct Sampling {
 
 struct TraceStatistics {
     std::uint64_t camera_rays = 0;
-    std::uint64_t visits = 0;   ///< parts that all rays went into
+    std::uint64_t work = 0;     ///< steps of all rays (Traversal::work)
     std::uint64_t given_up = 0; ///< rays that met too many parts (Traversal::given_up)
 
     TraceStatistics& operator+=(const TraceStatistics& other);

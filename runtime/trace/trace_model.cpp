@@ -12,6 +12,7 @@
 
 #include "compiler/cut/choose.h"
 #include "compiler/cut/texture_space.h"
+#include "compiler/cut/work.h"
 #include "runtime/trace/drawn_bounds.h"
 #include "runtime/trace/unroll.h"
 
@@ -300,6 +301,13 @@ void find_shells(TraceModel& model) {
     }
 }
 
+/// Of one shell: there may be several, and they may be made anew at another error.
+std::uint64_t most_shell_work(const CutOptions& options) {
+    constexpr double share = 1.0 / 8, least = 1e7; // with less there may be none
+    const double seconds = options.culls() ? std::min(share * options.work_seconds, 1e6) : 1e6;
+    return static_cast<std::uint64_t>(std::max(least, seconds * WorkRates::shell_points));
+}
+
 } // namespace
 
 std::uint32_t TraceRun::edge_of(PrimitiveKind kind, std::uint16_t colour) const {
@@ -311,7 +319,7 @@ std::uint32_t TraceRun::edge_of(PrimitiveKind kind, std::uint16_t colour) const 
 TraceModel::TraceModel(PreparedCut ready, const View& seen, const CutOptions& cut_options)
     : prepared(std::move(ready)), layers(layered(prepared.cut, prepared.root_steps)), view(seen),
       options(cut_options), projection(view, options, options.error_px, nearest_to_eye(prepared.cut)),
-      meshes(prepared) {
+      meshes(prepared, most_shell_work(options)) {
     least_detail_per_unit = least_detail(*this);
     const CutNode& root = prepared.cut.nodes[prepared.cut.root];
     for (const CutNode& node : prepared.cut.nodes)

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <limits>
 #include <memory>
@@ -137,6 +138,9 @@ struct TraceModel {
     /// Nodes and primitives that one ray may go into. Sound models need some tens or hundreds; where thousands of
     /// parts coincide, a ray would not come to an end.
     std::uint64_t most_visits = 1 << 17;
+    /// More of them, for a ray that was given up before it met anything: it looks into no more parts that may
+    /// be culled, so that few are left.
+    std::uint64_t more_visits() const { return std::clamp<std::uint64_t>(most_visits, 32, 256); }
     bool has_shells = false;                              ///< some node may be drawn as one
     bool clear_texels = false;                            ///< some texture has them
 

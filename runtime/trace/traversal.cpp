@@ -59,6 +59,16 @@ bool Traversal::run(const Ray& ray, const RayRange& range, bool any) {
     return run_portable(Kernel<Instructions::portable>{*this, model_, range, any}, ray);
 }
 
+bool Traversal::goes_on() {
+    if (visits_ <= visit_limit_) return true;
+    if (hurries_) return false;
+    hurries_ = true;
+    ++given_up_;
+    if (best_.found) return false;
+    visit_limit_ = visits_ + model_.more_visits();
+    return true;
+}
+
 bool Traversal::closest(const Ray& ray, const RayRange& range, SurfaceHit& hit) {
     if (!run(ray, range, false)) return false;
     path_.clear();

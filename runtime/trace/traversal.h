@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "compiler/cut/alike_set.h"
+#include "compiler/cut/work.h"
 #include "runtime/trace/intersect.h"
 #include "runtime/trace/surfaces.h"
 #include "runtime/trace/trace_model.h"
@@ -26,7 +27,7 @@ class FlatImage {
 
     /// Where the ray is no farther from it; empty where least > most.
     RayRange within(double width) const;
-    /// How thick the image of the unit ball is yet, half.
+    /// How thick the image of the unit ball is yet, half: that, or up to three times as much.
     double thickness() const { return thickness_; }
 
   private:
@@ -47,7 +48,11 @@ class Traversal final : public Surfaces {
 
     /// Nodes and primitives that rays went into so far.
     std::uint64_t visits() const { return visits_; }
-    /// Rays that had to be given up, with what they had met by then: they went into too many parts.
+    /// What that took (RayWork, cut/work.h).
+    std::uint64_t work() const { return RayWork::part * visits_ + more_work_; }
+    /// Rays that went into too many parts. What they had met by then is what they meet; if that is nothing,
+    /// what they had not yet looked into is met as a whole, each part as if it were small enough to be
+    /// culled.
     std::uint64_t given_up() const { return given_up_; }
 
   private:
@@ -115,8 +120,14 @@ class Traversal final : public Surfaces {
                          std::uint32_t frame_number);
     /// The edges to a part that was met in the world.
     void keep_flat_way(std::uint32_t frame_number);
-    FlatPart flat_child(const LaneMap& world_from_node, double scale, std::uint32_t edge, std::uint32_t steps,
+    /// At most the flatness of what the edge places; 0 where that is too flat for a frame.
+    static double placed_flatness(const LaneMap& world_from_node, const TraceEdge& edge);
+    /// The child that a part's edge leads to, except for its scale: many are missed that need none.
+    FlatPart flat_child(const LaneMap& world_from_node, std::uint32_t edge, std::uint32_t steps,
                         bool cut) const;
+    void scale_child(FlatPart& child, double parent_scale) const;
+    /// False where the ray misses a ball about the part that is a little too large.
+    bool may_meet(const FlatPart& part, const RayRange& range) const;
     double flat_width(const Ball& ball, double scale) const;
     bool is_new(const FlatPart& part, double width);
     /// Meets a proxy or primitive in the world, as it is drawn (least_width.h); true if it is the nearest so
@@ -126,6 +137,8 @@ class Traversal final : public Surfaces {
     /// The edges to a frame's node.
     void keep_way(std::uint32_t frame_number);
     bool run(const Ray& ray, const RayRange& range, bool any);
+    /// False once the ray went into too many parts, and hurrying did not help.
+    bool goes_on();
     /// Appends an edge to the path; of an unrolling's edge those that it stands for.
     void append_to_path(std::uint32_t edge);
     void surface_at_best(SurfaceHit& hit) const;
@@ -152,9 +165,11 @@ class Traversal final : public Surfaces {
     std::uint64_t patience_ = 0;          ///< of the ray: visits
     std::vector<std::uint32_t> flat_way_; ///< edges from the frame to the part under way
     std::uint64_t visit_limit_ = 0;       ///< of the ray
+    bool hurries_ = false;                ///< the ray has passed the limit
     std::vector<std::uint32_t> way_;  ///< edges through the frames to the best hit, those from cut nodes marked
     std::vector<std::uint32_t> path_; ///< of the graph, likewise, once the ray is done
     std::uint64_t visits_ = 0;
+    std::uint64_t more_work_ = 0; ///< than visits tell
     std::uint64_t given_up_ = 0;
 };
 

@@ -13,7 +13,7 @@
 
 #include "compiler/cut/least_width.h"
 #include "compiler/cut/texture_space.h"
-#include "runtime/trace/stretch.h"
+#include "compiler/support/stretch.h"
 #include "runtime/trace/traversal.h"
 
 namespace graftal {
@@ -79,6 +79,7 @@ template<Instructions instructions> struct Traversal::Kernel {
         self.ray_ = ray;
         self.visit_limit_ = self.visits_ + model.most_visits;
         self.patience_ = self.visits_ + most_patience;
+        self.hurries_ = false;
         if (!self.flat_met_.empty()) self.flat_met_.clear();
         const double enough = model.near_enough(ray, near_enough_share),
                      plenty = model.near_enough(ray, plenty_share);
@@ -90,10 +91,7 @@ template<Instructions instructions> struct Traversal::Kernel {
             more = go_into(entry);
             if (any && self.best_.found) return true;
             if (self.best_.t <= plenty || (self.best_.t <= enough && self.visits_ > self.patience_)) break;
-            if (self.visits_ > self.visit_limit_) {
-                ++self.given_up_;
-                break;
-            }
+            if (!self.goes_on()) break;
         }
         return self.best_.found;
     }
@@ -243,8 +241,10 @@ template<Instructions instructions> struct Traversal::Kernel {
         const TraceNode& node = model.nodes[edge.child];
         double flatness = self.frames_[entry.frame].flatness;
         if (!edge.similarity) {
+            self.more_work_ += RayWork::stretched;
             flatness *= edge.flatness;
-            if (!(flatness > flattest_placement)) flatness = true_flatness(self.frames_[entry.frame], edge);
+            if (!(flatness > flattest_placement)) // the product of many flat maps need not be flat
+                flatness = self.placed_flatness(self.frames_[entry.frame].world_from_node, edge);
             if (!(flatness > flattest_placement)) {
                 self.meet_flat(entry.frame, entry.entry, range, any);
                 return false;
@@ -280,13 +280,6 @@ template<Instructions instructions> struct Traversal::Kernel {
         return enter_node(edge, node, parent, frame, entry);
     }
 
-    /// What the product of many flat maps need not be.
-    GRAFTAL_INLINE static double true_flatness(const Frame& parent, const TraceEdge& edge) {
-        const Vec3 sigma =
-            singular_values(parent.world_from_node.affine().linear * edge.parent_from_child.affine().linear);
-        return sigma.x > 0 ? sigma.z / sigma.x : 0;
-    }
-
     /// The frame has its ray.
     GRAFTAL_INLINE bool enter_node(const TraceEdge& edge, const TraceNode& node, const Frame& parent, Frame& frame,
                                    Entry& entry) {
@@ -294,7 +287,8 @@ template<Instructions instructions> struct Traversal::Kernel {
         frame.edge = entry.entry | (parent.cut ? from_cut : 0);
         frame.node = edge.child;
         frame.steps = parent.steps == unlimited_steps ? parent.steps : parent.steps - edge.levels;
-        frame.scale = edge.similarity ? parent.scale * edge.stretch : largest_stretch(frame.world_from_node);
+        frame.scale =
+            edge.similarity ? parent.scale * edge.stretch : largest_stretch(linear_of(frame.world_from_node));
         if (!(frame.scale > least_scale)) return false;
         frame.faint = parent.faint;
         frame.cut = is_cut(node, frame);
@@ -366,6 +360,7 @@ template<Instructions instructions> struct Traversal::Kernel {
     /// The rule of the cut (detail.h).
     GRAFTAL_INLINE bool is_cut(const TraceNode& node, const Frame& frame) const {
         const double diameter = 2 * frame.scale * node.ball_radius;
+        if (self.hurries_ && node.cullable) return true;
         const bool surely_large = !node.cullable || diameter * model.least_detail_per_unit > node.cut_detail;
         return graftal::is_cut(node, frame.steps, surely_large ? INFINITY : detail_of(node, frame));
     }

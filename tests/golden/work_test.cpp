@@ -72,6 +72,43 @@ TEST_F(Work, LessWorkMakesACoarserPictureAndSaysSo) {
     EXPECT_EQ(compare_images(picture("a.png"), picture("b.png")).differing, 0u) << "threads decide nothing";
 }
 
+// Both maps keep the middle: 2^35 cones lie in each other, and every ray goes into more than it may.
+TEST_F(Work, WhereEveryRayMeetsTooMuchFewerAreTraced) {
+    write("cones.rifs", "rifs cones {\n"
+                        "  map a { rotate <1, 2, 3>, 31 scale 0.7 }\n"
+                        "  map b { rotate <3, 1, 2>, 77 scale 0.6, 0.65, 0.7 }\n"
+                        "  terminal cone scale 0.96 translate 0, 0.5, 0.3\n"
+                        "}\n");
+    const RunResult result =
+        shell("\"$graftal\" render --engine native --size 160x90 --work 0.002 --steps 35 cones.rifs "
+              "-o a.png --threads 2");
+    EXPECT_EQ(result.status, 0) << result.err;
+    EXPECT_THAT(result.err, HasSubstr("and rays that meet too much are given up, one for"));
+    EXPECT_EQ(picture("a.png").width, 160);
+}
+
+// Copies that lie in each other are drawn as one shell: it has the terminal's own material.
+TEST_F(Work, ShellsHaveTheMaterialOfTheTerminal) {
+    write("cubes.rifs", "material blue { color: 0.1, 0.1, 0.8  specular: 0  ambient: 0.5 }\n"
+                        "camera { location: 0.5, 0.5, 9  look_at: 0.5, 0.5, 0  orthographic  width: 3 }\n"
+                        "light { location: 0, 0.475, 900  color: 1, 1, 1 }\n"
+                        "rifs m {\n"
+                        "  map a { scale 0.7 }\n"
+                        "  map b { scale 0.7 translate 0.3, 0, 0 }\n"
+                        "  map c { scale 0.7 translate 0, 0.3, 0 }\n"
+                        "  map d { scale 0.7 translate 0.3, 0.3, 0 }\n"
+                        "  terminal cube scale 0.5, 0.5, 0.002 translate 0.5, 0.5 material blue\n"
+                        "}\n");
+    for (const std::string error : {"0.5", "8"}) {
+        const RunResult result = shell("\"$graftal\" render --engine native --size 64x36 --error " + error +
+                                       " cubes.rifs -o a.png");
+        ASSERT_EQ(result.status, 0) << result.err;
+        const Image image = picture("a.png");
+        const float* middle = &image.pixels[image.channels * (18 * 64 + 32)];
+        EXPECT_GT(middle[2], 2 * middle[0]) << error;
+    }
+}
+
 TEST_F(Work, OfPovrayIsSaidBeforeItStarts) {
     write("ball.inst", "object ball { sphere }\n");
     const std::string render = "render ball.inst -q -o a.png --size ";

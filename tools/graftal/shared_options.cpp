@@ -156,11 +156,12 @@ void add_view(CLI::App& app, Options& options) {
         [](const std::string& text) { return parse_at_least(text, 0); },
         [&](double error) { compile.cut.error_world = error; })
         ->excludes(pixels);
-    add_value(app, "--work", "SECONDS",
-              "Work for the picture, about so many seconds of one processor; what takes more is drawn coarser "
-              "(default 60)",
-              "a number of seconds above 0", [](const std::string& text) { return parse_at_least(text, 1e-3); },
-              [&](double seconds) { compile.cut.work_seconds = seconds; });
+    add_value(
+        app, "--work", "SECONDS",
+        "Work for the picture, about so many seconds of one processor; what takes more is drawn coarser "
+        "(default 40)",
+        "a number of seconds above 0", [](const std::string& text) { return parse_at_least(text, 1e-3); },
+        [&](double seconds) { compile.cut.work_seconds = seconds; });
     app.add_flag("--visible-only", compile.cut.visible_only,
                  "Leave out what the camera does not see, with the shadows that it would throw");
     app.add_flag("--flatten", compile.cut.flatten,

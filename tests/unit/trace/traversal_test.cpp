@@ -246,6 +246,41 @@ TEST(Traversal, CrushedPartsThatCoincideForEverAreMetOnce) {
     EXPECT_LT(traversal.visits(), 100'000u);
 }
 
+TEST(Traversal, ARayThatIsGivenUpMeetsWhatItDidNotLookInto) {
+    Graph graph = empty_graph();
+    const ObjectId self = graph.add({"self", {}, {}, {}, {}});
+    for (int i = 0; i < 8; ++i)
+        place(graph, self, self,
+              Affine::translate({i % 2 - 0.5, i / 2 % 2 - 0.5, i / 4 - 0.5}) * Affine::scale(Vec3(0.5)));
+    place(graph, graph.root, self, {});
+    const auto model = traced(graph, culled(0.01));
+    model->most_visits = 3;
+    Traversal traversal(*model);
+    for (int i = 0; i < 20; ++i) {
+        const Ray ray{{0.05 * (i % 5) - 0.11, 0.05 * (i / 5.0) - 0.11, 10}, {0, 0, -1}};
+        SurfaceHit hit;
+        EXPECT_TRUE(traversal.closest(ray, {1e-9, infinity}, hit)) << "sky through the middle of a cube";
+        EXPECT_TRUE(sane(hit));
+        EXPECT_TRUE(traversal.meets_any(ray, {1e-9, infinity}));
+    }
+    EXPECT_GT(traversal.given_up(), 0u);
+    EXPECT_LE(traversal.visits(), 40 * (model->most_visits + model->more_visits() + 64));
+}
+
+// A child that is only looked at in the world takes as long as a part that is gone into.
+TEST(Traversal, WorkCountsWhatIsLookedAtInTheWorld) {
+    Graph graph = empty_graph();
+    const ObjectId self = graph.add({"self", {}, {}, {}, {}});
+    for (int i = 0; i < 30; ++i)
+        place(graph, self, self, Affine::translate({i % 6, i / 6, 0.1 * i}) * Affine::scale(Vec3(0.3)));
+    place(graph, graph.root, self, Affine::scale({1, 1, 0}));
+    const auto model = traced(graph, culled());
+    Traversal traversal(*model);
+    for (int i = 0; i < 100; ++i)
+        traversal.meets_any({{0.05 * i, 0.04 * i, 10}, {0, 0, -1}}, {});
+    EXPECT_GT(traversal.work(), 10 * traversal.visits()) << "thirty children are looked at, few gone into";
+}
+
 // Found by random graphs: the proof that the model contracts takes paths of 1000 instances, and in the
 // prepared graph, where what is crushed has a node of its own, they are twice as long.
 TEST(Traversal, DrawsWhatIsHardlyProvedToContract) {

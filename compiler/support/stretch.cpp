@@ -1,0 +1,72 @@
+#include "compiler/support/stretch.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <glm/geometric.hpp>
+
+namespace graftal {
+
+namespace {
+
+double squared_entries(const Mat3& m) {
+    return glm::dot(m[0], m[0]) + glm::dot(m[1], m[1]) + glm::dot(m[2], m[2]);
+}
+
+/// What singular values are the roots of, or products of roots.
+struct Symmetric {
+    Mat3 cofactors;
+    double squares = 0;      ///< of the three, added
+    double squared_area = 0; ///< squares of the products of two, added
+    double volume = 0;       ///< the product, or less that
+    double rounding = 0;     ///< of the volume, at most
+    /// Powers of larger and smaller ones are no numbers any more.
+    bool in_range = false;
+
+    explicit Symmetric(const Mat3& m)
+        : cofactors(glm::cross(m[1], m[2]), glm::cross(m[2], m[0]), glm::cross(m[0], m[1])),
+          squares(squared_entries(m)), squared_area(squared_entries(cofactors)),
+          volume(glm::dot(m[0], cofactors[0])), rounding(1e-15 * squares * std::sqrt(squares)),
+          in_range(squares > 1e-100 && squares < 1e80 && squared_area > 1e-250) {}
+};
+
+} // namespace
+
+std::optional<FlatMap> flat_map(const Mat3& linear) {
+    constexpr double thickest =
+        1e-5; // as a share of the middle singular value: its square is lost in the answer
+    constexpr double narrowest = 1e-5; // of the middle one itself: less has no exact cofactors
+    const Symmetric all(linear);
+    if (!all.in_range) return {};
+    const double root = std::sqrt(std::max(0.0, all.squares * all.squares - 4 * all.squared_area));
+    const double longest = std::sqrt(0.5 * (all.squares + root)), area = std::sqrt(all.squared_area);
+    const double middle = area / longest, thickness = std::abs(all.volume) / area;
+    if (!(middle > narrowest * longest && thickness <= thickest * middle)) return {};
+    return FlatMap{{longest, middle, thickness}, std::copysign(1 / area, all.volume) * all.cofactors};
+}
+
+Vec3 most_singular_values(const Mat3& linear) {
+    const Symmetric all(linear);
+    if (!all.in_range) return singular_values(linear);
+    constexpr double rounding = 1e-15;
+    const double most = std::sqrt(all.squares), area = std::sqrt(all.squared_area);
+    const double root3 = std::sqrt(3.0);
+    const double middle = root3 * area / most + rounding * most;
+    return {most, middle, std::min(middle, root3 * (std::abs(all.volume) + all.rounding) / area)};
+}
+
+double flatness_over(double share, const Mat3& linear) {
+    const Symmetric all(linear);
+    if (all.in_range) {
+        // sigma.z >= volume / area, and at most sqrt(3) times that; sigma.x is in such a range below
+        // sqrt(squares).
+        const double unit = std::sqrt(all.squared_area * all.squares);
+        const double least = (std::abs(all.volume) - all.rounding) / unit;
+        if (least > share) return least;
+        if (3 * (std::abs(all.volume) + all.rounding) <= 0.99 * share * unit) return 0;
+    }
+    const Vec3 sigma = singular_values(linear);
+    return sigma.z > share * sigma.x ? sigma.z / sigma.x : 0;
+}
+
+} // namespace graftal

@@ -42,7 +42,7 @@ inline double most_stretch(const Mat3& map) {
 
 /// A map that leaves a ball hardly any thickness, but more than a line.
 struct FlatMap {
-    Vec3 sigma;      ///< its singular values, largest first: to about 1e-10 of the middle one
+    Vec3 sigma;      ///< its singular values, largest first; the least to about 1e-10 of the largest
     Mat3 thickening; ///< added times a length, it makes the image of the unit ball thicker by that, and
                      ///< nothing else
 };

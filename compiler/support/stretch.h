@@ -43,8 +43,9 @@ inline double most_stretch(const Mat3& map) {
 /// A map that leaves a ball hardly any thickness, but more than a line.
 struct FlatMap {
     Vec3 sigma;      ///< its singular values, largest first; the least to about 1e-10 of the largest
-    Mat3 thickening; ///< added times a length, it makes the image of the unit ball thicker by that, and
-                     ///< nothing else
+    /// Added times a length, it makes the image of the unit ball thicker by that; nothing else changes by
+    /// more than 1e-5 of it.
+    Mat3 thickening;
 };
 
 /// None where the least singular value is over 1e-5 of the middle one, or that is under 1e-5 of the largest:

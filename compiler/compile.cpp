@@ -2,17 +2,17 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cmath>
 #include <utility>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <glm/common.hpp>
 
+#include "compiler/analysis/model_range.h"
 #include "compiler/frame_model.h"
 #include "compiler/graph/verify.h"
 #include "compiler/support/check.h"
 #include "compiler/support/number.h"
+#include "compiler/support/number_range.h"
 
 namespace graftal {
 
@@ -106,14 +106,6 @@ void report_verdict(const Graph& graph, const Contraction& contraction, Diagnost
         report_undecided(graph, contraction, diagnostics);
 }
 
-/// The largest model: squares and products of its lengths must be numbers too.
-constexpr double largest_size = 1e100;
-
-bool too_large(const Box& box) {
-    const Vec3 far = glm::max(glm::abs(box.min), glm::abs(box.max));
-    return !box.empty() && !(std::max({far.x, far.y, far.z}) <= largest_size);
-}
-
 View view_of(const AnalysedModel& model, const CompileOptions& options, bool part) {
     return options.frame ? options.frame(model, part) : frame_model(model, options.size, options.camera);
 }
@@ -142,7 +134,7 @@ std::optional<View> zoom_model(AnalysedModel& model, const CompileOptions& optio
     model.components = std::move(rerooted->components);
     model.bounds = std::move(rerooted->bounds);
     cut.root_levels = std::move(rerooted->root_levels);
-    if (cut.error_world) cut.error_world = rerooted->zoom.times(*cut.error_world);
+    if (cut.error_world) cut.error_world = std::min(rerooted->zoom.times(*cut.error_world), largest_size);
     return std::move(rerooted->view);
 }
 
@@ -184,14 +176,7 @@ std::optional<AnalysedModel> analyse_model(const std::string& path, const Compil
 
     model.bounds = stages.run(
         "bounding", [&] { return bound_objects(model.graph, model.components, model.contraction); });
-    if (too_large(model.bounds[model.graph.root].box)) {
-        diagnostics
-            .error(model.graph.objects[model.graph.root].span,
-                   fmt::format("the model reaches farther than {} units from the origin",
-                               shortest(largest_size)))
-            .with_hint("scale it down");
-        return std::nullopt;
-    }
+    if (!check_range(model.graph, model.components, model.bounds, diagnostics)) return std::nullopt;
     return model;
 }
 

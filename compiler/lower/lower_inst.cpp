@@ -16,6 +16,7 @@
 #include "compiler/lower/lower_transform.h"
 #include "compiler/lower/model_family.h"
 #include "compiler/support/number.h"
+#include "compiler/support/number_range.h"
 #include "compiler/syntax/inst_parser.h"
 
 namespace graftal {
@@ -330,12 +331,14 @@ class InstLowerer {
         const auto take = [&](const ScatteredPlace& place) {
             if (!good) return;
             const Affine map = placement->parent_from_child * place.parent_from_child;
-            lost = lost || !is_finite(map) || map.linear == Mat3(0.0);
+            lost = lost || !range_fault(map).empty();
             object.instances.push_back({*masters[place.master], map, place.tint, placement->material,
                                         group.masters[place.master].span, chance});
         };
         lower_scatter(group, context, {begin, take}, scratch_);
-        if (lost) scratch_.error(group.span, "the sizes or places of these leave the range of numbers");
+        if (lost)
+            scratch_.error(group.span, "the sizes or places of these leave the range of numbers")
+                .with_hint(range_hint);
     }
 
     /// 0 where none is stated.

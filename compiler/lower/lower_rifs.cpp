@@ -11,13 +11,14 @@
 
 #include "compiler/graph/components.h"
 #include "compiler/lower/inner_parameters.h"
+#include "compiler/lower/lower_orbit.h"
 #include "compiler/lower/lower_settings.h"
 #include "compiler/lower/lower_transform.h"
-#include "compiler/lower/lower_orbit.h"
 #include "compiler/lower/lowering.h"
 #include "compiler/lower/model_family.h"
 #include "compiler/lower/rifs_chances.h"
 #include "compiler/lower/rifs_system.h"
+#include "compiler/support/number_range.h"
 #include "compiler/syntax/rifs_parser.h"
 
 namespace graftal {
@@ -291,10 +292,11 @@ class RifsLowering {
     Instance placed(const Part& part, const RifsNode* node) {
         if (!node) return {part.master, part.parent_from_child, part.tint, part.material, part.span};
         const Affine map = node->map * part.parent_from_child;
-        if (!is_finite(map) || map.linear == Mat3(0.0))
+        const bool vanishes = map.linear == Mat3(0.0);
+        if (const std::string fault = range_fault(map); !fault.empty())
             diagnostics_
-                .error(part.span, fmt::format("under map '{}' this {}", node->name,
-                                              is_finite(map) ? "vanishes" : "is not finite"))
+                .error(part.span,
+                       fmt::format("under map '{}' this {}", node->name, vanishes ? "vanishes" : fault))
                 .with_note(node->source->name.span, "the map is here");
         return {part.master, map, composed(node->tint, part.tint),
                 part.material ? part.material : node->material, part.span};

@@ -10,6 +10,7 @@
 #include "compiler/lower/lower_area.h"
 #include "compiler/lower/lower_transform.h"
 #include "compiler/support/number.h"
+#include "compiler/support/number_range.h"
 
 namespace graftal {
 
@@ -47,9 +48,24 @@ class Fields {
 
     bool flag(std::string_view keyword) const { return find(keyword) != nullptr; }
 
-    std::optional<Vec3> vector(std::string_view keyword) const {
-        const SceneField* field = find(keyword);
-        return field ? lower_vector(field->values, lets_, diagnostics_) : std::nullopt;
+    /// A point of the scene.
+    std::optional<Vec3> place(std::string_view keyword) const {
+        return vector(keyword, is_place,
+                      fmt::format("lie within {} units of the origin", shortest(largest_size)));
+    }
+
+    /// A vector of which only the direction counts.
+    std::optional<Vec3> direction(std::string_view keyword) const {
+        const auto good = [](Vec3 v) { return v == Vec3(0.0) || is_direction(v); };
+        return vector(keyword, good, range_demand());
+    }
+
+    /// A positive size.
+    std::optional<double> size(std::string_view keyword) const {
+        const std::optional<double> value = number(
+            keyword, [](double x) { return x > 0; }, "be positive");
+        if (!value || is_size(*value)) return value;
+        return number(keyword, is_size, range_demand());
     }
 
     std::optional<Rgb> color(std::string_view keyword) const {
@@ -99,6 +115,22 @@ class Fields {
     }
 
   private:
+    static std::string range_demand() {
+        return fmt::format("have a size between {} and {}", shortest(least_size), shortest(largest_size));
+    }
+
+    template<typename Predicate>
+    std::optional<Vec3> vector(std::string_view keyword, const Predicate& good,
+                               const std::string& demand) const {
+        const SceneField* field = find(keyword);
+        if (!field) return std::nullopt;
+        const std::optional<Vec3> value = lower_vector(field->values, lets_, diagnostics_);
+        if (!value || good(*value)) return value;
+        diagnostics_.error(join(field->values.front().span, field->values.back().span),
+                           fmt::format("'{}' must {}", keyword, demand));
+        return std::nullopt;
+    }
+
     const SceneStatement& statement_;
     const Environment& lets_;
     Diagnostics& diagnostics_;
@@ -106,14 +138,13 @@ class Fields {
 
 CameraSetting lower_camera(const Fields& fields) {
     CameraSetting camera;
-    camera.location = fields.vector("location");
-    camera.look_at = fields.vector("look_at");
-    camera.up = fields.vector("up");
+    camera.location = fields.place("location");
+    camera.look_at = fields.place("look_at");
+    camera.up = fields.direction("up");
     camera.orthographic = fields.flag("orthographic");
     camera.angle_deg = fields.number(
-        "angle", [](double x) { return x > 0 && x < 180; }, "lie between 0 and 180 degrees");
-    camera.width = fields.number(
-        "width", [](double x) { return x > 0; }, "be positive");
+        "angle", [](double x) { return x >= least_size && x < 180; }, "lie between 0 and 180 degrees");
+    camera.width = fields.size("width");
     if (camera.up == Vec3(0.0)) fields.error("up", "'up' must have a direction");
     if (camera.location && camera.look_at && *camera.location == *camera.look_at)
         fields.error("look_at", "the camera looks at its own location");
@@ -131,7 +162,7 @@ LightSetting lower_light(const Fields& fields) {
         fields.error("location", "a light has either a location or, as a sun, a direction");
     if (!light.sun && !fields.flag("location"))
         fields.error_at_statement("this light has no place", "give it 'location: x, y, z' or 'sun: x, y, z'");
-    light.location = fields.vector(light.sun ? "sun" : "location").value_or(Vec3(1.0));
+    light.location = (light.sun ? fields.direction("sun") : fields.place("location")).value_or(Vec3(1.0));
     if (light.sun && light.location == Vec3(0.0)) fields.error("sun", "'sun' must have a direction");
     light.rgb = fields.light_color("color").value_or(light.rgb);
     light.shadowless = fields.flag("shadowless");
@@ -149,7 +180,11 @@ BackgroundSetting lower_background(const Fields& fields) {
 
 GroundSetting lower_ground(const Fields& fields) {
     GroundSetting ground;
-    ground.height = fields.number("height").value_or(0);
+    ground.height = fields
+                        .number(
+                            "height", [](double x) { return is_place(Vec3(x)); },
+                            fmt::format("lie within {} units of the origin", shortest(largest_size)))
+                        .value_or(0);
     ground.rgb = fields.color("color");
     if (const SceneField* material = fields.find("material")) ground.material = material->name;
     ground.area = fields.area("area");

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "compiler/support/number.h"
+#include "compiler/support/number_range.h"
 
 namespace graftal {
 
@@ -100,18 +101,11 @@ std::optional<Affine> rotation(const TransformLine& line, const std::array<doubl
     return std::nullopt;
 }
 
-bool vanishes(const Affine& a) {
-    return a.linear == Mat3(0.0);
-}
-
 bool check_map(const Affine& map, bool projection, Span span, std::string_view what,
                Diagnostics& diagnostics) {
-    if (!is_finite(map)) {
-        diagnostics.error(span, fmt::format("{} overflows", what));
-        return false;
-    }
-    if (vanishes(map)) {
-        diagnostics.error(span, fmt::format("{} maps everything to one point", what));
+    if (const std::string fault = range_fault(map); !fault.empty()) {
+        Diagnostic& error = diagnostics.error(span, fmt::format("{} {}", what, fault));
+        if (map.linear != Mat3(0.0)) error.with_hint(range_hint);
         return false;
     }
     if (!projection && is_singular(map)) {

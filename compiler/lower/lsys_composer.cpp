@@ -8,8 +8,8 @@
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
 
-#include "compiler/lower/turtle_range.h"
 #include "compiler/support/number.h"
+#include "compiler/support/number_range.h"
 
 namespace graftal {
 

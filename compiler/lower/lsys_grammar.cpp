@@ -11,8 +11,8 @@
 #include <glm/geometric.hpp>
 
 #include "compiler/lower/lower_transform.h"
-#include "compiler/lower/turtle_range.h"
 #include "compiler/support/number.h"
+#include "compiler/support/number_range.h"
 
 namespace graftal {
 

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "compiler/lower/turtle_range.h"
+#include "compiler/support/number_range.h"
 
 namespace graftal {
 

@@ -11,6 +11,7 @@
 #include "compiler/lower/lower_transform.h"
 #include "compiler/support/check.h"
 #include "compiler/support/number.h"
+#include "compiler/support/number_range.h"
 
 namespace graftal {
 
@@ -104,15 +105,11 @@ class SystemBuilder {
             numbers.push_back(*number);
         }
         const Affine result = map_from_codes(map.form, numbers);
-        if (!is_finite(result)) {
-            diagnostics_.error(map.span, "this row gives numbers that are not finite");
-            return std::nullopt;
-        }
-        if (result.linear == Mat3(0.0)) {
-            diagnostics_.error(map.span, "this row maps everything to one point");
-            return std::nullopt;
-        }
-        return result;
+        const std::string fault = range_fault(result);
+        if (fault.empty()) return result;
+        Diagnostic& error = diagnostics_.error(map.span, fmt::format("this row {}", fault));
+        if (result.linear != Mat3(0.0)) error.with_hint(range_hint);
+        return std::nullopt;
     }
 
     void check_probabilities(const RifsBlock& block) {

@@ -10,9 +10,9 @@
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 
-#include "compiler/lower/turtle_range.h"
 #include "compiler/support/angle.h"
 #include "compiler/support/number.h"
+#include "compiler/support/number_range.h"
 
 namespace graftal {
 

@@ -8,7 +8,7 @@
 #include <glm/geometric.hpp>
 
 #include "compiler/lower/triangulate.h"
-#include "compiler/lower/turtle_range.h"
+#include "compiler/support/number_range.h"
 
 namespace graftal {
 

@@ -55,8 +55,8 @@ class Generator {
     }
 
     double number() {
-        static constexpr std::array<double, 12> numbers = {
-            0, -0.0, 1, -1, 0.5, 1.0 / 3, -2, 0.1, 1e-30, 1e200, 1e-320, -0.7071067811865476};
+        const std::array<double, 12> numbers = {
+            0, -0.0, 1, -1, 0.5, 1.0 / 3, -2, 0.1, 1e-30, options_.huge, 1e-320, -0.7071067811865476};
         const std::uint32_t choice = choices_.below(numbers.size() + 4);
         if (choice < numbers.size()) return numbers[choice];
         return static_cast<double>(choices_.below(1u << 30)) / (1u << 29) - 1;
@@ -117,7 +117,7 @@ class Generator {
             for (int row = 0; row < 3; ++row)
                 a.linear[column][row] = number();
         a.translation = vector();
-        if (a.linear == Mat3(0.0)) a.linear[0][1] = 0.25;
+        if (largest_entry(a.linear) < 1e-99) a.linear[0][1] = 0.25;
         return a;
     }
 

@@ -32,6 +32,7 @@ struct RandomGraphOptions {
     bool duplicates = true; ///< plants copies of objects under other names, in three graphs of four
     bool settings = true;   ///< random scene statements
     bool runs = false;      ///< some unions are runs (graph/run.h)
+    double huge = 1e200;    ///< the largest number in a transform; models have none beyond 1e100
 };
 
 /// A graph that verify() accepts: unions in every relation, shared and nested masters, cycles through one

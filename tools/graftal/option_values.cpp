@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "compiler/support/number.h"
+#include "compiler/support/number_range.h"
 
 namespace graftal {
 
@@ -93,16 +94,21 @@ std::string set_camera_word(std::string_view word, CameraOverride& camera) {
     for (const auto& [vector_name, vector] : vectors) {
         if (name != vector_name) continue;
         *vector = parse_vector(text);
-        return vector->has_value() ? "" : fmt::format("'{}' is not of the form {}=X,Y,Z", word, name);
+        if (!*vector) return fmt::format("'{}' is not of the form {}=X,Y,Z", word, name);
+        const bool fits =
+            vector == &camera.up ? **vector == Vec3(0.0) || is_direction(**vector) : is_place(**vector);
+        return fits ? "" : fmt::format("'{}': {}", word, range_hint);
     }
     const std::optional<double> number = parse_number(text);
     if (name == "angle") {
         camera.angle_deg = number;
-        return number && *number > 0 && *number < 180 ? "" : "angle must lie between 0 and 180 degrees";
+        return number && *number >= least_size && *number < 180 ? ""
+                                                                : "angle must lie between 0 and 180 degrees";
     }
     if (name == "width") {
         camera.width = number;
-        return number && std::isfinite(*number) && *number > 0 ? "" : "width must be a positive number";
+        if (!number || !std::isfinite(*number) || !(*number > 0)) return "width must be a positive number";
+        return is_size(*number) ? "" : fmt::format("'{}': {}", word, range_hint);
     }
     return fmt::format("'{}' is none of location=, look_at=, up=, angle=, orthographic, width=", word);
 }

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "compiler/passes/pipeline.h"
+#include "compiler/support/number_range.h"
 #include "tools/graftal/option_values.h"
 #include "tools/graftal/sweep_values.h"
 #include "tools/graftal/usage_errors.h"
@@ -152,8 +153,12 @@ void add_view(CLI::App& app, Options& options) {
         "a number of pixels, 0 or more", [](const std::string& text) { return parse_at_least(text, 0); },
         [&](double error) { compile.cut.error_px = error; });
     add_value(
-        app, "--error-world", "X", "The same as a length in the model's units", "a length, 0 or more",
-        [](const std::string& text) { return parse_at_least(text, 0); },
+        app, "--error-world", "X", "The same as a length in the model's units",
+        "0, or a length from 1e-100 to 1e100",
+        [](const std::string& text) {
+            const std::optional<double> error = parse_at_least(text, 0);
+            return error && (*error == 0 || is_size(*error)) ? error : std::nullopt;
+        },
         [&](double error) { compile.cut.error_world = error; })
         ->excludes(pixels);
     add_value(

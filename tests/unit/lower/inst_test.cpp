@@ -281,9 +281,9 @@ TEST(Inst, a_printed_graph_reads_back_to_the_last_bit) {
         material bark { color: 1/3, 0.2, 0.1 reflection: 1/7 } material unused { roughness: 1/3 }
         canonical object tip(0) { sphere projection: 1/3, 0,0,0, 0,0,0,0, 0,0,0,1/7 }
         canonical object tip(n) { union: tip(n - 1), tip(n - 0.5), tip(n - 1)
-            rotate: <1, 2, 3>, 17.3 scale: 1/3 translate: 1/7, -1e-300, 1e300 tint: 1/3, 0, 1/7, 0.1
+            rotate: <1, 2, 3>, 17.3 scale: 1/3 translate: 1/7, -1e-300, 1e99 tint: 1/3, 0, 1/7, 0.1
             material: bark terminal: cube shear: xz, 1/9 tint: 1/3, 1, 1, 1/3 }
-        canonical object tip(-1) { sphere } canonical object tip(0.5) { torus scale: 5e-324 }
+        canonical object tip(-1) { sphere } canonical object tip(0.5) { torus scale: 1e-99 }
         canonical object tip(-0.5) { cube }
         canonical object kept { union: kept, top scale: 0.25 }
         object top { tip(3) scale: -1/3, 0.7, 0.9 }

@@ -58,8 +58,11 @@ bool check_chain(Span use_span, const std::string& path, Lowering& lowering) {
     return true;
 }
 
-Status check_regular(const std::string& path) {
+Status check_regular(const std::string& path, const std::string& root) {
     std::error_code code;
+    // Asked first: of what lies outside nobody learns whether it is there.
+    if (!root.empty() && !lies_in(path, root))
+        return Status::failure(fmt::format("'{}' leads out of --root '{}'", path, root));
     if (!std::filesystem::exists(path, code))
         return Status::failure(fmt::format("cannot open '{}': {}", path, std::strerror(ENOENT)));
     if (is_special_file(path)) return Status::failure(fmt::format("'{}' is not a regular file", path));
@@ -70,7 +73,7 @@ Status check_regular(const std::string& path) {
 std::optional<FileId> read_used(Span use_span, const std::string& path, Lowering& lowering) {
     if (const auto known = lowering.files.find(path); known != lowering.files.end()) return known->second;
     std::string text;
-    Status read = check_regular(path);
+    Status read = check_regular(path, lowering.options.root);
     if (read.ok()) read = read_text(path, text);
     if (read.ok()) return lowering.files[path] = lowering.sources.add(path, std::move(text));
     add_chain(lowering.diagnostics.error(use_span, read.message()), lowering);
@@ -185,7 +188,7 @@ bool has_room(const Graph& into, const Graph& model, Span span, Lowering& loweri
 std::optional<std::string> find_beside(Span name_span, std::string_view path, Lowering& lowering) {
     if (!check_path(name_span, path, lowering)) return std::nullopt;
     std::string found = path_beside(name_span, path, lowering.sources);
-    const Status regular = check_regular(found);
+    const Status regular = check_regular(found, lowering.options.root);
     if (regular.ok()) return found;
     add_chain(lowering.diagnostics.error(name_span, regular.message()), lowering);
     return std::nullopt;

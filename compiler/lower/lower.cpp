@@ -81,8 +81,8 @@ std::optional<Graph> lower_root(FileId file, const LowerOptions& options, Source
     Lowering lowering{.sources = sources, .diagnostics = diagnostics, .options = options};
     if (options.time && !options.steps && model_language(file, sources) != "lsys") {
         diagnostics
-            .error(Span(), fmt::format("--steps {}: only L-systems have times between their steps",
-                                       shortest(*options.time)))
+            .error(Span{file, 0, 0}, fmt::format("--steps {}: only L-systems have times between their steps",
+                                                 shortest(*options.time)))
             .with_hint("give a whole number");
         return std::nullopt;
     }
@@ -132,6 +132,10 @@ std::optional<Graph> lower_model(const std::string& path, const LowerOptions& op
                                  Diagnostics& diagnostics, Status& status,
                                  std::optional<Derivation>* derivation) {
     std::string text;
+    if (path != "-" && !options.root.empty() && !lies_in(path, options.root)) {
+        diagnostics.error(Span(), fmt::format("'{}' leads out of --root '{}'", path, options.root));
+        return std::nullopt;
+    }
     status = read_text(path, text);
     if (!status.ok()) return std::nullopt;
     return lower_text(path, std::move(text), options, sources, diagnostics, derivation);

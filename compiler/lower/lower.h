@@ -53,6 +53,10 @@ struct LowerOptions {
     /// no time: without `steps` it is an error.
     std::optional<double> time;
     std::optional<std::uint64_t> seed; ///< of what is random, in place of what the model says
+    /// Files that a model names, and the model itself, must lie in this folder, with all symbolic links
+    /// resolved;
+    /// "": they may lie anywhere.
+    std::string root;
     bool exact = false;                ///< L-systems are derived module by module: one honest random tree
     std::uint64_t max_modules = 50'000'000; ///< of a derived word
     std::uint64_t run_from = 4096; ///< derived words of so many modules make a run, if they repeat little

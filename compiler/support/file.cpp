@@ -1,5 +1,6 @@
 #include "compiler/support/file.h"
 
+#include <algorithm>
 #include <atomic>
 #include <cerrno>
 #include <cstdio>
@@ -8,7 +9,10 @@
 #include <memory>
 #include <system_error>
 
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/file.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 namespace graftal {
@@ -35,12 +39,53 @@ Status read_stream(std::FILE* stream, const std::string& path, std::string& text
     return std::ferror(stream) ? system_failure("read", path) : Status();
 }
 
+/// The times of a temporary that its writer has not opened yet: access, change.
+constexpr timespec never_written[2] = {{1, 0}, {1, 0}};
+
+/// Whether a name is that of a temporary of PendingFile: `.STEM.PROCESS.COUNTER.EXTENSION`.
+bool is_temporary_of(const std::filesystem::path& target, const std::string& after, std::string_view name) {
+    const std::string before = fmt::format(".{}.", target.stem().string());
+    if (name.size() <= before.size() + after.size() || !name.starts_with(before) || !name.ends_with(after))
+        return false;
+    const std::string_view numbers = name.substr(before.size(), name.size() - before.size() - after.size());
+    return std::count(numbers.begin(), numbers.end(), '.') == 1 && numbers.front() != '.' &&
+           numbers.back() != '.' && numbers.find_first_not_of("0123456789.") == std::string_view::npos;
+}
+
+/// Removes what runs that were killed have left of an output. A run has few outputs, except for the frames of
+/// a film, whose folder is tidied in one go.
+void remove_abandoned(const std::filesystem::path& target, const std::string& extension) {
+    constexpr unsigned enough = 100;
+    static std::atomic<unsigned> count = 0;
+    if (++count > enough) return;
+    const std::filesystem::path folder = target.has_parent_path() ? target.parent_path() : ".";
+    std::error_code error;
+    for (std::filesystem::directory_iterator entry(folder, error), end; !error && entry != end;
+         entry.increment(error)) {
+        const std::string name = entry->path().filename().string();
+        if (!is_temporary_of(target, extension, name)) continue;
+        const int lock = lock_path(entry->path().string());
+        if (lock < 0) continue; // its writer is at work
+        ::unlink(entry->path().c_str());
+        ::close(lock);
+    }
+}
+
 } // namespace
 
 bool is_special_file(const std::string& path) {
     std::error_code error;
     const std::filesystem::file_status status = std::filesystem::status(path, error);
     return std::filesystem::exists(status) && !std::filesystem::is_regular_file(status);
+}
+
+bool lies_in(const std::string& path, const std::string& folder) {
+    std::error_code error, folder_error;
+    // Of what is not there, as far as it is: a link without a target leads nowhere, and is refused.
+    const std::filesystem::path inner = std::filesystem::weakly_canonical(path, error);
+    const std::filesystem::path outer = std::filesystem::canonical(folder, folder_error);
+    if (error || folder_error || std::filesystem::is_symlink(inner, error)) return false;
+    return std::mismatch(outer.begin(), outer.end(), inner.begin(), inner.end()).first == outer.end();
 }
 
 Status read_text(const std::string& path, std::string& text, std::size_t max_bytes) {
@@ -52,20 +97,68 @@ Status read_text(const std::string& path, std::string& text, std::size_t max_byt
     return read_stream(file.get(), path, text, max_bytes);
 }
 
-PendingFile::PendingFile(std::string path) : path_(std::move(path)) {
-    const std::filesystem::path final_path(path_);
+Status output_target(const std::string& path, std::string& target) {
+    constexpr int most_links = 40; // as the kernel has it
+    std::filesystem::path at = path;
+    std::error_code error;
+    for (int i = 0; std::filesystem::is_symlink(at, error); ++i) {
+        if (i == most_links)
+            return Status::failure(fmt::format("cannot write '{}': {}", path, std::strerror(ELOOP)));
+        at = at.parent_path() / std::filesystem::read_symlink(at, error);
+    }
+    target = at.string();
+    if (!is_special_file(target) || std::filesystem::is_directory(target, error)) return {};
+    return Status::failure(
+        fmt::format("cannot write '{}': it is not a regular file ('-o -' writes to standard "
+                    "output, where a command can)",
+                    path));
+}
+
+int lock_path(const std::string& path) {
+    const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK);
+    if (file >= 0 && ::flock(file, LOCK_EX | LOCK_NB) == 0) return file;
+    if (file >= 0) ::close(file);
+    return -1;
+}
+
+PendingFile::PendingFile(std::string path) : path_(std::move(path)), status_(output_target(path_, target_)) {
+    if (!status_.ok()) return;
+    remove_abandoned(target_, std::filesystem::path(path_).extension().string());
+    create();
+}
+
+/// A file that cannot be made is reported by who writes it.
+void PendingFile::create() {
     static std::atomic<unsigned> count = 0; // two writers of one file do not share a temporary
-    const std::string name = fmt::format(".{}.{}.{}{}", final_path.stem().string(), ::getpid(), ++count,
-                                         final_path.extension().string());
-    temporary_ = (final_path.parent_path() / name).string();
+    const std::filesystem::path target(target_);
+    for (int tries = 0; tries < 3; ++tries) {
+        const std::string name = fmt::format(".{}.{}.{}{}", target.stem().string(), ::getpid(), ++count,
+                                             std::filesystem::path(path_).extension().string());
+        temporary_ = (target.parent_path() / name).string();
+        lock_ = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+        // Another may have taken it for abandoned before it was locked.
+        if (lock_ < 0) return;
+        ::futimens(lock_, never_written);
+        if (::flock(lock_, LOCK_EX) != 0 || ::access(temporary_.c_str(), F_OK) == 0) return;
+        ::close(lock_);
+    }
+}
+
+bool PendingFile::is_written() const {
+    struct stat info = {};
+    return ::stat(temporary_.c_str(), &info) == 0 &&
+           (info.st_size > 0 || info.st_mtim.tv_sec != never_written[1].tv_sec);
 }
 
 PendingFile::~PendingFile() {
-    if (!committed_) ::unlink(temporary_.c_str());
+    if (!committed_ && !temporary_.empty()) ::unlink(temporary_.c_str());
+    if (lock_ >= 0) ::close(lock_);
 }
 
 Status PendingFile::commit() {
-    if (std::rename(temporary_.c_str(), path_.c_str()) != 0) return system_failure("write", path_);
+    if (!status_.ok()) return status_;
+    if (!is_written()) return Status::failure(fmt::format("cannot write '{}': nothing came", path_));
+    if (std::rename(temporary_.c_str(), target_.c_str()) != 0) return system_failure("write", path_);
     committed_ = true;
     return {};
 }
@@ -78,6 +171,7 @@ Status write_text(const std::string& path, std::string_view text) {
         return system_failure("write", "standard output");
     }
     PendingFile pending(path);
+    if (!pending.status().ok()) return pending.status();
     OpenFile file(std::fopen(pending.temporary_path().c_str(), "wb"));
     if (!file) return system_failure("write", path);
     const bool written = std::fwrite(text.data(), 1, text.size(), file.get()) == text.size();

@@ -11,12 +11,21 @@ namespace graftal {
 /// nobody writes would wait for ever.
 bool is_special_file(const std::string& path);
 
+/// Whether a path, there or not, leads into a folder, with all symbolic links resolved on both sides.
+bool lies_in(const std::string& path, const std::string& folder);
+
 /// Reads a regular file, or standard input for "-". Refuses more than `max_bytes`, so that a model cannot
 /// be a device or a disk image.
 Status read_text(const std::string& path, std::string& text, std::size_t max_bytes = 256u << 20);
 
-/// An output that appears whole or not at all: bytes go to a temporary beside `path`, which commit()
-/// renames. Without commit() the temporary is removed.
+/// Where what is written to `path` goes: to the file that symbolic links lead to, there or not, as with other
+/// programs. Fails for a ring of links, and for what is there and is no regular file: a pipe or a device
+/// cannot be replaced whole, and must not be replaced by a file.
+Status output_target(const std::string& path, std::string& target);
+
+/// An output that appears whole or not at all: bytes go to a temporary beside its target (output_target),
+/// which commit() renames. Without commit() the temporary is removed. It is locked (flock) while this lives:
+/// what runs that were killed have left of this output is not, and is removed first.
 class PendingFile {
   public:
     explicit PendingFile(std::string path);
@@ -24,15 +33,28 @@ class PendingFile {
     PendingFile(const PendingFile&) = delete;
     PendingFile& operator=(const PendingFile&) = delete;
 
-    /// Where to write; ends with the extension of the final path, so that writers recognise the format.
+    /// Whether there is anything to write to; else nothing must be written.
+    const Status& status() const { return status_; }
+    /// Where to write; ends with the extension of `path`, so that writers recognise the format.
     const std::string& temporary_path() const { return temporary_; }
+    const std::string& path() const { return path_; }
     Status commit();
 
   private:
+    void create();
+    bool is_written() const;
+
     std::string path_;
+    std::string target_;
     std::string temporary_;
+    Status status_;
+    int lock_ = -1;
     bool committed_ = false;
 };
+
+/// Takes a lock on the file or folder at `path`, which ends with this process: its descriptor, or -1 where
+/// another has it, or nothing can be locked there.
+int lock_path(const std::string& path);
 
 /// Writes `text` to `path` by a PendingFile, or to standard output for "-".
 Status write_text(const std::string& path, std::string_view text);

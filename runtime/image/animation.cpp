@@ -108,6 +108,7 @@ class AnimatedPng {
 Status write_animated_png(const std::string& path, const std::vector<std::string>& frames, FrameRate rate,
                           const OnFrame& on_frame) {
     PendingFile pending(path);
+    if (!pending.status().ok()) return pending.status();
     AnimatedPng animation(path, frames.size(), rate);
     Status status = animation.open(pending.temporary_path());
     for (std::size_t i = 0; i < frames.size() && status.ok(); ++i)

@@ -108,10 +108,17 @@ Status read_image(const std::string& path, Image& image) {
 
 Status write_image(const std::string& path, const Image& image, SampleFormat format,
                    const ImageMetadata& metadata) {
-    GRAFTAL_CHECK(is_picture_name(path), path);
     PendingFile pending(path);
+    const Status status =
+        pending.status().ok() ? write_image(pending, image, format, metadata) : pending.status();
+    return status.ok() ? pending.commit() : status;
+}
+
+Status write_image(const PendingFile& pending, const Image& image, SampleFormat format,
+                   const ImageMetadata& metadata) {
+    GRAFTAL_CHECK(is_picture_name(pending.path()), pending.path());
     const std::string error = write(pending.temporary_path(), image, format, metadata);
-    return error.empty() ? pending.commit() : failure("write", path, error);
+    return error.empty() ? Status() : failure("write", pending.path(), error);
 }
 
 Status write_gif(const std::string& path, const std::vector<std::string>& frames, FrameRate rate,
@@ -119,15 +126,16 @@ Status write_gif(const std::string& path, const std::vector<std::string>& frames
     if (!module().files) return failure("write", path, module().error);
     const int delay_hundredths = static_cast<int>(100 / rate.per_second() + 0.5);
     PendingFile pending(path);
+    if (!pending.status().ok()) return pending.status();
     const std::string error =
         module().files->write_gif(pending.temporary_path(), frames, delay_hundredths, on_frame);
     if (error == "interrupted") return Status::failure(error);
     return error.empty() ? pending.commit() : failure("write", path, error);
 }
 
-Status write_palette(const std::string& path, int width, int height, std::span<const Rgb> pixels) {
+Status write_palette(const PendingFile& pending, int width, int height, std::span<const Rgb> pixels) {
     const auto size = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
-    GRAFTAL_CHECK(!pixels.empty() && pixels.size() <= size, path);
+    GRAFTAL_CHECK(!pixels.empty() && pixels.size() <= size, pending.path());
     std::vector<std::uint16_t> levels;
     levels.reserve(3 * size);
     for (std::size_t i = 0; i < size; ++i) {
@@ -135,9 +143,8 @@ Status write_palette(const std::string& path, int width, int height, std::span<c
         for (int c = 0; c < 3; ++c)
             levels.push_back(static_cast<std::uint16_t>(65535 * std::clamp(rgb[c], 0.0, 1.0) + 0.5));
     }
-    PendingFile pending(path);
     const std::string error = write_png_levels(pending.temporary_path(), width, height, levels);
-    return error.empty() ? pending.commit() : failure("write", path, error);
+    return error.empty() ? Status() : failure("write", pending.path(), error);
 }
 
 } // namespace graftal

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "compiler/support/file.h"
 #include "compiler/support/status.h"
 #include "compiler/support/tint.h"
 #include "runtime/image/row_sink.h"
@@ -69,10 +70,14 @@ Status read_image(const std::string& path, Image& image);
 /// arguments only. Samples are clamped to [0, 1] in PNG.
 Status write_image(const std::string& path, const Image& image, SampleFormat format,
                    const ImageMetadata& metadata = {});
+/// The same without the commit.
+Status write_image(const PendingFile& pending, const Image& image, SampleFormat format,
+                   const ImageMetadata& metadata = {});
 
 /// Writes a 16-bit PNG of linear values for an SDL image_map with `gamma 1.0`: sample = round(65535 value).
-/// Pixels that are missing at the end are filled with the last. Requires 0 < pixels.size() <= width * height.
-Status write_palette(const std::string& path, int width, int height, std::span<const Rgb> pixels);
+/// Pixels that are missing at the end are filled with the last. Does not commit. Requires
+/// 0 < pixels.size() <= width * height.
+Status write_palette(const PendingFile& pending, int width, int height, std::span<const Rgb> pixels);
 
 /// How far two pictures are apart. Over the samples a_i, b_i, i = 1..N, of all pixels and channels
 /// (a grey picture counts as RGB, a missing alpha as 1), with d_i = |a_i - b_i|:

@@ -174,7 +174,7 @@ Status look_at_texture(const std::string& path, TextureFacts& facts) {
     return status;
 }
 
-Status write_texture(const std::string& path, const Texture& texture) {
+Status write_texture(const PendingFile& pending, const Texture& texture) {
     Image image{texture.width, texture.height, 4, {}};
     image.pixels.reserve(4 * texture.texels.size());
     for (const Texture::Texel& texel : texture.texels) {
@@ -182,7 +182,7 @@ Status write_texture(const std::string& path, const Texture& texture) {
             image.pixels.push_back(static_cast<float>(level) / 255.0f);
         image.pixels.push_back(texel.clear ? 0.0f : 1.0f);
     }
-    return write_image(path, image, SampleFormat::srgb8);
+    return write_image(pending, image, SampleFormat::srgb8);
 }
 
 } // namespace graftal

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "compiler/support/file.h"
 #include "compiler/support/status.h"
 #include "compiler/support/texture_facts.h"
 #include "compiler/support/tint.h"
@@ -42,7 +43,7 @@ std::shared_ptr<const Texture> load_texture(const std::string& path, Status& sta
 /// What a compiler asks of it (LowerOptions).
 Status look_at_texture(const std::string& path, TextureFacts& facts);
 
-/// Writes it as POV-Ray is to read it: PNG, 8 bit, sRGB, alpha 0 or 1.
-Status write_texture(const std::string& path, const Texture& texture);
+/// Writes it as POV-Ray is to read it: PNG, 8 bit, sRGB, alpha 0 or 1. Does not commit.
+Status write_texture(const PendingFile& pending, const Texture& texture);
 
 } // namespace graftal

@@ -84,6 +84,7 @@ Status write_ply(const std::string& path, const PointSource& source, const Point
     Status room = check_room(path, work.points);
     if (!room.ok()) return room;
     PendingFile pending(path);
+    if (!pending.status().ok()) return pending.status();
     std::unique_ptr<std::FILE, Close> file(std::fopen(pending.temporary_path().c_str(), "wb"));
     int reason = file ? 0 : errno;
     const auto write = [&](const char* bytes, std::size_t count) {

@@ -2,6 +2,7 @@
 
 #include <csignal>
 #include <cstring>
+#include <filesystem>
 #include <fstream>
 
 #include <fmt/format.h>
@@ -50,6 +51,11 @@ std::string failure(const PovrayJob& job, const PovrayLog& log, const ProcessRes
     if (process.interrupted) return "interrupted";
     if (process.signal == SIGKILL)
         return "POV-Ray was killed; it may have run out of memory (a smaller --memory makes a smaller scene)";
+    if (process.signal == SIGXCPU)
+        return fmt::format("POV-Ray was stopped: it took more than {} seconds of processor time",
+                           job.cpu_seconds);
+    if (process.signal == SIGXFSZ)
+        return "POV-Ray was stopped: it wrote a file larger than any picture of this size";
     if (process.signal) return fmt::format("POV-Ray crashed: {}", ::strsignal(process.signal));
     if (process.exit_code != 0)
         return fmt::format("POV-Ray failed with status {}:{}", process.exit_code, complaints(job, log));
@@ -63,6 +69,31 @@ std::string failure(const PovrayJob& job, const PovrayLog& log, const ProcessRes
         return fmt::format("POV-Ray found {} objects in a scene of {}: the picture is wrong",
                            *log.finite_objects, *job.finite_objects);
     return {};
+}
+
+/// POV-Ray's own folders: include files, fonts, and what the machine allows it.
+std::vector<std::string> povray_folders(const std::string& program) {
+    std::vector<std::string> folders = {"/etc/povray", "/usr/share/povray", "/usr/local/share/povray"};
+    const std::string prefix = std::filesystem::path(program).parent_path().parent_path().string();
+    for (const std::string version : {"", "-3.7", "-3.8"})
+        for (const std::string& share : {std::string("/usr"), std::string("/usr/local"), prefix})
+            folders.push_back(share + "/share/povray" + version);
+    folders.push_back(prefix + "/etc/povray");
+    folders.push_back(prefix + "/lib");
+    return folders;
+}
+
+Confinement confinement_of(const PovrayJob& job) {
+    constexpr std::uint64_t file_slack = 64u << 20,
+                            bytes_a_pixel = 64; // a picture, and the state while it is made
+    Confinement confinement;
+    confinement.memory_bytes = job.memory_bytes;
+    confinement.cpu_seconds = job.cpu_seconds;
+    confinement.file_bytes = file_slack + bytes_a_pixel * static_cast<std::uint64_t>(job.width) *
+                                              static_cast<std::uint64_t>(job.height);
+    confinement.readable = povray_folders(find_program(job.program).value_or(job.program));
+    confinement.writable = {job.directory};
+    return confinement;
 }
 
 } // namespace
@@ -111,6 +142,13 @@ PovrayResult run_povray(const PovrayJob& job) {
     options.arguments.insert(options.arguments.begin(), job.program);
     options.directory = job.directory;
     options.environment = {{"POVINI", settings_file}};
+    if (!job.unconfined) {
+        const std::string own = std::filesystem::absolute(job.directory).string();
+        options.environment.insert(options.environment.end(),
+                                   {{"HOME", own}, {"TMPDIR", own}, {"LC_ALL", "C"}});
+        options.clean_environment = true;
+        options.confinement = confinement_of(job);
+    }
     options.on_error_text = [&](std::string_view text) { reader.feed(text); };
     result.process = run_process(options);
     reader.finish();

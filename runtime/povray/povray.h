@@ -21,6 +21,11 @@ struct PovrayJob {
     int threads = 0;              ///< 0: as many as POV-Ray likes
     std::optional<int> antialias; ///< N: adaptive, up to 2^N x 2^N samples a pixel, N in 1..9; nothing: off
     bool linear16 = false;        ///< 16-bit PNG of linear values; else 8-bit sRGB
+    std::uint64_t memory_bytes = 0; ///< that it may take; 0: no limit
+    std::uint64_t cpu_seconds = 0;  ///< of all its threads; 0: no limit
+    /// May read and write what we may, with our environment and without limits: for programs that start
+    /// POV-Ray somewhere else.
+    bool unconfined = false;
     std::optional<std::uint64_t> finite_objects; ///< that POV-Ray must find; nothing: not checked
     std::function<void(const PovrayProgress&)> on_progress;
 };
@@ -39,7 +44,8 @@ Status povray_available(const std::string& program = "povray");
 
 /// Runs POV-Ray. Success means: exit status 0, the picture is there, "POV-Ray finished" was printed, and no
 /// warning that makes the picture wrong. A picture that is no success is removed. No settings of the user's
-/// POV-Ray are read. Requires that scene and picture are plain file names.
+/// POV-Ray are read. It reads and writes in the job's directory, and reads its own include files, where the
+/// kernel can keep it to them (confinement.h). Requires that scene and picture are plain file names.
 PovrayResult run_povray(const PovrayJob& job);
 
 /// The nearest comment `// object TEXT` at or before a line of an SDL file: TEXT, or "" if there is none.

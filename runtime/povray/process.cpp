@@ -46,7 +46,7 @@ class ExecTables {
   public:
     explicit ExecTables(const ProcessOptions& options) {
         for (char** entry = environ; *entry; ++entry)
-            if (!is_replaced(*entry, options)) variables_.emplace_back(*entry);
+            if (is_passed_on(*entry, options)) variables_.emplace_back(*entry);
         for (const auto& [name, value] : options.environment)
             variables_.push_back(name + "=" + value);
         for (const std::string& argument : options.arguments)
@@ -60,10 +60,11 @@ class ExecTables {
     char* const* envp() const { return envp_.data(); }
 
   private:
-    static bool is_replaced(std::string_view entry, const ProcessOptions& options) {
+    static bool is_passed_on(std::string_view entry, const ProcessOptions& options) {
+        const std::string_view own = entry.substr(0, entry.find('='));
         for (const auto& [name, value] : options.environment)
-            if (entry.substr(0, entry.find('=')) == name) return true;
-        return false;
+            if (own == name) return false;
+        return !options.clean_environment || own == "PATH" || own == "LD_LIBRARY_PATH";
     }
 
     std::vector<std::string> variables_;
@@ -73,7 +74,8 @@ class ExecTables {
 
 /// The child's side of fork. Its failure reaches the parent as errno through `report`, which closes on exec.
 [[noreturn]] void become_program(const char* program, const ProcessOptions& options, const ExecTables& tables,
-                                 int null_device, int error_text, int report, pid_t parent) {
+                                 const PreparedConfinement* confinement, int null_device, int error_text,
+                                 int report, pid_t parent) {
     // A group of its own: Ctrl-C at the terminal reaches us alone, and we pass it on once.
     ::setpgid(0, 0);
     ::prctl(PR_SET_PDEATHSIG, SIGKILL);
@@ -84,6 +86,7 @@ class ExecTables {
     ready = ready && (options.directory.empty() || ::chdir(options.directory.c_str()) == 0);
     ready = ready && ::dup2(null_device, STDIN_FILENO) >= 0 && ::dup2(null_device, STDOUT_FILENO) >= 0 &&
             ::dup2(error_text, STDERR_FILENO) >= 0;
+    ready = ready && (!confinement || confinement->apply());
     if (ready) ::execve(program, tables.argv(), tables.envp());
     const int reason = errno;
     if (::write(report, &reason, sizeof reason) < 0) ::_exit(126);
@@ -132,10 +135,11 @@ class Watch {
             heed_interruption();
             note_memory();
             if (ready > 0 && watched[0].revents) pass_text();
-            if (waiting_for_text) continue;
-            const pid_t ended = ::wait4(child_, &wait_status, WNOHANG, &usage);
-            if (ended < 0 && errno != EINTR) return false;
-            if (ended == child_) return true;
+            siginfo_t ended = {};
+            if (::waitid(P_PID, static_cast<id_t>(child_), &ended, WEXITED | WNOHANG | WNOWAIT) != 0 &&
+                errno != EINTR)
+                return false;
+            if (ended.si_pid == child_) return take_leave(wait_status, usage);
         }
     }
     int interrupted() const { return interrupted_; }
@@ -143,6 +147,20 @@ class Watch {
     std::uint64_t peak_bytes() const { return peak_bytes_; }
 
   private:
+    /// What the child has started goes with it: it must not outlive us, nor keep us waiting by holding
+    /// standard error. The group is the child's own until it is waited for.
+    bool take_leave(int& wait_status, rusage& usage) {
+        ::kill(-child_, SIGKILL);
+        pollfd text = {text_, POLLIN, 0};
+        constexpr int most_pieces = 1 << 10; // what a pipe may still hold, many times over
+        for (int i = 0; i < most_pieces && text_ >= 0 && ::poll(&text, 1, 0) > 0; ++i)
+            pass_text();
+        pid_t ended = 0;
+        while ((ended = ::wait4(child_, &wait_status, 0, &usage)) < 0 && errno == EINTR) {
+        }
+        return ended == child_;
+    }
+
     void heed_interruption() {
         if (!interrupted_ && Interruption::wake_descriptor() >= 0 && Interruption::signal()) {
             interrupted_ = Interruption::signal();
@@ -231,14 +249,16 @@ ProcessResult run_process(const ProcessOptions& options) {
     if (null_device.get() < 0 || !open_pipe(text_in, text_out) || !open_pipe(report_in, report_out))
         return fail(system_failure("open a pipe"));
     const ExecTables tables(options);
+    std::optional<PreparedConfinement> confinement;
+    if (options.confinement) confinement.emplace(*options.confinement, *program);
     const std::uint64_t own_bytes = memory_of("self", "VmRSS:");
     const Clock::time_point start = Clock::now();
     const pid_t parent = ::getpid();
     const pid_t child = ::fork();
     if (child < 0) return fail(system_failure("start '" + name + "'"));
     if (child == 0)
-        become_program(program->c_str(), options, tables, null_device.get(), text_out.get(), report_out.get(),
-                       parent);
+        become_program(program->c_str(), options, tables, confinement ? &*confinement : nullptr,
+                       null_device.get(), text_out.get(), report_out.get(), parent);
     text_out.reset();
     report_out.reset();
 

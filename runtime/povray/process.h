@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "compiler/support/status.h"
+#include "runtime/povray/confinement.h"
 
 namespace graftal {
 
@@ -16,6 +17,9 @@ struct ProcessOptions {
     std::vector<std::string> arguments; ///< [0] is the program: a path, or a name that find_program knows
     std::string directory;              ///< where it runs; empty: here
     std::vector<std::pair<std::string, std::string>> environment; ///< set on top of ours
+    /// Of our own environment the child sees only what programs need to be found: PATH and LD_LIBRARY_PATH.
+    bool clean_environment = false;
+    std::optional<Confinement> confinement; ///< nothing: as free as we are
     /// Receives standard error as it comes. Standard input and output of the child are /dev/null.
     std::function<void(std::string_view)> on_error_text;
     /// From the first interruption (interruption.h) to SIGKILL.

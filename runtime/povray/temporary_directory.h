@@ -1,12 +1,14 @@
 #pragma once
 
+#include <cstdio>
 #include <string>
 
 #include "compiler/support/status.h"
 
 namespace graftal {
 
-/// A fresh directory under TMPDIR (or /tmp), removed with all that is in it at the end.
+/// A fresh directory under TMPDIR (or /tmp), removed with all that is in it at the end. It is locked (flock)
+/// while this lives: those that killed runs have left are not, and create() removes them.
 class TemporaryDirectory {
   public:
     TemporaryDirectory() = default;
@@ -19,6 +21,10 @@ class TemporaryDirectory {
 
   private:
     std::string path_;
+    int lock_ = -1;
 };
+
+/// A file there that has no name and goes when it is closed; null with errno.
+std::FILE* open_temporary_file();
 
 } // namespace graftal

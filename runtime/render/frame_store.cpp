@@ -6,6 +6,7 @@
 #include <optional>
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include "compiler/support/file.h"
 #include "runtime/image/image.h"
@@ -46,8 +47,18 @@ Status FrameStore::create() {
     made_ = fs::create_directories(directory_, error);
     if (!error && !fs::is_directory(directory_, error))
         error = std::make_error_code(std::errc::not_a_directory);
-    if (!error) return {};
-    return Status::failure(fmt::format("cannot make the directory '{}': {}", directory_, error.message()));
+    if (error)
+        return Status::failure(
+            fmt::format("cannot make the directory '{}': {}", directory_, error.message()));
+    lock_ = lock_path(fs::canonical(directory_, error).string());
+    // The run that had the lock may have removed it just now.
+    if (lock_ >= 0 && fs::exists(directory_, error)) return {};
+    return Status::failure(
+        fmt::format("another run of graftal is at work on the frames in '{}'", directory_));
+}
+
+FrameStore::~FrameStore() {
+    if (lock_ >= 0) ::close(lock_);
 }
 
 std::string FrameStore::name(std::size_t frame) const {
@@ -95,7 +106,7 @@ void FrameStore::remove() const {
 
 void FrameStore::discard_if_empty() const {
     std::error_code ignored;
-    if (made_) fs::remove(directory_, ignored);
+    if (made_ && lock_ >= 0) fs::remove(directory_, ignored);
 }
 
 std::size_t FrameStore::strangers() const {

@@ -15,8 +15,11 @@ namespace graftal {
 class FrameStore {
   public:
     FrameStore(std::string directory, std::size_t count);
+    ~FrameStore();
+    FrameStore(const FrameStore&) = delete;
+    FrameStore& operator=(const FrameStore&) = delete;
 
-    /// Makes the directory if it is missing.
+    /// Makes the directory if it is missing, and locks it (flock): fails where another run is at work in it.
     Status create();
 
     const std::string& directory() const { return directory_; }
@@ -47,6 +50,7 @@ class FrameStore {
     std::size_t count_;
     int digits_;
     bool made_ = false; ///< the directory, by us
+    int lock_ = -1;
 };
 
 /// 64 bits of what has been added, as hexadecimal digits: FNV-1a, lengths included.

@@ -52,6 +52,9 @@ Status finish_picture(const PovrayJob& job, const RenderOptions& options) {
     std::filesystem::remove(raw, ignored);
     if (!status.ok()) return status;
     if (Interruption::signal()) return Status::failure("interrupted");
+    if (image.width != job.width || image.height != job.height)
+        return Status::failure(fmt::format("POV-Ray made a picture of {} x {} pixels, not {} x {}",
+                                           image.width, image.height, job.width, job.height));
     return write_image(options.output, image, options.format, options.metadata);
 }
 
@@ -77,6 +80,9 @@ PovrayJob job_for(const RenderOptions& options) {
     job.antialias = options.antialias;
     job.linear16 = options.format == SampleFormat::linear16 || is_exr_name(options.output);
     job.on_progress = options.on_progress;
+    job.unconfined = options.unconfined;
+    // What POV-Ray takes is estimated before; the limit is for what goes wrong.
+    job.memory_bytes = 2 * options.compile.cut.memory_bytes + (1ull << 30);
     return job;
 }
 
@@ -135,7 +141,9 @@ std::optional<RenderReport> draw_model(CompiledModel compiled, const RenderOptio
     model.reset(); // POV-Ray may need the memory
     return_free_memory();
 
-    if (options.on_start) options.on_start(expected_seconds(job));
+    const double seconds = expected_seconds(job);
+    if (options.on_start) options.on_start(seconds);
+    job.cpu_seconds = static_cast<std::uint64_t>(600 + 50 * seconds); // far more than any picture has taken
     const auto trace = [&] {
         const PovrayResult result = run_povray(job);
         report.peak_bytes = result.process.peak_bytes;

@@ -20,6 +20,7 @@ struct RenderOptions {
     SampleFormat format = SampleFormat::srgb8; ///< of a PNG; an EXR is linear anyhow
     std::optional<int> antialias = 2;          ///< as PovrayJob has it
     int threads = 0;                           ///< 0: as many as POV-Ray likes
+    bool unconfined = false;                   ///< PovrayJob::unconfined
     std::string keep;                          ///< a directory for the scene, to stay; empty: a temporary one
     std::function<void(const PovrayProgress&)> on_progress;
     /// Called before POV-Ray starts, with the seconds of one processor that it will take: within a factor of

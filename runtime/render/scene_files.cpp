@@ -3,6 +3,7 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
+#include <deque>
 #include <filesystem>
 #include <functional>
 #include <future>
@@ -16,6 +17,7 @@
 #include "runtime/image/image.h"
 #include "runtime/image/texture.h"
 #include "runtime/povray/interruption.h"
+#include "runtime/povray/temporary_directory.h"
 
 namespace graftal {
 
@@ -30,19 +32,38 @@ Status write_failure(const std::string& path, int reason) {
     return Status::failure(fmt::format("cannot write '{}': {}", path, std::strerror(reason)));
 }
 
-Status write_palettes(const std::filesystem::path& folder, const std::vector<PaletteImage>& palettes) {
-    Status status;
-    for (const PaletteImage& palette : palettes) {
-        if (!status.ok()) break;
-        const std::string path = (folder / palette.file_name).string();
-        if (palette.texture.empty()) {
-            status = write_palette(path, palette.width, palette.height, palette.pixels);
-        } else if (const auto texture = load_texture(palette.texture, status)) {
-            status = write_texture(path, *texture);
+/// The palettes of a scene, which appear with it or not at all.
+class PendingPalettes {
+  public:
+    Status write(const std::filesystem::path& folder, const std::vector<PaletteImage>& palettes) {
+        for (const PaletteImage& palette : palettes) {
+            if (Interruption::signal()) return Status::failure("interrupted");
+            const Status status = write(folder, palette);
+            if (!status.ok()) return status;
         }
+        return {};
     }
-    return status;
-}
+
+    Status commit() {
+        Status status;
+        for (PendingFile& file : files_)
+            if (status.ok()) status = file.commit();
+        return status;
+    }
+
+  private:
+    Status write(const std::filesystem::path& folder, const PaletteImage& palette) {
+        const PendingFile& file = files_.emplace_back((folder / palette.file_name).string());
+        if (!file.status().ok()) return file.status();
+        if (palette.texture.empty())
+            return write_palette(file, palette.width, palette.height, palette.pixels);
+        Status status;
+        const std::shared_ptr<const Texture> texture = load_texture(palette.texture, status);
+        return texture ? write_texture(file, *texture) : status;
+    }
+
+    std::deque<PendingFile> files_;
+};
 
 /// Emits to an open file. `name` is the file's, for messages; `on_text` is called before each piece is
 /// written.
@@ -89,27 +110,31 @@ Status write_scene(const CompiledModel& model, const std::string& path, bool inc
                                 .progress = progress,
                                 .identifier = identifier};
     PendingFile pending(path);
+    if (!pending.status().ok()) return pending.status();
     const OpenFile file(std::fopen(pending.temporary_path().c_str(), "wb"));
     if (!file) return write_failure(path, errno);
     const std::filesystem::path folder = std::filesystem::path(path).parent_path();
     std::vector<PaletteImage> palettes;
+    PendingPalettes pending_palettes;
     std::future<Status> written; // meanwhile
     const auto on_text = [&] {
         if (written.valid() || palettes.empty()) return;
-        written = std::async(std::launch::async | std::launch::deferred, write_palettes, std::cref(folder),
-                             std::cref(palettes));
+        written = std::async(std::launch::async | std::launch::deferred,
+                             [&] { return pending_palettes.write(folder, palettes); });
     };
     Status status = emit_to(file.get(), path, model, options, palettes, on_text);
     if (written.valid()) {
         const Status palettes_status = written.get();
         if (status.ok()) status = palettes_status;
     }
+    if (status.ok() && Interruption::signal()) status = Status::failure("interrupted");
+    if (status.ok()) status = pending_palettes.commit();
     return status.ok() ? pending.commit() : status;
 }
 
 Status print_scene(const CompiledModel& model, bool include) {
     // By way of a file, since only the end of the text tells whether palettes are needed.
-    const OpenFile file(std::tmpfile());
+    const OpenFile file(open_temporary_file());
     if (!file) return write_failure("a temporary file", errno);
     std::vector<PaletteImage> palettes;
     const Status status = emit_to(file.get(), "a temporary file", model,
@@ -124,9 +149,11 @@ Status print_scene(const CompiledModel& model, bool include) {
 }
 
 Status check_writable(const std::string& path) {
-    const std::filesystem::path folder = std::filesystem::path(path).parent_path();
+    std::string target;
+    if (Status status = output_target(path, target); !status.ok()) return status;
+    const std::filesystem::path folder = std::filesystem::path(target).parent_path();
     std::error_code error;
-    if (std::filesystem::is_directory(path, error)) return write_failure(path, EISDIR);
+    if (std::filesystem::is_directory(target, error)) return write_failure(path, EISDIR);
     const std::string place = folder.empty() ? "." : folder.string();
     if (::access(place.c_str(), W_OK | X_OK) != 0) return write_failure(path, errno);
     return {};

@@ -50,6 +50,7 @@ Status video_available() {
 
 Status write_video(const std::string& path, const FrameStore& frames, FrameRate rate) {
     PendingFile pending(path);
+    if (!pending.status().ok()) return pending.status();
     std::string messages;
     ProcessOptions options;
     options.arguments = arguments(frames, rate, std::filesystem::absolute(pending.temporary_path()).string());

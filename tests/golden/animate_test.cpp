@@ -50,17 +50,18 @@ class Animate : public CommandLine {
                                         path("bin/calls"), nth, instead));
         shell("chmod +x bin/povray; rm -f bin/calls");
     }
-    /// A POV-Ray that takes no time and always draws the same, for what is not about pictures.
+    /// A POV-Ray that takes no time and always draws the same 48 x 36 pixels, for what is not about pictures.
     void write_quick_povray() const {
         std::filesystem::create_directory(path("bin"));
-        ASSERT_TRUE(
-            write_image(path("bin/still.png"), Image{1, 2, 3, {0, 1, 1, 0, 1, 1}}, SampleFormat::srgb8).ok());
+        ASSERT_TRUE(write_image(path("bin/still.png"),
+                                Image{48, 36, 3, std::vector<float>(3 * 48 * 36, 0.5f)}, SampleFormat::srgb8)
+                        .ok());
         write("bin/povray",
               "#!/bin/sh\ncp '" + path("bin/still.png") + "' picture.png\necho 'POV-Ray finished' >&2\n");
         shell("chmod +x bin/povray");
     }
     RunResult with_povray(const std::string& arguments) const {
-        return shell("PATH=\"$PWD/bin:$PATH\" \"$graftal\" animate " + arguments);
+        return shell("PATH=\"$PWD/bin:$PATH\" \"$graftal\" animate --unconfined " + arguments);
     }
     /// The two animations agree frame by frame.
     void expect_same_frames(const std::string& a, const std::string& b, int frames) const {

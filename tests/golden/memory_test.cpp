@@ -39,7 +39,7 @@ TEST_F(Memory, OfOtherProgramsIsTheirs) {
     write("bin/povray", "#!/bin/sh\nulimit -d >limit.txt\nexit 1\n");
     shell("chmod +x bin/povray");
     const RunResult result =
-        shell("PATH=$PWD/bin:$PATH \"$graftal\" render ball.inst --size 8x8 --keep kept");
+        shell("PATH=$PWD/bin:$PATH \"$graftal\" render --unconfined ball.inst --size 8x8 --keep kept");
     EXPECT_EQ(result.status, 3) << result.err;
     EXPECT_EQ(shell("cat kept/limit.txt limit.txt").out, shell("ulimit -d").out);
 }

@@ -52,6 +52,7 @@ AnimateOptions animate_options(const Options& options) {
     animate.render.metadata = {"graftal " GRAFTAL_VERSION, options.description, {}};
     animate.render.antialias = options.antialias;
     animate.render.threads = options.threads;
+    animate.render.unconfined = options.unconfined;
     animate.engine = options.engine;
     animate.output = options.output;
     animate.frames = options.animation.frames;

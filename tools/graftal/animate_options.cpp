@@ -33,9 +33,9 @@ std::string complete_animation(Options& options) {
 }
 
 std::string frame_identity(const CLI::App& command, Engine engine) {
-    static const std::set<std::string> harmless = {"MODEL",         "--output",  "--fps",
-                                                   "--keep-frames", "--time",    "--quiet",
-                                                   "--dump-after",  "--threads", "--engine"};
+    static const std::set<std::string> harmless = {"MODEL",    "--output", "--fps",        "--keep-frames",
+                                                   "--time",   "--quiet",  "--dump-after", "--threads",
+                                                   "--engine", "--root",   "--unconfined"};
     std::string text = "graftal " GRAFTAL_VERSION;
     if (engine == Engine::native) text += "\n--engine native"; // the other may be named or not
     for (const CLI::Option* option : command.get_options())

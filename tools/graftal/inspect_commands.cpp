@@ -48,6 +48,7 @@ Status write_svg(const std::string& dot, const std::string& output) {
     if (!status.ok()) return status;
 
     PendingFile pending(output);
+    if (!pending.status().ok()) return pending.status();
     std::string messages;
     ProcessOptions options;
     options.arguments = {"dot", "-Tsvg", "-o", pending.temporary_path(), source};

@@ -53,6 +53,7 @@ struct Options {
     SampleFormat format = SampleFormat::srgb8;
     std::optional<int> antialias = 2;
     std::string keep;
+    bool unconfined = false; ///< POV-Ray
     std::string identifier; ///< of `compile` to an .inc; "": as the model's file
     AnimationOptions animation;
     PointsSettings points;

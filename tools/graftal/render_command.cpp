@@ -39,6 +39,7 @@ RenderOptions render_options(const Options& options) {
     render.antialias = options.antialias;
     render.threads = options.threads;
     render.keep = options.keep;
+    render.unconfined = options.unconfined;
     return render;
 }
 

@@ -1,6 +1,7 @@
 #include "tools/graftal/shared_options.h"
 
 #include <algorithm>
+#include <filesystem>
 #include <functional>
 #include <vector>
 
@@ -91,6 +92,16 @@ void add_common(CLI::App& app, Options& options) {
         app, options, "--seed", "N", "Seed of random models", "a whole number",
         [](const std::string& text) { return parse_whole(text, 0, UINT64_MAX); }, parse_seed_sweep,
         [&](std::uint64_t seed) { compile.lower.seed = seed; });
+    add_value(
+        app, "--root", "FOLDER",
+        "Read models, and the models and pictures that they name, in this folder only, wherever symbolic "
+        "links lead",
+        "a folder",
+        [](const std::string& text) {
+            std::error_code error;
+            return std::filesystem::is_directory(text, error) ? std::optional(text) : std::nullopt;
+        },
+        [&](const std::string& root) { compile.lower.root = root; });
     app.add_flag("--exact", compile.lower.exact,
                  "Derive L-systems module by module, so that a random one is one honest sample");
     add_value(app, "--memory", "BYTES",
@@ -192,6 +203,9 @@ void add_drawing(CLI::App& app, Options& options) {
            "--engine", engine, "What draws: povray, or graftal's own ray tracer, native (default povray)")
         ->type_name("povray|native")
         ->take_last();
+    app.add_flag("--unconfined", options.unconfined,
+                 "Let POV-Ray read and write all that you can, with your environment and without limits: for "
+                 "programs that start it somewhere else");
     const auto antialias = [&options](const std::string& text) {
         const auto depth = parse_whole(text, 1, 9);
         if (!depth && text != "off")

@@ -29,6 +29,13 @@ class ImageFiles : public testing::Test {
     TemporaryDirectory directory_;
 };
 
+/// Writes and commits.
+template<typename... Arguments> Status save_palette(const std::string& path, const Arguments&... arguments) {
+    PendingFile pending(path);
+    const Status status = write_palette(pending, arguments...);
+    return status.ok() ? pending.commit() : status;
+}
+
 /// width x 1 RGB ramp of k / largest.
 Image ramp(int width, int largest) {
     Image image{width, 1, 3, {}};
@@ -88,7 +95,7 @@ TEST_F(ImageFiles, PngSaysWhoMadeItAndHowItIsEncoded) {
 }
 
 TEST_F(ImageFiles, PaletteHoldsLinearValuesRounded) {
-    ASSERT_TRUE(write_palette(path("p.png"), 2, 1, std::vector{Rgb(0.5, 1.0 / 3, 0), Rgb(1, 2, -1)}).ok());
+    ASSERT_TRUE(save_palette(path("p.png"), 2, 1, std::vector{Rgb(0.5, 1.0 / 3, 0), Rgb(1, 2, -1)}).ok());
     Image back;
     ASSERT_TRUE(read_image(path("p.png"), back).ok());
     const auto level = [](double k) { return static_cast<float>(k / 65535); };
@@ -96,7 +103,7 @@ TEST_F(ImageFiles, PaletteHoldsLinearValuesRounded) {
 }
 
 TEST_F(ImageFiles, PaletteThatEndsEarlyIsFilledWithItsLastColour) {
-    ASSERT_TRUE(write_palette(path("p.png"), 2, 2, std::vector{Rgb(0), Rgb(1)}).ok());
+    ASSERT_TRUE(save_palette(path("p.png"), 2, 2, std::vector{Rgb(0), Rgb(1)}).ok());
     Image back;
     ASSERT_TRUE(read_image(path("p.png"), back).ok());
     EXPECT_EQ(back.height, 2);
@@ -104,7 +111,7 @@ TEST_F(ImageFiles, PaletteThatEndsEarlyIsFilledWithItsLastColour) {
 }
 
 TEST_F(ImageFiles, PaletteThatCannotBeWrittenIsAFailure) {
-    EXPECT_THAT(write_palette(path("none/p.png"), 1, 1, std::vector{Rgb(0)}).message(),
+    EXPECT_THAT(save_palette(path("none/p.png"), 1, 1, std::vector{Rgb(0)}).message(),
                 testing::HasSubstr("none/p.png"));
 }
 

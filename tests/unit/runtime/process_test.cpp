@@ -4,6 +4,7 @@
 #include <csignal>
 #include <cstdlib>
 #include <filesystem>
+#include <fstream>
 #include <thread>
 #include <vector>
 
@@ -47,6 +48,13 @@ Outcome interrupt_shell(const std::string& script, int number, double grace_seco
     return outcome;
 }
 
+/// Not even as what nobody has waited for.
+bool runs(pid_t process) {
+    std::ifstream file("/proc/" + std::to_string(process) + "/stat");
+    std::string number, name, state;
+    return (file >> number >> name >> state) && state != "Z" && state != "X";
+}
+
 TEST(Process, ReportsTheExitStatusAndStandardError) {
     const Outcome outcome = shell("printf 'one\\rtwo\\n' >&2; echo lost; exit 7");
     EXPECT_TRUE(outcome.result.status.ok());
@@ -69,6 +77,21 @@ TEST(Process, EnvironmentReachesTheChildUnchanged) {
 
 TEST(Process, StandardInputIsEmpty) {
     EXPECT_EQ(shell("cat >&2; echo end >&2").text, "end\n");
+}
+
+TEST(Process, WhatTheChildStartedGoesWithIt) {
+    // It holds standard error, and was waited for.
+    const Outcome outcome = shell("sleep 1000 & echo $! >&2; exit 5");
+    EXPECT_EQ(outcome.result.exit_code, 5);
+    const pid_t grandchild = std::stoi(outcome.text);
+    for (int i = 0; i < 400 && runs(grandchild); ++i)
+        std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    EXPECT_FALSE(runs(grandchild));
+    EXPECT_LT(outcome.result.wall_seconds, 500);
+}
+
+TEST(Process, WhatWasSaidLastIsRead) {
+    EXPECT_EQ(shell("sleep 1000 & head -c 60000 /dev/zero | tr '\\0' x >&2").text, std::string(60000, 'x'));
 }
 
 TEST(Process, RunsInItsDirectory) {
@@ -165,21 +188,41 @@ TEST(Interruptions, ANewOneForgetsTheLast) {
 }
 
 TEST(TemporaryDirectories, HonourTmpdirAndDisappear) {
-    TemporaryDirectory outer;
-    ASSERT_TRUE(outer.create().ok());
+    TemporaryDirectory around; // locked itself
+    ASSERT_TRUE(around.create().ok());
+    const std::string outer = around.path() + "/tmp";
+    std::filesystem::create_directory(outer);
     const char* old = std::getenv("TMPDIR");
     const std::string saved = old ? old : "";
-    ::setenv("TMPDIR", outer.path().c_str(), 1);
+    ::setenv("TMPDIR", outer.c_str(), 1);
     std::string inner_path;
     {
         TemporaryDirectory inner;
         ASSERT_TRUE(inner.create().ok());
         inner_path = inner.path();
-        EXPECT_EQ(inner_path.find(outer.path()), 0u);
+        EXPECT_EQ(inner_path.find(outer), 0u);
         std::filesystem::create_directories(inner_path + "/a/b");
     }
     EXPECT_FALSE(std::filesystem::exists(inner_path));
-    ::setenv("TMPDIR", (outer.path() + "/none").c_str(), 1);
+    std::filesystem::create_directories(outer + "/graftal-AAAAAA/left");
+    std::filesystem::create_directories(outer + "/graftal-of-mine");
+    {
+        TemporaryDirectory at_work, next;
+        ASSERT_TRUE(at_work.create().ok());
+        ASSERT_TRUE(next.create().ok());
+        EXPECT_TRUE(std::filesystem::exists(at_work.path()));
+        EXPECT_FALSE(std::filesystem::exists(outer + "/graftal-AAAAAA")) << "left by a killed run";
+        EXPECT_TRUE(std::filesystem::exists(outer + "/graftal-of-mine"));
+        std::FILE* file = open_temporary_file();
+        ASSERT_TRUE(file);
+        EXPECT_EQ(std::filesystem::read_symlink("/proc/self/fd/" + std::to_string(::fileno(file)))
+                      .string()
+                      .find(outer),
+                  0u);
+        std::fclose(file);
+    }
+    ::setenv("TMPDIR", (outer + "/none").c_str(), 1);
+    EXPECT_FALSE(open_temporary_file());
     TemporaryDirectory impossible;
     EXPECT_FALSE(impossible.create().ok());
     if (old)

@@ -19,6 +19,13 @@ class TextureFiles : public testing::Test {
     TemporaryDirectory directory_;
 };
 
+/// Writes and commits.
+template<typename... Arguments> Status save_texture(const std::string& path, const Arguments&... arguments) {
+    PendingFile pending(path);
+    const Status status = write_texture(pending, arguments...);
+    return status.ok() ? pending.commit() : status;
+}
+
 /// Two by two, the texel at the top right clear.
 Image picture() {
     return {2, 2, 4, {1, 0, 0, 1, /**/ 1, 1, 1, 0.4f, /**/ 0, 1, 0, 0.6f, /**/ 0, 0, 1, 1}};
@@ -47,7 +54,7 @@ TEST_F(TextureFiles, AreWrittenSoThatTheyReadTheSame) {
     Status status;
     const auto texture = load_texture(path("b.png"), status);
     ASSERT_TRUE(texture);
-    ASSERT_TRUE(write_texture(path("c.png"), *texture).ok());
+    ASSERT_TRUE(save_texture(path("c.png"), *texture).ok());
     const auto again = load_texture(path("c.png"), status);
     ASSERT_TRUE(again);
     for (std::size_t i = 0; i < 4; ++i) {

@@ -1,5 +1,6 @@
 #include "compiler/support/file.h"
 
+#include <csignal>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -7,6 +8,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -122,12 +124,63 @@ TEST_F(Files, WhereNothingCanBeWrittenSaysSo) {
 }
 
 TEST_F(Files, AFullDiskIsAFailure) {
-    // The device that is always full; a link keeps the temporary, made beside it, out of /dev.
-    std::ofstream full("/dev/full");
-    if (!full) GTEST_SKIP() << "no /dev/full here";
-    fs::create_symlink("/dev/full", path("full"));
-    EXPECT_TRUE(write_text(path("full"), "text").ok()) << "the link is replaced, not followed";
-    EXPECT_EQ(contents(path("full")), "text");
+    // SIGXFSZ is ignored by main().
+    const auto before = std::signal(SIGXFSZ, SIG_IGN);
+    rlimit limit = {};
+    ASSERT_EQ(::getrlimit(RLIMIT_FSIZE, &limit), 0);
+    const rlimit small = {1000, limit.rlim_max};
+    ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &small), 0);
+    const Status status = write_text(path("full"), std::string(2000, 'x'));
+    ::setrlimit(RLIMIT_FSIZE, &limit);
+    std::signal(SIGXFSZ, before);
+    EXPECT_EQ(status.message(), "cannot write '" + path("full") + "': File too large");
+    EXPECT_EQ(file_count(), 0u);
+}
+
+TEST_F(Files, ALinkStaysAndItsTargetIsReplacedWhole) {
+    fs::create_directory(path("far"));
+    ASSERT_TRUE(write_text(path("far/real.txt"), "old").ok());
+    fs::create_symlink("far/real.txt", path("near.txt"));
+    fs::create_symlink("near.txt", path("link"));
+    ASSERT_TRUE(write_text(path("link"), "new").ok());
+    EXPECT_TRUE(fs::is_symlink(path("link")));
+    EXPECT_TRUE(fs::is_symlink(path("near.txt")));
+    EXPECT_EQ(contents(path("far/real.txt")), "new");
+    fs::create_symlink("far/none_yet.txt", path("dangling"));
+    ASSERT_TRUE(write_text(path("dangling"), "born").ok());
+    EXPECT_EQ(contents(path("far/none_yet.txt")), "born");
+    fs::create_symlink("ring", path("ring"));
+    EXPECT_THAT(write_text(path("ring"), "x").message(), HasSubstr("cannot write '" + path("ring") + "'"));
+    EXPECT_TRUE(fs::is_symlink(path("ring")));
+}
+
+TEST_F(Files, PipesAndDevicesAreNotReplaced) {
+    ASSERT_EQ(::mkfifo(path("pipe").c_str(), 0600), 0);
+    fs::create_symlink("/dev/null", path("null.png"));
+    for (const std::string name : {"pipe", "null.png"}) {
+        const PendingFile pending(path(name));
+        EXPECT_THAT(pending.status().message(),
+                    HasSubstr("cannot write '" + path(name) + "': it is not a regular file"));
+        EXPECT_FALSE(write_text(path(name), "text").ok());
+    }
+    EXPECT_TRUE(fs::is_fifo(path("pipe")));
+    EXPECT_TRUE(fs::is_character_file("/dev/null"));
+    EXPECT_EQ(file_count(), 2u);
+}
+
+TEST_F(Files, WhatAKilledRunLeftIsSweptByTheNext) {
+    for (const std::string name :
+         {".a.1.2.pov", ".a.77.1.pov", ".a.1.pov", ".a.1.x.pov", ".b.1.2.pov", ".a.1.2.inc"})
+        std::ofstream(path(name)) << "half";
+    const PendingFile at_work(path("a.pov"));
+    std::ofstream(at_work.temporary_path()) << "more than half";
+    ASSERT_TRUE(write_text(path("a.pov"), "whole").ok());
+    std::vector<std::string> names;
+    for (const auto& entry : fs::directory_iterator(folder_))
+        names.push_back(entry.path().filename().string());
+    EXPECT_THAT(names,
+                ::testing::UnorderedElementsAre("a.pov", ".a.1.pov", ".a.1.x.pov", ".b.1.2.pov", ".a.1.2.inc",
+                                                fs::path(at_work.temporary_path()).filename().string()));
 }
 
 } // namespace

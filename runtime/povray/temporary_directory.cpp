@@ -20,6 +20,8 @@ namespace {
 
 constexpr std::string_view prefix = "graftal-";
 constexpr std::string_view unique = "XXXXXX";
+/// Holds the files of each. What merely has such a name is somebody else's.
+constexpr std::string_view inner = "graftal-scratch";
 
 std::string parent_path() {
     const char* parent = std::getenv("TMPDIR");
@@ -53,12 +55,13 @@ class Nursery {
     bool held_ = false;
 };
 
-/// Ours by name and by owner.
+/// Ours by name, by owner and by what is in it.
 bool may_be_abandoned(const std::filesystem::directory_entry& entry) {
     const std::string name = entry.path().filename().string();
     struct stat info = {};
     return name.size() == prefix.size() + unique.size() && name.starts_with(prefix) &&
-           ::lstat(entry.path().c_str(), &info) == 0 && S_ISDIR(info.st_mode) && info.st_uid == ::geteuid();
+           ::lstat(entry.path().c_str(), &info) == 0 && S_ISDIR(info.st_mode) && info.st_uid == ::geteuid() &&
+           ::lstat((entry.path() / inner).c_str(), &info) == 0 && S_ISDIR(info.st_mode);
 }
 
 void remove_abandoned() {
@@ -79,7 +82,7 @@ void remove_abandoned() {
 
 TemporaryDirectory::~TemporaryDirectory() {
     std::error_code ignored;
-    if (!path_.empty()) std::filesystem::remove_all(path_, ignored);
+    if (!outer_.empty()) std::filesystem::remove_all(outer_, ignored);
     if (lock_ >= 0) ::close(lock_);
 }
 
@@ -90,8 +93,12 @@ Status TemporaryDirectory::create() {
     if (!::mkdtemp(path.data()))
         return Status::failure(
             fmt::format("cannot make a temporary directory '{}': {}", path, std::strerror(errno)));
-    path_ = path;
+    outer_ = path;
     lock_ = lock_path(path);
+    path_ = fmt::format("{}/{}", path, inner);
+    if (::mkdir(path_.c_str(), 0700) != 0)
+        return Status::failure(
+            fmt::format("cannot make a temporary directory '{}': {}", path_, std::strerror(errno)));
     return {};
 }
 

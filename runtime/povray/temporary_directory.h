@@ -20,7 +20,7 @@ class TemporaryDirectory {
     const std::string& path() const { return path_; }
 
   private:
-    std::string path_;
+    std::string outer_, path_;
     int lock_ = -1;
 };
 

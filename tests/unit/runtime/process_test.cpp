@@ -204,8 +204,9 @@ TEST(TemporaryDirectories, HonourTmpdirAndDisappear) {
         std::filesystem::create_directories(inner_path + "/a/b");
     }
     EXPECT_FALSE(std::filesystem::exists(inner_path));
-    std::filesystem::create_directories(outer + "/graftal-AAAAAA/left");
+    std::filesystem::create_directories(outer + "/graftal-AAAAAA/graftal-scratch/left");
     std::filesystem::create_directories(outer + "/graftal-of-mine");
+    std::filesystem::create_directories(outer + "/graftal-thesis/chapters"); // six letters, too
     {
         TemporaryDirectory at_work, next;
         ASSERT_TRUE(at_work.create().ok());
@@ -213,6 +214,7 @@ TEST(TemporaryDirectories, HonourTmpdirAndDisappear) {
         EXPECT_TRUE(std::filesystem::exists(at_work.path()));
         EXPECT_FALSE(std::filesystem::exists(outer + "/graftal-AAAAAA")) << "left by a killed run";
         EXPECT_TRUE(std::filesystem::exists(outer + "/graftal-of-mine"));
+        EXPECT_TRUE(std::filesystem::exists(outer + "/graftal-thesis/chapters")) << "somebody else's";
         std::FILE* file = open_temporary_file();
         ASSERT_TRUE(file);
         EXPECT_EQ(std::filesystem::read_symlink("/proc/self/fd/" + std::to_string(::fileno(file)))

@@ -33,11 +33,6 @@ double inner_radius(PrimitiveKind kind) {
     return small ? 0.5 : 1;
 }
 
-/// At least the square of the longest half axis.
-double squared_entries(const Mat3& m) {
-    return glm::dot(m[0], m[0]) + glm::dot(m[1], m[1]) + glm::dot(m[2], m[2]);
-}
-
 bool has_right_angles(const Mat3& m) {
     constexpr double rounding = 1e-12;
     for (int i = 0; i < 3; ++i) {
@@ -106,7 +101,7 @@ Affine widened(PrimitiveKind kind, const Affine& place, double radius) {
 
 Ball widened_ball(PrimitiveKind kind, const Affine& place, double radius) {
     const Ball& ball = ball_of(kind);
-    const double stretch = std::sqrt(squared_entries(place.linear));
+    const double stretch = most_stretch(place.linear);
     return {place(ball.centre), ball.radius * std::max(stretch, radius / inner_radius(kind))};
 }
 

@@ -9,10 +9,6 @@ namespace graftal {
 
 namespace {
 
-double squared_entries(const Mat3& m) {
-    return glm::dot(m[0], m[0]) + glm::dot(m[1], m[1]) + glm::dot(m[2], m[2]);
-}
-
 /// What singular values are the roots of, or products of roots.
 struct Symmetric {
     Mat3 cofactors;

@@ -35,9 +35,14 @@ inline double largest_stretch(const Mat3& map) {
     return std::sqrt(mean * (1 + 2 * p * std::cos(angle)));
 }
 
+/// The squares of the singular values, added: at least that of the largest.
+inline double squared_entries(const Mat3& map) {
+    return glm::dot(map[0], map[0]) + glm::dot(map[1], map[1]) + glm::dot(map[2], map[2]);
+}
+
 /// At least largest_stretch(), and at most 1.8 times as much.
 inline double most_stretch(const Mat3& map) {
-    return std::sqrt(glm::dot(map[0], map[0]) + glm::dot(map[1], map[1]) + glm::dot(map[2], map[2]));
+    return std::sqrt(squared_entries(map));
 }
 
 /// A map that leaves a ball hardly any thickness, but more than a line.

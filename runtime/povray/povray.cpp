@@ -73,7 +73,7 @@ std::string failure(const PovrayJob& job, const PovrayLog& log, const ProcessRes
 
 /// POV-Ray's own folders: include files, fonts, and what the machine allows it.
 std::vector<std::string> povray_folders(const std::string& program) {
-    std::vector<std::string> folders = {"/etc/povray", "/usr/share/povray", "/usr/local/share/povray"};
+    std::vector<std::string> folders = {"/etc/povray"};
     const std::string prefix = std::filesystem::path(program).parent_path().parent_path().string();
     for (const std::string version : {"", "-3.7", "-3.8"})
         for (const std::string& share : {std::string("/usr"), std::string("/usr/local"), prefix})

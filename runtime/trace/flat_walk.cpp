@@ -101,13 +101,16 @@ void Traversal::scale_child(FlatPart& child, double scale) const {
     child.scale = edge.similarity ? scale * edge.stretch : largest_stretch(linear_of(child.world_from_node));
 }
 
-bool Traversal::may_meet(const FlatPart& part, const RayRange& range) const {
+Ball Traversal::drawn_ball(const FlatPart& part, double scale) const {
     const TraceNode& node = model_.nodes[model_.edges[part.edge & ~from_cut].child];
-    const double most_scale = most_stretch(linear_of(part.world_from_node));
-    Ball ball{vec3_of(part.world_from_node.translation), most_scale * node.drawn_radius};
     if (node.kind == TraceNode::Kind::primitive)
-        ball = {vec3_of(point_through(part.world_from_node, node.ball_centre)),
-                most_scale * node.ball_radius};
+        return {vec3_of(point_through(part.world_from_node, node.ball_centre)), scale * node.ball_radius};
+    return {vec3_of(part.world_from_node.translation), scale * node.drawn_radius};
+}
+
+bool Traversal::may_meet(const FlatPart& part, const RayRange& range) const {
+    const double most_scale = most_stretch(linear_of(part.world_from_node));
+    Ball ball = drawn_ball(part, most_scale);
     ball.radius += flat_width(ball, most_scale);
     const RayRange inside = both({range.least, best_.t}, in_ball(ray_, ball));
     return inside.least <= inside.most;
@@ -211,14 +214,13 @@ void Traversal::meet_flat_part(const FlatPart& part, const RayRange& range, std:
     const TraceNode& node = model_.nodes[model_.edges[part.edge & ~from_cut].child];
     const Affine place = part.world_from_node.affine();
     const Ball ball{place(vec3_of(node.ball_centre)), part.scale * node.ball_radius};
-    const bool primitive = node.kind == TraceNode::Kind::primitive;
-    Ball drawn_ball = primitive ? ball : Ball{place.translation, part.scale * node.drawn_radius};
-    const double width = flat_width(drawn_ball, part.scale);
-    drawn_ball.radius += width;
-    RayRange inside = both({range.least, best_.t}, in_ball(ray_, drawn_ball));
+    Ball drawn = drawn_ball(part, part.scale);
+    const double width = flat_width(drawn, part.scale);
+    drawn.radius += width;
+    RayRange inside = both({range.least, best_.t}, in_ball(ray_, drawn));
     if (inside.least <= inside.most) inside = both(inside, flat_image_.within(width));
     if (!(inside.least <= inside.most)) return;
-    if (primitive) {
+    if (node.kind == TraceNode::Kind::primitive) {
         if (!meet_leaf(node.primitive, place, part.faint, ball, range)) return;
         best_.turns = model_.edges[part.edge & ~from_cut].turns;
         return keep_flat_way(frame_number);

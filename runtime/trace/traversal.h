@@ -126,6 +126,8 @@ class Traversal final : public Surfaces {
     FlatPart flat_child(const LaneMap& world_from_node, std::uint32_t edge, std::uint32_t steps,
                         bool cut) const;
     void scale_child(FlatPart& child, double parent_scale) const;
+    /// About all that is drawn of the part, as thin as it is, if it is scaled so.
+    Ball drawn_ball(const FlatPart& part, double scale) const;
     /// False where the ray misses a ball about the part that is a little too large.
     bool may_meet(const FlatPart& part, const RayRange& range) const;
     double flat_width(const Ball& ball, double scale) const;

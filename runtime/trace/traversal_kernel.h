@@ -188,8 +188,8 @@ template<Instructions instructions> struct Traversal::Kernel {
             frame_number, nearest);
     }
 
-    /// Sorts the boxes that the ray meets, the nearest last but for the very nearest, which becomes
-    /// `nearest`; false if there is none. `used`: the lanes that hold boxes, others may.
+    /// Sorts the boxes that the ray meets: the nearest one becomes `nearest`, the others go onto the stack,
+    /// the farthest first. False if there is none. `used`: the lanes that hold boxes, others may.
     template<typename SideOf, typename EntryOf>
     GRAFTAL_INLINE bool test_lanes(const SideOf& side_of, const EntryOf& number_of, std::uint32_t used,
                                    std::uint32_t frame_number, Entry& nearest) {

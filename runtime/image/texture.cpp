@@ -146,6 +146,13 @@ double srgb_decoded(std::uint8_t level) {
     return encoded <= 0.04045 ? encoded / 12.92 : std::pow((encoded + 0.055) / 1.055, 2.4);
 }
 
+Status read_texture(const std::string& path, std::uint64_t most_texels, Texture& texture) {
+    TextureSink sink(is_exr_name(path), most_texels);
+    const Status status = read_rows(path, sink);
+    if (status.ok()) texture = std::move(sink).finished();
+    return status;
+}
+
 std::shared_ptr<const Texture> load_texture(const std::string& path, Status& status) {
     static std::mutex mutex;
     static std::map<std::string, std::shared_ptr<const Texture>> known;
@@ -154,10 +161,10 @@ std::shared_ptr<const Texture> load_texture(const std::string& path, Status& sta
     std::shared_ptr<const Texture>& texture = known[path];
     if (texture) return texture;
     const std::uint64_t room = most_texels_of_all - std::min(texels_of_all, most_texels_of_all);
-    TextureSink sink(is_exr_name(path), std::clamp(room, least_texels, most_texels));
-    status = read_rows(path, sink);
+    Texture read;
+    status = read_texture(path, std::clamp(room, least_texels, most_texels), read);
     if (!status.ok()) return texture;
-    texture = std::make_shared<const Texture>(std::move(sink).finished());
+    texture = std::make_shared<const Texture>(std::move(read));
     texels_of_all += texture->texels.size();
     return texture;
 }

@@ -35,7 +35,10 @@ struct Texture {
 /// Linear light of an sRGB level.
 double srgb_decoded(std::uint8_t level);
 
-/// The picture in a file, read once in the life of the process; null after a failure. Samples of EXR files
+/// The picture in a file, reduced to at most so many texels while it is read. Requires most_texels > 0.
+Status read_texture(const std::string& path, std::uint64_t most_texels, Texture& texture);
+
+/// The same, read once in the life of the process; null after a failure. Samples of EXR files
 /// are linear, all others sRGB. One picture has at most 2^25 texels, and all together 2^27 (512 MiB): larger
 /// ones are reduced while they are read, but not below 2^12 texels.
 std::shared_ptr<const Texture> load_texture(const std::string& path, Status& status);

@@ -4,6 +4,7 @@
 #include <array>
 #include <bit>
 #include <cerrno>
+#include <cstdint>
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
@@ -70,7 +71,8 @@ char byte_of(double linear) {
     static const std::vector<char> table = [] {
         std::vector<char> levels;
         for (int i = 0; i <= 4095; ++i)
-            levels.push_back(static_cast<char>(255 * srgb_encoded(static_cast<float>(i) / 4095) + 0.5f));
+            levels.push_back(static_cast<char>(
+                static_cast<std::uint8_t>(255 * srgb_encoded(static_cast<float>(i) / 4095) + 0.5f)));
         return levels;
     }();
     const double level = linear > 0 ? std::min(linear, 1.0) * 4095 + 0.5 : 0;

@@ -2,7 +2,6 @@
 
 #include <cmath>
 #include <cstdint>
-#include <cstdlib>
 
 #include <glm/geometric.hpp>
 
@@ -10,6 +9,7 @@
 #include "compiler/analysis/contraction.h"
 #include "compiler/cut/prepare.h"
 #include "compiler/passes/drop_unreachable.h"
+#include "compiler/support/check.h"
 #include "runtime/trace/traversal.h"
 #include "tests/property/random_graph.h"
 
@@ -25,10 +25,6 @@ double number(testing::Choices& choices) {
 
 Vec3 vector(testing::Choices& choices) {
     return {number(choices), number(choices), number(choices)};
-}
-
-void require(bool condition) {
-    if (!condition) std::abort();
 }
 
 } // namespace
@@ -55,11 +51,11 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         const Ray ray{centre + reach * vector(choices), vector(choices)};
         SurfaceHit hit, twin;
         const bool found = traversal.closest(ray, {1e-9 * reach, 1e300}, hit);
-        require(portable.closest(ray, {1e-9 * reach, 1e300}, twin) == found);
-        require(traversal.meets_any(ray, {1e-9 * reach, 1e300}) == found);
+        GRAFTAL_CHECK(portable.closest(ray, {1e-9 * reach, 1e300}, twin) == found, "trace fuzzer");
+        GRAFTAL_CHECK(traversal.meets_any(ray, {1e-9 * reach, 1e300}) == found, "trace fuzzer");
         if (!found) continue;
-        require(std::isfinite(hit.t) && hit.t == twin.t && hit.normal == twin.normal);
-        require(std::abs(glm::length(hit.normal) - 1) < 1e-6);
+        GRAFTAL_CHECK(std::isfinite(hit.t) && hit.t == twin.t && hit.normal == twin.normal, "trace fuzzer");
+        GRAFTAL_CHECK(std::abs(glm::length(hit.normal) - 1) < 1e-6, "trace fuzzer");
     }
     return 0;
 }

@@ -12,6 +12,9 @@ inline constexpr int exit_fault = 1;
 inline constexpr int exit_usage = 2;
 inline constexpr int exit_environment = 3;
 
+/// The command that the options name.
+int run_command(const Options& options);
+
 int run_render(const Options& options);
 int run_animate(const Options& options);
 int run_points(const Options& options);

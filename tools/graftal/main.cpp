@@ -28,33 +28,6 @@ void occupy_standard_streams() {
             ::_exit(graftal::exit_environment);
 }
 
-int run(const graftal::Options& options) {
-    using graftal::Command;
-    switch (options.command) {
-    case Command::render:
-        return graftal::run_render(options);
-    case Command::animate:
-        return graftal::run_animate(options);
-    case Command::points:
-        return graftal::run_points(options);
-    case Command::collage:
-        return graftal::run_collage(options);
-    case Command::compile:
-        return graftal::run_compile(options);
-    case Command::check:
-        return graftal::run_check(options);
-    case Command::stats:
-        return graftal::run_stats(options);
-    case Command::print:
-        return graftal::run_print(options);
-    case Command::graph:
-        return graftal::run_graph(options);
-    case Command::compare:
-        return graftal::run_compare(options);
-    }
-    return graftal::exit_usage;
-}
-
 } // namespace
 
 int main(int argc, char** argv) {
@@ -66,7 +39,7 @@ int main(int argc, char** argv) {
         const graftal::ParsedCommandLine parsed = graftal::parse_command_line(argc, argv);
         if (!parsed.options) return parsed.exit_status;
         graftal::limit_memory(std::max(parsed.options->compile.cut.memory_bytes, least_memory_bytes));
-        return run(*parsed.options);
+        return graftal::run_command(*parsed.options);
     } catch (const std::bad_alloc& fault) {
         return graftal::conclude_out_of_memory(fault);
     } catch (const graftal::BrokenInvariant& fault) {

@@ -1,5 +1,5 @@
-// Bytes -> a valid graph and a view -> the cut -> POV-Ray's text: no graph and no view may break it, and what it gives
-// is finite and the same twice.
+// Bytes -> a valid graph and a view -> the cut -> POV-Ray's text: no graph and no view may break it, and what
+// it gives is finite and the same twice.
 
 #include <cmath>
 #include <cstddef>
@@ -48,7 +48,8 @@ std::string scene_of(const Graph& graph, const Cut& cut, const View& view, bool 
     options.scene_name = "fuzz";
     options.include = include;
     options.file_name = "fuzz.inc";
-    emit_povray(graph, cut, view, options, [&](std::string_view piece) { return text += piece, true; }, palettes);
+    emit_povray(
+        graph, cut, view, options, [&](std::string_view piece) { return text += piece, true; }, palettes);
     return text;
 }
 
@@ -57,8 +58,8 @@ std::string scene_of(const Graph& graph, const Cut& cut, const View& view, bool 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     testing::Choices choices(std::span(data, size));
     const bool runs = choices.one_in(4);
-    const Graph graph = drop_unreachable(
-        testing::random_graph(choices, {.max_objects = 5, .runs = runs, .huge = choices.one_in(4) ? 1e100 : 10}));
+    const Graph graph = drop_unreachable(testing::random_graph(
+        choices, {.max_objects = 5, .runs = runs, .huge = choices.one_in(4) ? 1e100 : 10}));
     const Components components = strong_components(graph);
     const Contraction contraction = decide_contraction(graph, components);
     if (contraction.verdict != Verdict::acyclic && contraction.verdict != Verdict::proved) return 0;

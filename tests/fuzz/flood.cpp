@@ -1,7 +1,7 @@
-// flood TARGET SECONDS SEED FINDING FOLDER: changed inputs from a folder through a target of tests/fuzz, for so many seconds
-// of the processor, without sanitizers and without a look at coverage: hundreds of times as many as libFuzzer can run.
-// Prints the executions, the slowest in milliseconds and what was found; the input then stands in the file FINDING, and
-// the status is 1.
+// flood TARGET SECONDS SEED FINDING FOLDER: changed inputs from a folder through a target of tests/fuzz, for so
+// many seconds, without sanitizers and without a look at coverage: many more than libFuzzer can run. Prints the
+// executions, the slowest in milliseconds and what was found; the input then stands in the file FINDING, and the
+// status is 1.
 
 #include <csignal>
 #include <cstdint>
@@ -51,8 +51,9 @@ void write_all(int file, const char* bytes, std::size_t count) {
 /// Only system calls and what formats into a buffer of our own.
 void report(const char* what) {
     char text[400];
-    const int size = std::snprintf(text, sizeof text, "executions %llu\nslowest_ms %.0f\n%s%s%s", now.executions,
-                                   now.slowest_ms, *what ? "found " : "", what, *what ? "\n" : "");
+    const int size =
+        std::snprintf(text, sizeof text, "executions %llu\nslowest_ms %.0f\n%s%s%s", now.executions,
+                      now.slowest_ms, *what ? "found " : "", what, *what ? "\n" : "");
     write_all(now.report, text, std::min(static_cast<std::size_t>(size), sizeof text - 1));
 }
 
@@ -86,9 +87,9 @@ void start_watch(int seconds) {
     ::setitimer(ITIMER_PROF, &timer, nullptr);
 }
 
-double cpu_seconds() {
+double seconds_of(clockid_t clock) {
     timespec time = {};
-    ::clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);
+    ::clock_gettime(clock, &time);
     return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
 }
 
@@ -101,7 +102,7 @@ long resident_kib() {
 void try_one(const Target& target, const std::string& bytes) {
     now.input = bytes.data();
     now.size = bytes.size();
-    const double begin = cpu_seconds();
+    const double begin = seconds_of(CLOCK_PROCESS_CPUTIME_ID);
     start_watch(most_seconds);
     try {
         target.run(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size());
@@ -110,7 +111,7 @@ void try_one(const Target& target, const std::string& bytes) {
     }
     start_watch(0);
     ++now.executions;
-    now.slowest_ms = std::max(now.slowest_ms, 1e3 * (cpu_seconds() - begin));
+    now.slowest_ms = std::max(now.slowest_ms, 1e3 * (seconds_of(CLOCK_PROCESS_CPUTIME_ID) - begin));
     if (resident_kib() > most_kib) found("memory");
 }
 
@@ -128,7 +129,7 @@ int main(int argc, char** argv) {
         std::fputs("usage: flood TARGET SECONDS SEED FINDING FOLDER\n", stderr);
         return 2;
     }
-    const double deadline = std::atof(argv[2]);
+    const double deadline = seconds_of(CLOCK_MONOTONIC) + std::atof(argv[2]);
     graftal::testing::Choices choices(std::strtoull(argv[3], nullptr, 10));
     now.finding = argv[4];
     const std::vector<Input> inputs = files_of(argv[5]);
@@ -137,7 +138,7 @@ int main(int argc, char** argv) {
         silence();
         watch_signals();
         SyntaxMutator mutator;
-        while (cpu_seconds() < deadline)
+        while (seconds_of(CLOCK_MONOTONIC) < deadline)
             try_one(target, changed(target, inputs, most_bytes, mutator, choices));
         report("");
         return 0;

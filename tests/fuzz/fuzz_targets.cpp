@@ -27,7 +27,8 @@ void change_bytes(std::string& bytes, const std::string& other, testing::Choices
         break;
     case 1:
         if (!other.empty())
-            bytes.insert(at, other, choices.below(static_cast<std::uint32_t>(other.size())), 1 + choices.below(32));
+            bytes.insert(at, other, choices.below(static_cast<std::uint32_t>(other.size())),
+                         1 + choices.below(32));
         break;
     default:
         bytes[at] = static_cast<char>(static_cast<unsigned char>(choices.below(256)));
@@ -48,14 +49,15 @@ std::vector<Input> files_of(const std::string& folder) {
     std::vector<Input> inputs;
     for (const auto& entry : std::filesystem::directory_iterator(folder)) {
         std::ifstream file(entry.path(), std::ios::binary);
-        inputs.push_back({entry.path().filename().string(), std::string(std::istreambuf_iterator<char>(file), {})});
+        inputs.push_back(
+            {entry.path().filename().string(), std::string(std::istreambuf_iterator<char>(file), {})});
     }
     std::sort(inputs.begin(), inputs.end(), [](const Input& a, const Input& b) { return a.name < b.name; });
     return inputs;
 }
 
-std::string changed(const Target& target, const std::vector<Input>& inputs, std::size_t most, SyntaxMutator& mutator,
-                    testing::Choices& choices) {
+std::string changed(const Target& target, const std::vector<Input>& inputs, std::size_t most,
+                    SyntaxMutator& mutator, testing::Choices& choices) {
     std::string bytes = one_of(inputs, choices).bytes;
     std::uint32_t byte_changes = 1 + choices.below(4);
     if (target.texts) {

@@ -28,9 +28,9 @@ struct Input {
 /// The files of a folder, by name.
 std::vector<Input> files_of(const std::string& folder);
 
-/// One of the inputs, changed: a text by its syntax tree, and now and then by its bytes, as other inputs are. Requires at
-/// least one.
-std::string changed(const Target& target, const std::vector<Input>& inputs, std::size_t most, SyntaxMutator& mutator,
-                    testing::Choices& choices);
+/// One of the inputs, changed: a text by its syntax tree, and now and then by its bytes, as other inputs are.
+/// Requires at least one.
+std::string changed(const Target& target, const std::vector<Input>& inputs, std::size_t most,
+                    SyntaxMutator& mutator, testing::Choices& choices);
 
 } // namespace graftal::fuzz

@@ -1,6 +1,6 @@
-// A model and a command line through the whole program, in this process: any text and any options end with a status, in
-// bounded time, and leave no files but the output. The first line of the text is `# LANGUAGE COMMAND OPTIONS`, the rest
-// the model, which finds a picture and models of the other languages beside it.
+// A model and a command line through the whole program, in this process: any text and any options end with a
+// status, in bounded time, and leave no files but the output. The first line of the text is `# LANGUAGE
+// COMMAND OPTIONS`, the rest the model, which finds a picture and models of the other languages beside it.
 
 #include <algorithm>
 #include <cstddef>
@@ -30,7 +30,8 @@ class Beside : public fuzz::Scratch {
         write("part.rifs", "rifs part { map a { scale 1/2 translate <0, 1, 0> } map b { scale 1/3 } }\n");
         write("part.lsys", "lsys part { steps 2 axiom F F -> F[+F]F }\n");
         const Image picture{2, 2, 4, {1, 0, 0, 1, 0, 1, 0, 1, 0, 0, 1, 0, 1, 1, 1, 1}};
-        GRAFTAL_CHECK(write_image(path("t.png"), picture, SampleFormat::srgb8).ok(), "model fuzzer: a picture");
+        GRAFTAL_CHECK(write_image(path("t.png"), picture, SampleFormat::srgb8).ok(),
+                      "model fuzzer: a picture");
     }
 };
 
@@ -85,7 +86,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     ParsedCommandLine parsed = parse_command_line(static_cast<int>(arguments.size()), arguments.data());
     if (!parsed.options) return 0;
     Options& options = *parsed.options;
-    if (options.command == Command::animate || options.command == Command::compare || options.operands.size() != 1)
+    if (options.command == Command::animate || options.command == Command::compare ||
+        options.operands.size() != 1)
         return 0; // they start processes, or read what we have not made
     hold(options, scratch);
     const std::string output = output_of(options);
@@ -93,7 +95,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     options.output = output.empty() ? "-" : scratch.path(output);
     scratch.write(model, text);
     const int status = run_command(options);
-    GRAFTAL_CHECK(status == exit_done || status == exit_fault, "model fuzzer: done, or the model is at fault");
+    GRAFTAL_CHECK(status == exit_done || status == exit_fault,
+                  "model fuzzer: done, or the model is at fault");
     std::filesystem::remove(scratch.path(model));
     bool written = false;
     for (const auto& entry : std::filesystem::directory_iterator(scratch.path(""))) {

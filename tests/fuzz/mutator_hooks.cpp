@@ -1,5 +1,5 @@
-// What libFuzzer calls to change and to cross inputs that are texts: by their syntax trees mostly, by their bytes where
-// they have none and now and then.
+// What libFuzzer calls to change and to cross inputs that are texts: by their syntax trees mostly, by their
+// bytes where they have none and now and then.
 
 #include <algorithm>
 #include <cstddef>

@@ -1,5 +1,5 @@
-// Pictures in files, as textures, collages and comparisons read them: any bytes give a picture or a message. The first
-// byte chooses the name's ending, which is where a reader is looked for first.
+// Pictures in files, as textures, collages and comparisons read them: any bytes give a picture or a message.
+// The first byte chooses the name's ending, which is where a reader is looked for first.
 
 #include <array>
 #include <cmath>
@@ -16,8 +16,8 @@ using namespace graftal;
 
 namespace {
 
-constexpr auto endings = std::to_array<const char*>(
-    {"png", "exr", "gif", "jpg", "tif", "bmp", "tga", "hdr", "ppm", "webp", "ico", "sgi", "dds", "psd", "txt"});
+constexpr auto endings = std::to_array<const char*>({"png", "exr", "gif", "jpg", "tif", "bmp", "tga", "hdr",
+                                                     "ppm", "webp", "ico", "sgi", "dds", "psd", "txt"});
 
 constexpr std::uint64_t most_samples = 1u << 20;
 constexpr std::uint64_t most_texels = 1u << 12;
@@ -45,7 +45,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const auto texels = static_cast<std::size_t>(texture.width) * static_cast<std::size_t>(texture.height);
     GRAFTAL_CHECK(texels > 0 && texture.texels.size() == texels && texels <= most_texels,
                   "picture fuzzer: all texels are there");
-    GRAFTAL_CHECK(texture.coverage >= 0 && texture.coverage <= 1 && texture.mean.x >= 0 && texture.mean.x <= 1,
+    GRAFTAL_CHECK(texture.coverage >= 0 && texture.coverage <= 1 && texture.mean.x >= 0 &&
+                      texture.mean.x <= 1,
                   "picture fuzzer: what a texture says of itself");
     texture.at(0.3, -1e300);
     return 0;

@@ -30,7 +30,8 @@ std::string source_path(const std::string& name) {
     return std::string(GRAFTAL_SOURCE_DIR) + "/" + name;
 }
 
-/// What is kept for a target: in its own folder, or in that of the language that its name begins with (`lsys_lower`).
+/// What is kept for a target: in its own folder, or in that of the language that its name begins with
+/// (`lsys_lower`).
 std::vector<Input> kept_for(const std::string& target) {
     const std::string own = source_path("tests/fuzz/corpus/" + target);
     if (std::filesystem::exists(own)) return files_of(own);
@@ -140,7 +141,8 @@ TEST(SyntaxTree, HoldsStatementsCallsAndItems) {
     const auto nodes = read_syntax("object a { union: f(2, g(x)) scale: 1/2\n translate: 1, 2, 3 }");
     ASSERT_TRUE(nodes);
     const auto count = [&](Part part) {
-        return std::count_if(nodes->begin(), nodes->end(), [&](const SyntaxNode& node) { return node.part == part; });
+        return std::count_if(nodes->begin(), nodes->end(),
+                             [&](const SyntaxNode& node) { return node.part == part; });
     };
     EXPECT_EQ(count(Part::block), 1);
     EXPECT_EQ(count(Part::statement), 4); // the object and its three lines

@@ -14,10 +14,42 @@ constexpr std::size_t most_kept = 512;
 constexpr std::size_t longest_kept = 400;
 
 /// At the edges of what is allowed, and beyond them.
-constexpr auto numbers = std::to_array<std::string_view>(
-    {"0", "1", "2", "3", "7", "64", "255", "256", "1000", "65536", "0.5", "0.1", "0.999", "1/3", "1e-9", "1e9",
-     "1e-17", "1e100", "1e-100", "1.1e100", "9e-101", "1e308", "5e-324", "1e400", "90", "360", "45", "1e6",
-     "4294967295", "4294967296", "9007199254740993", "18446744073709551616", "2^1023", "1e50", "1e-50", "-1"});
+constexpr auto numbers = std::to_array<std::string_view>({"0",
+                                                          "1",
+                                                          "2",
+                                                          "3",
+                                                          "7",
+                                                          "64",
+                                                          "255",
+                                                          "256",
+                                                          "1000",
+                                                          "65536",
+                                                          "0.5",
+                                                          "0.1",
+                                                          "0.999",
+                                                          "1/3",
+                                                          "1e-9",
+                                                          "1e9",
+                                                          "1e-17",
+                                                          "1e100",
+                                                          "1e-100",
+                                                          "1.1e100",
+                                                          "9e-101",
+                                                          "1e308",
+                                                          "5e-324",
+                                                          "1e400",
+                                                          "90",
+                                                          "360",
+                                                          "45",
+                                                          "1e6",
+                                                          "4294967295",
+                                                          "4294967296",
+                                                          "9007199254740993",
+                                                          "18446744073709551616",
+                                                          "2^1023",
+                                                          "1e50",
+                                                          "1e-50",
+                                                          "-1"});
 
 constexpr auto functions = std::to_array<std::string_view>(
     {"sqrt", "sin", "cos", "exp", "log", "abs", "floor", "random", "normal", "min", "max", "-", "!"});
@@ -35,8 +67,8 @@ class Editor {
     Editor(const std::string& text, const std::vector<SyntaxNode>& nodes, Choices& choices)
         : text_(text), nodes_(nodes), choices_(choices) {}
 
-    /// A part: each kind is as likely as another, but numbers are more so and marks less. Null if there is none but the
-    /// text.
+    /// A part: each kind is as likely as another, but numbers are more so and marks less. Null if there is
+    /// none but the text.
     const SyntaxNode* choose() const {
         for (int attempt = 0; attempt < 8; ++attempt) {
             auto part = static_cast<Part>(1 + choices_.below(part_count - 1));
@@ -49,7 +81,8 @@ class Editor {
         return nullptr;
     }
 
-    /// Another part of the kind, mostly one from the same place in its statement, and of the same key where there is one.
+    /// Another part of the kind, mostly one from the same place in its statement, and of the same key where
+    /// there is one.
     const SyntaxNode* other(const SyntaxNode& than) const {
         std::vector<const SyntaxNode*> like, near, any;
         for (const SyntaxNode& node : nodes_) {
@@ -65,7 +98,9 @@ class Editor {
         return any.empty() || !choices_.one_in(2) ? nullptr : one_of(any, choices_);
     }
 
-    std::string text_of(const SyntaxNode& node) const { return text_.substr(node.begin, node.end - node.begin); }
+    std::string text_of(const SyntaxNode& node) const {
+        return text_.substr(node.begin, node.end - node.begin);
+    }
 
     std::string replaced(const SyntaxNode& node, std::string_view by) const {
         return text_.substr(0, node.begin) + std::string(by) + text_.substr(node.end);
@@ -115,7 +150,8 @@ class Editor {
     }
 
     std::string exchanged(const SyntaxNode& one, const SyntaxNode& two) const {
-        const SyntaxNode &first = one.begin < two.begin ? one : two, &last = one.begin < two.begin ? two : one;
+        const SyntaxNode &first = one.begin < two.begin ? one : two,
+                         &last = one.begin < two.begin ? two : one;
         if (first.end > last.begin) return replaced(first, text_of(last)); // one lies in the other
         return text_.substr(0, first.begin) + text_of(last) +
                text_.substr(first.end, last.begin - first.end) + text_of(first) + text_.substr(last.end);
@@ -175,7 +211,8 @@ const SyntaxMutator::Kept* SyntaxMutator::kept_like(const SyntaxNode& node, Choi
     const bool any_key = choices.one_in(2), any_place = choices.one_in(8);
     for (std::size_t i = 0; i < kept_.size(); ++i) {
         const Kept& kept = kept_[(first + i) % kept_.size()];
-        if (kept.part == node.part && (any_key || kept.key == node.key) && (any_place || kept.within == node.within))
+        if (kept.part == node.part && (any_key || kept.key == node.key) &&
+            (any_place || kept.within == node.within))
             return &kept;
     }
     return nullptr;

@@ -11,12 +11,12 @@
 
 namespace graftal::fuzz {
 
-/// Changes texts by their syntax trees: parts are taken out, doubled, exchanged, put in the place of others of their
-/// kind, nested and given other numbers; statements of texts seen before are spliced in.
+/// Changes texts by their syntax trees: parts are taken out, doubled, exchanged, put in the place of others
+/// of their kind, nested and given other numbers; statements of texts seen before are spliced in.
 class SyntaxMutator {
   public:
-    /// The text with one to eight changes, and never longer than `most` bytes; "" if it has no tree, or nothing could be
-    /// changed within that length. Deterministic in all texts and choices so far.
+    /// The text with one to eight changes, and never longer than `most` bytes; "" if it has no tree, or
+    /// nothing could be changed within that length. Deterministic in all texts and choices so far.
     std::string mutate(std::string_view text, std::size_t most, testing::Choices& choices);
 
     /// Keeps statements of the text, for splicing.

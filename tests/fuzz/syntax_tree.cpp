@@ -28,13 +28,13 @@ bool is_digit(char c) {
 /// Words that begin a line where lines are written one after the other: `scale 1/2  translate <0, 1, 0>`.
 bool begins_line(std::string_view word) {
     static constexpr auto words = std::to_array<std::string_view>(
-        {"ambient", "angle",     "around",   "axiom",    "background", "below",    "by",        "camera",
-         "chance",  "codes",     "color",    "colors",   "condense",   "count",    "decompose", "diffuse",
-         "follow",  "ground",    "height",   "horizon",  "inner",      "instance", "interpret", "lean",
-         "let",     "light",     "location", "look_at",  "map",        "material", "matrix",    "over",
-         "rotate",  "roughness", "scale",    "scatter",  "seed",       "shear",    "size",      "specular",
-         "start",   "step",      "steps",    "sun",      "terminal",   "texture",  "tint",      "translate",
-         "tropism", "turn",      "union",    "up",       "use",        "width",    "zenith"});
+        {"ambient", "angle",     "around",   "axiom",   "background", "below",    "by",        "camera",
+         "chance",  "codes",     "color",    "colors",  "condense",   "count",    "decompose", "diffuse",
+         "follow",  "ground",    "height",   "horizon", "inner",      "instance", "interpret", "lean",
+         "let",     "light",     "location", "look_at", "map",        "material", "matrix",    "over",
+         "rotate",  "roughness", "scale",    "scatter", "seed",       "shear",    "size",      "specular",
+         "start",   "step",      "steps",    "sun",     "terminal",   "texture",  "tint",      "translate",
+         "tropism", "turn",      "union",    "up",      "use",        "width",    "zenith"});
     return std::binary_search(words.begin(), words.end(), word);
 }
 
@@ -132,9 +132,7 @@ class Reader {
     std::string_view text_of(const Piece& piece) const {
         return text_.substr(piece.begin, piece.end - piece.begin);
     }
-    char mark() const {
-        return more() && pieces_[at_].part == Part::mark ? text_[pieces_[at_].begin] : '\0';
-    }
+    char mark() const { return more() && pieces_[at_].part == Part::mark ? text_[pieces_[at_].begin] : '\0'; }
     bool at_close() const {
         const char c = mark();
         return c == ')' || c == ']' || c == '}' || (c == '>' && in_vector_);
@@ -221,8 +219,9 @@ class Reader {
         if (!matched_) return;
         const char opener = mark();
         const char closer = opener == '(' ? ')' : opener == '[' ? ']' : opener == '{' ? '}' : '>';
-        const std::size_t node =
-            open(opener == '[' ? Part::branch : opener == '{' ? Part::block : Part::list);
+        const std::size_t node = open(opener == '['   ? Part::branch
+                                      : opener == '{' ? Part::block
+                                                      : Part::list);
         ++at_;
         const bool around = std::exchange(in_vector_, opener == '<');
         if (opener == '{')

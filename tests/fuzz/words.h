@@ -6,7 +6,8 @@
 
 namespace graftal::fuzz {
 
-/// The words of a command line, as a shell has them without quotes: parted by white space, a '\1' in a word for a blank.
+/// The words of a command line, as a shell has them without quotes: parted by white space, a '\1' in a word
+/// for a blank.
 inline std::vector<std::string> words_of(std::string_view text) {
     std::vector<std::string> words(1);
     for (const char c : text) {

@@ -1,4 +1,4 @@
-"""Runs the libFuzzer programs of tests/fuzz for a while, and makes what they find smaller."""
+"""Runs the libFuzzer programs of tests/fuzz for a while, and makes what they find smaller; and floods their targets."""
 import os
 import re
 import resource
@@ -119,3 +119,27 @@ def signature(text):
     where = re.search(r'#\d+ 0x\w+ in (?:\S+ )?((?:graftal::)[\w:~]+)', text)
     parts = [next(filter(None, what.groups()))] if what else []
     return ' in '.join(parts + ([where[1]] if where else []))
+
+
+def flood(name, program, options, seconds, seed, book):
+    """Changes to what the fuzzers came to, for so many seconds, through the release build; goes on after findings."""
+    found = options.out / 'findings' / f'{name} (flood)'
+    found.mkdir(parents=True, exist_ok=True)
+    deadline = time.monotonic() + seconds
+    while (left := deadline - time.monotonic()) >= 1:
+        artifact = found / 'input'
+        before = resource.getrusage(resource.RUSAGE_CHILDREN)
+        ended = subprocess.run([program, name, str(left), str(seed), artifact, corpus(name, options.out)],
+                               stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, text=True, errors='replace')
+        after = resource.getrusage(resource.RUSAGE_CHILDREN)
+        cpu = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
+        said = dict(line.split(' ', 1) for line in ended.stdout.splitlines() if ' ' in line)
+        book.count(f'{name} (flood)', int(said.get('executions', 0)), cpu, after.ru_maxrss / 1024,
+                   float(said.get('slowest_ms', 0)) / 1000)
+        if 'found' in said or ended.returncode != 0:
+            what = said.get('found', f'status {ended.returncode}')[:160]
+            kept_as = found / (re.sub(r'[^A-Za-z0-9_]+', '_', re.sub(r'.*does not hold', '', what))[:80] or 'finding')
+            if artifact.exists():
+                artifact.replace(kept_as)
+            book.find(f'{name} (flood)', what, str(kept_as))
+        seed += 1000

@@ -75,6 +75,6 @@ def table(rows):
     lines = ['| target | executions | CPU hours | peak MiB | slowest s | findings |', '|---|---|---|---|---|---|']
     for name in [*sorted(set(sums) - {'all'}), *(['all'] if sums else [])]:
         count = sums[name]
-        lines.append(f'| {name} | {count.executions:,} | {count.cpu / 3600:.3f} | {count.peak:.0f} | {count.slowest:g} | '
+        lines.append(f'| {name} | {count.executions:,} | {count.cpu / 3600:.3f} | {count.peak:.0f} | {count.slowest:.3g} | '
                      f'{count.findings} |')
     return lines

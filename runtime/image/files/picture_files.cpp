@@ -140,13 +140,14 @@ bool comes_in_rows(const OIIO::ImageInput& input) {
     return std::find(std::begin(formats), std::end(formats), input.format_name()) != std::end(formats);
 }
 
-/// OpenImageIO makes a GIF's canvas when it opens it: 23 bytes may ask for 16 GiB.
+/// OpenImageIO makes a GIF's canvas when it opens it: 23 bytes may ask for 16 GiB. Its reader looks at no more of
+/// the stamp than the first three letters, and so do we.
 bool is_huge_gif(const std::string& path) {
     unsigned char head[10] = {};
     const std::unique_ptr<std::FILE, decltype([](std::FILE* file) { std::fclose(file); })> file(
         std::fopen(path.c_str(), "rb"));
     if (!file || std::fread(head, 1, sizeof head, file.get()) != sizeof head) return false;
-    if (std::memcmp(head, "GIF8", 4) != 0) return false;
+    if (std::memcmp(head, "GIF", 3) != 0) return false;
     const auto number = [&](int at) { return static_cast<std::uint64_t>(head[at] | head[at + 1] << 8); };
     return 4 * number(6) * number(8) > most_held_samples;
 }

@@ -546,8 +546,8 @@ std::optional<Cut> assemble(const CutGraph& cut, const Symmetry& symmetry, const
     for (BakeRequest& request : unfolding.requests) {
         request.limit_normals = limit_normals;
         request.shells = &shells;
-        // A second try of the last grid may follow.
-        request.most_shell_work = static_cast<std::uint64_t>(std::min(limits.work_seconds, 1e6) * WorkRates::shell_points / 2);
+        request.most_shell_work =
+            static_cast<std::uint64_t>(std::min(limits.work_seconds, 1e6) * WorkRates::shell_points);
         request.most_visits = static_cast<std::uint64_t>(std::min(limits.work_seconds, 1e6) * WorkRates::leaves);
         baked.push_back(bake(cut, symmetry, request, limits.max_triangles - triangles));
         triangles += baked.back().triangles;

@@ -342,6 +342,24 @@ void set_mean_colours(CutGraph& cut) {
     }
 }
 
+void mark_solid(CutGraph& cut) {
+    std::vector<std::vector<NodeId>> users(cut.nodes.size());
+    std::vector<NodeId> found;
+    for (NodeId id = 0; id < cut.nodes.size(); ++id) {
+        cut.nodes[id].solid = false;
+        for (const CutEdge& edge : cut.nodes[id].edges)
+            users[edge.child].push_back(id);
+        if (cut.nodes[id].primitive || cut.nodes[id].cell) found.push_back(id);
+    }
+    while (!found.empty()) {
+        const NodeId id = found.back();
+        found.pop_back();
+        if (cut.nodes[id].solid) continue;
+        cut.nodes[id].solid = true;
+        found.insert(found.end(), users[id].begin(), users[id].end());
+    }
+}
+
 CutGraph build_cut_graph(const Graph& graph, const Components& components,
                          const std::vector<ObjectBounds>& bounds) {
     Graph factored = graph;

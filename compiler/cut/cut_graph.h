@@ -46,6 +46,7 @@ struct CutNode {
     bool terminal = false;           ///< stop_edges holds the terminal, not the ending instances
     double terminal_px = 0;          ///< as the object's (graph.h)
     bool unending = false;
+    bool solid = false;      ///< some way leads to a primitive
     bool unbounded = false;  ///< holds a plane: always expanded into placements
     bool sealed = false;     ///< leads through a singular map: never expanded, POV-Ray could not place it
     bool cullable = true;    ///< worth a proxy; a handful of primitives is drawn as it is
@@ -80,6 +81,9 @@ CutGraph build_cut_graph(const Graph& graph, const Components& components,
 /// Sets the mean colours anew, by the weights of the edges. Exact for ending nodes, converging geometrically
 /// for the others.
 void set_mean_colours(CutGraph& cut);
+
+/// Sets what is solid. O(graph).
+void mark_solid(CutGraph& cut);
 
 /// The edges that a visit follows: all of them, or those of a cut node. None of a cell, which has others.
 inline const std::vector<CutEdge>& followed_edges(const CutNode& node, bool cut) {

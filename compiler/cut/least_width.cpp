@@ -8,6 +8,7 @@
 #include <Eigen/Eigenvalues>
 #include <Eigen/SVD>
 #include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
 
 #include "compiler/analysis/bounding.h"
 #include "compiler/support/stretch.h"
@@ -43,8 +44,31 @@ bool has_right_angles(const Mat3& m) {
     return glm::dot(m[0], m[0]) > 0 && glm::dot(m[1], m[1]) > 0 && glm::dot(m[2], m[2]) > 0;
 }
 
+/// Two unit vectors across a unit vector, and across each other; right-handed (J. Hughes and T. Moeller,
+/// "Building an Orthonormal Basis from a Unit Vector", 1999).
+std::array<Vec3, 2> across(Vec3 unit) {
+    const Vec3 other =
+        std::abs(unit.x) > std::abs(unit.z) ? Vec3(-unit.y, unit.x, 0) : Vec3(0, -unit.z, unit.y);
+    const Vec3 first = glm::normalize(other);
+    return {first, glm::cross(unit, first)};
+}
+
+/// What is a line as far as this width shows becomes round.
+Mat3 widened_line(const Mat3& place, double half_width) {
+    const Vec3* longest = &place[0];
+    for (int i = 1; i < 3; ++i)
+        if (glm::dot(place[i], place[i]) > glm::dot(*longest, *longest)) longest = &place[i];
+    const Vec3 to = glm::normalize(*longest);
+    const auto [from_1, from_2] = across(glm::normalize(to * place)); // the transpose of `place`, of `to`
+    const auto [to_1, to_2] = across(to);
+    return place + half_width * (glm::outerProduct(to_1, from_1) + glm::outerProduct(to_2, from_2));
+}
+
 /// The half axes that are too short, longer.
 Mat3 widened(const Mat3& place, double half_width) {
+    constexpr double unseen = 1e-2;
+    const Vec3 most = most_singular_values(place);
+    if (most.x > half_width && most.y <= unseen * half_width) return widened_line(place, half_width);
     const std::optional<FlatMap> flat = flat_map(place);
     if (flat && flat->sigma.y >= half_width)
         return place + std::max(0.0, half_width - flat->sigma.z) * flat->thickening;
@@ -73,9 +97,16 @@ Mat3 widened(const Mat3& place, double half_width) {
 double half_width_needed(const Affine& place, bool faint, double half_width) {
     constexpr double thinnest_share = 1e-3, thickest_share = 1.0 / 8;
     if (faint && half_width > 0) return half_width;
-    const std::optional<FlatMap> flat = flat_map(place.linear);
-    if (flat ? flat->sigma.z > flattest_leaf * flat->sigma.x : !is_singular(place, flattest_leaf)) return 0;
-    const Vec3 sigma = flat ? flat->sigma : singular_values(place.linear);
+    Vec3 sigma;
+    if (const std::optional<Vec3> line = line_values(place.linear)) {
+        sigma = *line;
+        if (sigma.z > flattest_leaf * sigma.x) return 0;
+    } else {
+        const std::optional<FlatMap> flat = flat_map(place.linear);
+        if (flat ? flat->sigma.z > flattest_leaf * flat->sigma.x : !is_singular(place, flattest_leaf))
+            return 0;
+        sigma = flat ? flat->sigma : singular_values(place.linear);
+    }
     if (!(half_width > 0)) return thinnest_share * sigma.x;
     const bool line = !(sigma.y > flattest_leaf * sigma.x);
     return line ? half_width : std::min(half_width, thickest_share * sigma.x);

@@ -65,6 +65,7 @@ PreparedCut prepare_cut(const Graph& graph, const Components& components,
     if (options.culls() || (components.unending[graph.root] && options.steps))
         fit_proxies(cut, prepared.symmetry);
     mark_wide(cut);
+    mark_solid(cut);
     prepared.bounds = bounds[graph.root].box;
     if (options.steps) prepared.root_steps = *options.steps + (options.root_levels.empty() ? 0 : 1);
     return prepared;

@@ -287,8 +287,8 @@ Baked bake_shell(const CutGraph& cut, const ShellRequest& request, std::size_t m
     ShellStore of_this_shell;
     ShellStore& store = request.store ? *request.store : of_this_shell;
     const auto set = store.points(cut, request.node, request.steps, request.detail_per_unit, limits);
-    if (set) baked.shell_work = set->work;
-    baked.complete = set && !set->points.empty();
+    baked.shell_work = set->work;
+    baked.complete = !set->points.empty();
     if (!baked.complete) return baked;
     Surface surface(*set, max_triangles / 2);
     baked.complete = surface.build();

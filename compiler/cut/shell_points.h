@@ -27,7 +27,7 @@ struct PointPaint {
 
 /// What may be spent on points.
 struct PointLimits {
-    std::uint64_t work = 100'000'000; ///< points moved and surfaces sampled
+    std::uint64_t work = 300'000'000; ///< in all: points moved and sampled, cells flooded
     std::size_t points = 8'000'000;   ///< kept at once, of all nodes
 };
 
@@ -39,7 +39,7 @@ struct PointSet {
     std::vector<std::array<float, 3>> points; ///< from the middle, in the node's units
     std::vector<PointPaint> paints;           ///< by point; empty: all plain
     std::shared_ptr<const InsideGrid> inside; ///< what no eye outside can see; none if nothing is
-    std::uint64_t work = 0;
+    std::uint64_t work = 0;                   ///< that it took, also where nothing came of it
     /// Who asks for cells of a side between these gets the same points: where the limits decide, however
     /// fine.
     double finest_asked = 0, coarsest_asked = 0;
@@ -55,9 +55,9 @@ struct PointSet {
 /// Dubuc and A. Elqortobi, "Approximations of fractal sets", 1990, on a graph.) Every point that is kept is a
 /// point of the set. A point of the set lies within a few cells of one that is kept: at most sqrt(3) cells
 /// for each level, less by the contraction of the levels above. Where the set encloses space, what cannot be
-/// seen from outside is left out. Nothing if there is no such grid, or if the node is unbounded.
+/// seen from outside is left out. No points if there is no such grid, or if the node is unbounded.
 /// Deterministic.
-std::optional<PointSet> point_set(const CutGraph& cut, NodeId node, std::uint32_t steps,
-                                  double detail_per_unit, const PointLimits& limits);
+PointSet point_set(const CutGraph& cut, NodeId node, std::uint32_t steps, double detail_per_unit,
+                   const PointLimits& limits);
 
 } // namespace graftal

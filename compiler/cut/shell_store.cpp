@@ -1,6 +1,5 @@
 #include "compiler/cut/shell_store.h"
 
-#include <optional>
 #include <utility>
 
 namespace graftal {
@@ -19,9 +18,7 @@ std::shared_ptr<const PointSet> ShellStore::points(const CutGraph& cut, NodeId n
     const Key key{node, steps, limits.work, limits.points, 1 / detail_per_unit};
     if (auto set = find(key)) return set;
     // Others may find or make theirs meanwhile.
-    std::optional<PointSet> set = point_set(cut, node, steps, detail_per_unit, limits);
-    if (!set) return nullptr;
-    auto shared = std::make_shared<const PointSet>(std::move(*set));
+    auto shared = std::make_shared<const PointSet>(point_set(cut, node, steps, detail_per_unit, limits));
     keep(key, shared);
     return shared;
 }

@@ -21,7 +21,7 @@ class ShellStore {
     /// `most_bytes`: kept at most, of all shells together.
     explicit ShellStore(std::size_t most_bytes = default_bytes) : most_bytes_(most_bytes) {}
 
-    /// As point_set(). Requires the same graph each time. Null where that gives nothing.
+    /// As point_set(), never null. Requires the same graph each time.
     std::shared_ptr<const PointSet> points(const CutGraph& cut, NodeId node, std::uint32_t steps,
                                            double detail_per_unit, const PointLimits& limits);
 

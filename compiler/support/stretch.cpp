@@ -41,6 +41,17 @@ std::optional<FlatMap> flat_map(const Mat3& linear) {
     return FlatMap{{longest, middle, thickness}, std::copysign(1 / area, all.volume) * all.cofactors};
 }
 
+std::optional<Vec3> line_values(const Mat3& linear) {
+    constexpr double thickest = 1e-4;
+    const Symmetric all(linear);
+    if (!(all.squares > 1e-100 && all.squares < 1e80)) return {};
+    // The other two add less to the squares than rounding does.
+    const double longest = std::sqrt(all.squares), area = std::sqrt(all.squared_area);
+    if (!(area <= thickest * all.squares)) return {};
+    return Vec3(longest, area / longest,
+                area > 0 ? std::min(std::abs(all.volume), area * area / longest) / area : 0);
+}
+
 Vec3 most_singular_values(const Mat3& linear) {
     const Symmetric all(linear);
     if (!all.in_range) return singular_values(linear);
@@ -60,6 +71,9 @@ double flatness_over(double share, const Mat3& linear) {
         const double least = (std::abs(all.volume) - all.rounding) / unit;
         if (least > share) return least;
         if (3 * (std::abs(all.volume) + all.rounding) <= 0.99 * share * unit) return 0;
+        // Of a line the volume says nothing; the least one is no more than the middle one.
+        const double middle = 3 * std::sqrt(all.squared_area) + 2e-15 * all.squares;
+        if (middle <= 0.99 * share * all.squares) return 0;
     }
     const Vec3 sigma = singular_values(linear);
     return sigma.z > share * sigma.x ? sigma.z / sigma.x : 0;

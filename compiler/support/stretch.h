@@ -59,6 +59,11 @@ struct FlatMap {
 /// least.
 std::optional<FlatMap> flat_map(const Mat3& linear);
 
+/// The singular values of what is crushed nearly to a line: none where the middle one is over 1e-4 of the
+/// largest. The middle one is up to sqrt(2) times too large, and the least one as much too small, where these
+/// two are alike.
+std::optional<Vec3> line_values(const Mat3& linear);
+
 /// At least the singular values, largest first, and at most three times as much; no decomposition. The least
 /// one of what is crushed to a line is given as no more than the middle one.
 Vec3 most_singular_values(const Mat3& linear);

@@ -236,9 +236,11 @@ class Rerooter {
     }
 
     bool refuse_crowd() {
-        return refuse(
-            fmt::format("more than {} parts of one size crowd around this place", Surroundings::most_pieces),
-            "zoom in less, or choose another address");
+        return refuse(around_.looked_too_often()
+                          ? fmt::format("more than {} parts may reach this place", Surroundings::most_looks)
+                          : fmt::format("more than {} parts of one size crowd around this place",
+                                        Surroundings::most_pieces),
+                      "zoom in less, or choose another address");
     }
 
     bool refuse_condition(double condition) {

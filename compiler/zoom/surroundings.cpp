@@ -105,6 +105,7 @@ bool Surroundings::keep(NearPiece first, Vec3 focus, double reach, double size,
     while (!stack.empty()) {
         const NearPiece piece = std::move(stack.back());
         stack.pop_back();
+        if (++looks_ > most_looks) return false;
         if (!in_reach(piece, focus, reach)) continue;
         if (piece.error > lost_share * size) {
             ++lost_;

@@ -42,7 +42,8 @@ class Surroundings {
 
     /// Goes down one instance of the object reached. What has no point within `reach` of `focus` (both in the
     /// new frame) is left behind. `flat`: the map cannot be inverted; `too_many`: more pieces than
-    /// `most_pieces`; `no_level`: the steps do not lead so deep. Nothing changes then.
+    /// `most_pieces`, or more than `most_looks` to find them; `no_level`: the steps do not lead so deep. The
+    /// pieces are as before then.
     Outcome descend(std::uint32_t instance, Vec3 focus, double reach);
 
     /// Stays where it is, and leaves no piece in reach that is larger than `size` if it has parts; the object
@@ -52,10 +53,14 @@ class Surroundings {
     const NearPiece& own() const { return own_; }
     const std::vector<NearPiece>& others() const { return others_; }
     std::size_t lost() const { return lost_; }
+    /// That there were too many for this, and not for their number.
+    bool looked_too_often() const { return looks_ > most_looks; }
     /// Of the ball of a piece, in the frame.
     double radius(const NearPiece& piece) const;
 
     static constexpr std::size_t most_pieces = 20'000;
+    /// Pieces that are looked at in all: of crushed ones, countless may come within reach and none lie there.
+    static constexpr std::uint64_t most_looks = 2'000'000;
 
   private:
     struct KnownMap {
@@ -81,6 +86,7 @@ class Surroundings {
         known_of_pair_; ///< object reached and piece
     std::vector<KnownMap> known_;
     std::size_t lost_ = 0;
+    std::uint64_t looks_ = 0;
 };
 
 } // namespace graftal

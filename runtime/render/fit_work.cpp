@@ -25,6 +25,9 @@ constexpr std::uint64_t fewest_visits = 16;
 /// By how much a coarser picture may take less: more where crowds are seen, hardly any where surfaces
 /// overlap.
 constexpr double most_gain = coarser * coarser * coarser;
+/// Of what is allowed: a look that takes more for shells is broken off, since the picture takes more, too. It
+/// is taken for one that takes so many times what is allowed.
+constexpr double most_for_shells = 0.5, broken_off = 4;
 
 class Fitting {
   public:
@@ -116,8 +119,14 @@ class Fitting {
                               static_cast<std::size_t>(picture.height));
         TraceControl control;
         control.threads = threads_;
-        control.cancelled = cancelled_;
+        const double most_shells = most_for_shells * allowed();
+        const auto too_many_shells = [&] { return options_.culls() && shell_seconds(model) > most_shells; };
+        control.cancelled = [&] { return cancelled_() || too_many_shells(); };
         tracer.trace({block, {}}, control, picture);
+        if (too_many_shells()) { // how many there are by now depends on the threads
+            tried_seconds_ += most_shells;
+            return broken_off * allowed();
+        }
         const TraceStatistics& tried = tracer.statistics();
         const double shells = shell_seconds(model);
         const double rays = static_cast<double>(tried.work) / WorkRates::ray_steps;

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
@@ -53,7 +52,6 @@ void add_part(const BakedPart& part, const Affine& frame_from_body, TraceMesh& m
 std::unique_ptr<TraceMesh> trace_mesh(const Baked& baked, const Affine& frame_from_representative) {
     const Affine frame_from_body = frame_from_representative * baked.representative_from_body;
     auto mesh = std::make_unique<TraceMesh>();
-    mesh->culled_detail = baked.culled_detail;
     for (const BakedPart& part : baked.parts)
         add_part(part, frame_from_body, *mesh);
     std::vector<BoxedItem> items;
@@ -100,8 +98,7 @@ MeshStore::Key MeshStore::key(NodeId node, const Affine& graph_from_frame, std::
             steps_of(detail_per_unit / graph_from_frame.linear[0][0])};
 }
 
-void MeshStore::note(const TraceMesh& mesh, double detail_per_unit, double here) {
-    const double seen = mesh.culled_detail * std::min(1.0, here / detail_per_unit);
+void MeshStore::note(double seen) {
     double before = coarsest_shell_;
     while (before < seen && !coarsest_shell_.compare_exchange_weak(before, seen)) {
     }
@@ -125,13 +122,11 @@ std::unique_ptr<TraceMesh> MeshStore::bake_shell(const Key& key, const Affine& g
     request.detail_per_unit = value_of(key.detail);
     request.most_shell_work = most_shell_work_;
     request.painters = {{0, Rgb(0.0)}, {0, Rgb(1.0)}};
-    Baked baked = bake(prepared_.cut, prepared_.symmetry, request, most_triangles);
-    if (!baked.complete) { // whatever it takes: nobody is to see a gap
-        request.most_shell_work = std::numeric_limits<std::uint64_t>::max();
-        baked = bake(prepared_.cut, prepared_.symmetry, request, most_triangles);
-    }
+    const Baked baked = bake(prepared_.cut, prepared_.symmetry, request, most_triangles);
     shell_work_ += baked.shell_work;
-    return trace_mesh(baked, inverse(graph_from_frame));
+    auto mesh = trace_mesh(baked, inverse(graph_from_frame));
+    mesh->cell = baked.culled_detail / request.detail_per_unit / graph_from_frame.linear[0][0];
+    return mesh;
 }
 
 } // namespace graftal

@@ -35,7 +35,7 @@ struct TraceMesh {
     std::vector<Colour> colours;
     std::vector<BoxNode> boxes;
     std::uint32_t tree = no_tree; ///< its root in `boxes`
-    double culled_detail = 0;     ///< largest detail of what is left out (Baked), as the key has it
+    double cell = 0;              ///< side of a cell of the shell: what is smaller is not drawn
 
     Triangle triangle(std::uint32_t number) const {
         Triangle triangle;
@@ -68,10 +68,11 @@ class MeshStore {
 
     /// The shell of a crowded node where a unit of its frame has this detail (detail.h).
     Key key(NodeId node, const Affine& graph_from_frame, std::uint32_t steps, double detail_per_unit) const;
-    /// That a shell was seen; `here`: the detail of a unit in its middle.
-    void note(const TraceMesh& mesh, double detail_per_unit, double here);
+    /// That a shell was seen whose cells have this detail there (detail.h).
+    void note(double cell_detail);
 
-    /// The largest detail of a cell of the shells so far, 0 if there are none: more than 1 where they had to be coarser.
+    /// The largest detail of a cell that was seen so far, 0 if none was: more than 1 where shells had to be
+    /// coarser.
     double coarsest_shell() const { return coarsest_shell_; }
     /// Points moved for shells so far.
     std::uint64_t shell_work() const { return shell_work_; }

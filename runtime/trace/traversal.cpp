@@ -105,8 +105,6 @@ const TraceMesh& Traversal::shell_of(const Frame& frame) {
     if (!mesh || known != key) {
         mesh = &model_.meshes.mesh(key, graph_from_frame);
         known = key;
-        const double here = frame.scale * model_.projection.detail_per_unit({ball.centre, 0});
-        model_.meshes.note(*mesh, detail_per_unit, here);
     }
     return *mesh;
 }
@@ -164,6 +162,8 @@ void Traversal::surface_at_best(SurfaceHit& hit) const {
     if (best_.mesh_colour) {
         inherited = best_.mesh_colour->fixed + best_.mesh_colour->open * inherited;
         if (best_.mesh_colour->material) hit.material = &materials[*best_.mesh_colour->material];
+        if (model_.projection.culls())
+            model_.meshes.note(best_.cell * model_.projection.detail_per_unit({ray_(best_.t), 0}));
     }
     else if (best_.proxy_node == no_edge && material && model_.textures[*material])
         inherited = colour_of(texel(*material, path_.back(), best_.turns, best_.point));

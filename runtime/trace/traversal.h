@@ -98,6 +98,7 @@ class Traversal final : public Surfaces {
         LaneMap world_from_leaf;
         std::uint32_t proxy_node = 0;                   ///< or no_edge
         const TraceMesh::Colour* mesh_colour = nullptr; ///< of a triangle
+        double cell = 0;                                ///< of its shell, in the world
         bool in_world = false; ///< the proxy was met there: so are its normal and point
         bool crushed = false;  ///< what was crushed shows the proxies' own normals
     };

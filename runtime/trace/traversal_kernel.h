@@ -422,6 +422,7 @@ template<Instructions instructions> struct Traversal::Kernel {
         self.best_.world_from_leaf = frame.world_from_node;
         self.best_.proxy_node = no_edge;
         self.best_.mesh_colour = &mesh.colours[mesh.colour_of_triangle[triangle]];
+        self.best_.cell = frame.scale * mesh.cell;
         self.keep_way(entry.frame);
     }
 

@@ -2,6 +2,7 @@
 
 #include "compiler/cut/shell.h"
 
+#include <algorithm>
 #include <map>
 #include <random>
 #include <set>
@@ -47,15 +48,15 @@ TEST(Shell, PointsAreTrueAndNoTruePointOutsideIsFar) {
     const PreparedCut ready = prepared(corners_graph(3, 0.7));
     const CutGraph& cut = ready.cut;
     const auto set = point_set(cut, cut.root, unlimited_steps, detail_for(cut, 120), {});
-    ASSERT_TRUE(set);
-    EXPECT_FALSE(set->flat);
+    ASSERT_FALSE(set.points.empty());
+    EXPECT_FALSE(set.flat);
     std::set<std::array<int, 3>> cells;
-    for (const auto& p : set->points) {
+    for (const auto& p : set.points) {
         std::array<int, 3> cell{};
         for (std::size_t k = 0; k < 3; ++k) {
-            ASSERT_LE(std::abs(p[k] + static_cast<float>(set->middle[static_cast<int>(k)])), 1 + 1e-5)
+            ASSERT_LE(std::abs(p[k] + static_cast<float>(set.middle[static_cast<int>(k)])), 1 + 1e-5)
                 << "not in the cube, which the set is";
-            cell[k] = static_cast<int>(std::floor(static_cast<double>(p[k]) / set->cell));
+            cell[k] = static_cast<int>(std::floor(static_cast<double>(p[k]) / set.cell));
         }
         EXPECT_TRUE(cells.insert(cell).second) << "two points in one cell";
     }
@@ -66,7 +67,7 @@ TEST(Shell, PointsAreTrueAndNoTruePointOutsideIsFar) {
         Vec3 p(side(random), side(random), side(random));
         p[i % 3] = i % 2 ? 1 : -1;
         bool near = false;
-        const Vec3 q = (p - set->middle) / set->cell;
+        const Vec3 q = (p - set.middle) / set.cell;
         for (int dx = -3; dx <= 3 && !near; ++dx)
             for (int dy = -3; dy <= 3 && !near; ++dy)
                 for (int dz = -3; dz <= 3 && !near; ++dz)
@@ -81,10 +82,10 @@ TEST(Shell, WhatNobodySeesIsLeftOut) {
     const PreparedCut ready = prepared(corners_graph(3, 0.7));
     const CutGraph& cut = ready.cut;
     const auto set = point_set(cut, cut.root, unlimited_steps, detail_for(cut, 200), {});
-    ASSERT_TRUE(set);
-    const double side_cells = 2 / set->cell;
-    EXPECT_LT(static_cast<double>(set->points.size()), 0.5 * side_cells * side_cells * side_cells);
-    EXPECT_TRUE(set->is_inside({0, 0, 0}));
+    ASSERT_FALSE(set.points.empty());
+    const double side_cells = 2 / set.cell;
+    EXPECT_LT(static_cast<double>(set.points.size()), 0.5 * side_cells * side_cells * side_cells);
+    EXPECT_TRUE(set.is_inside({0, 0, 0}));
 }
 
 TEST(Shell, WorkGrowsWithCellsAndNotWithCopies) {
@@ -92,13 +93,13 @@ TEST(Shell, WorkGrowsWithCellsAndNotWithCopies) {
         const PreparedCut ready = prepared(corners_graph(2, share));
         const CutGraph& cut = ready.cut;
         const auto set = point_set(cut, cut.root, unlimited_steps, detail_for(cut, 300), {});
-        ASSERT_TRUE(set);
-        EXPECT_TRUE(set->flat);
+        ASSERT_FALSE(set.points.empty());
+        EXPECT_TRUE(set.flat);
         // Four maps move each point of the last grid once; those before are sixth parts of it and of each
         // other, or less, except the first.
-        EXPECT_LT(set->work, 3 * 4 * set->points.size()) << share;
-        const double side_cells = 2 / set->cell;
-        EXPECT_GT(static_cast<double>(set->points.size()), 0.9 * side_cells * side_cells) << share;
+        EXPECT_LT(set.work, 3 * 4 * set.points.size()) << share;
+        const double side_cells = 2 / set.cell;
+        EXPECT_GT(static_cast<double>(set.points.size()), 0.9 * side_cells * side_cells) << share;
     }
 }
 
@@ -108,10 +109,42 @@ TEST(Shell, LimitsMakeItCoarserAndNotLess) {
     PointLimits limits;
     limits.points = 20'000;
     const auto set = point_set(cut, cut.root, unlimited_steps, detail_for(cut, 2000), limits);
-    ASSERT_TRUE(set);
-    EXPECT_LE(set->points.size(), limits.points);
-    EXPECT_GT(set->points.size(), limits.points / 8);
-    EXPECT_GT(set->cell * detail_for(cut, 2000), 5);
+    ASSERT_FALSE(set.points.empty());
+    EXPECT_LE(set.points.size(), limits.points);
+    EXPECT_GT(set.points.size(), limits.points / 8);
+    EXPECT_GT(set.cell * detail_for(cut, 2000), 5);
+}
+
+/// Where a first look took too much there was nothing, and then a shell without a limit.
+TEST(Shell, LittleWorkMakesItCoarserAndNotNothing) {
+    const PreparedCut ready = prepared(corners_graph(3, 0.9));
+    const CutGraph& cut = ready.cut;
+    for (const std::uint64_t work : {1'000'000ull, 100'000ull, 20'000ull}) {
+        PointLimits limits;
+        limits.work = work;
+        const PointSet set = point_set(cut, cut.root, unlimited_steps, detail_for(cut, 2000), limits);
+        EXPECT_FALSE(set.points.empty()) << work;
+        EXPECT_LE(set.work, 2 * work);
+        EXPECT_GT(set.cell * detail_for(cut, 2000), 5) << work;
+    }
+}
+
+TEST(Shell, WhatLeadsToAPrimitiveIsSolid) {
+    Graph graph;
+    const ObjectId ball = graph.primitive(PrimitiveKind::sphere);
+    const auto dust = static_cast<ObjectId>(graph.objects.size());
+    graph.objects.push_back({"dust", {}, {}, {}, {}});
+    for (const double x : {-1.0, 1.0})
+        graph.objects[dust].instances.push_back({dust, {Mat3(0.4), Vec3(x, 0, 0)}, {}, {}, {}});
+    Object top{"top", {}, {}, {}, {}};
+    top.instances.push_back({dust, {}, {}, {}, {}});
+    top.instances.push_back({ball, Affine::scale(Vec3(0.1)), {}, {}, {}});
+    graph.root = graph.add(std::move(top));
+    const PreparedCut ready = prepared(graph);
+    EXPECT_TRUE(ready.cut.nodes[ready.cut.root].solid);
+    const auto found = std::ranges::find(ready.cut.nodes, "dust", &CutNode::name);
+    ASSERT_NE(found, ready.cut.nodes.end());
+    EXPECT_FALSE(found->solid);
 }
 
 TEST(Shell, IsAClosedSurface) {
@@ -191,10 +224,10 @@ TEST(ShellStore, GivesWhatIsMadeAnewAndMakesItOnce) {
     for (const double across : {60.0, 20.0, 60.0, 20.0}) {
         const auto kept = store.points(cut, cut.root, unlimited_steps, detail_for(cut, across), limits);
         const auto anew = point_set(cut, cut.root, unlimited_steps, detail_for(cut, across), limits);
-        ASSERT_TRUE(kept && anew);
-        EXPECT_EQ(kept->points, anew->points);
-        EXPECT_EQ(kept->cell, anew->cell);
-        EXPECT_EQ(kept->work, anew->work);
+        ASSERT_FALSE(anew.points.empty());
+        EXPECT_EQ(kept->points, anew.points);
+        EXPECT_EQ(kept->cell, anew.cell);
+        EXPECT_EQ(kept->work, anew.work);
     }
     EXPECT_EQ(store.made(), 2u);
 }
@@ -209,9 +242,9 @@ TEST(ShellStore, OneGridServesAllThatAskForAFinerOneThanTheLimitsAllow) {
     for (const double across : {1e7, 4e6, 2000.0, 1e9}) {
         const auto kept = store.points(cut, cut.root, unlimited_steps, detail_for(cut, across), limits);
         const auto anew = point_set(cut, cut.root, unlimited_steps, detail_for(cut, across), limits);
-        ASSERT_TRUE(kept && anew);
-        EXPECT_EQ(kept->points, anew->points);
-        EXPECT_EQ(kept->cell, anew->cell);
+        ASSERT_FALSE(anew.points.empty());
+        EXPECT_EQ(kept->points, anew.points);
+        EXPECT_EQ(kept->cell, anew.cell);
     }
     EXPECT_EQ(store.made(), 1u);
     const auto coarse = store.points(cut, cut.root, unlimited_steps, detail_for(cut, 40), limits);
@@ -225,7 +258,7 @@ TEST(ShellStore, KeepsTheLastThatItHasRoomFor) {
     const CutGraph& cut = ready.cut;
     ShellStore none(0);
     for (int i = 0; i < 2; ++i)
-        ASSERT_TRUE(none.points(cut, cut.root, unlimited_steps, detail_for(cut, 20), {}));
+        ASSERT_FALSE(none.points(cut, cut.root, unlimited_steps, detail_for(cut, 20), {})->points.empty());
     EXPECT_EQ(none.made(), 2u);
 }
 

@@ -91,6 +91,33 @@ TEST(Stretch, AFlatMapIsThickenedAlongItsNormalOnly) {
     EXPECT_GE(flat_maps, 80);
 }
 
+/// Leaves of models that crush space to lines asked for a decomposition each.
+TEST(Stretch, LinesNeedNoDecomposition) {
+    std::mt19937_64 random(5);
+    std::uniform_real_distribution<double> exponent(-16, 0);
+    int lines = 0;
+    for (int i = 0; i < 2000; ++i) {
+        const double middle = std::pow(10.0, exponent(random)),
+                     least = middle * std::pow(10.0, exponent(random));
+        const std::optional<Vec3> line = line_values(map_of({1, middle, least}, random));
+        if (!line) {
+            EXPECT_GT(middle, 0.7e-4);
+            continue;
+        }
+        ++lines;
+        EXPECT_NEAR(line->x, 1, 1e-7);
+        EXPECT_GE(line->y, middle * (1 - 1e-6) - 1e-15);
+        EXPECT_LE(line->y, std::sqrt(2.0) * middle * (1 + 1e-6) + 1e-14);
+        if (middle > 1e-8) {
+            EXPECT_GE(line->z, least / std::sqrt(2.0) - 1e-14 / middle);
+            EXPECT_LE(line->z, least + 1e-14 / middle);
+        }
+    }
+    EXPECT_GT(lines, 1000);
+    EXPECT_FALSE(line_values(Mat3(1.0)));
+    EXPECT_FALSE(line_values(Mat3(0.0)));
+}
+
 TEST(Stretch, OfNothingIsNothing) {
     EXPECT_EQ(flatness_over(1e-6, Mat3(0.0)), 0);
     EXPECT_EQ(largest_stretch(Mat3(0.0)), 0);

@@ -1,8 +1,15 @@
 #include "compiler/support/check.h"
 
+#include <cstdio>
+
 #include <fmt/format.h>
 
 namespace graftal {
+
+OutOfMemory::OutOfMemory(std::string_view stage) noexcept {
+    std::snprintf(text_, sizeof text_, "out of memory in the stage %.*s", static_cast<int>(stage.size()),
+                  stage.data());
+}
 
 void invariant_broken(const char* file, int line, const char* condition, std::string_view context) {
     throw BrokenInvariant(

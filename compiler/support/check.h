@@ -14,14 +14,14 @@ class BrokenInvariant : public std::logic_error {
     using std::logic_error::logic_error;
 };
 
-/// Memory that could not be had, with the stage that asked for it.
+/// Memory that could not be had, with the stage that asked for it. Takes no more of it.
 class OutOfMemory : public std::bad_alloc {
   public:
-    explicit OutOfMemory(std::string_view stage) : text_("out of memory in the stage ") { text_ += stage; }
-    const char* what() const noexcept override { return text_.c_str(); }
+    explicit OutOfMemory(std::string_view stage) noexcept;
+    const char* what() const noexcept override { return text_; }
 
   private:
-    std::string text_;
+    char text_[120];
 };
 
 /// Throws a BrokenInvariant. `context` names the stage or pass and the object, e.g. "merge_equivalent: object

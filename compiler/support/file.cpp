@@ -1,6 +1,7 @@
 #include "compiler/support/file.h"
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cerrno>
 #include <cstdio>
@@ -37,6 +38,23 @@ Status read_stream(std::FILE* stream, const std::string& path, std::string& text
         text.append(buffer, count);
     }
     return std::ferror(stream) ? system_failure("read", path) : Status();
+}
+
+/// The temporaries that there are, for handlers of signals. What finds no place is left to the next run.
+std::array<std::atomic<const char*>, 1024> pending_paths;
+
+void note_pending(const char* path) {
+    for (std::atomic<const char*>& place : pending_paths) {
+        const char* none = nullptr;
+        if (place.compare_exchange_strong(none, path)) return;
+    }
+}
+
+void forget_pending(const char* path) {
+    for (std::atomic<const char*>& place : pending_paths) {
+        const char* noted = path;
+        if (place.compare_exchange_strong(noted, nullptr)) return;
+    }
 }
 
 /// The times of a temporary that its writer has not opened yet: access, change.
@@ -137,30 +155,70 @@ void PendingFile::create() {
         temporary_ = (target.parent_path() / name).string();
         lock_ = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
         // Another may have taken it for abandoned before it was locked.
-        if (lock_ < 0) return;
+        if (lock_ < 0) break;
         ::futimens(lock_, never_written);
-        if (::flock(lock_, LOCK_EX) != 0 || ::access(temporary_.c_str(), F_OK) == 0) return;
+        struct stat info = {};
+        if (::flock(lock_, LOCK_EX) != 0 || ::fstat(lock_, &info) != 0 || info.st_nlink > 0) break;
         ::close(lock_);
     }
+    note_pending(temporary_.c_str());
 }
 
-bool PendingFile::is_written() const {
+Status PendingFile::check_written() const {
+    if (!status_.ok()) return status_;
     struct stat info = {};
-    return ::stat(temporary_.c_str(), &info) == 0 &&
-           (info.st_size > 0 || info.st_mtim.tv_sec != never_written[1].tv_sec);
+    const bool there = ::stat(temporary_.c_str(), &info) == 0;
+    if (!there && errno != ENOENT) return system_failure("write", path_);
+    if (there && (info.st_size > 0 || info.st_mtim.tv_sec != never_written[1].tv_sec)) return {};
+    return Status::failure(fmt::format("cannot write '{}': nothing came", path_));
 }
 
 PendingFile::~PendingFile() {
-    if (!committed_ && !temporary_.empty()) ::unlink(temporary_.c_str());
+    if (!temporary_.empty()) {
+        forget_pending(temporary_.c_str());
+        if (!committed_ || exchanged_) ::unlink(temporary_.c_str());
+    }
     if (lock_ >= 0) ::close(lock_);
 }
 
 Status PendingFile::commit() {
-    if (!status_.ok()) return status_;
-    if (!is_written()) return Status::failure(fmt::format("cannot write '{}': nothing came", path_));
+    if (Status status = check_written(); !status.ok()) return status;
     if (std::rename(temporary_.c_str(), target_.c_str()) != 0) return system_failure("write", path_);
     committed_ = true;
     return {};
+}
+
+/// As commit(), but what was there stays under the temporary's name, where the file system knows how.
+Status PendingFile::take_place() {
+    if (Status status = check_written(); !status.ok()) return status;
+    exchanged_ = !is_special_file(target_) &&
+                 ::renameat2(AT_FDCWD, temporary_.c_str(), AT_FDCWD, target_.c_str(), RENAME_EXCHANGE) == 0;
+    if (!exchanged_) return commit();
+    committed_ = true;
+    return {};
+}
+
+void PendingFile::give_back() {
+    if (!exchanged_)
+        ::unlink(target_.c_str());
+    else
+        ::renameat2(AT_FDCWD, temporary_.c_str(), AT_FDCWD, target_.c_str(), RENAME_EXCHANGE);
+}
+
+Status commit_together(std::span<PendingFile* const> files) {
+    for (std::size_t i = 0; i < files.size(); ++i) {
+        Status status = files[i]->take_place();
+        if (status.ok()) continue;
+        while (i > 0)
+            files[--i]->give_back();
+        return status;
+    }
+    return {};
+}
+
+void remove_pending_files() noexcept {
+    for (const std::atomic<const char*>& place : pending_paths)
+        if (const char* path = place) ::unlink(path);
 }
 
 Status write_text(const std::string& path, std::string_view text) {
@@ -172,11 +230,15 @@ Status write_text(const std::string& path, std::string_view text) {
     }
     PendingFile pending(path);
     if (!pending.status().ok()) return pending.status();
+    const Status status = write_text(pending, text);
+    return status.ok() ? pending.commit() : status;
+}
+
+Status write_text(const PendingFile& pending, std::string_view text) {
     OpenFile file(std::fopen(pending.temporary_path().c_str(), "wb"));
-    if (!file) return system_failure("write", path);
+    if (!file) return system_failure("write", pending.path());
     const bool written = std::fwrite(text.data(), 1, text.size(), file.get()) == text.size();
-    if (!written || std::fclose(file.release()) != 0) return system_failure("write", path);
-    return pending.commit();
+    return written && std::fclose(file.release()) == 0 ? Status() : system_failure("write", pending.path());
 }
 
 } // namespace graftal

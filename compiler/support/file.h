@@ -1,5 +1,6 @@
 #pragma once
 
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -39,10 +40,13 @@ class PendingFile {
     const std::string& temporary_path() const { return temporary_; }
     const std::string& path() const { return path_; }
     Status commit();
+    friend Status commit_together(std::span<PendingFile* const> files);
 
   private:
     void create();
-    bool is_written() const;
+    Status check_written() const;
+    Status take_place();
+    void give_back();
 
     std::string path_;
     std::string target_;
@@ -50,11 +54,22 @@ class PendingFile {
     Status status_;
     int lock_ = -1;
     bool committed_ = false;
+    bool exchanged_ = false; ///< the temporary is what was there before
 };
+
+/// Commits all of them in this order, or none: where one cannot be, those before it become again what they
+/// were.
+Status commit_together(std::span<PendingFile* const> files);
+
+/// Removes the temporaries of all PendingFiles that there are. For handlers of signals: only system calls.
+void remove_pending_files() noexcept;
 
 /// Takes a lock on the file or folder at `path`, which ends with this process: its descriptor, or -1 where
 /// another has it, or nothing can be locked there.
 int lock_path(const std::string& path);
+
+/// Writes `text` to a PendingFile, and does not commit it.
+Status write_text(const PendingFile& pending, std::string_view text);
 
 /// Writes `text` to `path` by a PendingFile, or to standard output for "-".
 Status write_text(const std::string& path, std::string_view text);

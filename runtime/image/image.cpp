@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cerrno>
 #include <cmath>
+#include <cstring>
+#include <optional>
 
 #include <dlfcn.h>
 #include <fmt/format.h>
@@ -36,7 +39,10 @@ struct Module {
 Module load_module() {
     void* const library = ::dlopen(GRAFTAL_PICTURE_FILES, RTLD_LAZY | RTLD_LOCAL);
     void* const symbol = library ? ::dlsym(library, picture_files_symbol) : nullptr;
-    if (!symbol) return {nullptr, ::dlerror()};
+    if (!symbol) {
+        const char* const reason = ::dlerror(); // null where there is no memory for it
+        return {nullptr, reason ? reason : std::strerror(ENOMEM)};
+    }
     return {reinterpret_cast<const PictureFiles* (*)()>(symbol)(), {}};
 }
 
@@ -49,7 +55,9 @@ const Module& module() {
 /// PNG needs no module: the first of 640x360 is written in 6 ms and 1 MiB, where OpenImageIO took 240 ms and
 /// 120 MiB, nearly all of it to load.
 std::string read(const std::string& path, RowSink& sink) {
-    if (is_png_file(path)) return read_png(path, sink);
+    const std::optional<bool> png = is_png_file(path);
+    if (!png) return std::strerror(errno);
+    if (*png) return read_png(path, sink);
     return module().files ? module().files->read(path, sink) : module().error;
 }
 

@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <cstring>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include <png.h>
@@ -250,11 +251,13 @@ class Reader {
 
 } // namespace
 
-bool is_png_file(const std::string& path) {
+std::optional<bool> is_png_file(const std::string& path) {
     const OpenFile file(std::fopen(path.c_str(), "rb"));
+    if (!file) return std::nullopt;
     char start[png_signature.size()];
-    return file && std::fread(start, 1, sizeof start, file.get()) == sizeof start &&
-           std::equal(start, start + sizeof start, png_signature.begin());
+    const std::size_t count = std::fread(start, 1, sizeof start, file.get());
+    if (std::ferror(file.get())) return std::nullopt;
+    return count == sizeof start && std::equal(start, start + sizeof start, png_signature.begin());
 }
 
 std::string read_png(const std::string& path, RowSink& sink) {

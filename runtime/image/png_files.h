@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 
@@ -12,8 +13,8 @@ namespace graftal {
 // PNG files, by libpng; image.h is the interface to use. Each function returns what went wrong, in words,
 // or "".
 
-/// True if the file begins as a PNG does, whatever its name.
-bool is_png_file(const std::string& path);
+/// Whether the file begins as a PNG does, whatever its name; nothing, with errno, where it cannot be read.
+std::optional<bool> is_png_file(const std::string& path);
 
 /// Reads a PNG of any kind. An interlaced one is held whole on the way and must have less than 256 MiB.
 std::string read_png(const std::string& path, RowSink& sink);

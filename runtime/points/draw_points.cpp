@@ -143,7 +143,9 @@ PointWork work_for(const PointsOptions& options) {
             [] { return Interruption::signal() != 0; }};
 }
 
-Status write_picture(Canvas& canvas, const View& view, const PointsOptions& options, PointsReport& report) {
+/// `card`: appears with the picture, or neither does.
+Status write_picture(Canvas& canvas, const View& view, const PointsOptions& options, PendingFile* card,
+                     PointsReport& report) {
     const Accumulation& points = canvas.sum();
     for (const Accumulation::Cell& cell : points.cells())
         report.inside += cell.count;
@@ -156,7 +158,13 @@ Status write_picture(Canvas& canvas, const View& view, const PointsOptions& opti
     if (is_exr_name(options.output) && image.channels == 4) // colour belongs to alpha already, as EXR has it
         for (std::size_t i = 0; i < image.pixels.size(); ++i)
             if (i % 4 != 3) image.pixels[i] *= image.pixels[i / 4 * 4 + 3];
-    return write_image(options.output, image, SampleFormat::srgb8, options.metadata);
+    PendingFile picture(options.output);
+    if (!picture.status().ok()) return picture.status();
+    if (Status status = write_image(picture, image, SampleFormat::srgb8, options.metadata); !status.ok())
+        return status;
+    if (!card) return picture.commit();
+    PendingFile* const both[] = {&picture, card};
+    return commit_together(both);
 }
 
 } // namespace
@@ -166,7 +174,7 @@ bool is_cloud_name(const std::string& path) {
 }
 
 Status place_points(const PointSource& source, const View& view, const PointsOptions& options,
-                    PointsReport& report) {
+                    PendingFile* card, PointsReport& report) {
     const Interruption interruption;
     Status status = check_writable(options.output);
     if (!status.ok()) return status;
@@ -184,7 +192,7 @@ Status place_points(const PointSource& source, const View& view, const PointsOpt
     const bool complete = take_points(
         source, work, [&](int worker, std::span<const ChaosPoint> points) { canvas.take(worker, points); });
     report.seconds = watch.seconds();
-    return complete ? write_picture(canvas, view, options, report) : Status::failure("interrupted");
+    return complete ? write_picture(canvas, view, options, card, report) : Status::failure("interrupted");
 }
 
 namespace {
@@ -193,8 +201,12 @@ Status place_card(const PointSource& source, const Box& box, const std::vector<M
                   const PointsOptions& options, PointsReport& report) {
     const ImageSize size = options.compile.size;
     const std::string picture = std::filesystem::path(options.output).filename().string();
-    const Status placed = place_points(source, card_view(box, size), options, report);
-    return placed.ok() ? write_text(options.card, card_text(picture, box, size, materials)) : placed;
+    const Interruption interruption;
+    PendingFile card(options.card);
+    if (!card.status().ok()) return card.status();
+    if (Status status = write_text(card, card_text(picture, box, size, materials)); !status.ok())
+        return status;
+    return place_points(source, card_view(box, size), options, &card, report);
 }
 
 std::optional<PointsReport> draw_orbit(const OrbitModel& model, const PointsOptions& options,
@@ -212,7 +224,7 @@ std::optional<PointsReport> draw_orbit(const OrbitModel& model, const PointsOpti
     PointsReport report;
     report.maps = static_cast<std::uint32_t>(model.maps.size());
     const View view = frame(model.scene, box, options.compile.size, options.compile.camera);
-    compilation.status = options.card.empty() ? place_points(source, view, options, report)
+    compilation.status = options.card.empty() ? place_points(source, view, options, nullptr, report)
                                               : place_card(source, box, {}, options, report);
     if (source.report(compilation.diagnostics)) compilation.status = Status(); // which is why it was given up
     compilation.times.push_back({"points", report.seconds});
@@ -240,7 +252,7 @@ std::optional<PointsReport> draw_points(const std::string& path, const PointsOpt
     const ChaosSource source(*game, compile.lower.seed.value_or(0));
     const Graph& graph = viewed->model.graph;
     const Box& box = viewed->model.bounds[graph.root].box;
-    compilation.status = options.card.empty() ? place_points(source, viewed->view, options, report)
+    compilation.status = options.card.empty() ? place_points(source, viewed->view, options, nullptr, report)
                                               : place_card(source, box, graph.materials, options, report);
     compilation.times.push_back({"points", report.seconds});
     if (!compilation.status.ok()) return std::nullopt;

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "compiler/compile.h"
+#include "compiler/support/file.h"
 #include "runtime/image/image.h"
 #include "runtime/points/point_source.h"
 #include "runtime/points/tone.h"
@@ -34,9 +35,10 @@ struct PointsReport {
     double seconds = 0; ///< of making points
 };
 
-/// Draws points of a source, or writes them: what draw_points() ends with.
+/// Draws points of a source, or writes them: what draw_points() ends with. `card`: written, and to appear
+/// with the picture; null: none.
 Status place_points(const PointSource& source, const View& view, const PointsOptions& options,
-                    PointsReport& report);
+                    PendingFile* card, PointsReport& report);
 
 /// Model file -> points, by random iteration on its graph (chaos/chaos_game.h) or by the formulas of an
 /// orbit. The file depends on model, options and seed, not on the number of threads. Nothing comes back, and

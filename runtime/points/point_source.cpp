@@ -3,12 +3,8 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <condition_variable>
 #include <mutex>
-
-#include <tbb/info.h>
-#include <tbb/parallel_for.h>
-#include <tbb/parallel_pipeline.h>
-#include <tbb/task_arena.h>
 
 #include "runtime/system/worker_threads.h"
 
@@ -62,6 +58,38 @@ class Progress {
     std::chrono::steady_clock::time_point next_;
 };
 
+/// Lets threads that have a number each go on one after the other, in the order of the numbers.
+class Turns {
+  public:
+    /// Ends with this, however that ends.
+    class Turn {
+      public:
+        Turn(Turns& turns, std::uint64_t number) : turns_(turns), number_(number) {}
+        ~Turn() {
+            wait();
+            const std::lock_guard lock(turns_.mutex_);
+            ++turns_.next_;
+            turns_.changed_.notify_all();
+        }
+        Turn(const Turn&) = delete;
+        Turn& operator=(const Turn&) = delete;
+
+        void wait() const {
+            std::unique_lock lock(turns_.mutex_);
+            turns_.changed_.wait(lock, [this] { return turns_.next_ == number_; });
+        }
+
+      private:
+        Turns& turns_;
+        std::uint64_t number_;
+    };
+
+  private:
+    std::mutex mutex_;
+    std::condition_variable changed_;
+    std::uint64_t next_ = 0;
+};
+
 std::uint64_t stream_count(const PointSource& source, const PointWork& work) {
     return source.single() ? 1 : (work.points + points_of_stream - 1) / points_of_stream;
 }
@@ -92,19 +120,16 @@ std::unique_ptr<PointStream> ChaosSource::stream(std::uint64_t number) const {
 }
 
 int worker_count(int threads) {
-    return threads > 0 ? threads : tbb::info::default_concurrency();
+    return WorkerThreads(threads).count();
 }
 
 bool take_points(const PointSource& source, const PointWork& work,
                  const std::function<void(int worker, std::span<const ChaosPoint>)>& take) {
     Progress progress(work);
-    WorkerThreads(work.threads).run([&] {
-        tbb::parallel_for(std::uint64_t{0}, stream_count(source, work), [&](std::uint64_t number) {
-            if (progress.stopped()) return;
-            const int worker = tbb::this_task_arena::current_thread_index();
-            play(source, work, number, progress,
-                 [&](std::span<const ChaosPoint> points) { take(worker, points); });
-        });
+    WorkerThreads(work.threads).for_each(stream_count(source, work), [&](int worker, std::uint64_t number) {
+        if (progress.stopped()) return;
+        play(source, work, number, progress,
+             [&](std::span<const ChaosPoint> points) { take(worker, points); });
     });
     return !progress.stopped();
 }
@@ -127,28 +152,14 @@ bool write_points(const PointSource& source, const PointWork& work,
         put(bytes);
         return !progress.stopped();
     }
-    WorkerThreads threads(work.threads);
-    const std::uint64_t streams = stream_count(source, work);
-    std::uint64_t next = 0;
-    threads.run([&] {
-        tbb::parallel_pipeline(
-            static_cast<std::size_t>(2 * threads.count()),
-            tbb::make_filter<void, std::uint64_t>(tbb::filter_mode::serial_in_order,
-                                                  [&](tbb::flow_control& control) -> std::uint64_t {
-                                                      if (next == streams || progress.stopped())
-                                                          control.stop();
-                                                      return next++;
-                                                  }) &
-                tbb::make_filter<std::uint64_t, std::vector<char>>(
-                    tbb::filter_mode::parallel,
-                    [&](std::uint64_t number) {
-                        std::vector<char> bytes;
-                        if (number < streams)
-                            play(source, work, number, progress,
-                                 [&](std::span<const ChaosPoint> points) { make(points, bytes); });
-                        return bytes;
-                    }) &
-                tbb::make_filter<std::vector<char>, void>(tbb::filter_mode::serial_in_order, put));
+    Turns turns;
+    WorkerThreads(work.threads).for_each(stream_count(source, work), [&](int, std::uint64_t number) {
+        std::vector<char> bytes;
+        const Turns::Turn turn(turns, number);
+        play(source, work, number, progress,
+             [&](std::span<const ChaosPoint> points) { make(points, bytes); });
+        turn.wait();
+        put(bytes);
     });
     return !progress.stopped();
 }

@@ -138,7 +138,7 @@ class Watch {
             siginfo_t ended = {};
             if (::waitid(P_PID, static_cast<id_t>(child_), &ended, WEXITED | WNOHANG | WNOWAIT) != 0 &&
                 errno != EINTR)
-                return false;
+                return give_up(wait_status, usage);
             if (ended.si_pid == child_) return take_leave(wait_status, usage);
         }
     }
@@ -159,6 +159,14 @@ class Watch {
         while ((ended = ::wait4(child_, &wait_status, 0, &usage)) < 0 && errno == EINTR) {
         }
         return ended == child_;
+    }
+
+    /// A child that cannot be watched must not go on.
+    bool give_up(int& wait_status, rusage& usage) {
+        const int reason = errno;
+        take_leave(wait_status, usage);
+        errno = reason;
+        return false;
     }
 
     void heed_interruption() {

@@ -1,11 +1,15 @@
 #include "runtime/povray/temporary_directory.h"
 
+#include <array>
+#include <atomic>
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <string_view>
+#include <utility>
 
+#include <dirent.h>
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <sys/file.h>
@@ -78,12 +82,69 @@ void remove_abandoned() {
     }
 }
 
+/// One pass over what an open folder holds. Takes no memory, and descriptors only for folders in it. True if
+/// it came to the end and there was nothing.
+bool remove_once(int folder) noexcept;
+
+/// Removes what an open folder holds.
+void empty_folder(int folder) noexcept {
+    constexpr int most_passes = 100; // what is removed may hide what comes after it
+    for (int pass = 0; pass < most_passes && !remove_once(folder); ++pass)
+        ::lseek(folder, 0, SEEK_SET);
+}
+
+bool remove_once(int folder) noexcept {
+    bool nothing = true;
+    alignas(dirent64) char buffer[1 << 12];
+    while (true) {
+        const ssize_t count = ::getdents64(folder, buffer, sizeof buffer);
+        if (count <= 0) return count == 0 && nothing;
+        for (ssize_t at = 0; at < count;) {
+            const auto& entry = *reinterpret_cast<const dirent64*>(buffer + at);
+            at += entry.d_reclen;
+            const std::string_view name = entry.d_name;
+            if (name == "." || name == "..") continue;
+            nothing = false;
+            if (::unlinkat(folder, entry.d_name, 0) == 0) continue;
+            const int inside =
+                ::openat(folder, entry.d_name, O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
+            if (inside < 0) continue;
+            empty_folder(inside);
+            ::close(inside);
+            ::unlinkat(folder, entry.d_name, AT_REMOVEDIR);
+        }
+    }
+}
+
+/// Those that there are, for handlers of signals. What finds no place is left to the next run.
+std::array<std::atomic<const TemporaryDirectory*>, 16> directories;
+
+void exchange_noted(const TemporaryDirectory* from, const TemporaryDirectory* to) {
+    for (std::atomic<const TemporaryDirectory*>& place : directories) {
+        const TemporaryDirectory* expected = from;
+        if (place.compare_exchange_strong(expected, to)) return;
+    }
+}
+
 } // namespace
 
+void TemporaryDirectory::remove() const noexcept {
+    if (outer_.empty()) return;
+    if (folder_ >= 0) empty_folder(folder_);
+    ::rmdir(path_.c_str());
+    ::rmdir(outer_.c_str());
+}
+
+void remove_temporary_directories() noexcept {
+    for (const std::atomic<const TemporaryDirectory*>& place : directories)
+        if (const TemporaryDirectory* directory = place) directory->remove();
+}
+
 TemporaryDirectory::~TemporaryDirectory() {
-    std::error_code ignored;
-    if (!outer_.empty()) std::filesystem::remove_all(outer_, ignored);
-    if (lock_ >= 0) ::close(lock_);
+    exchange_noted(this, nullptr);
+    remove();
+    for (const int file : {folder_, lock_})
+        if (file >= 0) ::close(file);
 }
 
 Status TemporaryDirectory::create() {
@@ -93,12 +154,15 @@ Status TemporaryDirectory::create() {
     if (!::mkdtemp(path.data()))
         return Status::failure(
             fmt::format("cannot make a temporary directory '{}': {}", path, std::strerror(errno)));
-    outer_ = path;
-    lock_ = lock_path(path);
-    path_ = fmt::format("{}/{}", path, inner);
-    if (::mkdir(path_.c_str(), 0700) != 0)
+    outer_ = std::move(path);
+    lock_ = lock_path(outer_);
+    path_ = fmt::format("{}/{}", outer_, inner);
+    if (::mkdir(path_.c_str(), 0700) == 0)
+        folder_ = ::open(path_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    if (folder_ < 0)
         return Status::failure(
             fmt::format("cannot make a temporary directory '{}': {}", path_, std::strerror(errno)));
+    exchange_noted(nullptr, this);
     return {};
 }
 

@@ -20,9 +20,16 @@ class TemporaryDirectory {
     const std::string& path() const { return path_; }
 
   private:
+    friend void remove_temporary_directories() noexcept;
+    void remove() const noexcept;
+
     std::string outer_, path_;
-    int lock_ = -1;
+    // Held, so that all can be removed where no more files can be opened.
+    int lock_ = -1, folder_ = -1;
 };
+
+/// Removes all of them that there are. For handlers of signals: only system calls.
+void remove_temporary_directories() noexcept;
 
 /// A file there that has no name and goes when it is closed; null with errno.
 std::FILE* open_temporary_file();

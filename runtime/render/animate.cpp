@@ -189,7 +189,8 @@ class Animation {
     bool draw_frame_by_povray(std::size_t frame, RenderOptions& render, const Tell& tell,
                               Compilation& compilation) {
         std::optional<CompiledModel> model = compile_model(path_, render.compile, compilation);
-        if (!model || !accept(frame, compilation)) return false;
+        if (!model || !unchanged(frame, compilation)) return false;
+        if (options_.on_compiled) options_.on_compiled(compilation);
         render.on_progress = [&](const PovrayProgress& povray) {
             if (povray.stage == PovrayProgress::Stage::rendering && povray.fraction) tell(*povray.fraction);
         };
@@ -203,25 +204,23 @@ class Animation {
     bool trace_frame(std::size_t frame, const RenderOptions& render, const Tell& tell,
                      Compilation& compilation) {
         std::optional<ViewedModel> model = view_model(path_, render.compile, compilation);
-        if (!model || !accept(frame, compilation)) return false;
+        if (!model || !unchanged(frame, compilation)) return false;
         NativeOptions native;
         native.render = render;
         native.on_progress = [&](const NativeProgress& progress) { tell(progress.fraction); };
         const std::optional<NativeReport> report = trace_model(std::move(*model), native, compilation);
         if (!report) return false;
+        if (options_.on_compiled) options_.on_compiled(compilation); // not before: drawing has warnings, too
         outcome_.rays += report->rays;
         outcome_.trace_seconds += report->seconds;
         return true;
     }
 
     /// Between the compiler and what draws: the model is still the one that was measured.
-    bool accept(std::size_t frame, Compilation& compilation) const {
-        if (Digest().add(compilation.sources) != sources_[frame]) {
-            compilation.status = Status::failure("the model was changed meanwhile; start again");
-            return false;
-        }
-        if (options_.on_compiled) options_.on_compiled(compilation);
-        return true;
+    bool unchanged(std::size_t frame, Compilation& compilation) const {
+        if (Digest().add(compilation.sources) == sources_[frame]) return true;
+        compilation.status = Status::failure("the model was changed meanwhile; start again");
+        return false;
     }
 
     /// A part that is looked at by itself (--at) is framed for its own frame; measure() does not know it.

@@ -5,7 +5,6 @@
 #include <vector>
 
 #include <fmt/format.h>
-#include <tbb/parallel_for.h>
 
 #include "compiler/cut/coarser.h"
 #include "compiler/emit/povray_view.h"
@@ -187,14 +186,13 @@ class Drawing {
 
     Image encoded() const {
         Image image = picture_;
-        constexpr std::size_t grain = 4096;
-        const auto encode = [&](const tbb::blocked_range<std::size_t>& range) {
-            for (std::size_t i = range.begin(); i < range.end(); ++i)
+        constexpr std::size_t grain = 1 << 16;
+        const auto encode = [&](int, std::uint64_t piece) {
+            const std::size_t begin = piece * grain, end = std::min(begin + grain, image.pixels.size());
+            for (std::size_t i = begin; i < end; ++i)
                 image.pixels[i] = srgb_encoded(image.pixels[i]);
         };
-        WorkerThreads(options_.render.threads).run([&] {
-            tbb::parallel_for(tbb::blocked_range<std::size_t>(0, image.pixels.size(), grain), encode);
-        });
+        WorkerThreads(options_.render.threads).for_each((image.pixels.size() + grain - 1) / grain, encode);
         return image;
     }
 

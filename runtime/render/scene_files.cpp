@@ -44,11 +44,12 @@ class PendingPalettes {
         return {};
     }
 
-    Status commit() {
-        Status status;
+    Status commit_with(PendingFile& scene) {
+        std::vector<PendingFile*> all;
         for (PendingFile& file : files_)
-            if (status.ok()) status = file.commit();
-        return status;
+            all.push_back(&file);
+        all.push_back(&scene);
+        return commit_together(all);
     }
 
   private:
@@ -91,7 +92,7 @@ std::string model_name(const CompiledModel& model) {
 }
 
 Status copy_to_standard_output(std::FILE* file) {
-    std::rewind(file);
+    if (std::fseek(file, 0, SEEK_SET) != 0) return write_failure("a temporary file", errno);
     char buffer[1 << 16];
     while (const std::size_t count = std::fread(buffer, 1, sizeof buffer, file)) {
         const Status status = write_text("-", std::string_view(buffer, count));
@@ -128,8 +129,7 @@ Status write_scene(const CompiledModel& model, const std::string& path, bool inc
         if (status.ok()) status = palettes_status;
     }
     if (status.ok() && Interruption::signal()) status = Status::failure("interrupted");
-    if (status.ok()) status = pending_palettes.commit();
-    return status.ok() ? pending.commit() : status;
+    return status.ok() ? pending_palettes.commit_with(pending) : status;
 }
 
 Status print_scene(const CompiledModel& model, bool include) {

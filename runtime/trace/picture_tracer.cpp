@@ -6,9 +6,6 @@
 #include <mutex>
 #include <vector>
 
-#include <tbb/enumerable_thread_specific.h>
-#include <tbb/parallel_for.h>
-
 #include "compiler/support/check.h"
 #include "runtime/system/worker_threads.h"
 #include "runtime/trace/camera_rays.h"
@@ -151,12 +148,13 @@ bool PictureTracer::trace(const Sampling& sampling, const TraceControl& control,
                       picture.height == model_.view.size.height,
                   "trace: a picture of another size");
     const std::vector<Tile> tiles = tiles_of(model_.view.size, sampling.block);
-    tbb::enumerable_thread_specific<std::unique_ptr<Worker>> workers;
+    const WorkerThreads threads(control.threads);
+    std::vector<std::unique_ptr<Worker>> workers(static_cast<std::size_t>(threads.count()));
     std::mutex telling;
     std::atomic<bool> complete = true;
-    const auto trace_tile = [&](std::size_t number) {
+    const auto trace_tile = [&](int thread, std::uint64_t number) {
         if (!complete) return;
-        std::unique_ptr<Worker>& worker = workers.local();
+        std::unique_ptr<Worker>& worker = workers[static_cast<std::size_t>(thread)];
         if (!worker) worker = std::make_unique<Worker>(model_, limits_, control.cancelled);
         if (!worker->trace(sampling, tiles[number], picture)) {
             complete = false;
@@ -166,9 +164,7 @@ bool PictureTracer::trace(const Sampling& sampling, const TraceControl& control,
         const std::lock_guard lock(telling);
         control.on_tile(tiles[number]);
     };
-    WorkerThreads(control.threads).run([&] {
-        tbb::parallel_for(std::size_t{0}, tiles.size(), trace_tile, tbb::simple_partitioner());
-    });
+    threads.for_each(tiles.size(), trace_tile);
     for (const std::unique_ptr<Worker>& worker : workers)
         if (worker) statistics_ += worker->statistics();
     return complete;

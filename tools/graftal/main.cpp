@@ -3,11 +3,14 @@
 #include <cstdint>
 #include <exception>
 #include <string>
+#include <string_view>
 
 #include <fcntl.h>
 #include <unistd.h>
 
 #include "compiler/support/check.h"
+#include "compiler/support/file.h"
+#include "runtime/povray/temporary_directory.h"
 #include "runtime/system/memory_limit.h"
 #include "tools/graftal/commands.h"
 #include "tools/graftal/options.h"
@@ -28,6 +31,53 @@ void occupy_standard_streams() {
             ::_exit(graftal::exit_environment);
 }
 
+int run_command_line(int argc, char** argv) {
+    try {
+        const graftal::ParsedCommandLine parsed = graftal::parse_command_line(argc, argv);
+        if (!parsed.options) return parsed.exit_status;
+        graftal::limit_memory(std::max(parsed.options->compile.cut.memory_bytes, least_memory_bytes));
+        return graftal::run_command(*parsed.options);
+    } catch (const std::bad_alloc&) {
+        throw;
+    } catch (const graftal::BrokenInvariant& fault) {
+        graftal::complain(fault.what());
+    } catch (const std::exception& fault) {
+        graftal::complain(std::string("internal error: ") + fault.what());
+    }
+    return graftal::exit_environment;
+}
+
+/// Some libraries abort or crash where they get no memory or cannot open a file of the system's: of those
+/// behind OpenImageIO some do while they are loaded. What is half done is taken away all the same, and the
+/// environment named. Only calls that a handler may make.
+void end_after_crash(int) {
+    graftal::remove_pending_files();
+    graftal::remove_temporary_directories();
+    constexpr std::string_view text = "graftal: internal error: crashed, or a library did; memory, files or "
+                                      "threads of the system may be used up\n";
+    if (::write(STDERR_FILENO, text.data(), text.size()) < 0)
+        ::_exit(graftal::exit_environment); // it is closed
+    ::_exit(graftal::exit_environment);
+}
+
+void handle_crashes() {
+    static char stack[1 << 14]; // the thread's own may be what is used up
+    stack_t place = {};
+    place.ss_sp = stack;
+    place.ss_size = sizeof stack;
+    ::sigaltstack(&place, nullptr);
+    struct sigaction action = {};
+    action.sa_handler = end_after_crash;
+    action.sa_flags = SA_ONSTACK;
+    ::sigemptyset(&action.sa_mask);
+#ifdef __SANITIZE_ADDRESS__
+    ::sigaction(SIGABRT, &action, nullptr); // the sanitizer tells more of the others
+#else
+    for (const int number : {SIGABRT, SIGSEGV, SIGBUS})
+        ::sigaction(number, &action, nullptr);
+#endif
+}
+
 } // namespace
 
 int main(int argc, char** argv) {
@@ -35,17 +85,11 @@ int main(int argc, char** argv) {
     // A closed pipe and a file that may not grow are failed writes, and reported as such.
     std::signal(SIGPIPE, SIG_IGN);
     std::signal(SIGXFSZ, SIG_IGN);
+    handle_crashes();
+    // The memory may not even suffice to say what went wrong.
     try {
-        const graftal::ParsedCommandLine parsed = graftal::parse_command_line(argc, argv);
-        if (!parsed.options) return parsed.exit_status;
-        graftal::limit_memory(std::max(parsed.options->compile.cut.memory_bytes, least_memory_bytes));
-        return graftal::run_command(*parsed.options);
+        return run_command_line(argc, argv);
     } catch (const std::bad_alloc& fault) {
         return graftal::conclude_out_of_memory(fault);
-    } catch (const graftal::BrokenInvariant& fault) {
-        graftal::complain(fault.what());
-    } catch (const std::exception& fault) {
-        graftal::complain(std::string("internal error: ") + fault.what());
     }
-    return graftal::exit_environment;
 }

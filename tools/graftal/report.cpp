@@ -4,6 +4,7 @@
 #include <cstdio>
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include "compiler/graph/print.h"
 #include "compiler/support/check.h"
@@ -42,14 +43,19 @@ int conclude(const Options& options, const Compilation& compilation) {
     return compilation.status.ok() ? exit_done : exit_environment;
 }
 
-int conclude_out_of_memory(const std::bad_alloc& fault) {
+int conclude_out_of_memory(const std::bad_alloc& fault) noexcept {
     const auto* known = dynamic_cast<const OutOfMemory*>(&fault);
-    std::string text = known ? known->what() : "out of memory";
+    char text[400];
+    int length = std::snprintf(text, sizeof text, "graftal: %s", known ? known->what() : "out of memory");
     if (memory_limit() > 0)
-        text += fmt::format(": graftal may take {} MiB itself; allow more with --memory, or draw less with "
-                            "--steps or --error",
-                            memory_limit() >> 20);
-    complain(text);
+        length +=
+            std::snprintf(text + length, sizeof text - static_cast<std::size_t>(length),
+                          ": graftal may take %llu MiB itself; allow more with --memory, or draw less with "
+                          "--steps or --error",
+                          static_cast<unsigned long long>(memory_limit() >> 20));
+    text[length++] = '\n';
+    if (::write(STDERR_FILENO, text, static_cast<std::size_t>(length)) < 0)
+        return exit_environment; // it is closed
     return memory_limit() > 0 ? exit_fault : exit_environment;
 }
 

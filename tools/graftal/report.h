@@ -20,8 +20,9 @@ void complain(std::string_view text);
 /// the exit status that follows.
 int conclude(const Options& options, const Compilation& compilation);
 
-/// Says that the memory did not suffice, and for what; returns the exit status that follows.
-int conclude_out_of_memory(const std::bad_alloc& fault);
+/// Says that the memory did not suffice, and for what, without taking any; returns the exit status that
+/// follows.
+int conclude_out_of_memory(const std::bad_alloc& fault) noexcept;
 
 /// Writes to standard output; exit status 0, or 3 with a complaint if it is closed or full.
 int print_output(std::string_view text);

@@ -183,6 +183,7 @@ std::string write_exr(const std::string& path, const Image& image, const ImageMe
     const auto tag = [&](const char* name, const std::string& value) {
         if (!value.empty()) spec.attribute(name, value);
     };
+    spec.attribute("DateTime", ""); // else OpenImageIO writes the time, and no two files would be the same
     tag("Software", metadata.software);
     tag(stamp_keyword, metadata.stamp);
     tag("ImageDescription", metadata.description);

@@ -52,6 +52,15 @@ TEST_F(ImageFiles, Png8KeepsEveryLevel) {
     EXPECT_EQ(back, image);
 }
 
+/// Else no two files would be the same.
+TEST_F(ImageFiles, NoFileHoldsTheTime) {
+    for (const char* name : {"a.exr", "a.png"}) {
+        ASSERT_TRUE(write_image(path(name), ramp(2, 255), SampleFormat::srgb8).ok());
+        EXPECT_THAT(bytes(name), testing::Not(testing::ContainsRegex("[0-9][0-9]:[0-9][0-9]:[0-9][0-9]")))
+            << name;
+    }
+}
+
 TEST_F(ImageFiles, Png16KeepsEveryLevel) {
     const Image image = ramp(22000, 65535);
     ASSERT_TRUE(write_image(path("a.png"), image, SampleFormat::linear16).ok());

@@ -345,10 +345,10 @@ class InstLowerer {
     double lower_chance(const InstGroup& group) {
         if (!group.chance) return 0;
         const std::optional<double> chance = evaluate(*group.chance, environment_, scratch_);
-        if (!chance || *chance >= 0) return chance.value_or(0);
-        scratch_
-            .error(group.chance->span,
-                   fmt::format("a chance must not be negative, but is {}", shortest(*chance)))
+        if (!chance || *chance == 0 || (*chance > 0 && is_size(*chance))) return chance.value_or(0);
+        const char* const rule =
+            *chance < 0 ? "not be negative, but is" : "be 0 or lie between 1e-100 and 1e+100, not";
+        scratch_.error(group.chance->span, fmt::format("a chance must {} {}", rule, shortest(*chance)))
             .with_hint("chances are relative to those of the other instances");
         return 0;
     }

@@ -166,9 +166,13 @@ std::optional<double> evaluate_probability(const std::optional<Expression>& prob
                                            std::size_t row) {
     if (!probability) return std::nullopt;
     const std::optional<double> p = evaluate(*probability, lets, diagnostics);
-    if (!p || (*p >= 0 && *p <= 1)) return p;
+    if (!p || *p == 0 || (*p >= least_size && *p <= 1)) return p;
+    // Shares of less would be nothing over nothing.
+    const bool tiny = *p > 0 && *p < least_size;
     Diagnostic& error = diagnostics.error(
-        probability->span, fmt::format("a probability must lie between 0 and 1, not {}", shortest(*p)));
+        probability->span,
+        tiny ? fmt::format("a probability must be 0 or at least 1e-100, not {}", shortest(*p))
+             : fmt::format("a probability must lie between 0 and 1, not {}", shortest(*p)));
     if (row > 0)
         error.with_hint(
             fmt::format("it is the last number of row {}: leave the last number out of all rows, and "

@@ -16,14 +16,18 @@ using ::testing::HasSubstr;
 class Range : public CommandLine {
   protected:
     /// N stands for the number. All are tried by one shell, which prints `status:first line of the message`.
-    void try_models(const std::string& extension, const std::vector<std::string>& models,
-                    const std::string& numbers) {
+    void
+    try_models(const std::string& extension, const std::vector<std::string>& models,
+               const std::string& numbers,
+               const std::string& commands = "'compile -o out.pov' 'render --engine native -o out.png'") {
         for (std::size_t i = 0; i < models.size(); ++i)
             write(std::to_string(i) + ".template", models[i] + "\n");
         const RunResult result =
             shell("for n in " + numbers + "; do for t in *.template; do m=${t%.template}_$n." + extension +
                   "; sed s/N/$n/g $t > $m\n"
-                  "for c in 'compile -o out.pov' 'render --engine native -o out.png'; do\n"
+                  "for c in " +
+                  commands +
+                  "; do\n"
                   "timeout 60 $graftal $c -q --size 32x18 $m 2>err\n"
                   "echo $?:$m:$(head -n 1 err)\nrm -f out.* err; done; done; done");
         expect_placed(result.out,
@@ -60,6 +64,16 @@ TEST_F(Range, OfInstances) {
         ends);
 }
 
+TEST_F(Range, OfChances) {
+    const std::string points = "check 'points --points 1000 -o out.png'";
+    try_models("inst",
+               {"object a {\n sphere chance: 1\n a scale: 0.5 chance: N\n a scale: 0.5 translate: 1,0,0 "
+                "chance: N\n}"},
+               ends, points);
+    try_models("rifs", {"rifs m {\n codes 2d {\n 0.5 0 0 0.5 0 0 N\n 0.5 0 0 0.5 1 0 0.5\n }\n}"}, ends,
+               points);
+}
+
 TEST_F(Range, OfScenes) {
     const std::string a = "\nobject a { sphere }";
     try_models("inst",
@@ -80,6 +94,7 @@ TEST_F(Range, OfFunctionSystems) {
                 "rifs m {\n map a { scale N translate <1,0,0> }" + half + "\n}",
                 "rifs m {\n codes 2d {\n N 0 0 0.5 0 0\n 0.5 0 0 0.5 1 0\n }\n}",
                 "rifs m {\n codes 2d {\n 0.5 0 0 0.5 N N\n 0.5 0 0 0.5 1 0\n }\n}",
+                "rifs m {\n codes 2d {\n 0.5 0 0 0.5 0 0 N\n 0.5 0 0 0.5 1 0 0.5\n }\n}",
                 "rifs m {\n codes polar {\n N N 30 30 0 0\n 0.5 0.5 0 0 1 0\n }\n}",
                 "rifs m {\n map a { scale 1/2 translate <1,0,0> }" + half + "\n terminal sphere scale N\n}",
                 "rifs m {\n map a { scale 1/2 translate <1,0,0> }" + half +

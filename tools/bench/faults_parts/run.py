@@ -56,22 +56,23 @@ class Run:
         self.temporaries, self.calls, self.struck, self.orphans = temporaries, calls, struck, orphans
 
     def findings(self, good, kind):
+        said = self.message[-300:]
         if self.over:
             yield 'no end'
             return
         if self.status < 0:
-            yield f'signal {-self.status}: {self.message}'
+            yield f'signal {-self.status}: {said}'
         elif self.status not in (0, 1, 3):
-            yield f'status {self.status}: {self.message}'
+            yield f'status {self.status}: {said}'
         elif self.status == 0 and self.different(good, kind) and not self.coarser():
-            yield f'status 0 with other outputs: {self.different(good, kind)}: {self.message}'
+            yield f'status 0 with other outputs: {self.different(good, kind)}: {said}'
         elif self.status != 0 and not self.message.strip():
             yield f'status {self.status} without a message'
         if self.status != 0 and (torn := self.torn(good)):
-            yield f'status {self.status} leaves {torn}: {self.message}'
+            yield f'status {self.status} leaves {torn}: {said}'
         # What cannot be removed stays.
         if kind != 'unlink' and self.temporaries:
-            yield f'status {self.status} leaves the temporaries {self.temporaries}: {self.message}'
+            yield f'status {self.status} leaves the temporaries {self.temporaries}: {said}'
         if self.orphans:
             yield f'status {self.status} leaves the processes {self.orphans}'
 
@@ -136,5 +137,5 @@ class Place:
         outputs = {name: data for name, data in files.items()
                    if not name.startswith('models/') and not Path(name).name.startswith('.')}
         outputs['stdout'] = self.stdout.read_bytes()
-        return Run(process.returncode, over, self.stderr.read_text(errors='replace')[-300:].strip(), outputs, temporaries,
+        return Run(process.returncode, over, self.stderr.read_text(errors='replace').strip(), outputs, temporaries,
                    calls, struck, orphans(process.pid))

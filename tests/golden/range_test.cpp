@@ -65,7 +65,7 @@ TEST_F(Range, OfInstances) {
 }
 
 TEST_F(Range, OfChances) {
-    const std::string points = "check 'points --points 1000 -o out.png'";
+    const std::string points = "'compile -o out.pov' 'points --points 1000 -o out.png'";
     try_models("inst",
                {"object a {\n sphere chance: 1\n a scale: 0.5 chance: N\n a scale: 0.5 translate: 1,0,0 "
                 "chance: N\n}"},

@@ -84,6 +84,22 @@ TEST_P(Replay, KeptInputs) {
         EXPECT_EQ(thrown(GetParam(), input.bytes), "") << input.name;
 }
 
+// libFuzzer names what it finds by a hash of 40 digits. What is kept was chosen, made small and named by hand.
+TEST(Corpus, WasChosenByHand) {
+    namespace fs = std::filesystem;
+    int kept = 0;
+    for (const fs::directory_entry& entry : fs::recursive_directory_iterator(source_path("tests/fuzz/corpus"))) {
+        if (!entry.is_regular_file()) continue;
+        ++kept;
+        const std::string name = entry.path().filename().string();
+        EXPECT_FALSE(name.size() == 40 && name.find_first_not_of("0123456789abcdef") == std::string::npos)
+            << entry.path();
+        EXPECT_LE(entry.file_size(), 20'000u) << entry.path();
+    }
+    EXPECT_GE(kept, 50);
+    EXPECT_LE(kept, 1'000);
+}
+
 TEST_P(Replay, ChangesToThem) {
     const std::vector<Input> inputs = kept_for(GetParam().name);
     ASSERT_FALSE(inputs.empty());

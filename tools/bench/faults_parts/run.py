@@ -4,8 +4,9 @@ import resource
 import shutil
 import struct
 import subprocess
-import time
 from pathlib import Path
+
+from left_over import orphans, tree
 
 RECORD_BYTES = 4096
 LIMIT_CPU_S, LIMIT_WALL_S = 30, 300  # other work may keep the machine busy
@@ -20,34 +21,6 @@ def kinds_of(record):
         calls[name.rstrip(b'\0').decode()] = count
         at += 16
     return calls, struct.unpack_from('Q', record)[0]
-
-
-def tree(folder):
-    return {str(path.relative_to(folder)): path.read_bytes() for path in sorted(folder.rglob('*')) if path.is_file()}
-
-
-def orphans(session):
-    """Processes that a run has left. Those that go with their parent may take a moment."""
-    for _ in range(200):
-        if not (found := session_members(session)):
-            break
-        time.sleep(0.01)
-    return found
-
-
-def session_members(session):
-    found = []
-    for entry in os.listdir('/proc'):
-        if entry.isdigit():
-            try:
-                with open(f'/proc/{entry}/stat') as stat:
-                    name, rest = stat.read().split('(', 1)[1].rsplit(')', 1)
-            except OSError:
-                continue
-            fields = rest.split()
-            if int(fields[3]) == session and fields[0] != 'Z':
-                found.append(name)
-    return found
 
 
 class Run:

@@ -12,6 +12,8 @@ import sys
 import time
 from pathlib import Path
 
+from left_over import orphans, tree
+
 ROOT = Path(__file__).resolve().parent.parent.parent.parent
 SCENES = ROOT / 'scenes'
 OLD = b'old'
@@ -44,26 +46,6 @@ def models(folder, program):
                         'a.exr': ['render', SCENES / 'hart/pound_sign.rifs', '--engine', 'native', '--size', '900x900',
                                   '--antialias', 'off']}.items():
         subprocess.run([program, *words, '-q', '-o', name], cwd=folder, check=True)
-
-
-def tree(folder):
-    return {str(path.relative_to(folder)): path.read_bytes() for path in sorted(folder.rglob('*')) if path.is_file()}
-
-
-def living(session):
-    """Processes of a session."""
-    found = []
-    for entry in os.listdir('/proc'):
-        if entry.isdigit():
-            try:
-                with open(f'/proc/{entry}/stat') as stat:
-                    name, rest = stat.read().split('(', 1)[1].rsplit(')', 1)
-            except OSError:
-                continue
-            fields = rest.split()
-            if int(fields[3]) == session and fields[0] not in 'ZX':
-                found.append(name)
-    return found
 
 
 class Place:
@@ -120,12 +102,7 @@ class Trial:
         self.message = process.communicate()[1].decode(errors='replace').strip()
         self.gone_after = time.monotonic() - struck
         self.status = process.returncode
-        # A child that goes with its parent may take a moment.
-        for _ in range(200):
-            self.orphans = living(process.pid)
-            if not self.orphans:
-                break
-            time.sleep(0.01)
+        self.orphans = orphans(process.pid)
         self.half = self.half_files(place.outputs(), good)
         self.left = place.temporaries()
         again = place.start(mode)

@@ -18,6 +18,7 @@
 #include <sys/time.h>
 #include <unistd.h>
 
+#include "runtime/system/signal_stack.h"
 #include "tests/fuzz/fuzz_targets.h"
 
 namespace {
@@ -66,20 +67,6 @@ void report(const char* what) {
 
 extern "C" void on_signal(int signal) {
     found(signal == SIGPROF ? "time" : strsignal(signal));
-}
-
-void watch_signals() {
-    // A stack that has run out cannot hold the handler.
-    static char stack[1 << 16];
-    stack_t other = {};
-    other.ss_sp = stack;
-    other.ss_size = sizeof stack;
-    ::sigaltstack(&other, nullptr);
-    struct sigaction action = {};
-    action.sa_handler = on_signal;
-    action.sa_flags = SA_ONSTACK;
-    for (const int signal : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGPROF})
-        ::sigaction(signal, &action, nullptr);
 }
 
 void start_watch(int seconds) {
@@ -136,7 +123,7 @@ int main(int argc, char** argv) {
     for (const Target& target : targets()) {
         if (target.name != argv[1] || inputs.empty()) continue;
         silence();
-        watch_signals();
+        graftal::handle_on_own_stack({SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGPROF}, on_signal);
         SyntaxMutator mutator;
         while (seconds_of(CLOCK_MONOTONIC) < deadline)
             try_one(target, changed(target, inputs, most_bytes, mutator, choices));

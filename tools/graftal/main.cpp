@@ -12,6 +12,7 @@
 #include "compiler/support/file.h"
 #include "runtime/povray/temporary_directory.h"
 #include "runtime/system/memory_limit.h"
+#include "runtime/system/signal_stack.h"
 #include "tools/graftal/commands.h"
 #include "tools/graftal/options.h"
 #include "tools/graftal/report.h"
@@ -61,20 +62,10 @@ void end_after_crash(int) {
 }
 
 void handle_crashes() {
-    static char stack[1 << 14]; // the thread's own may be what is used up
-    stack_t place = {};
-    place.ss_sp = stack;
-    place.ss_size = sizeof stack;
-    ::sigaltstack(&place, nullptr);
-    struct sigaction action = {};
-    action.sa_handler = end_after_crash;
-    action.sa_flags = SA_ONSTACK;
-    ::sigemptyset(&action.sa_mask);
 #ifdef __SANITIZE_ADDRESS__
-    ::sigaction(SIGABRT, &action, nullptr); // the sanitizer tells more of the others
+    graftal::handle_on_own_stack({SIGABRT}, end_after_crash); // the sanitizer tells more of the others
 #else
-    for (const int number : {SIGABRT, SIGSEGV, SIGBUS})
-        ::sigaction(number, &action, nullptr);
+    graftal::handle_on_own_stack({SIGABRT, SIGSEGV, SIGBUS}, end_after_crash);
 #endif
 }
 

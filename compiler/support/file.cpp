@@ -1,7 +1,6 @@
 #include "compiler/support/file.h"
 
 #include <algorithm>
-#include <array>
 #include <atomic>
 #include <cerrno>
 #include <cstdio>
@@ -15,6 +14,8 @@
 #include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
+
+#include "compiler/support/signal_registry.h"
 
 namespace graftal {
 
@@ -41,21 +42,7 @@ Status read_stream(std::FILE* stream, const std::string& path, std::string& text
 }
 
 /// The temporaries that there are, for handlers of signals. What finds no place is left to the next run.
-std::array<std::atomic<const char*>, 1024> pending_paths;
-
-void note_pending(const char* path) {
-    for (std::atomic<const char*>& place : pending_paths) {
-        const char* none = nullptr;
-        if (place.compare_exchange_strong(none, path)) return;
-    }
-}
-
-void forget_pending(const char* path) {
-    for (std::atomic<const char*>& place : pending_paths) {
-        const char* noted = path;
-        if (place.compare_exchange_strong(noted, nullptr)) return;
-    }
-}
+SignalRegistry<char, 1024> pending_paths;
 
 /// The times of a temporary that its writer has not opened yet: access, change.
 constexpr timespec never_written[2] = {{1, 0}, {1, 0}};
@@ -161,7 +148,7 @@ void PendingFile::create() {
         if (::flock(lock_, LOCK_EX) != 0 || ::fstat(lock_, &info) != 0 || info.st_nlink > 0) break;
         ::close(lock_);
     }
-    note_pending(temporary_.c_str());
+    pending_paths.note(temporary_.c_str());
 }
 
 Status PendingFile::check_written() const {
@@ -175,7 +162,7 @@ Status PendingFile::check_written() const {
 
 PendingFile::~PendingFile() {
     if (!temporary_.empty()) {
-        forget_pending(temporary_.c_str());
+        pending_paths.forget(temporary_.c_str());
         if (!committed_ || exchanged_) ::unlink(temporary_.c_str());
     }
     if (lock_ >= 0) ::close(lock_);
@@ -217,8 +204,7 @@ Status commit_together(std::span<PendingFile* const> files) {
 }
 
 void remove_pending_files() noexcept {
-    for (const std::atomic<const char*>& place : pending_paths)
-        if (const char* path = place) ::unlink(path);
+    pending_paths.for_each([](const char* path) { ::unlink(path); });
 }
 
 Status write_text(const std::string& path, std::string_view text) {

@@ -1,7 +1,5 @@
 #include "runtime/povray/temporary_directory.h"
 
-#include <array>
-#include <atomic>
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
@@ -17,6 +15,7 @@
 #include <unistd.h>
 
 #include "compiler/support/file.h"
+#include "compiler/support/signal_registry.h"
 
 namespace graftal {
 
@@ -117,14 +116,7 @@ bool remove_once(int folder) noexcept {
 }
 
 /// Those that there are, for handlers of signals. What finds no place is left to the next run.
-std::array<std::atomic<const TemporaryDirectory*>, 16> directories;
-
-void exchange_noted(const TemporaryDirectory* from, const TemporaryDirectory* to) {
-    for (std::atomic<const TemporaryDirectory*>& place : directories) {
-        const TemporaryDirectory* expected = from;
-        if (place.compare_exchange_strong(expected, to)) return;
-    }
-}
+SignalRegistry<TemporaryDirectory, 16> directories;
 
 } // namespace
 
@@ -136,12 +128,11 @@ void TemporaryDirectory::remove() const noexcept {
 }
 
 void remove_temporary_directories() noexcept {
-    for (const std::atomic<const TemporaryDirectory*>& place : directories)
-        if (const TemporaryDirectory* directory = place) directory->remove();
+    directories.for_each([](const TemporaryDirectory* directory) { directory->remove(); });
 }
 
 TemporaryDirectory::~TemporaryDirectory() {
-    exchange_noted(this, nullptr);
+    directories.forget(this);
     remove();
     for (const int file : {folder_, lock_})
         if (file >= 0) ::close(file);
@@ -162,7 +153,7 @@ Status TemporaryDirectory::create() {
     if (folder_ < 0)
         return Status::failure(
             fmt::format("cannot make a temporary directory '{}': {}", path_, std::strerror(errno)));
-    exchange_noted(nullptr, this);
+    directories.note(this);
     return {};
 }
 

@@ -203,7 +203,8 @@ class Unfolding {
     Affine drawn(PrimitiveKind kind, const Affine& world_from_primitive, const Piece& piece) const {
         if (kind == PrimitiveKind::plane) return world_from_primitive;
         return drawn_leaf(kind, world_from_primitive, piece.faint,
-                          projection_.least_half_width(world_ball(cut_, piece)));
+                          projection_.least_half_width(world_ball(cut_, piece)))
+            .place;
     }
 
     void place_textured(PrimitiveKind kind, const Piece& piece) {

@@ -151,10 +151,9 @@ class Baker {
         if (!leaf.faint && !is_singular(place, flattest_leaf)) return mark = place;
         const Affine seen_from_unit{culls ? request_.half_widths_from_unit : Mat3(1.0), Vec3(0.0)};
         const Affine seen = seen_from_unit * place;
-        const double half_width = half_width_needed(seen, leaf.faint, culls ? 1 : 0);
+        const auto [wide, half_width] = drawn_leaf(leaf.kind, seen, leaf.faint, culls ? 1 : 0);
         if (!(half_width > 0)) return mark = place;
         const Affine unit_from_seen = inverse(seen_from_unit);
-        const Affine wide = widened(leaf.kind, seen, half_width);
         // What a singular map crushes onto a line or a sheet piles up there, and specks do: one leaf a cell
         // will do.
         const bool speck = leaf.faint && largest_stretch(seen.linear) <= half_width;

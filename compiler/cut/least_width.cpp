@@ -64,12 +64,27 @@ Mat3 widened_line(const Mat3& place, double half_width) {
     return place + half_width * (glm::outerProduct(to_1, from_1) + glm::outerProduct(to_2, from_2));
 }
 
+/// flat_map() of a map, which is asked for where it is first needed and not again.
+class FlatOnce {
+  public:
+    explicit FlatOnce(const Mat3& map) : map_(map) {}
+
+    const std::optional<FlatMap>& operator()() {
+        if (!known_) known_ = flat_map(map_);
+        return *known_;
+    }
+
+  private:
+    const Mat3& map_;
+    std::optional<std::optional<FlatMap>> known_;
+};
+
 /// The half axes that are too short, longer.
-Mat3 widened(const Mat3& place, double half_width) {
+Mat3 widened(const Mat3& place, double half_width, FlatOnce& flat_once) {
     constexpr double unseen = 1e-2;
     const Vec3 most = most_singular_values(place);
     if (most.x > half_width && most.y <= unseen * half_width) return widened_line(place, half_width);
-    const std::optional<FlatMap> flat = flat_map(place);
+    const std::optional<FlatMap>& flat = flat_once();
     if (flat && flat->sigma.y >= half_width)
         return place + std::max(0.0, half_width - flat->sigma.z) * flat->thickening;
     const Eigen::Map<const Eigen::Matrix3d> linear(&place[0][0]); // both go by columns
@@ -92,9 +107,7 @@ Mat3 widened(const Mat3& place, double half_width) {
     return result;
 }
 
-} // namespace
-
-double half_width_needed(const Affine& place, bool faint, double half_width) {
+double half_width_needed(const Affine& place, bool faint, double half_width, FlatOnce& flat_once) {
     constexpr double thinnest_share = 1e-3, thickest_share = 1.0 / 8;
     if (faint && half_width > 0) return half_width;
     Vec3 sigma;
@@ -102,7 +115,7 @@ double half_width_needed(const Affine& place, bool faint, double half_width) {
         sigma = *line;
         if (sigma.z > flattest_leaf * sigma.x) return 0;
     } else {
-        const std::optional<FlatMap> flat = flat_map(place.linear);
+        const std::optional<FlatMap>& flat = flat_once();
         if (flat ? flat->sigma.z > flattest_leaf * flat->sigma.x : !is_singular(place, flattest_leaf))
             return 0;
         sigma = flat ? flat->sigma : singular_values(place.linear);
@@ -112,7 +125,7 @@ double half_width_needed(const Affine& place, bool faint, double half_width) {
     return line ? half_width : std::min(half_width, thickest_share * sigma.x);
 }
 
-Affine widened(PrimitiveKind kind, const Affine& place, double radius) {
+Affine widened(PrimitiveKind kind, const Affine& place, double radius, FlatOnce& flat_once) {
     if (!(radius > 0)) return place;
     const double half_width = radius / inner_radius(kind);
     // A ball is one whichever way it is turned. What is culled is smaller, so that this is most of what is
@@ -124,10 +137,28 @@ Affine widened(PrimitiveKind kind, const Affine& place, double radius) {
         for (int i = 0; i < 3; ++i)
             result.linear[i] *= std::max(1.0, half_width / glm::length(place.linear[i]));
     else
-        result.linear = widened(place.linear, half_width);
+        result.linear = widened(place.linear, half_width, flat_once);
     const Vec3 middle = ball_of(kind).centre;
     result.translation = place(middle) - result.linear * middle;
     return result;
+}
+
+} // namespace
+
+double half_width_needed(const Affine& place, bool faint, double half_width) {
+    FlatOnce flat(place.linear);
+    return half_width_needed(place, faint, half_width, flat);
+}
+
+Affine widened(PrimitiveKind kind, const Affine& place, double radius) {
+    FlatOnce flat(place.linear);
+    return widened(kind, place, radius, flat);
+}
+
+DrawnLeaf drawn_leaf(PrimitiveKind kind, const Affine& place, bool faint, double half_width) {
+    FlatOnce flat(place.linear);
+    const double needed = half_width_needed(place, faint, half_width, flat);
+    return {widened(kind, place, needed, flat), needed};
 }
 
 Ball widened_ball(PrimitiveKind kind, const Affine& place, double radius) {

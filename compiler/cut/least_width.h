@@ -38,9 +38,13 @@ double widened_reach(PrimitiveKind kind);
 /// factor of 2.
 Affine speck_mark(const Affine& place, double half_width);
 
-/// half_width_needed() and widened(): the leaf as it is drawn.
-inline Affine drawn_leaf(PrimitiveKind kind, const Affine& place, bool faint, double half_width) {
-    return widened(kind, place, half_width_needed(place, faint, half_width));
-}
+/// A leaf as it is drawn.
+struct DrawnLeaf {
+    Affine place;          ///< widened() by
+    double half_width = 0; ///< half_width_needed()
+};
+
+/// The same as asking these two, and what both must know of the map is found out once.
+DrawnLeaf drawn_leaf(PrimitiveKind kind, const Affine& place, bool faint, double half_width);
 
 } // namespace graftal

@@ -124,7 +124,7 @@ bool Traversal::meet_leaf(PrimitiveKind kind, const Affine& world_from_leaf, boo
         both({range.least, best_.t}, in_ball(ray_, widened_ball(kind, world_from_leaf, half_width)));
     if (!(near.least <= near.most)) return false;
     more_work_ += RayWork::widened;
-    const Affine drawn = drawn_leaf(kind, world_from_leaf, faint, half_width);
+    const Affine drawn = drawn_leaf(kind, world_from_leaf, faint, half_width).place;
     const Affine leaf_from_world = inverse(drawn);
     const Vec3 direction = leaf_from_world.linear * ray_.direction;
     const double speed = largest_entry(direction);

@@ -216,19 +216,24 @@ TEST(Shell, ACrowdSomewhereInsideMakesNoneOfTheWhole) {
     EXPECT_FALSE(sizes.has(1e9));
 }
 
+void expect_what_is_made_anew(ShellStore& store, const CutGraph& cut, double cells_across,
+                              const PointLimits& limits) {
+    const double detail = detail_for(cut, cells_across);
+    const auto kept = store.points(cut, cut.root, unlimited_steps, detail, limits);
+    const auto anew = point_set(cut, cut.root, unlimited_steps, detail, limits);
+    ASSERT_FALSE(anew.points.empty());
+    EXPECT_EQ(kept->points, anew.points);
+    EXPECT_EQ(kept->cell, anew.cell);
+    EXPECT_EQ(kept->work, anew.work);
+}
+
 TEST(ShellStore, GivesWhatIsMadeAnewAndMakesItOnce) {
     const PreparedCut ready = prepared(corners_graph(3, 0.65));
     const CutGraph& cut = ready.cut;
     ShellStore store;
     const PointLimits limits;
-    for (const double across : {60.0, 20.0, 60.0, 20.0}) {
-        const auto kept = store.points(cut, cut.root, unlimited_steps, detail_for(cut, across), limits);
-        const auto anew = point_set(cut, cut.root, unlimited_steps, detail_for(cut, across), limits);
-        ASSERT_FALSE(anew.points.empty());
-        EXPECT_EQ(kept->points, anew.points);
-        EXPECT_EQ(kept->cell, anew.cell);
-        EXPECT_EQ(kept->work, anew.work);
-    }
+    for (const double across : {60.0, 20.0, 60.0, 20.0})
+        ASSERT_NO_FATAL_FAILURE(expect_what_is_made_anew(store, cut, across, limits));
     EXPECT_EQ(store.made(), 2u);
 }
 
@@ -239,13 +244,8 @@ TEST(ShellStore, OneGridServesAllThatAskForAFinerOneThanTheLimitsAllow) {
     ShellStore store;
     PointLimits limits;
     limits.points = 20'000;
-    for (const double across : {1e7, 4e6, 2000.0, 1e9}) {
-        const auto kept = store.points(cut, cut.root, unlimited_steps, detail_for(cut, across), limits);
-        const auto anew = point_set(cut, cut.root, unlimited_steps, detail_for(cut, across), limits);
-        ASSERT_FALSE(anew.points.empty());
-        EXPECT_EQ(kept->points, anew.points);
-        EXPECT_EQ(kept->cell, anew.cell);
-    }
+    for (const double across : {1e7, 4e6, 2000.0, 1e9})
+        ASSERT_NO_FATAL_FAILURE(expect_what_is_made_anew(store, cut, across, limits));
     EXPECT_EQ(store.made(), 1u);
     const auto coarse = store.points(cut, cut.root, unlimited_steps, detail_for(cut, 40), limits);
     ASSERT_TRUE(coarse);

@@ -1,8 +1,8 @@
 // A library to be preloaded: it counts the calls of a program to the system, by kinds, and lets one of them
 // fail, or that and all later ones of its kind. tools/bench/faults uses it.
 //
-//   FAULTS_RECORD=FILE   holds a Record, which is shared with the program's forks and outlives every end of
-//   it FAULTS=KIND:N[:stay] the N-th call of the kind fails, N from 1; with `stay` all later ones too
+//   FAULTS_RECORD=FILE     holds a Record, which outlives every end of the program and its forks
+//   FAULTS=KIND:N[:stay]   the N-th call of the kind fails, N from 1; with `stay` all later ones too
 //
 // It takes part from the beginning of main(). The programs that this one starts are left alone: both
 // variables and LD_PRELOAD are gone from the environment before main(). Streams of stdio are made by
@@ -11,7 +11,6 @@
 #ifndef _GNU_SOURCE
 #define _GNU_SOURCE
 #endif
-#include <atomic>
 #include <cerrno>
 #include <cstdarg>
 #include <cstdint>
@@ -33,80 +32,11 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "tests/bench/fault_shim.h"
+
+using namespace fault_shim;
+
 namespace {
-
-enum Kind {
-    alloc,
-    map,
-    open_,
-    read_,
-    write_,
-    sync_,
-    seek_,
-    close_,
-    rename_,
-    unlink_,
-    mkdir_,
-    stat_,
-    lock_,
-    dup_,
-    pipe_,
-    fork_,
-    exec_,
-    wait_,
-    poll_,
-    thread_,
-    load_,
-    kinds
-};
-
-struct Fault {
-    const char* name;
-    int error;
-};
-constexpr Fault faults[kinds] = {
-    {"alloc", ENOMEM}, {"map", ENOMEM},  {"open", EMFILE}, {"read", EIO},    {"write", ENOSPC},
-    {"sync", EIO},     {"seek", EIO},    {"close", EIO},   {"rename", EIO},  {"unlink", EPERM},
-    {"mkdir", ENOSPC}, {"stat", EACCES}, {"lock", ENOLCK}, {"dup", EMFILE},  {"pipe", EMFILE},
-    {"fork", EAGAIN},  {"exec", ENOMEM}, {"wait", ECHILD}, {"poll", ENOMEM}, {"thread", EAGAIN},
-    {"load", ENOMEM},
-};
-
-/// What FAULTS_RECORD holds, zeros at first: how many calls were made to fail, and the calls of each kind.
-struct Record {
-    std::atomic<std::uint64_t> failed;
-    struct {
-        char name[8];
-        std::atomic<std::uint64_t> calls;
-    } of[kinds];
-};
-
-Record* record = nullptr;
-bool armed = false;
-int failing = -1;
-std::uint64_t from = 0;
-bool stays = false;
-
-/// Counts a call; true, with errno, if it shall fail.
-bool fails(Kind kind) {
-    if (!armed) return false;
-    const std::uint64_t number = ++record->of[kind].calls;
-    if (kind != failing || (stays ? number < from : number != from)) return false;
-    ++record->failed;
-    errno = faults[kind].error;
-    return true;
-}
-
-template<typename Function> Function* next(const char* name) {
-    return reinterpret_cast<Function*>(::dlsym(RTLD_NEXT, name));
-}
-
-/// NEXT(open)(path, flags): the function that this one stands before.
-#define NEXT(name)                                                                                           \
-    ([] {                                                                                                    \
-        static auto* const found = next<decltype(::name)>(#name);                                            \
-        return found;                                                                                        \
-    }())
 
 void read_settings() {
     const char* path = std::getenv("FAULTS_RECORD");
@@ -136,6 +66,15 @@ void read_settings() {
 }
 
 int (*real_main)(int, char**, char**) = nullptr;
+
+int armed_main(int argc, char** argv, char** envp) {
+    read_settings();
+    if (record) {
+        stdout = stream_on(STDOUT_FILENO, "w");
+        armed = true;
+    }
+    return real_main(argc, argv, envp);
+}
 
 } // namespace
 
@@ -414,110 +353,7 @@ void* dlopen(const char* path, int how) noexcept {
     return NEXT(dlopen)(fails(load_) ? "/a library that fails" : path, how);
 }
 
-} // extern "C"
-
-// Streams
-
-namespace {
-
-/// The streams that are made here, with their descriptors.
-struct Stream {
-    std::atomic<std::FILE*> file = nullptr;
-    int number = -1;
-};
-constexpr int most_streams = 256;
-Stream streams[most_streams];
-
-Stream& stream_of(void* cookie) {
-    return *static_cast<Stream*>(cookie);
-}
-
-ssize_t read_stream(void* cookie, char* bytes, std::size_t count) {
-    return ::read(stream_of(cookie).number, bytes, count);
-}
-
-ssize_t write_stream(void* cookie, const char* bytes, std::size_t count) {
-    const char* at = bytes;
-    for (std::size_t left = count; left > 0;) {
-        const ssize_t written = ::write(stream_of(cookie).number, at, left);
-        if (written < 0) return 0; // as fopencookie() has it
-        at += written;
-        left -= static_cast<std::size_t>(written);
-    }
-    return static_cast<ssize_t>(count);
-}
-
-int seek_stream(void* cookie, off64_t* offset, int whence) {
-    const off64_t place = ::lseek64(stream_of(cookie).number, *offset, whence);
-    if (place < 0) return -1;
-    *offset = place;
-    return 0;
-}
-
-int close_stream(void* cookie) {
-    Stream& stream = stream_of(cookie);
-    const int number = stream.number;
-    stream.file = nullptr;
-    return ::close(number);
-}
-
-std::FILE* stream_on(int number, const char* mode) {
-    if (number < 0) return nullptr;
-    std::FILE* const taken = reinterpret_cast<std::FILE*>(1);
-    for (Stream& stream : streams) {
-        std::FILE* none = nullptr;
-        if (!stream.file.compare_exchange_strong(none, taken)) continue;
-        stream.number = number;
-        std::FILE* const file =
-            ::fopencookie(&stream, mode, {read_stream, write_stream, seek_stream, close_stream});
-        stream.file = file;
-        return file;
-    }
-    ::_exit(125);
-}
-
-int flags_of(const char* mode) {
-    const bool both = std::strchr(mode, '+');
-    int flags = *mode == 'r' ? (both ? O_RDWR : O_RDONLY) : (both ? O_RDWR : O_WRONLY) | O_CREAT;
-    if (*mode == 'w') flags |= O_TRUNC;
-    if (*mode == 'a') flags |= O_APPEND;
-    if (std::strchr(mode, 'e')) flags |= O_CLOEXEC;
-    return flags;
-}
-
-int armed_main(int argc, char** argv, char** envp) {
-    read_settings();
-    if (record) {
-        stdout = stream_on(STDOUT_FILENO, "w");
-        armed = true;
-    }
-    return real_main(argc, argv, envp);
-}
-
-} // namespace
-
-extern "C" {
-
-std::FILE* fopen(const char* path, const char* mode) {
-    const int number = ::open(path, flags_of(mode), 0666);
-    std::FILE* const file = stream_on(number, mode);
-    if (!file && number >= 0) NEXT(close)(number);
-    return file;
-}
-
-std::FILE* fopen64(const char* path, const char* mode) {
-    return ::fopen(path, mode);
-}
-
-std::FILE* fdopen(int number, const char* mode) noexcept {
-    return stream_on(number, mode);
-}
-
-int fileno(std::FILE* file) noexcept {
-    for (const Stream& stream : streams)
-        if (stream.file == file) return stream.number;
-    return NEXT(fileno)(file);
-}
+// The beginning
 
 int __libc_start_main(int (*main)(int, char**, char**), int argc, char** argv, void (*init)(), void (*fini)(),
                       void (*loader_fini)(), void* stack_end) {

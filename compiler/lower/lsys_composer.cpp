@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
 
+#include "compiler/support/id_table.h"
 #include "compiler/support/number.h"
 #include "compiler/support/number_range.h"
 
@@ -229,7 +230,7 @@ bool LsysComposer::advance(Task& task) {
         const Stage stage = unfolded.kind == RuleKind::interpret ? 0 : task.string_stage;
         found.state.variant = variant;
         found.state.birth = birth;
-        const TurtlePart* part = find(found.module, stage, found.state);
+        const TurtlePart* part = parts_.find(found.module, stage, found.state);
         if (!part) return start_task(found.module, stage, found.state, unfolded);
         if (stage > 0) ++served_;
         task.turtle.append(*part, task.span, found.placing);
@@ -243,7 +244,7 @@ bool LsysComposer::draw_piece(Task& task, ModuleId piece) {
     double snap = 0;
     TurtleState state = state_of(task.turtle, snap);
     state.variant = variants_.child(task.start.variant, task.module, 0, task.at);
-    if (const TurtlePart* part = find(piece, 0, state)) {
+    if (const TurtlePart* part = parts_.find(piece, 0, state)) {
         place_piece(task.turtle, piece, *part, task.span, snap);
         return true;
     }
@@ -270,7 +271,7 @@ void LsysComposer::complete_piece() {
     place_piece(parent.turtle, task.module, part, parent.span, 0);
     ++parent.at;
     // Pieces must leave room for other parts; they can be drawn again.
-    if (parts_.size() < max_parts_ / 2) remember(task.module, 0, task.start, std::move(part));
+    if (parts_.size() < max_parts_ / 2) parts_.add(task.module, 0, task.start, std::move(part));
 }
 
 /// What is drawn in place of a part too small to see.
@@ -381,7 +382,7 @@ bool LsysComposer::has_room(Span span) {
     gave_up_ = count >= stop_from_ || (count >= give_up_from_ && few_serve_twice());
     if (gave_up_) return false;
     const bool hopeless = count >= refuse_from_ && few_serve_twice();
-    const bool too_large = count * sizeof(KnownPart) + pool_.bytes() > max_bytes_;
+    const bool too_large = parts_.bytes() + pool_.bytes() > max_bytes_;
     too_many_parts_ = hopeless || too_large || count + tasks_.size() > max_parts_;
     if (!too_many_parts_) return true;
     context_.diagnostics
@@ -449,35 +450,7 @@ void LsysComposer::complete_task() {
         pool_.share(std::move(part.instances), std::move(line), name_of_part(task), task.span, frame);
     if (count > 1 && part.instances.size() == 1)
         origins_.try_emplace(part.instances.front().master, Origin{task.module, task.stage / 2});
-    remember(task.module, task.stage, task.start, std::move(part));
-}
-
-void LsysComposer::remember(ModuleId module, Stage stage, const TurtleState& start, TurtlePart part) {
-    const std::uint64_t kind_hash = mixed(module, stage);
-    const std::uint32_t kind =
-        kind_ids_.find_or_add(kind_hash, static_cast<std::uint32_t>(kinds_.size()), [&](std::uint32_t id) {
-            return kinds_[id].module == module && kinds_[id].stage == stage;
-        });
-    if (kind == kinds_.size()) kinds_.push_back({module, stage, {}});
-    auto& reads = kinds_[kind].reads;
-    if (std::ranges::find(reads, part.reads) == reads.end()) reads.push_back(part.reads);
-    part_ids_.add(mixed(kind, hash(start, part.reads)), static_cast<std::uint32_t>(parts_.size()));
-    parts_.push_back({kind, start, std::move(part)});
-}
-
-const TurtlePart* LsysComposer::find(ModuleId module, Stage stage, const TurtleState& start) const {
-    const std::uint32_t kind = kind_ids_.find(mixed(module, stage), [&](std::uint32_t id) {
-        return kinds_[id].module == module && kinds_[id].stage == stage;
-    });
-    if (kind == IdTable::none) return nullptr;
-    for (const TurtleStateMask reads : kinds_[kind].reads) {
-        const std::uint32_t part = part_ids_.find(mixed(kind, hash(start, reads)), [&](std::uint32_t id) {
-            const KnownPart& known = parts_[id];
-            return known.kind == kind && known.part.reads == reads && equal(known.start, start, reads);
-        });
-        if (part != IdTable::none) return &parts_[part].part;
-    }
-    return nullptr;
+    parts_.add(task.module, task.stage, task.start, std::move(part));
 }
 
 /// Of control points that differ by rounding only.

@@ -2,7 +2,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <deque>
 #include <optional>
 #include <span>
 #include <string>
@@ -14,10 +13,10 @@
 #include "compiler/lower/lsys_sizes.h"
 #include "compiler/lower/model_placer.h"
 #include "compiler/lower/object_pool.h"
+#include "compiler/lower/part_table.h"
 #include "compiler/lower/turtle.h"
 #include "compiler/lower/turtle_state.h"
 #include "compiler/lower/variants.h"
-#include "compiler/support/id_table.h"
 
 namespace graftal {
 
@@ -84,7 +83,7 @@ class LsysComposer {
 
   private:
     /// 0: being drawn; 2k: before a step, of k that are left; 2k + 1: being decomposed before that.
-    using Stage = std::uint32_t;
+    using Stage = PartTable::Stage;
 
     /// A module as it is looked up, with the state that it finds, and how its part is placed.
     struct Lookup {
@@ -121,18 +120,6 @@ class LsysComposer {
         unsigned repeated = 0; ///< parts around this one at the same stage
     };
 
-    struct PartKind {
-        ModuleId module = 0;
-        Stage stage = 0;
-        std::vector<TurtleStateMask> reads; ///< of the known parts, each once
-    };
-
-    struct KnownPart {
-        std::uint32_t kind = 0;
-        TurtleState start;
-        TurtlePart part;
-    };
-
     Stage stage_before(unsigned steps) const;
     std::uint32_t birth_at(Stage stage) const { return steps_ - stage / 2; }
     std::uint32_t chance_stage(Stage stage, bool drawing) const;
@@ -157,8 +144,6 @@ class LsysComposer {
     bool draw_piece(Task& task, ModuleId piece);
     void complete_piece();
     void complete_task();
-    void remember(ModuleId module, Stage stage, const TurtleState& start, TurtlePart part);
-    const TurtlePart* find(ModuleId module, Stage stage, const TurtleState& start) const;
     TurtleState state_of(const Turtle& turtle, double& snap);
     Vec3 representative(Vec3 point);
     std::string name_of_part(const Task& task) const;
@@ -182,11 +167,8 @@ class LsysComposer {
     bool too_many_parts_ = false;
     const FoldedWord* word_ = nullptr;
     std::vector<Task> tasks_;
-    std::deque<KnownPart> parts_;
-    IdTable part_ids_;
+    PartTable parts_;
     std::unordered_map<ObjectId, Origin> origins_;
-    std::vector<PartKind> kinds_;
-    IdTable kind_ids_;
     DirectionTable directions_;
     RotationTable rotations_; ///< of exits
     NumberTable sizes_known_; ///< widths and units

@@ -66,6 +66,7 @@ class Chooser {
             if (!may_get_better(best)) break;
         }
         best.leaves = weights_.of(kind_of(root)).leaves;
+        best.pieces = pieces_;
         return best;
     }
 
@@ -161,6 +162,7 @@ class Chooser {
     }
 
     void add_piece(const Piece& piece) {
+        pieces_ += 1;
         if (projection_.drops(world_ball(cut_, piece)) && !cut_.nodes[piece.node].unbounded) return;
         Bucket& bucket = bucket_for(kind_of(piece));
         bucket.count += 1;
@@ -185,6 +187,7 @@ class Chooser {
             } else {
                 bucket_for(grained(weights_.child_kind(kind, edge))).count += bucket.count;
                 placements_ += bucket.count;
+                pieces_ += 1;
             }
         });
     }
@@ -210,6 +213,7 @@ class Chooser {
     double most_bytes_;
     double placement_bytes_, placement_text_;
     int grain_ = 1; ///< kinds' details are multiples of it
+    double pieces_ = 0; ///< that were looked at
     double placements_ = 0;
     double triangles_ = 0;
     double most_triangles_ = 0; ///< since they were last summed

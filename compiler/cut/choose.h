@@ -40,6 +40,7 @@ struct Choice {
     double placements = 0;
     double triangles = 0;
     double leaves = 0;
+    double pieces = 0;      ///< that were looked at: what choosing has cost
     bool spelt_out = false; ///< nothing becomes a mesh, except for shells
 };
 

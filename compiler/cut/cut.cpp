@@ -13,6 +13,7 @@
 #include "compiler/cut/cut_graph.h"
 #include "compiler/cut/povray_costs.h"
 #include "compiler/cut/prepare.h"
+#include "compiler/cut/work.h"
 
 namespace graftal {
 
@@ -27,6 +28,9 @@ constexpr double share_of_memory = 0.6;
 
 /// Of the work allowed, what graftal itself may take: the rest is for the rays.
 constexpr double share_of_work = 0.75;
+
+/// What the coarsest cut is still tried with.
+constexpr double least_share_of_work = 0.01;
 
 std::string readable_count(double count) {
     if (!std::isfinite(count)) return "more than 1e308";
@@ -50,20 +54,29 @@ class Cutter {
         // does not.
         int fails = 0, next = 1;
         std::optional<Cut> best;
+        double cost = 0; // of the best
+        const auto tried = [&](int steps) {
+            const double before = work_seconds_left_;
+            best.reset(); // two cuts of this size would take more memory than POV-Ray itself
+            best = attempt(steps);
+            if (best) cost = before - work_seconds_left_;
+            return best.has_value();
+        };
         while (!best && fails < coarsest()) {
+            if (work_seconds_left_ < least_share_of_work * options_.work_seconds) {
+                work_seconds_left_ = least_share_of_work * options_.work_seconds;
+                next = coarsest();
+            }
             next = std::min(next, coarsest());
-            best = attempt(next);
-            if (!best) fails = next;
+            if (!tried(next)) fails = next;
             next *= best ? 1 : 2;
         }
         if (!best) return refuse_size();
         int fits = next;
-        if (work_seconds_left_ < 0.5 * share_of_work * options_.work_seconds) return finish(std::move(*best), fits);
-        while (fits - fails > 1) {
+        // A try takes no more than half of what is left: the best can be made again.
+        while (fits - fails > 1 && work_seconds_left_ > 2 * cost) {
             const int half = (fails + fits) / 2;
-            best.reset(); // two cuts of this size would take more memory than POV-Ray itself
-            best = attempt(half);
-            (best ? fits : fails) = half;
+            (tried(half) ? fits : fails) = half;
         }
         if (!best) {
             work_seconds_left_ = std::numeric_limits<double>::infinity(); // it was not too much before
@@ -110,6 +123,8 @@ class Cutter {
         const double memory = memory_for_scene();
         const PieceKind whole = kind_of(cut_, projection, root);
         const Weights::Weight weight = weights.of(whole);
+        const std::uint64_t weighed = weights.visits();
+        spend(static_cast<double>(weighed) / WorkRates::kinds);
         if (options.flatten || better_flat(weight, memory)) {
             choice_ = flat_choice(weight);
             choice_.spelt_out = options.flatten;
@@ -117,6 +132,8 @@ class Cutter {
             if (cut || options.flatten) return cut;
         }
         choice_ = choose_cut(cut_, symmetry_, projection, root, weights, share_of_memory * memory);
+        spend(static_cast<double>(weights.visits() - weighed) / WorkRates::kinds +
+              choice_.pieces / WorkRates::pieces);
         return assembled(root, projection, weights, memory);
     }
 
@@ -139,6 +156,11 @@ class Cutter {
         if (bytes <= memory) return cut;
         choice_.bytes = bytes;
         return std::nullopt;
+    }
+
+    void spend(double seconds) {
+        work_seconds_left_ = std::max(0.0, work_seconds_left_ - seconds);
+        if (work_seconds_left_ == 0) worked_too_much_ = true;
     }
 
     static Choice flat_choice(const Weights::Weight& whole) {

@@ -28,7 +28,8 @@ std::int64_t reach_of(const std::vector<Point>& points, double cell) {
     return static_cast<std::int64_t>(static_cast<double>(far) / cell) + 3;
 }
 
-/// Works on a cube of cells, numbered from its lowest corner, x first.
+/// Works on a cube of cells, numbered from its lowest corner, x first. The outermost layer is outside for
+/// sure.
 class Flood {
   public:
     Flood(double cell, std::int64_t reach)
@@ -51,56 +52,69 @@ class Flood {
                     if (known.has({middle(x), middle(y), middle(z)})) cells_[number(x, y, z)] = taken;
     }
 
-    /// From a corner, which is outside.
+    /// From the outermost layer, through the rows of empty cells one after the other (A. R. Smith, "Tint
+    /// Fill", 1979).
     void run() {
-        const std::int64_t strides[3] = {1, side_, side_ * side_};
-        std::vector<std::int64_t> front = {0}, next;
-        cells_[0] = wet;
-        while (!front.empty()) {
-            next.clear();
-            for (const std::int64_t cell : front)
-                for (const std::int64_t stride : strides) {
-                    const std::int64_t place = cell / stride % side_;
-                    for (const int step : {-1, 1}) {
-                        if (place + step < 0 || place + step >= side_) continue;
-                        std::uint8_t& there = cells_[static_cast<std::size_t>(cell + step * stride)];
-                        if (there != empty) continue;
-                        there = wet;
-                        next.push_back(cell + step * stride);
-                    }
-                }
-            front.swap(next);
+        wet_outermost();
+        std::vector<std::size_t> seeds;
+        for (const std::int64_t end : {std::int64_t{1}, side_ - 2})
+            for (std::int64_t i = 1; i + 1 < side_; ++i)
+                for (std::int64_t k = 1; k + 1 < side_; ++k)
+                    for (const std::size_t seed : {number(end, i, k), number(i, end, k), number(i, k, end)})
+                        seeds.push_back(seed);
+        const auto row = static_cast<std::size_t>(side_), layer = row * row;
+        while (!seeds.empty()) {
+            std::size_t first = seeds.back();
+            seeds.pop_back();
+            if (cells_[first] != empty) continue;
+            std::size_t last = first;
+            while (cells_[first - 1] == empty)
+                --first;
+            while (cells_[last + 1] == empty)
+                ++last;
+            std::fill(cells_.begin() + static_cast<std::ptrdiff_t>(first),
+                      cells_.begin() + static_cast<std::ptrdiff_t>(last + 1), wet);
+            for (const std::size_t beside : {first - row, first + row, first - layer, first + layer})
+                for (std::size_t at = beside; at <= beside + (last - first); ++at)
+                    if (cells_[at] == empty && (at == beside || cells_[at - 1] != empty)) seeds.push_back(at);
         }
     }
 
     /// Dry cells with a wet neighbour, also across edges and corners, are the shell; those behind are inside.
-    std::shared_ptr<const InsideGrid> inside() const {
+    /// Spoils the cells.
+    std::shared_ptr<const InsideGrid> inside() {
+        for (std::uint8_t& cell : cells_)
+            cell = cell == wet;
+        const auto row = static_cast<std::size_t>(side_);
+        std::vector<std::uint8_t> before;
+        for (const std::size_t stride : {std::size_t{1}, row, row * row})
+            spread(stride, before);
+        if (std::ranges::find(cells_, 0) == cells_.end()) return nullptr;
         std::vector<bool> hidden(cells_.size());
-        bool any = false;
-        for (std::int64_t z = 1; z + 1 < side_; ++z)
-            for (std::int64_t y = 1; y + 1 < side_; ++y)
-                for (std::int64_t x = 1; x + 1 < side_; ++x) {
-                    if (!is_behind(x, y, z)) continue;
-                    hidden[number(x, y, z)] = true;
-                    any = true;
-                }
-        return any ? std::make_shared<InsideGrid>(cell_, reach_, std::move(hidden)) : nullptr;
+        for (std::size_t i = 0; i < cells_.size(); ++i)
+            if (!cells_[i]) hidden[i] = true;
+        return std::make_shared<InsideGrid>(cell_, reach_, std::move(hidden));
     }
 
   private:
-    enum : std::uint8_t { empty, taken, wet };
+    static constexpr std::uint8_t empty = 0, taken = 1, wet = 2;
 
     std::size_t number(std::int64_t x, std::int64_t y, std::int64_t z) const {
         return static_cast<std::size_t>((z * side_ + y) * side_ + x);
     }
 
-    bool is_behind(std::int64_t x, std::int64_t y, std::int64_t z) const {
-        if (cells_[number(x, y, z)] == wet) return false;
-        for (std::int64_t dz = -1; dz <= 1; ++dz)
-            for (std::int64_t dy = -1; dy <= 1; ++dy)
-                for (std::int64_t dx = -1; dx <= 1; ++dx)
-                    if (cells_[number(x + dx, y + dy, z + dz)] == wet) return false;
-        return true;
+    void wet_outermost() {
+        for (const std::int64_t end : {std::int64_t{0}, side_ - 1})
+            for (std::int64_t i = 0; i < side_; ++i)
+                for (std::int64_t k = 0; k < side_; ++k)
+                    cells_[number(end, i, k)] = cells_[number(i, end, k)] = cells_[number(i, k, end)] = wet;
+    }
+
+    /// Each cell takes on what is set in it and in those a stride before and after. The outermost are set.
+    void spread(std::size_t stride, std::vector<std::uint8_t>& before) {
+        before = cells_;
+        for (std::size_t i = stride; i + stride < cells_.size(); ++i)
+            cells_[i] = static_cast<std::uint8_t>(before[i - stride] | before[i] | before[i + stride]);
     }
 
     double cell_;

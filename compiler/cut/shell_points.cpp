@@ -94,8 +94,11 @@ class GridSearch {
         }
     }
 
+    /// Leaves the work of a run for the end.
     bool look(double cell, std::uint64_t most_work) {
-        if (!run_grid(cell, most_work)) return false;
+        const std::uint64_t looked = system_.all_work() + most_a_run_;
+        if (looked >= limits_.work || !run_grid(cell, std::min(most_work, limits_.work - looked)))
+            return false;
         affordable_ = cell;
         const bool flat = in_one_plane(system_.root().points, ball_.radius);
         growth_.add(cell, static_cast<double>(system_.kept()), flat);

@@ -8,8 +8,11 @@ namespace graftal {
 /// These many steps stand for a second of one processor of 2024.
 struct WorkRates {
     static constexpr double ray_steps = 2e7;    ///< of rays, shading included (RayWork)
-    static constexpr double shell_points = 6e6; ///< points of shells moved (shell_points.h)
+    static constexpr double shell_points = 1e7; ///< points of shells moved (shell_points.h)
+    static constexpr double mesh_triangles = 1.5e6; ///< triangles of meshes sorted into boxes for rays
     static constexpr double leaves = 4e6;       ///< leaves unfolded into meshes and placements
+    static constexpr double kinds = 4.5e6;      ///< edges of kinds followed to weigh them (Weights)
+    static constexpr double pieces = 3e6;       ///< pieces looked at to choose among them (choose_cut())
 };
 
 /// Steps that rays take, each about as long as others: what a part takes depends on how it is placed.

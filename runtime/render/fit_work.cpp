@@ -53,7 +53,9 @@ class Fitting {
         fitted.work_cut = too_much(fitted.seconds);
         while (steps_left > 0 && too_much(fitted.seconds)) {
             const double steps = std::log(excess(fitted.seconds)) / std::log(most_gain);
-            for (int i = 0; i == 0 || (i < steps && steps_left > 0); ++i)
+            // Each look that is broken off takes much of the time there is: there are to be few.
+            const int least = std::max(1, broken_looks_);
+            for (int i = 0; (i < least || i < steps) && (i == 0 || steps_left > 0); ++i)
                 make_coarser(options, steps_left);
             PreparedCut prepared = std::move(fitted.model->prepared);
             fitted.model.reset();
@@ -125,6 +127,7 @@ class Fitting {
         tracer.trace({block, {}}, control, picture);
         if (too_many_shells()) { // how many there are by now depends on the threads
             tried_seconds_ += most_shells;
+            ++broken_looks_;
             return broken_off * allowed();
         }
         const TraceStatistics& tried = tracer.statistics();
@@ -140,7 +143,8 @@ class Fitting {
     const std::function<ShaderLimits(const TraceModel&)>& limits_of_;
     const int threads_;
     const std::function<bool()>& cancelled_;
-    double tried_seconds_ = 0; ///< that rays took
+    double tried_seconds_ = 0; ///< that rays and shells took
+    int broken_looks_ = 0;
 };
 
 } // namespace

@@ -7,6 +7,7 @@
 #include <glm/matrix.hpp>
 
 #include "compiler/cut/bake.h"
+#include "compiler/cut/work.h"
 
 namespace graftal {
 
@@ -123,7 +124,9 @@ std::unique_ptr<TraceMesh> MeshStore::bake_shell(const Key& key, const Affine& g
     request.most_shell_work = most_shell_work_;
     request.painters = {{0, Rgb(0.0)}, {0, Rgb(1.0)}};
     const Baked baked = bake(prepared_.cut, prepared_.symmetry, request, most_triangles);
-    shell_work_ += baked.shell_work;
+    constexpr double moves_a_triangle = WorkRates::shell_points / WorkRates::mesh_triangles;
+    shell_work_ += baked.shell_work +
+                   static_cast<std::uint64_t>(moves_a_triangle * static_cast<double>(baked.triangles));
     auto mesh = trace_mesh(baked, inverse(graph_from_frame));
     mesh->cell = baked.culled_detail / request.detail_per_unit / graph_from_frame.linear[0][0];
     return mesh;

@@ -74,7 +74,7 @@ class MeshStore {
     /// The largest detail of a cell that was seen so far, 0 if none was: more than 1 where shells had to be
     /// coarser.
     double coarsest_shell() const { return coarsest_shell_; }
-    /// Points moved for shells so far.
+    /// What shells took so far, in moves of a point (work.h).
     std::uint64_t shell_work() const { return shell_work_; }
 
     /// The node in its frame. The same node, with as many steps, is always asked for in the same frame. The

@@ -303,7 +303,7 @@ void find_shells(TraceModel& model) {
 
 /// Of one shell: there may be several, and they may be made anew at another error.
 std::uint64_t most_shell_work(const CutOptions& options) {
-    constexpr double share = 0.25, least = 1e7; // with less there is hardly one
+    constexpr double share = 0.15, least = 1e7; // with less there is hardly one
     const double seconds = options.culls() ? std::min(share * options.work_seconds, 1e6) : 1e6;
     return static_cast<std::uint64_t>(std::max(least, seconds * WorkRates::shell_points));
 }

@@ -103,7 +103,14 @@ class ChaosGame::Builder {
         std::vector<double> visits;
         for (const ObjectId id : members)
             visits.push_back(begins_[id]);
-        if (components_.cyclic[c]) visits = expected_visits(visits, steps_inside(c));
+        if (components_.cyclic[c]) {
+            const std::vector<double> begins = visits;
+            visits = expected_visits(visits, steps_inside(c));
+            if (!leaves_in_time(begins, visits)) {
+                drop_ways_out(c);
+                return add_core(c);
+            }
+        }
         for (std::size_t i = 0; i < members.size(); ++i)
             pass_on(members[i], visits[i]);
     }
@@ -113,6 +120,29 @@ class ChaosGame::Builder {
             for (const Instance& instance : graph_.objects[id].instances)
                 if (components_.component_of[instance.master] != c) return false;
         return true;
+    }
+
+    /// False where the ways out are taken so rarely that no random number stands for them (AliasTables).
+    static bool leaves_in_time(const std::vector<double>& begins, const std::vector<double>& visits) {
+        constexpr double most_rounds = 1e9;
+        double all_begins = 0;
+        for (const double begin : begins)
+            all_begins += begin;
+        return std::ranges::all_of(visits, [&](double visit) { return visit <= most_rounds * all_begins; });
+    }
+
+    void drop_ways_out(std::uint32_t c) {
+        for (const ObjectId id : components_.members[c]) {
+            std::vector<Instance>& instances = graph_.objects[id].instances;
+            std::erase_if(instances, [&](const Instance& instance) {
+                return components_.component_of[instance.master] != c;
+            });
+            double stays = 0;
+            for (const Instance& instance : instances)
+                stays += instance.chance;
+            for (Instance& instance : instances)
+                instance.chance /= stays;
+        }
     }
 
     std::vector<WalkStep> steps_inside(std::uint32_t c) {

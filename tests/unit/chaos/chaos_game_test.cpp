@@ -1,7 +1,9 @@
 // Random iteration against measures that are known exactly: cylinder sets of words of maps, by chi-square
 // tests that a wrong measure fails by orders of magnitude.
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <filesystem>
 
 #include "compiler/chaos/unroll.h"
@@ -201,6 +203,23 @@ TEST(ChaosGame, SequencesDifferAndRepeat) {
         equal += first[i].place == other[i].place;
     }
     EXPECT_LT(equal, 5);
+}
+
+// A walk that ends once in 1e60 rounds draws the limit: it would never come to its end.
+TEST(ChaosGame, WaysOutThatAreHardlyTakenAreLeftOut) {
+    const auto most_height = [](const std::string& chance) {
+        const Played model =
+            played("a.inst", "object a { sphere chance: 1\n a scale: 0.5 chance: " + chance +
+                                 "\n a scale: 0.5 translate: 1,0,0 chance: " + chance + " }");
+        double most = 0;
+        for (const ChaosPoint& point : points_of(model.game(), 2000, 6))
+            most = std::max(most, std::abs(point.place.y));
+        return most;
+    };
+    EXPECT_GT(most_height("1"), 0.5);
+    EXPECT_GT(most_height("1e3"), 0); // some come from a small part
+    for (const char* chance : {"1e12", "1e60", "1e100"})
+        EXPECT_LT(most_height(chance), 1e-9) << chance;
 }
 
 TEST(ChaosGame, NothingButPlanesHasNoPoints) {

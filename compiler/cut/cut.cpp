@@ -140,7 +140,11 @@ class Cutter {
     /// What was chosen, if it fits.
     std::optional<Cut> assembled(const Piece& root, const Projection& projection, Weights& weights, double memory) {
         grain_ = weights.grain();
-        if (!(choice_.bytes <= estimate_slack * memory)) return std::nullopt;
+        const auto failed = [&](bool by_work) {
+            failed_by_work_ = by_work;
+            return std::nullopt;
+        };
+        if (!(choice_.bytes <= estimate_slack * memory)) return failed(false);
         // What is tried last still has half of what is left.
         const double work_seconds = 0.5 * work_seconds_left_;
         AssemblyLimits limits{
@@ -148,20 +152,16 @@ class Cutter {
             static_cast<std::size_t>(std::max(0.0, memory) / PovrayCosts::triangle) + 1, work_seconds};
         std::optional<Cut> cut = assemble(cut_, symmetry_, projection, root, choice_, weights,
                                           options_.limit_normals(), *prepared_.shells, limits);
-        if (limits.work_seconds < 0) worked_too_much_ = true;
         if (options_.culls()) work_seconds_left_ -= work_seconds - std::max(0.0, limits.work_seconds);
-        if (!cut) return std::nullopt;
+        if (!cut) return failed(limits.work_seconds < 0);
         const double bytes = povray_bytes(*cut);
         cut->estimated_bytes = static_cast<std::uint64_t>(bytes + picture_bytes());
         if (bytes <= memory) return cut;
         choice_.bytes = bytes;
-        return std::nullopt;
+        return failed(false);
     }
 
-    void spend(double seconds) {
-        work_seconds_left_ = std::max(0.0, work_seconds_left_ - seconds);
-        if (work_seconds_left_ == 0) worked_too_much_ = true;
-    }
+    void spend(double seconds) { work_seconds_left_ = std::max(0.0, work_seconds_left_ - seconds); }
 
     static Choice flat_choice(const Weights::Weight& whole) {
         Choice choice;
@@ -202,7 +202,7 @@ class Cutter {
 
     Limit passed_limit() const {
         Limit limit =
-            worked_too_much_ ? limit_of_work(options_.work_seconds) : limit_of_memory(options_.memory_bytes);
+            failed_by_work_ ? limit_of_work(options_.work_seconds) : limit_of_memory(options_.memory_bytes);
         if (!options_.visible_only && reaches_out_of_sight())
             limit.or_else = ", leave out what the picture does not show with --visible-only";
         return limit;
@@ -226,7 +226,7 @@ class Cutter {
     }
 
     std::nullopt_t refuse_size() {
-        if (worked_too_much_) {
+        if (failed_by_work_) {
             diagnostics_
                 .error(graph_.objects[graph_.root].span,
                        fmt::format("{} leaves take more than the {:g} seconds of work allowed, however coarse",
@@ -260,7 +260,7 @@ class Cutter {
     double cube_triangles_ = 0; ///< visible_cube_triangles(), whatever the error
     int grain_ = 1;             ///< of the last weights
     double work_seconds_left_ = 0;
-    bool worked_too_much_ = false; ///< some try ended for its work
+    bool failed_by_work_ = false; ///< the last try that failed ended for its work
     Choice choice_;
 };
 

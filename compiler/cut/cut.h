@@ -29,7 +29,7 @@ struct CutOptions {
     std::uint64_t memory_bytes = 2ull << 30; ///< POV-Ray's estimated peak
     std::vector<unsigned>
         root_levels;           ///< that each of the root's instances uses up; empty: as the graph says
-    double work_seconds = 40;  ///< of one processor, for the picture (work.h); infinite: whatever it takes
+    double work_seconds = 30;  ///< of one processor, for the picture (work.h); infinite: whatever it takes
     bool visible_only = false; ///< drop what is out of the picture, with its shadows and reflections
     bool flatten = false;      ///< every leaf its own placement: the absolute specification
 

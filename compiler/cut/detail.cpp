@@ -225,11 +225,12 @@ ShellSizes Weights::shell_sizes(NodeId node, std::uint32_t steps) {
         return is_crowded(leaves(octave), std::exp2(octave), flat_[node]);
     };
     ShellSizes sizes;
-    for (int octave = 1; octave < whole_octaves; ++octave)
+    const double all_leaves = leaves(many_octaves);
+    for (int octave = 1; octave < whole_octaves && is_crowded(all_leaves, std::exp2(octave), flat_[node]);
+         ++octave)
         if (crowded(octave)) sizes.octaves |= 1u << octave;
     if (crowded(many_octaves)) {
-        const double dimension =
-            std::log2(leaves(many_octaves) / leaves(few_octaves)) / (many_octaves - few_octaves);
+        const double dimension = std::log2(all_leaves / leaves(few_octaves)) / (many_octaves - few_octaves);
         // A square of a picture shows (size ratio)^dimension parts on (size ratio)^2 of its places.
         const double ratio = dimension < most_parted_dimension
                                  ? std::pow(most_shells_a_ray, 1 / std::max(dimension - 2, 1e-2))

@@ -20,8 +20,10 @@ using Point = std::array<float, 3>;
 /// States and their relaxations: more are not worth the points.
 constexpr std::size_t most_states = 200'000;
 constexpr std::size_t most_relaxations = 2'000'000;
-/// Points that are moved in the time of a relaxation.
+/// Points that are moved in the time that it takes to follow an edge from one state to another.
 constexpr std::uint64_t moves_a_relaxation = 4;
+/// In the time that a state takes to be made and done with.
+constexpr std::uint64_t moves_a_state = 30;
 /// Samples of a surface lie closer than cells are wide, so that none is missed.
 constexpr double sample_spacing = 0.6;
 /// A limit point is as good as found once the maps on the way to it have shrunk everything by this.
@@ -119,13 +121,17 @@ double PointSystem::stretch_of(const CutEdge& edge) const {
 
 std::optional<std::uint32_t> PointSystem::state_number(StateKey key) {
     if (!cut_.nodes[key.first].unending) key.second = unlimited_steps;
-    const auto [place, added] = number_of_.emplace(key, static_cast<std::uint32_t>(states_.size()));
-    if (added) {
+    const auto next = static_cast<std::uint32_t>(states_.size());
+    const std::uint32_t number =
+        number_of_.find_or_add(mixed(mixed(0, key.first), key.second), next,
+                               [&](std::uint32_t other) { return states_[other].key == key; });
+    if (number == next) {
         if (states_.size() >= most_states) return std::nullopt;
+        work_ += moves_a_state;
         states_.emplace_back();
         states_.back().key = key;
     }
-    return place->second;
+    return number;
 }
 
 bool PointSystem::add_states(StateKey root) {
@@ -175,10 +181,11 @@ bool PointSystem::start(std::uint32_t number) {
     });
     for (const CutEdge& edge : followed_edges(node, state.cut)) {
         if (cut_.nodes[edge.child].primitive) continue;
+        work_ += moves_a_relaxation;
         states_[*state_number({edge.child, steps_after(state.key.second, edge)})].uses.push_back(
             {number, &edge});
     }
-    if (!fits) return false;
+    if (!fits || work_ > most_work_) return false;
     if (!node.solid && state.key.second == unlimited_steps) return add_seed(number);
     return true;
 }

@@ -13,6 +13,7 @@
 #include "compiler/cut/choose.h"
 #include "compiler/cut/inside_grid.h"
 #include "compiler/cut/shell_points.h"
+#include "compiler/support/id_table.h"
 
 namespace graftal {
 
@@ -119,7 +120,7 @@ class PointSystem {
     bool painted_;
     double cell_ = 0;
     std::vector<State> states_;
-    std::map<StateKey, std::uint32_t> number_of_;
+    IdTable number_of_; ///< of states, by their keys
     std::size_t kept_ = 0;
     std::uint64_t work_ = 0, all_work_ = 0;
 };

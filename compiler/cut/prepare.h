@@ -1,9 +1,11 @@
 #pragma once
 
 #include <memory>
+#include <vector>
 
 #include "compiler/cut/cut.h"
 #include "compiler/cut/cut_graph.h"
+#include "compiler/cut/detail.h"
 #include "compiler/cut/shell_store.h"
 #include "compiler/cut/symmetry.h"
 
@@ -17,6 +19,8 @@ struct PreparedCut {
     std::uint32_t root_steps = unlimited_steps; ///< levels that the root has
     Box bounds;                                 ///< of the limit set
     std::unique_ptr<ShellStore> shells = std::make_unique<ShellStore>(); ///< of this graph
+    /// By node, once somebody has found them; none where they depend on the error that is allowed.
+    std::vector<ShellSizes> shell_sizes;
 };
 
 /// Requires what cut_graph() requires. O(graph).

@@ -41,12 +41,7 @@ class Fitting {
         FittedModel fitted;
         CutOptions options = options_;
         int steps_left = options.culls() ? most_coarser_steps : 0;
-        while (!make(prepare(), options, fitted)) {
-            fitted.out_of_memory = true;
-            if (steps_left == 0) throw std::bad_alloc();
-            for (int i = 0; i < steps_after_memory && steps_left > 0; ++i)
-                make_coarser(options, steps_left);
-        }
+        make_anew(prepare, options, steps_left, fitted);
         fitted.whole_seconds = fitted.seconds;
         fitted.allowed_seconds = std::numeric_limits<double>::infinity();
         if (!options.culls()) return fitted;
@@ -59,7 +54,10 @@ class Fitting {
                 make_coarser(options, steps_left);
             PreparedCut prepared = std::move(fitted.model->prepared);
             fitted.model.reset();
-            if (!make(std::move(prepared), options, fitted)) throw std::bad_alloc();
+            if (!make(std::move(prepared), options, fitted)) {
+                note_memory(options, steps_left, fitted);
+                make_anew(prepare, options, steps_left, fitted);
+            }
         }
         while (too_much(fitted.seconds) && fitted.model->most_visits > fewest_visits) {
             const std::uint64_t fewer = excess(fitted.seconds) > 4 ? 4 : 2;
@@ -78,10 +76,25 @@ class Fitting {
         if (options.error_world) *options.error_world *= coarser;
     }
 
+    static void note_memory(CutOptions& options, int& steps_left, FittedModel& fitted) {
+        fitted.out_of_memory = true;
+        if (steps_left == 0) throw std::bad_alloc();
+        for (int i = 0; i < steps_after_memory && steps_left > 0; ++i)
+            make_coarser(options, steps_left);
+    }
+
+    /// As coarse as the memory asks for.
+    void make_anew(const std::function<PreparedCut()>& prepare, CutOptions& options, int& steps_left,
+                   FittedModel& fitted) {
+        while (!make(prepare(), options, fitted))
+            note_memory(options, steps_left, fitted);
+    }
+
     /// False where it takes more memory than there is.
     bool make(PreparedCut prepared, const CutOptions& options, FittedModel& fitted) {
         try {
             fitted.model = std::make_unique<TraceModel>(std::move(prepared), view_, options);
+            tried_seconds_ += static_cast<double>(fitted.model->weighed) / WorkRates::kinds;
             fitted.error_px = options.error_px;
             fitted.seconds = seconds_for(*fitted.model);
             return true;
@@ -105,8 +118,10 @@ class Fitting {
     }
 
     double seconds_for(const TraceModel& model) {
+        const int broken_before = broken_looks_;
         const double first = seconds_by(model, first_block);
-        if (excess(first) > clear_factor || clear_factor * excess(first) < 1) return first;
+        if (broken_looks_ > broken_before || excess(first) > clear_factor || clear_factor * excess(first) < 1)
+            return first;
         return seconds_by(model, second_block);
     }
 
@@ -143,7 +158,7 @@ class Fitting {
     const std::function<ShaderLimits(const TraceModel&)>& limits_of_;
     const int threads_;
     const std::function<bool()>& cancelled_;
-    double tried_seconds_ = 0; ///< that rays and shells took
+    double tried_seconds_ = 0; ///< that rays, shells and weights took
     int broken_looks_ = 0;
 };
 

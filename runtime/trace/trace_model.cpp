@@ -284,21 +284,35 @@ double farthest_terminal(const TraceModel& model) {
     return farthest;
 }
 
-/// Where copies lie in each other so often that rays would not come through.
-void find_shells(TraceModel& model) {
-    if (!model.projection.culls()) return;
+/// By node of the cut; none if rays come through everywhere.
+std::vector<ShellSizes> shell_sizes(TraceModel& model) {
     const CutGraph& cut = model.prepared.cut;
     Weights weights(cut, 12, 0, model.projection.error_px());
     Piece root;
     root.node = cut.root;
     root.steps = model.prepared.root_steps;
-    if (!weights.of(kind_of(cut, model.projection, root)).crowded) return;
+    std::vector<ShellSizes> sizes;
+    if (weights.of(kind_of(cut, model.projection, root)).crowded) {
+        sizes.resize(cut.nodes.size());
+        for (const NodeId source : model.layers.source)
+            if (!cut.nodes[source].primitive) sizes[source] = weights.shell_sizes(source, root.steps);
+    }
+    model.weighed = weights.visits();
+    return sizes;
+}
+
+/// Where copies lie in each other so often that rays would not come through.
+void find_shells(TraceModel& model) {
+    if (!model.projection.culls()) return;
+    std::vector<ShellSizes>& known = model.prepared.shell_sizes;
+    const std::vector<ShellSizes> sizes = known.empty() ? shell_sizes(model) : known;
+    if (sizes.empty()) return;
     for (std::size_t i = 0; i < model.nodes.size(); ++i) {
-        const NodeId source = model.layers.source[i];
-        if (cut.nodes[source].primitive) continue;
-        model.nodes[i].shell = weights.shell_sizes(source, model.prepared.root_steps);
+        model.nodes[i].shell = sizes[model.layers.source[i]];
         model.has_shells = model.has_shells || model.nodes[i].shell.any();
     }
+    const auto by_error = [](const CutNode& node) { return node.terminal_px > 0; };
+    if (std::ranges::none_of(model.prepared.cut.nodes, by_error)) known = sizes;
 }
 
 /// Of one shell: there may be several, and they may be made anew at another error.

@@ -142,6 +142,7 @@ struct TraceModel {
     /// be culled, so that few are left.
     std::uint64_t more_visits() const { return std::clamp<std::uint64_t>(most_visits, 32, 256); }
     bool has_shells = false;                              ///< some node may be drawn as one
+    std::uint64_t weighed = 0;                            ///< edges of kinds followed to find where (Weights)
     bool clear_texels = false;                            ///< some texture has them
 
     /// Up to where a hit will do, if none can be nearer by more than this share of the half width: of a model

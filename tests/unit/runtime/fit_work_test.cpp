@@ -1,6 +1,8 @@
 #include "runtime/render/fit_work.h"
 
+#include <functional>
 #include <new>
+#include <utility>
 
 #include <gtest/gtest.h>
 
@@ -13,7 +15,12 @@ class FitWork : public testing::Test {
   protected:
     /// What fits where a model with an error of less than so many pixels takes too much memory.
     FittedModel fitted(double too_fine_px, const CutOptions& options) {
-        const Graph graph = test::tetrahedron();
+        return fitted(test::tetrahedron(), options, [&](double error_px) { return error_px < too_fine_px; });
+    }
+
+    /// `too_large`: whether a model with such an error takes too much memory.
+    FittedModel fitted(const Graph& graph, const CutOptions& options,
+                       const std::function<bool(double)>& too_large) {
         const Components components = strong_components(graph);
         const auto bounds = bound_objects(graph, components, decide_contraction(graph, components));
         View view;
@@ -24,10 +31,26 @@ class FitWork : public testing::Test {
             return prepare_cut(graph, components, bounds, options);
         };
         const auto limits = [&](const TraceModel& model) {
-            if (model.options.error_px < too_fine_px) throw std::bad_alloc();
+            if (too_large(model.options.error_px)) throw std::bad_alloc();
             return ShaderLimits();
         };
         return fit_work(prepare, view, options, 1, limits, 1, [] { return false; });
+    }
+
+    /// Cubes of all sizes that lie in each other.
+    static Graph crowd() {
+        Graph graph;
+        const ObjectId cube = graph.primitive(PrimitiveKind::cube);
+        const auto self = static_cast<ObjectId>(graph.objects.size());
+        Object crowd{"crowd", {}, {}, {}, {}};
+        crowd.instances.push_back({cube, Affine::scale(Vec3(.3)), {}, {}, {}});
+        for (int i = 0; i < 8; ++i) {
+            const Vec3 corner(i & 1 ? .3 : -.3, i & 2 ? .3 : -.3, i & 4 ? .3 : -.3);
+            crowd.instances.push_back(
+                {self, Affine::translate(corner) * Affine::scale(Vec3(.7)), {}, {}, {}});
+        }
+        graph.root = graph.add(std::move(crowd));
+        return graph;
     }
 
     int prepared_ = 0;
@@ -59,6 +82,32 @@ TEST_F(FitWork, GivesUpWhatCannotBePrepared) {
     most_prepared_ = 0;
     EXPECT_THROW(fitted(0, CutOptions()), std::bad_alloc);
     EXPECT_EQ(prepared_, 1);
+}
+
+TEST_F(FitWork, CoarsensWhatTakesTooMuchWorkAndThenTooMuchMemory) {
+    CutOptions options;
+    options.work_seconds = 1e-3;
+    const FittedModel model = fitted(crowd(), options, [&](double error_px) {
+        return error_px > options.error_px && error_px < 4 * options.error_px;
+    });
+    EXPECT_TRUE(model.work_cut);
+    EXPECT_TRUE(model.out_of_memory);
+    EXPECT_GE(model.error_px, 4 * options.error_px);
+}
+
+/// Where copies lie in each other does not depend on the error: tries that are coarser need not ask again.
+TEST_F(FitWork, LooksOnceForCrowds) {
+    CutOptions options;
+    const auto fits = [](double) { return false; };
+    const FittedModel first = fitted(crowd(), options, fits);
+    ASSERT_EQ(first.error_px, options.error_px);
+    EXPECT_TRUE(first.model->has_shells);
+    EXPECT_GT(first.model->weighed, 0u);
+    options.work_seconds = 1e-3;
+    const FittedModel coarser = fitted(crowd(), options, fits);
+    ASSERT_GT(coarser.error_px, options.error_px);
+    EXPECT_TRUE(coarser.model->has_shells);
+    EXPECT_EQ(coarser.model->weighed, 0u);
 }
 
 TEST_F(FitWork, CoarsensNothingOfWhichNothingIsLeftOut) {

@@ -19,9 +19,6 @@ def three(values, form):
     return ', '.join(form % value for value in (quantile(values, 0.5), quantile(values, 0.95), values[-1]))
 
 
-LANGUAGES = ('inst', 'lsys', 'rifs')
-
-
 def load(folder):
     with open(folder / 'results.jsonl') as file:
         return [json.loads(line) for line in file]

@@ -1,5 +1,7 @@
 #include "compiler/cut/coarser.h"
 
+#include <cmath>
+
 #include <fmt/format.h>
 
 namespace graftal {
@@ -10,6 +12,12 @@ std::string readable_bytes(double bytes) {
     for (; bytes >= 1024 && unit < 5; ++unit)
         bytes /= 1024;
     return fmt::format("{:.3g} {}", bytes, units[unit]);
+}
+
+std::string readable_seconds(double seconds) {
+    if (!(seconds >= 10 && seconds < 1e7)) return fmt::format("{:.2g}", seconds);
+    const double unit = std::pow(10, std::floor(std::log10(seconds)) - 1);
+    return fmt::format("{:.0f}", std::round(seconds / unit) * unit);
 }
 
 Limit limit_of_memory(std::uint64_t bytes) {

@@ -25,6 +25,9 @@ struct Limit {
 /// Three digits and a unit.
 std::string readable_bytes(double bytes);
 
+/// Two digits, without a power of ten where people write none: "110", "3200".
+std::string readable_seconds(double seconds);
+
 /// The limit of CutOptions::memory_bytes.
 Limit limit_of_memory(std::uint64_t bytes);
 /// The limit of CutOptions::work_seconds.

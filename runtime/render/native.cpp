@@ -43,8 +43,9 @@ void report_work(const FittedModel& fitted, const Sampling& wanted, const Sampli
     if (!viewed.cut.culls()) {
         if (!(fitted.whole_seconds > allowed)) return;
         diagnostics
-            .note(span, fmt::format("this picture takes about {:.2g} seconds of one processor: nothing is left out",
-                                    fitted.whole_seconds))
+            .note(span,
+                  fmt::format("this picture takes about {} seconds of one processor: nothing is left out",
+                              readable_seconds(fitted.whole_seconds)))
             .with_hint("--error 0.5 leaves out what nobody can see");
         return;
     }
@@ -55,8 +56,8 @@ void report_work(const FittedModel& fitted, const Sampling& wanted, const Sampli
         limit.besides += fmt::format(", one for {0} by {0} pixels", finest.block);
     else if (wanted.antialias && !finest.antialias)
         limit.besides += ", one for each pixel";
-    limit.need = fmt::format("the picture as asked would take about {:.2g} seconds of one processor",
-                             fitted.whole_seconds);
+    limit.need = fmt::format("the picture as asked would take about {} seconds of one processor",
+                             readable_seconds(fitted.whole_seconds));
     warn_of_limit(span, limit, {fitted.error_px, viewed.cut.error_px}, diagnostics);
 }
 

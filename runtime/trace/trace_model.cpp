@@ -287,7 +287,9 @@ double farthest_terminal(const TraceModel& model) {
 /// By node of the cut; none if rays come through everywhere.
 std::vector<ShellSizes> shell_sizes(TraceModel& model) {
     const CutGraph& cut = model.prepared.cut;
-    Weights weights(cut, 12, 0, model.projection.error_px());
+    // Sizes are asked for by octaves. An eighth of one tells them apart, and nodes of all sizes share kinds.
+    constexpr int grain = PieceKind::steps_an_octave / 8;
+    Weights weights(cut, 12, 0, model.projection.error_px(), grain);
     Piece root;
     root.node = cut.root;
     root.steps = model.prepared.root_steps;

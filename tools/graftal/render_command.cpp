@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "compiler/cut/coarser.h"
 #include "runtime/povray/interruption.h"
 #include "runtime/render/native.h"
 #include "runtime/render/render.h"
@@ -90,10 +91,9 @@ int run_render(const Options& options) {
     render.on_start = [&](double seconds) {
         if (!(seconds > options.compile.cut.work_seconds)) return;
         bar.clear();
-        say(fmt::format(
-            "graftal: POV-Ray will take about {:.2g} seconds of one processor; '--engine native' is "
-            "faster, and a larger --error or a smaller --memory or --size means less work\n",
-            seconds));
+        say(fmt::format("graftal: POV-Ray will take about {} seconds of one processor; '--engine native' is "
+                        "faster, and a larger --error or a smaller --memory or --size means less work\n",
+                        readable_seconds(seconds)));
     };
 
     Compilation compilation;

@@ -49,7 +49,7 @@ class Fitting {
         while (steps_left > 0 && too_much(fitted.seconds)) {
             const double steps = std::log(excess(fitted.seconds)) / std::log(most_gain);
             // Each look that is broken off takes much of the time there is: there are to be few.
-            const int least = std::max(1, broken_looks_);
+            const int least = 1 << broken_looks_;
             for (int i = 0; (i < least || i < steps) && (i == 0 || steps_left > 0); ++i)
                 make_coarser(options, steps_left);
             PreparedCut prepared = std::move(fitted.model->prepared);

@@ -52,16 +52,11 @@ class Flood {
                     if (known.has({middle(x), middle(y), middle(z)})) cells_[number(x, y, z)] = taken;
     }
 
-    /// From the outermost layer, through the rows of empty cells one after the other (A. R. Smith, "Tint
-    /// Fill", 1979).
+    /// From a corner, which is outside, through the rows of empty cells one after the other (A. R. Smith,
+    /// "Tint Fill", 1979). The outermost layer ends rows.
     void run() {
         wet_outermost();
-        std::vector<std::size_t> seeds;
-        for (const std::int64_t end : {std::int64_t{1}, side_ - 2})
-            for (std::int64_t i = 1; i + 1 < side_; ++i)
-                for (std::int64_t k = 1; k + 1 < side_; ++k)
-                    for (const std::size_t seed : {number(end, i, k), number(i, end, k), number(i, k, end)})
-                        seeds.push_back(seed);
+        std::vector<std::size_t> seeds = {number(1, 1, 1)};
         const auto row = static_cast<std::size_t>(side_), layer = row * row;
         while (!seeds.empty()) {
             std::size_t first = seeds.back();

@@ -306,15 +306,15 @@ std::vector<ShellSizes> shell_sizes(TraceModel& model) {
 /// Where copies lie in each other so often that rays would not come through.
 void find_shells(TraceModel& model) {
     if (!model.projection.culls()) return;
-    std::vector<ShellSizes>& known = model.prepared.shell_sizes;
-    const std::vector<ShellSizes> sizes = known.empty() ? shell_sizes(model) : known;
+    std::vector<ShellSizes>& sizes = model.prepared.shell_sizes;
+    if (sizes.empty()) sizes = shell_sizes(model);
     if (sizes.empty()) return;
     for (std::size_t i = 0; i < model.nodes.size(); ++i) {
         model.nodes[i].shell = sizes[model.layers.source[i]];
         model.has_shells = model.has_shells || model.nodes[i].shell.any();
     }
     const auto by_error = [](const CutNode& node) { return node.terminal_px > 0; };
-    if (std::ranges::none_of(model.prepared.cut.nodes, by_error)) known = sizes;
+    if (std::ranges::any_of(model.prepared.cut.nodes, by_error)) sizes.clear();
 }
 
 /// Of one shell: there may be several, and they may be made anew at another error.

@@ -117,11 +117,15 @@ double most_seconds(const PovrayJob& job, double overlap) {
     return 0.1 * megabytes + rays * (1e-6 + 4e-7 * overlap);
 }
 
-/// What POV-Ray takes: measured on a picture of the same scene that has a four-hundredth of the pixels.
-/// Nothing if that fails.
-std::optional<double> tried_seconds(const PovrayJob& job) {
-    constexpr int smaller = 20, least_px = 8;
-    const auto fewer = [=](int px) { return std::min(px, std::max(least_px, px / smaller)); };
+/// What POV-Ray takes: measured on a picture of the same scene that has a four-hundredth of the pixels, or
+/// fewer where that might take long too. Nothing if that fails.
+std::optional<double> tried_seconds(const PovrayJob& job, double most_seconds) {
+    constexpr double trial_seconds = 5;
+    constexpr int least_px = 8;
+    const double smaller = std::max(20.0, std::sqrt(most_seconds / trial_seconds));
+    const auto fewer = [&](int px) {
+        return std::min(px, std::max(least_px, static_cast<int>(px / smaller)));
+    };
     PovrayJob trial = job;
     trial.width = fewer(job.width);
     trial.height = fewer(job.height);
@@ -169,7 +173,8 @@ std::optional<RenderReport> draw_model(CompiledModel compiled, const RenderOptio
 
     double seconds = most_seconds(job, overlap);
     if (options.on_start && seconds > options.compile.cut.work_seconds)
-        if (const std::optional<double> tried = tried_seconds(job)) options.on_start(seconds = *tried);
+        if (const std::optional<double> tried = tried_seconds(job, seconds))
+            options.on_start(seconds = *tried);
     job.cpu_seconds = static_cast<std::uint64_t>(600 + 50 * seconds); // far more than any picture has taken
     const auto trace = [&] {
         const PovrayResult result = run_povray(job);

@@ -118,6 +118,20 @@ TEST_F(Work, OfPovrayIsSaidBeforeItStarts) {
                 ContainsRegex("graftal: POV-Ray will take about 0\\.[0-9]+ seconds"));
 }
 
+// Rays meet hundreds of boxes of what a short text places: by its length it would be done in an instant.
+TEST_F(Work, OfRaysThroughACrowdIsSaidToo) {
+    write("crowd.lsys", "lsys crowd {\n"
+                        "  width 0.05\n"
+                        "  steps 19\n"
+                        "  axiom RY+\n"
+                        "  R -> /(30)R\n"
+                        "  V -> gYRY\n"
+                        "  Y -> [&VR]FF/+(30)[V][R[&/]-F]R\n"
+                        "}\n");
+    EXPECT_THAT(graftal("render crowd.lsys -q -o a.png --size 64x36 --work 0.3").err,
+                HasSubstr("graftal: POV-Ray will take about "));
+}
+
 TEST_F(Work, IsAPositiveNumber) {
     write("tree.inst", tree_limit);
     const RunResult result = shell("\"$graftal\" render --work 0 tree.inst");

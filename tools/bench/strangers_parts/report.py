@@ -69,6 +69,7 @@ def grouped(rows):
 def page(rows, campaign, root, limits, most=60):
     found = sorted((row for row in rows if row['findings']), key=lambda row: row['model'])
     refused = [row for row in rows if row['code'] == 1 and row['command'] != 'check']
+    foretold = [row for row in rows if row.get('foretold')]
     blank = [row for row in rows if row.get('blank')]
     models = len({row['model'] for row in rows})
     accepted = sum(row['command'] == 'check' and row['code'] == 0 for row in rows)
@@ -90,6 +91,9 @@ def page(rows, campaign, root, limits, most=60):
     if found:
         lines += [f'`tools/bench/strangers --seed {campaign["seed"]} --only MODEL --out FOLDER` makes one again.', '',
                   *listed(found, most)]
+    if foretold:
+        said = ', '.join(f'{row["model"]} ({row["foretold"]} s)' for row in foretold)
+        lines += ['', f'{len(foretold)} renders were stopped that graftal had said beforehand would take longer: {said}.']
     if refused:
         lines += ['', '## Accepted by `check`, refused by others', '', *grouped(refused)]
     if blank:

@@ -45,6 +45,9 @@ def attempt(program, name, folder, limits, size=None):
            'peak': round(ended.usage.peak), 'said': (wrong or said or [''])[0][:200] if ended.code != 0 else '',
            'line': ' '.join(['graftal', *line[1:]])}
     row['findings'] = judged(row, ended, limits)
+    foretold = re.search(r'will take about (\d+) seconds', ' '.join(said))
+    if row['findings'] == ['time'] and foretold and int(foretold[1]) > limits.report_s:
+        row['findings'], row['foretold'] = [], int(foretold[1])
     row['findings'] += leftovers(name, row, out, temporary)
     if name in ('native', 'povray') and ended.code == 0 and not model['drawn']:
         if not picture.shows_something(out / COMMANDS[name][1]):

@@ -106,23 +106,31 @@ Status prepare(const CompiledModel& model, const RenderOptions& options, Tempora
     return status;
 }
 
-/// What POV-Ray takes at most, by what hindered it on scenes of random models: from 0.01 to 0.4 microseconds
-/// for each box that a ray meets.
-double most_seconds(const PovrayJob& job, double overlap) {
+/// Seconds of one processor that POV-Ray takes.
+struct PovrayTime {
+    double parsing = 0;
+    double tracing = 0;
+
+    double seconds() const { return parsing + tracing; }
+};
+
+/// By the length of the text, and by the boxes that rays meet. Scenes of random models took 0.01 to 0.4
+/// microseconds for a box, and those with shadows from outside the picture more.
+PovrayTime guessed_time(const PovrayJob& job, double overlap) {
     std::error_code error;
     const auto bytes = std::filesystem::file_size(job.directory + "/" + job.scene, error);
     const double megabytes = error ? 0 : 1e-6 * static_cast<double>(bytes);
     const double rays_a_pixel = job.antialias ? 1.5 * std::pow(4.0, *job.antialias - 1) : 1;
     const double rays = rays_a_pixel * job.width * job.height;
-    return 0.1 * megabytes + rays * (1e-6 + 4e-7 * overlap);
+    return {0.05 * megabytes, rays * (1e-6 + 4e-7 * overlap)};
 }
 
-/// What POV-Ray takes: measured on a picture of the same scene that has a four-hundredth of the pixels, or
-/// fewer where that might take long too. Nothing if that fails.
-std::optional<double> tried_seconds(const PovrayJob& job, double most_seconds) {
+/// Measured on a picture of the same scene that has a four-hundredth of the pixels, or fewer where that might
+/// take long too. Nothing if that fails.
+std::optional<PovrayTime> tried_time(const PovrayJob& job, const PovrayTime& guessed) {
     constexpr double trial_seconds = 5;
     constexpr int least_px = 8;
-    const double smaller = std::max(20.0, std::sqrt(most_seconds / trial_seconds));
+    const double smaller = std::max(20.0, std::sqrt(guessed.tracing / trial_seconds));
     const auto fewer = [&](int px) {
         return std::min(px, std::max(least_px, static_cast<int>(px / smaller)));
     };
@@ -136,10 +144,16 @@ std::optional<double> tried_seconds(const PovrayJob& job, double most_seconds) {
     std::error_code error;
     std::filesystem::remove(job.directory + "/" + trial.picture, error);
     if (!log.trace_seconds) return std::nullopt;
+    constexpr double half_of_a_tick = 0.5e-3; // of POV-Ray's clock
     // Each row and column has one corner more than it has pixels.
     const auto corners = [](const PovrayJob& of) { return (of.width + 1.0) * (of.height + 1.0); };
-    return log.parse_seconds.value_or(0) + log.bounding_seconds.value_or(0) +
-           *log.trace_seconds * corners(job) / corners(trial);
+    return PovrayTime{log.parse_seconds.value_or(0) + log.bounding_seconds.value_or(0),
+                      (*log.trace_seconds + half_of_a_tick) * corners(job) / corners(trial)};
+}
+
+/// Where it costs a small part of the picture: a trial parses the whole text.
+bool worth_a_trial(const PovrayTime& guessed, double work_seconds) {
+    return guessed.seconds() > 0.25 * work_seconds && guessed.tracing > 2 * guessed.parsing;
 }
 
 } // namespace
@@ -166,16 +180,22 @@ std::optional<RenderReport> draw_model(CompiledModel compiled, const RenderOptio
 
     if (!run("emit", [&] { return prepare(*model, options, temporary, job); })) return std::nullopt;
     RenderReport report = report_of(model->cut);
-    const double overlap = options.on_start ? mean_overlap(model->cut, model->view) : 0;
+    const double overlap = mean_overlap(model->cut, model->view);
     job.finite_objects = finite_objects(model->cut);
     model.reset(); // POV-Ray may need the memory
     return_free_memory();
 
-    double seconds = most_seconds(job, overlap);
-    if (options.on_start && seconds > options.compile.cut.work_seconds)
-        if (const std::optional<double> tried = tried_seconds(job, seconds))
-            options.on_start(seconds = *tried);
-    job.cpu_seconds = static_cast<std::uint64_t>(600 + 50 * seconds); // far more than any picture has taken
+    PovrayTime time = guessed_time(job, overlap);
+    const auto set_limit = [&] { // far more than any picture has taken
+        job.cpu_seconds = static_cast<std::uint64_t>(600 + 50 * time.seconds());
+    };
+    set_limit();
+    if (options.on_start) {
+        if (worth_a_trial(time, options.compile.cut.work_seconds))
+            time = tried_time(job, time).value_or(time);
+        if (!Interruption::signal()) options.on_start(time.seconds());
+        set_limit();
+    }
     const auto trace = [&] {
         const PovrayResult result = run_povray(job);
         report.peak_bytes = result.process.peak_bytes;

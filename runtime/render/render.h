@@ -23,8 +23,8 @@ struct RenderOptions {
     bool unconfined = false;                   ///< PovrayJob::unconfined
     std::string keep;                          ///< a directory for the scene, to stay; empty: a temporary one
     std::function<void(const PovrayProgress&)> on_progress;
-    /// Called before POV-Ray starts on what may take more than CutOptions::work_seconds, with the seconds of
-    /// one processor that it will take: within a factor of two or so, tried on a picture of far fewer pixels.
+    /// Called before POV-Ray starts, with the seconds of one processor that it will take: within a factor of
+    /// two or so where they are many, for those are tried on a picture of far fewer pixels.
     std::function<void(double seconds)> on_start;
 };
 

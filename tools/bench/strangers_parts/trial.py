@@ -46,7 +46,7 @@ def attempt(program, name, folder, limits, size=None):
            'line': ' '.join(['graftal', *line[1:]])}
     row['findings'] = judged(row, ended, limits)
     foretold = re.search(r'will take about (\d+) seconds', ' '.join(said))
-    if row['findings'] == ['time'] and foretold and int(foretold[1]) > limits.report_s:
+    if row['findings'] == ['time'] and foretold and int(foretold[1]) > limits.report_s / 2:
         row['findings'], row['foretold'] = [], int(foretold[1])
     row['findings'] += leftovers(name, row, out, temporary)
     if name in ('native', 'povray') and ended.code == 0 and not model['drawn']:

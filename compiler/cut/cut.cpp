@@ -46,7 +46,9 @@ class Cutter {
 
     std::optional<Cut> run() {
         // Of what is not to be culled nobody knows a coarser picture.
-        work_seconds_left_ = culls() ? share_of_work * options_.work_seconds : std::numeric_limits<double>::infinity();
+        work_seconds_left_ =
+            culls() ? share_of_work * work_beside_graph(options_.work_seconds, prepared_.instances)
+                    : std::numeric_limits<double>::infinity();
         cube_triangles_ = visible_cube_triangles(cut_, symmetry_, prepared_.root_steps);
         if (std::optional<Cut> cut = attempt(0)) return finish(std::move(*cut), 0);
         if (!culls()) return refuse_size();
@@ -124,7 +126,7 @@ class Cutter {
         const PieceKind whole = kind_of(cut_, projection, root);
         const Weights::Weight weight = weights.of(whole);
         const std::uint64_t weighed = weights.visits();
-        spend(static_cast<double>(weighed) / WorkRates::kinds);
+        spend(seconds_of_kinds(weighed));
         if (options.flatten || better_flat(weight, memory)) {
             choice_ = flat_choice(weight);
             choice_.spelt_out = options.flatten;
@@ -132,8 +134,7 @@ class Cutter {
             if (cut || options.flatten) return cut;
         }
         choice_ = choose_cut(cut_, symmetry_, projection, root, weights, share_of_memory * memory);
-        spend(static_cast<double>(weights.visits() - weighed) / WorkRates::kinds +
-              choice_.pieces / WorkRates::pieces);
+        spend(seconds_of_kinds(weights.visits() - weighed) + choice_.pieces / WorkRates::pieces);
         return assembled(root, projection, weights, memory);
     }
 
@@ -162,6 +163,10 @@ class Cutter {
     }
 
     void spend(double seconds) { work_seconds_left_ = std::max(0.0, work_seconds_left_ - seconds); }
+
+    double seconds_of_kinds(std::uint64_t visits) const {
+        return slowness_of_graph(prepared_.instances) * static_cast<double>(visits) / WorkRates::kinds;
+    }
 
     static Choice flat_choice(const Weights::Weight& whole) {
         Choice choice;

@@ -21,7 +21,7 @@ namespace {
 const Weights::Weight proxy{8, 1, 0, PovrayCosts::primitive(PrimitiveKind::sphere) + PovrayCosts::matrix};
 /// More kinds than have so many edges are not told apart, or so many times those of the graph: the steps of
 /// their details get coarser by so much.
-constexpr std::uint64_t max_visits = 4'000'000, max_visits_an_edge = 8;
+constexpr std::uint64_t max_visits = 4'000'000, max_visits_an_edge = 2;
 constexpr int coarser_grain = 4;
 /// Details beyond this are not told apart.
 constexpr std::int32_t largest_step = 1 << 24;

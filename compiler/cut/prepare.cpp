@@ -67,6 +67,7 @@ PreparedCut prepare_cut(const Graph& graph, const Components& components,
     mark_wide(cut);
     mark_solid(cut);
     prepared.bounds = bounds[graph.root].box;
+    prepared.instances = instance_count(graph);
     if (options.steps) prepared.root_steps = *options.steps + (options.root_levels.empty() ? 0 : 1);
     return prepared;
 }

@@ -1,11 +1,14 @@
 #include "runtime/render/fit_work.h"
 
+#include <cmath>
 #include <functional>
 #include <new>
+#include <string>
 #include <utility>
 
 #include <gtest/gtest.h>
 
+#include "compiler/cut/work.h"
 #include "tests/unit/trace/models.h"
 
 namespace graftal {
@@ -50,6 +53,29 @@ class FitWork : public testing::Test {
                 {self, Affine::translate(corner) * Affine::scale(Vec3(.7)), {}, {}, {}});
         }
         graph.root = graph.add(std::move(crowd));
+        return graph;
+    }
+
+    /// Frames of cubes within each other: every ray meets all of them, and hits none.
+    static Graph inner_cubes() {
+        Graph graph;
+        const ObjectId cube = graph.primitive(PrimitiveKind::cube);
+        ObjectId inner = cube;
+        for (int level = 0; level < 6; ++level) {
+            Object object{"level" + std::to_string(level), {}, {}, {}, {}};
+            for (int i = 0; i < 12; ++i) {
+                const double turn = 0.5236 * i;
+                object.instances.push_back(
+                    {inner,
+                     Affine::translate({0.9 * std::cos(turn), 0.9 * std::sin(turn), 0}) *
+                         Affine::scale(Vec3(.6)),
+                     {},
+                     {},
+                     {}});
+            }
+            inner = graph.add(std::move(object));
+        }
+        graph.root = inner;
         return graph;
     }
 
@@ -108,6 +134,26 @@ TEST_F(FitWork, LooksOnceForCrowds) {
     ASSERT_GT(coarser.error_px, options.error_px);
     EXPECT_TRUE(coarser.model->has_shells);
     EXPECT_EQ(coarser.model->weighed, 0u);
+}
+
+// One ray through thousands of cubes takes longer than the whole picture may.
+TEST_F(FitWork, LooksNoLongerThanItMay) {
+    CutOptions options;
+    options.error_px = 0.05;
+    options.steps = 6; // where levels end nothing becomes a shell
+    options.work_seconds = 1e-3;
+    const FittedModel model = fitted(inner_cubes(), options, [](double) { return false; });
+    EXPECT_TRUE(model.work_cut);
+    EXPECT_LT(model.tried_seconds, options.work_seconds);
+}
+
+TEST_F(FitWork, ALargeGraphLeavesLessForThePicture) {
+    EXPECT_EQ(work_beside_graph(30, 0), 30);
+    EXPECT_EQ(work_beside_graph(30, 1'500'000), 20);
+    EXPECT_EQ(work_beside_graph(30, 1'000'000'000), 7.5);
+    EXPECT_EQ(slowness_of_graph(0), 1);
+    EXPECT_EQ(slowness_of_graph(200'000), 1);
+    EXPECT_NEAR(slowness_of_graph(1'600'000), 2.2, 1e-9);
 }
 
 TEST_F(FitWork, CoarsensNothingOfWhichNothingIsLeftOut) {

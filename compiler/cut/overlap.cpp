@@ -1,6 +1,5 @@
 #include "compiler/cut/overlap.h"
 
-#include <algorithm>
 #include <variant>
 #include <vector>
 
@@ -50,7 +49,8 @@ double mean_overlap(const Cut& cut, const View& view) {
             // The faces of a convex body measure four times what it covers, on average (Cauchy).
             const double area = 0.5 * (size.x * size.y + size.y * size.z + size.z * size.x);
             const double px = projection.pixels_per_unit(ball);
-            covered_px += std::min(area * px * px, picture);
+            const double covered = area * px * px;
+            covered_px += covered < picture ? covered : picture; // the eye may lie in a box
         });
     return covered_px / picture;
 }

@@ -137,12 +137,11 @@ std::optional<PovrayTime> tried_time(const PovrayJob& job, const PovrayTime& gue
     PovrayJob trial = job;
     trial.width = fewer(job.width);
     trial.height = fewer(job.height);
-    trial.picture = "trial.png";
     trial.threads = 1;
     trial.on_progress = {};
     const PovrayLog log = run_povray(trial).log;
     std::error_code error;
-    std::filesystem::remove(job.directory + "/" + trial.picture, error);
+    std::filesystem::remove(job.directory + "/" + job.picture, error);
     if (!log.trace_seconds) return std::nullopt;
     constexpr double half_of_a_tick = 0.5e-3; // of POV-Ray's clock
     // Each row and column has one corner more than it has pixels.

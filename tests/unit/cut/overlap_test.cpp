@@ -48,6 +48,13 @@ TEST(Overlap, CountsNoPlacementAsMoreThanThePicture) {
     EXPECT_NEAR(mean_overlap(cubes({at({0, 0, -1e6}, 1e5), at({0, 0, -1e6}, 1e5)}), flat_view()), 2, 1e-9);
 }
 
+// Nothing is as large as a point at the eye, and as small.
+TEST(Overlap, IsANumberWhereTheEyeLiesInAPlacement) {
+    View view = flat_view();
+    view.camera.orthographic = false;
+    EXPECT_LE(mean_overlap(cubes({at({0, 0, 50}, 0), at({0, 0, 50}, 1e-300)}), view), 2);
+}
+
 TEST(Overlap, TakesMeshesByTheirBoxes) {
     Cut cut = cubes({at({0, 0, 0})});
     Mesh mesh;

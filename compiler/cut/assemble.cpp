@@ -383,7 +383,7 @@ class Grouping {
             parts.body[static_cast<std::size_t>(item.kind)] = body_of(item.kind);
             if (item.ball)
                 parts.body[static_cast<std::size_t>(PrimitiveKind::sphere)] = body_of(PrimitiveKind::sphere);
-            include(transformed(range.piece.world_from_node, graftal::box_of(item)));
+            include(transformed(range.piece.world_from_node, box_of(item)));
         }
         for (std::size_t colour_number = 0; colour_number < colours.size(); ++colour_number) {
             if (!colours[colour_number]) continue;
@@ -413,13 +413,6 @@ class Grouping {
         if (box.empty()) return;
         result_.bounds.include(box);
         result_.largest_part = std::max(result_.largest_part, largest_entry(box.size()));
-    }
-
-    static Box box_of(const Mesh& mesh) {
-        Box box;
-        for (const Vec3& vertex : mesh.vertices)
-            box.include(vertex);
-        return box;
     }
 
     /// The bodies of primitives with pictures are the first.

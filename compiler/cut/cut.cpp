@@ -271,6 +271,13 @@ class Cutter {
 
 } // namespace
 
+Box box_of(const Mesh& mesh) {
+    Box box;
+    for (const Vec3& vertex : mesh.vertices)
+        box.include(vertex);
+    return box;
+}
+
 std::optional<Cut> cut_graph(const Graph& graph, const Components& components,
                              const std::vector<ObjectBounds>& bounds, const View& view,
                              const CutOptions& options, Diagnostics& diagnostics) {

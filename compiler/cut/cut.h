@@ -51,6 +51,9 @@ struct Mesh {
     std::uint32_t slot_count = 1;
 };
 
+/// In the mesh's own frame.
+Box box_of(const Mesh& mesh);
+
 /// A single exact primitive, or a baked mesh.
 struct Body {
     std::string name; ///< of the object it draws, for the reader of the scene; not unique

@@ -16,11 +16,7 @@ namespace {
 /// In the body's own frame.
 Box box_of(const Body& body) {
     const auto* const mesh = std::get_if<Mesh>(&body.shape);
-    if (!mesh) return primitive_bounds(std::get<PrimitiveKind>(body.shape)).box;
-    Box box;
-    for (const Vec3& vertex : mesh->vertices)
-        box.include(vertex);
-    return box;
+    return mesh ? box_of(*mesh) : primitive_bounds(std::get<PrimitiveKind>(body.shape)).box;
 }
 
 } // namespace

@@ -20,6 +20,7 @@
 #include "compiler/cut/placed_runs.h"
 #include "compiler/cut/placed_set.h"
 #include "compiler/cut/run_cells.h"
+#include "compiler/cut/shell_points.h"
 #include "compiler/cut/tessellate.h"
 #include "compiler/cut/texture_space.h"
 #include "compiler/cut/work.h"
@@ -528,11 +529,42 @@ class Grouping {
 
 } // namespace
 
+namespace {
+
+/// Deals out the work that shells may take, by the number of their cells: what one leaves is for those after it.
+class ShellWork {
+  public:
+    ShellWork(const CutGraph& cut, const std::vector<BakeRequest>& requests) : cut_(cut) {
+        for (const BakeRequest& request : requests)
+            if (request.shell) cells_left_ += cells(request);
+    }
+
+    /// Of so many seconds. The rest is for what else is to be done, and a shell may take somewhat more.
+    std::uint64_t take(const BakeRequest& request, double seconds_left) {
+        constexpr double share_of_shells = 0.75;
+        const double share = share_of_shells * cells(request) / std::max(cells_left_, cells(request));
+        cells_left_ -= cells(request);
+        return static_cast<std::uint64_t>(share * std::min(seconds_left, 1e6) * WorkRates::shell_points);
+    }
+
+  private:
+    double cells(const BakeRequest& request) const {
+        const double across = 2 * cut_.nodes[request.representative].ball.radius * request.detail_per_unit;
+        return std::clamp(across * across, 1.0, most_shell_cells);
+    }
+
+    const CutGraph& cut_;
+    double cells_left_ = 0;
+};
+
+} // namespace
+
 std::optional<Cut> assemble(const CutGraph& cut, const Symmetry& symmetry, const Projection& projection,
                             const Piece& root, const Choice& choice, Weights& weights, bool limit_normals,
                             ShellStore& shells, AssemblyLimits& limits) {
     Unfolding unfolding(cut, symmetry, projection, choice, weights);
     if (!unfolding.run(root, limits)) return std::nullopt;
+    ShellWork shell_work(cut, unfolding.requests);
     std::vector<Baked> baked;
     std::size_t triangles = 0;
     double culled_detail = unfolding.culled_detail;
@@ -540,12 +572,13 @@ std::optional<Cut> assemble(const CutGraph& cut, const Symmetry& symmetry, const
     for (BakeRequest& request : unfolding.requests) {
         request.limit_normals = limit_normals;
         request.shells = &shells;
-        request.most_shell_work =
-            static_cast<std::uint64_t>(std::min(limits.work_seconds, 1e6) * WorkRates::shell_points);
-        request.most_visits = static_cast<std::uint64_t>(std::min(limits.work_seconds, 1e6) * WorkRates::leaves);
+        if (request.shell) request.most_shell_work = shell_work.take(request, limits.work_seconds);
+        request.most_visits =
+            static_cast<std::uint64_t>(std::min(limits.work_seconds, 1e6) * WorkRates::visits / limits.slowness);
         baked.push_back(bake(cut, symmetry, request, limits.max_triangles - triangles));
         triangles += baked.back().triangles;
-        limits.work_seconds -= static_cast<double>(baked.back().visits) / WorkRates::leaves +
+        limits.work_seconds -= limits.slowness * static_cast<double>(baked.back().visits) / WorkRates::visits +
+                               static_cast<double>(baked.back().triangles) / WorkRates::baked_triangles +
                                static_cast<double>(baked.back().shell_work) / WorkRates::shell_points;
         if (limits.work_seconds < 0) return std::nullopt;
         if (!baked.back().complete || triangles > limits.max_triangles) return std::nullopt;

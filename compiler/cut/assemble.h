@@ -12,6 +12,7 @@ struct AssemblyLimits {
     std::size_t max_placements = 0;
     std::size_t max_triangles = 0;
     double work_seconds = 0; ///< by WorkRates (work.h)
+    double slowness = 1;     ///< slowness_of_graph()
 };
 
 class ShellStore;

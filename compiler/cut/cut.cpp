@@ -54,7 +54,7 @@ class Cutter {
         if (!culls()) return refuse_size();
         // The finest that the memory allows: upwards by doubling, then halfway between what fails and what
         // does not.
-        int fails = 0, next = 1;
+        int fails = 0, next = coarser_than(0);
         std::optional<Cut> best;
         double cost = 0; // of the best
         const auto tried = [&](int steps) {
@@ -71,7 +71,7 @@ class Cutter {
             }
             next = std::min(next, coarsest());
             if (!tried(next)) fails = next;
-            next *= best ? 1 : 2;
+            if (!best) next = coarser_than(next);
         }
         if (!best) return refuse_size();
         int fits = next;
@@ -97,6 +97,10 @@ class Cutter {
         const double picture = 4.0 * std::max(view_.size.width, view_.size.height);
         return std::max(0, static_cast<int>(std::log(picture / options_.error_px) / std::log(coarser)));
     }
+
+    /// The step to try after one that failed. Where it failed for its work there is half as much for the next,
+    /// and a step or two would not do.
+    int coarser_than(int steps) const { return failed_by_work_ ? 2 * steps + 2 : std::max(1, 2 * steps); }
 
     /// How much coarser the error is after so many steps.
     static double factor_after(int steps) { return std::pow(coarser, steps); }
@@ -150,7 +154,8 @@ class Cutter {
         const double work_seconds = 0.5 * work_seconds_left_;
         AssemblyLimits limits{
             static_cast<std::size_t>(std::max(0.0, memory) / PovrayCosts::least_placement) + 1,
-            static_cast<std::size_t>(std::max(0.0, memory) / PovrayCosts::triangle) + 1, work_seconds};
+            static_cast<std::size_t>(std::max(0.0, memory) / PovrayCosts::triangle) + 1, work_seconds,
+            slowness_of_graph(prepared_.instances)};
         std::optional<Cut> cut = assemble(cut_, symmetry_, projection, root, choice_, weights,
                                           options_.limit_normals(), *prepared_.shells, limits);
         if (options_.culls()) work_seconds_left_ -= work_seconds - std::max(0.0, limits.work_seconds);

@@ -11,6 +11,7 @@
 #include "compiler/cut/coverage.h"
 #include "compiler/cut/povray_costs.h"
 #include "compiler/cut/run_cells.h"
+#include "compiler/cut/shell_points.h"
 #include "compiler/cut/tessellate.h"
 
 namespace graftal {
@@ -26,9 +27,8 @@ constexpr int coarser_grain = 4;
 /// Details beyond this are not told apart.
 constexpr std::int32_t largest_step = 1 << 24;
 
-/// A shell of this many octaves has as many points as one may have, about; larger ones are coarser.
+/// A shell of this many octaves has most_shell_cells, about; larger ones are coarser.
 constexpr int whole_octaves = 11;
-constexpr double most_shell_cells = 7e5;
 /// Shells that a ray may go through, where a node is too large for one.
 constexpr double most_shells_a_ray = 64;
 /// What multiplies faster is never parted: a coarser shell of the whole is better than many of the parts.

@@ -129,11 +129,14 @@ bool InsideGrid::has(const Point& point) const {
 }
 
 std::shared_ptr<const InsideGrid> find_inside(const std::vector<Point>& points, double cell,
-                                              const InsideGrid* known, std::uint64_t& work) {
+                                              const InsideGrid* known, std::uint64_t& work,
+                                              std::uint64_t most_work) {
     const std::int64_t reach = reach_of(points, cell);
     const auto side = static_cast<double>(2 * reach);
     if (side < least_cells_across || side * side * side > most_cells) return nullptr;
-    work += static_cast<std::uint64_t>(side * side * side) / cells_a_move;
+    const std::uint64_t flood_work = static_cast<std::uint64_t>(side * side * side) / cells_a_move;
+    if (work > most_work || flood_work > most_work - work) return nullptr;
+    work += flood_work;
     Flood flood(cell, reach);
     flood.take(points);
     if (known) flood.take(*known); // what was left out is no hole

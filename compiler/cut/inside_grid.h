@@ -30,8 +30,10 @@ class InsideGrid {
 /// Floods a grid of cells of the side `cell` from outside. Cells with points keep the flood out, and so do
 /// those that are `known` to be inside, if any are. What lies a cell behind all that the flood wets is
 /// inside. Null if nothing is, or if the grid would have too few cells across for that, or too many in all.
-/// `work` grows by what the flood costs, in moves of a point (shell_points.h).
+/// `work` grows by what the flood costs, in moves of a point (shell_points.h); null, too, where it would pass
+/// `most_work`.
 std::shared_ptr<const InsideGrid> find_inside(const std::vector<std::array<float, 3>>& points, double cell,
-                                              const InsideGrid* known, std::uint64_t& work);
+                                              const InsideGrid* known, std::uint64_t& work,
+                                              std::uint64_t most_work = UINT64_MAX);
 
 } // namespace graftal

@@ -100,8 +100,8 @@ PointSystem::CoarseStates PointSystem::take_coarse() {
     CoarseStates found;
     for (State& state : states_) {
         // Where a finer look takes too much room or work, the last one will do.
-        std::shared_ptr<const InsideGrid> inside;
-        if (work_ <= most_work_) inside = find_inside(state.points, state.cell, state.inside.get(), work_);
+        std::shared_ptr<const InsideGrid> inside =
+            find_inside(state.points, state.cell, state.inside.get(), work_, most_work_);
         if (!inside) inside = state.inside;
         if (!inside) continue;
         Coarse& coarse = found[state.key];

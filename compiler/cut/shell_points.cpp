@@ -100,6 +100,7 @@ class GridSearch {
         if (looked >= limits_.work || !run_grid(cell, std::min(most_work, limits_.work - looked)))
             return false;
         affordable_ = cell;
+        affordable_work_ = system_.work();
         const bool flat = in_one_plane(system_.root().points, ball_.radius);
         growth_.add(cell, static_cast<double>(system_.kept()), flat);
         moves_a_point_ =
@@ -123,7 +124,7 @@ class GridSearch {
         cell *= coarser;
         if (affordable_ > 0) {
             if (cell < affordable_ && try_cell(cell)) return true;
-            if (!run_grid(affordable_, most_a_run_)) return false;
+            if (!run_grid(affordable_, most_a_run_)) return false; // for which work was left
         } else {
             while (!run_grid(cell, most_a_run_ / looks_a_run)) {
                 cell *= 2;
@@ -138,7 +139,12 @@ class GridSearch {
         return system_.run(node_, steps_, cell, coarse_, most_work);
     }
 
-    bool try_cell(double cell) { return run_grid(cell, most_a_run_) && system_.add_large_parts(); }
+    /// Leaves the work to do again what was affordable.
+    bool try_cell(double cell) {
+        const std::uint64_t needed = system_.all_work() + affordable_work_;
+        return needed < limits_.work && run_grid(cell, std::min(most_a_run_, limits_.work - needed)) &&
+               system_.add_large_parts();
+    }
 
     void take(PointSet& set) {
         PointSystem::State& state = system_.root();
@@ -160,6 +166,7 @@ class GridSearch {
     Growth growth_;
     double moves_a_point_ = 1;
     double affordable_ = 0, failed_ = 0; ///< the finest cell that was looked at, and one that took too much
+    std::uint64_t affordable_work_ = 0;
     bool limited_ = false;
 };
 

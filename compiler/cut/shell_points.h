@@ -25,6 +25,9 @@ struct PointPaint {
                        const std::vector<Material>& materials) const;
 };
 
+/// Of a shell's surface, about; one that would have more is coarser.
+inline constexpr double most_shell_cells = 7e5;
+
 /// What may be spent on points.
 struct PointLimits {
     std::uint64_t work = 300'000'000; ///< in all: points moved and sampled, cells flooded

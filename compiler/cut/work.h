@@ -12,7 +12,9 @@ struct WorkRates {
     static constexpr double ray_steps = 2e7;    ///< of rays, shading included (RayWork)
     static constexpr double shell_points = 1e7; ///< points of shells moved (shell_points.h)
     static constexpr double mesh_triangles = 1.5e6; ///< triangles of meshes sorted into boxes for rays
-    static constexpr double leaves = 4e6;       ///< leaves unfolded into meshes and placements
+    static constexpr double leaves = 4e6;       ///< leaves unfolded into placements
+    static constexpr double visits = 1.5e7;     ///< parts visited to make a mesh of a node (LeafWalk)
+    static constexpr double baked_triangles = 4e6; ///< triangles of such meshes
     static constexpr double kinds = 4.5e6;      ///< edges of kinds followed to weigh them (Weights)
     /// Of the graph, from the model's text to where it can be unfolded.
     static constexpr double instances = 1.5e5;

@@ -110,6 +110,27 @@ TEST_F(Work, ShellsHaveTheMaterialOfTheTerminal) {
     }
 }
 
+// The points of a shell took all the work that there was, and a little more: no cut was good enough until the
+// whole was a box of 12 triangles.
+TEST_F(Work, AShellTakesWhatThereIsAndIsNotGivenUpForIt) {
+    write("tree.inst", tree_limit);
+    write("bush.lsys", "lsys bush {\n"
+                       "  angle 25\n"
+                       "  steps 24\n"
+                       "  axiom X(1)\n"
+                       "  X(s) -> F(s)[+X(s*0.83)]F(s*0.97)[-X(s*0.79)][+X(s*0.71)]F(s*0.9)[-X(s*0.61)]X(s*0.53)\n"
+                       "}\n");
+    for (const std::string model : {"tree.inst", "bush.lsys"})
+        for (const std::string work : {"4", "6", "8"}) {
+            const RunResult result = graftal("compile --size 320x180 -o a.pov --work " + work + " " + model);
+            ASSERT_EQ(result.status, 0) << result.err;
+            double error_px = 100;
+            const std::size_t at = result.out.find("error ");
+            if (at != std::string::npos) error_px = std::strtod(result.out.c_str() + at + 6, nullptr);
+            EXPECT_LT(error_px, 5) << model << ", " << work << ": " << result.out;
+        }
+}
+
 TEST_F(Work, OfPovrayIsSaidBeforeItStarts) {
     write("ball.inst", "object ball { sphere }\n");
     const std::string render = "render ball.inst -q -o a.png --size ";

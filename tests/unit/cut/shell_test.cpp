@@ -124,7 +124,7 @@ TEST(Shell, LittleWorkMakesItCoarserAndNotNothing) {
         limits.work = work;
         const PointSet set = point_set(cut, cut.root, unlimited_steps, detail_for(cut, 2000), limits);
         EXPECT_FALSE(set.points.empty()) << work;
-        EXPECT_LE(set.work, 2 * work);
+        EXPECT_LE(set.work, work + work / 10) << work;
         EXPECT_GT(set.cell * detail_for(cut, 2000), 5) << work;
     }
 }

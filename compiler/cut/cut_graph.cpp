@@ -149,6 +149,8 @@ class Builder {
         cut_.root = graph_.root;
         cut_.materials = graph_.materials;
         const std::vector<double> leaves = approximate_leaves();
+        for (const Object& object : graph_.objects)
+            holds_plane_.push_back(factor_of.at(object.name)->unbounded);
         for (ObjectId id = 0; id < count; ++id) {
             Object& object = graph_.objects[id];
             const Factor& factor = *factor_of.at(object.name);
@@ -221,7 +223,9 @@ class Builder {
         cut_.tinted = cut_.tinted || instance.tint.alpha > 0;
         const bool in_cycle = components_.component_of[user] == components_.component_of[instance.master];
         if (in_cycle && sigma.x >= 0.97) cut_.contractive = false;
-        return is_singular(edge.node_from_child, 1e-9) ? sealed_detour(std::move(edge), node) : edge;
+        // A plane has no mesh that could be crushed.
+        const bool crushed = !holds_plane_[instance.master] && is_singular(edge.node_from_child, 1e-9);
+        return crushed ? sealed_detour(std::move(edge), node) : edge;
     }
 
     /// A node between the two that holds the singular edge alone; the edge to it is the identity. It takes
@@ -256,6 +260,7 @@ class Builder {
 
     Graph graph_;
     const Components& components_;
+    std::vector<bool> holds_plane_; ///< by object
     CutGraph cut_;
 };
 

@@ -164,7 +164,10 @@ class Fitting {
         const double most_shells = most_for_shells * allowed();
         const auto too_many_shells = [&] { return options_.culls() && shell_seconds(model) > most_shells; };
         control.cancelled = [&] { return cancelled_() || too_many_shells(); };
+        if (options_.culls())
+            model.meshes.make_until(static_cast<std::uint64_t>(most_shells * WorkRates::shell_points));
         tracer.trace({block, {}}, control, picture);
+        model.meshes.make_until(UINT64_MAX);
         model.most_visits = whole_visits;
         if (too_many_shells()) { // how many there are by now depends on the threads
             tried_seconds_ += most_shells;

@@ -109,8 +109,13 @@ const TraceMesh& MeshStore::mesh(const Key& key, const Affine& graph_from_frame)
     std::unique_lock lock(mutex_);
     Entry& entry = meshes_[key];
     lock.unlock();
+    static const TraceMesh none;
+    if (!entry.made && shell_work_ > most_work_) return none;
     // Others may bake other meshes meanwhile.
-    std::call_once(entry.baked, [&] { entry.mesh = bake_shell(key, graph_from_frame); });
+    std::call_once(entry.baked, [&] {
+        entry.mesh = bake_shell(key, graph_from_frame);
+        entry.made = true;
+    });
     return *entry.mesh;
 }
 
@@ -123,8 +128,11 @@ std::unique_ptr<TraceMesh> MeshStore::bake_shell(const Key& key, const Affine& g
     request.detail_per_unit = value_of(key.detail);
     request.most_shell_work = most_shell_work_;
     request.painters = {{0, Rgb(0.0)}, {0, Rgb(1.0)}};
-    const Baked baked = bake(prepared_.cut, prepared_.symmetry, request, most_triangles);
     constexpr double moves_a_triangle = WorkRates::shell_points / WorkRates::mesh_triangles;
+    constexpr double triangles_beside_points = 0.5; // of the work
+    const auto affordable = static_cast<std::size_t>(triangles_beside_points *
+                                                     static_cast<double>(most_shell_work_) / moves_a_triangle);
+    const Baked baked = bake(prepared_.cut, prepared_.symmetry, request, std::min(most_triangles, affordable));
     shell_work_ += baked.shell_work +
                    static_cast<std::uint64_t>(moves_a_triangle * static_cast<double>(baked.triangles));
     auto mesh = trace_mesh(baked, inverse(graph_from_frame));

@@ -76,6 +76,9 @@ class MeshStore {
     double coarsest_shell() const { return coarsest_shell_; }
     /// What shells took so far, in moves of a point (work.h).
     std::uint64_t shell_work() const { return shell_work_; }
+    /// From so much work on, a mesh that is not there yet is not made: mesh() gives an empty one. For looks
+    /// that are given up then. Requires that nobody asks for meshes meanwhile.
+    void make_until(std::uint64_t most_work) { most_work_ = most_work; }
 
     /// The node in its frame. The same node, with as many steps, is always asked for in the same frame. The
     /// reference stays.
@@ -84,6 +87,7 @@ class MeshStore {
   private:
     struct Entry {
         std::once_flag baked;
+        std::atomic<bool> made = false;
         std::unique_ptr<TraceMesh> mesh;
     };
 
@@ -92,6 +96,7 @@ class MeshStore {
     const PreparedCut& prepared_;
     const std::uint64_t most_shell_work_;
     std::mutex mutex_;
+    std::uint64_t most_work_ = UINT64_MAX;
     std::map<Key, Entry> meshes_;
     std::atomic<double> coarsest_shell_ = 0;
     mutable std::atomic<std::uint64_t> shell_work_ = 0;

@@ -133,6 +133,7 @@ class Unfolding {
         const bool hair = is_hair(piece);
         const bool bakes = !hair && !choice_.spelt_out;
         if (node.sealed && bakes && place_mesh(piece, kind)) return;
+        if (edge_count(node, cut) == 0 && node.unbounded) return; // of a plane that became a line
         if (edge_count(node, cut) == 0) return place_proxy(node, piece);
         const Weights::Weight weight = weights_.of(kind);
         if (!node.unbounded && !piece.faint && !hair && weight.leaves > 1 &&

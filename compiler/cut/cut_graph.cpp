@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 #include <string_view>
 #include <unordered_map>
 #include <utility>
@@ -137,6 +138,19 @@ Affine ellipsoid_in(const Box& box) {
     return Affine::translate(box.centre()) * Affine::scale(half);
 }
 
+constexpr double flattest_map = 1e-9;
+
+/// Where a nearly singular map takes the plane y = 0: the same place without the map's tiny or missing
+/// stretch. Nothing where it becomes a line.
+std::optional<Affine> place_of_plane(const Affine& map) {
+    const Vec3 normal = glm::cross(map.linear[2], map.linear[0]);
+    const double area = glm::length(normal), x = glm::length(map.linear[0]), z = glm::length(map.linear[2]);
+    if (!(area > flattest_map * x * z) || !(std::min(x, z) > flattest_map * std::max(x, z)))
+        return std::nullopt;
+    const Vec3 y_axis = normal / area, x_axis = map.linear[0] / x;
+    return Affine{Mat3(x_axis, y_axis, glm::cross(x_axis, y_axis)), map.translation};
+}
+
 /// Builds the nodes of a factored graph, which it uses up: with millions of instances each must lie in memory
 /// once.
 class Builder {
@@ -167,7 +181,7 @@ class Builder {
             const std::vector<Instance> instances = std::exchange(object.instances, {});
             node.edges.reserve(instances.size());
             for (const Instance& instance : instances)
-                node.edges.push_back(edge(instance, node, id));
+                if (!is_plane_on_a_line(instance)) node.edges.push_back(edge(instance, node, id));
             if (object.terminal) {
                 node.stop_edges.push_back(edge(*object.terminal, node, id));
                 node.terminal = true;
@@ -212,9 +226,21 @@ class Builder {
         return static_cast<NodeId>(cut_.nodes.size() - 1);
     }
 
+    /// A plane that a map crushes so shows nothing.
+    bool is_plane_on_a_line(const Instance& instance) const {
+        return is_flat_plane(instance) && !place_of_plane(instance.parent_from_child);
+    }
+
+    bool is_flat_plane(const Instance& instance) const {
+        return graph_.objects[instance.master].primitive == PrimitiveKind::plane &&
+               is_singular(instance.parent_from_child, flattest_map);
+    }
+
     CutEdge edge(const Instance& instance, const CutNode& node, ObjectId user) {
         CutEdge edge{instance.master, instance.parent_from_child, PathTint(instance.tint), instance.material,
                      components_.unending[instance.master] ? 1u : 0u};
+        if (is_flat_plane(instance))
+            edge.node_from_child = place_of_plane(edge.node_from_child).value_or(Affine());
         const Vec3 sigma = singular_values(edge.node_from_child.linear);
         edge.stretch = sigma.x;
         edge.volume_stretch = std::cbrt(sigma.x * sigma.y * sigma.z);
@@ -224,7 +250,8 @@ class Builder {
         const bool in_cycle = components_.component_of[user] == components_.component_of[instance.master];
         if (in_cycle && sigma.x >= 0.97) cut_.contractive = false;
         // A plane has no mesh that could be crushed.
-        const bool crushed = !holds_plane_[instance.master] && is_singular(edge.node_from_child, 1e-9);
+        const bool crushed =
+            !holds_plane_[instance.master] && is_singular(edge.node_from_child, flattest_map);
         return crushed ? sealed_detour(std::move(edge), node) : edge;
     }
 

@@ -244,6 +244,37 @@ TEST_F(NativeAnimation, FormsOtherThanFramesAreAssembled) {
     EXPECT_EQ(temporary_files(), "");
 }
 
+/// Of a plane that a flat map places both engines draw what is left of it: all, or a line, which is nothing.
+/// It was to become a mesh.
+TEST_F(Native, PlanesBehindFlatMapsAreWherePovrayHasThem) {
+    const std::string ball = "object ball { sphere translate: 0, 1, 0 }\n";
+    const std::string with_ball = "object all { union: floor, ball }\n";
+    const std::string house = "object ground { plane }\nobject house { union: ground, ball }\n";
+    struct {
+        std::string text;
+        bool stays;
+    } const models[] = {
+        {"object floor { plane scale: 1, 1e-11, 1 }\n" + with_ball, true},
+        {"object floor { plane projection: 1, 0, 0, 0,  0, 0, 0, 0,  0, 0, 1, 0 }\n" + with_ball, true},
+        {"object floor { plane projection: 1, 0, 0, 0,  0, 0, 0, 0,  0, 0, 0, 0 }\n" + with_ball, false},
+        {"object floor { plane projection: 1, 0, 0, 0,  0, 1, 0, 0,  0, 0, 0, 0 }\n" + with_ball, false},
+        {house + "object all { house scale: 1, 1e-11, 1 }\n", true},
+        {house + "object all { house projection: 1, 0, 0, 0,  0, 0, 0, 0,  0, 0, 1, 0 }\n", true},
+    };
+    const std::string view = "--camera 'location=0,2,-6 look_at=0,1,0' --antialias off --size 64x36 ";
+    for (const auto& [text, stays] : models) {
+        write("model.inst", ball + text);
+        const RunResult native = graftal("render --engine native " + view + "model.inst -o native.png");
+        const RunResult povray = graftal("render " + view + "model.inst -o povray.png");
+        ASSERT_EQ(native.status, 0) << text << native.err;
+        ASSERT_EQ(povray.status, 0) << text << povray.err;
+        EXPECT_LE(differing("native.png", "povray.png"), 20u) << text;
+        const Image image = picture("native.png");
+        const float* below = &image.pixels[image.channels * (64 * 34 + 2)];
+        EXPECT_EQ(below[2] < below[0] + 0.05, stays) << "grey, and not of the sky: " << text;
+    }
+}
+
 TEST_F(NativeAnimation, FaultOfOneFrameNamesIt) {
     const RunResult result = graftal("animate " + gasket + "--error 0 --engine native --frames 2 -o a/");
     EXPECT_EQ(result.status, 1);

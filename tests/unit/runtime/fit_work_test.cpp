@@ -137,6 +137,20 @@ TEST_F(FitWork, LooksOnceForCrowds) {
 }
 
 // One ray through thousands of cubes takes longer than the whole picture may.
+// A look that was given up went on to make every shell that its rays met, for minutes.
+TEST_F(FitWork, NoShellIsMadeBeyondTheWorkForThem) {
+    FittedModel crowded = fitted(crowd(), CutOptions(), [](double) { return false; });
+    MeshStore& meshes = crowded.model->meshes;
+    ASSERT_GT(meshes.shell_work(), 0u);
+    const std::uint64_t before = meshes.shell_work();
+    const MeshStore::Key key = meshes.key(crowded.model->prepared.cut.root, {}, unlimited_steps, 7);
+    meshes.make_until(before - 1);
+    EXPECT_TRUE(meshes.mesh(key, {}).corners.empty());
+    EXPECT_EQ(meshes.shell_work(), before);
+    meshes.make_until(UINT64_MAX);
+    EXPECT_FALSE(meshes.mesh(key, {}).corners.empty());
+}
+
 TEST_F(FitWork, LooksNoLongerThanItMay) {
     CutOptions options;
     options.error_px = 0.05;

@@ -27,6 +27,8 @@ namespace graftal {
 
 namespace {
 
+/// What it takes to widen a leaf, measured, in visits of the walk.
+constexpr std::uint64_t visits_of_widening = 10;
 /// Room is made for so many leaves beforehand, at most.
 constexpr double most_expected_leaves = 1 << 20;
 constexpr std::size_t fewest_leaves_for_a_thread = 10'000;
@@ -118,7 +120,7 @@ class Baker {
         WalkedLeaf leaf;
         std::size_t triangles = 0;
         for (std::uint64_t number = 0; walk.next(leaf); ++number) {
-            baked_.visits = walk.visits();
+            baked_.visits = walk.visits() + visits_of_widening * widened_;
             if (baked_.visits > request_.most_visits) {
                 baked_.complete = false;
                 return;
@@ -145,10 +147,11 @@ class Baker {
 
     /// The place of the leaf, as wide as it is drawn, and what it has in common with those that it stands
     /// for.
-    Affine drawn(const WalkedLeaf& leaf, Affine& mark) const {
+    Affine drawn(const WalkedLeaf& leaf, Affine& mark) {
         const Affine& place = leaf.representative_from_leaf;
         const bool culls = request_.half_widths_from_unit != Mat3(0.0);
         if (!leaf.faint && !is_singular(place, flattest_leaf)) return mark = place;
+        ++widened_;
         const Affine seen_from_unit{culls ? request_.half_widths_from_unit : Mat3(1.0), Vec3(0.0)};
         const Affine seen = seen_from_unit * place;
         const auto [wide, half_width] = drawn_leaf(leaf.kind, seen, leaf.faint, culls ? 1 : 0);
@@ -265,6 +268,7 @@ class Baker {
     const Symmetry& symmetry_;
     const BakeRequest& request_;
     std::size_t max_triangles_;
+    std::uint64_t widened_ = 0; ///< leaves
     Baked baked_;
     std::vector<Part> parts_;
     std::map<PartKey, std::size_t> part_of_;

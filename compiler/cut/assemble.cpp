@@ -20,7 +20,7 @@
 #include "compiler/cut/placed_runs.h"
 #include "compiler/cut/placed_set.h"
 #include "compiler/cut/run_cells.h"
-#include "compiler/cut/shell_points.h"
+#include "compiler/cut/shell_work.h"
 #include "compiler/cut/tessellate.h"
 #include "compiler/cut/texture_space.h"
 #include "compiler/cut/work.h"
@@ -526,36 +526,6 @@ class Grouping {
     };
     std::unordered_map<std::array<double, 3>, std::uint32_t, ArrayHash> colour_palette_;
     IdTable group_ids_;
-};
-
-} // namespace
-
-namespace {
-
-/// Deals out the work that shells may take, by the number of their cells: what one leaves is for those after it.
-class ShellWork {
-  public:
-    ShellWork(const CutGraph& cut, const std::vector<BakeRequest>& requests) : cut_(cut) {
-        for (const BakeRequest& request : requests)
-            if (request.shell) cells_left_ += cells(request);
-    }
-
-    /// Of so many seconds. The rest is for what else is to be done, and a shell may take somewhat more.
-    std::uint64_t take(const BakeRequest& request, double seconds_left) {
-        constexpr double share_of_shells = 0.75;
-        const double share = share_of_shells * cells(request) / std::max(cells_left_, cells(request));
-        cells_left_ -= cells(request);
-        return static_cast<std::uint64_t>(share * std::min(seconds_left, 1e6) * WorkRates::shell_points);
-    }
-
-  private:
-    double cells(const BakeRequest& request) const {
-        const double across = 2 * cut_.nodes[request.representative].ball.radius * request.detail_per_unit;
-        return std::clamp(across * across, 1.0, most_shell_cells);
-    }
-
-    const CutGraph& cut_;
-    double cells_left_ = 0;
 };
 
 } // namespace

@@ -20,7 +20,7 @@
 #include "compiler/cut/placed_runs.h"
 #include "compiler/cut/placed_set.h"
 #include "compiler/cut/run_cells.h"
-#include "compiler/cut/shell_work.h"
+#include "compiler/cut/shell_shares.h"
 #include "compiler/cut/tessellate.h"
 #include "compiler/cut/texture_space.h"
 #include "compiler/cut/work.h"
@@ -535,7 +535,7 @@ std::optional<Cut> assemble(const CutGraph& cut, const Symmetry& symmetry, const
                             ShellStore& shells, AssemblyLimits& limits) {
     Unfolding unfolding(cut, symmetry, projection, choice, weights);
     if (!unfolding.run(root, limits)) return std::nullopt;
-    ShellWork shell_work(cut, unfolding.requests);
+    ShellShares shell_shares(cut, unfolding.requests);
     std::vector<Baked> baked;
     std::size_t triangles = 0;
     double culled_detail = unfolding.culled_detail;
@@ -543,10 +543,15 @@ std::optional<Cut> assemble(const CutGraph& cut, const Symmetry& symmetry, const
     for (BakeRequest& request : unfolding.requests) {
         request.limit_normals = limit_normals;
         request.shells = &shells;
-        if (request.shell) request.most_shell_work = shell_work.take(request, limits.work_seconds);
+        std::size_t most_triangles = limits.max_triangles - triangles;
+        if (request.shell) {
+            const ShellShare share = shell_shares.take(request, limits.work_seconds, most_triangles);
+            request.most_shell_work = share.work;
+            most_triangles = share.triangles;
+        }
         request.most_visits =
             static_cast<std::uint64_t>(std::min(limits.work_seconds, 1e6) * WorkRates::visits / limits.slowness);
-        baked.push_back(bake(cut, symmetry, request, limits.max_triangles - triangles));
+        baked.push_back(bake(cut, symmetry, request, most_triangles));
         triangles += baked.back().triangles;
         limits.work_seconds -= limits.slowness * static_cast<double>(baked.back().visits) / WorkRates::visits +
                                static_cast<double>(baked.back().triangles) / WorkRates::baked_triangles +

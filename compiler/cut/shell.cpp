@@ -18,6 +18,14 @@ namespace {
 constexpr int smoothings = 2;
 /// Of points in space, in the mean: those that lie behind others have none.
 constexpr double triangles_a_point = 3;
+/// Of a point's cells and their faces, in moves of a point.
+constexpr std::uint64_t work_of_surface = 10;
+/// Of the work, what points may take: the rest is for their surface, and for a coarser one if need be.
+constexpr double share_of_points = 0.6;
+/// A surface of too many triangles tells how many more there would be: its cells grow by that, somewhat more,
+/// and no more than this at once.
+constexpr int most_tries = 4;
+constexpr double coarser_for_triangles = 1.25, least_share_built = 0.1;
 /// Colours are told apart no better than this.
 constexpr double colour_grain = 1.0 / 255;
 
@@ -36,17 +44,18 @@ class Surface {
   public:
     Surface(const PointSet& set, std::size_t max_quads) : set_(set), max_quads_(max_quads) {}
 
-    bool build() {
+    /// The share of the cells whose faces there was room for: the surface is whole where it is 1.
+    double build() {
         fill();
-        const bool complete = set_.flat ? add_sheet() : add_faces();
-        if (!complete) return false;
+        const double share = set_.flat ? add_sheet() : add_faces();
+        if (share < 1) return share;
         cells_.clear();
         corner_numbers_.clear();
         corner_keys_.clear();
         order_.clear();
         if (!set_.flat) smooth();
         find_normals();
-        return true;
+        return 1;
     }
 
     std::vector<Corner> corners;
@@ -106,22 +115,24 @@ class Surface {
         return number;
     }
 
-    bool add_sheet() {
+    double add_sheet() {
         const double plane = static_cast<double>(set_.points.front()[2]) / set_.cell;
-        for (const auto& [packed, point] : order_) {
+        for (std::size_t i = 0; i < order_.size(); ++i) {
+            const auto& [packed, point] = order_[i];
             const CellKey at = CellKey::unpacked(packed);
             quads.push_back({{corner(at), corner({at.x + 1, at.y, 0}), corner({at.x + 1, at.y + 1, 0}),
                               corner({at.x, at.y + 1, 0})},
                              point});
-            if (quads.size() > max_quads_) return false;
+            if (quads.size() > max_quads_) return share_before(i);
         }
         for (Corner& at : corners)
             at.place.z = plane;
-        return true;
+        return 1;
     }
 
-    bool add_faces() {
-        for (const auto& [packed, point] : order_) {
+    double add_faces() {
+        for (std::size_t i = 0; i < order_.size(); ++i) {
+            const auto& [packed, point] = order_[i];
             const CellKey at = CellKey::unpacked(packed);
             for (int axis = 0; axis < 3; ++axis)
                 for (const int side : {-1, 1}) {
@@ -139,9 +150,13 @@ class Surface {
                         {{corner(low), corner(right), corner(step(right, v, 1)), corner(step(low, v, 1))},
                          point});
                 }
-            if (quads.size() > max_quads_) return false;
+            if (quads.size() > max_quads_) return share_before(i);
         }
-        return true;
+        return 1;
+    }
+
+    double share_before(std::size_t cell) const {
+        return static_cast<double>(cell) / static_cast<double>(order_.size());
     }
 
     /// Each corner towards the mean of its neighbours, but no farther than half a cell.
@@ -281,21 +296,33 @@ Baked bake_shell(const CutGraph& cut, const ShellRequest& request, std::size_t m
     const double size = std::exp2(std::ceil(std::log2(std::max(ball.radius, 1e-200))));
     baked.representative_from_body = Affine::translate(ball.centre) * Affine::scale(Vec3(size));
     PointLimits limits;
-    limits.work = std::min(limits.work, request.most_work);
     limits.points = std::min(
         limits.points, static_cast<std::size_t>(static_cast<double>(max_triangles) / triangles_a_point));
     ShellStore of_this_shell;
     ShellStore& store = request.store ? *request.store : of_this_shell;
-    const auto set = store.points(cut, request.node, request.steps, request.detail_per_unit, limits);
-    baked.shell_work = set->work;
-    baked.complete = !set->points.empty();
-    if (!baked.complete) return baked;
-    Surface surface(*set, max_triangles / 2);
-    baked.complete = surface.build();
-    if (!baked.complete) return baked;
-    baked.triangles = 2 * surface.quads.size();
-    baked.culled_detail = std::max(1.0, set->cell * request.detail_per_unit);
-    baked.parts = ShellParts(*set, surface, request, 1 / size).take();
+    baked.complete = false;
+    std::uint64_t work_left = std::min(limits.work, request.most_work);
+    double detail_per_unit = request.detail_per_unit;
+    for (int tries = 0; tries < most_tries; ++tries) {
+        limits.work = static_cast<std::uint64_t>(share_of_points * static_cast<double>(work_left));
+        limits.points = std::min(limits.points, (work_left - limits.work) / (2 * work_of_surface));
+        const auto set = store.points(cut, request.node, request.steps, detail_per_unit, limits);
+        const std::uint64_t work = set->work + work_of_surface * set->points.size();
+        work_left -= std::min(work_left, work);
+        baked.shell_work += work;
+        if (set->points.empty()) return baked;
+        Surface surface(*set, max_triangles / 2);
+        const double share_built = surface.build();
+        if (share_built == 1) {
+            baked.complete = true;
+            baked.triangles = 2 * surface.quads.size();
+            baked.culled_detail = std::max(1.0, set->cell * request.detail_per_unit);
+            baked.parts = ShellParts(*set, surface, request, 1 / size).take();
+            return baked;
+        }
+        detail_per_unit =
+            std::max(std::sqrt(share_built), least_share_built) / (coarser_for_triangles * set->cell);
+    }
     return baked;
 }
 

@@ -24,8 +24,8 @@ struct ShellRequest {
 
 /// The node as a closed surface, in the node's frame (Baked::representative_from_body reads node_from_body):
 /// the faces of the cells that its points (shell_points.h) fill, smoothed by at most half a cell (S. Gibson,
-/// "Constrained Elastic Surface Nets", 1998). A set in the plane z = const becomes a sheet. Not complete
-/// where a limit was passed.
+/// "Constrained Elastic Surface Nets", 1998). A set in the plane z = const becomes a sheet. Its
+/// cells are larger where the limits do not suffice. Not complete where they suffice for none.
 Baked bake_shell(const CutGraph& cut, const ShellRequest& request, std::size_t max_triangles);
 
 } // namespace graftal

@@ -174,6 +174,26 @@ TEST(Shell, IsAClosedSurface) {
     EXPECT_NEAR(std::cbrt(volume) * unit, 2, 3 / request.detail_per_unit);
 }
 
+/// Dust has a dozen times as many triangles a point as a surface: there was nothing, after all the work.
+TEST(Shell, TooManyTrianglesMakeItCoarserAndNotNothing) {
+    for (const double share : {0.2, 0.35, 0.45}) {
+        const PreparedCut ready = prepared(corners_graph(3, share));
+        const CutGraph& cut = ready.cut;
+        ShellRequest request;
+        request.node = cut.root;
+        request.detail_per_unit = detail_for(cut, 1000);
+        request.inherited = {Rgb(0.5)};
+        for (const std::size_t most : {100'000u, 10'000u}) {
+            const Baked baked = bake_shell(cut, request, most);
+            ASSERT_TRUE(baked.complete) << share << " " << most;
+            EXPECT_LE(baked.triangles, most) << share;
+            EXPECT_GT(baked.triangles, most / 64) << share;
+            EXPECT_GT(baked.culled_detail, 2) << share << ": the error is told";
+            EXPECT_GT(baked.shell_work, baked.triangles) << share << ": the surface is work, too";
+        }
+    }
+}
+
 TEST(Shell, CrowdsAreToldFromSetsThatOnlyFillSpace) {
     const struct {
         int dimensions;

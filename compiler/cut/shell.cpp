@@ -21,7 +21,7 @@ constexpr double triangles_a_point = 3;
 /// Of a point's cells and their faces, in moves of a point.
 constexpr std::uint64_t work_of_surface = 10;
 /// Of the work, what points may take: the rest is for their surface, and for a coarser one if need be.
-constexpr double share_of_points = 0.6;
+constexpr double share_of_points = 0.8;
 /// A surface of too many triangles tells how many more there would be: its cells grow by that, somewhat more,
 /// and no more than this at once.
 constexpr int most_tries = 4;
@@ -305,7 +305,6 @@ Baked bake_shell(const CutGraph& cut, const ShellRequest& request, std::size_t m
     double detail_per_unit = request.detail_per_unit;
     for (int tries = 0; tries < most_tries; ++tries) {
         limits.work = static_cast<std::uint64_t>(share_of_points * static_cast<double>(work_left));
-        limits.points = std::min(limits.points, (work_left - limits.work) / (2 * work_of_surface));
         const auto set = store.points(cut, request.node, request.steps, detail_per_unit, limits);
         const std::uint64_t work = set->work + work_of_surface * set->points.size();
         work_left -= std::min(work_left, work);

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -31,7 +32,8 @@ struct InstTint {
 struct InstGroup {
     bool terminal = false;
     std::optional<Expression> below; ///< of a terminal: the size from which down it is drawn
-    std::optional<InstScatter> scatter; ///< then the masters are placed many times, each where it says
+    /// Then the masters are placed many times, each where it says. Few groups have one, and it is large.
+    std::unique_ptr<InstScatter> scatter;
     std::vector<InstReference> masters; ///< one or more; one of a terminal
     std::vector<TransformLine> transforms;
     std::vector<InstTint> tints;
@@ -40,6 +42,8 @@ struct InstGroup {
     std::optional<Expression> chance; ///< of each of the masters
     Span span;
 };
+
+static_assert(sizeof(InstGroup) <= 512, "a model may have a million of them");
 
 /// One parameter of a definition: a name, or a number that the argument must equal.
 struct InstParameter {

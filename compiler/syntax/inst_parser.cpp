@@ -130,7 +130,10 @@ class BodyParser {
         stream_.accept(":");
         InstGroup group;
         group.terminal = keyword.is("terminal");
-        if (keyword.is("scatter")) group.scatter.emplace().ordinal = scatters_++;
+        if (keyword.is("scatter")) {
+            group.scatter = std::make_unique<InstScatter>();
+            group.scatter->ordinal = scatters_++;
+        }
         lost_group_ = !parse_masters(group, keyword.text);
         if (lost_group_) return false;
         group.span = stream_.span_from(keyword.span);

@@ -528,11 +528,9 @@ class Grouping {
     IdTable group_ids_;
 };
 
-} // namespace
-
-std::optional<Cut> assemble(const CutGraph& cut, const Symmetry& symmetry, const Projection& projection,
-                            const Piece& root, const Choice& choice, Weights& weights, bool limit_normals,
-                            ShellStore& shells, AssemblyLimits& limits) {
+std::optional<Cut> assemble_within(AssemblyLimits& limits, const CutGraph& cut, const Symmetry& symmetry,
+                                   const Projection& projection, const Piece& root, const Choice& choice,
+                                   Weights& weights, bool limit_normals, ShellStore& shells) {
     Unfolding unfolding(cut, symmetry, projection, choice, weights);
     if (!unfolding.run(root, limits)) return std::nullopt;
     ShellShares shell_shares(cut, unfolding.requests);
@@ -573,6 +571,19 @@ std::optional<Cut> assemble(const CutGraph& cut, const Symmetry& symmetry, const
     result.finest = std::min(unfolding.finest, finest_of_runs);
     result.leaf_count = choice.leaves;
     return result;
+}
+
+} // namespace
+
+std::optional<Cut> assemble(const CutGraph& cut, const Symmetry& symmetry, const Projection& projection,
+                            const Piece& root, const Choice& choice, Weights& weights, bool limit_normals,
+                            ShellStore& shells, AssemblyLimits& limits) {
+    try {
+        return assemble_within(limits, cut, symmetry, projection, root, choice, weights, limit_normals,
+                               shells);
+    } catch (const std::bad_alloc&) {
+        return std::nullopt; // the work is taken off nevertheless
+    }
 }
 
 } // namespace graftal

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <future>
 #include <map>
+#include <new>
 #include <numbers>
 #include <span>
 
@@ -88,9 +89,25 @@ class Baker {
         : cut_(cut), symmetry_(symmetry), request_(request), max_triangles_(max_triangles) {}
 
     Baked bake() {
+        try {
+            unfold();
+        } catch (const std::bad_alloc&) {
+            // What was visited counts as work: tries that end for their memory are not for nothing.
+            baked_.complete = false;
+        }
+        if (baked_.complete) return std::move(baked_);
+        Baked stopped;
+        stopped.visits = baked_.visits;
+        stopped.triangles = baked_.triangles;
+        stopped.complete = false;
+        return stopped;
+    }
+
+  private:
+    void unfold() {
         place_body();
         gather_leaves();
-        if (!baked_.complete) return std::move(baked_);
+        if (!baked_.complete) return;
         // Shapes and colours have nothing to do with each other, and take about as long.
         const auto when = numbers_.size() < fewest_leaves_for_a_thread
                               ? std::launch::deferred
@@ -101,10 +118,8 @@ class Baker {
         coloured.wait();
         for (Part& part : parts_)
             finish(part);
-        return std::move(baked_);
     }
 
-  private:
     void place_body() {
         const Ball& ball = cut_.nodes[request_.representative].ball;
         const double size = std::exp2(std::ceil(std::log2(std::max(ball.radius, 1e-200))));

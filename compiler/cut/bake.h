@@ -60,7 +60,7 @@ struct Baked {
     double tessellation_px = 0;
     std::uint64_t visits = 0;     ///< of the walk
     std::uint64_t shell_work = 0; ///< points moved for a shell
-    bool complete = true; ///< false: stopped at max_triangles, or at most_visits
+    bool complete = true;         ///< false: stopped at max_triangles, at most_visits, or where memory ended
 };
 
 /// Unfolds the request into triangles. Leaves that coincide are drawn once; faces on which two cubes meet are

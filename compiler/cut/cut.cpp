@@ -111,6 +111,7 @@ class Cutter {
         try {
             return attempt_within(coarser_steps);
         } catch (const std::bad_alloc&) {
+            failed_by_work_ = false;
             return std::nullopt;
         }
     }
@@ -125,7 +126,7 @@ class Cutter {
         root.steps = prepared_.root_steps;
         const Ball whole_ball = world_ball(cut_, root);
         const double px = projection.pixels_per_unit(whole_ball) / projection.detail_per_unit(whole_ball);
-        Weights weights(cut_, cube_triangles_, px, projection.error_px(), grain_);
+        Weights weights(cut_, cube_triangles_, px, projection.error_px(), grain_, visits_of_kinds());
         const double memory = memory_for_scene();
         const PieceKind whole = kind_of(cut_, projection, root);
         const Weights::Weight weight = weights.of(whole);
@@ -171,6 +172,14 @@ class Cutter {
 
     double seconds_of_kinds(std::uint64_t visits) const {
         return slowness_of_graph(prepared_.instances) * static_cast<double>(visits) / WorkRates::kinds;
+    }
+
+    /// Kinds are told apart as finely as this share of the work allows.
+    std::uint64_t visits_of_kinds() const {
+        constexpr double share = 0.1;
+        const double seconds = share * options_.work_seconds / slowness_of_graph(prepared_.instances);
+        return static_cast<std::uint64_t>(
+            std::min(seconds * WorkRates::kinds, static_cast<double>(Weights::usual_visits)));
     }
 
     static Choice flat_choice(const Weights::Weight& whole) {

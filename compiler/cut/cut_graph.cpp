@@ -183,7 +183,8 @@ class Builder {
             for (const Instance& instance : instances)
                 if (!is_plane_on_a_line(instance)) node.edges.push_back(edge(instance, node, id));
             if (object.terminal) {
-                node.stop_edges.push_back(edge(*object.terminal, node, id));
+                if (!is_plane_on_a_line(*object.terminal))
+                    node.stop_edges.push_back(edge(*object.terminal, node, id));
                 node.terminal = true;
             } else if (node.unending) {
                 for (const CutEdge& candidate : node.edges)

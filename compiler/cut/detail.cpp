@@ -20,9 +20,9 @@ namespace {
 
 /// A proxy's mesh is an octahedron.
 const Weights::Weight proxy{8, 1, 0, PovrayCosts::primitive(PrimitiveKind::sphere) + PovrayCosts::matrix};
-/// More kinds than have so many edges are not told apart, or so many times those of the graph: the steps of
+/// Kinds may have so many times the edges of the graph in any case; where there are too many, the steps of
 /// their details get coarser by so much.
-constexpr std::uint64_t max_visits = 4'000'000, max_visits_an_edge = 2;
+constexpr std::uint64_t visits_an_edge = 2;
 constexpr int coarser_grain = 4;
 /// Details beyond this are not told apart.
 constexpr std::int32_t largest_step = 1 << 24;
@@ -94,8 +94,9 @@ bool is_cut(const CutNode& node, std::uint32_t steps, double detail, double erro
     return ends(node, steps, detail <= cut_detail(node, error_px));
 }
 
-Weights::Weights(const CutGraph& cut, double cube_triangles, double px, double error_px, int grain)
-    : cut_(cut), cube_triangles_(cube_triangles), px_(px), grain_(grain) {
+Weights::Weights(const CutGraph& cut, double cube_triangles, double px, double error_px, int grain,
+                 std::uint64_t most_visits)
+    : cut_(cut), cube_triangles_(cube_triangles), px_(px), grain_(grain), most_visits_(most_visits) {
     diameter_step_.reserve(cut.nodes.size());
     cut_step_.reserve(cut.nodes.size());
     for (const CutNode& node : cut.nodes) {
@@ -317,7 +318,7 @@ bool Weights::weigh(std::uint32_t start) {
 }
 
 bool Weights::too_many_kinds() const {
-    return visits_ - visits_before_ > std::max(max_visits, max_visits_an_edge * edges_) &&
+    return visits_ - visits_before_ > std::max(most_visits_, visits_an_edge * edges_) &&
            grain_ <= PieceKind::steps_an_octave;
 }
 

@@ -167,9 +167,13 @@ class Weights {
   public:
     /// `cube_triangles`: how many of a cube's triangles stay visible in a mesh, on average. `px`: pixels of a
     /// detail of 1, which decide how finely curved surfaces are meshed; 0: as coarsely as can be.
-    /// `error_px`: as Projection::error_px(). `grain`: that of other weights of this graph, which saves finding it.
+    /// `error_px`: as Projection::error_px(). `grain`: that of other weights of this graph, which saves
+    /// finding it. `most_visits`: kinds that take more, and more than the graph itself, are told apart less
+    /// finely.
     explicit Weights(const CutGraph& cut, double cube_triangles = 12, double px = 0, double error_px = 0,
-                     int grain = 1);
+                     int grain = 1, std::uint64_t most_visits = usual_visits);
+
+    static constexpr std::uint64_t usual_visits = 4'000'000;
 
     struct Weight {
         double triangles = 0;
@@ -251,6 +255,7 @@ class Weights {
     IdTable numbers_; ///< of known kinds
     std::vector<Frame> stack_;
     std::uint64_t edges_ = 0;                      ///< of the graph
+    std::uint64_t most_visits_;
     std::uint64_t visits_ = 0, visits_before_ = 0; ///< all; those when kinds were last forgotten
 };
 

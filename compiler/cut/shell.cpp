@@ -288,10 +288,8 @@ class ShellParts {
     std::vector<Rgb> colours_;
 };
 
-} // namespace
-
-Baked bake_shell(const CutGraph& cut, const ShellRequest& request, std::size_t max_triangles) {
-    Baked baked;
+/// Fills in `baked`, if it can: its shell_work is right on any way out.
+void bake_into(Baked& baked, const CutGraph& cut, const ShellRequest& request, std::size_t max_triangles) {
     const Ball& ball = cut.nodes[request.node].ball;
     const double size = std::exp2(std::ceil(std::log2(std::max(ball.radius, 1e-200))));
     baked.representative_from_body = Affine::translate(ball.centre) * Affine::scale(Vec3(size));
@@ -305,22 +303,34 @@ Baked bake_shell(const CutGraph& cut, const ShellRequest& request, std::size_t m
     double detail_per_unit = request.detail_per_unit;
     for (int tries = 0; tries < most_tries; ++tries) {
         limits.work = static_cast<std::uint64_t>(share_of_points * static_cast<double>(work_left));
+        baked.shell_work += limits.work; // all that it may take, until it is known
         const auto set = store.points(cut, request.node, request.steps, detail_per_unit, limits);
         const std::uint64_t work = set->work + work_of_surface * set->points.size();
         work_left -= std::min(work_left, work);
-        baked.shell_work += work;
-        if (set->points.empty()) return baked;
+        baked.shell_work += work - limits.work;
+        if (set->points.empty()) return;
         Surface surface(*set, max_triangles / 2);
         const double share_built = surface.build();
         if (share_built == 1) {
-            baked.complete = true;
             baked.triangles = 2 * surface.quads.size();
             baked.culled_detail = std::max(1.0, set->cell * request.detail_per_unit);
             baked.parts = ShellParts(*set, surface, request, 1 / size).take();
-            return baked;
+            baked.complete = true;
+            return;
         }
         detail_per_unit =
             std::max(std::sqrt(share_built), least_share_built) / (coarser_for_triangles * set->cell);
+    }
+}
+
+} // namespace
+
+Baked bake_shell(const CutGraph& cut, const ShellRequest& request, std::size_t max_triangles) {
+    Baked baked;
+    try {
+        bake_into(baked, cut, request, max_triangles);
+    } catch (const std::bad_alloc&) {
+        baked.complete = false;
     }
     return baked;
 }

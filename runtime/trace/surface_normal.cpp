@@ -1,10 +1,12 @@
 #include "runtime/trace/surface_normal.h"
 
-#include <vector>
+#include <algorithm>
+#include <array>
 
 #include <glm/geometric.hpp>
 
 #include "compiler/cut/limit_normal.h"
+#include "compiler/support/stretch.h"
 
 namespace graftal {
 
@@ -45,19 +47,30 @@ Vec3 limit_normal(const TraceModel& model, std::span<const std::uint32_t> path, 
 
 Vec3 limit_normal_in_world(const TraceModel& model, std::span<const std::uint32_t> path, Vec3 normal,
                            Vec3 point) {
-    std::vector<Ball> balls; // of the unending nodes above the proxy
+    // The paths into deep limits have hundreds of nodes, of which the last few count.
+    const auto edge = [&](std::size_t i) -> const TraceEdge& { return model.edges[path[i] & ~from_cut]; };
+    const std::size_t end = path.size() - std::min<std::size_t>(path.size(), 1);
+    std::size_t begin = end;
+    for (int levels = 0; begin > 0 && levels < limit_normal_levels; --begin)
+        levels += model.nodes[edge(begin - 1).child].unending ? 1 : 0;
     Affine world_from_node;
-    for (std::size_t i = 0; i + 1 < path.size(); ++i) {
-        const TraceEdge& edge = model.edges[path[i] & ~from_cut];
-        world_from_node = world_from_node * edge.parent_from_child.affine();
-        const TraceNode& node = model.nodes[edge.child];
+    for (std::size_t i = 0; i < begin; ++i)
+        world_from_node = world_from_node * edge(i).parent_from_child.affine();
+    std::array<Ball, limit_normal_levels> balls; // of the unending nodes above the proxy
+    int levels = 0;
+    for (std::size_t i = begin; i < end; ++i) {
+        world_from_node = world_from_node * edge(i).parent_from_child.affine();
+        const TraceNode& node = model.nodes[edge(i).child];
         if (node.unending)
-            balls.push_back({world_from_node(vec3_of(node.ball_centre)),
-                             norm(world_from_node.linear) * node.ball_radius});
+            balls[static_cast<std::size_t>(levels++)] = {world_from_node(vec3_of(node.ball_centre)),
+                                                         largest_stretch(world_from_node.linear) *
+                                                             node.ball_radius};
     }
     NormalField field;
-    for (int level = 1; level <= limit_normal_levels && !balls.empty(); ++level, balls.pop_back())
-        field.add(level, balls.back().centre, balls.back().radius);
+    for (int level = 1; level <= levels; ++level) {
+        const Ball& ball = balls[static_cast<std::size_t>(levels - level)];
+        field.add(level, ball.centre, ball.radius);
+    }
     const Vec3 sum = normal + field.at(point);
     const double length = glm::length(sum);
     return length > 1e-6 ? sum / length : normal;

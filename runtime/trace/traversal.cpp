@@ -74,6 +74,7 @@ bool Traversal::closest(const Ray& ray, const RayRange& range, SurfaceHit& hit) 
     path_.clear();
     for (const std::uint32_t edge : way_)
         append_to_path(edge);
+    more_work_ += RayWork::shaded * path_.size();
     surface_at_best(hit);
     return true;
 }

@@ -260,6 +260,12 @@ TEST_F(Native, PlanesBehindFlatMapsAreWherePovrayHasThem) {
         {"object floor { plane projection: 1, 0, 0, 0,  0, 1, 0, 0,  0, 0, 0, 0 }\n" + with_ball, false},
         {house + "object all { house scale: 1, 1e-11, 1 }\n", true},
         {house + "object all { house projection: 1, 0, 0, 0,  0, 0, 0, 0,  0, 0, 1, 0 }\n", true},
+        {"canonical object ground { plane }\n"
+         "canonical object part { instance: ball\n"
+         "    terminal: ground projection: 1, 0, 0, 0,  0, 1, 0, 0,  0, 0, 0, 0\n"
+         "    below: 2000 }\n"
+         "object all { union: part, ball }\n",
+         false},
     };
     const std::string view = "--camera 'location=0,2,-6 look_at=0,1,0' --antialias off --size 64x36 ";
     for (const auto& [text, stays] : models) {

@@ -158,5 +158,23 @@ TEST_F(Work, IsAPositiveNumber) {
     EXPECT_THAT(result.err, HasSubstr("--work"));
 }
 
+/// Kinds of parts were told apart for as long as it took, and left nothing for what is drawn: 950 px.
+TEST_F(Work, OfASecondIsNotSpentOnTellingPartsApart) {
+    write("similar.lsys", R"(
+lsys similar {
+  angle 25
+  steps 30
+  axiom X(1)
+  X(s) -> F(s)[+X(s*0.83)]F(s*0.97)[-X(s*0.79)][+X(s*0.71)]F(s*0.9)[-X(s*0.61)]X(s*0.53)
+}
+)");
+    const RunResult result = graftal("compile --work 1 similar.lsys -o similar.pov");
+    ASSERT_EQ(result.status, 0) << result.err;
+    const std::string mark = "an error of ";
+    const std::size_t at = result.err.find(mark);
+    const double error_px = at == std::string::npos ? 0 : std::stod(result.err.substr(at + mark.size()));
+    EXPECT_LT(error_px, 100) << result.err;
+}
+
 } // namespace
 } // namespace graftal

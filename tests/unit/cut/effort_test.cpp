@@ -60,6 +60,17 @@ TEST(Effort, UnequalScalesAreToldApartAsFarAsTheWorkAllows) {
     EXPECT_EQ(weights_of_one.grain(), 1);
 }
 
+TEST(Effort, KindsAreToldApartByTheVisitsThatTheyMayTake) {
+    const CutGraph many = unequal_scales(300);
+    const PieceKind kind{0, unlimited_steps, PieceKind::step_of(1000)};
+    Weights usual(many), few(many, 12, 0, 0, 1, 100'000);
+    const double leaves = usual.of(kind).leaves;
+    EXPECT_NEAR(std::log2(few.of(kind).leaves), std::log2(leaves), 1);
+    EXPECT_GT(few.grain(), usual.grain());
+    EXPECT_LT(few.visits(), 1'000'000u);
+    EXPECT_GT(usual.visits(), 2 * few.visits());
+}
+
 TEST(Effort, MapsThatShearAreCalibratedWithoutUnfoldingThemAll) {
     std::mt19937 random(3);
     Graph graph;

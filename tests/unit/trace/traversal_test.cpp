@@ -281,6 +281,14 @@ TEST(Traversal, WorkCountsWhatIsLookedAtInTheWorld) {
     EXPECT_GT(traversal.work(), 10 * traversal.visits()) << "thirty children are looked at, few gone into";
 }
 
+TEST(Traversal, WorkCountsThePathToWhatIsSeen) {
+    const auto model = traced(test::tetrahedron(), culled());
+    Traversal traversal(*model);
+    SurfaceHit hit;
+    ASSERT_TRUE(traversal.closest({{0.5, 0.5, 10}, {0, 0, -1}}, {}, hit));
+    EXPECT_GE(traversal.work(), RayWork::part * traversal.visits() + RayWork::shaded * 6);
+}
+
 // Found by random graphs: the proof that the model contracts takes paths of 1000 instances, and in the
 // prepared graph, where what is crushed has a node of its own, they are twice as long.
 TEST(Traversal, DrawsWhatIsHardlyProvedToContract) {

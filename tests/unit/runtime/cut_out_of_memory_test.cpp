@@ -1,0 +1,97 @@
+// Where memory ends, what was done counts as work nevertheless: else a cut tries for ever.
+
+#include <cmath>
+#include <cstdint>
+#include <cstdlib>
+
+#include <gtest/gtest.h>
+
+#include "compiler/cut/assemble.h"
+#include "compiler/cut/bake.h"
+#include "compiler/cut/cut_graph.h"
+#include "compiler/cut/detail.h"
+#include "compiler/cut/shell_store.h"
+#include "runtime/system/memory_limit.h"
+#include "tests/unit/cut/models.h"
+
+namespace graftal {
+namespace {
+
+constexpr std::uint64_t memory_bytes = 256u << 20;
+
+/// A ball at each of 16^6 places.
+Graph balls() {
+    Graph graph;
+    ObjectId whole = graph.primitive(PrimitiveKind::sphere);
+    for (int level = 0; level < 6; ++level) {
+        Object object{"level" + std::to_string(level), {}, {}, {}, {}};
+        for (int i = 0; i < 16; ++i)
+            object.instances.push_back(
+                {whole,
+                 Affine::translate({i % 4 - 1.5, i / 4 - 1.5, 0.1 * i}) * Affine::scale(Vec3(0.2)),
+                 {},
+                 {},
+                 {}});
+        whole = graph.add(std::move(object));
+    }
+    graph.root = whole;
+    return graph;
+}
+
+struct Model {
+    Graph graph = balls();
+    CutGraph cut = build_cut_graph(graph, strong_components(graph), test::bounds_of(graph));
+    Symmetry symmetry = find_symmetry(cut);
+};
+
+Baked baked(const Model& model) {
+    BakeRequest request;
+    request.representative = model.cut.root;
+    request.detail_per_unit = INFINITY;
+    request.painters = {{model.symmetry.pair[model.cut.root], Rgb(0.5)}};
+    return bake(model.cut, model.symmetry, request, SIZE_MAX / 8);
+}
+
+TEST(OutOfMemory, VisitsOfABakeAreKept) {
+    GTEST_FLAG_SET(death_test_style, "threadsafe");
+    const auto bake_within = [] {
+        const Model model;
+        limit_memory(memory_bytes);
+        const Baked stopped = baked(model);
+        const bool good = !stopped.complete && stopped.visits > 1000 && stopped.parts.empty();
+        std::_Exit(good ? 0 : 1);
+    };
+    EXPECT_EXIT(bake_within(), testing::ExitedWithCode(0), "");
+}
+
+/// Whether all of it becomes one mesh, or as many placements as there are balls.
+TEST(OutOfMemory, WorkOfAnAssemblyIsTakenOff) {
+    GTEST_FLAG_SET(death_test_style, "threadsafe");
+    const auto assemble_within = [](double threshold) {
+        const Model model;
+        View view;
+        view.size = {64, 48};
+        view.camera.location = {0, 0, -10};
+        CutOptions options;
+        options.error_px = 0;
+        const Projection projection(view, options, 0, 1e-3);
+        Weights weights(model.cut);
+        Piece root;
+        root.node = model.cut.root;
+        Choice choice;
+        choice.threshold = threshold;
+        choice.spelt_out = threshold == 0;
+        ShellStore shells;
+        AssemblyLimits limits{SIZE_MAX / 8, SIZE_MAX / 8, 1000, 1};
+        limit_memory(memory_bytes);
+        const bool complete =
+            assemble(model.cut, model.symmetry, projection, root, choice, weights, false, shells, limits)
+                .has_value();
+        std::_Exit(!complete && limits.work_seconds < 999.99 ? 0 : 1);
+    };
+    for (const double threshold : {0.0, 1e300})
+        EXPECT_EXIT(assemble_within(threshold), testing::ExitedWithCode(0), "") << threshold;
+}
+
+} // namespace
+} // namespace graftal

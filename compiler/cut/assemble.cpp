@@ -189,7 +189,13 @@ class Unfolding {
         Placed thing;
         thing.kind = kind;
         const Ball ball = world_ball(cut_, piece);
-        thing.world_from_thing = drawn(kind, world_from_primitive, piece);
+        if (kind == PrimitiveKind::plane && is_singular(world_from_primitive, flattest_plane)) {
+            const std::optional<Affine> place = place_of_plane(world_from_primitive);
+            if (!place) return;
+            thing.world_from_thing = *place;
+        } else {
+            thing.world_from_thing = drawn(kind, world_from_primitive, piece);
+        }
         if (thing.world_from_thing != world_from_primitive) more_work_ += work_of_widening;
         const double half_width = projection_.least_half_width(ball);
         const bool speck =

@@ -17,6 +17,7 @@
 #include "compiler/passes/drop_unreachable.h"
 #include "compiler/passes/merge_equivalent.h"
 #include "compiler/support/check.h"
+#include "compiler/support/stretch.h"
 
 namespace graftal {
 
@@ -140,17 +141,6 @@ Affine ellipsoid_in(const Box& box) {
 
 constexpr double flattest_map = 1e-9;
 
-/// Where a nearly singular map takes the plane y = 0: the same place without the map's tiny or missing
-/// stretch. Nothing where it becomes a line.
-std::optional<Affine> place_of_plane(const Affine& map) {
-    const Vec3 normal = glm::cross(map.linear[2], map.linear[0]);
-    const double area = glm::length(normal), x = glm::length(map.linear[0]), z = glm::length(map.linear[2]);
-    if (!(area > flattest_map * x * z) || !(std::min(x, z) > flattest_map * std::max(x, z)))
-        return std::nullopt;
-    const Vec3 y_axis = normal / area, x_axis = map.linear[0] / x;
-    return Affine{Mat3(x_axis, y_axis, glm::cross(x_axis, y_axis)), map.translation};
-}
-
 /// Builds the nodes of a factored graph, which it uses up: with millions of instances each must lie in memory
 /// once.
 class Builder {
@@ -234,7 +224,7 @@ class Builder {
 
     bool is_flat_plane(const Instance& instance) const {
         return graph_.objects[instance.master].primitive == PrimitiveKind::plane &&
-               is_singular(instance.parent_from_child, flattest_map);
+               is_singular(instance.parent_from_child, flattest_plane);
     }
 
     CutEdge edge(const Instance& instance, const CutNode& node, ObjectId user) {

@@ -79,4 +79,13 @@ double flatness_over(double share, const Mat3& linear) {
     return sigma.z > share * sigma.x ? sigma.z / sigma.x : 0;
 }
 
+std::optional<Affine> place_of_plane(const Affine& map) {
+    const Vec3 normal = glm::cross(map.linear[2], map.linear[0]);
+    const double area = glm::length(normal), x = glm::length(map.linear[0]), z = glm::length(map.linear[2]);
+    if (!(area > flattest_plane * x * z) || !(std::min(x, z) > flattest_plane * std::max(x, z)))
+        return std::nullopt;
+    const Vec3 y_axis = normal / area, x_axis = map.linear[0] / x;
+    return Affine{Mat3(x_axis, y_axis, glm::cross(x_axis, y_axis)), map.translation};
+}
+
 } // namespace graftal

@@ -73,4 +73,11 @@ Vec3 most_singular_values(const Mat3& linear);
 /// of 1e-13 or more.
 double flatness_over(double share, const Mat3& linear);
 
+/// Planes that a map makes flatter than this are taken where place_of_plane() says.
+inline constexpr double flattest_plane = 1e-9;
+
+/// Where a nearly singular map takes the plane y = 0: the same place without the map's tiny or missing
+/// stretch. Nothing where it becomes a line.
+std::optional<Affine> place_of_plane(const Affine& map);
+
 } // namespace graftal

@@ -124,7 +124,10 @@ bool Traversal::meet_leaf(PrimitiveKind kind, const Affine& world_from_leaf, boo
         both({range.least, best_.t}, in_ball(ray_, widened_ball(kind, world_from_leaf, half_width)));
     if (!(near.least <= near.most)) return false;
     more_work_ += RayWork::widened;
-    const Affine drawn = drawn_leaf(kind, world_from_leaf, faint, half_width).place;
+    return meet_drawn(kind, drawn_leaf(kind, world_from_leaf, faint, half_width).place, range);
+}
+
+bool Traversal::meet_drawn(PrimitiveKind kind, const Affine& drawn, const RayRange& range) {
     const Affine leaf_from_world = inverse(drawn);
     const Vec3 direction = leaf_from_world.linear * ray_.direction;
     const double speed = largest_entry(direction);
@@ -189,29 +192,62 @@ void Traversal::meet_flat(std::uint32_t frame_number, std::uint32_t number, cons
     FlatPart start = flat_child(frame.world_from_node, number, frame.steps, frame.cut);
     scale_child(start, frame.scale);
     start.faint = frame.faint;
-    const TraceNode& node = model_.nodes[model_.edges[number].child];
-    const Affine place = start.world_from_node.affine();
-    const double reach = start.scale * std::max(node.drawn_radius, node.ball_radius);
-    flat_image_ = FlatImage(ray_, place.linear, place.translation);
-    const double width = flat_width({place.translation, reach}, start.scale);
-    const RayRange image = flat_image_.within(width);
-    const double enough = image.least + near_enough_share * width / glm::length(ray_.direction);
-    const RayRange left = both({range.least, best_.t}, image);
-    if (!(left.least <= left.most)) return;
+    start.placed_first = true;
     flat_parts_.assign(1, start);
     while (!flat_parts_.empty() && !(any && best_.found) && goes_on()) {
-        if (best_.t <= enough && visits_ > patience_) break;
         const FlatPart part = flat_parts_.back();
         flat_parts_.pop_back();
+        if (part.placed_first) {
+            if (!begin_flat(part, range)) continue;
+        } else if (best_.t <= flat_enough_ && visits_ > patience_) {
+            continue;
+        }
         flat_way_.resize(part.depth);
         flat_way_.push_back(part.edge);
         meet_flat_part(part, range, frame_number);
     }
 }
 
+bool Traversal::begin_flat(const FlatPart& part, const RayRange& range) {
+    const TraceNode& node = model_.nodes[model_.edges[part.edge & ~from_cut].child];
+    if (is_endless(node)) return true;
+    const Affine place = part.world_from_node.affine();
+    const double reach = part.scale * std::max(node.drawn_radius, node.ball_radius);
+    flat_image_ = FlatImage(ray_, place.linear, place.translation);
+    const double width = flat_width({place.translation, reach}, part.scale);
+    const RayRange image = flat_image_.within(width);
+    flat_enough_ = image.least + near_enough_share * width / glm::length(ray_.direction);
+    const RayRange left = both({range.least, best_.t}, image);
+    return left.least <= left.most;
+}
+
+void Traversal::push_flat_parts(const FlatPart& part, const TraceNode& node) {
+    more_work_ += RayWork::crushed * node.edge_count;
+    for (std::uint32_t i = 0; i < node.edge_count; ++i) {
+        FlatPart child = flat_child(part.world_from_node, node.first_edge + i, part.steps, false);
+        scale_child(child, part.scale);
+        if (!(child.scale > least_scale)) continue;
+        child.depth = part.depth + 1;
+        child.faint = part.faint;
+        child.placed_first = true;
+        flat_parts_.push_back(child);
+    }
+}
+
+bool Traversal::meet_flat_plane(const FlatPart& part, const RayRange& range) {
+    const std::optional<Affine> place = place_of_plane(part.world_from_node.affine());
+    return place && meet_drawn(PrimitiveKind::plane, *place, range);
+}
+
 void Traversal::meet_flat_part(const FlatPart& part, const RayRange& range, std::uint32_t frame_number) {
     ++visits_;
     const TraceNode& node = model_.nodes[model_.edges[part.edge & ~from_cut].child];
+    if (node.kind == TraceNode::Kind::unbounded) return push_flat_parts(part, node);
+    if (is_endless(node)) {
+        if (!meet_flat_plane(part, range)) return;
+        best_.turns = model_.edges[part.edge & ~from_cut].turns;
+        return keep_flat_way(frame_number);
+    }
     const Affine place = part.world_from_node.affine();
     const Ball ball{place(vec3_of(node.ball_centre)), part.scale * node.ball_radius};
     Ball drawn = drawn_ball(part, part.scale);

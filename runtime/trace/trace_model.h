@@ -158,6 +158,12 @@ struct TraceModel {
     TraceModel& operator=(const TraceModel&) = delete;
 };
 
+/// Planes, and what holds them, have no bounds.
+inline bool is_endless(const TraceNode& node) {
+    return node.kind == TraceNode::Kind::unbounded ||
+           (node.kind == TraceNode::Kind::primitive && node.primitive == PrimitiveKind::plane);
+}
+
 /// The rule of the cut (detail.h). `detail`: of the part's diameter.
 inline bool is_cut(const TraceNode& node, std::uint32_t steps, double detail) {
     if (node.kind == TraceNode::Kind::unbounded || node.kind == TraceNode::Kind::crushed) return false;

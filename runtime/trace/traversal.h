@@ -19,6 +19,9 @@ enum class Instructions { portable, avx2 };
 /// The fastest that this machine has.
 Instructions best_instructions();
 
+/// Parts smaller than this are nothing: their inverse maps would not be numbers.
+inline constexpr double least_scale = 1e-150;
+
 /// The line or the plane in which the image of a singular map lies, as a ray sees it.
 class FlatImage {
   public:
@@ -112,11 +115,17 @@ class Traversal final : public Surfaces {
         std::uint32_t steps = 0;
         std::uint32_t depth = 0; ///< edges on the way from the frame before it
         bool faint = false;
+        bool placed_first = false; ///< nothing bounded is above it that the flat map places
     };
 
     /// Meets the child of a frame's edge where no ray can be taken into the child's frame (flat_walk.cpp).
     void meet_flat(std::uint32_t frame_number, std::uint32_t edge, const RayRange& range, bool any);
+    /// Looks where the ray is in the flat image of a part that is placed first; false if nowhere.
+    bool begin_flat(const FlatPart& part, const RayRange& range);
     void meet_flat_part(const FlatPart& part, const RayRange& range, std::uint32_t frame_number);
+    /// The parts of what holds planes, which has no bounds.
+    void push_flat_parts(const FlatPart& part, const TraceNode& node);
+    bool meet_flat_plane(const FlatPart& part, const RayRange& range);
     void meet_flat_items(const FlatPart& part, const Ball& ball, const RayRange& range,
                          std::uint32_t frame_number);
     /// The edges to a part that was met in the world.
@@ -137,6 +146,8 @@ class Traversal final : public Surfaces {
     /// far, and its way is to be kept. `ball`: of the node that it is or stands for, in the world.
     bool meet_leaf(PrimitiveKind kind, const Affine& world_from_leaf, bool faint, const Ball& ball,
                    const RayRange& range);
+    /// The same for what is drawn at this place, which is regular.
+    bool meet_drawn(PrimitiveKind kind, const Affine& drawn, const RayRange& range);
     /// The edges to a frame's node.
     void keep_way(std::uint32_t frame_number);
     bool run(const Ray& ray, const RayRange& range, bool any);
@@ -164,6 +175,7 @@ class Traversal final : public Surfaces {
     Ray ray_;                          ///< in the world
     std::vector<FlatPart> flat_parts_; ///< to be met
     FlatImage flat_image_;
+    double flat_enough_ = 0;              ///< nearer than this no part of the image is
     AlikeSet flat_met_;                   ///< once patience is at its end
     std::uint64_t patience_ = 0;          ///< of the ray: visits
     std::vector<std::uint32_t> flat_way_; ///< edges from the frame to the part under way

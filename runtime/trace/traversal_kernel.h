@@ -18,8 +18,6 @@
 
 namespace graftal {
 
-/// Parts smaller than this are nothing: their inverse maps would not be numbers.
-inline constexpr double least_scale = 1e-150;
 /// A ray crosses no primitive's surface more often: the torus.
 inline constexpr int most_crossings = 4;
 /// Allows for the rounding of what is a little more than enough.
@@ -148,8 +146,7 @@ template<Instructions instructions> struct Traversal::Kernel {
         const TraceEdge& edge = model.edges[number];
         const TraceNode& child = model.nodes[edge.child];
         double at = (range.least - frame.base) * frame.speed;
-        const bool endless = child.kind == TraceNode::Kind::unbounded || child_is_plane(child);
-        if (!endless) {
+        if (!is_endless(child)) {
             const RayRange within{at, (self.best_.t - frame.base) * frame.speed};
             const Ray ray{vec3_of(frame.origin), vec3_of(frame.direction)};
             const RayRange inside = range_in(enlarged(edge.box, frame.margin), ray, within);
@@ -162,10 +159,6 @@ template<Instructions instructions> struct Traversal::Kernel {
     GRAFTAL_INLINE void push_entry(const Entry& entry) {
         reserve_entries(1);
         self.entries_[self.entry_count_++] = entry;
-    }
-
-    GRAFTAL_INLINE static bool child_is_plane(const TraceNode& node) {
-        return node.kind == TraceNode::Kind::primitive && node.primitive == PrimitiveKind::plane;
     }
 
     GRAFTAL_INLINE bool test_boxes(const std::vector<BoxNode>& boxes, std::uint32_t number,

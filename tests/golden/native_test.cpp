@@ -249,7 +249,8 @@ TEST_F(NativeAnimation, FormsOtherThanFramesAreAssembled) {
 TEST_F(Native, PlanesBehindFlatMapsAreWherePovrayHasThem) {
     const std::string ball = "object ball { sphere translate: 0, 1, 0 }\n";
     const std::string with_ball = "object all { union: floor, ball }\n";
-    const std::string house = "object ground { plane }\nobject house { union: ground, ball }\n";
+    const std::string house =
+        "canonical object ground { plane }\ncanonical object house { union: ground, ball }\n";
     struct {
         std::string text;
         bool stays;
@@ -260,6 +261,12 @@ TEST_F(Native, PlanesBehindFlatMapsAreWherePovrayHasThem) {
         {"object floor { plane projection: 1, 0, 0, 0,  0, 1, 0, 0,  0, 0, 0, 0 }\n" + with_ball, false},
         {house + "object all { house scale: 1, 1e-11, 1 }\n", true},
         {house + "object all { house projection: 1, 0, 0, 0,  0, 0, 0, 0,  0, 0, 1, 0 }\n", true},
+        {house + "object all { house projection: 1, 0, 0, 0,  0, 0, 0, 0,  0, 0, 0, 0 }\n", false},
+        {house + "canonical object street { union: house }\n"
+                 "object all { instance: street translate: 0, 1, 0 projection: 1, 0, 0, 0,  0, 0, 0, 0,  0, "
+                 "0, 1, 0\n"
+                 "    rotate: y, 30 translate: 0, -1, 0 }\n",
+         true},
         {"canonical object ground { plane }\n"
          "canonical object part { instance: ball\n"
          "    terminal: ground projection: 1, 0, 0, 0,  0, 1, 0, 0,  0, 0, 0, 0\n"

@@ -13,14 +13,16 @@ namespace graftal {
 
 namespace {
 
-/// Sides of the blocks of pixels that one ray is tried for: the first look is short whatever comes.
-constexpr int first_block = 64, second_block = 16;
-/// A first look this far from what is allowed needs no second.
+/// Pixels that one ray is tried for, and the fewest rays: the first look is short whatever comes. The last is
+/// close, since a hundredth of a picture may take all of the work, and still a small share of it.
+constexpr std::uint64_t pixels_of_first_look = 4096, pixels_of_second_look = 256, pixels_of_last_look = 16;
+constexpr std::uint64_t least_first_look = 16, least_second_look = 256;
+/// A first look that finds this much more than what is allowed needs no second.
 constexpr double clear_factor = 8;
 /// Of the work, what a first look may take: its rays are given up in time, and those count as if they went on
 /// to the end.
 constexpr double most_for_first_look = 0.1;
-constexpr double rays_a_block = 3, steps_a_visit = 4;
+constexpr double rays_a_look = 3, steps_a_visit = 4;
 constexpr double coarser = 1.5;
 constexpr int most_coarser_steps = 9;
 /// All is made anew after the memory did not suffice: few tries must do.
@@ -129,36 +131,48 @@ class Fitting {
         return static_cast<double>(model.meshes.shell_work()) / WorkRates::shell_points;
     }
 
+    /// Each look is at more of the picture, until one finds too much.
     double seconds_for(TraceModel& model) {
+        const auto pixels =
+            static_cast<std::uint64_t>(view_.size.width) * static_cast<std::uint64_t>(view_.size.height);
+        const std::uint64_t first = std::max(pixels / pixels_of_first_look, least_first_look);
+        const std::uint64_t second = std::max(pixels / pixels_of_second_look, least_second_look);
+        const std::uint64_t last = std::max(pixels / pixels_of_last_look, second);
         const int broken_before = broken_looks_;
-        const double first = seconds_by(model, first_block);
-        if (broken_looks_ > broken_before || excess(first) > clear_factor || clear_factor * excess(first) < 1)
-            return first;
-        return seconds_by(model, second_block);
+        double seconds = look_briefly(model, first);
+        if (broken_looks_ > broken_before || excess(seconds) > clear_factor) return seconds;
+        PictureTracer tracer(model, limits_of_(model));
+        for (std::uint64_t done = 0; done < last; done += second) {
+            seconds = look_on(model, tracer, done, std::min(done + second, last));
+            if (broken_looks_ > broken_before || too_much(seconds)) break;
+        }
+        return seconds;
     }
 
-    /// Parts that each ray of a first look may go into.
-    std::uint64_t visits_of_first_look() const {
-        const double blocks = std::ceil(view_.size.width / static_cast<double>(first_block)) *
-                              std::ceil(view_.size.height / static_cast<double>(first_block));
+    /// Parts that each of so many rays may go into.
+    std::uint64_t visits_of_first_look(std::uint64_t rays) const {
         const double steps = most_for_first_look * work_seconds_ * WorkRates::ray_steps / slowness_;
-        const double visits = steps / (rays_a_block * steps_a_visit * blocks);
+        const double visits = steps / (rays_a_look * steps_a_visit * static_cast<double>(rays));
         return static_cast<std::uint64_t>(std::clamp<double>(visits, fewest_visits, 1e9));
     }
 
-    double seconds_by(TraceModel& model, int block) {
+    /// By rays that are given up early, and count as if they went on to the end.
+    double look_briefly(TraceModel& model, std::uint64_t rays) {
         const std::uint64_t whole_visits = model.most_visits;
-        if (block == first_block && options_.culls())
-            model.most_visits = std::min(whole_visits, visits_of_first_look());
-        const double visits_left = static_cast<double>(whole_visits - model.most_visits);
-        const double shells_before = shell_seconds(model);
+        if (options_.culls()) model.most_visits = std::min(whole_visits, visits_of_first_look(rays));
+        const auto visits_left = static_cast<double>(whole_visits - model.most_visits);
         PictureTracer tracer(model, limits_of_(model));
-        Image picture;
-        picture.width = view_.size.width;
-        picture.height = view_.size.height;
-        picture.channels = 3;
-        picture.pixels.resize(3 * static_cast<std::size_t>(picture.width) *
-                              static_cast<std::size_t>(picture.height));
+        const double seconds = look_on(model, tracer, 0, rays);
+        const double steps_left =
+            static_cast<double>(tracer.statistics().given_up) * steps_a_visit * visits_left;
+        model.most_visits = whole_visits;
+        return seconds + steps_left * second_of_steps() * samples_ / static_cast<double>(rays);
+    }
+
+    /// What the picture takes by all rays that the tracer has tried, those from `begin` to `end` now.
+    double look_on(TraceModel& model, PictureTracer& tracer, std::uint64_t begin, std::uint64_t end) {
+        const double shells_before = shell_seconds(model);
+        const std::uint64_t work_before = tracer.statistics().work;
         TraceControl control;
         control.threads = threads_;
         const double most_shells = most_for_shells * allowed();
@@ -166,9 +180,8 @@ class Fitting {
         control.cancelled = [&] { return cancelled_() || too_many_shells(); };
         if (options_.culls())
             model.meshes.make_until(static_cast<std::uint64_t>(most_shells * WorkRates::shell_points));
-        tracer.trace({block, {}}, control, picture);
+        tracer.probe(begin, end, control);
         model.meshes.make_until(UINT64_MAX);
-        model.most_visits = whole_visits;
         if (too_many_shells()) { // how many there are by now depends on the threads
             tried_seconds_ += most_shells;
             ++broken_looks_;
@@ -176,12 +189,13 @@ class Fitting {
         }
         const TraceStatistics& tried = tracer.statistics();
         const double shells = shell_seconds(model);
-        const double steps_left = static_cast<double>(tried.given_up) * steps_a_visit * visits_left;
-        const double second_of_steps = slowness_ / WorkRates::ray_steps;
-        const double rays = second_of_steps * (static_cast<double>(tried.work) + steps_left);
-        tried_seconds_ += second_of_steps * static_cast<double>(tried.work) + shells - shells_before;
-        return rays * samples_ / std::max<double>(1, static_cast<double>(tried.camera_rays)) + shells;
+        tried_seconds_ +=
+            second_of_steps() * static_cast<double>(tried.work - work_before) + shells - shells_before;
+        return second_of_steps() * static_cast<double>(tried.work) * samples_ / static_cast<double>(end) +
+               shells;
     }
+
+    double second_of_steps() const { return slowness_ / WorkRates::ray_steps; }
 
     const View& view_;
     const CutOptions& options_;

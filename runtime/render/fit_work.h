@@ -21,7 +21,7 @@ struct FittedModel {
     bool out_of_memory = false; ///< it was not for the work alone
 };
 
-/// Tries rays over the whole picture, one for each block of pixels, and predicts what all of them take:
+/// Tries rays over the whole picture, one for some pixels, and predicts what all of them take:
 /// `samples_a_pixel` in the end. Where that is more than the view's work_seconds, first what is culled grows,
 /// then rays are given up sooner. What is culled grows also where a model takes more memory than there is
 /// (`out_of_memory`); if none fits, or the model cannot be prepared, std::bad_alloc is thrown. Nothing but

@@ -6,6 +6,9 @@
 #include <mutex>
 #include <vector>
 
+#include <glm/common.hpp>
+#include <glm/vec2.hpp>
+
 #include "compiler/support/check.h"
 #include "runtime/system/worker_threads.h"
 #include "runtime/trace/camera_rays.h"
@@ -17,6 +20,12 @@ namespace {
 
 /// Pixels along each side of a tile: enough to share edges of, and some hundred tiles to a picture.
 constexpr int tile_size = 32;
+
+/// Of a probe, for one thread at a time.
+constexpr std::uint64_t probe_piece = 32;
+
+/// 1 / g and 1 / g^2 of the plastic number g, g^3 = g + 1: no rational is near their combinations.
+const glm::dvec2 r2_step(0.7548776662466927, 0.5698402909980532);
 
 /// Points along each side of a pixel that are its own.
 int steps_of(const Sampling& sampling) {
@@ -34,6 +43,16 @@ class Worker {
     bool trace(const Sampling& sampling, const Tile& tile, Image& picture) {
         if (sampling.block > 1 || !sampling.antialias) return trace_blocks(sampling.block, tile, picture);
         return trace_lattice(steps_of(sampling), tile, picture);
+    }
+
+    /// As trace(), through points of the whole picture.
+    bool probe(ImageSize size, std::uint64_t begin, std::uint64_t end) {
+        for (std::uint64_t i = begin; i < end; ++i) {
+            if (cancelled()) return false;
+            const glm::dvec2 point = glm::fract(static_cast<double>(i + 1) * r2_step);
+            look(point.x * size.width, point.y * size.height);
+        }
+        return true;
     }
 
     TraceStatistics statistics() const { return {camera_rays_, traversal_.work(), traversal_.given_up()}; }
@@ -143,31 +162,44 @@ TraceStatistics& TraceStatistics::operator+=(const TraceStatistics& other) {
 PictureTracer::PictureTracer(const TraceModel& model, const ShaderLimits& limits)
     : model_(model), limits_(limits) {}
 
+/// Runs task(worker, number) for all numbers, until one says false; then false.
+template<class Task>
+bool PictureTracer::run(std::uint64_t tasks, const TraceControl& control, const Task& task) {
+    const WorkerThreads threads(control.threads);
+    std::vector<std::unique_ptr<Worker>> workers(static_cast<std::size_t>(threads.count()));
+    std::atomic<bool> complete = true;
+    threads.for_each(tasks, [&](int thread, std::uint64_t number) {
+        if (!complete) return;
+        std::unique_ptr<Worker>& worker = workers[static_cast<std::size_t>(thread)];
+        if (!worker) worker = std::make_unique<Worker>(model_, limits_, control.cancelled);
+        if (!task(*worker, number)) complete = false;
+    });
+    for (const std::unique_ptr<Worker>& worker : workers)
+        if (worker) statistics_ += worker->statistics();
+    return complete;
+}
+
 bool PictureTracer::trace(const Sampling& sampling, const TraceControl& control, Image& picture) {
     GRAFTAL_CHECK(picture.channels == 3 && picture.width == model_.view.size.width &&
                       picture.height == model_.view.size.height,
                   "trace: a picture of another size");
     const std::vector<Tile> tiles = tiles_of(model_.view.size, sampling.block);
-    const WorkerThreads threads(control.threads);
-    std::vector<std::unique_ptr<Worker>> workers(static_cast<std::size_t>(threads.count()));
     std::mutex telling;
-    std::atomic<bool> complete = true;
-    const auto trace_tile = [&](int thread, std::uint64_t number) {
-        if (!complete) return;
-        std::unique_ptr<Worker>& worker = workers[static_cast<std::size_t>(thread)];
-        if (!worker) worker = std::make_unique<Worker>(model_, limits_, control.cancelled);
-        if (!worker->trace(sampling, tiles[number], picture)) {
-            complete = false;
-            return;
-        }
-        if (!control.on_tile) return;
+    return run(tiles.size(), control, [&](Worker& worker, std::uint64_t number) {
+        if (!worker.trace(sampling, tiles[number], picture)) return false;
+        if (!control.on_tile) return true;
         const std::lock_guard lock(telling);
         control.on_tile(tiles[number]);
-    };
-    threads.for_each(tiles.size(), trace_tile);
-    for (const std::unique_ptr<Worker>& worker : workers)
-        if (worker) statistics_ += worker->statistics();
-    return complete;
+        return true;
+    });
+}
+
+bool PictureTracer::probe(std::uint64_t begin, std::uint64_t end, const TraceControl& control) {
+    return run((end - begin + probe_piece - 1) / probe_piece, control,
+               [&](Worker& worker, std::uint64_t number) {
+                   const std::uint64_t first = begin + number * probe_piece;
+                   return worker.probe(model_.view.size, first, std::min(first + probe_piece, end));
+               });
 }
 
 } // namespace graftal

@@ -52,10 +52,17 @@ class PictureTracer {
     /// they were; then false. Requires three channels and the size of the view.
     bool trace(const Sampling& sampling, const TraceControl& control, Image& picture);
 
+    /// Traces the camera rays number `begin` to `end` of a sequence that covers the picture evenly at any
+    /// length, and each side of it: what is thin is met as often as its share of the picture says, too (the
+    /// R2 sequence: a Kronecker sequence of the plastic number). Shows nothing; false if it was cancelled.
+    bool probe(std::uint64_t begin, std::uint64_t end, const TraceControl& control);
+
     /// Of all traces so far.
     const TraceStatistics& statistics() const { return statistics_; }
 
   private:
+    template<class Task> bool run(std::uint64_t tasks, const TraceControl& control, const Task& task);
+
     const TraceModel& model_;
     ShaderLimits limits_;
     TraceStatistics statistics_;

@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "compiler/cut/work.h"
+#include "runtime/trace/picture_tracer.h"
 #include "tests/unit/trace/models.h"
 
 namespace graftal {
@@ -26,9 +27,7 @@ class FitWork : public testing::Test {
                        const std::function<bool(double)>& too_large) {
         const Components components = strong_components(graph);
         const auto bounds = bound_objects(graph, components, decide_contraction(graph, components));
-        View view;
-        view.size = {64, 48};
-        view.camera.location = Vec3(0, 0, 5);
+        view_.camera.location = Vec3(0, 0, 5);
         const auto prepare = [&] {
             if (++prepared_ > most_prepared_) throw std::bad_alloc();
             return prepare_cut(graph, components, bounds, options);
@@ -37,7 +36,7 @@ class FitWork : public testing::Test {
             if (too_large(model.options.error_px)) throw std::bad_alloc();
             return ShaderLimits();
         };
-        return fit_work(prepare, view, options, 1, limits, 1, [] { return false; });
+        return fit_work(prepare, view_, options, 1, limits, 1, [] { return false; });
     }
 
     /// Cubes of all sizes that lie in each other.
@@ -79,6 +78,7 @@ class FitWork : public testing::Test {
         return graph;
     }
 
+    View view_{.size = {64, 48}};
     int prepared_ = 0;
     int most_prepared_ = 100;
 };
@@ -112,7 +112,7 @@ TEST_F(FitWork, GivesUpWhatCannotBePrepared) {
 
 TEST_F(FitWork, CoarsensWhatTakesTooMuchWorkAndThenTooMuchMemory) {
     CutOptions options;
-    options.work_seconds = 1e-3;
+    options.work_seconds = 1e-2;
     const FittedModel model = fitted(crowd(), options, [&](double error_px) {
         return error_px > options.error_px && error_px < 4 * options.error_px;
     });
@@ -159,6 +159,27 @@ TEST_F(FitWork, LooksNoLongerThanItMay) {
     const FittedModel model = fitted(inner_cubes(), options, [](double) { return false; });
     EXPECT_TRUE(model.work_cut);
     EXPECT_LT(model.tried_seconds, options.work_seconds);
+}
+
+// A tower of a few pixels' width among an empty picture was never met by a look, and took a quarter of an
+// hour.
+TEST_F(FitWork, SeesWhatIsThin) {
+    Graph graph = inner_cubes();
+    Object thin{"thin", {}, {}, {}, {}};
+    const Affine to_a_side = Affine::translate({0.37, 0, 0}) * Affine::scale({0.005, 1, 0.005});
+    thin.instances.push_back({graph.root, to_a_side, {}, {}, {}});
+    graph.root = graph.add(std::move(thin));
+    view_.size = {320, 240};
+    CutOptions options;
+    options.error_px = 0.01;
+    options.steps = 6;
+    const FittedModel model = fitted(graph, options, [](double) { return false; });
+    ASSERT_FALSE(model.work_cut);
+    PictureTracer tracer(*model.model);
+    ASSERT_TRUE(tracer.probe(0, 320 * 240, {.threads = 1, .cancelled = {}, .on_tile = {}}));
+    const double seconds = static_cast<double>(tracer.statistics().work) / WorkRates::ray_steps;
+    EXPECT_GT(model.seconds, seconds / 1.5);
+    EXPECT_LT(model.seconds, seconds * 1.5);
 }
 
 TEST_F(FitWork, ALargeGraphLeavesLessForThePicture) {

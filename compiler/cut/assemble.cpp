@@ -115,8 +115,8 @@ class Unfolding {
     double finest = std::numeric_limits<double>::infinity();
 
   private:
-    /// Of pieces that may lie alike, in leaves.
-    static constexpr double work_of_comparison = 2, work_of_widening = 3;
+    /// Of pieces that may lie alike, in leaves; and of what is placed: it waits for memory, as leaves do not.
+    static constexpr double work_of_comparison = 2, work_of_widening = 3, work_of_placing = 2;
 
     void visit(const Piece& piece, std::vector<Piece>& children) {
         children.clear();
@@ -177,6 +177,11 @@ class Unfolding {
         return specks_.insert(alike_kind(piece.node, piece.steps, piece.faint), cells, piece.scale);
     }
 
+    void keep(const Placed& thing) {
+        placed.push_back(thing);
+        more_work_ += work_of_placing;
+    }
+
     void place_proxy(const CutNode& node, const Piece& piece) {
         Piece proxy = piece;
         proxy.faint = piece.faint || node.shadowless;
@@ -205,7 +210,7 @@ class Unfolding {
         note_finest(ball);
         thing.rgb = piece.tint.over(base);
         thing.material = piece.material;
-        placed.push_back(thing);
+        keep(thing);
     }
 
     Affine drawn(PrimitiveKind kind, const Affine& world_from_primitive, const Piece& piece) const {
@@ -232,7 +237,7 @@ class Unfolding {
         thing.textured = place->second;
         thing.tint = piece.tint;
         thing.material = piece.material;
-        placed.push_back(thing);
+        keep(thing);
     }
 
     /// The mesh that serves the piece, and whether it is a new one. As for parts that are drawn wider than
@@ -301,7 +306,7 @@ class Unfolding {
         thing.painter = painter(request, shell ? 0 : symmetry_.pair[piece.node], piece.inherited);
         thing.tint = piece.tint;
         thing.material = piece.material;
-        placed.push_back(thing);
+        keep(thing);
         return true;
     }
 

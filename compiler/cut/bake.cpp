@@ -28,8 +28,9 @@ namespace graftal {
 
 namespace {
 
-/// What it takes to widen a leaf, measured, in visits of the walk.
-constexpr std::uint64_t visits_of_widening = 10;
+/// What it takes to widen a leaf, and to keep one, measured, in visits of the walk: where leaves are many,
+/// each that is kept waits for memory.
+constexpr std::uint64_t visits_of_widening = 10, visits_of_keeping = 5;
 /// Room is made for so many leaves beforehand, at most.
 constexpr double most_expected_leaves = 1 << 20;
 constexpr std::size_t fewest_leaves_for_a_thread = 10'000;
@@ -135,7 +136,8 @@ class Baker {
         WalkedLeaf leaf;
         std::size_t triangles = 0;
         for (std::uint64_t number = 0; walk.next(leaf); ++number) {
-            baked_.visits = walk.visits() + visits_of_widening * widened_;
+            baked_.visits =
+                walk.visits() + visits_of_widening * widened_ + visits_of_keeping * numbers_.size();
             if (baked_.visits > request_.most_visits) {
                 baked_.complete = false;
                 return;

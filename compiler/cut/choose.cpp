@@ -65,7 +65,7 @@ class Chooser {
             if (is_better(now, best)) best = now;
             if (!may_get_better(best)) break;
         }
-        best.leaves = weights_.of(kind_of(root)).leaves;
+        best.leaves = weight_of(cut_, projection_, weights_, root).leaves;
         best.pieces = pieces_;
         return best;
     }
@@ -266,6 +266,26 @@ PieceKind kind_of(const CutGraph& cut, const Projection& projection, const Piece
     if (projection.culls() && !cut.nodes[piece.node].unbounded)
         kind.unit_step = PieceKind::step_of(piece.scale * projection.detail_per_unit(world_ball(cut, piece)));
     return kind;
+}
+
+Weights::Weight weight_of(const CutGraph& cut, const Projection& projection, Weights& weights,
+                          const Piece& piece) {
+    Weights::Weight sum;
+    std::vector<Piece> stack = {piece};
+    for (int most_parts = 10'000; !stack.empty(); --most_parts) {
+        const Piece part = stack.back();
+        stack.pop_back();
+        const PieceKind kind = weights.normalised(kind_of(cut, projection, part));
+        const CutNode& node = cut.nodes[part.node];
+        if (!node.unbounded || node.primitive || most_parts <= 0) {
+            sum += weights.of(kind);
+            continue;
+        }
+        const bool ends = weights.is_cut(kind);
+        for_each_edge(node, ends,
+                      [&](const CutEdge& edge) { stack.push_back(descend(cut, part, edge, ends)); });
+    }
+    return sum;
 }
 
 Choice choose_cut(const CutGraph& cut, const Symmetry& symmetry, const Projection& projection,

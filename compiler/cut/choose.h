@@ -33,6 +33,11 @@ double detail_of(const CutGraph& cut, const Projection& projection, const Piece&
 /// The kind of the piece as it lies, not normalised.
 PieceKind kind_of(const CutGraph& cut, const Projection& projection, const Piece& piece);
 
+/// The weight of the piece. The parts of what holds a plane are each weighed where they lie, since the whole
+/// has no size; infinite where they are too many for that.
+Weights::Weight weight_of(const CutGraph& cut, const Projection& projection, Weights& weights,
+                          const Piece& piece);
+
 struct Choice {
     double threshold = 0; ///< pieces that weigh more triangles than this become placements of their parts
     double bytes = 0;     ///< of POV-Ray's memory, estimated

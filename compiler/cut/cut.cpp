@@ -128,8 +128,7 @@ class Cutter {
         const double px = projection.pixels_per_unit(whole_ball) / projection.detail_per_unit(whole_ball);
         Weights weights(cut_, cube_triangles_, px, projection.error_px(), grain_, visits_of_kinds());
         const double memory = memory_for_scene();
-        const PieceKind whole = kind_of(cut_, projection, root);
-        const Weights::Weight weight = weights.of(whole);
+        const Weights::Weight weight = weight_of(cut_, projection, weights, root);
         const std::uint64_t weighed = weights.visits();
         spend(seconds_of_kinds(weighed));
         if (options.flatten || better_flat(weight, memory)) {

@@ -20,6 +20,9 @@ namespace {
 
 /// A proxy's mesh is an octahedron.
 const Weights::Weight proxy{8, 1, 0, PovrayCosts::primitive(PrimitiveKind::sphere) + PovrayCosts::matrix};
+/// What holds a plane has no size: what lies under it never becomes small enough to end.
+constexpr double boundless = std::numeric_limits<double>::infinity();
+const Weights::Weight endless{boundless, boundless, boundless, boundless};
 /// Kinds may have so many times the edges of the graph in any case; where there are too many, the steps of
 /// their details get coarser by so much.
 constexpr std::uint64_t visits_an_edge = 2;
@@ -268,12 +271,13 @@ Weights::Weight Weights::of(const PieceKind& asked) {
     }
 }
 
-/// A new kind counts as a proxy until it is weighed.
+/// Until it is weighed a new kind counts as a proxy, or as no end of them.
 std::uint32_t Weights::number_of(const PieceKind& kind) {
     const auto next = static_cast<std::uint32_t>(known_.size());
     const std::uint32_t number = numbers_.find_or_add(
         PieceKindHash()(kind), next, [&](std::uint32_t other) { return known_[other].kind == kind; });
-    if (number == next) known_.push_back({kind, proxy});
+    if (number == next)
+        known_.push_back({kind, kind.unit_step == PieceKind::endless_detail ? endless : proxy});
     return number;
 }
 

@@ -34,6 +34,8 @@ constexpr double most_gain = coarser * coarser * coarser;
 /// Of what is allowed: a look that takes more for shells is broken off, since the picture takes more, too. It
 /// is taken for one that takes so many times what is allowed.
 constexpr double most_for_shells = 0.5, broken_off = 4;
+/// After so many the picture is made as coarse as may be.
+constexpr int most_broken_looks = 2;
 
 class Fitting {
   public:
@@ -62,7 +64,7 @@ class Fitting {
         while (steps_left > 0 && too_much(fitted.seconds)) {
             const double steps = std::log(excess(fitted.seconds)) / std::log(most_gain);
             // Each look that is broken off takes much of the time there is: there are to be few.
-            const int least = 1 << broken_looks_;
+            const int least = broken_looks_ < most_broken_looks ? 1 << broken_looks_ : most_coarser_steps;
             for (int i = 0; (i < least || i < steps) && (i == 0 || steps_left > 0); ++i)
                 make_coarser(options, steps_left);
             PreparedCut prepared = std::move(fitted.model->prepared);

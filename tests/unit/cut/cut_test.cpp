@@ -78,6 +78,18 @@ TEST(Cut, TwoLevelsDrawWhatTheAbsoluteSpecificationDraws) {
     }
 }
 
+TEST(Cut, WhatStandsBesideAPlaneWeighsAsMuchAsAlone) {
+    Graph graph = test::pound_sign(3, false);
+    const double alone = must_cut(graph, {}).leaf_count;
+    ASSERT_GT(alone, 1e10);
+    Object beside{"beside", {}, {}, {}, {}};
+    beside.instances.push_back({graph.root, {}, {}, {}, {}});
+    const Affine lower{Mat3(1.0), Vec3(0, -2, 0)};
+    beside.instances.push_back({graph.primitive(PrimitiveKind::plane), lower, {}, {}, {}});
+    graph.root = graph.add(std::move(beside));
+    EXPECT_NEAR(must_cut(graph, {}).leaf_count, alone, 0.01 * alone);
+}
+
 TEST(Cut, TintsDoNotDependOnWhereThePathIsSplit) {
     // Flat cubes do not touch edge to edge in this model until depth 2, and tinted triangles never merge.
     Graph graph = test::pound_sign(3, true);

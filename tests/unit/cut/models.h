@@ -79,13 +79,16 @@ inline std::vector<ObjectBounds> bounds_of(const Graph& graph) {
             bounds[id].box = {Vec3(-1, 0, -1), Vec3(1, 1, 1)};
         else
             bounds[id].box = {Vec3(-1), Vec3(1)};
+        bounds[id].unbounded = primitive == PrimitiveKind::plane;
     }
     for (int sweep = 0; sweep < 100; ++sweep)
         for (ObjectId id = 0; id < graph.objects.size(); ++id) {
             if (graph.objects[id].primitive) continue;
             Box box;
-            for (const Instance& instance : graph.objects[id].instances)
+            for (const Instance& instance : graph.objects[id].instances) {
                 box.include(transformed(instance.parent_from_child, bounds[instance.master].box));
+                if (bounds[instance.master].unbounded) bounds[id].unbounded = true;
+            }
             bounds[id].box = box;
         }
     for (ObjectBounds& b : bounds)

@@ -12,6 +12,8 @@
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
 
+#include "runtime/image/files/claims.h"
+
 namespace graftal {
 
 namespace {
@@ -131,25 +133,10 @@ class Bands {
     std::vector<float> samples_;
 };
 
-/// Larger pictures must come row by row, or in bands of less than this, out of their file.
-constexpr std::uint64_t most_held_samples = 1u << 26;
-
 /// Whether the format's reader takes the picture out of its file a row at a time.
 bool comes_in_rows(const OIIO::ImageInput& input) {
     static constexpr std::string_view formats[] = {"openexr", "tiff", "jpeg", "hdr", "targa", "bmp", "pnm"};
     return std::find(std::begin(formats), std::end(formats), input.format_name()) != std::end(formats);
-}
-
-/// OpenImageIO makes a GIF's canvas when it opens it: 23 bytes may ask for 16 GiB. Its reader looks at no more of
-/// the stamp than the first three letters, and so do we.
-bool is_huge_gif(const std::string& path) {
-    unsigned char head[10] = {};
-    const std::unique_ptr<std::FILE, decltype([](std::FILE* file) { std::fclose(file); })> file(
-        std::fopen(path.c_str(), "rb"));
-    if (!file || std::fread(head, 1, sizeof head, file.get()) != sizeof head) return false;
-    if (std::memcmp(head, "GIF", 3) != 0) return false;
-    const auto number = [&](int at) { return static_cast<std::uint64_t>(head[at] | head[at + 1] << 8); };
-    return 4 * number(6) * number(8) > most_held_samples;
 }
 
 std::string read_open(OIIO::ImageInput& input, RowSink& sink) {
@@ -167,7 +154,7 @@ std::string read_open(OIIO::ImageInput& input, RowSink& sink) {
 /// Readers of formats throw what they like at what they did not expect.
 std::string read(const std::string& path, RowSink& sink) {
     try {
-        if (is_huge_gif(path)) return "it is too large";
+        if (std::string claim = false_claim(path); !claim.empty()) return claim;
         OIIO::ImageSpec config;
         config.attribute("oiio:UnassociatedAlpha", 1);
         const std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::open(path, &config);

@@ -106,6 +106,27 @@ TEST_F(TextureFiles, APictureOfManyPixelsInFewBytesIsRefusedWhateverItsVersion) 
     }
 }
 
+/// One part or many; an attribute of `bytes` that holds none.
+std::string exr_head(bool many_parts, std::uint32_t bytes) {
+    std::string head("\x76\x2f\x31\x01\x02\x00\x00\x00", 8);
+    if (many_parts) head[5] = 0x10;
+    head += std::string("note") + '\0' + "custom" + '\0';
+    for (int shift = 0; shift < 32; shift += 8)
+        head += static_cast<char>(bytes >> shift & 255);
+    return head;
+}
+
+// OpenEXR makes room for an attribute before it reads it.
+TEST_F(TextureFiles, AnAttributeLongerThanItsFileIsRefused) {
+    for (const bool many_parts : {false, true})
+        for (const std::uint32_t bytes : {1u, 0x70000000u, 0xffffffffu}) {
+            ASSERT_TRUE(write_text(path("bomb.exr"), exr_head(many_parts, bytes)).ok());
+            Status status;
+            EXPECT_FALSE(load_texture(path("bomb.exr"), status));
+            EXPECT_THAT(status.message(), testing::HasSubstr("beyond its end")) << bytes;
+        }
+}
+
 TEST_F(TextureFiles, AreRegularFiles) {
     ASSERT_EQ(::mkfifo(path("pipe.png").c_str(), 0600), 0);
     for (const std::string& name : {path("pipe.png"), std::string("/dev/zero")}) {

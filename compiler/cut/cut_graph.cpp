@@ -170,8 +170,11 @@ class Builder {
             if (object.run) add_run(object, *factor.run, node);
             const std::vector<Instance> instances = std::exchange(object.instances, {});
             node.edges.reserve(instances.size());
-            for (const Instance& instance : instances)
-                if (!is_plane_on_a_line(instance)) node.edges.push_back(edge(instance, node, id));
+            for (std::size_t i = 0; i < instances.size(); ++i) {
+                if (is_plane_on_a_line(instances[i])) continue;
+                node.edges.push_back(edge(instances[i], node, id));
+                if (id == graph_.root) cut_.root_instances.push_back(i);
+            }
             if (object.terminal) {
                 if (!is_plane_on_a_line(*object.terminal))
                     node.stop_edges.push_back(edge(*object.terminal, node, id));

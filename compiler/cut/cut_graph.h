@@ -67,6 +67,7 @@ struct CutGraph {
     std::vector<CutNode> nodes;
     std::vector<Material> materials;
     NodeId root = 0;
+    std::vector<std::size_t> root_instances; ///< of the root's edges: some instances draw nothing
     bool tinted = false;     ///< some instance has a tint
     bool contractive = true; ///< every edge within a cycle has stretch < 1: products of stretches end
 };

@@ -22,9 +22,11 @@ void drop_endings(CutGraph& cut) {
 /// The root counts as a level itself, so that it is never the one that is cut.
 void use_up_levels(CutGraph& cut, const std::vector<unsigned>& root_levels) {
     CutNode root = cut.nodes[cut.root];
-    GRAFTAL_CHECK(root.edges.size() == root_levels.size(), "cut: root levels and instances differ");
-    for (std::size_t i = 0; i < root_levels.size(); ++i)
-        if (root.edges[i].levels > 0) root.edges[i].levels = root_levels[i] + 1;
+    for (std::size_t i = 0; i < root.edges.size(); ++i) {
+        const std::size_t instance = cut.root_instances[i];
+        GRAFTAL_CHECK(instance < root_levels.size(), "cut: root levels and instances differ");
+        if (root.edges[i].levels > 0) root.edges[i].levels = root_levels[instance] + 1;
+    }
     cut.root = static_cast<NodeId>(cut.nodes.size());
     cut.nodes.push_back(std::move(root));
 }

@@ -239,7 +239,9 @@ bool may_stand_there(const RifsFile& tree, Lowering& lowering) {
 static_assert(std::is_nothrow_move_constructible_v<OrbitFormulas>);
 
 void lower_orbit_file(const RifsFile& tree, Lowering& lowering) {
-    if (lowering.diagnostics.has_errors() || !may_stand_there(tree, lowering)) return;
+    // What is used fails by an error of its own, whatever went wrong before.
+    if (lowering.at_root_model() && lowering.diagnostics.has_errors()) return;
+    if (!may_stand_there(tree, lowering)) return;
     OrbitModel model = OrbitLowering(tree, tree.orbits.front(), lowering).lower();
     if (lowering.diagnostics.has_errors()) return;
     *lowering.options.orbit = std::make_shared<const OrbitModel>(std::move(model));

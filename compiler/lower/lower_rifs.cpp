@@ -243,13 +243,18 @@ class RifsLowering {
     }
 
     /// A_j = w_j(C u U A_i): the condensation sets of the block that w_j is applied to, then the masters.
+    /// None where it is smaller than a chance may be: no random number stands for it.
+    static double stated_chance(double chance) { return is_size(chance) ? chance : 0; }
+
     void add_node(const RifsNode& node, std::string name, const std::vector<ObjectId>& ids) {
         Object object;
         object.name = std::move(name);
         object.span = node.source->name.span;
         const RifsBlock& under = *system_.blocks[system_.block_under(node)].source;
         const RifsChances::OfNode chances = chances_ ? chances_->of(system_, node) : RifsChances::OfNode();
-        const auto at = [](const std::vector<double>& list, std::size_t i) { return list.empty() ? 0 : list[i]; };
+        const auto at = [](const std::vector<double>& list, std::size_t i) {
+            return list.empty() ? 0 : stated_chance(list[i]);
+        };
         for (std::size_t i = 0; i < under.condense.size(); ++i) {
             object.instances.push_back(placed(parts_.at(&under.condense[i]), &node));
             object.instances.back().chance = at(chances.condensations, i);
@@ -271,13 +276,14 @@ class RifsLowering {
         root.span = main.source->name.span;
         for (std::size_t i = 0; i < main.source->condense.size(); ++i) {
             root.instances.push_back(placed(parts_.at(&main.source->condense[i]), nullptr));
-            if (chances_) root.instances.back().chance = chances_->condensation(system_.main, i);
+            if (chances_)
+                root.instances.back().chance = stated_chance(chances_->condensation(system_.main, i));
         }
         for (const std::uint32_t start : main.start)
             if (!system_.nodes[start].empty)
                 root.instances.push_back({ids[start], Affine(), Tint(), std::nullopt,
                                           system_.nodes[start].source->name.span,
-                                          chances_ ? chances_->share[start] : 0});
+                                          chances_ ? stated_chance(chances_->share[start]) : 0});
         if (main.source->terminal) set_terminal(root, *main.source->terminal, nullptr);
         graph_.root = graph_.add(std::move(root));
     }

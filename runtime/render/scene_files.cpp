@@ -132,7 +132,7 @@ Status write_scene(const CompiledModel& model, const std::string& path, bool inc
     return status.ok() ? pending_palettes.commit_with(pending) : status;
 }
 
-Status print_scene(const CompiledModel& model, bool include) {
+Status print_scene(const CompiledModel& model, bool include, Diagnostics& diagnostics) {
     // By way of a file, since only the end of the text tells whether palettes are needed.
     const OpenFile file(open_temporary_file());
     if (!file) return write_failure("a temporary file", errno);
@@ -140,11 +140,16 @@ Status print_scene(const CompiledModel& model, bool include) {
     const Status status = emit_to(file.get(), "a temporary file", model,
                                   {.scene_name = model_name(model), .include = include}, palettes, [] {});
     if (!status.ok()) return status;
-    if (!palettes.empty())
-        return Status::failure(
-            fmt::format("the scene needs {} palette picture{} beside it; write it to a file "
-                        "by '-o SCENE.pov'",
-                        palettes.size(), palettes.size() == 1 ? "" : "s"));
+    if (!palettes.empty()) {
+        const Graph& graph = model.model.graph;
+        diagnostics
+            .error(graph.objects[graph.root].span,
+                   fmt::format("the scene needs {} palette picture{} beside it, and standard output has no "
+                               "place for one",
+                               palettes.size(), palettes.size() == 1 ? "" : "s"))
+            .with_hint("write the scene to a file by '-o SCENE.pov'");
+        return {};
+    }
     return copy_to_standard_output(file.get());
 }
 

@@ -13,8 +13,8 @@ namespace graftal {
 Status write_scene(const CompiledModel& model, const std::string& path, bool include, bool progress,
                    const std::string& identifier = {});
 
-/// The same to standard output. A model that needs palette files fails: there is nowhere to put them.
-Status print_scene(const CompiledModel& model, bool include);
+/// The same to standard output. A model that needs palette files is an error: there is nowhere to put them.
+Status print_scene(const CompiledModel& model, bool include, Diagnostics& diagnostics);
 
 /// Fails if no file can be made at `path`: its folder is missing or closed, or it is a folder itself.
 Status check_writable(const std::string& path);

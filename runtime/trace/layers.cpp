@@ -3,8 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <memory>
 #include <numeric>
 #include <utility>
+
+#include "compiler/cut/run_cells.h"
 
 namespace graftal {
 
@@ -52,13 +55,30 @@ class Layering {
         for (std::vector<CutEdge>* edges : {&node.edges, &node.stop_edges})
             for (CutEdge& edge : *edges)
                 edge.child = copy_of(edge.child, steps >= edge.levels ? steps - edge.levels : 0);
+        if (node.cell) node.cell = copy_of(node.cell);
         result_.cut.nodes.push_back(std::move(node));
+    }
+
+    /// The same parts, of the copies of their primitives.
+    std::shared_ptr<const RunCell> copy_of(const std::shared_ptr<const RunCell>& cell) {
+        std::shared_ptr<const RunSource>& source = sources_[cell->source.get()];
+        if (!source) {
+            RunSource copy = *cell->source;
+            for (std::size_t kind = 0; kind < primitive_kind_count; ++kind)
+                if (cut_.nodes[copy.child[kind]].primitive == static_cast<PrimitiveKind>(kind))
+                    copy.child[kind] = copy_of(copy.child[kind], 0);
+            source = std::make_shared<const RunSource>(std::move(copy));
+        }
+        RunCell copy = *cell;
+        copy.source = source;
+        return std::make_shared<const RunCell>(std::move(copy));
     }
 
     const CutGraph& cut_;
     LayeredGraph result_;
     std::vector<std::uint32_t> steps_; ///< by copy
     std::map<std::pair<NodeId, std::uint32_t>, NodeId> copies_;
+    std::map<const RunSource*, std::shared_ptr<const RunSource>> sources_;
 };
 
 } // namespace

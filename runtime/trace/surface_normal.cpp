@@ -40,7 +40,8 @@ Vec3 limit_normal(const TraceModel& model, std::span<const std::uint32_t> path, 
         if (!parent.unending) continue;
         ++level;
         weight /= limit_normal_ratio;
-        sum += weight / parent.ball_radius * (at - vec3_of(parent.ball_centre));
+        if (parent.ball_radius > 0) // a limit may be one point
+            sum += weight / parent.ball_radius * (at - vec3_of(parent.ball_centre));
     }
     return glm::normalize(sum);
 }

@@ -19,6 +19,9 @@ object bed { scatter dot count 1800000 over -60, -60, 60, 60 by jitter turn y }
 
 /// The shell's limit stands in for that of --memory, which is 2 GiB at least.
 TEST_F(Memory, WhatDoesNotSufficeIsSaidWithTheStage) {
+#ifdef __SANITIZE_ADDRESS__
+    GTEST_SKIP() << "sanitizers end a program whose memory ends";
+#endif
     write("bed.inst", many_spheres);
     for (const std::string command :
          {"check", "stats", "compile -o a.pov", "render --engine native -o a.png"}) {

@@ -165,9 +165,9 @@ TEST_F(Render, IncludesTakeTexturesFromTheScenesThatUseThem) {
 
 TEST_F(Render, SceneWithPalettesHasNoPlaceOnStandardOutput) {
     const RunResult result = graftal("compile " + pound_sign + small);
-    EXPECT_EQ(result.status, 3);
+    EXPECT_EQ(result.status, 1);
     EXPECT_EQ(result.out, "");
-    EXPECT_THAT(result.err, HasSubstr("write it to a file by '-o SCENE.pov'"));
+    EXPECT_THAT(result.err, HasSubstr("write the scene to a file by '-o SCENE.pov'"));
 }
 
 TEST_F(Render, CompareMeasuresAndJudges) {

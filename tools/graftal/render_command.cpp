@@ -118,7 +118,7 @@ int run_compile(const Options& options) {
         const Interruption interruption;
         const bool include = options.output.ends_with(".inc");
         compilation.status = options.output == "-"
-                                 ? print_scene(*model, include)
+                                 ? print_scene(*model, include, compilation.diagnostics)
                                  : write_scene(*model, options.output, include, false, options.identifier);
     }
     const int status = conclude(options, compilation);

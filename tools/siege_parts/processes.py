@@ -118,15 +118,26 @@ def faults(ended, said, words, output, left, temporary, trouble):
         found.append(f'{command}: {name}')
     elif ended.code not in (0, 1, 2) and not (ended.code == 3 and (trouble.status_3 or honest(said))):
         found.append(f'{command}: status {ended.code}: {kind(said)}')
-    if re.search(r'internal error|broken invariant|terminate called|Sanitizer|runtime error:', said):
+    said_of_library = 'crashed, or a library did' in said and trouble.status_3
+    if not said_of_library and re.search(r'internal error|broken invariant|terminate called|Sanitizer|runtime error:', said):
         found.append(f'{command}: {kind(said)}')
     if ended.code not in (0, None) and not said.strip() and not trouble.mute and '-q' not in words and '--quiet' not in words:
         found.append(f'{command}: no message')
     if ended.signal is None:
-        allowed = re.compile(re.escape(output.rsplit('.', 1)[0]) + r'(_[IPT]_\d+)?\.\w+$') if output else re.compile('$^')
-        extra = [name for name in left if not (ended.code in (0, 1) and allowed.match(name))]
+        extra = [name for name in left if not is_due(name, words, output, ended.code)]
         found += [f'{command}: leaves {re.sub(r"[0-9]+", "N", name)}' for name in (extra + temporary)[:1]]
     return found
+
+
+def is_due(name, words, output, code):
+    """Whether the command may leave this file or folder: what it was asked for, the palettes of a scene, which are called
+    after the model, a card, and what an end before the end leaves on purpose."""
+    if code not in (0, 1):
+        return name.endswith('.frames') if 'animate' in words else name == output and '--progressive' in words
+    scene = r'(model\.\w+)_[IPT]_\d+\.png$' if 'compile' in words and output else '$^'
+    stem = re.escape(output.rsplit('.', 1)[0]) + r'(_[IPT]_\d+)?\.\w+$' if output else '$^'
+    cards = [card for option, card in zip(words, words[1:]) if option == '--card']
+    return bool(re.match(stem, name) or re.match(scene, name)) or name in cards
 
 
 def honest(said):

@@ -139,7 +139,17 @@ bool comes_in_rows(const OIIO::ImageInput& input) {
     return std::find(std::begin(formats), std::end(formats), input.format_name()) != std::end(formats);
 }
 
+/// The formats that pictures come in. OpenImageIO has readers of rare ones, too, that crash on a bad file.
+bool is_read(const OIIO::ImageInput& input) {
+    static constexpr std::string_view formats[] = {"png",   "openexr", "tiff", "jpeg", "hdr",
+                                                   "targa", "bmp",     "pnm",  "gif",  "webp"};
+    return std::find(std::begin(formats), std::end(formats), input.format_name()) != std::end(formats);
+}
+
 std::string read_open(OIIO::ImageInput& input, RowSink& sink) {
+    if (!is_read(input))
+        return std::string("it is a picture of the format '") + input.format_name() +
+               "'; make it a PNG, EXR, TIFF, JPEG, HDR, TGA, BMP, PNM, GIF or WebP";
     const OIIO::ImageSpec& spec = input.spec();
     if (spec.width < 1 || spec.height < 1 || spec.depth > 1 || spec.nchannels < 1 || spec.deep)
         return "it has no pixels in two dimensions";

@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include "compiler/graph/print.h"
 #include "compiler/graph/verify.h"
 #include "compiler/lower/lower.h"
 
@@ -395,6 +396,17 @@ TEST(LowerRifs, tooManyInstancesAreRefusedBeforeTheyAreMade) {
     EXPECT_EQ(complaints(two_maps(""), small), "");
     small.max_objects = 2;
     EXPECT_EQ(complaints(two_maps(""), small), "1:6: the model has more than 2 objects\n");
+}
+
+// Chances are made shares of one sum: one at the end of the range would leave it.
+TEST(LowerRifs, aChanceThatIsTooSmallIsNone) {
+    const Graph graph =
+        graph_of("rifs r { codes 2d {\n.5 0 0 .5 0 0 1e-100\n.5 0 0 .5 1 0 1\n} terminal cube }");
+    Diagnostics diagnostics;
+    SourceMap sources;
+    const auto again = lower_text("m.inst", print(graph), {}, sources, diagnostics);
+    ASSERT_TRUE(again) << diagnostics.render(sources);
+    EXPECT_TRUE(equal(graph, *again));
 }
 
 TEST(LowerRifs, aLongCycleIsLegal) {

@@ -147,6 +147,14 @@ TEST_F(Use, a_device_is_refused_and_not_read) {
     EXPECT_THAT(errors(), HasSubstr("'/dev/zero' is not a regular file"));
 }
 
+TEST_F(Use, an_orbit_fails_whatever_failed_before) {
+    write("points.rifs", "orbit o {\n start <1, 1>\n map m {\n  x = y\n  y = x\n }\n}");
+    write("a.inst", "let b = nothing\nuse z = \"points.rifs\"\nobject a { z }");
+    lower("a.inst");
+    EXPECT_FALSE(graph_);
+    EXPECT_THAT(errors(), HasSubstr("no model can use it"));
+}
+
 TEST_F(Use, a_root_model_that_is_not_there_is_a_failed_status) {
     lower("nowhere.inst");
     EXPECT_FALSE(graph_);

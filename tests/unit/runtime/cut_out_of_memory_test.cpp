@@ -53,6 +53,9 @@ Baked baked(const Model& model) {
 }
 
 TEST(OutOfMemory, VisitsOfABakeAreKept) {
+#ifdef __SANITIZE_ADDRESS__
+    GTEST_SKIP() << "sanitizers end a program whose memory ends";
+#endif
     GTEST_FLAG_SET(death_test_style, "threadsafe");
     const auto bake_within = [] {
         const Model model;
@@ -66,6 +69,9 @@ TEST(OutOfMemory, VisitsOfABakeAreKept) {
 
 /// Whether all of it becomes one mesh, or as many placements as there are balls.
 TEST(OutOfMemory, WorkOfAnAssemblyIsTakenOff) {
+#ifdef __SANITIZE_ADDRESS__
+    GTEST_SKIP() << "sanitizers end a program whose memory ends";
+#endif
     GTEST_FLAG_SET(death_test_style, "threadsafe");
     const auto assemble_within = [](double threshold) {
         const Model model;

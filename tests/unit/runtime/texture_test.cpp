@@ -127,6 +127,16 @@ TEST_F(TextureFiles, AnAttributeLongerThanItsFileIsRefused) {
         }
 }
 
+// OpenImageIO reads it, and crashes where it is damaged.
+TEST_F(TextureFiles, ARareFormatIsRefused) {
+    std::string sgi("\x01\xda\0\1\0\3\0\2\0\2\0\3\0\0\0\0\0\0\0\xff", 20);
+    sgi.resize(512 + 2 * 2 * 3);
+    ASSERT_TRUE(write_text(path("a.sgi"), sgi).ok());
+    Status status;
+    EXPECT_FALSE(load_texture(path("a.sgi"), status));
+    EXPECT_THAT(status.message(), testing::HasSubstr("format 'sgi'"));
+}
+
 TEST_F(TextureFiles, AreRegularFiles) {
     ASSERT_EQ(::mkfifo(path("pipe.png").c_str(), 0600), 0);
     for (const std::string& name : {path("pipe.png"), std::string("/dev/zero")}) {

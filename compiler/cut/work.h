@@ -10,6 +10,7 @@ namespace graftal {
 /// These many steps stand for a second of one processor of 2024.
 struct WorkRates {
     static constexpr double ray_steps = 2e7;    ///< of rays, shading included (RayWork)
+    static constexpr double samples = 1.2e7;    ///< of pixels, whatever their rays meet
     static constexpr double shell_points = 6e6; ///< points of shells moved (shell_points.h)
     static constexpr double mesh_triangles = 1.5e6; ///< triangles of meshes sorted into boxes for rays
     static constexpr double leaves = 4e6;       ///< leaves unfolded into placements

@@ -9,6 +9,7 @@
 
 #include <dlfcn.h>
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include "compiler/support/check.h"
 #include "compiler/support/file.h"
@@ -36,7 +37,21 @@ struct Module {
     std::string error;
 };
 
+/// A library's own code runs while it is loaded, and may wait for ever: log4cplus does where one of its
+/// threads cannot be made. While one of these lives, SIGALRM comes after some seconds; the program ends then.
+class LibraryAlarm {
+  public:
+    LibraryAlarm() { ::alarm(seconds); }
+    ~LibraryAlarm() { ::alarm(0); }
+    LibraryAlarm(const LibraryAlarm&) = delete;
+    LibraryAlarm& operator=(const LibraryAlarm&) = delete;
+
+  private:
+    static constexpr unsigned seconds = 20; ///< a quarter of one is the rule
+};
+
 Module load_module() {
+    const LibraryAlarm alarm;
     void* const library = ::dlopen(GRAFTAL_PICTURE_FILES, RTLD_LAZY | RTLD_LOCAL);
     void* const symbol = library ? ::dlsym(library, picture_files_symbol) : nullptr;
     if (!symbol) {

@@ -122,8 +122,11 @@ class Fitting {
         }
     }
 
-    /// Trying takes its share, too; the picture keeps half in any case.
-    double allowed() const { return std::max(work_seconds_ - tried_seconds_, 0.5 * work_seconds_); }
+    /// Trying and samples that meet nothing take their share, too; the rest keeps half in any case.
+    double allowed() const {
+        const double spent = tried_seconds_ + samples_ / WorkRates::samples;
+        return std::max(work_seconds_ - spent, 0.5 * work_seconds_);
+    }
 
     double excess(double seconds) const { return seconds / allowed(); }
 

@@ -97,9 +97,9 @@ void FrameStore::tidy() const {
 }
 
 void FrameStore::remove() const {
-    // Those of the animation are known without a look at the directory, which may fail.
+    // Those of the animation are known without a look at them or at the directory, which may fail.
     for (const std::string& path : paths())
-        if (stamp_of(path)) ::unlink(path.c_str());
+        ::unlink(path.c_str());
     std::error_code ignored;
     for (const std::string& name : names_in(directory_))
         if (is_frame_name(name) && stamp_of(directory_ + "/" + name))

@@ -36,7 +36,8 @@ class FrameStore {
 
     /// Removes what runs that were killed have left half written.
     void tidy() const;
-    /// Removes all frames that bear a stamp of ours, and the directory if nothing else is in it.
+    /// Removes all frames, those of other animations that bear a stamp of ours too, and the directory if
+    /// nothing else is in it. Requires that the animation is done: each of its frames was found or drawn.
     void remove() const;
     /// Takes back an unused create().
     void discard_if_empty() const;

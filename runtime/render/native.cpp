@@ -10,6 +10,7 @@
 #include "compiler/emit/povray_view.h"
 #include "runtime/povray/interruption.h"
 #include "runtime/render/fit_work.h"
+#include "runtime/render/samplings.h"
 #include "runtime/render/scene_files.h"
 #include "runtime/render/stopwatch.h"
 #include "runtime/system/worker_threads.h"
@@ -17,6 +18,9 @@
 namespace graftal {
 
 namespace {
+
+/// Of the work, what may go to samples that meet nothing: what is seen takes the rest.
+constexpr double most_for_samples = 0.5;
 
 /// Where POV-Ray's pictures end; its units are those of a cut, which nobody makes here.
 ShaderLimits limits_of(const TraceModel& model) {
@@ -32,33 +36,75 @@ ShaderLimits limits_of(const TraceModel& model) {
     return limits;
 }
 
+/// How closely a picture is looked at.
+struct Looks {
+    std::vector<Sampling> wanted;
+    std::vector<Sampling> tried;      ///< for which the model was fitted
+    std::vector<Sampling> affordable; ///< with that model
+
+    bool fewer() const { return samples_a_pixel(affordable) < samples_a_pixel(wanted); }
+};
+
+std::string samples_in_words(const std::vector<Sampling>& samplings) {
+    const double samples = samplings.back().samples_a_pixel();
+    return samples > 1 ? fmt::format("{:.0f}", samples) : "one";
+}
+
+/// Of a picture with all samples that were asked for.
+double seconds_as_asked(const FittedModel& fitted, const Looks& looks, ImageSize size) {
+    return fitted.whole_seconds * samples_a_pixel(looks.wanted) / samples_a_pixel(looks.tried) +
+           least_seconds(looks.wanted, size);
+}
+
 /// Says what the work allowed has cost, or what a picture that leaves nothing out will take.
-void report_work(const FittedModel& fitted, const Sampling& wanted, const Sampling& finest,
-                 const ViewedModel& viewed, Diagnostics& diagnostics) {
+void report_work(const FittedModel& fitted, const Looks& looks, const ViewedModel& viewed,
+                 Diagnostics& diagnostics) {
     const Span& span = viewed.model.graph.objects[viewed.model.graph.root].span;
     const double allowed = viewed.cut.work_seconds;
+    const double seconds = seconds_as_asked(fitted, looks, viewed.view.size);
     if (fitted.out_of_memory)
         warn_of_limit(span, limit_of_memory(viewed.cut.memory_bytes), {fitted.error_px, viewed.cut.error_px},
                       diagnostics);
     if (!viewed.cut.culls()) {
-        if (!(fitted.whole_seconds > allowed)) return;
+        if (!(seconds > allowed)) return;
         diagnostics
-            .note(span,
-                  fmt::format("this picture takes about {} seconds of one processor: nothing is left out",
-                              readable_seconds(fitted.whole_seconds)))
+            .note(span, fmt::format("this picture takes about {} seconds of one processor: nothing is left out",
+                                    readable_seconds(seconds)))
             .with_hint("--error 0.5 leaves out what nobody can see");
         return;
     }
-    if (!fitted.work_cut) return;
     Limit limit = limit_of_work(allowed);
-    if (fitted.rays_cut) limit.besides = ", and rays that meet too much are given up";
-    if (finest.block > 1)
-        limit.besides += fmt::format(", one for {0} by {0} pixels", finest.block);
-    else if (wanted.antialias && !finest.antialias)
-        limit.besides += ", one for each pixel";
     limit.need = fmt::format("the picture as asked would take about {} seconds of one processor",
-                             readable_seconds(fitted.whole_seconds));
+                             readable_seconds(seconds));
+    const std::string samples = samples_in_words(looks.affordable);
+    if (!fitted.work_cut) {
+        if (looks.fewer())
+            diagnostics
+                .warning(span, fmt::format("{} allow {} for each pixel, not {}", limit.allowed,
+                                           samples == "one" ? "one sample" : samples + " samples",
+                                           samples_in_words(looks.wanted)))
+                .with_hint(limit.need + ": give them with " + limit.option +
+                           ", or ask for fewer samples with --antialias");
+        return;
+    }
+    if (fitted.rays_cut) limit.besides = ", and rays that meet too much are given up";
+    const int block = looks.affordable.back().block;
+    if (block > 1)
+        limit.besides += fmt::format(", one for {0} by {0} pixels", block);
+    else if (looks.fewer())
+        limit.besides += (fitted.rays_cut ? ", " : ", by ") + samples + " for each pixel";
     warn_of_limit(span, limit, {fitted.error_px, viewed.cut.error_px}, diagnostics);
+}
+
+/// Says what a picture takes that is too large even for one sample a pixel.
+void report_size(const Looks& looks, const ViewedModel& viewed, Diagnostics& diagnostics) {
+    const double seconds = least_seconds(looks.affordable, viewed.view.size);
+    if (!viewed.cut.culls() || !(seconds > viewed.cut.work_seconds)) return;
+    diagnostics
+        .note(viewed.model.graph.objects[viewed.model.graph.root].span,
+              fmt::format("a picture of this size takes {} seconds of one processor or more",
+                          readable_seconds(seconds)))
+        .with_hint("--size makes it smaller");
 }
 
 /// Says how coarse the shells had to be.
@@ -68,37 +114,6 @@ void report_shells(const TraceModel& model, const ViewedModel& viewed, Diagnosti
     if (coarsest > step_of_details)
         warn_of_shells(viewed.model.graph.objects[viewed.model.graph.root].span,
                        {coarsest * model.options.error_px, viewed.cut.error_px}, diagnostics);
-}
-
-/// From coarse to fine; only the last if it is the only one that is wanted.
-std::vector<Sampling> samplings(const RenderOptions& options, bool progressive) {
-    std::vector<Sampling> all;
-    if (progressive)
-        for (const int block : {8, 4, 2, 1})
-            all.push_back({block, {}});
-    if (options.antialias || !progressive) all.push_back({1, options.antialias});
-    return all;
-}
-
-double samples_a_pixel(const std::vector<Sampling>& samplings) {
-    double sum = 0;
-    for (const Sampling& sampling : samplings)
-        sum += sampling.samples_a_pixel();
-    return sum;
-}
-
-/// Leaves out the finest, or looks less closely where there is one alone, until the picture takes no more
-/// than is allowed.
-std::vector<Sampling> within_work(std::vector<Sampling> all, const FittedModel& fitted) {
-    constexpr int coarsest_block = 8;
-    const double seconds_a_sample = fitted.seconds / samples_a_pixel(all);
-    while (fitted.rays_cut && seconds_a_sample * samples_a_pixel(all) > fitted.allowed_seconds) {
-        const Sampling finest = all.back();
-        if (!finest.antialias && finest.block >= coarsest_block) break;
-        all.pop_back();
-        if (all.empty()) all.push_back({finest.antialias ? 1 : 2 * finest.block, {}});
-    }
-    return all;
 }
 
 /// One picture, from the first sample to the last file.
@@ -231,20 +246,29 @@ std::optional<NativeReport> trace_model(ViewedModel viewed, const NativeOptions&
 
     const Stopwatch watch;
     const Interruption interruption; // from here on something may be half written
-    const std::vector<Sampling> wanted = samplings(options.render, options.progressive);
+    Looks looks;
+    looks.wanted = samplings_of(options.render.antialias, options.progressive);
+    looks.tried = viewed.cut.culls() ? with_fewer_samples(looks.wanted, viewed.view.size,
+                                                          most_for_samples * viewed.cut.work_seconds)
+                                     : looks.wanted;
     const auto prepare = [&] {
         return prepare_cut(analysed.graph, analysed.components, analysed.bounds, viewed.cut);
     };
-    const FittedModel fitted = fit_work(prepare, viewed.view, viewed.cut, samples_a_pixel(wanted), limits_of,
+    const double samples = samples_a_pixel(looks.tried);
+    const FittedModel fitted = fit_work(prepare, viewed.view, viewed.cut, samples, limits_of,
                                         options.render.threads, [] { return Interruption::signal() != 0; });
     const TraceModel& model = *fitted.model;
-    std::vector<Sampling> affordable = within_work(wanted, fitted);
-    report_work(fitted, wanted.back(), affordable.back(), viewed, compilation.diagnostics);
+    looks.affordable = looks.tried;
+    if (fitted.rays_cut)
+        looks.affordable =
+            within_seconds(looks.tried, fitted.seconds / samples, fitted.allowed_seconds);
+    report_work(fitted, looks, viewed, compilation.diagnostics);
+    report_size(looks, viewed, compilation.diagnostics);
     compilation.times.push_back({"prepare", watch.seconds()});
     if (viewed.cut.culls() && !viewed.cut.steps)
         note_shadowless(model.prepared.cut, analysed.graph, compilation.diagnostics);
     const Stopwatch drawing_watch;
-    Drawing drawing(model, std::move(affordable), options);
+    Drawing drawing(model, std::move(looks.affordable), options);
     compilation.status = drawing.run();
     compilation.times.push_back({"trace", drawing_watch.seconds()});
     report_shells(model, viewed, compilation.diagnostics);

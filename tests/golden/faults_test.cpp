@@ -122,6 +122,28 @@ TEST_F(Faults, FramesGoWithoutALookAtThem) {
     }
 }
 
+TEST_F(Faults, FramesThatCannotBeReadAgainGoToo) {
+    const std::string animate =
+        "animate --engine native --antialias off --frames 2 m.rifs -q --size 16x12 -o a.png";
+    for (int number = 15; number <= 40; ++number)
+        if (with("read:" + std::to_string(number) + ":stay", animate).status == 0) {
+            EXPECT_EQ(files(), "a.png m.rifs") << number;
+            shell("rm -rf a.*");
+        }
+}
+
+// A library that cannot have a thread may wait for another one for ever while it is loaded: here for a FIFO.
+TEST_F(Faults, ALibraryThatDoesNotLoadIsGivenUp) {
+    shell("mkdir lib; for i in $(ldconfig -p | grep -o 'libIex-[^ ]*' | sort -u); do mkfifo lib/$i; done");
+    ASSERT_NE(shell("ls lib").out, "");
+    const RunResult result = shell("LD_LIBRARY_PATH=lib timeout 60 \"$graftal\" points m.rifs -q --size 16x12 "
+                                   "--points 100 -o a.exr");
+    EXPECT_EQ(result.status, 3);
+    EXPECT_THAT(result.err, HasSubstr("graftal: a library does not load"));
+    shell("rm -r lib");
+    EXPECT_EQ(files(), "m.rifs");
+}
+
 /// Memory that does not suffice makes frames coarser, and a warning.
 TEST_F(Faults, CoarserFramesAreSaid) {
     const std::string animate =

@@ -48,17 +48,25 @@ int run_command_line(int argc, char** argv) {
     return graftal::exit_environment;
 }
 
-/// Some libraries abort or crash where they get no memory or cannot open a file of the system's: of those
-/// behind OpenImageIO some do while they are loaded. What is half done is taken away all the same, and the
-/// environment named. Only calls that a handler may make.
-void end_after_crash(int) {
+/// Takes away what is half done. Only calls that a handler may make.
+[[noreturn]] void end_at_once(std::string_view text) {
     graftal::remove_pending_files();
     graftal::remove_temporary_directories();
-    constexpr std::string_view text = "graftal: internal error: crashed, or a library did; memory, files or "
-                                      "threads of the system may be used up\n";
     if (::write(STDERR_FILENO, text.data(), text.size()) < 0)
         ::_exit(graftal::exit_environment); // it is closed
     ::_exit(graftal::exit_environment);
+}
+
+/// Some libraries abort or crash where they get no memory or cannot open a file of the system's: of those
+/// behind OpenImageIO some do while they are loaded.
+void end_after_crash(int) {
+    end_at_once("graftal: internal error: crashed, or a library did; memory, files or threads of the system "
+                "may be used up\n");
+}
+
+/// Others wait for ever where they get no thread (LibraryAlarm).
+void end_after_waiting(int) {
+    end_at_once("graftal: a library does not load; memory, files or threads of the system may be used up\n");
 }
 
 void handle_crashes() {
@@ -67,6 +75,7 @@ void handle_crashes() {
 #else
     graftal::handle_on_own_stack({SIGABRT, SIGSEGV, SIGBUS}, end_after_crash);
 #endif
+    graftal::handle_on_own_stack({SIGALRM}, end_after_waiting);
 }
 
 } // namespace

@@ -182,15 +182,19 @@ TEST_F(AnimationFiles, StoreKnowsItsFrames) {
     std::ofstream(frame, std::ios::binary) << text;
 
     // What is not ours stays, and the directory with it.
-    ASSERT_TRUE(write_image(store.path(4), picture(3), SampleFormat::srgb8).ok());
+    const std::string strange = store.directory() + "/frame_12346.png";
+    ASSERT_TRUE(write_image(strange, picture(3), SampleFormat::srgb8).ok());
+    ASSERT_TRUE(
+        write_image(store.directory() + "/frame_12347.png", picture(3), SampleFormat::srgb8, {"", "", "u"}).ok());
     std::ofstream(store.directory() + "/.frame_00009.123.1.png") << "half";
     std::ofstream(store.directory() + "/notes.txt") << "mine";
     store.tidy();
     EXPECT_FALSE(std::filesystem::exists(store.directory() + "/.frame_00009.123.1.png"));
     store.remove();
     EXPECT_FALSE(std::filesystem::exists(frame));
-    EXPECT_TRUE(std::filesystem::exists(store.path(4)));
-    std::filesystem::remove(store.path(4));
+    EXPECT_FALSE(std::filesystem::exists(store.directory() + "/frame_12347.png"));
+    EXPECT_TRUE(std::filesystem::exists(strange));
+    std::filesystem::remove(strange);
     std::filesystem::remove(store.directory() + "/notes.txt");
     store.remove();
     EXPECT_FALSE(std::filesystem::exists(store.directory()));

@@ -123,8 +123,19 @@ TEST_F(TextureFiles, AnAttributeLongerThanItsFileIsRefused) {
             ASSERT_TRUE(write_text(path("bomb.exr"), exr_head(many_parts, bytes)).ok());
             Status status;
             EXPECT_FALSE(load_texture(path("bomb.exr"), status));
-            EXPECT_THAT(status.message(), testing::HasSubstr("beyond its end")) << bytes;
+            EXPECT_THAT(status.message(), testing::HasSubstr("its head is damaged")) << bytes;
         }
+}
+
+// Of an attribute of a type that it knows, OpenEXR reads as much as the type says, whatever the length says.
+TEST_F(TextureFiles, AnAttributeHiddenInAnotherIsRefused) {
+    const std::string bomb = exr_head(false, 0x70000000).substr(8);
+    const std::string box(16, 0), length{static_cast<char>(box.size() + bomb.size()), 0, 0, 0};
+    const std::string head = exr_head(false, 0).substr(0, 8) + "dataWindow" + '\0' + "box2i" + '\0';
+    ASSERT_TRUE(write_text(path("bomb.exr"), head + length + box + bomb).ok());
+    Status status;
+    EXPECT_FALSE(load_texture(path("bomb.exr"), status));
+    EXPECT_THAT(status.message(), testing::HasSubstr("its head is damaged"));
 }
 
 // OpenImageIO reads it, and crashes where it is damaged.

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "compiler/scene/scene.h"
+#include "runtime/trace/picture_tracer.h"
+
+namespace graftal {
+
+/// The looks at a picture, from coarse to fine; only the last unless it is `progressive`.
+std::vector<Sampling> samplings_of(std::optional<int> antialias, bool progressive);
+
+/// Of all looks together.
+double samples_a_pixel(const std::vector<Sampling>& samplings);
+
+/// Of one processor, for samples that meet nothing: no coarser model takes less.
+double least_seconds(const std::vector<Sampling>& samplings, ImageSize size);
+
+/// Takes samples away from the finest look, or the look itself, until `seconds` of one processor are enough
+/// for the samples even if they meet nothing. One sample stays for each pixel.
+std::vector<Sampling> with_fewer_samples(std::vector<Sampling> samplings, ImageSize size, double seconds);
+
+/// The same until all samples take no more than `seconds`, where each of a picture takes so long. One sample
+/// stays for each square of 8 by 8 pixels.
+std::vector<Sampling> within_seconds(std::vector<Sampling> samplings, double seconds_a_sample, double seconds);
+
+} // namespace graftal

@@ -20,6 +20,9 @@ using Int8 = std::int32_t __attribute__((vector_size(32), aligned(32)));
 
 /// For functions that take or give vectors: how these are passed depends on the instructions.
 #define GRAFTAL_INLINE inline __attribute__((always_inline))
+/// The same for a lambda, after its parameters: Clang called one for SSE2 from AVX2, and four lanes were
+/// lost.
+#define GRAFTAL_INLINED_LAMBDA __attribute__((always_inline))
 
 /// Three lanes and a 0.
 GRAFTAL_INLINE Double4 lanes_of(const Vec3& v) {

@@ -164,13 +164,15 @@ template<Instructions instructions> struct Traversal::Kernel {
     GRAFTAL_INLINE bool test_boxes(const std::vector<BoxNode>& boxes, std::uint32_t number,
                                    std::uint32_t frame_number, Entry& nearest) {
         const BoxNode& node = boxes[number];
-        return test_lanes([&](std::size_t side, int axis) { return node.side[side][axis]; },
-                          [&](std::size_t lane) { return node.entry[lane]; }, ~0u, frame_number, nearest);
+        const auto side_of = [&](std::size_t side, int axis)
+                                 GRAFTAL_INLINED_LAMBDA { return node.side[side][axis]; };
+        return test_lanes(
+            side_of, [&](std::size_t lane) { return node.entry[lane]; }, ~0u, frame_number, nearest);
     }
 
     GRAFTAL_INLINE bool test_packed(std::uint32_t number, std::uint32_t frame_number, Entry& nearest) {
         const PackedNode& node = model.packed_boxes[number];
-        const auto side_of = [&](std::size_t side, int axis) {
+        const auto side_of = [&](std::size_t side, int axis) GRAFTAL_INLINED_LAMBDA {
             const auto i = static_cast<std::size_t>(axis);
             Byte8 bytes;
             std::memcpy(&bytes, node.side[side][i].data(), sizeof(bytes));

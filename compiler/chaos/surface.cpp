@@ -1,7 +1,10 @@
 #include "compiler/chaos/surface.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <map>
+#include <mutex>
 #include <numbers>
 
 #include <glm/geometric.hpp>
@@ -137,15 +140,28 @@ Choice spread_choice(int i) {
             fraction(0.5 + step * step * step * i)};
 }
 
+constexpr int samples = 512;
+using Normals = std::array<Vec3, samples>;
+
+/// Normals at sites evenly spread over a canonical surface: of a graph's million parts each needs them.
+const Normals& spread_normals(PrimitiveKind kind) {
+    static std::mutex mutex;
+    static std::map<PrimitiveKind, Normals> by_kind;
+    const std::lock_guard lock(mutex);
+    const auto [found, is_new] = by_kind.try_emplace(kind);
+    for (int i = 0; is_new && i < samples; ++i)
+        found->second[static_cast<std::size_t>(i)] = site_of(kind, spread_choice(i)).normal;
+    return found->second;
+}
+
 } // namespace
 
 PlacedSurface::PlacedSurface(PrimitiveKind kind, const Affine& world_from_primitive)
     : kind_(kind), map_(world_from_primitive), cofactors_(cofactors_of(map_.linear)) {
     GRAFTAL_CHECK(kind != PrimitiveKind::plane, "a plane has no area");
-    constexpr int samples = 512;
     double sum = 0;
-    for (int i = 0; i < samples; ++i)
-        sum += glm::length(cofactors_ * site_of(kind, spread_choice(i)).normal);
+    for (const Vec3& normal : spread_normals(kind))
+        sum += glm::length(cofactors_ * normal);
     area_ = area_of(kind) * sum / samples;
     most_growth_ = norm(cofactors_);
 }

@@ -15,9 +15,10 @@ std::string readable_bytes(double bytes) {
 }
 
 std::string readable_seconds(double seconds) {
-    if (!(seconds >= 10 && seconds < 1e7)) return fmt::format("{:.2g}", seconds);
+    if (!(seconds > 0 && seconds < 1e7)) return fmt::format("{:.2g}", seconds);
     const double unit = std::pow(10, std::floor(std::log10(seconds)) - 1);
-    return fmt::format("{:.0f}", std::round(seconds / unit) * unit);
+    const double enough = std::ceil(seconds / unit - 1e-9) * unit;
+    return seconds < 10 ? fmt::format("{:.2g}", enough) : fmt::format("{:.0f}", enough);
 }
 
 Limit limit_of_memory(std::uint64_t bytes) {

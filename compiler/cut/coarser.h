@@ -25,7 +25,7 @@ struct Limit {
 /// Three digits and a unit.
 std::string readable_bytes(double bytes);
 
-/// Two digits, without a power of ten where people write none: "110", "3200".
+/// Two digits, rounded up, without a power of ten where people write none: "110", "3200".
 std::string readable_seconds(double seconds);
 
 /// The limit of CutOptions::memory_bytes.

@@ -31,13 +31,6 @@ constexpr std::uint64_t points_of_cloud = 1'000'000;
 constexpr std::uint64_t most_bytes_of_copies = 1u << 30;
 constexpr std::size_t most_unrolled = 4'000'000;
 
-std::uint64_t point_count(const PointsOptions& options) {
-    if (options.points) return *options.points;
-    if (is_cloud_name(options.output)) return points_of_cloud;
-    const ImageSize size = options.compile.size;
-    return points_a_pixel * static_cast<std::uint64_t>(size.width) * static_cast<std::uint64_t>(size.height);
-}
-
 /// Planes have no end, and so no random point.
 void note_planes(const Graph& graph, Diagnostics& diagnostics) {
     for (const Object& object : graph.objects)
@@ -171,6 +164,13 @@ Status write_picture(Canvas& canvas, const View& view, const PointsOptions& opti
 
 bool is_cloud_name(const std::string& path) {
     return std::filesystem::path(path).extension() == ".ply";
+}
+
+std::uint64_t point_count(const PointsOptions& options) {
+    if (options.points) return *options.points;
+    if (is_cloud_name(options.output)) return points_of_cloud;
+    const ImageSize size = options.compile.size;
+    return points_a_pixel * static_cast<std::uint64_t>(size.width) * static_cast<std::uint64_t>(size.height);
 }
 
 Status place_points(const PointSource& source, const View& view, const PointsOptions& options,

@@ -35,6 +35,9 @@ struct PointsReport {
     double seconds = 0; ///< of making points
 };
 
+/// How many points will be taken.
+std::uint64_t point_count(const PointsOptions& options);
+
 /// Draws points of a source, or writes them: what draw_points() ends with. `card`: written, and to appear
 /// with the picture; null: none.
 Status place_points(const PointSource& source, const View& view, const PointsOptions& options,

@@ -56,6 +56,12 @@ double seconds_as_asked(const FittedModel& fitted, const Looks& looks, ImageSize
            least_seconds(looks.wanted, size);
 }
 
+/// That have to be allowed for it.
+double work_as_asked(const FittedModel& fitted, const Looks& looks, ImageSize size) {
+    return std::max(seconds_as_asked(fitted, looks, size),
+                    least_seconds(looks.wanted, size) / most_for_samples);
+}
+
 /// Says what the work allowed has cost, or what a picture that leaves nothing out will take.
 void report_work(const FittedModel& fitted, const Looks& looks, const ViewedModel& viewed,
                  Diagnostics& diagnostics) {
@@ -75,7 +81,7 @@ void report_work(const FittedModel& fitted, const Looks& looks, const ViewedMode
     }
     Limit limit = limit_of_work(allowed);
     limit.need = fmt::format("the picture as asked would take about {} seconds of one processor",
-                             readable_seconds(seconds));
+                             readable_seconds(work_as_asked(fitted, looks, viewed.view.size)));
     const std::string samples = samples_in_words(looks.affordable);
     if (!fitted.work_cut) {
         if (looks.fewer())

@@ -42,8 +42,10 @@ FloatBox box_of(Items items) {
     return box;
 }
 
-float middle(const BoxedItem& item, std::size_t axis) {
-    return 0.5f * item.lower[axis] + 0.5f * item.upper[axis];
+/// Half of the middle: a finite one, and so is the difference of two, where a box has no end in a float.
+float half_middle(const BoxedItem& item, std::size_t axis) {
+    constexpr float most = std::numeric_limits<float>::max();
+    return 0.25f * std::max(item.lower[axis], -most) + 0.25f * std::min(item.upper[axis], most);
 }
 
 /// The size of a first part nearest to the one wanted: a multiple of `grain`, neither nothing nor all.
@@ -76,7 +78,7 @@ Split best_split(Items items, const FloatBox& middles) {
         std::array<FloatBox, bins> box;
         std::array<double, bins> count{};
         for (const BoxedItem& item : items) {
-            const auto bin = static_cast<std::size_t>(bin_of(middle(item, axis)));
+            const auto bin = static_cast<std::size_t>(bin_of(half_middle(item, axis)));
             box[bin].include(item.lower, item.upper);
             ++count[bin];
         }
@@ -105,7 +107,7 @@ Split best_split(Items items, const FloatBox& middles) {
 std::size_t split(Items items, int depth, std::size_t grain) {
     FloatBox middles;
     for (const BoxedItem& item : items) {
-        const std::array<float, 3> point{middle(item, 0), middle(item, 1), middle(item, 2)};
+        const std::array<float, 3> point{half_middle(item, 0), half_middle(item, 1), half_middle(item, 2)};
         middles.include(point, point);
     }
     if (depth < deepest_by_area) {
@@ -113,13 +115,13 @@ std::size_t split(Items items, int depth, std::size_t grain) {
         if (best.cost < infinity) {
             const Bins bin_of(middles.lower[best.axis], middles.upper[best.axis]);
             const auto part = std::partition(items.begin(), items.end(), [&](const BoxedItem& item) {
-                return bin_of(middle(item, best.axis)) < best.bin;
+                return bin_of(half_middle(item, best.axis)) < best.bin;
             });
             const auto size = static_cast<std::size_t>(part - items.begin());
             const std::size_t whole = in_grains(size, items.size(), grain);
             if (whole == size) return size;
             std::ranges::nth_element(items, items.begin() + static_cast<std::ptrdiff_t>(whole), {},
-                                     [&](const BoxedItem& item) { return middle(item, best.axis); });
+                                     [&](const BoxedItem& item) { return half_middle(item, best.axis); });
             return whole;
         }
     }

@@ -187,7 +187,7 @@ TEST_F(Progressive, InterruptionBeforeAPictureLeavesNothing) {
             // Progressive, it takes seconds to the first; else, minutes.
             BackgroundRun run = progressive
                                     ? start("render", "a.png", {"--size", "4000x3000", "--progressive"})
-                                    : start("render", "a.png", {"--antialias", "9"});
+                                    : start("render", "a.png", {"--antialias", "9", "--work", "20000"});
             wait_until(run, [&] { return run.catches(SIGTERM); });
             run.send(SIGTERM);
             EXPECT_EQ(run.wait(), 128 + SIGTERM);
@@ -200,7 +200,7 @@ TEST_F(Progressive, InterruptionBeforeAPictureLeavesNothing) {
 
 /// A tile of this picture holds 67 million rays, which are minutes.
 TEST_F(Progressive, InterruptionIsPrompt) {
-    BackgroundRun run = start("render", "a.png", {"--antialias", "9", "--threads", "1"});
+    BackgroundRun run = start("render", "a.png", {"--antialias", "9", "--work", "20000", "--threads", "1"});
     wait_until(run, [&] { return run.catches(SIGINT); });
     std::this_thread::sleep_for(std::chrono::milliseconds(300));
     const Clock::time_point begin = Clock::now();

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include "compiler/cut/coarser.h"
 #include "runtime/points/draw_points.h"
 #include "tools/graftal/commands.h"
 #include "tools/graftal/progress_bar.h"
@@ -22,6 +23,16 @@ PointsOptions points_options(const Options& options) {
     return points;
 }
 
+/// Says what many points take, within a factor of five: it depends on how deep their parts lie.
+void say_what_points_take(const PointsOptions& points) {
+    constexpr double points_a_second = 5e6, worth_saying_s = 60;
+    const double seconds = static_cast<double>(point_count(points)) / points_a_second;
+    if (seconds > worth_saying_s)
+        say(fmt::format("graftal: {} points will take about {} seconds of one processor; ask for fewer "
+                        "with --points\n",
+                        point_count(points), readable_seconds(seconds)));
+}
+
 std::string done_text(const Options& options, const PointsReport& report) {
     std::string text = fmt::format("{}: {} points", options.output, report.points);
     if (report.inside < report.points)
@@ -37,6 +48,7 @@ int run_points(const Options& options) {
     ProgressBar bar(!options.quiet);
     PointsOptions points = points_options(options);
     points.on_progress = [&](double fraction) { bar.show("points", fraction); };
+    if (!options.quiet) say_what_points_take(points);
     Compilation compilation;
     bar.show("compiling...");
     const std::optional<PointsReport> report = draw_points(options.operands.front(), points, compilation);

@@ -108,6 +108,8 @@ def faults(ended, said, words, output, left, temporary, trouble):
     command = words[0] if words else ''
     if ended.code == 127 and 'loading shared libraries' in said:
         return []  # it has not begun
+    if 'will take about' in said or is_long(words):
+        return []
     if ended.over or ended.usage.cpu > CPU_S:
         return [f'{command}: {ended.over or "time"}']
     if ended.usage.peak > MEMORY_MIB:
@@ -129,6 +131,12 @@ def faults(ended, said, words, output, left, temporary, trouble):
     return found
 
 
+def is_long(words):
+    """Whether somebody asks for so many points, and to be told nothing."""
+    points = [number for option, number in zip(words, words[1:]) if option == '--points' and re.fullmatch(r'[0-9.e+]+', number)]
+    return 'points' in words and any(float(number) > 3e8 for number in points[-1:])
+
+
 def is_due(name, words, output, code):
     """Whether the command may leave this file or folder: what it was asked for, the palettes of a scene, which are called
     after the model, a card, and what an end before the end leaves on purpose."""
@@ -136,7 +144,8 @@ def is_due(name, words, output, code):
         return name.endswith('.frames') if 'animate' in words else name == output and '--progressive' in words
     scene = r'(model\.\w+)_[IPT]_\d+\.png$' if 'compile' in words and output else '$^'
     stem = re.escape(output.rsplit('.', 1)[0]) + r'(_[IPT]_\d+)?\.\w+$' if output else '$^'
-    cards = [card for option, card in zip(words, words[1:]) if option == '--card']
+    cards = [file for option, card in zip(words, words[1:]) if option == '--card'
+             for file in (card, card.rsplit('.', 1)[0] + '.png')]
     return bool(re.match(stem, name) or re.match(scene, name)) or name in cards
 
 

@@ -98,6 +98,22 @@ TEST(BoxTree, packedItemsTakeSixteenBytes) {
     EXPECT_LE(bytes, 16 * boxed.size());
 }
 
+/// A float cannot hold where some boxes end, and has no middle for them.
+TEST(BoxTree, boxesWithoutEndsAreSorted) {
+    std::mt19937 random(13);
+    std::vector<BoxedItem> boxed = items(40, random);
+    for (std::uint32_t i = 0; i < 20; ++i)
+        boxed.emplace_back(Box{Vec3(i % 3 ? -1e300 : 1e38), Vec3(1e300)}, 1, first_number + 40 + i);
+    std::vector<BoxNode> nodes;
+    ASSERT_NE(build_box_tree(boxed, nodes), no_tree);
+    std::vector<int> met(60);
+    for (const BoxNode& node : nodes)
+        for (std::size_t lane = 0; lane < 8; ++lane)
+            if (node.side[0][0][lane] <= node.side[1][0][lane] && !(node.entry[lane] & BoxNode::inner))
+                ++met.at(node.entry[lane] - first_number);
+    EXPECT_EQ(met, std::vector<int>(60, 1));
+}
+
 TEST(BoxTree, nothingHasNoTree) {
     std::vector<BoxedItem> none;
     std::vector<BoxNode> nodes;

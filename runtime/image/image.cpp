@@ -3,9 +3,15 @@
 #include <algorithm>
 #include <cctype>
 #include <cerrno>
+#include <chrono>
 #include <cmath>
+#include <csignal>
 #include <cstring>
+#include <future>
 #include <optional>
+#include <system_error>
+#include <thread>
+#include <utility>
 
 #include <dlfcn.h>
 #include <fmt/format.h>
@@ -37,21 +43,7 @@ struct Module {
     std::string error;
 };
 
-/// A library's own code runs while it is loaded, and may wait for ever: log4cplus does where one of its
-/// threads cannot be made. While one of these lives, SIGALRM comes after some seconds; the program ends then.
-class LibraryAlarm {
-  public:
-    LibraryAlarm() { ::alarm(seconds); }
-    ~LibraryAlarm() { ::alarm(0); }
-    LibraryAlarm(const LibraryAlarm&) = delete;
-    LibraryAlarm& operator=(const LibraryAlarm&) = delete;
-
-  private:
-    static constexpr unsigned seconds = 20; ///< a quarter of one is the rule
-};
-
 Module load_module() {
-    const LibraryAlarm alarm;
     void* const library = ::dlopen(GRAFTAL_PICTURE_FILES, RTLD_LAZY | RTLD_LOCAL);
     void* const symbol = library ? ::dlsym(library, picture_files_symbol) : nullptr;
     if (!symbol) {
@@ -61,9 +53,25 @@ Module load_module() {
     return {reinterpret_cast<const PictureFiles* (*)()>(symbol)(), {}};
 }
 
+/// A library's own code runs while it is loaded, and may wait for ever: log4cplus does where one of its threads
+/// cannot be made, and lets no signal through meanwhile. So a thread loads them, and is waited for; then
+/// SIGALRM ends the program.
+Module load_in_time() {
+    constexpr std::chrono::seconds longest(20); // a quarter of one is the rule
+    std::packaged_task<Module()> task(load_module);
+    std::future<Module> loaded = task.get_future();
+    try {
+        std::thread(std::move(task)).detach();
+    } catch (const std::system_error& error) {
+        return {nullptr, fmt::format("no thread can be made to load libraries: {}", error.code().message())};
+    }
+    if (loaded.wait_for(longest) == std::future_status::timeout) ::kill(::getpid(), SIGALRM);
+    return loaded.get();
+}
+
 /// Loaded once, and never unloaded.
 const Module& module() {
-    static const Module loaded = load_module();
+    static const Module loaded = load_in_time();
     return loaded;
 }
 

@@ -64,7 +64,7 @@ void end_after_crash(int) {
                 "may be used up\n");
 }
 
-/// Others wait for ever where they get no thread (LibraryAlarm).
+/// Others wait for ever where they get no thread (image.cpp).
 void end_after_waiting(int) {
     end_at_once("graftal: a library does not load; memory, files or threads of the system may be used up\n");
 }

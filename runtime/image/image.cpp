@@ -11,7 +11,6 @@
 #include <optional>
 #include <system_error>
 #include <thread>
-#include <utility>
 
 #include <dlfcn.h>
 #include <fmt/format.h>
@@ -53,20 +52,37 @@ Module load_module() {
     return {reinterpret_cast<const PictureFiles* (*)()>(symbol)(), {}};
 }
 
-/// A library's own code runs while it is loaded, and may wait for ever: log4cplus does where one of its threads
-/// cannot be made, and lets no signal through meanwhile. So a thread loads them, and is waited for; then
-/// SIGALRM ends the program.
-Module load_in_time() {
-    constexpr std::chrono::seconds longest(20); // a quarter of one is the rule
-    std::packaged_task<Module()> task(load_module);
-    std::future<Module> loaded = task.get_future();
-    try {
-        std::thread(std::move(task)).detach();
-    } catch (const std::system_error& error) {
-        return {nullptr, fmt::format("no thread can be made to load libraries: {}", error.code().message())};
+/// A library's own code runs while it is loaded, and may wait for ever: log4cplus does where one of its
+/// threads cannot be made, and lets no signal through meanwhile. While one of these lives, its thread waits,
+/// and ends the program by SIGALRM after some seconds.
+class LibraryWatch {
+  public:
+    /// Throws std::system_error where no thread can be made.
+    LibraryWatch()
+        : thread_([loaded = loaded_.get_future()] {
+              if (loaded.wait_for(longest) == std::future_status::timeout) ::kill(::getpid(), SIGALRM);
+          }) {}
+    ~LibraryWatch() {
+        loaded_.set_value();
+        thread_.join();
     }
-    if (loaded.wait_for(longest) == std::future_status::timeout) ::kill(::getpid(), SIGALRM);
-    return loaded.get();
+    LibraryWatch(const LibraryWatch&) = delete;
+    LibraryWatch& operator=(const LibraryWatch&) = delete;
+
+  private:
+    static constexpr std::chrono::seconds longest{20}; ///< a quarter of one is the rule
+    std::promise<void> loaded_;
+    std::thread thread_;
+};
+
+Module load_in_time() {
+    try {
+        const LibraryWatch watch;
+        return load_module();
+    } catch (const std::system_error& error) {
+        return {nullptr,
+                fmt::format("no thread can be made to watch libraries load: {}", error.code().message())};
+    }
 }
 
 /// Loaded once, and never unloaded.

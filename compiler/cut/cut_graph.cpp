@@ -238,7 +238,7 @@ class Builder {
         const Vec3 sigma = singular_values(edge.node_from_child.linear);
         edge.stretch = sigma.x;
         edge.volume_stretch = std::cbrt(sigma.x * sigma.y * sigma.z);
-        if (edge.volume_stretch <= 0) edge.volume_stretch = edge.stretch;
+        if (!(edge.volume_stretch > 0)) edge.volume_stretch = edge.stretch; // of endless times 0 too
         edge.similarity = sigma.z > sigma.x * (1 - 1e-9);
         cut_.tinted = cut_.tinted || instance.tint.alpha > 0;
         const bool in_cycle = components_.component_of[user] == components_.component_of[instance.master];

@@ -79,12 +79,25 @@ template<typename Function> Function* next(const char* name) {
     return reinterpret_cast<Function*>(::dlsym(RTLD_NEXT, name));
 }
 
+template<std::size_t size> struct Name {
+    char text[size];
+    constexpr Name(const char (&literal)[size]) {
+        for (std::size_t i = 0; i < size; ++i)
+            text[i] = literal[i];
+    }
+};
+
+/// Found while this library is loaded: dlsym() waits for the libraries that other threads load, which may be
+/// for ever, and a handler of signals must not.
+template<Name name, typename Function> inline Function* const found = next<Function>(name.text);
+
+/// Others that are loaded earlier may call it before.
+template<Name name, typename Function> Function* next_of() {
+    return found<name, Function> ? found<name, Function> : next<Function>(name.text);
+}
+
 /// NEXT(open)(path, flags): the function that this one stands before.
-#define NEXT(name)                                                                                           \
-    ([] {                                                                                                    \
-        static auto* const found = next<decltype(::name)>(#name);                                            \
-        return found;                                                                                        \
-    }())
+#define NEXT(name) (next_of<#name, decltype(::name)>())
 
 /// A stream of stdio on a descriptor, with this library's read(), write(), lseek() and close(): the C
 /// library's own streams call theirs by ways that nobody can step in. Null for a negative number.

@@ -127,6 +127,31 @@ TEST_F(TextureFiles, AnAttributeLongerThanItsFileIsRefused) {
         }
 }
 
+TEST_F(TextureFiles, ALongAttributeOfATypeWithoutANameIsRefused) {
+    const std::string head =
+        exr_head(false, 0).substr(0, 8) + "note" + '\0' + '\0' + std::string("\0\0\0\x61", 4);
+    ASSERT_TRUE(write_text(path("bomb.exr"), head + std::string(200, '\0')).ok());
+    Status status;
+    EXPECT_FALSE(load_texture(path("bomb.exr"), status));
+    EXPECT_THAT(status.message(), testing::HasSubstr("its head is damaged"));
+}
+
+// OpenEXR makes room for a tile before it looks at the picture.
+TEST_F(TextureFiles, TilesMuchLargerThanTheirPictureAreRefused) {
+    std::string text;
+    ASSERT_TRUE(read_text(GRAFTAL_SOURCE_DIR "/tests/fuzz/corpus/picture/tiled.exr", text).ok());
+    text.erase(0, 1); // it chooses an ending
+    const std::size_t tiles = text.find("tiledesc");
+    ASSERT_NE(tiles, std::string::npos);
+    ASSERT_TRUE(write_text(path("tiled.exr"), text).ok());
+    Status status;
+    EXPECT_TRUE(load_texture(path("tiled.exr"), status)) << status.message();
+    text.replace(tiles + 13, 4, std::string("\x10\x00\xb5\x00", 4));
+    ASSERT_TRUE(write_text(path("bomb.exr"), text).ok());
+    EXPECT_FALSE(load_texture(path("bomb.exr"), status));
+    EXPECT_THAT(status.message(), testing::HasSubstr("its tiles are too large"));
+}
+
 // Of an attribute of a type that it knows, OpenEXR reads as much as the type says, whatever the length says.
 TEST_F(TextureFiles, AnAttributeHiddenInAnotherIsRefused) {
     const std::string bomb = exr_head(false, 0x70000000).substr(8);

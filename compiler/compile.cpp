@@ -123,7 +123,7 @@ FrameObject framing_of(const AnalysedModel& model, const CompileOptions& options
 }
 
 /// Gives the model a new root at the place that the zoom asks for.
-std::optional<View> zoom_model(AnalysedModel& model, const CompileOptions& options, CutOptions& cut,
+std::optional<View> zoom_model(AnalysedModel& model, const CompileOptions& options, DetailOptions& detail,
                                Diagnostics& diagnostics) {
     std::optional<Vec3> look_at = options.camera.look_at;
     if (!look_at && model.graph.settings.camera) look_at = model.graph.settings.camera->look_at;
@@ -133,8 +133,9 @@ std::optional<View> zoom_model(AnalysedModel& model, const CompileOptions& optio
     model.graph = std::move(rerooted->graph);
     model.components = std::move(rerooted->components);
     model.bounds = std::move(rerooted->bounds);
-    cut.root_levels = std::move(rerooted->root_levels);
-    if (cut.error_world) cut.error_world = std::min(rerooted->zoom.times(*cut.error_world), largest_size);
+    detail.root_levels = std::move(rerooted->root_levels);
+    if (detail.error_world)
+        detail.error_world = std::min(rerooted->zoom.times(*detail.error_world), largest_size);
     return std::move(rerooted->view);
 }
 
@@ -184,14 +185,14 @@ std::optional<ViewedModel> view_model(const std::string& path, const CompileOpti
                                       Compilation& compilation) {
     std::optional<AnalysedModel> model = analyse_model(path, options, compilation);
     if (!model) return std::nullopt;
-    CutOptions cut_options = options.cut;
-    cut_options.steps = model->steps;
+    DetailOptions detail = options.detail;
+    detail.steps = model->steps;
     std::optional<View> view = Stages(compilation.times).run("frame", [&] {
-        return options.zoom.active() ? zoom_model(*model, options, cut_options, compilation.diagnostics)
+        return options.zoom.active() ? zoom_model(*model, options, detail, compilation.diagnostics)
                                      : view_of(*model, options, false);
     });
     if (!view) return std::nullopt;
-    return ViewedModel{std::move(*model), std::move(*view), std::move(cut_options)};
+    return ViewedModel{std::move(*model), std::move(*view), std::move(detail)};
 }
 
 std::optional<CompiledModel> compile_model(const std::string& path, const CompileOptions& options,
@@ -200,8 +201,8 @@ std::optional<CompiledModel> compile_model(const std::string& path, const Compil
     if (!viewed) return std::nullopt;
     AnalysedModel& model = viewed->model;
     std::optional<Cut> cut = Stages(compilation.times).run("cut", [&] {
-        return cut_graph(model.graph, model.components, model.bounds, viewed->view, viewed->cut,
-                         compilation.diagnostics);
+        return cut_graph(model.graph, model.components, model.bounds, viewed->view, viewed->detail,
+                         compilation.diagnostics, options.cut);
     });
     if (!cut) return std::nullopt;
     return CompiledModel{std::move(model), std::move(viewed->view), std::move(*cut)};

@@ -8,11 +8,11 @@
 
 #include "compiler/analysis/bounding.h"
 #include "compiler/analysis/contraction.h"
-#include "compiler/cut/cut.h"
 #include "compiler/graph/components.h"
 #include "compiler/graph/graph.h"
 #include "compiler/lower/lower.h"
 #include "compiler/passes/pipeline.h"
+#include "compiler/povray/cut.h"
 #include "compiler/scene/scene.h"
 #include "compiler/support/diagnostics.h"
 #include "compiler/support/source.h"
@@ -29,7 +29,8 @@ struct CompileOptions {
     ImageSize size;
     CameraOverride camera;
     ZoomRequest zoom;
-    CutOptions cut; ///< its steps and root levels are filled in
+    DetailOptions detail; ///< its steps and root levels are filled in
+    CutOptions cut;
     /// Decides on the view of a model, or of a part that is looked at by itself, in place of frame_model():
     /// the frames of an animation are framed together.
     std::function<View(const AnalysedModel&, bool part)> frame;
@@ -62,7 +63,7 @@ struct AnalysedModel {
 struct ViewedModel {
     AnalysedModel model;
     View view;
-    CutOptions cut;
+    DetailOptions detail;
 };
 
 /// A model ready to emit.

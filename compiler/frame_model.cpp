@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "compiler/cut/unfold.h"
+#include "compiler/graph/unfold.h"
 #include "compiler/scene/outline.h"
 
 namespace graftal {

@@ -31,7 +31,7 @@ struct Rerooted {
     Graph graph; ///< the old one with one more object, its root
     Components components;
     std::vector<ObjectBounds> bounds;
-    std::vector<unsigned> root_levels; ///< that the root's instances use up (CutOptions)
+    std::vector<unsigned> root_levels; ///< that the root's instances use up (DetailOptions)
     View view;
     Magnification zoom;    ///< how much larger than in the world lengths are
     std::size_t depth = 0; ///< instances from the old root to where the new one begins

@@ -18,9 +18,9 @@
 #include "runtime/points/ply_file.h"
 #include "runtime/points/point_source.h"
 #include "runtime/points/projection.h"
-#include "runtime/povray/interruption.h"
 #include "runtime/render/scene_files.h"
 #include "runtime/render/stopwatch.h"
+#include "runtime/system/interruption.h"
 
 namespace graftal {
 

@@ -6,7 +6,7 @@
 
 #include "compiler/support/status.h"
 #include "runtime/povray/messages.h"
-#include "runtime/povray/process.h"
+#include "runtime/system/process.h"
 
 namespace graftal {
 

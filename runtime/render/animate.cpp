@@ -10,12 +10,12 @@
 #include <fmt/format.h>
 
 #include "compiler/frame_animation.h"
-#include "runtime/povray/interruption.h"
 #include "runtime/render/frame_clock.h"
 #include "runtime/render/frame_store.h"
 #include "runtime/render/native.h"
 #include "runtime/render/scene_files.h"
 #include "runtime/render/video.h"
+#include "runtime/system/interruption.h"
 
 namespace graftal {
 

@@ -6,7 +6,7 @@
 #include <new>
 #include <utility>
 
-#include "compiler/cut/work.h"
+#include "compiler/detail/work.h"
 #include "runtime/trace/picture_tracer.h"
 
 namespace graftal {
@@ -39,7 +39,7 @@ constexpr int most_broken_looks = 2;
 
 class Fitting {
   public:
-    Fitting(const View& view, const CutOptions& options, double samples_a_pixel,
+    Fitting(const View& view, const DetailOptions& options, double samples_a_pixel,
             const std::function<ShaderLimits(const TraceModel&)>& limits_of, int threads,
             const std::function<bool()>& cancelled)
         : view_(view), options_(options), samples_(samples_a_pixel * view.size.width * view.size.height),
@@ -54,7 +54,7 @@ class Fitting {
   private:
     FittedModel fit(const std::function<PreparedCut()>& prepare) {
         FittedModel fitted;
-        CutOptions options = options_;
+        DetailOptions options = options_;
         int steps_left = options.culls() ? most_coarser_steps : 0;
         make_anew(prepare, options, steps_left, fitted);
         fitted.whole_seconds = fitted.seconds;
@@ -84,13 +84,13 @@ class Fitting {
         return fitted;
     }
 
-    static void make_coarser(CutOptions& options, int& steps_left) {
+    static void make_coarser(DetailOptions& options, int& steps_left) {
         --steps_left;
         options.error_px *= coarser;
         if (options.error_world) *options.error_world *= coarser;
     }
 
-    void note_memory(CutOptions& options, int& steps_left, FittedModel& fitted) {
+    void note_memory(DetailOptions& options, int& steps_left, FittedModel& fitted) {
         fitted.out_of_memory = true;
         if (steps_left == 0 || failed_seconds_ > work_seconds_) throw std::bad_alloc();
         for (int i = 0; i < steps_after_memory && steps_left > 0; ++i)
@@ -98,14 +98,14 @@ class Fitting {
     }
 
     /// As coarse as the memory asks for.
-    void make_anew(const std::function<PreparedCut()>& prepare, CutOptions& options, int& steps_left,
+    void make_anew(const std::function<PreparedCut()>& prepare, DetailOptions& options, int& steps_left,
                    FittedModel& fitted) {
         while (!make(prepare(), options, fitted))
             note_memory(options, steps_left, fitted);
     }
 
     /// False where it takes more memory than there is.
-    bool make(PreparedCut prepared, const CutOptions& options, FittedModel& fitted) {
+    bool make(PreparedCut prepared, const DetailOptions& options, FittedModel& fitted) {
         const std::uint64_t instances = prepared.instances;
         work_seconds_ = work_beside_graph(options_.work_seconds, instances);
         slowness_ = slowness_of_graph(instances);
@@ -203,7 +203,7 @@ class Fitting {
     double second_of_steps() const { return slowness_ / WorkRates::ray_steps; }
 
     const View& view_;
-    const CutOptions& options_;
+    const DetailOptions& options_;
     const double samples_;
     const std::function<ShaderLimits(const TraceModel&)>& limits_of_;
     const int threads_;
@@ -217,9 +217,10 @@ class Fitting {
 
 } // namespace
 
-FittedModel fit_work(const std::function<PreparedCut()>& prepare, const View& view, const CutOptions& options,
-                     double samples_a_pixel, const std::function<ShaderLimits(const TraceModel&)>& limits_of,
-                     int threads, const std::function<bool()>& cancelled) {
+FittedModel fit_work(const std::function<PreparedCut()>& prepare, const View& view,
+                     const DetailOptions& options, double samples_a_pixel,
+                     const std::function<ShaderLimits(const TraceModel&)>& limits_of, int threads,
+                     const std::function<bool()>& cancelled) {
     return Fitting(view, options, samples_a_pixel, limits_of, threads, cancelled).run(prepare);
 }
 

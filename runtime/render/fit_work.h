@@ -29,8 +29,9 @@ struct FittedModel {
 /// (`out_of_memory`); if none fits, or the model cannot be prepared, std::bad_alloc is thrown. Nothing but
 /// counts decides, so the result is the same whatever the machine and its threads. `cancelled` is asked
 /// often; once it says true, any model comes back.
-FittedModel fit_work(const std::function<PreparedCut()>& prepare, const View& view, const CutOptions& options,
-                     double samples_a_pixel, const std::function<ShaderLimits(const TraceModel&)>& limits_of,
-                     int threads, const std::function<bool()>& cancelled);
+FittedModel fit_work(const std::function<PreparedCut()>& prepare, const View& view,
+                     const DetailOptions& options, double samples_a_pixel,
+                     const std::function<ShaderLimits(const TraceModel&)>& limits_of, int threads,
+                     const std::function<bool()>& cancelled);
 
 } // namespace graftal

@@ -6,13 +6,13 @@
 
 #include <fmt/format.h>
 
-#include "compiler/cut/coarser.h"
-#include "compiler/emit/povray_view.h"
-#include "runtime/povray/interruption.h"
+#include "compiler/detail/coarser.h"
+#include "compiler/povray/povray_units.h"
 #include "runtime/render/fit_work.h"
 #include "runtime/render/samplings.h"
 #include "runtime/render/scene_files.h"
 #include "runtime/render/stopwatch.h"
+#include "runtime/system/interruption.h"
 #include "runtime/system/worker_threads.h"
 
 namespace graftal {
@@ -22,17 +22,17 @@ namespace {
 /// Of the work, what may go to samples that meet nothing: what is seen takes the rest.
 constexpr double most_for_samples = 0.5;
 
-/// Where POV-Ray's pictures end; its units are those of a cut, which nobody makes here.
+/// Where POV-Ray's pictures end.
 ShaderLimits limits_of(const TraceModel& model) {
     constexpr double farthest_in_povray = 1e7;
     const Ball& ball = model.prepared.cut.nodes[model.prepared.cut.root].ball;
-    Cut cut;
+    DrawnExtent drawn;
     if (ball.radius > 0) {
-        cut.bounds.include(ball.centre - Vec3(ball.radius));
-        cut.bounds.include(ball.centre + Vec3(ball.radius));
+        drawn.bounds.include(ball.centre - Vec3(ball.radius));
+        drawn.bounds.include(ball.centre + Vec3(ball.radius));
     }
     ShaderLimits limits;
-    limits.farthest = farthest_in_povray / choose_units(cut, model.view.camera).scale;
+    limits.farthest = farthest_in_povray / choose_units(drawn, model.view.camera).scale;
     return limits;
 }
 
@@ -66,12 +66,12 @@ double work_as_asked(const FittedModel& fitted, const Looks& looks, ImageSize si
 void report_work(const FittedModel& fitted, const Looks& looks, const ViewedModel& viewed,
                  Diagnostics& diagnostics) {
     const Span& span = viewed.model.graph.objects[viewed.model.graph.root].span;
-    const double allowed = viewed.cut.work_seconds;
+    const double allowed = viewed.detail.work_seconds;
     const double seconds = seconds_as_asked(fitted, looks, viewed.view.size);
     if (fitted.out_of_memory)
-        warn_of_limit(span, limit_of_memory(viewed.cut.memory_bytes), {fitted.error_px, viewed.cut.error_px},
-                      diagnostics);
-    if (!viewed.cut.culls()) {
+        warn_of_limit(span, limit_of_memory(viewed.detail.memory_bytes),
+                      {fitted.error_px, viewed.detail.error_px}, diagnostics);
+    if (!viewed.detail.culls()) {
         if (!(seconds > allowed)) return;
         diagnostics
             .note(span, fmt::format("this picture takes about {} seconds of one processor: nothing is left out",
@@ -99,13 +99,13 @@ void report_work(const FittedModel& fitted, const Looks& looks, const ViewedMode
         limit.besides += fmt::format(", one for {0} by {0} pixels", block);
     else if (looks.fewer())
         limit.besides += (fitted.rays_cut ? ", " : ", by ") + samples + " for each pixel";
-    warn_of_limit(span, limit, {fitted.error_px, viewed.cut.error_px}, diagnostics);
+    warn_of_limit(span, limit, {fitted.error_px, viewed.detail.error_px}, diagnostics);
 }
 
 /// Says what a picture takes that is too large even for one sample a pixel.
 void report_size(const Looks& looks, const ViewedModel& viewed, Diagnostics& diagnostics) {
     const double seconds = least_seconds(looks.affordable, viewed.view.size);
-    if (!viewed.cut.culls() || !(seconds > viewed.cut.work_seconds)) return;
+    if (!viewed.detail.culls() || !(seconds > viewed.detail.work_seconds)) return;
     diagnostics
         .note(viewed.model.graph.objects[viewed.model.graph.root].span,
               fmt::format("a picture of this size takes {} seconds of one processor or more",
@@ -119,7 +119,7 @@ void report_shells(const TraceModel& model, const ViewedModel& viewed, Diagnosti
     const double coarsest = model.meshes.coarsest_shell();
     if (coarsest > step_of_details)
         warn_of_shells(viewed.model.graph.objects[viewed.model.graph.root].span,
-                       {coarsest * model.options.error_px, viewed.cut.error_px}, diagnostics);
+                       {coarsest * model.options.error_px, viewed.detail.error_px}, diagnostics);
 }
 
 /// One picture, from the first sample to the last file.
@@ -247,21 +247,21 @@ std::optional<NativeReport> trace_model(ViewedModel viewed, const NativeOptions&
     const AnalysedModel& analysed = viewed.model;
     if (compilation.status.ok()) compilation.status = load_textures(analysed.graph.materials);
     if (!compilation.status.ok()) return std::nullopt;
-    if (refuse_endless(analysed.graph, analysed.components, viewed.cut, compilation.diagnostics))
+    if (refuse_endless(analysed.graph, analysed.components, viewed.detail, compilation.diagnostics))
         return std::nullopt;
 
     const Stopwatch watch;
     const Interruption interruption; // from here on something may be half written
     Looks looks;
     looks.wanted = samplings_of(options.render.antialias, options.progressive);
-    looks.tried = viewed.cut.culls() ? with_fewer_samples(looks.wanted, viewed.view.size,
-                                                          most_for_samples * viewed.cut.work_seconds)
-                                     : looks.wanted;
+    looks.tried = viewed.detail.culls() ? with_fewer_samples(looks.wanted, viewed.view.size,
+                                                             most_for_samples * viewed.detail.work_seconds)
+                                        : looks.wanted;
     const auto prepare = [&] {
-        return prepare_cut(analysed.graph, analysed.components, analysed.bounds, viewed.cut);
+        return prepare_cut(analysed.graph, analysed.components, analysed.bounds, viewed.detail);
     };
     const double samples = samples_a_pixel(looks.tried);
-    const FittedModel fitted = fit_work(prepare, viewed.view, viewed.cut, samples, limits_of,
+    const FittedModel fitted = fit_work(prepare, viewed.view, viewed.detail, samples, limits_of,
                                         options.render.threads, [] { return Interruption::signal() != 0; });
     const TraceModel& model = *fitted.model;
     looks.affordable = looks.tried;
@@ -271,7 +271,7 @@ std::optional<NativeReport> trace_model(ViewedModel viewed, const NativeOptions&
     report_work(fitted, looks, viewed, compilation.diagnostics);
     report_size(looks, viewed, compilation.diagnostics);
     compilation.times.push_back({"prepare", watch.seconds()});
-    if (viewed.cut.culls() && !viewed.cut.steps)
+    if (viewed.detail.culls() && !viewed.detail.steps)
         note_shadowless(model.prepared.cut, analysed.graph, compilation.diagnostics);
     const Stopwatch drawing_watch;
     Drawing drawing(model, std::move(looks.affordable), options);

@@ -11,11 +11,11 @@
 
 #include <fmt/format.h>
 
-#include "compiler/cut/overlap.h"
-#include "runtime/povray/interruption.h"
-#include "runtime/povray/temporary_directory.h"
+#include "compiler/povray/overlap.h"
 #include "runtime/render/scene_files.h"
 #include "runtime/render/stopwatch.h"
+#include "runtime/system/interruption.h"
+#include "runtime/system/temporary_directory.h"
 
 namespace graftal {
 
@@ -85,7 +85,7 @@ PovrayJob job_for(const RenderOptions& options) {
     job.on_progress = options.on_progress;
     job.unconfined = options.unconfined;
     // What POV-Ray takes is estimated before; the limit is for what goes wrong.
-    job.memory_bytes = 2 * options.compile.cut.memory_bytes + (1ull << 30);
+    job.memory_bytes = 2 * options.compile.detail.memory_bytes + (1ull << 30);
     return job;
 }
 
@@ -190,7 +190,7 @@ std::optional<RenderReport> draw_model(CompiledModel compiled, const RenderOptio
     };
     set_limit();
     if (options.on_start) {
-        if (worth_a_trial(time, options.compile.cut.work_seconds))
+        if (worth_a_trial(time, options.compile.detail.work_seconds))
             time = tried_time(job, time).value_or(time);
         if (!Interruption::signal()) options.on_start(time.seconds());
         set_limit();

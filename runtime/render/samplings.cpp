@@ -1,6 +1,6 @@
 #include "runtime/render/samplings.h"
 
-#include "compiler/cut/work.h"
+#include "compiler/detail/work.h"
 
 namespace graftal {
 

@@ -12,12 +12,12 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include "compiler/emit/emit_povray.h"
+#include "compiler/povray/emit_povray.h"
 #include "compiler/support/file.h"
 #include "runtime/image/image.h"
 #include "runtime/image/texture.h"
-#include "runtime/povray/interruption.h"
-#include "runtime/povray/temporary_directory.h"
+#include "runtime/system/interruption.h"
+#include "runtime/system/temporary_directory.h"
 
 namespace graftal {
 
@@ -80,7 +80,7 @@ Status emit_to(std::FILE* file, const std::string& name, const CompiledModel& mo
         reason = errno;
         return false;
     };
-    const bool complete = emit_povray(model.model.graph, model.cut, model.view, options, sink, palettes);
+    const bool complete = emit_povray(model.cut, model.view, options, sink, palettes);
     if (Interruption::signal()) return Status::failure("interrupted");
     if (!complete) return write_failure(name, reason);
     return std::fflush(file) == 0 ? Status() : write_failure(name, errno);

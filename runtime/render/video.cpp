@@ -5,7 +5,7 @@
 #include <fmt/format.h>
 
 #include "compiler/support/file.h"
-#include "runtime/povray/process.h"
+#include "runtime/system/process.h"
 
 namespace graftal {
 

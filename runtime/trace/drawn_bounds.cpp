@@ -6,7 +6,7 @@
 
 #include "compiler/analysis/bounding.h"
 #include "compiler/analysis/contraction.h"
-#include "compiler/cut/run_cells.h"
+#include "compiler/detail/run_cells.h"
 #include "compiler/graph/components.h"
 
 namespace graftal {

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "compiler/cut/cut_graph.h"
+#include "compiler/detail/cut_graph.h"
 #include "compiler/support/bounds.h"
 
 namespace graftal {

@@ -6,8 +6,8 @@
 
 #include <glm/geometric.hpp>
 
-#include "compiler/cut/least_width.h"
-#include "compiler/cut/texture_space.h"
+#include "compiler/detail/least_width.h"
+#include "compiler/detail/texture_space.h"
 #include "compiler/support/stretch.h"
 #include "runtime/trace/traversal.h"
 

@@ -7,7 +7,7 @@
 #include <numeric>
 #include <utility>
 
-#include "compiler/cut/run_cells.h"
+#include "compiler/detail/run_cells.h"
 
 namespace graftal {
 

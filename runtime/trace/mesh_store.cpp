@@ -6,8 +6,8 @@
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 
-#include "compiler/cut/bake.h"
-#include "compiler/cut/work.h"
+#include "compiler/detail/bake.h"
+#include "compiler/detail/work.h"
 
 namespace graftal {
 

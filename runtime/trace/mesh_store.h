@@ -9,7 +9,7 @@
 #include <optional>
 #include <vector>
 
-#include "compiler/cut/prepare.h"
+#include "compiler/detail/prepare.h"
 #include "runtime/trace/box_tree.h"
 #include "runtime/trace/intersect.h"
 

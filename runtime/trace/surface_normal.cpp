@@ -5,7 +5,7 @@
 
 #include <glm/geometric.hpp>
 
-#include "compiler/cut/limit_normal.h"
+#include "compiler/detail/limit_normal.h"
 #include "compiler/support/stretch.h"
 
 namespace graftal {

@@ -10,9 +10,9 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
-#include "compiler/cut/choose.h"
-#include "compiler/cut/texture_space.h"
-#include "compiler/cut/work.h"
+#include "compiler/detail/piece.h"
+#include "compiler/detail/texture_space.h"
+#include "compiler/detail/work.h"
 #include "runtime/trace/drawn_bounds.h"
 #include "runtime/trace/unroll.h"
 
@@ -289,7 +289,7 @@ std::vector<ShellSizes> shell_sizes(TraceModel& model) {
     const CutGraph& cut = model.prepared.cut;
     // Sizes are asked for by octaves. An eighth of one tells them apart, and nodes of all sizes share kinds.
     constexpr int grain = PieceKind::steps_an_octave / 8;
-    Weights weights(cut, 12, 0, model.projection.error_px(), grain);
+    Weights weights(cut, {.error_px = model.projection.error_px(), .grain = grain});
     Piece root;
     root.node = cut.root;
     root.steps = model.prepared.root_steps;
@@ -318,7 +318,7 @@ void find_shells(TraceModel& model) {
 }
 
 /// Of one shell: there may be several, and they may be made anew at another error.
-std::uint64_t most_shell_work(const CutOptions& options) {
+std::uint64_t most_shell_work(const DetailOptions& options) {
     constexpr double share = 0.15, least = 1e7; // with less there is hardly one
     const double seconds = options.culls() ? std::min(share * options.work_seconds, 1e6) : 1e6;
     return static_cast<std::uint64_t>(std::max(least, seconds * WorkRates::shell_points));
@@ -332,7 +332,7 @@ std::uint32_t TraceRun::edge_of(PrimitiveKind kind, std::uint16_t colour) const 
     return no_edge;
 }
 
-TraceModel::TraceModel(PreparedCut ready, const View& seen, const CutOptions& cut_options)
+TraceModel::TraceModel(PreparedCut ready, const View& seen, const DetailOptions& cut_options)
     : prepared(std::move(ready)), layers(layered(prepared.cut, prepared.root_steps)), view(seen),
       options(cut_options), projection(view, options, options.error_px, nearest_to_eye(prepared.cut)),
       meshes(prepared, most_shell_work(options)) {

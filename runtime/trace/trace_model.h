@@ -7,9 +7,9 @@
 #include <optional>
 #include <vector>
 
-#include "compiler/cut/detail.h"
-#include "compiler/cut/prepare.h"
-#include "compiler/cut/run_cells.h"
+#include "compiler/detail/prepare.h"
+#include "compiler/detail/projection.h"
+#include "compiler/detail/run_cells.h"
 #include "compiler/scene/scene.h"
 #include "runtime/image/texture.h"
 #include "runtime/trace/box_tree.h"
@@ -119,7 +119,7 @@ struct TraceModel {
     PreparedCut prepared;
     LayeredGraph layers; ///< of prepared.cut
     View view;
-    CutOptions options;
+    DetailOptions options;
     Projection projection;
     double least_detail_per_unit = 0; ///< of Projection, anywhere on the model
     double most_half_width = 0;       ///< likewise, where something is drawn wider than it is
@@ -153,7 +153,7 @@ struct TraceModel {
     const CutNode& source(std::uint32_t node) const { return prepared.cut.nodes[layers.source[node]]; }
 
     /// Textures that cannot be read are left out: see load_textures().
-    TraceModel(PreparedCut prepared, const View& view, const CutOptions& options);
+    TraceModel(PreparedCut prepared, const View& view, const DetailOptions& options);
     TraceModel(const TraceModel&) = delete;
     TraceModel& operator=(const TraceModel&) = delete;
 };

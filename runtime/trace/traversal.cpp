@@ -2,7 +2,7 @@
 
 #include <array>
 
-#include "compiler/cut/texture_space.h"
+#include "compiler/detail/texture_space.h"
 #include "runtime/trace/surface_normal.h"
 #include "runtime/trace/traversal_kernel.h"
 
@@ -134,7 +134,7 @@ bool Traversal::is_clear(std::uint32_t edge, std::uint32_t frame, double turns, 
 }
 
 Vec3 Traversal::normal_at_best() const {
-    const bool limit = best_.proxy_node != no_edge && model_.options.limit_normals() && !best_.crushed;
+    const bool limit = best_.proxy_node != no_edge && model_.options.limit_normals && !best_.crushed;
     if (!limit) return transformed_normal(best_.world_from_leaf, best_.normal);
     if (!best_.in_world) return limit_normal(model_, path_, best_.proxy_node, best_.normal);
     const Vec3 normal = transformed_normal(best_.world_from_leaf, best_.normal);

@@ -5,8 +5,8 @@
 #include <utility>
 #include <vector>
 
-#include "compiler/cut/alike_set.h"
-#include "compiler/cut/work.h"
+#include "compiler/detail/alike_set.h"
+#include "compiler/detail/work.h"
 #include "runtime/trace/intersect.h"
 #include "runtime/trace/surfaces.h"
 #include "runtime/trace/trace_model.h"

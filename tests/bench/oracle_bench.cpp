@@ -39,8 +39,8 @@ struct Model {
 /// A point of the model in the middle of its pixels that are hit, in reading order.
 Vec3 some_point(const ViewedModel& viewed, Vec3 otherwise) {
     const TraceModel model(
-        prepare_cut(viewed.model.graph, viewed.model.components, viewed.model.bounds, viewed.cut),
-        viewed.view, viewed.cut);
+        prepare_cut(viewed.model.graph, viewed.model.components, viewed.model.bounds, viewed.detail),
+        viewed.view, viewed.detail);
     Traversal traversal(model);
     const CameraRays rays(viewed.view);
     std::vector<Vec3> points;
@@ -171,7 +171,7 @@ bool cut_into_meshes(const ViewedModel& viewed) {
     Diagnostics ignored;
     const AnalysedModel& model = viewed.model;
     const std::optional<Cut> cut =
-        cut_graph(model.graph, model.components, model.bounds, viewed.view, viewed.cut, ignored);
+        cut_graph(model.graph, model.components, model.bounds, viewed.view, viewed.detail, ignored);
     return cut && cut->triangle_count > 0;
 }
 

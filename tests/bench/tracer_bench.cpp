@@ -15,8 +15,8 @@
 #include <embree3/rtcore.h>
 
 #include "compiler/compile.h"
-#include "compiler/cut/choose.h"
-#include "compiler/cut/tessellate.h"
+#include "compiler/detail/piece.h"
+#include "compiler/detail/tessellate.h"
 #include "runtime/trace/camera_rays.h"
 #include "runtime/trace/traversal.h"
 
@@ -41,7 +41,7 @@ double peak_mib() {
 std::unique_ptr<TraceModel> load(const std::string& path, const std::string& steps, double error_px) {
     CompileOptions options;
     options.size = size;
-    options.cut.error_px = error_px;
+    options.detail.error_px = error_px;
     if (steps != "-") options.steps = static_cast<unsigned>(std::stoul(steps));
     Compilation compilation;
     const auto viewed = view_model(path, options, compilation);
@@ -51,7 +51,8 @@ std::unique_ptr<TraceModel> load(const std::string& path, const std::string& ste
     }
     const AnalysedModel& model = viewed->model;
     return std::make_unique<TraceModel>(
-        prepare_cut(model.graph, model.components, model.bounds, viewed->cut), viewed->view, viewed->cut);
+        prepare_cut(model.graph, model.components, model.bounds, viewed->detail), viewed->view,
+        viewed->detail);
 }
 
 std::vector<Ray> camera_rays(const View& view) {

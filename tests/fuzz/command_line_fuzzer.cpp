@@ -24,7 +24,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     GRAFTAL_CHECK(!options.operands.empty(), "command line fuzzer: a model");
     GRAFTAL_CHECK(options.compile.size.width > 0 && options.compile.size.height > 0,
                   "command line fuzzer: a picture has pixels");
-    GRAFTAL_CHECK(options.compile.cut.error_px >= 0 && options.compile.cut.work_seconds > 0,
+    GRAFTAL_CHECK(options.compile.detail.error_px >= 0 && options.compile.detail.work_seconds > 0,
                   "command line fuzzer: budgets");
     return 0;
 }

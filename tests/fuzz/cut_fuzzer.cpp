@@ -10,9 +10,9 @@
 #include "compiler/analysis/bounding.h"
 #include "compiler/analysis/contraction.h"
 #include "compiler/analysis/model_range.h"
-#include "compiler/cut/cut.h"
-#include "compiler/emit/emit_povray.h"
 #include "compiler/passes/drop_unreachable.h"
+#include "compiler/povray/cut.h"
+#include "compiler/povray/emit_povray.h"
 #include "compiler/support/check.h"
 #include "tests/property/random_graph.h"
 
@@ -20,15 +20,14 @@ using namespace graftal;
 
 namespace {
 
-CutOptions random_options(testing::Choices& choices) {
-    CutOptions options;
+DetailOptions random_options(testing::Choices& choices) {
+    DetailOptions options;
     options.error_px = choices.one_in(3) ? 0 : choices.one_in(2) ? 4 : 0.5;
     if (options.error_px == 0 || choices.one_in(3)) options.steps = choices.below(5);
     if (choices.one_in(6)) options.error_world = 0.01 * choices.below(100);
     options.memory_bytes = choices.one_in(4) ? 1u << 20 : 16u << 20;
     options.work_seconds = choices.one_in(3) ? 1e-3 : 0.02;
     options.visible_only = choices.one_in(4);
-    options.flatten = choices.one_in(6);
     return options;
 }
 
@@ -41,7 +40,7 @@ CameraOverride random_camera(testing::Choices& choices) {
     return camera;
 }
 
-std::string scene_of(const Graph& graph, const Cut& cut, const View& view, bool include) {
+std::string scene_of(const Cut& cut, const View& view, bool include) {
     std::string text;
     std::vector<PaletteImage> palettes;
     PovrayOptions options;
@@ -49,7 +48,7 @@ std::string scene_of(const Graph& graph, const Cut& cut, const View& view, bool 
     options.include = include;
     options.file_name = "fuzz.inc";
     emit_povray(
-        graph, cut, view, options, [&](std::string_view piece) { return text += piece, true; }, palettes);
+        cut, view, options, [&](std::string_view piece) { return text += piece, true; }, palettes);
     return text;
 }
 
@@ -66,18 +65,21 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const std::vector<ObjectBounds> bounds = bound_objects(graph, components, contraction);
     Diagnostics diagnostics;
     if (!check_range(graph, components, bounds, diagnostics)) return 0;
-    const CutOptions options = random_options(choices);
+    const DetailOptions options = random_options(choices);
+    const bool flatten = choices.one_in(6);
     const CameraOverride camera = random_camera(choices);
     if (bounds[graph.root].box.empty()) return 0;
     const View view = frame(graph, bounds[graph.root].box, {48, 32}, camera);
     const bool include = choices.one_in(4);
-    const auto cut_once = [&] { return cut_graph(graph, components, bounds, view, options, diagnostics); };
+    const auto cut_once = [&] {
+        return cut_graph(graph, components, bounds, view, options, diagnostics, {.flatten = flatten});
+    };
     const std::optional<Cut> cut = cut_once();
     GRAFTAL_CHECK(cut.has_value() != diagnostics.has_errors(), "cut fuzzer: a cut or errors");
     if (!cut) return 0;
     GRAFTAL_CHECK(std::isfinite(cut->error_px) && std::isfinite(cut->largest_part), "cut fuzzer: finite");
-    const std::string scene = scene_of(graph, *cut, view, include);
+    const std::string scene = scene_of(*cut, view, include);
     if (!choices.one_in(8)) return 0;
-    GRAFTAL_CHECK(scene == scene_of(graph, *cut_once(), view, include), "cut fuzzer: the same twice");
+    GRAFTAL_CHECK(scene == scene_of(*cut_once(), view, include), "cut fuzzer: the same twice");
     return 0;
 }

@@ -43,8 +43,8 @@ void hold(Options& options, const fuzz::Scratch& scratch) {
     compile.lower.max_objects = 2000;
     compile.lower.max_modules = 20'000;
     compile.lower.run_from = 256;
-    compile.cut.memory_bytes = std::min<std::uint64_t>(compile.cut.memory_bytes, 8u << 20);
-    compile.cut.work_seconds = std::min(compile.cut.work_seconds, 0.02);
+    compile.detail.memory_bytes = std::min<std::uint64_t>(compile.detail.memory_bytes, 8u << 20);
+    compile.detail.work_seconds = std::min(compile.detail.work_seconds, 0.02);
     options.threads = 1;
     options.quiet = true;
     options.antialias.reset();

@@ -5,7 +5,7 @@
 #include <string_view>
 
 #include "compiler/support/check.h"
-#include "runtime/povray/temporary_directory.h"
+#include "runtime/system/temporary_directory.h"
 
 namespace graftal::fuzz {
 

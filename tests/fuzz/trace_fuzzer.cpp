@@ -7,7 +7,7 @@
 
 #include "compiler/analysis/bounding.h"
 #include "compiler/analysis/contraction.h"
-#include "compiler/cut/prepare.h"
+#include "compiler/detail/prepare.h"
 #include "compiler/passes/drop_unreachable.h"
 #include "compiler/support/check.h"
 #include "runtime/trace/traversal.h"
@@ -37,7 +37,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     if (contraction.verdict != Verdict::acyclic && contraction.verdict != Verdict::proved) return 0;
     const std::vector<ObjectBounds> bounds = bound_objects(graph, components, contraction);
     const Box& box = bounds[graph.root].box;
-    CutOptions options;
+    DetailOptions options;
     options.error_px = choices.one_in(2) ? 4 : 0;
     if (options.error_px == 0 || choices.one_in(2)) options.steps = choices.below(4);
     View view;

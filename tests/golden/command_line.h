@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "runtime/image/image.h"
-#include "runtime/povray/temporary_directory.h"
+#include "runtime/system/temporary_directory.h"
 
 namespace graftal {
 

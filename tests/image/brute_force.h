@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "compiler/cut/cut.h"
+#include "compiler/povray/cut.h"
 #include "runtime/trace/surfaces.h"
 
 namespace graftal {

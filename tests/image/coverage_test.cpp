@@ -15,7 +15,7 @@ namespace {
 double covered_px(const std::string& path, double error_px) {
     CompileOptions options;
     options.size = {80, 45};
-    options.cut.error_px = error_px;
+    options.detail.error_px = error_px;
     const std::optional<CompiledModel> model = compile_file(path, options);
     if (!model) return 0;
     constexpr int magnification = 4;

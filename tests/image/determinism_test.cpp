@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "compiler/emit/emit_povray.h"
+#include "compiler/povray/emit_povray.h"
 #include "tests/image/drawing.h"
 #include "tests/image/random_model.h"
 #include "tests/image/render_helpers.h"
@@ -21,8 +21,8 @@ std::string written(const std::optional<CompiledModel>& model, bool include) {
         text += piece;
         return true;
     };
-    EXPECT_TRUE(emit_povray(model->model.graph, model->cut, model->view,
-                            {.scene_name = "model", .include = include}, sink, palettes));
+    EXPECT_TRUE(
+        emit_povray(model->cut, model->view, {.scene_name = "model", .include = include}, sink, palettes));
     for (const PaletteImage& palette : palettes) {
         text += palette.file_name;
         text.append(reinterpret_cast<const char*>(palette.pixels.data()),

@@ -6,8 +6,8 @@
 
 #include "compiler/support/file.h"
 #include "runtime/povray/povray.h"
-#include "runtime/povray/temporary_directory.h"
 #include "runtime/render/scene_files.h"
+#include "runtime/system/temporary_directory.h"
 
 namespace graftal {
 
@@ -89,7 +89,7 @@ void show_pigments(CompiledModel& model) {
 CompileOptions whole(ImageSize size, std::optional<unsigned> steps) {
     CompileOptions options;
     options.size = size;
-    options.cut.error_px = 0;
+    options.detail.error_px = 0;
     options.steps = steps;
     return options;
 }

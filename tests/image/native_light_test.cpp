@@ -10,7 +10,7 @@
 
 #include <gtest/gtest.h>
 
-#include "compiler/emit/povray_view.h"
+#include "compiler/povray/povray_view.h"
 #include "runtime/trace/camera_rays.h"
 #include "runtime/trace/shade.h"
 #include "tests/image/brute_force.h"

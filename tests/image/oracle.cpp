@@ -9,13 +9,13 @@
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
 
-#include "compiler/emit/emit_povray.h"
-#include "compiler/emit/povray_view.h"
+#include "compiler/povray/emit_povray.h"
+#include "compiler/povray/povray_view.h"
 #include "compiler/support/file.h"
 #include "runtime/povray/povray.h"
-#include "runtime/povray/temporary_directory.h"
 #include "runtime/render/native.h"
 #include "runtime/render/scene_files.h"
+#include "runtime/system/temporary_directory.h"
 #include "runtime/trace/camera_rays.h"
 #include "runtime/trace/traversal.h"
 #include "tests/image/coincidence.h"
@@ -35,8 +35,8 @@ struct Seen {
 class NativeEye {
   public:
     NativeEye(const ViewedModel& viewed, const ShaderLimits& limits)
-        : model_(prepare_cut(viewed.model.graph, viewed.model.components, viewed.model.bounds, viewed.cut),
-                 viewed.view, viewed.cut),
+        : model_(prepare_cut(viewed.model.graph, viewed.model.components, viewed.model.bounds, viewed.detail),
+                 viewed.view, viewed.detail),
           traversal_(model_), groundless_(viewed.view), rays_(viewed.view), finder_(groundless_, traversal_),
           shader_(model_.view, traversal_, limits) {
         groundless_.ground.reset();
@@ -128,7 +128,7 @@ Status draw_depths(CompiledModel model, const DepthRange& range, int threads, Im
     const std::string white = "pigment { rgb <1,1,1> } finish { F_default }";
     const std::string depth = "texture { T_depth }";
     emit_povray(
-        model.model.graph, model.cut, model.view, {.scene_name = "depth"},
+        model.cut, model.view, {.scene_name = "depth"},
         [&](std::string_view piece) { return text += piece, true; }, palettes);
     const PovrayUnits units = choose_units(model.cut, model.view.camera);
     const std::string declared = "#declare T_depth = texture { pigment { " +
@@ -147,14 +147,14 @@ Status draw_depths(CompiledModel model, const DepthRange& range, int threads, Im
 /// The cut for POV-Ray; and the error that it came to, for both engines.
 std::optional<Cut> cut_for_povray(ViewedModel& viewed, const OracleOptions& options,
                                   Diagnostics& diagnostics) {
-    CutOptions cut_options = viewed.cut;
+    DetailOptions detail = viewed.detail;
     // Where every part is spelt out it shows its own normal, and not the limit's.
-    viewed.cut.flatten = cut_options.flatten = options.flatten;
-    cut_options.memory_bytes = options.memory_bytes;
+    viewed.detail.limit_normals = detail.limit_normals = !options.flatten;
+    detail.memory_bytes = options.memory_bytes;
     const AnalysedModel& model = viewed.model;
     Diagnostics found;
     std::optional<Cut> cut =
-        cut_graph(model.graph, model.components, model.bounds, viewed.view, cut_options, found);
+        cut_graph(model.graph, model.components, model.bounds, viewed.view, detail, found, {options.flatten});
     for (const Diagnostic& diagnostic : found.all()) {
         const std::string words = "allow an error of ";
         const std::size_t at = diagnostic.message.find(words);
@@ -165,8 +165,8 @@ std::optional<Cut> cut_for_povray(ViewedModel& viewed, const OracleOptions& opti
         constexpr double step = 1.25;
         const double times = std::stod(diagnostic.message.substr(at + words.size())) / cut->error_asked_px;
         const double coarser = std::pow(step, std::round(std::log(times) / std::log(step)));
-        if (viewed.cut.error_world) viewed.cut.error_world = *viewed.cut.error_world * coarser;
-        viewed.cut.error_px *= coarser;
+        if (viewed.detail.error_world) viewed.detail.error_world = *viewed.detail.error_world * coarser;
+        viewed.detail.error_px *= coarser;
     }
     return cut;
 }
@@ -175,9 +175,9 @@ std::optional<Cut> cut_for_povray(ViewedModel& viewed, const OracleOptions& opti
 std::optional<Cut> any_cut_for_povray(ViewedModel& viewed, const OracleOptions& options,
                                       Diagnostics& diagnostics) {
     std::optional<Cut> cut = cut_for_povray(viewed, options, diagnostics);
-    if (cut || !viewed.cut.culls() || viewed.cut.error_world) return cut;
+    if (cut || !viewed.detail.culls() || viewed.detail.error_world) return cut;
     constexpr double finest_share = 1e-4;
-    viewed.cut.error_world = finest_share * viewed.model.bounds[viewed.model.graph.root].ball.radius;
+    viewed.detail.error_world = finest_share * viewed.model.bounds[viewed.model.graph.root].ball.radius;
     return cut_for_povray(viewed, options, diagnostics);
 }
 
@@ -346,8 +346,8 @@ class Comparison {
 std::optional<OracleReport> ask_oracle(const CompiledModel& theirs, const ViewedModel& ours,
                                        const OracleOptions& options, Status& status) {
     OracleReport report;
-    report.error_px = ours.cut.error_world ? 0 : ours.cut.error_px;
-    report.error_world = ours.cut.error_world.value_or(0);
+    report.error_px = ours.detail.error_world ? 0 : ours.detail.error_px;
+    report.error_world = ours.detail.error_world.value_or(0);
     report.placements = theirs.cut.placement_count;
     report.triangles = theirs.cut.triangle_count;
     constexpr double farthest_in_povray = 1e7;

@@ -10,7 +10,7 @@
 #include <gtest/gtest.h>
 
 #include "compiler/support/file.h"
-#include "runtime/povray/temporary_directory.h"
+#include "runtime/system/temporary_directory.h"
 #include "tests/image/oracle.h"
 #include "tests/image/random_model.h"
 
@@ -22,7 +22,7 @@ constexpr ImageSize small{160, 120};
 CompileOptions plain(double error_px = 0.5) {
     CompileOptions options;
     options.size = small;
-    options.cut.error_px = error_px;
+    options.detail.error_px = error_px;
     return options;
 }
 
@@ -222,11 +222,9 @@ TEST(OracleItself, CanSayNo) {
     const auto viewed = [&](unsigned steps) { return view_model(path, stopped_after(steps), compilation); };
     const std::optional<ViewedModel> ours = viewed(2), coarser = viewed(1);
     ASSERT_TRUE(ours && coarser);
-    CutOptions flat = ours->cut;
-    flat.flatten = true;
     const AnalysedModel& model = ours->model;
-    std::optional<Cut> cut =
-        cut_graph(model.graph, model.components, model.bounds, ours->view, flat, compilation.diagnostics);
+    std::optional<Cut> cut = cut_graph(model.graph, model.components, model.bounds, ours->view, ours->detail,
+                                       compilation.diagnostics, {.flatten = true});
     ASSERT_TRUE(cut);
     CompiledModel theirs{model, ours->view, std::move(*cut)};
     Status status;

@@ -2,9 +2,9 @@
 
 #include <gtest/gtest.h>
 
-#include "compiler/cut/assemble.h"
-#include "compiler/cut/coverage.h"
-#include "compiler/cut/shell_store.h"
+#include "compiler/detail/coverage.h"
+#include "compiler/detail/shell_store.h"
+#include "compiler/povray/assemble.h"
 
 namespace graftal {
 
@@ -13,7 +13,7 @@ CompiledModel parted_at(const CompiledModel& model, double mesh_triangles) {
     split_into_halves(cut);
     const Symmetry symmetry = find_symmetry(cut);
     fit_proxies(cut, symmetry);
-    const CutOptions options;
+    const DetailOptions options;
     const Projection projection(model.view, options, 0, 1e-5);
     Piece root;
     root.node = cut.root;

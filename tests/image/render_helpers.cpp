@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "compiler/support/file.h"
-#include "runtime/povray/temporary_directory.h"
+#include "runtime/system/temporary_directory.h"
 
 namespace graftal {
 

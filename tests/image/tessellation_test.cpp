@@ -37,7 +37,7 @@ void expect_small_stray(const std::string& path, const CompileOptions& options,
 /// Memory of which the absolute specification needs more than the share up to which it is preferred.
 CompileOptions whole_in_meshes(ImageSize size, std::uint64_t memory_bytes = 30'000'000) {
     CompileOptions options = whole(size);
-    options.cut.memory_bytes = memory_bytes;
+    options.detail.memory_bytes = memory_bytes;
     return options;
 }
 

@@ -101,7 +101,7 @@ class ChaosGame : public ::testing::TestWithParam<std::string> {};
 TEST_P(ChaosGame, PointsAndGeometryAreCloseBothWays) {
     CompileOptions options;
     options.size = {320, 240};
-    options.cut.error_px = 8;
+    options.detail.error_px = 8;
     Compilation compilation;
     const std::optional<CompiledModel> compiled =
         compile_model(std::string(GRAFTAL_SOURCE_DIR) + "/" + GetParam(), options, compilation);

@@ -8,7 +8,7 @@
 
 #include <gtest/gtest.h>
 
-#include "compiler/cut/unfold.h"
+#include "compiler/graph/unfold.h"
 #include "compiler/scene/outline.h"
 
 namespace graftal {

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "compiler/cut/unfold.h"
 #include "compiler/graph/components.h"
 #include "compiler/graph/print.h"
+#include "compiler/graph/unfold.h"
 #include "compiler/graph/verify.h"
 #include "compiler/passes/pipeline.h"
 #include "compiler/support/number.h"

@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include "compiler/cut/unfold.h"
+#include "compiler/graph/unfold.h"
 #include "compiler/lower/lower.h"
 
 namespace graftal {

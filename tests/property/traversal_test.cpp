@@ -10,9 +10,9 @@
 
 #include "compiler/analysis/bounding.h"
 #include "compiler/analysis/contraction.h"
-#include "compiler/cut/choose.h"
-#include "compiler/cut/prepare.h"
-#include "compiler/cut/run_cells.h"
+#include "compiler/detail/piece.h"
+#include "compiler/detail/prepare.h"
+#include "compiler/detail/run_cells.h"
 #include "compiler/passes/drop_unreachable.h"
 #include "compiler/scene/scene.h"
 #include "runtime/trace/traversal.h"
@@ -173,7 +173,7 @@ TEST(TraversalProperty, MeetsWhatThePlainUnfoldingMeets) {
         const Box& box = bounds[graph.root].box;
         if (box.empty() || bounds[graph.root].unbounded) continue;
         if (std::max(largest_entry(box.min), largest_entry(box.max)) > 1e100) continue; // refused by compile.cpp
-        CutOptions options;
+        DetailOptions options;
         options.error_px = seed % 3 == 0 ? 2 : 0;
         if (options.error_px == 0 || seed % 2 == 0) options.steps = static_cast<unsigned>(seed % 4);
         const TraceModel model(prepare_cut(graph, components, bounds, options), view_of(graph, bounds),

@@ -2,13 +2,13 @@
 
 #include <fmt/format.h>
 
-#include "compiler/emit/emit_dot.h"
+#include "compiler/graph/emit_dot.h"
 #include "compiler/graph/print.h"
 #include "compiler/lower/orbit_model.h"
 #include "compiler/support/file.h"
-#include "runtime/povray/interruption.h"
-#include "runtime/povray/process.h"
-#include "runtime/povray/temporary_directory.h"
+#include "runtime/system/interruption.h"
+#include "runtime/system/process.h"
+#include "runtime/system/temporary_directory.h"
 #include "tools/graftal/commands.h"
 #include "tools/graftal/report.h"
 

@@ -10,9 +10,9 @@
 
 #include "compiler/support/check.h"
 #include "compiler/support/file.h"
-#include "runtime/povray/temporary_directory.h"
 #include "runtime/system/memory_limit.h"
 #include "runtime/system/signal_stack.h"
+#include "runtime/system/temporary_directory.h"
 #include "tools/graftal/commands.h"
 #include "tools/graftal/options.h"
 #include "tools/graftal/report.h"
@@ -36,7 +36,7 @@ int run_command_line(int argc, char** argv) {
     try {
         const graftal::ParsedCommandLine parsed = graftal::parse_command_line(argc, argv);
         if (!parsed.options) return parsed.exit_status;
-        graftal::limit_memory(std::max(parsed.options->compile.cut.memory_bytes, least_memory_bytes));
+        graftal::limit_memory(std::max(parsed.options->compile.detail.memory_bytes, least_memory_bytes));
         return graftal::run_command(*parsed.options);
     } catch (const std::bad_alloc&) {
         throw;

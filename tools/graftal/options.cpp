@@ -6,8 +6,8 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
-#include "compiler/emit/emit_povray.h"
 #include "compiler/passes/pipeline.h"
+#include "compiler/povray/emit_povray.h"
 #include "tools/graftal/animate_options.h"
 #include "tools/graftal/commands.h"
 #include "tools/graftal/option_values.h"
@@ -235,7 +235,7 @@ std::string refused_by_engine(const Options& options) {
                    ? "--progressive needs '--engine native': POV-Ray shows nothing before its picture is done"
                    : "";
     if (!options.keep.empty()) return "--keep: the native engine writes no scene";
-    if (options.compile.cut.visible_only)
+    if (options.compile.detail.visible_only)
         return "--visible-only: the native engine follows every ray, and so throws all shadows";
     return {};
 }

@@ -1,6 +1,6 @@
 #include <fmt/format.h>
 
-#include "compiler/cut/coarser.h"
+#include "compiler/detail/coarser.h"
 #include "runtime/points/draw_points.h"
 #include "tools/graftal/commands.h"
 #include "tools/graftal/progress_bar.h"

@@ -2,11 +2,11 @@
 
 #include <fmt/format.h>
 
-#include "compiler/cut/coarser.h"
-#include "runtime/povray/interruption.h"
+#include "compiler/detail/coarser.h"
 #include "runtime/render/native.h"
 #include "runtime/render/render.h"
 #include "runtime/render/scene_files.h"
+#include "runtime/system/interruption.h"
 #include "tools/graftal/commands.h"
 #include "tools/graftal/progress_bar.h"
 #include "tools/graftal/report.h"
@@ -90,7 +90,7 @@ int run_render(const Options& options) {
     render.on_progress = [&](const PovrayProgress& progress) { bar.show(progress); };
     render.on_start = [&](double seconds) {
         // Besides what the compiler takes, of the same work.
-        if (!(seconds > 0.5 * options.compile.cut.work_seconds)) return;
+        if (!(seconds > 0.5 * options.compile.detail.work_seconds)) return;
         bar.clear();
         say(fmt::format("graftal: POV-Ray will take about {} seconds of one processor; '--engine native' is "
                         "faster, and a larger --error or a smaller --memory or --size means less work\n",

@@ -11,7 +11,7 @@
 #include "compiler/support/file.h"
 #include "compiler/support/printable.h"
 #include "runtime/image/texture.h"
-#include "runtime/povray/interruption.h"
+#include "runtime/system/interruption.h"
 #include "runtime/system/memory_limit.h"
 #include "tools/graftal/commands.h"
 

@@ -107,7 +107,7 @@ void add_common(CLI::App& app, Options& options) {
     add_value(app, "--memory", "BYTES",
               "Memory that graftal may take, and POV-Ray after it; suffixes K M G (default 2G)",
               "a number of bytes such as 512M", parse_bytes,
-              [&](std::uint64_t bytes) { compile.cut.memory_bytes = bytes; });
+              [&](std::uint64_t bytes) { compile.detail.memory_bytes = bytes; });
     add_value(
         app, "--threads", "N", "Threads to use (default: all processors)", "a whole number from 1 to 512",
         [](const std::string& text) { return parse_whole(text, 1, 512); },
@@ -162,7 +162,7 @@ void add_view(CLI::App& app, Options& options) {
     CLI::Option* pixels = add_value(
         app, "--error", "PX", "Leave out what is smaller than this on the picture (default 0.5; 0: nothing)",
         "a number of pixels, 0 or more", [](const std::string& text) { return parse_at_least(text, 0); },
-        [&](double error) { compile.cut.error_px = error; });
+        [&](double error) { compile.detail.error_px = error; });
     add_value(
         app, "--error-world", "X", "The same as a length in the model's units",
         "0, or a length from 1e-100 to 1e100",
@@ -170,15 +170,15 @@ void add_view(CLI::App& app, Options& options) {
             const std::optional<double> error = parse_at_least(text, 0);
             return error && (*error == 0 || is_size(*error)) ? error : std::nullopt;
         },
-        [&](double error) { compile.cut.error_world = error; })
+        [&](double error) { compile.detail.error_world = error; })
         ->excludes(pixels);
     add_value(
         app, "--work", "SECONDS",
         "Work for the picture, about so many seconds of one processor; what takes more is drawn coarser "
         "(default 40)",
         "a number of seconds above 0", [](const std::string& text) { return parse_at_least(text, 1e-3); },
-        [&](double seconds) { compile.cut.work_seconds = seconds; });
-    app.add_flag("--visible-only", compile.cut.visible_only,
+        [&](double seconds) { compile.detail.work_seconds = seconds; });
+    app.add_flag("--visible-only", compile.detail.visible_only,
                  "Leave out what the camera does not see, with the shadows that it would throw");
     app.add_flag("--flatten", compile.cut.flatten,
                  "Spell out every part in its place, without sharing (for comparison)");

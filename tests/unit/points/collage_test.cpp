@@ -10,7 +10,7 @@
 #include "runtime/image/image.h"
 #include "runtime/points/distance_transform.h"
 #include "runtime/points/draw_points.h"
-#include "runtime/povray/temporary_directory.h"
+#include "runtime/system/temporary_directory.h"
 
 namespace graftal {
 namespace {

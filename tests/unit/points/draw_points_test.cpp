@@ -8,7 +8,7 @@
 
 #include "compiler/support/file.h"
 #include "runtime/points/projection.h"
-#include "runtime/povray/temporary_directory.h"
+#include "runtime/system/temporary_directory.h"
 #include "runtime/trace/camera_rays.h"
 
 namespace graftal {

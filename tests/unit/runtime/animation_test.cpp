@@ -10,8 +10,8 @@
 #include "compiler/support/file.h"
 #include "runtime/image/image.h"
 #include "runtime/image/png_chunks.h"
-#include "runtime/povray/temporary_directory.h"
 #include "runtime/render/frame_store.h"
+#include "runtime/system/temporary_directory.h"
 
 namespace graftal {
 namespace {

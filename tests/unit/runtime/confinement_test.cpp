@@ -8,7 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "runtime/povray/povray.h"
-#include "runtime/povray/temporary_directory.h"
+#include "runtime/system/temporary_directory.h"
 
 namespace graftal {
 namespace {

@@ -6,13 +6,13 @@
 
 #include <gtest/gtest.h>
 
-#include "compiler/cut/assemble.h"
-#include "compiler/cut/bake.h"
-#include "compiler/cut/cut_graph.h"
-#include "compiler/cut/detail.h"
-#include "compiler/cut/shell_store.h"
+#include "compiler/detail/bake.h"
+#include "compiler/detail/cut_graph.h"
+#include "compiler/detail/shell_store.h"
+#include "compiler/detail/weights.h"
+#include "compiler/povray/assemble.h"
 #include "runtime/system/memory_limit.h"
-#include "tests/unit/cut/models.h"
+#include "tests/unit/detail/models.h"
 
 namespace graftal {
 namespace {
@@ -78,7 +78,7 @@ TEST(OutOfMemory, WorkOfAnAssemblyIsTakenOff) {
         View view;
         view.size = {64, 48};
         view.camera.location = {0, 0, -10};
-        CutOptions options;
+        DetailOptions options;
         options.error_px = 0;
         const Projection projection(view, options, 0, 1e-3);
         Weights weights(model.cut);

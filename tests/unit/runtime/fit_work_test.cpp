@@ -8,7 +8,7 @@
 
 #include <gtest/gtest.h>
 
-#include "compiler/cut/work.h"
+#include "compiler/detail/work.h"
 #include "runtime/trace/picture_tracer.h"
 #include "tests/unit/trace/models.h"
 
@@ -18,12 +18,12 @@ namespace {
 class FitWork : public testing::Test {
   protected:
     /// What fits where a model with an error of less than so many pixels takes too much memory.
-    FittedModel fitted(double too_fine_px, const CutOptions& options) {
+    FittedModel fitted(double too_fine_px, const DetailOptions& options) {
         return fitted(test::tetrahedron(), options, [&](double error_px) { return error_px < too_fine_px; });
     }
 
     /// `too_large`: whether a model with such an error takes too much memory.
-    FittedModel fitted(const Graph& graph, const CutOptions& options,
+    FittedModel fitted(const Graph& graph, const DetailOptions& options,
                        const std::function<bool(double)>& too_large) {
         const Components components = strong_components(graph);
         const auto bounds = bound_objects(graph, components, decide_contraction(graph, components));
@@ -84,7 +84,7 @@ class FitWork : public testing::Test {
 };
 
 TEST_F(FitWork, KeepsWhatFits) {
-    const CutOptions options;
+    const DetailOptions options;
     const FittedModel model = fitted(0, options);
     EXPECT_EQ(model.error_px, options.error_px);
     EXPECT_FALSE(model.out_of_memory);
@@ -93,7 +93,7 @@ TEST_F(FitWork, KeepsWhatFits) {
 }
 
 TEST_F(FitWork, CoarsensWhatTakesTooMuchMemory) {
-    const CutOptions options;
+    const DetailOptions options;
     const FittedModel model = fitted(1, options);
     EXPECT_EQ(model.error_px, 1.5 * 1.5 * 1.5 * options.error_px);
     EXPECT_EQ(model.model->options.error_px, model.error_px);
@@ -106,12 +106,12 @@ TEST_F(FitWork, CoarsensWhatTakesTooMuchMemory) {
 /// A coarser picture would need all of it too.
 TEST_F(FitWork, GivesUpWhatCannotBePrepared) {
     most_prepared_ = 0;
-    EXPECT_THROW(fitted(0, CutOptions()), std::bad_alloc);
+    EXPECT_THROW(fitted(0, DetailOptions()), std::bad_alloc);
     EXPECT_EQ(prepared_, 1);
 }
 
 TEST_F(FitWork, CoarsensWhatTakesTooMuchWorkAndThenTooMuchMemory) {
-    CutOptions options;
+    DetailOptions options;
     options.work_seconds = 1e-2;
     const FittedModel model = fitted(crowd(), options, [&](double error_px) {
         return error_px > options.error_px && error_px < 4 * options.error_px;
@@ -123,7 +123,7 @@ TEST_F(FitWork, CoarsensWhatTakesTooMuchWorkAndThenTooMuchMemory) {
 
 /// Where copies lie in each other does not depend on the error: tries that are coarser need not ask again.
 TEST_F(FitWork, LooksOnceForCrowds) {
-    CutOptions options;
+    DetailOptions options;
     const auto fits = [](double) { return false; };
     const FittedModel first = fitted(crowd(), options, fits);
     ASSERT_EQ(first.error_px, options.error_px);
@@ -139,7 +139,7 @@ TEST_F(FitWork, LooksOnceForCrowds) {
 // One ray through thousands of cubes takes longer than the whole picture may.
 // A look that was given up went on to make every shell that its rays met, for minutes.
 TEST_F(FitWork, NoShellIsMadeBeyondTheWorkForThem) {
-    FittedModel crowded = fitted(crowd(), CutOptions(), [](double) { return false; });
+    FittedModel crowded = fitted(crowd(), DetailOptions(), [](double) { return false; });
     MeshStore& meshes = crowded.model->meshes;
     ASSERT_GT(meshes.shell_work(), 0u);
     const std::uint64_t before = meshes.shell_work();
@@ -152,7 +152,7 @@ TEST_F(FitWork, NoShellIsMadeBeyondTheWorkForThem) {
 }
 
 TEST_F(FitWork, LooksNoLongerThanItMay) {
-    CutOptions options;
+    DetailOptions options;
     options.error_px = 0.05;
     options.steps = 6; // where levels end nothing becomes a shell
     options.work_seconds = 1e-3;
@@ -170,7 +170,7 @@ TEST_F(FitWork, SeesWhatIsThin) {
     thin.instances.push_back({graph.root, to_a_side, {}, {}, {}});
     graph.root = graph.add(std::move(thin));
     view_.size = {320, 240};
-    CutOptions options;
+    DetailOptions options;
     options.error_px = 0.01;
     options.steps = 6;
     const FittedModel model = fitted(graph, options, [](double) { return false; });
@@ -193,7 +193,7 @@ TEST_F(FitWork, ALargeGraphLeavesLessForThePicture) {
 }
 
 TEST_F(FitWork, CoarsensNothingOfWhichNothingIsLeftOut) {
-    CutOptions options;
+    DetailOptions options;
     options.error_px = 0;
     options.steps = 3;
     EXPECT_NO_THROW(fitted(0, options));

@@ -8,7 +8,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "runtime/povray/temporary_directory.h"
+#include "runtime/system/temporary_directory.h"
 
 namespace graftal {
 namespace {

@@ -11,7 +11,7 @@
 #include <gtest/gtest.h>
 
 #include "runtime/image/png_chunks.h"
-#include "runtime/povray/temporary_directory.h"
+#include "runtime/system/temporary_directory.h"
 
 namespace graftal {
 namespace {

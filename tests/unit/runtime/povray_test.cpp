@@ -8,8 +8,8 @@
 #include <gtest/gtest.h>
 
 #include "runtime/image/image.h"
-#include "runtime/povray/interruption.h"
-#include "runtime/povray/temporary_directory.h"
+#include "runtime/system/interruption.h"
+#include "runtime/system/temporary_directory.h"
 
 namespace graftal {
 namespace {

@@ -1,4 +1,4 @@
-#include "runtime/povray/process.h"
+#include "runtime/system/process.h"
 
 #include <chrono>
 #include <csignal>
@@ -12,8 +12,8 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
-#include "runtime/povray/interruption.h"
-#include "runtime/povray/temporary_directory.h"
+#include "runtime/system/interruption.h"
+#include "runtime/system/temporary_directory.h"
 
 namespace graftal {
 namespace {

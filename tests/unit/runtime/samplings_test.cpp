@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "compiler/cut/work.h"
+#include "compiler/detail/work.h"
 
 namespace graftal {
 namespace {

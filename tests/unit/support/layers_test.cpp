@@ -18,20 +18,18 @@ using Layers = std::map<std::string, std::set<std::string>>; // folder -> folder
 
 /// The table of graftal_layer() calls. A layer stands below all that it uses, so one read is enough.
 Layers layers_of(const fs::path& root) {
-    static const std::regex call(R"(^graftal_layer\((\S+)\s*(?:USES ([a-z ]+))?)");
+    static const std::regex call(R"(^graftal_layer\((\S+)\s*(?:USES ([a-z/ ]+))?)");
     Layers layers;
-    std::map<std::string, std::string> folder_of;
     std::ifstream lists(root / "CMakeLists.txt");
     for (std::string line; std::getline(lists, line);) {
         std::smatch match;
         if (!std::regex_search(line, match, call)) continue;
         const std::string folder = match[1];
-        folder_of[fs::path(folder).filename()] = folder;
         std::set<std::string>& allowed = layers[folder] = {folder};
         std::istringstream uses(match[2]);
-        for (std::string name; uses >> name;) {
-            EXPECT_TRUE(folder_of.count(name)) << folder << " uses " << name << ", which stands below it";
-            allowed.merge(std::set(layers[folder_of[name]]));
+        for (std::string used; uses >> used;) {
+            EXPECT_TRUE(layers.count(used)) << folder << " uses " << used << ", which stands below it";
+            allowed.merge(std::set(layers[used]));
         }
     }
     return layers;

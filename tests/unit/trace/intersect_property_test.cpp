@@ -12,7 +12,7 @@
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
-#include "compiler/cut/tessellate.h"
+#include "compiler/detail/tessellate.h"
 
 namespace graftal {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "compiler/cut/run_cells.h"
+#include "compiler/detail/run_cells.h"
 #include "tests/unit/trace/models.h"
 
 namespace graftal {
@@ -29,7 +29,7 @@ TEST(Layers, PartsOfRunsAreCopiesOfTheirPrimitivesToo) {
     test::place(graph, branch, master, {});
     test::place(graph, branch, branch, Affine::translate(Vec3(0, 1, 0)) * Affine::scale(Vec3(0.9)));
     test::place(graph, graph.root, branch, {});
-    CutOptions options;
+    DetailOptions options;
     options.steps = 2;
     const auto model = test::traced(graph, options);
     const LayeredGraph layers = layered(model->prepared.cut, model->prepared.root_steps);

@@ -18,8 +18,8 @@ using test::empty_graph;
 using test::place;
 using test::traced;
 
-CutOptions culled() {
-    CutOptions options;
+DetailOptions culled() {
+    DetailOptions options;
     options.error_px = 0.5;
     return options;
 }

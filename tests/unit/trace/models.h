@@ -7,7 +7,7 @@
 
 #include "compiler/analysis/bounding.h"
 #include "compiler/analysis/contraction.h"
-#include "compiler/cut/prepare.h"
+#include "compiler/detail/prepare.h"
 #include "compiler/graph/graph.h"
 #include "runtime/trace/trace_model.h"
 
@@ -29,7 +29,7 @@ inline void place(Graph& graph, ObjectId user, ObjectId master, const Affine& ma
 }
 
 /// The model as the engine sees it, from the front and far enough away to see all of it in 640 pixels, or from `eye`.
-inline std::unique_ptr<TraceModel> traced(const Graph& graph, const CutOptions& options,
+inline std::unique_ptr<TraceModel> traced(const Graph& graph, const DetailOptions& options,
                                           std::optional<Vec3> eye = {}) {
     const Components components = strong_components(graph);
     const auto bounds = bound_objects(graph, components, decide_contraction(graph, components));

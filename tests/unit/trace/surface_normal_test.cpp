@@ -8,7 +8,7 @@
 #include <glm/matrix.hpp>
 #include <gtest/gtest.h>
 
-#include "compiler/cut/leaf_walk.h"
+#include "compiler/detail/leaf_walk.h"
 #include "runtime/trace/traversal.h"
 #include "tests/unit/trace/models.h"
 
@@ -21,11 +21,11 @@ using test::traced;
 
 constexpr unsigned levels = 4;
 
-CutOptions options(bool flatten) {
-    CutOptions options;
+DetailOptions options(bool limit_normals) {
+    DetailOptions options;
     options.error_px = 0;
     options.steps = levels;
-    options.flatten = flatten;
+    options.limit_normals = limit_normals;
     return options;
 }
 
@@ -57,7 +57,7 @@ Vec3 normal_by_leaves(const std::vector<WalkedLeaf>& leaves, Vec3 point) {
 }
 
 TEST(LimitNormal, IsThatOfTheMeshes) {
-    const auto model = traced(corners(), options(false));
+    const auto model = traced(corners(), options(true));
     const CutGraph& cut = model->prepared.cut;
     const Symmetry& symmetry = model->prepared.symmetry;
     BakeRequest request;
@@ -72,7 +72,7 @@ TEST(LimitNormal, IsThatOfTheMeshes) {
         leaves.push_back(leaf);
     ASSERT_EQ(leaves.size(), 2401u);
     Traversal traversal(*model);
-    const auto plain = traced(corners(), options(true));
+    const auto plain = traced(corners(), options(false));
     Traversal own(*plain);
     std::mt19937_64 random(5);
     std::uniform_real_distribution<double> unit(-1, 1);

@@ -19,15 +19,15 @@ using test::traced;
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-CutOptions exact(unsigned steps = 1) {
-    CutOptions options;
+DetailOptions exact(unsigned steps = 1) {
+    DetailOptions options;
     options.error_px = 0;
     options.steps = steps;
     return options;
 }
 
-CutOptions culled(double error_px = 0.5) {
-    CutOptions options;
+DetailOptions culled(double error_px = 0.5) {
+    DetailOptions options;
     options.error_px = error_px;
     return options;
 }
@@ -216,7 +216,7 @@ TEST(Traversal, DrawsWhatIsFlattenedOrCrushed) {
         Graph graph = empty_graph();
         place(graph, graph.root, graph.primitive(PrimitiveKind::sphere), Affine::scale(factors));
         place(graph, graph.root, graph.primitive(PrimitiveKind::cube), Affine::translate({5, 0, 0}));
-        for (const CutOptions& options : {exact(), culled()}) {
+        for (const DetailOptions& options : {exact(), culled()}) {
             const auto model = traced(graph, options);
             Traversal traversal(*model);
             EXPECT_TRUE(traversal.meets_any({{0, 0, 10}, {0, 0, -1}}, {})) << factors.x << factors.z;

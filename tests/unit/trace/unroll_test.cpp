@@ -16,8 +16,8 @@ using test::empty_graph;
 using test::place;
 using test::traced;
 
-CutOptions options_of(double error_px, std::optional<unsigned> steps = {}) {
-    CutOptions options;
+DetailOptions options_of(double error_px, std::optional<unsigned> steps = {}) {
+    DetailOptions options;
     options.error_px = error_px;
     options.steps = steps;
     return options;
@@ -25,7 +25,7 @@ CutOptions options_of(double error_px, std::optional<unsigned> steps = {}) {
 
 /// The model from the eye, and the same of which every edge is followed by itself.
 struct Pair {
-    Pair(const Graph& graph, const CutOptions& options, std::optional<Vec3> eye) {
+    Pair(const Graph& graph, const DetailOptions& options, std::optional<Vec3> eye) {
         unrolled = traced(graph, options, eye);
         plain = traced(graph, options, eye);
         for (TraceNode& node : plain->nodes)
@@ -35,7 +35,7 @@ struct Pair {
 };
 
 /// Compares many rays, and that fewer parts are visited where there are unrollings.
-void expect_same(const Graph& graph, const CutOptions& options, std::optional<Vec3> eye_at = {}) {
+void expect_same(const Graph& graph, const DetailOptions& options, std::optional<Vec3> eye_at = {}) {
     const Pair models(graph, options, eye_at);
     ASSERT_FALSE(models.unrolled->unrollings.empty());
     Traversal traversal(*models.unrolled), plain(*models.plain);
@@ -96,7 +96,7 @@ TEST(Unroll, DrawsTheSameBesideThePicture) {
         SCOPED_TRACE(error_px);
         expect_same(test::tetrahedron(), options_of(error_px), Vec3(0.4, 0.3, 1.2));
         expect_same(twisted(0.8), options_of(error_px), Vec3(0.2, 1.5, 1.5));
-        CutOptions in_world = options_of(0);
+        DetailOptions in_world = options_of(0);
         in_world.error_world = 0.01 * error_px;
         expect_same(twisted(0.8), in_world, Vec3(0.2, 1.5, 1.5));
     }

@@ -12,7 +12,7 @@
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
-#include "tests/unit/cut/models.h"
+#include "tests/unit/detail/models.h"
 
 namespace graftal {
 namespace {

@@ -1,0 +1,316 @@
+#include "compiler/detail/bake.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <future>
+#include <map>
+#include <new>
+#include <numbers>
+#include <span>
+
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
+
+#include "compiler/detail/leaf_walk.h"
+#include "compiler/detail/least_width.h"
+#include "compiler/detail/mesh_builder.h"
+#include "compiler/detail/placed_set.h"
+#include "compiler/detail/shell.h"
+#include "compiler/detail/slot_table.h"
+#include "compiler/detail/tessellate.h"
+#include "compiler/detail/texture_space.h"
+#include "compiler/support/check.h"
+#include "compiler/support/stretch.h"
+
+namespace graftal {
+
+namespace {
+
+/// What it takes to widen a leaf, and to keep one, measured, in visits of the walk: where leaves are many,
+/// each that is kept waits for memory.
+constexpr std::uint64_t visits_of_widening = 10, visits_of_keeping = 5;
+/// Room is made for so many leaves beforehand, at most.
+constexpr double most_expected_leaves = 1 << 20;
+constexpr std::size_t fewest_leaves_for_a_thread = 10'000;
+
+struct KeptLeaf {
+    Affine place;
+    PrimitiveKind kind = PrimitiveKind::sphere;
+    NormalField normals;
+    double turns = 1;
+};
+
+/// What leaves of one part have in common.
+struct PartKey {
+    std::int64_t material = -1; ///< none: -1
+    bool textured = false;
+    std::array<double, 4> tint{}; ///< of what has a texture
+    auto operator<=>(const PartKey&) const = default;
+};
+
+/// The leaves of one finish.
+struct Part {
+    std::optional<MaterialId> material;
+    bool textured = false;
+    PathTint tint;
+    bool smooth = false; ///< some leaf is curved
+    std::vector<KeptLeaf> leaves;
+    SlotTable slots; ///< of the leaves' colours
+    Mesh mesh;
+    std::vector<std::uint32_t> leaf_of_triangle;
+};
+
+/// Turns spread evenly over all (M. Alexa, "Super-Fibonacci Spirals", CVPR 2022). The shadows of an
+/// octahedron differ by a quarter with the direction; those of many that are turned in so many ways hardly
+/// do.
+Affine spread_turn(std::size_t number) {
+    constexpr int turns = 16;
+    static const std::array<Affine, turns> all = [] {
+        std::array<Affine, turns> result;
+        for (int i = 0; i < turns; ++i) {
+            const double s = i + 0.5, first = std::sqrt(s / turns), second = std::sqrt(1 - s / turns);
+            const double alpha = 2 * std::numbers::pi * s / std::numbers::sqrt2;
+            const double beta = 2 * std::numbers::pi * s / 1.533751168755204288;
+            const Vec3 axis(first * std::sin(alpha), first * std::cos(alpha), second * std::sin(beta));
+            const double cosine = std::clamp(second * std::cos(beta), -1.0, 1.0);
+            result[static_cast<std::size_t>(i)] =
+                Affine::rotate(axis, 360 / std::numbers::pi * std::acos(cosine));
+        }
+        return result;
+    }();
+    return all[number % turns];
+}
+
+class Baker {
+  public:
+    Baker(const CutGraph& cut, const Symmetry& symmetry, const BakeRequest& request,
+          std::size_t max_triangles)
+        : cut_(cut), symmetry_(symmetry), request_(request), max_triangles_(max_triangles) {}
+
+    Baked bake() {
+        try {
+            unfold();
+        } catch (const std::bad_alloc&) {
+            // What was visited counts as work: tries that end for their memory are not for nothing.
+            baked_.complete = false;
+        }
+        if (baked_.complete) return std::move(baked_);
+        Baked stopped;
+        stopped.visits = baked_.visits;
+        stopped.triangles = baked_.triangles;
+        stopped.complete = false;
+        return stopped;
+    }
+
+  private:
+    void unfold() {
+        place_body();
+        gather_leaves();
+        if (!baked_.complete) return;
+        // Shapes and colours have nothing to do with each other, and take about as long.
+        const auto when = numbers_.size() < fewest_leaves_for_a_thread
+                              ? std::launch::deferred
+                              : std::launch::async | std::launch::deferred;
+        const std::future<void> coloured = std::async(when, [this] { colour_leaves(); });
+        for (Part& part : parts_)
+            build(part);
+        coloured.wait();
+        for (Part& part : parts_)
+            finish(part);
+    }
+
+    void place_body() {
+        const Ball& ball = cut_.nodes[request_.representative].ball;
+        const double size = std::exp2(std::ceil(std::log2(std::max(ball.radius, 1e-200))));
+        const Vec3 centre(std::round(ball.centre.x / size * 4) * size / 4,
+                          std::round(ball.centre.y / size * 4) * size / 4,
+                          std::round(ball.centre.z / size * 4) * size / 4);
+        baked_.representative_from_body = Affine::translate(centre) * Affine::scale(Vec3(size));
+    }
+
+    void gather_leaves() {
+        PlacedSet seen(cut_.nodes[request_.representative].ball.radius, expected_leaves());
+        LeafWalk walk(cut_, symmetry_, request_, std::span(request_.painters).first(1));
+        WalkedLeaf leaf;
+        std::size_t triangles = 0;
+        for (std::uint64_t number = 0; walk.next(leaf); ++number) {
+            baked_.visits =
+                walk.visits() + visits_of_widening * widened_ + visits_of_keeping * numbers_.size();
+            if (baked_.visits > request_.most_visits) {
+                baked_.complete = false;
+                return;
+            }
+            Affine mark;
+            const Affine place = drawn(leaf, mark);
+            if (!seen.insert(static_cast<std::uint32_t>(leaf.kind), mark)) continue;
+            const auto [place_of_part, added] = part_of_.emplace(key_of(leaf), parts_.size());
+            if (added) add_part(leaf);
+            Part& part = parts_[place_of_part->second];
+            const TessellatedPrimitive& coarsest = tessellated(leaf.kind, 0);
+            part.smooth = part.smooth || part.textured || !coarsest.normals.empty();
+            part.leaves.push_back({place, leaf.kind, leaf.normals, leaf.turns});
+            numbers_.push_back(number);
+            baked_.culled_detail = std::max(baked_.culled_detail, leaf.culled_detail);
+            // Of a cube no face may be left where others touch it; it counts when the mesh is built.
+            triangles += leaf.kind == PrimitiveKind::cube ? 1 : coarsest.triangles.size();
+            if (triangles > max_triangles_) {
+                baked_.complete = false;
+                return;
+            }
+        }
+    }
+
+    /// The place of the leaf, as wide as it is drawn, and what it has in common with those that it stands
+    /// for.
+    Affine drawn(const WalkedLeaf& leaf, Affine& mark) {
+        const Affine& place = leaf.representative_from_leaf;
+        const bool culls = request_.half_widths_from_unit != Mat3(0.0);
+        if (!leaf.faint && !is_singular(place, flattest_leaf)) return mark = place;
+        ++widened_;
+        const Affine seen_from_unit{culls ? request_.half_widths_from_unit : Mat3(1.0), Vec3(0.0)};
+        const Affine seen = seen_from_unit * place;
+        const auto [wide, half_width] = drawn_leaf(leaf.kind, seen, leaf.faint, culls ? 1 : 0);
+        if (!(half_width > 0)) return mark = place;
+        const Affine unit_from_seen = inverse(seen_from_unit);
+        // What a singular map crushes onto a line or a sheet piles up there, and specks do: one leaf a cell
+        // will do.
+        const bool speck = leaf.faint && largest_stretch(seen.linear) <= half_width;
+        mark = unit_from_seen * wide;
+        if (leaf.crushed || speck)
+            mark = Affine::scale(Vec3(largest_stretch(unit_from_seen.linear))) * speck_mark(wide, half_width);
+        return unit_from_seen * wide;
+    }
+
+    /// Walks once more, for all painters.
+    void colour_leaves() {
+        LeafWalk walk(cut_, symmetry_, request_, request_.painters);
+        WalkedLeaf leaf;
+        std::size_t next = 0;
+        for (std::uint64_t number = 0; next < numbers_.size() && walk.next(leaf); ++number) {
+            if (number != numbers_[next]) continue;
+            parts_[part_of_.at(key_of(leaf))].slots.add(leaf.colours);
+            ++next;
+        }
+    }
+
+    std::size_t expected_leaves() const {
+        return static_cast<std::size_t>(std::min(request_.expected_leaves, most_expected_leaves));
+    }
+
+    bool textured(const WalkedLeaf& leaf) const {
+        return request_.pictures && !leaf.proxy && leaf.material && !cut_.materials[*leaf.material].texture.empty();
+    }
+
+    PartKey key_of(const WalkedLeaf& leaf) const {
+        PartKey key;
+        if (leaf.material) key.material = static_cast<std::int64_t>(*leaf.material);
+        key.textured = textured(leaf);
+        if (!key.textured) return key;
+        const PathTint tint = rounded(leaf.tint, texture_tint_grain);
+        key.tint = {tint.premultiplied.r, tint.premultiplied.g, tint.premultiplied.b, tint.alpha};
+        return key;
+    }
+
+    void add_part(const WalkedLeaf& leaf) {
+        parts_.push_back({.material = leaf.material,
+                          .textured = textured(leaf),
+                          .tint = rounded(leaf.tint, texture_tint_grain),
+                          .slots = SlotTable(request_.painters.size())});
+        if (parts_.size() > 1) return;
+        parts_.back().leaves.reserve(expected_leaves());
+        parts_.back().slots.reserve(expected_leaves());
+    }
+
+    void build(Part& part) {
+        MeshBuilder builder(part.smooth);
+        const Affine body_from_representative = inverse(baked_.representative_from_body);
+        for (std::uint32_t number = 0; number < part.leaves.size(); ++number) {
+            const KeptLeaf& leaf = part.leaves[number];
+            const int level = fineness(leaf);
+            Affine place = body_from_representative * leaf.place;
+            if (part.textured) {
+                const double around = cut_.materials[*part.material].around;
+                builder.add_textured(leaf.kind, level, place, texture_space(leaf.kind, around, leaf.turns),
+                                     number);
+                if (too_many(builder)) return;
+                continue;
+            }
+            if (leaf.kind == PrimitiveKind::sphere && level == 0) place = place * spread_turn(number);
+            builder.add(leaf.kind, level, place, number,
+                        leaf.normals.seen_from(baked_.representative_from_body.linear[0][0],
+                                               baked_.representative_from_body.translation));
+            if (too_many(builder)) return;
+        }
+        part.leaves = {};
+        builder.finish();
+        part.mesh = std::move(builder.mesh);
+        part.leaf_of_triangle = std::move(builder.leaf_of_triangle);
+        baked_.triangles += part.mesh.triangles.size();
+    }
+
+    bool too_many(const MeshBuilder& builder) {
+        if (baked_.triangles + builder.triangle_count() <= 4 * max_triangles_) return false;
+        baked_.complete = false;
+        return true;
+    }
+
+    void finish(Part& part) {
+        if (part.mesh.triangles.empty()) return;
+        if (part.textured) {
+            GRAFTAL_CHECK(request_.painters.size() == 1, "bake: a picture has one painter");
+            baked_.parts.push_back({part.material, std::move(part.mesh), {{Rgb(1.0)}}, true, part.tint});
+            return;
+        }
+        part.mesh.slot_count = part.slots.slot_count();
+        if (part.mesh.slot_count > 1) {
+            part.mesh.slot_of_triangle.reserve(part.leaf_of_triangle.size());
+            for (const std::uint32_t leaf : part.leaf_of_triangle)
+                part.mesh.slot_of_triangle.push_back(part.slots.slot_of(leaf));
+        }
+        baked_.parts.push_back({part.material, std::move(part.mesh), part.slots.take_palettes(), false, {}});
+    }
+
+    int fineness(const KeptLeaf& leaf) {
+        if (max_fineness(leaf.kind) == 0) return 0;
+        const double px = norm(leaf.place.linear) * request_.pixels_per_unit;
+        const double error_px = request_.pixels_per_unit / request_.detail_per_unit;
+        const int level = fineness_for(leaf.kind, tessellation_tolerance(error_px) / std::max(px, 1e-300));
+        baked_.tessellation_px = std::max(baked_.tessellation_px, px * tessellation_error(leaf.kind, level));
+        return level;
+    }
+
+    const CutGraph& cut_;
+    const Symmetry& symmetry_;
+    const BakeRequest& request_;
+    std::size_t max_triangles_;
+    std::uint64_t widened_ = 0; ///< leaves
+    Baked baked_;
+    std::vector<Part> parts_;
+    std::map<PartKey, std::size_t> part_of_;
+    std::vector<std::uint64_t> numbers_; ///< of the leaves that are kept, in the order of the walk
+};
+
+} // namespace
+
+PathTint rounded(const PathTint& tint, double grain) {
+    return {glm::round(tint.premultiplied / grain) * grain, std::round(tint.alpha / grain) * grain};
+}
+
+Baked bake(const CutGraph& cut, const Symmetry& symmetry, const BakeRequest& request,
+           std::size_t max_triangles) {
+    if (!request.shell) return Baker(cut, symmetry, request, max_triangles).bake();
+    ShellRequest shell;
+    shell.node = request.representative;
+    shell.steps = request.steps;
+    shell.detail_per_unit = request.detail_per_unit;
+    shell.most_work = std::min(shell.most_work, request.most_shell_work);
+    shell.material = request.material;
+    shell.store = request.shells;
+    for (const Painter& painter : request.painters)
+        shell.inherited.push_back(painter.inherited);
+    return bake_shell(cut, shell, max_triangles);
+}
+
+} // namespace graftal

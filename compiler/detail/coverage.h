@@ -1,0 +1,28 @@
+#pragma once
+
+#include <cstdint>
+
+#include "compiler/detail/cut_graph.h"
+#include "compiler/detail/symmetry.h"
+
+namespace graftal {
+
+/// Fits the proxy of every node to what its subtree covers: an ellipsoid about the middle of the subtree's
+/// area whose shadow, from every side as nearly as an ellipsoid can, is as large as the subtree's, and over
+/// all directions exactly so. Congruent nodes get congruent proxies. Weighs the edges by what is seen of
+/// them.
+///
+/// Shadows are measured on the subtree unfolded to some hundred parts, masters first, so that each node is
+/// unfolded down to its masters' proxies: O(graph). A cycle is gone round until its proxies stay as they are,
+/// unless there are so many that it would take too long.
+/// Those that contract too fast for a shadow of their own (dimension <= 2, and no primitive on the way: see
+/// `shadowless`) keep the ellipsoid in their box: a part that is culled is drawn as large as the error, and
+/// lines stay visible.
+///
+/// Returns how many bodies it drew, which is what it costs.
+std::uint64_t fit_proxies(CutGraph& cut, const Symmetry& symmetry);
+
+/// Whether the box of a shadowless node is a sheet or a line. Requires fit_proxies().
+bool is_flat(const CutNode& node);
+
+} // namespace graftal

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+namespace graftal {
+
+struct DetailOptions {
+    double error_px = 0.5; ///< parts whose diameter projects to at most this are culled; 0: nothing is
+    std::optional<double> error_world;       ///< the same as a length in scene units, in place of error_px
+    std::optional<unsigned> steps;           ///< levels; nothing: as deep as the error asks for
+    std::uint64_t memory_bytes = 2ull << 30; ///< POV-Ray's estimated peak
+    std::vector<unsigned>
+        root_levels;           ///< that each of the root's instances uses up; empty: as the graph says
+    double work_seconds = 30;  ///< of one processor, for the picture (work.h); infinite: whatever it takes
+    bool visible_only = false; ///< drop what is out of the picture, with its shadows and reflections
+    /// Whether proxies show the limit's normals (limit_normal.h), or their own.
+    bool limit_normals = true;
+
+    /// Whether anything is culled for its size.
+    bool culls() const { return error_world ? *error_world > 0 : error_px > 0; }
+};
+
+} // namespace graftal

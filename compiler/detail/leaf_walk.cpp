@@ -1,0 +1,169 @@
+#include "compiler/detail/leaf_walk.h"
+
+#include <algorithm>
+
+#include "compiler/detail/piece_kind.h"
+#include "compiler/detail/run_cells.h"
+#include "compiler/detail/texture_space.h"
+#include "compiler/support/stretch.h"
+
+namespace graftal {
+
+namespace {
+
+/// Parts are compared after so many visits, where most walks are at their end.
+constexpr std::uint64_t most_patience = 4096;
+constexpr double cell_half_widths = 0.5;
+/// What a comparison takes, measured: it finds singular values, and a cell of a table.
+constexpr std::uint64_t visits_of_a_comparison = 4;
+
+} // namespace
+
+LeafWalk::LeafWalk(const CutGraph& cut, const Symmetry& symmetry, const BakeRequest& request,
+                   std::span<const Painter> painters)
+    : cut_(cut), symmetry_(symmetry), detail_per_unit_(request.detail_per_unit), error_px_(request.error_px),
+      limit_normals_(request.limit_normals), visit_{request.representative, request.steps, {}, 1, 0},
+      cells_from_unit_(request.half_widths_from_unit / cell_half_widths) {
+    for (const Painter& painter : painters)
+        paints_.push_back({painter.pair, {}, painter.inherited, request.material});
+    stack_.push_back(visit_);
+    paint_stack_ = paints_;
+}
+
+bool LeafWalk::next(WalkedLeaf& leaf) {
+    while (!stack_.empty()) {
+        pop();
+        const CutNode& shape = cut_.nodes[visit_.shape];
+        leaf.material = paints_.front().material;
+        leaf.culled_detail = visit_.culled_detail;
+        leaf.crushed = visit_.crushed;
+        leaf.faint = visit_.faint || (!shape.primitive && shape.shadowless);
+        leaf.colours.clear();
+        leaf.normals = {};
+        leaf.proxy = !shape.primitive;
+        leaf.tint = paints_.front().tint;
+        leaf.turns = visit_.turns;
+        if (shape.primitive) {
+            leaf.kind = *shape.primitive;
+            leaf.representative_from_leaf = visit_.representative_from_node;
+            for (const Paint& paint : paints_)
+                leaf.colours.push_back(paint.tint.over(paint.inherited));
+            return true;
+        }
+        const double detail = 2 * shape.ball.radius * visit_.scale * detail_per_unit_;
+        const bool cut = is_cut(shape, visit_.steps, detail, error_px_);
+        if (followed_edges(shape, cut).empty() && (cut || !shape.cell)) {
+            leaf.kind = PrimitiveKind::sphere;
+            leaf.representative_from_leaf = visit_.representative_from_node * shape.node_from_proxy;
+            for (const Paint& paint : paints_)
+                leaf.colours.push_back(paint.tint.over(colours_of(paint).mean.over(paint.inherited)));
+            leaf.culled_detail = detail <= 1 ? detail : 0;
+            leaf.normals = normals();
+            return true;
+        }
+        enter_ball(shape);
+        push_children(cut, detail);
+    }
+    return false;
+}
+
+void LeafWalk::pop() {
+    ++visits_;
+    visit_ = stack_.back();
+    stack_.pop_back();
+    const auto begin = paint_stack_.end() - static_cast<std::ptrdiff_t>(paints_.size());
+    std::copy(begin, paint_stack_.end(), paints_.begin());
+    paint_stack_.erase(begin, paint_stack_.end());
+}
+
+void LeafWalk::enter_ball(const CutNode& shape) {
+    if (!limit_normals_ || !shape.unending) return;
+    balls_.resize(visit_.depth++);
+    balls_.push_back(
+        {visit_.representative_from_node(shape.ball.centre), visit_.scale * shape.ball.radius});
+}
+
+NormalField LeafWalk::normals() const {
+    NormalField field;
+    if (visit_.crushed) return field;
+    for (std::uint32_t level = 1; level <= limit_normal_levels && level <= visit_.depth; ++level) {
+        const Ball& ball = balls_[visit_.depth - level];
+        field.add(static_cast<int>(level), ball.centre, ball.radius);
+    }
+    return field;
+}
+
+void LeafWalk::push_children(bool is_cut, double detail) {
+    if (cut_.nodes[visit_.shape].cell && !is_cut) return push_items();
+    const auto& edges = followed_edges(cut_.nodes[visit_.shape], is_cut);
+    for (std::size_t i = edges.size(); i-- > 0;) {
+        fill_child(edges[i], is_cut, detail, stack_.emplace_back());
+        if (!is_new(stack_.back())) {
+            stack_.pop_back();
+            continue;
+        }
+        for (const Paint& paint : paints_)
+            fill_child(paint, i, is_cut, paint_stack_.emplace_back());
+    }
+}
+
+/// The last of them first. All painters show them alike.
+void LeafWalk::push_items() {
+    const RunCell& cell = *cut_.nodes[visit_.shape].cell;
+    const auto push = [&](const CutEdge& edge) {
+        fill_child(edge, false, 0, stack_.emplace_back());
+        for (const Paint& paint : paints_) {
+            Paint& child = paint_stack_.emplace_back(paint);
+            child.pair = symmetry_.pair[edge.child];
+            if (!edge.material) continue;
+            child.material = edge.material;
+            child.inherited = cut_.materials[*edge.material].rgb;
+        }
+    };
+    for (std::size_t i = cell.first + cell.count; i-- > cell.first;) {
+        const RunItem& item = (*cell.source->run)[i];
+        if (item.ball) push(edge_to_ball(*cell.source, item));
+        push(edge_to_body(*cell.source, item));
+    }
+}
+
+/// False for what lies as another part did, as nearly as can be seen.
+bool LeafWalk::is_new(const Visit& child) {
+    if (visits_ < most_patience || cells_from_unit_ == Mat3(0.0) || !cut_.nodes[child.shape].widens)
+        return true;
+    visits_ += visits_of_a_comparison;
+    const double size = std::max(cut_.nodes[child.shape].ball.radius, 1e-280);
+    const Vec3 centre = child.representative_from_node(cut_.nodes[child.shape].ball.centre);
+    const Affine cells{size * (cells_from_unit_ * child.representative_from_node.linear),
+                       cells_from_unit_ * centre};
+    return met_.insert(alike_kind(child.shape, child.steps, child.faint), cells, child.scale);
+}
+
+void LeafWalk::fill_child(const CutEdge& edge, bool is_cut, double detail, Visit& child) const {
+    child.shape = edge.child;
+    child.steps = steps_after(visit_.steps, edge);
+    child.representative_from_node = visit_.representative_from_node * edge.node_from_child;
+    child.scale = edge.similarity ? visit_.scale * edge.stretch
+                                  : largest_stretch(child.representative_from_node.linear);
+    child.depth = visit_.depth;
+    if (cut_.nodes[edge.child].primitive) child.turns = length_in_turns(edge.node_from_child.linear);
+    child.culled_detail = is_cut && detail <= 1 ? detail : visit_.culled_detail;
+    child.crushed = visit_.crushed || cut_.nodes[visit_.shape].sealed;
+    child.faint = visit_.faint || (is_cut && detail <= 1 && cut_.nodes[visit_.shape].shadowless);
+}
+
+void LeafWalk::fill_child(const Paint& paint, std::size_t edge, bool is_cut, Paint& child) const {
+    const NodePair& pair = symmetry_.pairs[paint.pair];
+    const CutNode& colours = cut_.nodes[pair.b];
+    const CutEdge& twin = followed_edges(colours, is_cut)[(is_cut ? pair.stop_edge : pair.edge)[edge]];
+    child.pair = (is_cut ? pair.stop_pair : pair.edge_pair)[edge];
+    child.tint = paint.tint * twin.tint;
+    child.inherited = is_cut && colours.terminal ? colours.mean.over(paint.inherited) : paint.inherited;
+    child.material = paint.material;
+    if (twin.material) {
+        child.material = twin.material;
+        child.inherited = cut_.materials[*twin.material].rgb;
+    }
+}
+
+} // namespace graftal

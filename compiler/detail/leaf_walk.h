@@ -1,0 +1,89 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "compiler/detail/alike_set.h"
+#include "compiler/detail/bake.h"
+#include "compiler/detail/limit_normal.h"
+
+namespace graftal {
+
+/// One leaf met by a LeafWalk.
+struct WalkedLeaf {
+    PrimitiveKind kind = PrimitiveKind::sphere;
+    Affine representative_from_leaf;
+    std::vector<Rgb> colours;           ///< by painter; opaque, all tints of the walk in front
+    std::optional<MaterialId> material; ///< by the first painter
+    double culled_detail = 0;           ///< > 0: it stands for a part of that detail
+    bool crushed = false;               ///< by a singular map
+    bool faint = false;                 ///< of a set without area (least_width.h)
+    NormalField normals;                ///< of a proxy, in the representative's frame, if asked for
+    bool proxy = false;
+    PathTint tint;                      ///< all tints of the walk, by the first painter
+    double turns = 1;                   ///< length_in_turns() of its instance
+};
+
+/// Visits the leaves of a baked subtree in one fixed order: geometry as the representative has it, colours as
+/// the painters' nodes have them. The order does not depend on the painters. Where parts of sets without area
+/// pile up, one of those that lie alike to a quarter of a pixel stands for all.
+class LeafWalk {
+  public:
+    /// `painters`: of the request, the first or all.
+    LeafWalk(const CutGraph& cut, const Symmetry& symmetry, const BakeRequest& request,
+             std::span<const Painter> painters);
+
+    /// The next leaf, or false at the end. Memory O(depth).
+    bool next(WalkedLeaf& leaf);
+    /// Nodes and leaves so far, and what comparing them took.
+    std::uint64_t visits() const { return visits_; }
+
+  private:
+    struct Visit {
+        NodeId shape = 0;
+        std::uint32_t steps = 0;
+        Affine representative_from_node;
+        double scale = 1; ///< norm of the linear part
+        double culled_detail = 0;
+        bool crushed = false;
+        bool faint = false;
+        std::uint32_t depth = 0; ///< unending nodes above it
+        double turns = 1;        ///< of a primitive
+    };
+    /// What one painter makes of a visit.
+    struct Paint {
+        std::uint32_t pair = 0;
+        PathTint tint;
+        Rgb inherited{0.0};
+        std::optional<MaterialId> material;
+    };
+
+    const CutNode& colours_of(const Paint& paint) const { return cut_.nodes[symmetry_.pairs[paint.pair].b]; }
+    void pop();
+    void enter_ball(const CutNode& shape);
+    NormalField normals() const;
+    void push_children(bool is_cut, double detail);
+    void push_items();
+    bool is_new(const Visit& child);
+    // Where they lie: to build them elsewhere and to copy them would take twice the time.
+    void fill_child(const CutEdge& edge, bool is_cut, double detail, Visit& child) const;
+    void fill_child(const Paint& paint, std::size_t edge, bool is_cut, Paint& child) const;
+
+    const CutGraph& cut_;
+    const Symmetry& symmetry_;
+    double detail_per_unit_;
+    double error_px_;
+    bool limit_normals_;
+    std::vector<Visit> stack_;
+    std::vector<Paint> paint_stack_; ///< as many for each visit as there are painters
+    Visit visit_;                    ///< the last one popped
+    std::vector<Ball> balls_;        ///< of the unending nodes above it, from the root on
+    std::vector<Paint> paints_;
+    std::uint64_t visits_ = 0;
+    Mat3 cells_from_unit_; ///< within which parts lie alike; all zero: none do
+    AlikeSet met_;
+};
+
+} // namespace graftal

@@ -1,0 +1,183 @@
+#include "compiler/detail/mesh_builder.h"
+
+#include <array>
+#include <utility>
+
+#include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
+
+#include "compiler/detail/tessellate.h"
+#include "compiler/support/check.h"
+
+namespace graftal {
+
+namespace {
+
+/// The cube's.
+constexpr std::size_t most_flat_vertices = 8;
+/// So many facets are compared with each other before they are compared with all.
+constexpr std::size_t most_latest_facets = 16384;
+
+using FacetCorners = std::array<std::uint32_t, 4>; ///< a triangle's last is Facet::no_corner
+
+/// The facets of a flat primitive, counter-clockwise seen from outside, over the corners that tessellated()
+/// has; four-cornered ones are cut from the first to the third corner, as there.
+std::vector<FacetCorners> facets_of(PrimitiveKind kind) {
+    if (kind == PrimitiveKind::triangle) return {{0, 1, 2, Facet::no_corner}};
+    std::vector<FacetCorners> quads;
+    for (std::uint32_t axis = 0; axis < 3; ++axis) {
+        const std::uint32_t u = 1u << (axis + 1) % 3, v = 1u << (axis + 2) % 3, w = 1u << axis;
+        quads.push_back({w, w | u, w | u | v, w | v});
+        quads.push_back({0, v, u | v, u});
+    }
+    return quads;
+}
+
+/// The same, seen in a mirror.
+std::vector<FacetCorners> turned_over(std::vector<FacetCorners> facets) {
+    for (FacetCorners& c : facets)
+        std::swap(c[1], c[c[3] == Facet::no_corner ? 2 : 3]);
+    return facets;
+}
+
+/// Of unit length, where the sum has a direction.
+Vec3 unit_or(Vec3 sum, Vec3 otherwise) {
+    const double length = glm::length(sum);
+    return length > 1e-6 ? sum / length : otherwise;
+}
+
+/// The inverse transpose up to a positive factor, by the cofactors: a segment 1e100 times as long as thick
+/// has an inverse that doubles do not hold.
+Mat3 normals_by(const Mat3& linear) {
+    const double size = largest_entry(linear);
+    const Vec3 x = linear[0] / size, y = linear[1] / size, z = linear[2] / size;
+    const Mat3 cofactors(glm::cross(y, z), glm::cross(z, x), glm::cross(x, y));
+    const double largest = largest_entry(cofactors);
+    const double mirror = glm::dot(x, cofactors[0]) < 0 ? -1 : 1;
+    return cofactors * (mirror / largest);
+}
+
+} // namespace
+
+void MeshBuilder::add(PrimitiveKind kind, int fineness, const Affine& body_from_leaf, std::uint32_t leaf,
+                      const NormalField& normals) {
+    const bool mirrored = glm::determinant(body_from_leaf.linear) < 0;
+    const bool curved = !tessellated(kind, fineness).normals.empty();
+    GRAFTAL_CHECK(smooth_ || !curved, "curved primitive in a flat mesh");
+    if (curved)
+        add_smooth(kind, fineness, body_from_leaf, leaf, normals);
+    else if (smooth_)
+        add_facets(kind, body_from_leaf, mirrored, leaf);
+    else
+        add_flat(kind, body_from_leaf, mirrored, leaf);
+}
+
+void MeshBuilder::add_smooth(PrimitiveKind kind, int fineness, const Affine& body_from_leaf,
+                             std::uint32_t leaf, const NormalField& normals) {
+    const TessellatedPrimitive& shape = tessellated(kind, fineness);
+    const Mat3 normal_map = normals_by(body_from_leaf.linear);
+    const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+    for (std::size_t i = 0; i < shape.vertices.size(); ++i) {
+        mesh.vertices.push_back(body_from_leaf(shape.vertices[i]));
+        const Vec3 own = glm::normalize(normal_map * shape.normals[i]);
+        mesh.normals.push_back(unit_or(own + normals.at(mesh.vertices.back()), own));
+    }
+    for (const auto& t : shape.triangles)
+        push({first + t[0], first + t[1], first + t[2]}, leaf);
+}
+
+void MeshBuilder::add_textured(PrimitiveKind kind, int fineness, const Affine& body_from_leaf,
+                               const TextureSpace& space, std::uint32_t leaf) {
+    GRAFTAL_CHECK(smooth_, "texture in a flat mesh");
+    const TessellatedPrimitive& shape = tessellated(kind, fineness);
+    const Mat3 normal_map = normals_by(body_from_leaf.linear);
+    for (const auto& triangle : shape.triangles) {
+        std::array<Vec3, 3> corner;
+        for (std::size_t k = 0; k < 3; ++k)
+            corner[k] = shape.vertices[triangle[k]];
+        for (const auto& uv : texture_coordinates(kind, space, corner))
+            mesh.uv.push_back(uv);
+        const Vec3 facet = glm::cross(corner[1] - corner[0], corner[2] - corner[0]);
+        const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+        for (std::size_t k = 0; k < 3; ++k) {
+            const Vec3 normal = shape.normals.empty() ? facet : shape.normals[triangle[k]];
+            mesh.vertices.push_back(body_from_leaf(corner[k]));
+            mesh.normals.push_back(glm::normalize(normal_map * normal));
+        }
+        push({first, first + 1, first + 2}, leaf);
+    }
+}
+
+void MeshBuilder::add_facets(PrimitiveKind kind, const Affine& body_from_leaf, bool mirrored,
+                             std::uint32_t leaf) {
+    const TessellatedPrimitive& shape = tessellated(kind, 0);
+    for (const auto& triangle : shape.triangles) {
+        std::array<Vec3, 3> corner;
+        for (int k = 0; k < 3; ++k)
+            corner[k] = body_from_leaf(shape.vertices[triangle[k]]);
+        const Vec3 normal = glm::cross(corner[1] - corner[0], corner[2] - corner[0]);
+        const double length = glm::length(normal);
+        if (!(length > 0)) continue;
+        const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+        for (const Vec3& point : corner) {
+            mesh.vertices.push_back(point);
+            mesh.normals.push_back((mirrored ? -normal : normal) / length);
+        }
+        push({first, first + 1, first + 2}, leaf);
+    }
+}
+
+void MeshBuilder::add_flat(PrimitiveKind kind, const Affine& body_from_leaf, bool mirrored,
+                           std::uint32_t leaf) {
+    static const std::array triangle_facets = {facets_of(PrimitiveKind::triangle),
+                                               turned_over(facets_of(PrimitiveKind::triangle))};
+    static const std::array cube_facets = {facets_of(PrimitiveKind::cube),
+                                           turned_over(facets_of(PrimitiveKind::cube))};
+    const bool solid = kind == PrimitiveKind::cube;
+    const TessellatedPrimitive& shape = tessellated(kind, 0);
+    std::array<std::uint32_t, most_flat_vertices> index;
+    GRAFTAL_CHECK(shape.vertices.size() <= index.size(), name_of(kind));
+    for (std::size_t i = 0; i < shape.vertices.size(); ++i)
+        index[i] = latest_.vertex(body_from_leaf(shape.vertices[i]));
+    for (const FacetCorners& c : (solid ? cube_facets : triangle_facets)[mirrored])
+        latest_.add({.corners = {index[c[0]], index[c[1]], index[c[2]],
+                                 c[3] == Facet::no_corner ? Facet::no_corner : index[c[3]]},
+                     .leaf = leaf,
+                     .solid = solid});
+    if (latest_.facets().size() > most_latest_facets) latest_.move_to(all_);
+}
+
+std::size_t MeshBuilder::triangle_count() const {
+    return mesh.triangles.size() + latest_.triangle_count() + all_.triangle_count();
+}
+
+void MeshBuilder::push(const std::array<std::uint32_t, 3>& corners, std::uint32_t leaf) {
+    mesh.triangles.push_back(corners);
+    leaf_of_triangle.push_back(leaf);
+}
+
+void MeshBuilder::finish() {
+    if (smooth_) return;
+    latest_.move_to(all_);
+    used_.assign(all_.vertices().size(), UINT32_MAX);
+    mesh.triangles.reserve(all_.triangle_count());
+    leaf_of_triangle.reserve(all_.triangle_count());
+    for (const Facet& facet : all_.facets()) {
+        if (facet.hidden) continue;
+        std::array<std::uint32_t, 4> c = facet.corners;
+        for (std::uint32_t& corner : c)
+            if (corner != Facet::no_corner) corner = used(corner);
+        push({c[0], c[1], c[2]}, facet.leaf);
+        if (c[3] != Facet::no_corner) push({c[0], c[2], c[3]}, facet.leaf);
+    }
+}
+
+std::uint32_t MeshBuilder::used(std::uint32_t vertex) {
+    if (used_[vertex] == UINT32_MAX) {
+        used_[vertex] = static_cast<std::uint32_t>(mesh.vertices.size());
+        mesh.vertices.push_back(all_.vertices()[vertex]);
+    }
+    return used_[vertex];
+}
+
+} // namespace graftal

@@ -1,0 +1,71 @@
+#include "compiler/detail/piece.h"
+
+#include <limits>
+#include <vector>
+
+#include "compiler/detail/run_cells.h"
+#include "compiler/detail/texture_space.h"
+#include "compiler/support/stretch.h"
+
+namespace graftal {
+
+Piece descend(const CutGraph& cut, const Piece& piece, const CutEdge& edge, bool piece_is_cut) {
+    Piece child;
+    child.node = edge.child;
+    child.steps = steps_after(piece.steps, edge);
+    child.world_from_node = piece.world_from_node * edge.node_from_child;
+    child.scale =
+        edge.similarity ? piece.scale * edge.stretch : largest_stretch(child.world_from_node.linear);
+    child.tint = piece.tint * edge.tint;
+    const CutNode& node = cut.nodes[piece.node];
+    child.inherited = piece_is_cut && node.terminal ? node.mean.over(piece.inherited) : piece.inherited;
+    child.material = piece.material;
+    child.faint = piece.faint;
+    if (cut.nodes[edge.child].primitive) child.turns = length_in_turns(edge.node_from_child.linear);
+    if (edge.material) {
+        child.material = edge.material;
+        child.inherited = cut.materials[*edge.material].rgb;
+    }
+    return child;
+}
+
+Ball world_ball(const CutGraph& cut, const Piece& piece) {
+    const Ball& ball = cut.nodes[piece.node].ball;
+    return {piece.world_from_node(ball.centre), piece.scale * ball.radius};
+}
+
+double detail_of(const CutGraph& cut, const Projection& projection, const Piece& piece) {
+    const Ball ball = world_ball(cut, piece);
+    if (!projection.culls() || cut.nodes[piece.node].unbounded)
+        return std::numeric_limits<double>::infinity();
+    return 2 * ball.radius * projection.detail_per_unit(ball);
+}
+
+PieceKind kind_of(const CutGraph& cut, const Projection& projection, const Piece& piece) {
+    PieceKind kind{piece.node, piece.steps, PieceKind::endless_detail};
+    if (projection.culls() && !cut.nodes[piece.node].unbounded)
+        kind.unit_step = PieceKind::step_of(piece.scale * projection.detail_per_unit(world_ball(cut, piece)));
+    return kind;
+}
+
+Weights::Weight weight_of(const CutGraph& cut, const Projection& projection, Weights& weights,
+                          const Piece& piece) {
+    Weights::Weight sum;
+    std::vector<Piece> stack = {piece};
+    for (int most_parts = 10'000; !stack.empty(); --most_parts) {
+        const Piece part = stack.back();
+        stack.pop_back();
+        const PieceKind kind = weights.normalised(kind_of(cut, projection, part));
+        const CutNode& node = cut.nodes[part.node];
+        if (!node.unbounded || node.primitive || most_parts <= 0) {
+            sum += weights.of(kind);
+            continue;
+        }
+        const bool ends = weights.is_cut(kind);
+        for_each_edge(node, ends,
+                      [&](const CutEdge& edge) { stack.push_back(descend(cut, part, edge, ends)); });
+    }
+    return sum;
+}
+
+} // namespace graftal

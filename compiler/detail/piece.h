@@ -1,0 +1,42 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "compiler/detail/cut_graph.h"
+#include "compiler/detail/piece_kind.h"
+#include "compiler/detail/projection.h"
+#include "compiler/detail/weights.h"
+
+namespace graftal {
+
+/// A subtree at its place in the world.
+struct Piece {
+    NodeId node = 0;
+    std::uint32_t steps = unlimited_steps;
+    Affine world_from_node;
+    double scale = 1; ///< norm of the linear part
+    PathTint tint;
+    Rgb inherited{0.8};                 ///< the colour that what names no material shows
+    std::optional<MaterialId> material; ///< whose finish it shows
+    double turns = 1;                   ///< of a primitive: length_in_turns() of its instance
+    bool faint = false;                 ///< it stands for a set without area that was culled
+};
+
+/// Steps down one edge. What stands for a cut node takes on the node's mean colour.
+Piece descend(const CutGraph& cut, const Piece& piece, const CutEdge& edge, bool piece_is_cut);
+
+/// The node's ball, placed.
+Ball world_ball(const CutGraph& cut, const Piece& piece);
+/// The detail of the piece's diameter.
+double detail_of(const CutGraph& cut, const Projection& projection, const Piece& piece);
+
+/// The kind of the piece as it lies, not normalised.
+PieceKind kind_of(const CutGraph& cut, const Projection& projection, const Piece& piece);
+
+/// The weight of the piece. The parts of what holds a plane are each weighed where they lie, since the whole
+/// has no size; infinite where they are too many for that.
+Weights::Weight weight_of(const CutGraph& cut, const Projection& projection, Weights& weights,
+                          const Piece& piece);
+
+} // namespace graftal

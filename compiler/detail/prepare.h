@@ -1,0 +1,45 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "compiler/analysis/bounding.h"
+#include "compiler/detail/cut_graph.h"
+#include "compiler/detail/detail_options.h"
+#include "compiler/detail/shell_sizes.h"
+#include "compiler/detail/shell_store.h"
+#include "compiler/detail/symmetry.h"
+#include "compiler/graph/components.h"
+#include "compiler/support/diagnostics.h"
+
+namespace graftal {
+
+/// A graph made ready to be unfolded for a view: what the cut and the tracer unfold alike, so that both draw
+/// the same parts.
+struct PreparedCut {
+    CutGraph cut;
+    Symmetry symmetry;
+    std::uint32_t root_steps = unlimited_steps; ///< levels that the root has
+    Box bounds;                                 ///< of the limit set
+    std::uint64_t instances = 0;                ///< of the graph that it was made of
+    std::unique_ptr<ShellStore> shells = std::make_unique<ShellStore>(); ///< of this graph
+    /// By node, once somebody has found them; none where they depend on the error that is allowed.
+    std::vector<ShellSizes> shell_sizes;
+};
+
+/// Requires what cut_graph() requires. O(graph).
+PreparedCut prepare_cut(const Graph& graph, const Components& components,
+                        const std::vector<ObjectBounds>& bounds, const DetailOptions& options);
+
+/// True, after an error, if nothing says how deep the graph is to be unfolded.
+bool refuse_endless(const Graph& graph, const Components& components, const DetailOptions& options,
+                    Diagnostics& diagnostics);
+
+/// Notes that parts of a set without area are drawn wider than they are (least_width.h), where the model does
+/// not say what they look like, and how it can. For models of which something is culled.
+void note_shadowless(const CutGraph& cut, const Graph& graph, Diagnostics& diagnostics);
+
+/// The least distance from the eye that counts (Projection), so that the eye may lie on the model.
+double nearest_to_eye(const CutGraph& cut);
+
+} // namespace graftal

@@ -1,0 +1,126 @@
+#include "compiler/graph/unfold.h"
+
+#include <algorithm>
+#include <vector>
+
+#include "compiler/graph/run.h"
+#include "compiler/support/check.h"
+
+namespace graftal {
+
+namespace {
+
+/// Which instances of an object are drawn.
+enum class Draw : std::uint8_t { all, ending, terminal };
+
+/// Where a path from the root stands.
+struct Place {
+    ObjectId object = 0;
+    unsigned level = 0;
+    Affine world_from_object;
+    PathTint tint;
+    std::optional<MaterialId> material;
+};
+
+struct Frame {
+    Place place;
+    Draw draw = Draw::all;
+    std::size_t next = 0;
+};
+
+class Unfolding {
+  public:
+    Unfolding(const Graph& graph, const Components& components, std::optional<unsigned> steps,
+              std::uint64_t max_leaves, const std::function<bool(const UnfoldedLeaf&)>& visit)
+        : graph_(graph), components_(components), steps_(steps), leaves_left_(max_leaves), visit_(visit) {}
+
+    bool run() {
+        if (!open(Place{graph_.root, 0, {}, {}, {}})) return false;
+        while (!stack_.empty()) {
+            Frame& frame = stack_.back();
+            const Instance* instance = next_instance(frame);
+            if (!instance) {
+                stack_.pop_back();
+                continue;
+            }
+            if (!open(below(frame.place, *instance))) return false;
+        }
+        return true;
+    }
+
+  private:
+    const Instance* next_instance(Frame& frame) const {
+        const Object& object = graph_.objects[frame.place.object];
+        if (frame.draw == Draw::terminal) return frame.next++ == 0 ? &*object.terminal : nullptr;
+        while (frame.next < object.instances.size()) {
+            const Instance& instance = object.instances[frame.next++];
+            if (frame.draw == Draw::all || !components_.unending[instance.master]) return &instance;
+        }
+        return nullptr;
+    }
+
+    Place below(const Place& parent, const Instance& instance) const {
+        return {instance.master, parent.level + (components_.unending[instance.master] ? 1u : 0u),
+                parent.world_from_object * instance.parent_from_child, parent.tint * PathTint(instance.tint),
+                instance.material ? instance.material : parent.material};
+    }
+
+    /// Draws the place if it is a leaf, else pushes it; false if the visitor has had enough.
+    bool open(const Place& place) {
+        const Object& object = graph_.objects[place.object];
+        if (object.primitive) return draw_leaf(place, object.primitive);
+        if (object.run) return draw_run(place, object);
+        if (!components_.unending[place.object] || !steps_ || place.level < *steps_) {
+            stack_.push_back({place, Draw::all});
+        } else if (object.terminal) {
+            stack_.push_back({place, Draw::terminal});
+        } else if (has_ending_instance(object)) {
+            stack_.push_back({place, Draw::ending});
+        } else {
+            return draw_leaf(place, std::nullopt);
+        }
+        return true;
+    }
+
+    bool draw_run(const Place& place, const Object& object) {
+        for (std::size_t i = 0; i < object.run->size(); ++i) {
+            const RunItem& item = (*object.run)[i];
+            const std::optional<MaterialId>& own = object.run_materials[item.colour];
+            const auto part = [&](const Affine& run_from_part) {
+                return Place{place.object, place.level, place.world_from_object * run_from_part, place.tint,
+                             own ? own : place.material};
+            };
+            if (!draw_leaf(part(run_from_body(item)), item.kind)) return false;
+            if (item.ball && !draw_leaf(part(run_from_ball(item)), PrimitiveKind::sphere)) return false;
+        }
+        return true;
+    }
+
+    bool has_ending_instance(const Object& object) const {
+        return std::any_of(object.instances.begin(), object.instances.end(),
+                           [&](const Instance& instance) { return !components_.unending[instance.master]; });
+    }
+
+    bool draw_leaf(const Place& place, std::optional<PrimitiveKind> primitive) {
+        if (leaves_left_ == 0) return false;
+        --leaves_left_;
+        return visit_({primitive, place.object, place.world_from_object, place.tint, place.material});
+    }
+
+    const Graph& graph_;
+    const Components& components_;
+    const std::optional<unsigned> steps_;
+    std::uint64_t leaves_left_;
+    const std::function<bool(const UnfoldedLeaf&)>& visit_;
+    std::vector<Frame> stack_;
+};
+
+} // namespace
+
+bool unfold(const Graph& graph, const Components& components, std::optional<unsigned> steps,
+            std::uint64_t max_leaves, const std::function<bool(const UnfoldedLeaf&)>& visit) {
+    GRAFTAL_CHECK(steps || !components.unending[graph.root], "unfold: an unending graph without steps");
+    return Unfolding(graph, components, steps, max_leaves, visit).run();
+}
+
+} // namespace graftal

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+
+#include "compiler/graph/components.h"
+#include "compiler/graph/graph.h"
+
+namespace graftal {
+
+/// One drawn thing of an unfolded graph.
+struct UnfoldedLeaf {
+    std::optional<PrimitiveKind> primitive; ///< nothing: the fitted proxy of `object`
+    ObjectId object = 0;                    ///< the primitive's own, or the one whose proxy it is
+    Affine world_from_object;               ///< of the primitive, or of the object whose proxy it is
+    PathTint tint;                          ///< of the whole path
+    std::optional<MaterialId> material;
+};
+
+/// Visits every leaf of the unfolding to `steps` levels (graph.h, "Levels") depth first, in the order of the
+/// instances. Stops and returns false when `visit` does, or before leaf `max_leaves` + 1. The plain
+/// definition of what a graph means: tests use it, and framing where a model has few levels; nothing fast
+/// does. Memory O(depth); requires `steps` if the graph is unending.
+bool unfold(const Graph& graph, const Components& components, std::optional<unsigned> steps,
+            std::uint64_t max_leaves, const std::function<bool(const UnfoldedLeaf&)>& visit);
+
+} // namespace graftal

@@ -1,0 +1,248 @@
+#include "compiler/povray/emit_povray.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <string_view>
+
+#include <fmt/format.h>
+
+#include "compiler/povray/povray_bodies.h"
+#include "compiler/povray/povray_names.h"
+#include "compiler/povray/povray_textures.h"
+#include "compiler/povray/povray_view.h"
+#include "compiler/povray/sdl_writer.h"
+#include "compiler/scene/ground.h"
+#include "compiler/support/check.h"
+
+namespace graftal {
+
+namespace {
+
+/// POV-Ray leaves out a layer that contributes less than its adc_bailout, by default 1/255: hundreds of times
+/// what a 16-bit picture shows.
+constexpr double default_bailout = 1.0 / 255;
+constexpr std::string_view fine_bailout = "adc_bailout 1e-6";
+
+/// Placements begin to end - 1 of one group.
+struct Range {
+    std::uint32_t group;
+    std::size_t begin, end;
+};
+
+/// What becomes one union: all placements of one texture, whatever groups they come from.
+struct Bucket {
+    std::uint32_t texture;
+    std::vector<Range> ranges;
+    std::vector<const RunPlacements*> runs;
+    std::uint64_t count = 0;
+};
+
+/// Planes are objects of their own: an infinite part would take a union out of POV-Ray's tree.
+struct Plane {
+    std::uint32_t texture;
+    const Placement* placement;
+};
+
+/// The pictures of an include file are named as it is: several of one model may lie side by side.
+std::string picture_stem(const PovrayOptions& options) {
+    std::string_view name = options.file_name;
+    if (!options.include || name.empty()) return harmless(options.scene_name);
+    if (name.ends_with(".inc")) name.remove_suffix(4);
+    return harmless(name);
+}
+
+class Emitter {
+  public:
+    Emitter(const Cut& cut, const PovrayOptions& options, const PovrayUnits& units, const TextSink& sink)
+        : cut_(cut), options_(options), units_(units), out_(sink),
+          identifier_(options.identifier.empty() ? model_identifier(options.scene_name) : options.identifier),
+          prefix_(options.include ? identifier_ + "_" : ""), bodies_(cut, prefix_),
+          textures_(cut, prefix_, picture_stem(options), options.include),
+          progress_(out_, cut.placement_count + bodies_.triangle_count(), options.progress) {
+        sort_into_buckets();
+    }
+
+    bool write_scene(const View& view, std::vector<PaletteImage>& pictures);
+    bool write_include(std::vector<PaletteImage>& pictures);
+
+  private:
+    void sort_into_buckets();
+    void write_header();
+    bool write_objects();
+    bool write_bucket(const Bucket& bucket);
+    void write_usage(const std::vector<std::string>& materials, bool pictures);
+    bool needs_fine_bailout() const { return textures_.least_transmit() < default_bailout; }
+
+    const Cut& cut_;
+    const PovrayOptions& options_;
+    const PovrayUnits units_;
+    SdlWriter out_;
+    const std::string identifier_;
+    const std::string prefix_;
+    PovrayBodies bodies_;
+    PovrayTextures textures_;
+    ProgressMarks progress_;
+    std::vector<Bucket> buckets_;
+    std::vector<Plane> planes_;
+    std::vector<std::string> texture_texts_; ///< by texture: what stands at the objects
+};
+
+void Emitter::sort_into_buckets() {
+    std::vector<std::uint32_t> bucket_of_texture;
+    for (std::uint32_t g = 0; g < cut_.groups.size(); ++g) {
+        const PlacementGroup& group = cut_.groups[g];
+        if (group.placements.empty() && group.runs.empty()) continue;
+        const std::uint32_t texture = textures_.texture_of(group);
+        if (texture == bucket_of_texture.size()) {
+            bucket_of_texture.push_back(static_cast<std::uint32_t>(buckets_.size()));
+            buckets_.push_back({.texture = texture});
+        }
+        Bucket& bucket = buckets_[bucket_of_texture[texture]];
+        std::size_t begin = 0;
+        const auto close_range = [&](std::size_t end) {
+            if (end > begin) bucket.ranges.push_back({g, begin, end});
+            bucket.count += end - begin;
+            begin = end + 1;
+        };
+        for (std::size_t i = 0; i < group.placements.size(); ++i) {
+            if (!bodies_.is_plane(group.placements[i].body)) continue;
+            planes_.push_back({texture, &group.placements[i]});
+            close_range(i);
+        }
+        close_range(group.placements.size());
+        for (const RunPlacements& parts : group.runs) {
+            bucket.runs.push_back(&parts);
+            bucket.count += part_count(parts);
+        }
+    }
+    std::erase_if(buckets_, [](const Bucket& bucket) { return bucket.count == 0; });
+}
+
+void Emitter::write_header() {
+    out_ << "#version 3.7;\n// " << harmless(options_.scene_name) << ": "
+         << fmt::format("{} placements of {} bodies, {} triangles in meshes, drawing {:.4g} leaves.\n",
+                        cut_.placement_count, cut_.bodies.size(), bodies_.triangle_count(), cut_.leaf_count)
+         << "// Written by graftal. The model's space is right-handed, y up";
+}
+
+bool Emitter::write_bucket(const Bucket& bucket) {
+    const std::string& texture = texture_texts_[bucket.texture];
+    const Affine pov_from_world = units_.pov_from_world();
+    const bool single = bucket.count == 1;
+    if (!single) out_ << "union {\n";
+    const auto write = [&](std::uint32_t body, const Affine& world_from_body) {
+        if (out_.stopped()) return;
+        bodies_.place(out_, body, pov_from_world * world_from_body,
+                      single ? std::string_view(texture) : std::string_view());
+        progress_.step();
+    };
+    for (const Range& range : bucket.ranges)
+        for (std::size_t i = range.begin; i < range.end; ++i) {
+            const Placement& placement = cut_.groups[range.group].placements[i];
+            write(placement.body, placement.world_from_body);
+        }
+    for (const RunPlacements* const parts : bucket.runs)
+        for_each_placement(
+            *parts, [&](const Placement& placement) { write(placement.body, placement.world_from_body); });
+    if (!single) out_ << "  " << texture << "\n}\n";
+    return !out_.stopped();
+}
+
+bool Emitter::write_objects() {
+    for (const Bucket& bucket : buckets_)
+        if (!write_bucket(bucket)) return false;
+    for (const Plane& plane : planes_)
+        bodies_.place(out_, plane.placement->body, units_.pov_from_world() * plane.placement->world_from_body,
+                      texture_texts_[plane.texture]);
+    return !out_.stopped();
+}
+
+bool reflects(const Cut& cut, const View& view) {
+    return (view.ground && view.ground->material.reflection > 0) ||
+           std::any_of(cut.groups.begin(), cut.groups.end(),
+                       [](const PlacementGroup& group) { return group.material.reflection > 0; });
+}
+
+bool Emitter::write_scene(const View& view, std::vector<PaletteImage>& pictures) {
+    write_header();
+    texture_texts_.assign(textures_.all().begin(), textures_.all().end());
+    const Vec3 origin = units_.origin;
+    out_ << "; the camera mirrors it into POV-Ray's.\n// 1 unit of the model is ";
+    out_.number(units_.scale, 6) << " here; <0,0,0> here is ";
+    out_.vector(origin, 12) << " of the model.\n\nglobal_settings { assumed_gamma 1";
+    if (needs_fine_bailout()) out_ << " " << fine_bailout;
+    out_ << (reflects(cut_, view) ? std::string_view(" max_trace_level 8 }\n") : " }\n");
+    const std::string ground =
+        view.ground ? textures_.ground(view.ground->material,
+                                       units_.pov_from_world() * world_from_picture(*view.ground))
+                    : "";
+    out_ << textures_.declarations(pictures) << "\n";
+    write_view(out_, view, units_, cut_.bounds.empty() ? Vec3(0.0) : cut_.bounds.centre(), ground);
+    if (!bodies_.declare(out_, progress_)) return false;
+    out_ << "\n";
+    return write_objects() && out_.flush();
+}
+
+/// How to use an include file, in comments at its beginning.
+void Emitter::write_usage(const std::vector<std::string>& materials, bool pictures) {
+    constexpr std::size_t most_listed = 12;
+    out_ << ", and its colours are linear light.\n// In a scene of your own, with assumed_gamma 1";
+    if (needs_fine_bailout()) out_ << " and " << fine_bailout;
+    const std::string file = harmless(options_.file_name);
+    out_ << ":\n"
+         << fmt::format("//     #include \"{}\"\n", file)
+         << fmt::format("//     object {{ {} }}                   // right-handed\n", identifier_)
+         << fmt::format(
+                "//     object {{ {} scale <1,1,-1> }}    // for a camera with look_at, left-handed\n",
+                identifier_)
+         << "// If " << file << (pictures ? " and its pictures lie" : " lies")
+         << " in another folder, say it to POV-Ray: povray +LFOLDER ...\n"
+         << fmt::format("// Placed so, it lies between the corners {0}_min and {0}_max.\n", identifier_);
+    if (textures_.all().size() == 1)
+        out_ << fmt::format("// For a texture of your own: object {{ {} texture {{ ... }} }}\n", identifier_);
+    else
+        out_ << "// For one texture of your own in place of all, before the #include:\n"
+             << fmt::format("//     #declare {0}_bare = yes;  and then  object {{ {0} texture {{ ... }} }}\n",
+                            identifier_);
+    out_ << "// For one material with another texture, before the #include:\n";
+    for (std::size_t i = 0; i < std::min(materials.size(), most_listed); ++i)
+        out_ << fmt::format("//     #declare {} = texture {{ ... }}\n", materials[i]);
+    if (materials.size() > most_listed)
+        out_ << fmt::format("//     and {} more, each after an #ifndef below\n",
+                            materials.size() - most_listed);
+}
+
+bool Emitter::write_include(std::vector<PaletteImage>& pictures) {
+    const PovrayTextures::Overridable textures = textures_.overridable();
+    const bool several = textures.names.size() > 1;
+    for (const std::string& name : textures.names)
+        texture_texts_.push_back(
+            several ? fmt::format("#ifndef ({}_bare) texture {{ {} }} #end", identifier_, name)
+                    : fmt::format("texture {{ {} }}", name));
+    const std::string declarations = textures_.declarations(pictures); // of what the textures are made of
+    write_header();
+    write_usage(textures.materials, !pictures.empty());
+    out_ << declarations << textures.declarations;
+    if (!cut_.bounds.empty()) {
+        out_ << fmt::format("#declare {}_min = ", identifier_);
+        out_.vector(cut_.bounds.min, 9) << fmt::format(";\n#declare {}_max = ", identifier_);
+        out_.vector(cut_.bounds.max, 9) << ";\n";
+    }
+    if (!bodies_.declare(out_, progress_)) return false;
+    out_ << "\n#declare " << identifier_ << " =\n";
+    const bool single = buckets_.size() + planes_.size() == 1;
+    if (!single) out_ << "union {\n";
+    if (!write_objects()) return false;
+    if (!single) out_ << "}\n";
+    return out_.flush();
+}
+
+} // namespace
+
+bool emit_povray(const Cut& cut, const View& view, const PovrayOptions& options, const TextSink& sink,
+                 std::vector<PaletteImage>& palettes) {
+    if (options.include) return Emitter(cut, options, PovrayUnits{}, sink).write_include(palettes);
+    return Emitter(cut, options, choose_units(cut, view.camera), sink).write_scene(view, palettes);
+}
+
+} // namespace graftal

@@ -1,0 +1,193 @@
+#include "compiler/povray/povray_bodies.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include <glm/geometric.hpp>
+
+#include "compiler/povray/povray_mesh.h"
+#include "compiler/povray/povray_names.h"
+#include "compiler/povray/regular_matrix.h"
+#include "compiler/support/check.h"
+#include "compiler/support/number.h"
+
+namespace graftal {
+
+namespace {
+
+constexpr int digits = 9;
+/// Primitives that are smaller than this are written with a matrix: POV-Ray loses small ones without.
+constexpr double least_literal = 1e-3;
+/// Lengths and angles that differ by less are equal.
+constexpr double equal_share = 1e-12;
+
+/// SDL of the canonical primitives (graph.h), up to the modifiers.
+std::string canonical(PrimitiveKind kind) {
+    switch (family_of(kind)) {
+    case PrimitiveKind::triangle:
+        return "triangle { <0,1,0>, <-0.86602540378443865,-0.5,0>, <0.86602540378443865,-0.5,0>";
+    case PrimitiveKind::sphere:
+        return "sphere { 0, 1";
+    case PrimitiveKind::cube:
+        return "box { -1, 1";
+    case PrimitiveKind::plane:
+        return "plane { y, 0";
+    case PrimitiveKind::cylinder:
+        return "cylinder { 0, y, 1";
+    case PrimitiveKind::cone:
+        return "cone { 0, 1, y, 0";
+    case PrimitiveKind::torus:
+        return "torus { 1, 0.25";
+    case PrimitiveKind::frustum:
+        return "cone { 0, 1, y, " + shortest(top_radius(kind));
+    }
+    GRAFTAL_CHECK(false, "emit_povray: unknown primitive");
+}
+
+bool at_right_angles(Vec3 a, Vec3 b) {
+    return std::abs(glm::dot(a, b)) <= equal_share * glm::length(a) * glm::length(b);
+}
+
+bool equal_lengths(Vec3 a, Vec3 b) {
+    return std::abs(glm::length(a) - glm::length(b)) <= equal_share * glm::length(a);
+}
+
+/// A cross-section in the plane of columns 0 and 2 stays a circle, upright on column 1.
+bool keeps_round(const Mat3& m) {
+    return glm::length(m[0]) >= least_literal && glm::length(m[1]) >= least_literal &&
+           equal_lengths(m[0], m[2]) && at_right_angles(m[0], m[2]) && at_right_angles(m[0], m[1]) &&
+           at_right_angles(m[1], m[2]);
+}
+
+/// Each column along one axis: boxes stay boxes.
+bool keeps_axes(const Mat3& m) {
+    for (int column = 0; column < 3; ++column) {
+        int along = 0;
+        for (int row = 0; row < 3; ++row)
+            along += m[column][row] != 0;
+        if (along != 1 || glm::length(m[column]) < least_literal) return false;
+    }
+    // A singular map can send two columns along the same axis.
+    return at_right_angles(m[0], m[1]) && at_right_angles(m[0], m[2]) && at_right_angles(m[1], m[2]);
+}
+
+bool write_triangle(SdlWriter& out, const Affine& a) {
+    const double half = std::sqrt(3.0) / 2;
+    const Vec3 top = a({0, 1, 0}), left = a({-half, -0.5, 0}), right = a({half, -0.5, 0});
+    const double longest =
+        std::max({glm::length(top - left), glm::length(left - right), glm::length(right - top)});
+    const double area = glm::length(glm::cross(left - top, right - top));
+    // Slivers too: the matrix form keeps them whole.
+    if (longest < least_literal || area < least_literal * longest * longest) return false;
+    out << "triangle { ";
+    out.vector(top, digits) << ", ";
+    out.vector(left, digits) << ", ";
+    out.vector(right, digits);
+    return true;
+}
+
+/// Writes the primitive without a matrix, up to the modifiers, where that is possible.
+bool write_literal(SdlWriter& out, PrimitiveKind kind, const Affine& a) {
+    const Mat3& m = a.linear;
+    switch (family_of(kind)) {
+    case PrimitiveKind::triangle:
+        return write_triangle(out, a);
+    case PrimitiveKind::sphere:
+        if (!keeps_round(m) || !equal_lengths(m[0], m[1])) return false;
+        out << "sphere { ";
+        out.vector(a.translation, digits) << ", ";
+        out.number(glm::length(m[0]), digits);
+        return true;
+    case PrimitiveKind::cube: {
+        if (!keeps_axes(m)) return false;
+        const Vec3 half = glm::abs(m[0]) + glm::abs(m[1]) + glm::abs(m[2]);
+        out << "box { ";
+        out.vector(a.translation - half, digits) << ", ";
+        out.vector(a.translation + half, digits);
+        return true;
+    }
+    case PrimitiveKind::cylinder:
+        if (!keeps_round(m)) return false;
+        out << "cylinder { ";
+        out.vector(a.translation, digits) << ", ";
+        out.vector(a.translation + m[1], digits) << ", ";
+        out.number(glm::length(m[0]), digits);
+        return true;
+    case PrimitiveKind::cone:
+    case PrimitiveKind::frustum:
+        if (!keeps_round(m)) return false;
+        out << "cone { ";
+        out.vector(a.translation, digits) << ", ";
+        out.number(glm::length(m[0]), digits) << ", ";
+        out.vector(a.translation + m[1], digits) << ", ";
+        out.number(top_radius(kind) * glm::length(m[0]), digits);
+        return true;
+    case PrimitiveKind::torus:
+    case PrimitiveKind::plane:
+        return false;
+    }
+    return false;
+}
+
+} // namespace
+
+void ProgressMarks::mark() {
+    out_ << "\n#debug \"@@" << std::min<std::uint64_t>(done_ * 100 / parts_, 100) << "\\n\"\n";
+    next_ = done_ * 100 / parts_ + 1;
+}
+
+PovrayBodies::PovrayBodies(const Cut& cut, const std::string& prefix) : cut_(cut), uses_(cut.bodies.size()) {
+    std::vector<bool> placed(cut.bodies.size());
+    for (const PlacementGroup& group : cut.groups) {
+        const std::size_t colours = cut.palettes.at(group.palette).size();
+        for (const Placement& placement : group.placements) {
+            GRAFTAL_CHECK(placement.body < cut.bodies.size(), "emit_povray: a placement without a body");
+            placed[placement.body] = true;
+            if (colours > 1) uses_[placement.body].palette = true;
+        }
+        for (const RunPlacements& parts : group.runs)
+            for (const std::uint32_t body : parts.body)
+                GRAFTAL_CHECK(body < cut.bodies.size(), "emit_povray: a part of a run without a body");
+    }
+    UniqueNames names(prefix + "M_");
+    for (std::size_t i = 0; i < cut.bodies.size(); ++i) {
+        const Mesh* const mesh = std::get_if<Mesh>(&cut.bodies[i].shape);
+        if (!mesh || !placed[i]) continue;
+        uses_[i].name = names.next(cut.bodies[i].name);
+        triangle_count_ += mesh->triangles.size();
+    }
+}
+
+bool PovrayBodies::is_plane(std::uint32_t body) const {
+    const auto* const kind = std::get_if<PrimitiveKind>(&cut_.bodies[body].shape);
+    return kind && *kind == PrimitiveKind::plane;
+}
+
+bool PovrayBodies::declare(SdlWriter& out, ProgressMarks& progress) const {
+    for (std::size_t i = 0; i < uses_.size(); ++i) {
+        if (uses_[i].name.empty()) continue;
+        const Mesh& mesh = std::get<Mesh>(cut_.bodies[i].shape);
+        out << "\n// " << harmless(cut_.bodies[i].name) << ": "
+            << static_cast<std::uint64_t>(mesh.triangles.size()) << " triangles\n";
+        if (!declare_mesh(out, uses_[i].name, mesh, uses_[i].palette, progress)) return false;
+    }
+    return !out.stopped();
+}
+
+void PovrayBodies::place(SdlWriter& out, std::uint32_t body, const Affine& pov_from_body,
+                         std::string_view texture) const {
+    if (const auto* const kind = std::get_if<PrimitiveKind>(&cut_.bodies[body].shape)) {
+        if (!write_literal(out, *kind, pov_from_body)) {
+            out << canonical(*kind) << " ";
+            out.matrix(regular(pov_from_body));
+        }
+    } else {
+        out << "object { " << uses_[body].name << " ";
+        out.matrix(regular(pov_from_body));
+    }
+    if (!texture.empty()) out << "\n  " << texture;
+    out << " }\n";
+}
+
+} // namespace graftal

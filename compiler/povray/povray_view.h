@@ -1,0 +1,14 @@
+#pragma once
+
+#include "compiler/povray/povray_units.h"
+#include "compiler/povray/sdl_writer.h"
+#include "compiler/scene/scene.h"
+
+namespace graftal {
+
+/// Camera, lights, sky and ground. The camera carries the mirror between the right-handed scene and
+/// POV-Ray's left-handed habit: its axes are given outright, never by look_at.
+void write_view(SdlWriter& out, const View& view, const PovrayUnits& units, Vec3 centre,
+                const std::string& ground_texture);
+
+} // namespace graftal

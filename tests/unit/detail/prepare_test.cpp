@@ -1,0 +1,38 @@
+#include "compiler/detail/prepare.h"
+
+#include <gtest/gtest.h>
+
+#include "compiler/analysis/contraction.h"
+
+namespace graftal {
+namespace {
+
+Instance placed(ObjectId master, const Affine& map) {
+    Instance instance;
+    instance.master = master;
+    instance.parent_from_child = map;
+    return instance;
+}
+
+// A plane that a map crushes to a line draws nothing and has no edge.
+TEST(PrepareCut, LevelsOfTheRootBelongToItsInstances) {
+    Graph graph;
+    const ObjectId plane = graph.primitive(PrimitiveKind::plane), cube = graph.primitive(PrimitiveKind::cube);
+    const ObjectId self = graph.add({"self", {}, {}, {}, {}});
+    graph.objects[self].instances = {placed(self, Affine::scale(Vec3(0.5))), placed(cube, {})};
+    graph.root = graph.add({"root", {}, {}, {}, {}});
+    graph.objects[graph.root].instances = {placed(plane, Affine::scale({1, 1, 0})),
+                                           placed(self, Affine::translate(Vec3(4, 0, 0)))};
+    const Components components = strong_components(graph);
+    const auto bounds = bound_objects(graph, components, decide_contraction(graph, components));
+    DetailOptions options;
+    options.steps = 5;
+    options.root_levels = {0, 2};
+    const PreparedCut prepared = prepare_cut(graph, components, bounds, options);
+    const CutNode& root = prepared.cut.nodes[prepared.cut.root];
+    ASSERT_EQ(root.edges.size(), 1u);
+    EXPECT_EQ(root.edges[0].levels, 3u);
+}
+
+} // namespace
+} // namespace graftal

@@ -18,7 +18,7 @@ class RunBounds;
 struct ObjectBounds {
     Box box;   ///< every face touches the set to within 1e-10 of its size where effort allows
     Ball ball; ///< holds the set; its radius within a few per cent of the least where effort allows
-    bool unbounded = false; ///< holds a plane; box and ball are then of the rest
+    bool unbounded = false;               ///< holds a plane; box and ball are then of the rest
     std::shared_ptr<const RunBounds> run; ///< of an object that has one: of its ranges (run_bounds.h)
 };
 

@@ -238,7 +238,9 @@ std::vector<std::vector<double>> approximate_leaf_counts(const Graph& graph, con
     for (const ObjectId id : ending_first(components)) {
         const Object& object = graph.objects[id];
         bool any = false;
-        every_level[id] = object.primitive ? 1 : object.run ? static_cast<double>(object.run->part_count()) : 0;
+        every_level[id] = object.primitive ? 1
+                          : object.run     ? static_cast<double>(object.run->part_count())
+                                           : 0;
         for (const Instance& instance : object.instances) {
             if (components.unending[instance.master]) continue;
             every_level[id] += row[instance.master];

@@ -19,7 +19,7 @@ struct Outer {
     std::array<Vec3, 7> points;
     int point_count = 0;
     std::shared_ptr<const RunBounds> run; ///< of a run, whose support function it gives
-    bool empty = true; ///< nothing but planes, or not computed yet
+    bool empty = true;                    ///< nothing but planes, or not computed yet
 
     /// At least the support function of the set.
     double above(Vec3 direction) const;

@@ -206,7 +206,8 @@ Vec3 point_of(const RunItem& item, RandomStream& random) {
     if (at < pi * r * r * top * top) return place(on_disc({u, v, 0}, top, 1).point);
     // As on_tapered() has it: the side's area up to y grows so however the axis stretches it.
     const double narrowing = 1 - top, share = u * (1 + top);
-    const double y = narrowing < 1e-12 ? u : (1 - std::sqrt(std::max(0.0, 1 - narrowing * share))) / narrowing;
+    const double y =
+        narrowing < 1e-12 ? u : (1 - std::sqrt(std::max(0.0, 1 - narrowing * share))) / narrowing;
     Vec3 p = (1 - narrowing * y) * on_circle(v);
     p.y = y;
     return place(p);

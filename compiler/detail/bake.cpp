@@ -200,7 +200,8 @@ class Baker {
     }
 
     bool textured(const WalkedLeaf& leaf) const {
-        return request_.pictures && !leaf.proxy && leaf.material && !cut_.materials[*leaf.material].texture.empty();
+        return request_.pictures && !leaf.proxy && leaf.material &&
+               !cut_.materials[*leaf.material].texture.empty();
     }
 
     PartKey key_of(const WalkedLeaf& leaf) const {

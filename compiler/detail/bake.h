@@ -23,20 +23,20 @@ class ShellStore;
 struct BakeRequest {
     NodeId representative = 0;
     std::uint32_t steps = unlimited_steps;
-    double detail_per_unit = 0;         ///< of the representative's frame, where it is seen largest
-    double pixels_per_unit = 0;         ///< likewise; decides how finely curved surfaces are meshed
-    double error_px = 0;                ///< Projection::error_px()
+    double detail_per_unit = 0; ///< of the representative's frame, where it is seen largest
+    double pixels_per_unit = 0; ///< likewise; decides how finely curved surfaces are meshed
+    double error_px = 0;        ///< Projection::error_px()
     /// Where the representative lies, less the place, in units of the least half width there (least_width.h):
     /// what is too thin is widened as it is seen. All zero: nothing is culled.
     Mat3 half_widths_from_unit{0.0};
     std::optional<MaterialId> material; ///< the finish of what names no material
     std::vector<Painter> painters;
-    double expected_leaves = 0; ///< about; what is known of it saves memory
-    bool limit_normals = false; ///< of proxies, where nothing was crushed
+    double expected_leaves = 0;                 ///< about; what is known of it saves memory
+    bool limit_normals = false;                 ///< of proxies, where nothing was crushed
     std::uint64_t most_shell_work = UINT64_MAX; ///< points moved for a shell: it gets coarser by that
-    bool shell = false;         ///< a shell (shell.h) of this very node, of whose painters the colour alone counts
-    ShellStore* shells = nullptr; ///< where its points are kept; none: they are made anew
-    bool pictures = true;       ///< else what has a texture shows its material's colour
+    bool shell = false; ///< a shell (shell.h) of this very node, of whose painters the colour alone counts
+    ShellStore* shells = nullptr;           ///< where its points are kept; none: they are made anew
+    bool pictures = true;                   ///< else what has a texture shows its material's colour
     std::uint64_t most_visits = UINT64_MAX; ///< of the walk through the subtree
 };
 

@@ -44,7 +44,8 @@ void warn_of_shells(const Span& root, const CoarserError& error, Diagnostics& di
                  fmt::format("copies lie in each other so often that their surface is drawn with an error of "
                              "{:.2f} px, not {:.2f} px",
                              error.px, error.asked_px))
-        .with_hint("more --work buys more points of the surface; a smaller picture, or fewer --steps, need fewer");
+        .with_hint(
+            "more --work buys more points of the surface; a smaller picture, or fewer --steps, need fewer");
 }
 
 } // namespace graftal

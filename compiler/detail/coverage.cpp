@@ -133,7 +133,8 @@ class Measurer {
             for (std::uint32_t i = 0; i < edges.size(); ++i) {
                 const CutEdge& edge = edges[i];
                 Part part{edge.child, parent.place * edge.node_from_child, parent.scale * edge.stretch,
-                          reused == SIZE_MAX ? i : parent.edge, edge.material ? edge.material : parent.material};
+                          reused == SIZE_MAX ? i : parent.edge,
+                          edge.material ? edge.material : parent.material};
                 const std::size_t at = i == 0 && reused != SIZE_MAX ? reused : parts_.size();
                 if (at == parts_.size()) parts_.emplace_back();
                 parts_[at] = part;
@@ -161,7 +162,8 @@ class Measurer {
             const CutNode& node = cut_.nodes[part.node];
             const PrimitiveKind kind = node.primitive.value_or(PrimitiveKind::sphere);
             bodies_.push_back(
-                {kind, node.primitive ? part.place * solid_part(node, part) : part.place * node.node_from_proxy,
+                {kind,
+                 node.primitive ? part.place * solid_part(node, part) : part.place * node.node_from_proxy,
                  part.place(node.primitive ? node.ball.centre : node.node_from_proxy.translation)});
         }
     }
@@ -171,7 +173,8 @@ class Measurer {
         const double coverage = part.material ? cut_.materials[*part.material].coverage : 1;
         if (coverage == 1) return {};
         const Vec3 centre = primitive.ball.centre;
-        return Affine::translate(centre) * Affine::scale(Vec3(std::sqrt(coverage))) * Affine::translate(-centre);
+        return Affine::translate(centre) * Affine::scale(Vec3(std::sqrt(coverage))) *
+               Affine::translate(-centre);
     }
 
     /// The area of the union: the sum of the parts' areas, which is exact, times the share of it that the

@@ -272,7 +272,9 @@ class Builder {
         for (const auto& members : components_.members)
             for (const ObjectId id : members) {
                 const Object& object = graph_.objects[id];
-                leaves[id] = object.primitive ? 1 : object.run ? static_cast<double>(object.run->part_count()) : 0;
+                leaves[id] = object.primitive ? 1
+                             : object.run     ? static_cast<double>(object.run->part_count())
+                                              : 0;
                 for (const Instance& instance : graph_.objects[id].instances)
                     leaves[id] += leaves[instance.master];
             }

@@ -43,8 +43,8 @@ struct CutNode {
     std::vector<CutEdge> edges;
     std::vector<CutEdge> stop_edges; ///< drawn in place of the edges where the node is cut; if empty: proxy
     std::shared_ptr<const RunCell> cell; ///< in place of edges: see for_each_edge() (run_cells.h)
-    bool terminal = false;           ///< stop_edges holds the terminal, not the ending instances
-    double terminal_px = 0;          ///< as the object's (graph.h)
+    bool terminal = false;               ///< stop_edges holds the terminal, not the ending instances
+    double terminal_px = 0;              ///< as the object's (graph.h)
     bool unending = false;
     bool solid = false;      ///< some way leads to a primitive
     bool unbounded = false;  ///< holds a plane: always expanded into placements
@@ -68,7 +68,7 @@ struct CutGraph {
     std::vector<Material> materials;
     NodeId root = 0;
     std::vector<std::size_t> root_instances; ///< of the root's edges: some instances draw nothing
-    bool tinted = false;     ///< some instance has a tint
+    bool tinted = false;                     ///< some instance has a tint
     bool contractive = true; ///< every edge within a cycle has stretch < 1: products of stretches end
 };
 

@@ -79,8 +79,7 @@ void LeafWalk::pop() {
 void LeafWalk::enter_ball(const CutNode& shape) {
     if (!limit_normals_ || !shape.unending) return;
     balls_.resize(visit_.depth++);
-    balls_.push_back(
-        {visit_.representative_from_node(shape.ball.centre), visit_.scale * shape.ball.radius});
+    balls_.push_back({visit_.representative_from_node(shape.ball.centre), visit_.scale * shape.ball.radius});
 }
 
 NormalField LeafWalk::normals() const {

@@ -22,8 +22,8 @@ struct WalkedLeaf {
     bool faint = false;                 ///< of a set without area (least_width.h)
     NormalField normals;                ///< of a proxy, in the representative's frame, if asked for
     bool proxy = false;
-    PathTint tint;                      ///< all tints of the walk, by the first painter
-    double turns = 1;                   ///< length_in_turns() of its instance
+    PathTint tint;    ///< all tints of the walk, by the first painter
+    double turns = 1; ///< length_in_turns() of its instance
 };
 
 /// Visits the leaves of a baked subtree in one fixed order: geometry as the representative has it, colours as

@@ -19,9 +19,9 @@ namespace graftal {
 struct PreparedCut {
     CutGraph cut;
     Symmetry symmetry;
-    std::uint32_t root_steps = unlimited_steps; ///< levels that the root has
-    Box bounds;                                 ///< of the limit set
-    std::uint64_t instances = 0;                ///< of the graph that it was made of
+    std::uint32_t root_steps = unlimited_steps;                          ///< levels that the root has
+    Box bounds;                                                          ///< of the limit set
+    std::uint64_t instances = 0;                                         ///< of the graph that it was made of
     std::unique_ptr<ShellStore> shells = std::make_unique<ShellStore>(); ///< of this graph
     /// By node, once somebody has found them; none where they depend on the error that is allowed.
     std::vector<ShellSizes> shell_sizes;

@@ -1,7 +1,7 @@
 #pragma once
 
-// Parts of a run (graph/run.h) that are placed one by one, as they lie there: a Placement of each would take three
-// times the memory of the run.
+// Parts of a run (graph/run.h) that are placed one by one, as they lie there: a Placement of each would take
+// three times the memory of the run.
 
 #include <array>
 #include <cstddef>

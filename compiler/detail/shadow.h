@@ -64,7 +64,7 @@ class Shadow {
     std::vector<double> offset_;         ///< of a row's samples, in [0, 1): they are not to line up
     Vec3 direction_{0.0}, right_{0.0}, up_{0.0};
     Vec3 centre_{0.0};
-    double unit_ = 1;                  ///< samples a scene unit
+    double unit_ = 1; ///< samples a scene unit
     std::uint64_t bodies_drawn_ = 0;
     std::vector<Point> points_, hull_; ///< kept for their memory
 };

@@ -283,8 +283,9 @@ class Finder {
         const NodePair pair = result_.pairs[index];
         const CutNode& a = cut_.nodes[pair.a];
         const CutNode& b = cut_.nodes[pair.b];
-        if (a.primitive != b.primitive || a.cell != b.cell || a.unending != b.unending || a.sealed != b.sealed ||
-            a.unbounded != b.unbounded || a.cullable != b.cullable || a.terminal_px != b.terminal_px)
+        if (a.primitive != b.primitive || a.cell != b.cell || a.unending != b.unending ||
+            a.sealed != b.sealed || a.unbounded != b.unbounded || a.cullable != b.cullable ||
+            a.terminal_px != b.terminal_px)
             return false;
         if (is_identity(pair)) return match_itself(index);
         if (a.sealed) return false;

@@ -30,7 +30,8 @@ constexpr int whole_octaves = 11;
 constexpr double most_shells_a_ray = 64;
 /// What multiplies faster is never parted: a coarser shell of the whole is better than many of the parts.
 constexpr double most_parted_dimension = 4;
-/// Where leaves are counted to know how fast they multiply: far apart, since equal maps multiply them by leaps.
+/// Where leaves are counted to know how fast they multiply: far apart, since equal maps multiply them by
+/// leaps.
 constexpr int few_octaves = 5, many_octaves = 13;
 
 } // namespace
@@ -65,7 +66,8 @@ PieceKind Weights::normalised(PieceKind kind) const {
     if (kind.unit_step == PieceKind::endless_detail || kind.unit_step == PieceKind::tiny) return kind;
     // To the nearest, so that what is counted level by level does not drift.
     if (grain_ > 1)
-        kind.unit_step = static_cast<std::int32_t>(std::lround(static_cast<double>(kind.unit_step) / grain_)) * grain_;
+        kind.unit_step =
+            static_cast<std::int32_t>(std::lround(static_cast<double>(kind.unit_step) / grain_)) * grain_;
     if (!node.primitive && detail_step(kind) <= 1e-6) {
         kind.unit_step = PieceKind::tiny;
     } else if (node.primitive || (!node.cullable && !node.unending)) {
@@ -81,7 +83,8 @@ std::int32_t Weights::mesh_bin(const PieceKind& kind) {
     constexpr std::int32_t first_of_shells = 1 << 20; // whose octaves are those of sizes
     const Weight weight = of(kind);
     if (weight.crowded)
-        return first_of_shells + static_cast<std::int32_t>(std::lround(detail_step(kind) / PieceKind::steps_an_octave));
+        return first_of_shells +
+               static_cast<std::int32_t>(std::lround(detail_step(kind) / PieceKind::steps_an_octave));
     return static_cast<std::int32_t>(std::lround(std::log2(std::clamp(weight.leaves, 1.0, 1e300))));
 }
 
@@ -128,7 +131,8 @@ void Weights::squeeze(const PieceKind& kind, Weight& weight) const {
     constexpr double leaves_an_error = 4; // in two sizes, halves of the error apart
     constexpr double fewest_lengths = 8;
     if (kind.unit_step == PieceKind::endless_detail || kind.unit_step == PieceKind::tiny) return;
-    const double lengths = std::max(fewest_lengths, std::exp2(detail_step(kind) / PieceKind::steps_an_octave));
+    const double lengths =
+        std::max(fewest_lengths, std::exp2(detail_step(kind) / PieceKind::steps_an_octave));
     const Vec3 sigma = singular_values(cut_.nodes[kind.node].edges.front().node_from_child.linear);
     const bool line = sigma.y <= 1e-9 * sigma.x;
     const double most = leaves_an_error * lengths * (line ? 1 : lengths);
@@ -149,7 +153,8 @@ void Weights::crowd(const PieceKind& kind, Weight& weight) const {
     constexpr double triangles_a_sheet_cell = 1, triangles_a_face_cell = 6;
     const double cells = std::min(detail * detail, most_shell_cells);
     weight.crowded = true;
-    weight.triangles = std::min(weight.triangles, (flat_[kind.node] ? triangles_a_sheet_cell : triangles_a_face_cell) * cells);
+    weight.triangles = std::min(weight.triangles,
+                                (flat_[kind.node] ? triangles_a_sheet_cell : triangles_a_face_cell) * cells);
 }
 
 ShellSizes Weights::shell_sizes(NodeId node, std::uint32_t steps) {
@@ -183,7 +188,8 @@ ShellSizes Weights::shell_sizes(NodeId node, std::uint32_t steps) {
 
 bool Weights::is_shell(const PieceKind& kind) {
     const CutNode& node = cut_.nodes[kind.node];
-    if (node.primitive || node.unbounded || kind.unit_step == PieceKind::endless_detail || kind.unit_step == PieceKind::tiny)
+    if (node.primitive || node.unbounded || kind.unit_step == PieceKind::endless_detail ||
+        kind.unit_step == PieceKind::tiny)
         return false;
     if (!of(kind).crowded) return false;
     return shell_sizes(kind.node, kind.steps).has(std::exp2(detail_step(kind) / PieceKind::steps_an_octave));

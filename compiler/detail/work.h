@@ -9,17 +9,17 @@ namespace graftal {
 /// Work is counted, not timed, so that a picture does not depend on the machine or on what else it does.
 /// These many steps stand for a second of one processor of 2024.
 struct WorkRates {
-    static constexpr double ray_steps = 2e7;    ///< of rays, shading included (RayWork)
-    static constexpr double samples = 1.2e7;    ///< of pixels, whatever their rays meet
-    static constexpr double shell_points = 6e6; ///< points of shells moved (shell_points.h)
+    static constexpr double ray_steps = 2e7;        ///< of rays, shading included (RayWork)
+    static constexpr double samples = 1.2e7;        ///< of pixels, whatever their rays meet
+    static constexpr double shell_points = 6e6;     ///< points of shells moved (shell_points.h)
     static constexpr double mesh_triangles = 1.5e6; ///< triangles of meshes sorted into boxes for rays
-    static constexpr double leaves = 4e6;       ///< leaves unfolded into placements
-    static constexpr double visits = 1.5e7;     ///< parts visited to make a mesh of a node (LeafWalk)
-    static constexpr double baked_triangles = 4e6; ///< triangles of such meshes
-    static constexpr double kinds = 4.5e6;      ///< edges of kinds followed to weigh them (Weights)
+    static constexpr double leaves = 4e6;           ///< leaves unfolded into placements
+    static constexpr double visits = 1.5e7;         ///< parts visited to make a mesh of a node (LeafWalk)
+    static constexpr double baked_triangles = 4e6;  ///< triangles of such meshes
+    static constexpr double kinds = 4.5e6;          ///< edges of kinds followed to weigh them (Weights)
     /// Of the graph, from the model's text to where it can be unfolded.
     static constexpr double instances = 1.5e5;
-    static constexpr double pieces = 3e6;       ///< pieces looked at to choose among them (choose_cut())
+    static constexpr double pieces = 3e6; ///< pieces looked at to choose among them (choose_cut())
 };
 
 /// How many times as long steps through a graph of so many instances take: those of a small one are in the

@@ -11,4 +11,4 @@ namespace graftal {
 /// of objects with the number of instances between them, objects of one cycle in a cluster. Deterministic.
 std::string emit_dot(const Graph& graph, const Components& components);
 
-}  // namespace graftal
+} // namespace graftal

@@ -15,7 +15,7 @@ namespace {
 const std::array<std::string, primitive_kind_count>& primitive_names() {
     static const std::array<std::string, primitive_kind_count> names = [] {
         std::array<std::string, primitive_kind_count> list = {"triangle", "sphere", "cube", "plane",
-                                                               "cylinder", "cone",   "torus"};
+                                                              "cylinder", "cone",   "torus"};
         for (int i = 1; i < frustum_steps; ++i)
             list[static_cast<std::size_t>(PrimitiveKind::frustum) + static_cast<std::size_t>(i) - 1] =
                 "frustum(" + shortest(static_cast<double>(i) / frustum_steps) + ")";
@@ -134,8 +134,8 @@ double top_radius(PrimitiveKind kind) {
 
 bool Material::operator==(const Material& other) const {
     return name == other.name && rgb == other.rgb && ambient == other.ambient && diffuse == other.diffuse &&
-           specular == other.specular && roughness == other.roughness && reflection == other.reflection && texture == other.texture &&
-           around == other.around && coverage == other.coverage;
+           specular == other.specular && roughness == other.roughness && reflection == other.reflection &&
+           texture == other.texture && around == other.around && coverage == other.coverage;
 }
 
 ObjectId Graph::add(Object object) {

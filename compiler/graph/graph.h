@@ -12,11 +12,13 @@
 // unending; the root is level 0. This count does not change when equal objects are merged. Where an unending
 // object is cut (no level left, or too small to see) it is drawn as
 //   1. its terminal, if it has one;
-//   2. else, where levels end, its instances of ending masters (its condensation set, its trunk), if it has any;
+//   2. else, where levels end, its instances of ending masters (its condensation set, its trunk), if it has
+//   any;
 //   3. else a proxy: an ellipsoid that covers as much of a picture as the object does.
 //
-// An object whose terminal has a size (`terminal_px`) is drawn as its terminal wherever it measures at most so many
-// pixels across: a card or a few triangles in place of a leaf's recursion. What is nearer is unfolded.
+// An object whose terminal has a size (`terminal_px`) is drawn as its terminal wherever it measures at most
+// so many pixels across: a card or a few triangles in place of a leaf's recursion. What is nearer is
+// unfolded.
 //
 // Tints compose along a path from the root by PathTint, parent in front. The material nearest to the
 // primitive wins.
@@ -37,14 +39,11 @@
 namespace graftal {
 
 /// Canonical primitives (Hart 1992, section 2; sizes that the paper leaves open are ours):
-///   triangle  corners (0,1,0), (-sqrt(3)/2,-1/2,0), (sqrt(3)/2,-1/2,0): the gasket's hull, in the plane z = 0
-///   sphere    radius 1 about the origin
-///   cube      [-1,1]^3
-///   plane     y = 0, unbounded
-///   cylinder  radius 1 about the y axis, 0 <= y <= 1, capped
-///   cone      base radius 1 at y = 0, apex at y = 1, capped
-///   torus     about the y axis, radii 1 and 1/4
-///   frustum   what lies between a cylinder and a cone: radius 1 at y = 0, a smaller one at y = 1, capped. Not
+///   triangle  corners (0,1,0), (-sqrt(3)/2,-1/2,0), (sqrt(3)/2,-1/2,0): the gasket's hull, in the plane z =
+///   0 sphere    radius 1 about the origin cube      [-1,1]^3 plane     y = 0, unbounded cylinder  radius 1
+///   about the y axis, 0 <= y <= 1, capped cone      base radius 1 at y = 0, apex at y = 1, capped torus
+///   about the y axis, radii 1 and 1/4 frustum   what lies between a cylinder and a cone: radius 1 at y = 0,
+///   a smaller one at y = 1, capped. Not
 ///             affine images of each other, frusta are kinds of their own, one for each k/128 of the base.
 enum class PrimitiveKind : std::uint8_t { triangle, sphere, cube, plane, cylinder, cone, torus, frustum };
 inline constexpr int frustum_steps = 128;
@@ -73,25 +72,25 @@ struct Instance {
     ObjectId master = 0;
     Affine parent_from_child;
     Tint tint;
-    std::optional<MaterialId> material;  ///< nothing: as the parent says
+    std::optional<MaterialId> material; ///< nothing: as the parent says
     Span span;
-    /// Its share of the object's random points (chaos/chances.h), relative to the other instances of the object;
-    /// 0: not stated, or none beside others that are. Pictures of surfaces do not depend on it.
+    /// Its share of the object's random points (chaos/chances.h), relative to the other instances of the
+    /// object; 0: not stated, or none beside others that are. Pictures of surfaces do not depend on it.
     double chance = 0;
 };
 
 struct Object {
-    std::string name;                        ///< unique, an `.inst` name such as `up`, `leaf.llr` or `tip(3)`
-    std::optional<PrimitiveKind> primitive;  ///< then there are no instances and no terminal
-    std::vector<Instance> instances;         ///< the union, in the order of the text
-    std::optional<Instance> terminal;        ///< drawn in place of the object where recursion is cut; its
-                                             ///< master must be ending
+    std::string name;                       ///< unique, an `.inst` name such as `up`, `leaf.llr` or `tip(3)`
+    std::optional<PrimitiveKind> primitive; ///< then there are no instances and no terminal
+    std::vector<Instance> instances;        ///< the union, in the order of the text
+    std::optional<Instance> terminal;       ///< drawn in place of the object where recursion is cut; its
+                                            ///< master must be ending
     /// In place of instances: a union of round primitives, too many to be instances (run.h). Means what
     /// instances of them would, in this order; graphs share it, for nobody changes it.
     std::shared_ptr<const Run> run;
     std::vector<std::optional<MaterialId>> run_materials; ///< by the colours of the run
-    double terminal_px = 0;                  ///< size on screen from which down the terminal is drawn; 0: that of
-                                             ///< what is culled
+    double terminal_px = 0; ///< size on screen from which down the terminal is drawn; 0: that of
+                            ///< what is culled
     Span span;
 };
 
@@ -114,9 +113,10 @@ std::size_t instance_count(const Graph& graph);
 /// The primitives that its runs hold, each run once.
 std::size_t run_part_count(const Graph& graph);
 
-/// Equal structure: the same unions, names, instances (in order), transforms to the last bit, tints, chances, materials,
-/// settings and root, and as many primitives. A run equals the instances that it means; it names kinds and not objects,
-/// so where a graph has one, primitives are not counted. Ids may differ, spans do not count.
+/// Equal structure: the same unions, names, instances (in order), transforms to the last bit, tints, chances,
+/// materials, settings and root, and as many primitives. A run equals the instances that it means; it names
+/// kinds and not objects, so where a graph has one, primitives are not counted. Ids may differ, spans do not
+/// count.
 bool equal(const Graph& a, const Graph& b);
 
-}  // namespace graftal
+} // namespace graftal

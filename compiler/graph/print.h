@@ -11,4 +11,4 @@ namespace graftal {
 /// Deterministic, O(graph).
 std::string print(const Graph& graph);
 
-}  // namespace graftal
+} // namespace graftal

@@ -156,7 +156,8 @@ class Verifier {
             check_instance(id, i, object.instances[i]);
         if (object.terminal) check_instance(id, std::nullopt, *object.terminal);
         const bool sized = std::isfinite(object.terminal_px) && object.terminal_px >= 0;
-        if (!sized || (object.terminal_px > 0 && !object.terminal)) flaw(id, "a terminal drawn below {} px", object.terminal_px);
+        if (!sized || (object.terminal_px > 0 && !object.terminal))
+            flaw(id, "a terminal drawn below {} px", object.terminal_px);
     }
 
     void check_run(ObjectId id, const Object& object) {
@@ -201,7 +202,8 @@ class Verifier {
             const std::optional<Instance>& terminal = graph_.objects[id].terminal;
             if (terminal && components.unending[terminal->master])
                 flaw(id, "the terminal '{}' is unending", graph_.objects[terminal->master].name);
-            if (returns[id]) flaw(id, "the terminal '{}' leads back to it", graph_.objects[terminal->master].name);
+            if (returns[id])
+                flaw(id, "the terminal '{}' leads back to it", graph_.objects[terminal->master].name);
             const bool plane = holds_plane[id] || (terminal && holds_plane[terminal->master]);
             if (plane && components.cyclic[components.component_of[id]])
                 flaw(id, "a plane is reached through a cycle");

@@ -34,8 +34,8 @@ struct Derivation {
     std::string modules;           ///< of the word after these steps: decimal, exact
     std::string segments;          ///< that it draws
     std::size_t parts = 0;         ///< different modules with their steps and states that were composed
-    double size_step = 0; ///< widths relative to a part's size are rounded to steps of this logarithm
-    std::uint32_t variants = 1;    ///< of each random part
+    double size_step = 0;       ///< widths relative to a part's size are rounded to steps of this logarithm
+    std::uint32_t variants = 1; ///< of each random part
     double drift = 0; ///< relative standard error of the mean number of segments and bodies over the variants
     double error = 0; ///< bound on the displacement of any point
     std::vector<FamilyReport> families; ///< that were placed, by name
@@ -45,7 +45,7 @@ struct OrbitModel;
 
 struct LowerOptions {
     std::map<std::string, double, std::less<>> set; ///< `--set NAME=VALUE`: replaces the value of a `let`
-    std::optional<unsigned> steps;     ///< derivation steps of an L-system, in place of what the model says
+    std::optional<unsigned> steps; ///< derivation steps of an L-system, in place of what the model says
     /// Looks at the picture that a material names. Without this, textures are taken on trust.
     std::function<Status(const std::string& path, TextureFacts& facts)> look_at_texture;
     /// The same between steps: L-systems whose drawing reads the time are drawn as old as this, after as many
@@ -57,15 +57,15 @@ struct LowerOptions {
     /// resolved;
     /// "": they may lie anywhere.
     std::string root;
-    bool exact = false;                ///< L-systems are derived module by module: one honest random tree
+    bool exact = false; ///< L-systems are derived module by module: one honest random tree
     std::uint64_t max_modules = 50'000'000; ///< of a derived word
     std::uint64_t run_from = 4096; ///< derived words of so many modules make a run, if they repeat little
-    std::size_t max_objects = 1'000'000;    ///< a model that enumerates more is an error
+    std::size_t max_objects = 1'000'000; ///< a model that enumerates more is an error
     /// A model that draws nothing is an error; with this the root model may, with a note, and gives its
     /// `derivation` but no graph.
     bool may_draw_nothing = false;
-    /// Where the root model goes if it is an orbit (orbit_model.h), which has no graph: then nothing comes back, but
-    /// without an error. Null: an orbit is an error.
+    /// Where the root model goes if it is an orbit (orbit_model.h), which has no graph: then nothing comes
+    /// back, but without an error. Null: an orbit is an error.
     std::shared_ptr<const OrbitModel>* orbit = nullptr;
 };
 

@@ -87,7 +87,8 @@ class RifsLowering {
     void import_models() {
         for (const RifsUse& use : tree_.uses) {
             if (diagnostics_.full()) return;
-            const auto [first, fresh] = uses_.try_emplace(use.name.text, Use{use.name.span, std::nullopt, std::nullopt});
+            const auto [first, fresh] =
+                uses_.try_emplace(use.name.text, Use{use.name.span, std::nullopt, std::nullopt});
             if (!fresh) {
                 diagnostics_.error(use.name.span, fmt::format("duplicate use '{}'", use.name.text))
                     .with_note(first->second.span, "first defined here");
@@ -159,7 +160,8 @@ class RifsLowering {
         Diagnostics ignored;
         const std::optional<double> p = evaluate_probability(part.probability, lets_, ignored);
         const std::optional<double> px = part.below ? lower_size_px(*part.below, lets_, diagnostics_) : 0.0;
-        if (master && placed && px) parts_.emplace(&part, Part{*master, *placed, tint, material, part.span, p, *px});
+        if (master && placed && px)
+            parts_.emplace(&part, Part{*master, *placed, tint, material, part.span, p, *px});
     }
 
     std::optional<ObjectId> find_master(const RifsPart& part) {
@@ -178,7 +180,8 @@ class RifsLowering {
         if (primitive) return graph_.primitive(*primitive);
         if (family && !arguments.empty()) return family->exact(arguments, part.master.span, diagnostics_);
         if (!is_frustum) return use->second.root;
-        const std::optional<PrimitiveKind> frustum = lower_frustum(arguments[0], part.master.span, diagnostics_);
+        const std::optional<PrimitiveKind> frustum =
+            lower_frustum(arguments[0], part.master.span, diagnostics_);
         return frustum ? std::optional(graph_.primitive(*frustum)) : std::nullopt;
     }
 
@@ -194,9 +197,8 @@ class RifsLowering {
     }
 
     std::nullopt_t wrong_count(const RifsPart& part, std::size_t most) {
-        diagnostics_.error(part.master.span,
-                           fmt::format("'{}' takes {} argument{}, not {}", part.master.text, most, most == 1 ? "" : "s",
-                                       part.arguments.size()));
+        diagnostics_.error(part.master.span, fmt::format("'{}' takes {} argument{}, not {}", part.master.text,
+                                                         most, most == 1 ? "" : "s", part.arguments.size()));
         return std::nullopt;
     }
 

@@ -292,8 +292,7 @@ void check_set_names(const Environment& known_lets, const std::vector<std::strin
     known.insert(known.end(), settings.begin(), settings.end());
     for (const auto& [name, value] : lowering.options.set) {
         if (std::find(known.begin(), known.end(), name) == known.end())
-            lowering.diagnostics
-                .error(Span(), fmt::format("--set {}: the model has no 'let {}'", name, name))
+            lowering.diagnostics.error(Span(), fmt::format("--set {}: the model has no 'let {}'", name, name))
                 .with_hint(choices(name, known));
         if (!std::isfinite(value))
             lowering.diagnostics.error(Span(), fmt::format("--set {}: the value is not finite", name));

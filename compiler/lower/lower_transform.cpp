@@ -195,7 +195,8 @@ std::optional<double> lower_size_px(const Expression& size_px, const Environment
     constexpr double most = 1e6;
     const std::optional<double> value = evaluate(size_px, environment, diagnostics);
     if (!value || (*value >= 0 && *value <= most)) return value;
-    diagnostics.error(size_px.span, fmt::format("a size in pixels lies between 0 and {}, not at {}", most, shortest(*value)));
+    diagnostics.error(size_px.span, fmt::format("a size in pixels lies between 0 and {}, not at {}", most,
+                                                shortest(*value)));
     return std::nullopt;
 }
 

@@ -33,7 +33,8 @@ std::optional<Tint> lower_tint(const std::vector<Expression>& values, const Envi
 std::optional<double> lower_size_px(const Expression& size_px, const Environment& environment,
                                     Diagnostics& diagnostics);
 
-/// What `frustum(r)` names: of those that there are the one whose upper radius is nearest. Error: not in [0, 1].
+/// What `frustum(r)` names: of those that there are the one whose upper radius is nearest. Error: not in [0,
+/// 1].
 inline constexpr std::string_view frustum_name = "frustum";
 std::optional<PrimitiveKind> lower_frustum(double top_radius, Span place, Diagnostics& diagnostics);
 

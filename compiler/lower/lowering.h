@@ -50,8 +50,8 @@ struct Lowering {
 /// belong.
 std::optional<Graph> lower_file(FileId file, Span asked_for, Lowering& lowering);
 
-/// The file that a model names, looked up beside the model's own; nothing after an error, if there is none, or
-/// it is no regular file: others (pipes, devices) could keep a compilation waiting for ever.
+/// The file that a model names, looked up beside the model's own; nothing after an error, if there is none,
+/// or it is no regular file: others (pipes, devices) could keep a compilation waiting for ever.
 std::optional<std::string> find_beside(Span name_span, std::string_view path, Lowering& lowering);
 
 /// Where a model file is used.

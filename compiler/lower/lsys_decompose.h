@@ -5,8 +5,8 @@
 #include <span>
 #include <vector>
 
-#include "compiler/support/counter_random.h"
 #include "compiler/lower/lsys_rewriter.h"
+#include "compiler/support/counter_random.h"
 #include "compiler/support/diagnostics.h"
 
 namespace graftal {

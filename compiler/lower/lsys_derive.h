@@ -3,11 +3,11 @@
 #include <cstdint>
 #include <optional>
 
-#include "compiler/support/counter_random.h"
 #include "compiler/lower/lsys_context.h"
 #include "compiler/lower/lsys_decompose.h"
 #include "compiler/lower/lsys_rewriter.h"
 #include "compiler/lower/lsys_successors.h"
+#include "compiler/support/counter_random.h"
 #include "compiler/support/diagnostics.h"
 
 // The derivation of words, module by module. Semantics: Prusinkiewicz and Lindenmayer, The Algorithmic Beauty
@@ -18,9 +18,11 @@ namespace graftal {
 /// Words are never longer: their positions are numbered with 32 bits.
 inline constexpr std::uint64_t max_word_modules = 4'000'000'000;
 
-/// Whether so many that are kept are too many, of those that there are, for sharing to pay: an instance of a shared
-/// object takes about as much as three parts of a run, and time to find.
-inline bool little_repeats(std::uint64_t kept, std::uint64_t all) { return kept > all / 8; }
+/// Whether so many that are kept are too many, of those that there are, for sharing to pay: an instance of a
+/// shared object takes about as much as three parts of a run, and time to find.
+inline bool little_repeats(std::uint64_t kept, std::uint64_t all) {
+    return kept > all / 8;
+}
 
 /// Derives the words of a grammar. In each step all modules are replaced at once, by the first production
 /// that fits, contexts before others, or by chance; a module that none fits stays. The axiom and the result
@@ -37,8 +39,9 @@ class LsysDeriver {
     /// takes memory. O(modules of all words), and O(modules * patterns) for contexts.
     std::optional<ModuleString> derive(unsigned steps);
 
-    /// From now on derive() gives up, without an error, where the modules of all words are too different from each
-    /// other for looking them up to pay: LsysStream does without. `fewest`: modules that it takes to tell.
+    /// From now on derive() gives up, without an error, where the modules of all words are too different from
+    /// each other for looking them up to pay: LsysStream does without. `fewest`: modules that it takes to
+    /// tell.
     void give_up_where_little_repeats(std::uint64_t fewest) { gives_up_from_ = fewest; }
     bool gave_up() const { return gave_up_; }
 

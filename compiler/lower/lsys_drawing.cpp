@@ -143,9 +143,9 @@ class Drawer {
             TurtleState start = drawer.start();
             start.variant = number;
             const double share = drawer.options_.share;
-            std::optional<TurtlePart> part = drawer.word_
-                                                 ? composer.compose_word(*drawer.word_, drawer.steps_, start, share)
-                                                 : composer.compose(drawer.steps_, start, share);
+            std::optional<TurtlePart> part =
+                drawer.word_ ? composer.compose_word(*drawer.word_, drawer.steps_, start, share)
+                             : composer.compose(drawer.steps_, start, share);
             drawer.gave_up_ = drawer.gave_up_ || composer.gave_up();
             return part;
         }
@@ -472,7 +472,7 @@ class Drawer {
     std::uint32_t variants_ = 1;
     double drift_ = 0;
     std::deque<Rounding> roundings_; ///< that are left to try; the first is in use
-    std::vector<Material> palette_; ///< of the colour indices
+    std::vector<Material> palette_;  ///< of the colour indices
 };
 
 } // namespace

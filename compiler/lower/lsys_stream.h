@@ -16,8 +16,8 @@ namespace graftal {
 /// Derives and draws in one go, module by module, for words in which little repeats: no module is looked up,
 /// no word is kept. A module is replaced down to the last step before the next one is looked at, so that what
 /// is kept is one string a step. What a module becomes by chance depends on the seed, the step and its place
-/// in the word of that step, as in LsysDeriver: the word is the same, except for the rounding of its parameters
-/// (NumberTable).
+/// in the word of that step, as in LsysDeriver: the word is the same, except for the rounding of its
+/// parameters (NumberTable).
 class LsysStream {
   public:
     struct Options {

@@ -14,12 +14,13 @@ using SymbolId = std::uint16_t;
 using ModuleId = std::uint32_t;
 using ModuleString = std::vector<ModuleId>;
 
-/// What a number would be without rounding, where that can be told: the decimal of some twelve digits that it is
-/// within 8e-15 of itself of; else itself. So 1 + 0.2 + 0.2 + 0.2 + 0.2 + 0.2 is 2, whatever was computed before.
+/// What a number would be without rounding, where that can be told: the decimal of some twelve digits that it
+/// is within 8e-15 of itself of; else itself. So 1 + 0.2 + 0.2 + 0.2 + 0.2 + 0.2 is 2, whatever was computed
+/// before.
 double unrounded(double number);
 
-/// Numbers that differ by rounding only, made equal: the first that came, unrounded(), stands for all within a relative
-/// 1e-12. So l * r1 * r2 and l * r2 * r1 are one length, wherever it came from.
+/// Numbers that differ by rounding only, made equal: the first that came, unrounded(), stands for all within
+/// a relative 1e-12. So l * r1 * r2 and l * r2 * r1 are one length, wherever it came from.
 class NumberTable {
   public:
     /// The number that stands for a finite one; zeros of both signs for 0.

@@ -50,10 +50,10 @@ struct TurtlePart {
     TurtleState exit;          ///< the members of `writes` only
     TurtleStateMask reads = 0; ///< before they were written
     TurtleStateMask writes = 0;
-    bool cut = false;         ///< what follows in the branch is cut off
-    double reach = 0;         ///< the turtle goes no farther from the start
-    double longest_way = 0;   ///< nor is any way that it goes longer
-    double exit_way = 0;      ///< how long the way to the exit is
+    bool cut = false;        ///< what follows in the branch is cut off
+    double reach = 0;        ///< the turtle goes no farther from the start
+    double longest_way = 0;  ///< nor is any way that it goes longer
+    double exit_way = 0;     ///< how long the way to the exit is
     Displacement error;      ///< from directions that were snapped and sizes that were rounded (LsysComposer)
     Displacement size_error; ///< the sizes' share in it; its turn is 0
     Displacement sensitivity; ///< to the directions at the start, per radian, to first order
@@ -93,8 +93,8 @@ struct TurtleContext {
     bool lines = false; ///< segments are strokes of a curve: small parts are drawn as lines
     bool limit = false; ///< only proportions count: lines are as thick as their lengths ask, and parts that
                         ///< differ by a rotation in the plane are made equal
-    bool open_width = false; ///< how thick lines are is not known yet (turtle_bodies.h)
-    bool tallies = false;    ///< the lengths of segments are tallied
+    bool open_width = false;               ///< how thick lines are is not known yet (turtle_bodies.h)
+    bool tallies = false;                  ///< the lengths of segments are tallied
     std::size_t max_instances = 4'000'000; ///< of one part, its polygons' vertices too
 };
 
@@ -111,8 +111,8 @@ inline double bounded(double sensitivity) {
 /// Follows commands and gathers what they draw.
 class Turtle {
   public:
-    /// `context` must outlive the turtle. `run`: takes the round bodies that run() draws, in place of the part's
-    /// instances.
+    /// `context` must outlive the turtle. `run`: takes the round bodies that run() draws, in place of the
+    /// part's instances.
     Turtle(TurtleContext& context, const TurtleState& start, Run* run = nullptr);
 
     /// Carries out one module; false after an error. What `~` places is given by `model`. `absolute`: the
@@ -208,8 +208,8 @@ class Turtle {
     TurtleStateMask writes_ = 0;
     double way_ = 0;        ///< how far the turtle has gone to here
     double size_shift_ = 0; ///< the share of rounded sizes in error_.shift
-    Drift error_;       ///< from parts before that were snapped
-    Drift sensitivity_; ///< per radian of the directions at the start
+    Drift error_;           ///< from parts before that were snapped
+    Drift sensitivity_;     ///< per radian of the directions at the start
     double unit_shift_ = 0; ///< how far the place moves with the logarithm of the unit
     WidthSource width_source_ = WidthSource::start; ///< of the width now
     double width_error_ = 0;                        ///< of its logarithm, by parts before
@@ -217,7 +217,7 @@ class Turtle {
     std::vector<std::vector<Vec3>> polygons_; ///< open ones, by their vertices
     std::size_t cut_depth_ = 0;               ///< 1 + branches opened since the cut; 0: no cut
     std::size_t vertex_count_ = 0;
-    std::size_t longest_polygon_ = 0;          ///< by vertices seen here
+    std::size_t longest_polygon_ = 0;                       ///< by vertices seen here
     std::uint64_t modules_ = 0, segments_ = 0, bodies_ = 0; ///< of run(); not of parts
     TurtlePart part_;
 };

@@ -58,8 +58,8 @@ Instance TurtleBodies::body(PrimitiveKind kind, const Affine& place, int colour,
 }
 
 /// `x`: of unit length, where the body's x axis points.
-void TurtleBodies::add_item(PrimitiveKind kind, Vec3 base, Vec3 axis, double radius, Vec3 x, bool ball, int colour,
-                            const BodySink& sink) {
+void TurtleBodies::add_item(PrimitiveKind kind, Vec3 base, Vec3 axis, double radius, Vec3 x, bool ball,
+                            int colour, const BodySink& sink) {
     const auto index = static_cast<std::size_t>(colour);
     material(colour);
     RunItem item{base, axis, std::abs(radius), 0, kind, ball, static_cast<std::uint16_t>(index)};
@@ -74,8 +74,8 @@ void TurtleBodies::add_segment(const Affine& start_from_turtle, double length, d
     if (length == 0 || width == 0) return;
     const double radius = width / 2;
     if (sink.run) {
-        add_item(PrimitiveKind::cylinder, start_from_turtle.translation, length * start_from_turtle.linear[1], radius,
-                 start_from_turtle.linear[0], true, colour, sink);
+        add_item(PrimitiveKind::cylinder, start_from_turtle.translation, length * start_from_turtle.linear[1],
+                 radius, start_from_turtle.linear[0], true, colour, sink);
         return;
     }
     add(PrimitiveKind::cylinder, start_from_turtle * Affine::scale({radius, length, radius}), colour, span,
@@ -97,7 +97,8 @@ void TurtleBodies::add_taper(const Affine& start_from_turtle, Vec3 from, double 
         x = start_from_turtle.linear[2] - glm::dot(start_from_turtle.linear[2], y) / (length * length) * y;
     x = glm::normalize(x);
     if (sink.run) {
-        add_item(tapered(std::min(width, from_width) / (2 * radius)), thick, y, radius, x, false, colour, sink);
+        add_item(tapered(std::min(width, from_width) / (2 * radius)), thick, y, radius, x, false, colour,
+                 sink);
         add_sphere(start_from_turtle, width, colour, span, sink);
         return;
     }
@@ -123,12 +124,11 @@ void TurtleBodies::add_sphere(const Affine& start_from_turtle, double diameter, 
     if (diameter == 0) return;
     if (sink.run) {
         const double radius = std::abs(diameter) / 2;
-        add_item(PrimitiveKind::sphere, start_from_turtle.translation, radius * start_from_turtle.linear[1], radius,
-                 start_from_turtle.linear[0], false, colour, sink);
+        add_item(PrimitiveKind::sphere, start_from_turtle.translation, radius * start_from_turtle.linear[1],
+                 radius, start_from_turtle.linear[0], false, colour, sink);
         return;
     }
-    add(PrimitiveKind::sphere, start_from_turtle * Affine::scale(Vec3(diameter / 2)), colour, span,
-        sink);
+    add(PrimitiveKind::sphere, start_from_turtle * Affine::scale(Vec3(diameter / 2)), colour, span, sink);
 }
 
 void TurtleBodies::add_disc(const Affine& start_from_turtle, double diameter, int colour, Span span,
@@ -139,8 +139,8 @@ void TurtleBodies::add_disc(const Affine& start_from_turtle, double diameter, in
     const double thickness = disc_thickness * diameter;
     if (sink.run) {
         const Vec3 axis = std::abs(thickness) * upright.linear[1];
-        add_item(PrimitiveKind::cylinder, upright.translation - 0.5 * axis, axis, diameter / 2, upright.linear[0],
-                 false, colour, sink);
+        add_item(PrimitiveKind::cylinder, upright.translation - 0.5 * axis, axis, diameter / 2,
+                 upright.linear[0], false, colour, sink);
         return;
     }
     add(PrimitiveKind::cylinder,
@@ -149,8 +149,7 @@ void TurtleBodies::add_disc(const Affine& start_from_turtle, double diameter, in
         colour, span, sink);
 }
 
-void TurtleBodies::add_polygon(std::span<const Vec3> corners, int colour, Span span,
-                               BodySink sink) {
+void TurtleBodies::add_polygon(std::span<const Vec3> corners, int colour, Span span, BodySink sink) {
     for (const auto& [a, b, c] : triangulate(corners)) {
         const Affine place = on_corners(corners[a], corners[b], corners[c]);
         if (is_finite(place)) add(PrimitiveKind::triangle, place, colour, span, sink);

@@ -50,14 +50,11 @@ class TurtleBodies {
     /// What stands for a line from the start to `end` where it is too small to see: as thick as it is long,
     /// so that fine curves stay visible. Nothing if the points are equal.
     std::optional<Instance> line(Vec3 end, int colour, Span span);
-    void add_sphere(const Affine& start_from_turtle, double diameter, int colour, Span span,
-                    BodySink sink);
+    void add_sphere(const Affine& start_from_turtle, double diameter, int colour, Span span, BodySink sink);
     /// A flat disc about the turtle, in the plane of its heading and its left.
-    void add_disc(const Affine& start_from_turtle, double diameter, int colour, Span span,
-                  BodySink sink);
+    void add_disc(const Affine& start_from_turtle, double diameter, int colour, Span span, BodySink sink);
     void add_polygon(std::span<const Vec3> corners, int colour, Span span, BodySink sink);
-    void add_model(const PlacedModel& model, const Affine& start_from_turtle, Span span,
-                   BodySink sink);
+    void add_model(const PlacedModel& model, const Affine& start_from_turtle, Span span, BodySink sink);
 
     /// Whether colours fit into a run.
     bool can_run() const { return palette_.size() < open_width; }
@@ -69,8 +66,7 @@ class TurtleBodies {
     void add_item(PrimitiveKind kind, Vec3 base, Vec3 axis, double radius, Vec3 x, bool ball, int colour,
                   const BodySink& sink);
     Instance body(PrimitiveKind kind, const Affine& place, int colour, Span span);
-    void add(PrimitiveKind kind, const Affine& place, int colour, Span span,
-             const BodySink& sink) {
+    void add(PrimitiveKind kind, const Affine& place, int colour, Span span, const BodySink& sink) {
         sink.instances.push_back(body(kind, place, colour, span));
     }
 

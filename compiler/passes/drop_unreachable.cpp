@@ -36,9 +36,7 @@ Graph drop_unreachable(Graph graph) {
     graph.root = new_object[graph.root];
 
     std::vector<bool> used(graph.materials.size(), false);
-    for_each_instance(graph, [&](Instance& instance) {
-        instance.master = new_object[instance.master];
-    });
+    for_each_instance(graph, [&](Instance& instance) { instance.master = new_object[instance.master]; });
     for_each_material(graph, [&](MaterialId& material) { used[material] = true; });
     const std::optional<GroundSetting>& ground = graph.settings.ground;
     for (MaterialId id = 0; id < graph.materials.size(); ++id)

@@ -75,8 +75,8 @@ class Labels {
     Label of(const Instance& instance, std::optional<double> terminal_px, double chance) {
         const Placement placement = placement_of(instance, terminal_px, chance);
         const auto next = static_cast<Label>(known_.size());
-        const Label label =
-            ids_.find_or_add(hash_of(placement), next, [&](Label known) { return known_[known] == placement; });
+        const Label label = ids_.find_or_add(hash_of(placement), next,
+                                             [&](Label known) { return known_[known] == placement; });
         if (label == next) known_.push_back(placement);
         return label;
     }
@@ -218,7 +218,8 @@ class Refinement {
         const auto same_kind = [&](ObjectId a, ObjectId b) {
             return graph.objects[a].primitive == graph.objects[b].primitive &&
                    graph.objects[a].run == graph.objects[b].run &&
-                   graph.objects[a].run_materials == graph.objects[b].run_materials && edges_.labels_of[a] == edges_.labels_of[b];
+                   graph.objects[a].run_materials == graph.objects[b].run_materials &&
+                   edges_.labels_of[a] == edges_.labels_of[b];
         };
         std::sort(order.begin(), order.end(), [&](ObjectId a, ObjectId b) {
             if (graph.objects[a].primitive != graph.objects[b].primitive)

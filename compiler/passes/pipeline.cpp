@@ -17,7 +17,8 @@ namespace {
 
 constexpr std::array<Pass, 2> passes = {{
     {"drop_unreachable", "drops objects and materials that nothing drawn refers to", drop_unreachable, true},
-    {"merge_equivalent", "merges objects that unfold to the same thing, inside cycles too", merge_equivalent, false},
+    {"merge_equivalent", "merges objects that unfold to the same thing, inside cycles too", merge_equivalent,
+     false},
 }};
 
 } // namespace

@@ -28,7 +28,7 @@ struct PassTime {
 };
 
 struct PipelineOptions {
-    std::string stop_after;                                    ///< run up to and with this pass; empty: all
+    std::string stop_after;  ///< run up to and with this pass; empty: all
     bool keep_names = false; ///< leave out the passes that do not: addresses are to be found
     std::function<void(const Pass&, const Graph&)> after_each; ///< for --dump-after; may be empty
 };

@@ -226,11 +226,10 @@ class Unfolding {
         thing.world_from_thing = drawn(kind, piece.world_from_node, piece);
         const double px = norm(thing.world_from_thing.linear) * projection_.pixels_that_matter(ball);
         const TextureSpace space = texture_space(kind, cut_.materials[*piece.material].around, piece.turns);
-        const TexturedPrimitive shape{
-            kind, fineness_for(kind, tessellation_tolerance_px / std::max(px, 1e-300)), space.around,
-            space.along};
-        const auto [place, added] =
-            textured_of_.emplace(shape, static_cast<std::uint32_t>(textured.size()));
+        const TexturedPrimitive shape{kind,
+                                      fineness_for(kind, tessellation_tolerance_px / std::max(px, 1e-300)),
+                                      space.around, space.along};
+        const auto [place, added] = textured_of_.emplace(shape, static_cast<std::uint32_t>(textured.size()));
         if (added) textured.push_back(shape);
         if (!seen_.insert(static_cast<std::uint32_t>(kind), thing.world_from_thing)) return;
         note_finest(ball);
@@ -300,7 +299,8 @@ class Unfolding {
         Placed thing;
         thing.request = request;
         thing.world_from_thing = piece.world_from_node;
-        if (!shell) thing.world_from_thing = thing.world_from_thing * symmetry_.node_from_representative[piece.node];
+        if (!shell)
+            thing.world_from_thing = thing.world_from_thing * symmetry_.node_from_representative[piece.node];
         if (!seen_.insert(thing.request + primitive_kind_count, thing.world_from_thing)) return true;
         note_finest(ball);
         thing.painter = painter(request, shell ? 0 : symmetry_.pair[piece.node], piece.inherited);
@@ -318,7 +318,8 @@ class Unfolding {
     }
 
     std::optional<PainterKey> own_painter(const Piece& piece) const {
-        if (!cut_.nodes[piece.node].textured && !(piece.material && has_picture(*piece.material))) return std::nullopt;
+        if (!cut_.nodes[piece.node].textured && !(piece.material && has_picture(*piece.material)))
+            return std::nullopt;
         return PainterKey{0, symmetry_.pair[piece.node], as_array(piece.inherited)};
     }
 
@@ -558,13 +559,14 @@ std::optional<Cut> assemble_within(AssemblyLimits& limits, const CutGraph& cut, 
             request.most_shell_work = share.work;
             most_triangles = share.triangles;
         }
-        request.most_visits =
-            static_cast<std::uint64_t>(std::min(limits.work_seconds, 1e6) * WorkRates::visits / limits.slowness);
+        request.most_visits = static_cast<std::uint64_t>(std::min(limits.work_seconds, 1e6) *
+                                                         WorkRates::visits / limits.slowness);
         baked.push_back(bake(cut, symmetry, request, most_triangles));
         triangles += baked.back().triangles;
-        limits.work_seconds -= limits.slowness * static_cast<double>(baked.back().visits) / WorkRates::visits +
-                               static_cast<double>(baked.back().triangles) / WorkRates::baked_triangles +
-                               static_cast<double>(baked.back().shell_work) / WorkRates::shell_points;
+        limits.work_seconds -=
+            limits.slowness * static_cast<double>(baked.back().visits) / WorkRates::visits +
+            static_cast<double>(baked.back().triangles) / WorkRates::baked_triangles +
+            static_cast<double>(baked.back().shell_work) / WorkRates::shell_points;
         if (limits.work_seconds < 0) return std::nullopt;
         if (!baked.back().complete || triangles > limits.max_triangles) return std::nullopt;
         culled_detail = std::max(culled_detail, baked.back().culled_detail * unfolding.seen_share(request));

@@ -178,8 +178,9 @@ class Chooser {
         if (bucket.mesh) drop_mesh(*bucket.mesh, bucket.triangles);
         const bool cut = weights_.is_cut(kind);
         const CutNode& split_node = cut_.nodes[kind.node];
-        const bool real = static_cast<double>(bucket.pieces.size()) == bucket.count &&
-                          placements_ + bucket.count * static_cast<double>(edge_count(split_node, cut)) <= max_real_pieces;
+        const bool real =
+            static_cast<double>(bucket.pieces.size()) == bucket.count &&
+            placements_ + bucket.count * static_cast<double>(edge_count(split_node, cut)) <= max_real_pieces;
         for_each_edge(split_node, cut, [&](const CutEdge& edge) {
             if (real) {
                 for (const Piece& piece : bucket.pieces)
@@ -193,8 +194,8 @@ class Chooser {
     }
 
     Choice current(double threshold) const {
-        const double per_triangle =
-            PovrayCosts::triangle + PovrayCosts::vertex + PovrayCosts::normal + (cut_.tinted ? PovrayCosts::slot : 0);
+        const double per_triangle = PovrayCosts::triangle + PovrayCosts::vertex + PovrayCosts::normal +
+                                    (cut_.tinted ? PovrayCosts::slot : 0);
         const double text_a_triangle =
             SdlLengths::triangle + SdlLengths::normal + (cut_.tinted ? SdlLengths::slot : 0);
         Choice choice;
@@ -212,7 +213,7 @@ class Chooser {
     Weights& weights_;
     double most_bytes_;
     double placement_bytes_, placement_text_;
-    int grain_ = 1; ///< kinds' details are multiples of it
+    int grain_ = 1;     ///< kinds' details are multiples of it
     double pieces_ = 0; ///< that were looked at
     double placements_ = 0;
     double triangles_ = 0;

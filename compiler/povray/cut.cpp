@@ -101,8 +101,8 @@ class Cutter {
         return std::max(0, static_cast<int>(std::log(picture / options_.error_px) / std::log(coarser)));
     }
 
-    /// The step to try after one that failed. Where it failed for its work there is half as much for the next,
-    /// and a step or two would not do.
+    /// The step to try after one that failed. Where it failed for its work there is half as much for the
+    /// next, and a step or two would not do.
     int coarser_than(int steps) const { return failed_by_work_ ? 2 * steps + 2 : std::max(1, 2 * steps); }
 
     /// How much coarser the error is after so many steps.
@@ -151,7 +151,8 @@ class Cutter {
     }
 
     /// What was chosen, if it fits.
-    std::optional<Cut> assembled(const Piece& root, const Projection& projection, Weights& weights, double memory) {
+    std::optional<Cut> assembled(const Piece& root, const Projection& projection, Weights& weights,
+                                 double memory) {
         grain_ = weights.grain();
         const auto failed = [&](bool by_work) {
             failed_by_work_ = by_work;
@@ -160,10 +161,10 @@ class Cutter {
         if (!(choice_.bytes <= estimate_slack * memory)) return failed(false);
         // What is tried last still has half of what is left.
         const double work_seconds = 0.5 * work_seconds_left_;
-        AssemblyLimits limits{
-            static_cast<std::size_t>(std::max(0.0, memory) / PovrayCosts::least_placement) + 1,
-            static_cast<std::size_t>(std::max(0.0, memory) / PovrayCosts::triangle) + 1, work_seconds,
-            slowness_of_graph(prepared_.instances)};
+        AssemblyLimits limits{static_cast<std::size_t>(std::max(0.0, memory) / PovrayCosts::least_placement) +
+                                  1,
+                              static_cast<std::size_t>(std::max(0.0, memory) / PovrayCosts::triangle) + 1,
+                              work_seconds, slowness_of_graph(prepared_.instances)};
         std::optional<Cut> cut =
             assemble(cut_, symmetry_, projection, root, choice_, weights,
                      options_.limit_normals && !cut_options_.flatten, *prepared_.shells, limits);
@@ -255,9 +256,10 @@ class Cutter {
     std::nullopt_t refuse_size() {
         if (failed_by_work_) {
             diagnostics_
-                .error(graph_.objects[graph_.root].span,
-                       fmt::format("{} leaves take more than the {:g} seconds of work allowed, however coarse",
-                                   readable_count(choice_.leaves), options_.work_seconds))
+                .error(
+                    graph_.objects[graph_.root].span,
+                    fmt::format("{} leaves take more than the {:g} seconds of work allowed, however coarse",
+                                readable_count(choice_.leaves), options_.work_seconds))
                 .with_hint("give more with --work, lower --steps, or draw it with --engine native");
             return std::nullopt;
         }

@@ -40,8 +40,8 @@ struct Placement {
 };
 
 /// Placements that share a texture: a palette, one tint in front of it, and a finish (the material's rgb is
-/// already in the palette). Where the palette has one colour the tint is already in it too. If the material has
-/// a picture it stands in the palette's place, behind the tint.
+/// already in the palette). Where the palette has one colour the tint is already in it too. If the material
+/// has a picture it stands in the palette's place, behind the tint.
 struct PlacementGroup {
     std::uint32_t palette = 0;
     PathTint tint;

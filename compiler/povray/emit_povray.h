@@ -15,8 +15,8 @@ namespace graftal {
 /// Receives text piece by piece, so that a scene of gigabytes never lies in memory; returns false to stop.
 using TextSink = std::function<bool(std::string_view)>;
 
-/// A picture that the scene refers to: the palette of a mesh with more colours than a colour_map holds, or the
-/// texture of a material.
+/// A picture that the scene refers to: the palette of a mesh with more colours than a colour_map holds, or
+/// the texture of a material.
 struct PaletteImage {
     std::string file_name; ///< beside the scene; PNG, 16 bit, linear
     int width = 0;
@@ -35,7 +35,8 @@ struct PovrayOptions {
     std::string identifier = {};
 };
 
-/// What `--name` may be: letters, digits and '_', a capital first, since POV-Ray's own words have none; at most 24.
+/// What `--name` may be: letters, digits and '_', a capital first, since POV-Ray's own words have none; at
+/// most 24.
 bool is_model_identifier(std::string_view text);
 
 /// Writes the scene as POV-Ray 3.7 SDL (research: povray.md): literal placements of shared meshes, grouped by

@@ -41,8 +41,8 @@ class Digests {
   private:
     void add(const Vec3& v, std::uint64_t& hash) const {
         for (int i = 0; i < 3; ++i)
-            hash = mixed(hash, static_cast<std::uint64_t>(
-                                   static_cast<std::int64_t>(std::clamp(std::round(v[i] / unit_), -9e18, 9e18))));
+            hash = mixed(hash, static_cast<std::uint64_t>(static_cast<std::int64_t>(
+                                   std::clamp(std::round(v[i] / unit_), -9e18, 9e18))));
     }
 
     double unit_;

@@ -10,14 +10,14 @@
 
 namespace graftal {
 
-/// Ranges of runs that are spelt out in a cut, by the pieces that hold them: what is known of all of them before they
-/// are sorted by their looks.
+/// Ranges of runs that are spelt out in a cut, by the pieces that hold them: what is known of all of them
+/// before they are sorted by their looks.
 class PlacedRuns {
   public:
     struct Range {
         std::shared_ptr<const RunSource> source;
-        std::size_t first = 0, count = 0; ///< items
-        Piece piece;                      ///< that holds them
+        std::size_t first = 0, count = 0;                  ///< items
+        Piece piece;                                       ///< that holds them
         std::shared_ptr<const std::vector<bool>> left_out; ///< RunPlacements::left_out
     };
 
@@ -31,9 +31,9 @@ class PlacedRuns {
     std::size_t part_count() const { return parts_; }
     const std::vector<Range>& ranges() const { return ranges_; }
 
-    /// Leaves out what is out of sight, if that is asked for, and what coincides with another part: POV-Ray draws tens
-    /// of thousands of coincident objects black. Returns the least length that may be seen (Cut::finest). Takes
-    /// eight bytes a part until it is done.
+    /// Leaves out what is out of sight, if that is asked for, and what coincides with another part: POV-Ray
+    /// draws tens of thousands of coincident objects black. Returns the least length that may be seen
+    /// (Cut::finest). Takes eight bytes a part until it is done.
     double sift(const CutGraph& cut, const Projection& projection);
 
   private:

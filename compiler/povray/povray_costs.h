@@ -18,7 +18,7 @@ struct PovrayCosts {
     static constexpr double vertex = 18;
     static constexpr double normal = 12; ///< one a vertex, of a smooth mesh
     static constexpr double uv = 16;     ///< one a vertex, of a mesh with a picture
-    static constexpr double slot = 8; ///< one colour of a palette
+    static constexpr double slot = 8;    ///< one colour of a palette
 
     static constexpr double least_placement = 336;
     static constexpr double matrix = 545; ///< of a primitive that cannot be written without one

@@ -13,8 +13,8 @@ std::string harmless(std::string_view text);
 /// The text as part of an SDL identifier: letters, digits and underscores, at most 24.
 std::string identifier_part(std::string_view text);
 
-/// The identifier of a whole model, by the name of its file without the ending: begins with a capital, so that it
-/// is none of POV-Ray's words.
+/// The identifier of a whole model, by the name of its file without the ending: begins with a capital, so
+/// that it is none of POV-Ray's words.
 std::string model_identifier(std::string_view name);
 
 /// Hands out identifiers that begin with a prefix and differ from each other.

@@ -230,7 +230,8 @@ std::string PovrayTextures::declarations(std::vector<PaletteImage>& pictures) co
         text += declaration;
     for (const auto& [index, name] : palettes_) {
         const Palette& palette = cut_.palettes[index];
-        text += fmt::format("#declare {} = pigment {{ {} }}\n", name, palette_pigment(palette, file_name(name)));
+        text +=
+            fmt::format("#declare {} = pigment {{ {} }}\n", name, palette_pigment(palette, file_name(name)));
         if (PaletteLayout(static_cast<std::uint32_t>(palette.size())).picture())
             pictures.push_back(palette_image(palette, file_name(name)));
     }

@@ -20,8 +20,8 @@ namespace graftal {
 /// second layer of the texture (research: povray.md, section 3).
 class PovrayTextures {
   public:
-    /// `prefix` begins every name; `file_stem` the names of pictures. `by_material`: looks of different materials
-    /// are different though they are equal.
+    /// `prefix` begins every name; `file_stem` the names of pictures. `by_material`: looks of different
+    /// materials are different though they are equal.
     PovrayTextures(const Cut& cut, const std::string& prefix, std::string file_stem, bool by_material);
 
     /// Of the group's primitives and meshes: an index into all(). Equal looks have equal indices.
@@ -34,9 +34,9 @@ class PovrayTextures {
 
     /// `texture { ... }`, one or two layers.
     const std::deque<std::string>& all() const { return textures_; }
-    /// `#ifndef (Prefix_T_wood) #declare Prefix_T_wood = ... #end` for each material, so that who includes the
-    /// file can declare it before. Where tints and palettes make several textures of one material, all of them are
-    /// its texture then. Gives what stands in place of all(), in the same order.
+    /// `#ifndef (Prefix_T_wood) #declare Prefix_T_wood = ... #end` for each material, so that who includes
+    /// the file can declare it before. Where tints and palettes make several textures of one material, all of
+    /// them are its texture then. Gives what stands in place of all(), in the same order.
     struct Overridable {
         std::string declarations;
         std::vector<std::string> names;     ///< by texture

@@ -40,7 +40,8 @@ Rgb colour_of_path(const Graph& graph, Dice& dice) {
         const Object& object = graph.objects[at];
         if (object.run) {
             const RunItem& item = (*object.run)[dice.roll(object.run->size())];
-            if (const auto material = object.run_materials[item.colour]) base = graph.materials[*material].rgb;
+            if (const auto material = object.run_materials[item.colour])
+                base = graph.materials[*material].rgb;
         }
         if (object.primitive || object.instances.empty()) break;
         const Instance& instance = object.instances[dice.roll(object.instances.size())];

@@ -13,8 +13,9 @@ namespace graftal {
 
 namespace {
 
-/// Of the picture's width or height, on each side. Of exactly a twentieth, rows of pixels would run along the edges of
-/// figures at halves and quarters, where rounding decides what a ray meets, in each engine by itself.
+/// Of the picture's width or height, on each side. Of exactly a twentieth, rows of pixels would run along the
+/// edges of figures at halves and quarters, where rounding decides what a ray meets, in each engine by
+/// itself.
 constexpr double margin = 0.05 + 0x1p-32;
 constexpr double automatic_angle_deg = 36; // across the longer side of the picture
 constexpr double widest_angle_deg = 90;    // that fitting may choose

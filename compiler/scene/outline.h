@@ -14,7 +14,8 @@ namespace graftal {
 std::vector<Vec3> outline(const Graph& graph, const std::vector<ObjectBounds>& bounds,
                           const std::vector<Vec3>& directions);
 
-/// Points whose convex hull holds the object: a triangle's corners, else those of its box. None if that is empty.
+/// Points whose convex hull holds the object: a triangle's corners, else those of its box. None if that is
+/// empty.
 std::vector<Vec3> hull_points(const Object& object, const Box& box);
 
 } // namespace graftal

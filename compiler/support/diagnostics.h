@@ -63,9 +63,9 @@ class Diagnostics {
     std::size_t warning_count_ = 0;
 };
 
-/// The candidate closest to a misspelt name, or "" if none is close enough to be what was meant: at most a third
-/// of its letters wrong, where transpositions count once and capitals not at all; else one that begins with the
-/// name, or that the name begins with.
+/// The candidate closest to a misspelt name, or "" if none is close enough to be what was meant: at most a
+/// third of its letters wrong, where transpositions count once and capitals not at all; else one that begins
+/// with the name, or that the name begins with.
 std::string closest_name(std::string_view name, const std::vector<std::string>& candidates);
 
 /// The hint "did you mean 'x'?" for closest_name, or "" if there is none.

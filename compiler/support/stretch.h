@@ -47,7 +47,7 @@ inline double most_stretch(const Mat3& map) {
 
 /// A map that leaves a ball hardly any thickness, but more than a line.
 struct FlatMap {
-    Vec3 sigma;      ///< its singular values, largest first; the least to about 1e-10 of the largest
+    Vec3 sigma; ///< its singular values, largest first; the least to about 1e-10 of the largest
     /// Added times a length, it makes the image of the unit ball thicker by that; nothing else changes by
     /// more than 1e-5 of it.
     Mat3 thickening;

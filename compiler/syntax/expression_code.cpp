@@ -119,9 +119,10 @@ bool ExpressionCode::reads(std::size_t slot) const {
 
 std::optional<double> ExpressionCode::value(std::span<const double> slots) const {
     const Node& whole = nodes_.back();
-    const double result = whole.kind == Kind::slot     ? slots[whole.slot]
-                          : whole.kind == Kind::number ? whole.number
-                                                       : value(static_cast<std::uint32_t>(nodes_.size() - 1), slots);
+    const double result = whole.kind == Kind::slot ? slots[whole.slot]
+                          : whole.kind == Kind::number
+                              ? whole.number
+                              : value(static_cast<std::uint32_t>(nodes_.size() - 1), slots);
     if (std::isfinite(result)) return result;
     return std::nullopt;
 }

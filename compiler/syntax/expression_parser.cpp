@@ -15,7 +15,8 @@ namespace {
 struct Mode {
     bool angle_brackets = false;
     bool row = false;
-    bool list = false; ///< of several numbers, commas or not: a sign that begins a line begins what comes next
+    bool list =
+        false; ///< of several numbers, commas or not: a sign that begins a line begins what comes next
 };
 
 constexpr const char* vector_hint = "a vector is written x, y, z or <x, y, z>";

@@ -20,14 +20,15 @@ std::optional<Expression> parse_expression(TokenStream& stream);
 /// the next number (`1 -2` is two numbers, `1 - 2` and `1-2` are one), and so does a '<'.
 std::optional<Expression> parse_row_expression(TokenStream& stream);
 
-/// Parses `min` to `max` expressions, as `a, b, c` or `<a, b, c>`, or as a row: `a b c`, `<a b c>`. In a row signs
-/// are those of parse_row_expression(). It ends with its line once there are `min`, and at a word that begins
-/// another line. `what` names the place in messages: "'scale' takes 1 to 3 numbers", `hint` says what they are.
-/// A comma before a line's keyword or after the last number that fits is left alone.
+/// Parses `min` to `max` expressions, as `a, b, c` or `<a, b, c>`, or as a row: `a b c`, `<a b c>`. In a row
+/// signs are those of parse_row_expression(). It ends with its line once there are `min`, and at a word that
+/// begins another line. `what` names the place in messages: "'scale' takes 1 to 3 numbers", `hint` says what
+/// they are. A comma before a line's keyword or after the last number that fits is left alone.
 std::optional<std::vector<Expression>> parse_numbers(TokenStream& stream, std::size_t min, std::size_t max,
                                                      std::string_view what, std::string_view hint = {});
 
-/// Expressions with commas between them, up to the ')'. Requires that the '(' was just taken; false after an error.
+/// Expressions with commas between them, up to the ')'. Requires that the '(' was just taken; false after an
+/// error.
 bool parse_arguments(TokenStream& stream, std::vector<Expression>& arguments);
 
 /// Three numbers, as parse_numbers() reads them.

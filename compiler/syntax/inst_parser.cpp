@@ -327,7 +327,8 @@ class BodyParser {
             diagnostics_.error(keyword.span, "'below' belongs to a terminal")
                 .with_hint("it says from which size in pixels down the terminal takes the object's place");
         } else if (group->below) {
-            diagnostics_.error(keyword.span, "duplicate 'below'").with_note(group->below->span, "first given here");
+            diagnostics_.error(keyword.span, "duplicate 'below'")
+                .with_note(group->below->span, "first given here");
         }
         group->below = std::move(size_px);
         return true;

@@ -18,8 +18,8 @@ namespace graftal {
 namespace {
 
 constexpr std::string_view one_character_symbols = "{}()[]<>,:;=+-*/%^!~?";
-constexpr std::array<std::string_view, 8> two_character_symbols = {"->", "==", "!=", "<=",
-                                                                   ">=", "&&", "||", ".."};
+constexpr std::array<std::string_view, 8> two_character_symbols = {
+    "->", "==", "!=", "<=", ">=", "&&", "||", ".."};
 
 /// A token takes about 40 bytes and its syntax tree about as much again.
 constexpr std::size_t max_tokens = 16'000'000;

@@ -16,11 +16,11 @@ enum class TokenKind : std::uint8_t { name, number, string, symbol, end };
 /// character, or one of `-> == != <= >= && || ..`. Two dots end a number: `0..360` is three tokens.
 struct Token {
     TokenKind kind = TokenKind::end;
-    bool first_on_line = false;  ///< no token before it on its line
-    bool space_before = false;   ///< white space or a comment before it: `-1` against `- 1` in a row of codes
+    bool first_on_line = false; ///< no token before it on its line
+    bool space_before = false;  ///< white space or a comment before it: `-1` against `- 1` in a row of codes
     Span span;
-    std::string_view text;       ///< the token's bytes (a string without its quotes)
-    double number = 0;           ///< of a number
+    std::string_view text; ///< the token's bytes (a string without its quotes)
+    double number = 0;     ///< of a number
 
     bool is(std::string_view symbol_or_name) const {
         return (kind == TokenKind::symbol || kind == TokenKind::name) && text == symbol_or_name;
@@ -35,4 +35,4 @@ std::vector<Token> lex(const SourceMap& sources, FileId file, Diagnostics& diagn
 /// The same for a part of a file, with spans in the file, as if nothing stood around it.
 std::vector<Token> lex_range(const SourceMap& sources, Span range, Diagnostics& diagnostics);
 
-}  // namespace graftal
+} // namespace graftal

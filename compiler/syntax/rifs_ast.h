@@ -30,7 +30,7 @@ struct RifsPart {
     RifsLook look;
     std::optional<Expression> probability; ///< of a condensation set
     std::optional<Expression> below;       ///< of a terminal: the size from which down it is drawn
-    Span span; ///< from the keyword on
+    Span span;                             ///< from the keyword on
 };
 
 /// How a map's numbers are written: a transform list, or one of the rows of `codes`.

@@ -16,7 +16,9 @@ bool parse_below(TokenStream& stream, std::optional<Expression>& below) {
     const Token keyword = stream.next();
     stream.accept(":");
     if (below) {
-        stream.diagnostics().error(keyword.span, "duplicate 'below'").with_note(below->span, "first given here");
+        stream.diagnostics()
+            .error(keyword.span, "duplicate 'below'")
+            .with_note(below->span, "first given here");
         return false;
     }
     below = parse_row_expression(stream);

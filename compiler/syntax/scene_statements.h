@@ -39,7 +39,8 @@ const std::vector<std::string>& scene_keywords();
 bool at_scene_statement(const TokenStream& stream);
 
 /// Requires at_scene_statement(). Parses the statement into `statements`; errors are reported, and the
-/// stream then stands where parsing can go on. A `let` or `inner` in error has the value 1, so that its uses are known.
+/// stream then stands where parsing can go on. A `let` or `inner` in error has the value 1, so that its uses
+/// are known.
 void parse_scene_statement(TokenStream& stream, std::vector<SceneStatement>& statements);
 
 } // namespace graftal

@@ -61,15 +61,18 @@ Vec3 surface_of_run(const Run& run, Vec3 point, Vec3 to_eye) {
         const RunItem& item = run[i];
         const bool round = item.kind == PrimitiveKind::sphere;
         const double square = glm::dot(item.axis, item.axis);
-        const double share =
-            round || !(square > 0) ? 0 : std::clamp(glm::dot(point - item.base, item.axis) / square, 0.0, 1.0);
+        const double share = round || !(square > 0)
+                                 ? 0
+                                 : std::clamp(glm::dot(point - item.base, item.axis) / square, 0.0, 1.0);
         const Vec3 inside = item.base + share * item.axis;
         const double distance = glm::distance(inside, point) - item.radius;
         if (!(distance < nearest)) continue;
         nearest = distance;
-        const Vec3 out = round || !(square > 0) ? to_eye : to_eye - glm::dot(to_eye, item.axis) / square * item.axis;
+        const Vec3 out =
+            round || !(square > 0) ? to_eye : to_eye - glm::dot(to_eye, item.axis) / square * item.axis;
         const double length = glm::length(out), narrowing = item.ball ? 0 : 1 - top_radius(item.kind);
-        seen = length > 0 ? inside + item.radius * (round ? 1 : 1 - share * narrowing) / length * out : inside;
+        seen =
+            length > 0 ? inside + item.radius * (round ? 1 : 1 - share * narrowing) / length * out : inside;
     }
     return seen;
 }

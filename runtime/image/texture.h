@@ -13,9 +13,9 @@
 
 namespace graftal {
 
-/// A picture that is wrapped round parts of a model, as both engines look it up: the texel that holds a point,
-/// none mixed with its neighbours, and nothing where it is clear. POV-Ray reads it from a PNG of just these
-/// numbers.
+/// A picture that is wrapped round parts of a model, as both engines look it up: the texel that holds a
+/// point, none mixed with its neighbours, and nothing where it is clear. POV-Ray reads it from a PNG of just
+/// these numbers.
 struct Texture {
     struct Texel {
         std::array<std::uint8_t, 3> srgb{};

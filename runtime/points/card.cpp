@@ -29,22 +29,25 @@ View card_view(const Box& box, ImageSize size) {
     return view;
 }
 
-std::string card_text(const std::string& picture, const Box& box, ImageSize size, const std::vector<Material>& materials) {
+std::string card_text(const std::string& picture, const Box& box, ImageSize size,
+                      const std::vector<Material>& materials) {
     const double half = 0.5 * width_of(box, size);
     const Vec3 centre = box.centre();
     const Material finish = materials.size() == 1 ? materials.front() : Material();
-    return fmt::format("# A flat model's card: its picture is of random points (graftal points --card).\n"
-                       "material card {{ texture: \"{}\"  ambient: {}  diffuse: {}  specular: {}  roughness: {} }}\n\n"
-                       "object card {{\n"
-                       "    instance: cube  scale: {}, {}, {}  translate: {}, {}, {}  material: card\n"
-                       "}}\n",
-                       picture, shortest(finish.ambient), shortest(finish.diffuse), shortest(finish.specular),
-                       shortest(finish.roughness), shortest(half), shortest(half * size.height / size.width),
-                       shortest(half * thickness), shortest(centre.x), shortest(centre.y), shortest(centre.z));
+    return fmt::format(
+        "# A flat model's card: its picture is of random points (graftal points --card).\n"
+        "material card {{ texture: \"{}\"  ambient: {}  diffuse: {}  specular: {}  roughness: {} }}\n\n"
+        "object card {{\n"
+        "    instance: cube  scale: {}, {}, {}  translate: {}, {}, {}  material: card\n"
+        "}}\n",
+        picture, shortest(finish.ambient), shortest(finish.diffuse), shortest(finish.specular),
+        shortest(finish.roughness), shortest(half), shortest(half * size.height / size.width),
+        shortest(half * thickness), shortest(centre.x), shortest(centre.y), shortest(centre.z));
 }
 
 bool is_card_picture(const std::string& picture) {
-    return std::ranges::all_of(picture, [](unsigned char c) { return c >= ' ' && c != '"' && c != '\\' && c != 127; });
+    return std::ranges::all_of(picture,
+                               [](unsigned char c) { return c >= ' ' && c != '"' && c != '\\' && c != 127; });
 }
 
 } // namespace graftal

@@ -15,11 +15,11 @@ struct FittedModel {
     /// more.
     double seconds = 0;
     double allowed_seconds = 0; ///< what trying has left of the work; the picture may take more even so
-    double whole_seconds = 0; ///< that it would have taken as it was asked for
-    double tried_seconds = 0; ///< that trying took of them
-    double error_px = 0;      ///< of what is culled now
-    bool work_cut = false;    ///< more is culled than asked for, or rays are cut, for the work
-    bool rays_cut = false;    ///< each ray goes into fewer parts than it wants, too
+    double whole_seconds = 0;   ///< that it would have taken as it was asked for
+    double tried_seconds = 0;   ///< that trying took of them
+    double error_px = 0;        ///< of what is culled now
+    bool work_cut = false;      ///< more is culled than asked for, or rays are cut, for the work
+    bool rays_cut = false;      ///< each ray goes into fewer parts than it wants, too
     bool out_of_memory = false; ///< it was not for the work alone
 };
 

@@ -74,8 +74,9 @@ void report_work(const FittedModel& fitted, const Looks& looks, const ViewedMode
     if (!viewed.detail.culls()) {
         if (!(seconds > allowed)) return;
         diagnostics
-            .note(span, fmt::format("this picture takes about {} seconds of one processor: nothing is left out",
-                                    readable_seconds(seconds)))
+            .note(span,
+                  fmt::format("this picture takes about {} seconds of one processor: nothing is left out",
+                              readable_seconds(seconds)))
             .with_hint("--error 0.5 leaves out what nobody can see");
         return;
     }
@@ -266,8 +267,7 @@ std::optional<NativeReport> trace_model(ViewedModel viewed, const NativeOptions&
     const TraceModel& model = *fitted.model;
     looks.affordable = looks.tried;
     if (fitted.rays_cut)
-        looks.affordable =
-            within_seconds(looks.tried, fitted.seconds / samples, fitted.allowed_seconds);
+        looks.affordable = within_seconds(looks.tried, fitted.seconds / samples, fitted.allowed_seconds);
     report_work(fitted, looks, viewed, compilation.diagnostics);
     report_size(looks, viewed, compilation.diagnostics);
     compilation.times.push_back({"prepare", watch.seconds()});

@@ -51,7 +51,8 @@ std::vector<Sampling> with_fewer_samples(std::vector<Sampling> samplings, ImageS
     return samplings;
 }
 
-std::vector<Sampling> within_seconds(std::vector<Sampling> samplings, double seconds_a_sample, double seconds) {
+std::vector<Sampling> within_seconds(std::vector<Sampling> samplings, double seconds_a_sample,
+                                     double seconds) {
     while (seconds_a_sample * samples_a_pixel(samplings) > seconds && look_less_closely(samplings, 8)) {
     }
     return samplings;

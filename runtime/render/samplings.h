@@ -23,6 +23,7 @@ std::vector<Sampling> with_fewer_samples(std::vector<Sampling> samplings, ImageS
 
 /// The same until all samples take no more than `seconds`, where each of a picture takes so long. One sample
 /// stays for each square of 8 by 8 pixels.
-std::vector<Sampling> within_seconds(std::vector<Sampling> samplings, double seconds_a_sample, double seconds);
+std::vector<Sampling> within_seconds(std::vector<Sampling> samplings, double seconds_a_sample,
+                                     double seconds);
 
 } // namespace graftal

@@ -124,7 +124,8 @@ class Bounder {
 
     Box box_of(const CutEdge& edge) const {
         const auto primitive = cut_.nodes[edge.child].primitive;
-        if (primitive && *primitive != PrimitiveKind::plane) return box_of_image(*primitive, edge.node_from_child);
+        if (primitive && *primitive != PrimitiveKind::plane)
+            return box_of_image(*primitive, edge.node_from_child);
         return transformed(edge.node_from_child, bounds_[edge.child].box);
     }
 

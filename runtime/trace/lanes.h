@@ -49,7 +49,8 @@ struct LaneMap {
     }
 };
 
-/// By an operation with a scalar, which the compiler knows how to spread: a list of lanes it inserts one by one.
+/// By an operation with a scalar, which the compiler knows how to spread: a list of lanes it inserts one by
+/// one.
 GRAFTAL_INLINE Double4 splat(double x) {
     return x - Double4{};
 }

@@ -130,9 +130,10 @@ std::unique_ptr<TraceMesh> MeshStore::bake_shell(const Key& key, const Affine& g
     request.painters = {{0, Rgb(0.0)}, {0, Rgb(1.0)}};
     constexpr double moves_a_triangle = WorkRates::shell_points / WorkRates::mesh_triangles;
     constexpr double triangles_beside_points = 0.5; // of the work
-    const auto affordable = static_cast<std::size_t>(triangles_beside_points *
-                                                     static_cast<double>(most_shell_work_) / moves_a_triangle);
-    const Baked baked = bake(prepared_.cut, prepared_.symmetry, request, std::min(most_triangles, affordable));
+    const auto affordable = static_cast<std::size_t>(
+        triangles_beside_points * static_cast<double>(most_shell_work_) / moves_a_triangle);
+    const Baked baked =
+        bake(prepared_.cut, prepared_.symmetry, request, std::min(most_triangles, affordable));
     shell_work_ += baked.shell_work +
                    static_cast<std::uint64_t>(moves_a_triangle * static_cast<double>(baked.triangles));
     auto mesh = trace_mesh(baked, inverse(graph_from_frame));

@@ -45,8 +45,7 @@ constexpr std::size_t most_edges_spelt_out = 200'000;
 /// Fills in nodes, edges and boxes of a model.
 class Builder {
   public:
-    explicit Builder(TraceModel& model)
-        : model_(model), cut_(model.layers.cut), bounds_(drawn_bounds(cut_)) {
+    explicit Builder(TraceModel& model) : model_(model), cut_(model.layers.cut), bounds_(drawn_bounds(cut_)) {
         std::size_t edges = 0;
         for (NodeId id = 0; id < cut_.nodes.size(); ++id) {
             model_.graph_from_frame.push_back(graph_from_frame(cut_.nodes[id], bounds_.node[id]));

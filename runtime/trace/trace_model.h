@@ -37,9 +37,9 @@ inline constexpr std::uint32_t from_cut = 1u << 31;
 struct TraceEdge {
     LaneMap parent_from_child;
     LaneMap child_from_parent;
-    double stretch = 1;      ///< norm of the linear part of parent_from_child
-    double growth = 1;       ///< 1 / stretch
-    Box box;                 ///< of what the child draws, in the parent's frame
+    double stretch = 1; ///< norm of the linear part of parent_from_child
+    double growth = 1;  ///< 1 / stretch
+    Box box;            ///< of what the child draws, in the parent's frame
     std::uint32_t child = 0;
     unsigned levels = 0;
     bool similarity = false; ///< then a path's norm is the product of its stretches
@@ -48,16 +48,17 @@ struct TraceEdge {
     PathTint tint;
     std::optional<MaterialId> material;
     double turns = 1; ///< of a primitive: length_in_turns() of the graph's instance
-    /// Of an unrolling's edges that lead several levels down, which have no tint and material of their own: the way is
-    /// one of its edges or the node's, and then one of that child's.
+    /// Of an unrolling's edges that lead several levels down, which have no tint and material of their own:
+    /// the way is one of its edges or the node's, and then one of that child's.
     std::uint32_t before = no_edge, last = no_edge;
 };
 
-/// What is some levels below a node, as if it were parts of its own: boxes are sooner tested than frames are entered.
-/// It may take the place of the node's edges where none of the nodes passed over would be cut or baked.
+/// What is some levels below a node, as if it were parts of its own: boxes are sooner tested than frames are
+/// entered. It may take the place of the node's edges where none of the nodes passed over would be cut or
+/// baked.
 struct Unrolling {
     std::uint32_t tree = no_tree;
-    std::uint32_t least_steps = 0;    ///< levels that must be left
+    std::uint32_t least_steps = 0; ///< levels that must be left
     /// Least diameter of a node passed over that may be culled, in the node's frame, by its cut_detail.
     double least_size = std::numeric_limits<double>::infinity();
     double flattest_edge = 1; ///< the least flatness on the ways
@@ -88,7 +89,7 @@ struct TraceNode {
     std::uint32_t first_unrolling = 0; ///< the deepest first
     std::uint32_t unrolling_count = 0;
     double reach = 0; ///< from ball_centre; the balls of all nodes that they pass over are within it
-    std::uint32_t first_edge = 0;      ///< of its edges, which follow each other
+    std::uint32_t first_edge = 0; ///< of its edges, which follow each other
     std::uint32_t edge_count = 0;
     std::uint32_t stop_edge_count = 0; ///< which follow those
     Double4 ball_centre{};
@@ -98,7 +99,8 @@ struct TraceNode {
     LaneMap proxy_from_node;
 };
 
-/// A run as rays meet it. An edge for each look of its parts has its material; where a part lies says the run.
+/// A run as rays meet it. An edge for each look of its parts has its material; where a part lies says the
+/// run.
 struct TraceRun {
     struct Look {
         PrimitiveKind kind;
@@ -132,18 +134,18 @@ struct TraceModel {
     std::vector<PackedNode> packed_boxes; ///< of runs
     std::vector<Unrolling> unrollings;
     std::vector<TraceRun> runs;
-    std::vector<Affine> graph_from_frame; ///< by node
-    mutable MeshStore meshes;             ///< of shells
+    std::vector<Affine> graph_from_frame;                 ///< by node
+    mutable MeshStore meshes;                             ///< of shells
     std::vector<std::shared_ptr<const Texture>> textures; ///< by material; null where there is none
-    /// Nodes and primitives that one ray may go into. Sound models need some tens or hundreds; where thousands of
-    /// parts coincide, a ray would not come to an end.
+    /// Nodes and primitives that one ray may go into. Sound models need some tens or hundreds; where
+    /// thousands of parts coincide, a ray would not come to an end.
     std::uint64_t most_visits = 1 << 17;
     /// More of them, for a ray that was given up before it met anything: it looks into no more parts that may
     /// be culled, so that few are left.
     std::uint64_t more_visits() const { return std::clamp<std::uint64_t>(most_visits, 32, 256); }
-    bool has_shells = false;                              ///< some node may be drawn as one
-    std::uint64_t weighed = 0;                            ///< edges of kinds followed to find where (Weights)
-    bool clear_texels = false;                            ///< some texture has them
+    bool has_shells = false;   ///< some node may be drawn as one
+    std::uint64_t weighed = 0; ///< edges of kinds followed to find where (Weights)
+    bool clear_texels = false; ///< some texture has them
 
     /// Up to where a hit will do, if none can be nearer by more than this share of the half width: of a model
     /// in a plane that is drawn in specks; else before all.

@@ -117,7 +117,8 @@ std::optional<MaterialId> Traversal::material_of(std::uint32_t edge) const {
     return material ? material : material_of(whole.before);
 }
 
-const Texture::Texel& Traversal::texel(MaterialId material, std::uint32_t edge, double turns, Vec3 point) const {
+const Texture::Texel& Traversal::texel(MaterialId material, std::uint32_t edge, double turns,
+                                       Vec3 point) const {
     const TraceEdge& way = model_.edges[edge & ~from_cut];
     const PrimitiveKind kind = model_.nodes[way.child].primitive;
     const double around = model_.prepared.cut.materials[material].around;
@@ -165,11 +166,9 @@ void Traversal::surface_at_best(SurfaceHit& hit) const {
         if (best_.mesh_colour->material) hit.material = &materials[*best_.mesh_colour->material];
         if (model_.projection.culls())
             model_.meshes.note(best_.cell * model_.projection.detail_per_unit({ray_(best_.t), 0}));
-    }
-    else if (best_.proxy_node == no_edge && material && model_.textures[*material])
+    } else if (best_.proxy_node == no_edge && material && model_.textures[*material])
         inherited = colour_of(texel(*material, path_.back(), best_.turns, best_.point));
-    if (best_.proxy_node != no_edge)
-        inherited = model_.source(best_.proxy_node).mean.over(inherited);
+    if (best_.proxy_node != no_edge) inherited = model_.source(best_.proxy_node).mean.over(inherited);
     hit.t = best_.t;
     hit.rgb = tint.over(inherited);
     hit.normal = normal_at_best();

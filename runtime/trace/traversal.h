@@ -38,10 +38,10 @@ class FlatImage {
     bool parallel_ = true;
 };
 
-/// Takes rays through the graph itself (J. Hart and T. DeFanti, "Efficient Antialiased Rendering of 3-D Linear
-/// Fractals", 1991): depth first, the nearest child first, into each child's frame, and only as deep as the
-/// parts are that the view shows. What is drawn of a node is what the cut draws of it (cut.h), part by part.
-/// Memory O(depth). For one thread.
+/// Takes rays through the graph itself (J. Hart and T. DeFanti, "Efficient Antialiased Rendering of 3-D
+/// Linear Fractals", 1991): depth first, the nearest child first, into each child's frame, and only as deep
+/// as the parts are that the view shows. What is drawn of a node is what the cut draws of it (cut.h), part by
+/// part. Memory O(depth). For one thread.
 class Traversal final : public Surfaces {
   public:
     explicit Traversal(const TraceModel& model, Instructions instructions = best_instructions());
@@ -77,9 +77,9 @@ class Traversal final : public Surfaces {
         bool items = false; ///< its entries are items of a run, not edges
         bool faint = false; ///< they stand for a set without area (least_width.h)
         Vec3 margin{0.0};   ///< by which parts may reach out of their boxes
-        float least = 0;  ///< where the ray begins, in units from the base
-        /// By axis: the side of boxes where the ray goes in, the origin less the margin as that and the other side see
-        /// it, and the reciprocal of the direction.
+        float least = 0;    ///< where the ray begins, in units from the base
+        /// By axis: the side of boxes where the ray goes in, the origin less the margin as that and the other
+        /// side see it, and the reciprocal of the direction.
         Int4 side_in;
         Float4 origin_in, origin_out, reciprocal;
     };
@@ -181,7 +181,8 @@ class Traversal final : public Surfaces {
     std::vector<std::uint32_t> flat_way_; ///< edges from the frame to the part under way
     std::uint64_t visit_limit_ = 0;       ///< of the ray
     bool hurries_ = false;                ///< the ray has passed the limit
-    std::vector<std::uint32_t> way_;  ///< edges through the frames to the best hit, those from cut nodes marked
+    std::vector<std::uint32_t>
+        way_; ///< edges through the frames to the best hit, those from cut nodes marked
     std::vector<std::uint32_t> path_; ///< of the graph, likewise, once the ray is done
     std::uint64_t visits_ = 0;
     std::uint64_t more_work_ = 0; ///< than visits tell

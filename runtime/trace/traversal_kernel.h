@@ -276,8 +276,8 @@ template<Instructions instructions> struct Traversal::Kernel {
     }
 
     /// The frame has its ray.
-    GRAFTAL_INLINE bool enter_node(const TraceEdge& edge, const TraceNode& node, const Frame& parent, Frame& frame,
-                                   Entry& entry) {
+    GRAFTAL_INLINE bool enter_node(const TraceEdge& edge, const TraceNode& node, const Frame& parent,
+                                   Frame& frame, Entry& entry) {
         compose(parent.world_from_node, edge.parent_from_child, frame.world_from_node);
         frame.edge = entry.entry | (parent.cut ? from_cut : 0);
         frame.node = edge.child;
@@ -410,7 +410,8 @@ template<Instructions instructions> struct Traversal::Kernel {
         const Double4 near = frame.origin + splat(entry.at) * frame.direction;
         const double base = t_of(entry);
         PrimitiveHit hit;
-        if (!intersect(mesh.triangle(triangle), {vec3_of(near), vec3_of(frame.direction)}, range_from(base, frame.speed), hit))
+        if (!intersect(mesh.triangle(triangle), {vec3_of(near), vec3_of(frame.direction)},
+                       range_from(base, frame.speed), hit))
             return;
         if (!set_best(base + hit.t * frame.unit)) return;
         self.best_.normal = hit.normal;
@@ -466,8 +467,9 @@ template<Instructions instructions> struct Traversal::Kernel {
         RayRange near = range_from(frame.base, frame.speed);
         PrimitiveHit hit;
         if (!intersect(kind, ray, near, hit)) return;
-        for (int crossing = 0; model.clear_texels && self.is_clear(entry.entry, entry.frame,
-                                                                       model.edges[entry.entry].turns, ray(hit.t));
+        for (int crossing = 0;
+             model.clear_texels &&
+             self.is_clear(entry.entry, entry.frame, model.edges[entry.entry].turns, ray(hit.t));
              ++crossing) {
             near.least = hit.t;
             if (crossing == most_crossings || !intersect(kind, ray, near, hit)) return;
@@ -477,7 +479,8 @@ template<Instructions instructions> struct Traversal::Kernel {
         self.best_.point = ray(hit.t);
         self.best_.turns = model.edges[entry.entry].turns;
         self.best_.proxy_node = no_edge;
-        compose(parent.world_from_node, model.edges[entry.entry].parent_from_child, self.best_.world_from_leaf);
+        compose(parent.world_from_node, model.edges[entry.entry].parent_from_child,
+                self.best_.world_from_leaf);
         self.keep_way(entry.frame);
         self.way_.push_back(entry.entry | (parent.cut ? from_cut : 0));
     }
@@ -553,8 +556,8 @@ template<Instructions instructions> struct Traversal::Kernel {
         self.best_.point = inner(hit.t);
         self.best_.turns = turns;
         self.best_.proxy_node = no_edge;
-        compose(frame.world_from_node,
-                LaneMap(inverse(model.graph_from_frame[frame.node]) * run_from_body), self.best_.world_from_leaf);
+        compose(frame.world_from_node, LaneMap(inverse(model.graph_from_frame[frame.node]) * run_from_body),
+                self.best_.world_from_leaf);
         self.keep_way(entry.frame);
         self.way_.push_back(look);
     }

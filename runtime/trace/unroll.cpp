@@ -88,8 +88,7 @@ class Unroller {
     /// A union that is never cut where the parts passed over are not.
     bool is_group(const TraceEdge& edge, const Unrolling& unrolling) const {
         const TraceNode& child = model_.nodes[edge.child];
-        return is_union(child) && !child.cullable &&
-               (!child.unending || edge.levels < unrolling.least_steps);
+        return is_union(child) && !child.cullable && (!child.unending || edge.levels < unrolling.least_steps);
     }
 
     bool has_groups(const Parts& parts) const {
@@ -109,9 +108,7 @@ class Unroller {
     template<typename Holds> bool expand(TraceNode& node, Parts& parts, const Holds& holds) {
         std::size_t count = 0;
         bool any = false;
-        const auto is_expanded = [&](std::uint32_t number) {
-            return holds(model_.edges[number]);
-        };
+        const auto is_expanded = [&](std::uint32_t number) { return holds(model_.edges[number]); };
         for (const std::uint32_t number : parts.edges) {
             const bool expanded = is_expanded(number);
             any = any || expanded;
@@ -194,7 +191,8 @@ class Unroller {
             if (edge.box.empty()) continue;
             const TraceNode& child = model_.nodes[edge.child];
             const Affine place_of_child = place * edge.parent_from_child.affine();
-            Box part = is_solid(child) ? box_of_image(child.primitive, place_of_child) : transformed(place, edge.box);
+            Box part = is_solid(child) ? box_of_image(child.primitive, place_of_child)
+                                       : transformed(place, edge.box);
             const std::uint32_t most_below = (most - 1) / count;
             if (is_union(child) && most_below > 0)
                 part = both(part, box_of_parts(place_of_child, child, most_below));

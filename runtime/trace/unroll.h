@@ -4,8 +4,8 @@
 
 namespace graftal {
 
-/// Adds the unrollings of a model that has all else: of the nodes next to the root first, as long as they are worth
-/// their memory, some MiB at most.
+/// Adds the unrollings of a model that has all else: of the nodes next to the root first, as long as they are
+/// worth their memory, some MiB at most.
 void add_unrollings(TraceModel& model);
 
 } // namespace graftal

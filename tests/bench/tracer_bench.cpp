@@ -1,5 +1,5 @@
-// Camera rays a second, on one thread: by the traversal of the graph, and by Embree on the same parts spelt out as
-// one mesh. See tools/bench/tracer.
+// Camera rays a second, on one thread: by the traversal of the graph, and by Embree on the same parts spelt
+// out as one mesh. See tools/bench/tracer.
 //   tracer_bench graph MODEL STEPS ERROR_PX       STEPS: a number, or - for as deep as the error asks
 //   tracer_bench mesh MODEL STEPS
 
@@ -87,8 +87,8 @@ void graph(const TraceModel& model) {
             hits += traversal.closest(ray, {}, hit);
         return hits;
     });
-    std::printf("visits a ray: %.2f\n", static_cast<double>(traversal.visits()) /
-                                            (repeats * static_cast<double>(rays.size())));
+    std::printf("visits a ray: %.2f\n",
+                static_cast<double>(traversal.visits()) / (repeats * static_cast<double>(rays.size())));
 }
 
 /// All leaves as triangles; curved ones as coarsely as can be.
@@ -139,8 +139,8 @@ void mesh(const TraceModel& model) {
     const RTCDevice device = rtcNewDevice("threads=2");
     const RTCScene scene = rtcNewScene(device);
     const RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
-    rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, flat.vertices.data(), 0,
-                               3 * sizeof(float), flat.vertices.size() / 3);
+    rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, flat.vertices.data(),
+                               0, 3 * sizeof(float), flat.vertices.size() / 3);
     rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, flat.corners.data(), 0,
                                3 * sizeof(unsigned), flat.corners.size() / 3);
     rtcCommitGeometry(geometry);

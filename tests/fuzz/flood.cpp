@@ -1,7 +1,7 @@
-// flood TARGET SECONDS SEED FINDING FOLDER: changed inputs from a folder through a target of tests/fuzz, for so
-// many seconds, without sanitizers and without a look at coverage: many more than libFuzzer can run. Prints the
-// executions, the slowest in milliseconds and what was found; the input then stands in the file FINDING, and the
-// status is 1.
+// flood TARGET SECONDS SEED FINDING FOLDER: changed inputs from a folder through a target of tests/fuzz, for
+// so many seconds, without sanitizers and without a look at coverage: many more than libFuzzer can run.
+// Prints the executions, the slowest in milliseconds and what was found; the input then stands in the file
+// FINDING, and the status is 1.
 
 #include <csignal>
 #include <cstdint>

@@ -84,11 +84,13 @@ TEST_P(Replay, KeptInputs) {
         EXPECT_EQ(thrown(GetParam(), input.bytes), "") << input.name;
 }
 
-// libFuzzer names what it finds by a hash of 40 digits. What is kept was chosen, made small and named by hand.
+// libFuzzer names what it finds by a hash of 40 digits. What is kept was chosen, made small and named by
+// hand.
 TEST(Corpus, WasChosenByHand) {
     namespace fs = std::filesystem;
     int kept = 0;
-    for (const fs::directory_entry& entry : fs::recursive_directory_iterator(source_path("tests/fuzz/corpus"))) {
+    for (const fs::directory_entry& entry :
+         fs::recursive_directory_iterator(source_path("tests/fuzz/corpus"))) {
         if (!entry.is_regular_file()) continue;
         ++kept;
         const std::string name = entry.path().filename().string();

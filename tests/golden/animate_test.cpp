@@ -117,8 +117,9 @@ TEST_F(Animate, PlantGrowsInThePicture) {
 TEST_F(Animate, PlantsWithAgesGrowWithoutJumps) {
     const std::string herb = "'" + source_path("scenes/plants/growing_herb.lsys") + "' ";
     const auto largest_change = [&](int frames) {
-        EXPECT_EQ(graftal(fmt::format("animate -q {}--steps 4..7 --frames {} --size 96x72 --engine native -o herb{}",
-                                      herb, frames, frames))
+        EXPECT_EQ(graftal(fmt::format(
+                              "animate -q {}--steps 4..7 --frames {} --size 96x72 --engine native -o herb{}",
+                              herb, frames, frames))
                       .status,
                   0);
         double most = 0;

@@ -1,5 +1,6 @@
-// A leaf by recursion, as a mesh, and as a card with its picture: from the size at which they take each other's place they
-// look alike, as docs/points.md says (scenes/plants/maple_leaf.rifs, maple_leaf_card.inst).
+// A leaf by recursion, as a mesh, and as a card with its picture: from the size at which they take each
+// other's place they look alike, as docs/points.md says (scenes/plants/maple_leaf.rifs,
+// maple_leaf_card.inst).
 
 #include "tests/golden/command_line.h"
 
@@ -32,16 +33,16 @@ class Bodies : public CommandLine {
         for (const int shade : {0, 1}) {
             const std::string name = shade ? "white" : "black";
             write(name + ".inst",
-                  own + "use maple = \"" + source_path("scenes/plants/maple_leaf.rifs") + "\"\nuse card = \"" +
-                      source_path("scenes/plants/maple_leaf_card.inst") +
+                  own + "use maple = \"" + source_path("scenes/plants/maple_leaf.rifs") +
+                      "\"\nuse card = \"" + source_path("scenes/plants/maple_leaf_card.inst") +
                       "\"\ncamera { location: 0,0,10 look_at: 0,0,0 orthographic width: 0.7 }\n"
                       "light { sun: 0.3,0.4,1 color: 1,1,1 }\nbackground: " +
                       (shade ? "1,1,1" : "0,0,0") + "\ncanonical object leaf { " + leaf +
                       " }\nobject o { scatter: leaf count: 60 over: -0.3,-0.3,0.3,0.3 by: jitter turn: y "
                       "lean: 0..70 size: 0.05 rotate: x, 90 }\n");
             const std::string size = std::to_string(std::lround(0.7 / 0.05 * size_px));
-            const RunResult run = graftal("render " + name + ".inst -q --antialias 2 --size " + size + "x" + size +
-                                          " -o " + name + ".exr " + options);
+            const RunResult run = graftal("render " + name + ".inst -q --antialias 2 --size " + size + "x" +
+                                          size + " -o " + name + ".exr " + options);
             EXPECT_EQ(run.status, 0) << run.err;
             means[static_cast<std::size_t>(shade)] = mean(picture(name + ".exr"));
         }
@@ -79,9 +80,9 @@ TEST_F(Bodies, LookAlikeWhereTheyTakeEachOthersPlace) {
     struct Case {
         std::string leaf, options;
     };
-    for (const Case& other : {Case{"maple", "--engine povray"}, Case{"card", "--engine native"},
-                              Case{"card", "--engine povray"}, Case{changing + "50", "--engine native"},
-                              Case{changing + "50", "--engine povray"}}) {
+    for (const Case& other :
+         {Case{"maple", "--engine povray"}, Case{"card", "--engine native"}, Case{"card", "--engine povray"},
+          Case{changing + "50", "--engine native"}, Case{changing + "50", "--engine povray"}}) {
         SCOPED_TRACE(other.leaf + " " + other.options);
         expect_alike(look_of(other.leaf, size_px, other.options), recursion);
     }
@@ -89,7 +90,9 @@ TEST_F(Bodies, LookAlikeWhereTheyTakeEachOthersPlace) {
 
 /// As the command makes it, without choosing anything.
 TEST_F(Bodies, ACardOfPointsStandsForItsModel) {
-    ASSERT_EQ(graftal("points -q '" + source_path("scenes/plants/maple_leaf.rifs") + "' --card leaf.inst").status, 0);
+    ASSERT_EQ(
+        graftal("points -q '" + source_path("scenes/plants/maple_leaf.rifs") + "' --card leaf.inst").status,
+        0);
     const Look recursion = look_of("maple", 32, "--engine native");
     const Look card = look_of("own", 32, "--engine native");
     EXPECT_NEAR(card.coverage / recursion.coverage, 1, 0.03);
@@ -108,8 +111,9 @@ TEST_F(Bodies, ChangeAtTheSizeThatIsSaid) {
         const Look maple = look_of("maple", 16, "--engine " + engine);
         EXPECT_NEAR(look_of(changing + "12", 16, "--engine " + engine).coverage / maple.coverage, 1, 1e-3);
         EXPECT_LT(look_of(changing + "30", 16, "--engine " + engine).coverage, 0.1 * maple.coverage);
-        EXPECT_NEAR(look_of(changing + "30", 16, "--error-world 0.001 --engine " + engine).coverage / maple.coverage, 1,
-                    0.05)
+        EXPECT_NEAR(look_of(changing + "30", 16, "--error-world 0.001 --engine " + engine).coverage /
+                        maple.coverage,
+                    1, 0.05)
             << "an error in scene units knows no pixels";
     }
 }

@@ -47,7 +47,8 @@ TEST_F(Budget, AnObjectAroundAModelCostsNothing) {
     EXPECT_THAT(direct, HasSubstr("meshes"));
 }
 
-/// Seven hundred trees of 64 kinds of each limb, at as many distances: more kinds of details than are told apart.
+/// Seven hundred trees of 64 kinds of each limb, at as many distances: more kinds of details than are told
+/// apart.
 TEST_F(Budget, WoodsShareMeshesHoweverManyKindsTheyAre) {
     const RunResult run = graftal("compile '" + source_path("scenes/plants/autumn.inst") +
                                   "' -o a.pov --memory 1G --size 640x360");

@@ -162,8 +162,8 @@ TEST_F(CommandLine, EnvironmentIsStatusThree) {
 
 TEST_F(CommandLine, AFileThatMayNotGrowIsAFullDisk) {
     for (const std::string& arguments :
-         {"render " + gasket + " --engine native -o x.png",
-          "compile " + pound_sign + " -o x.pov", "points " + gasket + " --points 1e5 -o x.ply"}) {
+         {"render " + gasket + " --engine native -o x.png", "compile " + pound_sign + " -o x.pov",
+          "points " + gasket + " --points 1e5 -o x.ply"}) {
         const RunResult result = shell("ulimit -f 1; \"$graftal\" " + arguments);
         EXPECT_EQ(result.status, 3) << arguments << result.err;
         EXPECT_THAT(result.err, HasSubstr("File too large")) << arguments;

@@ -136,8 +136,9 @@ TEST_F(Faults, FramesThatCannotBeReadAgainGoToo) {
 TEST_F(Faults, ALibraryThatDoesNotLoadIsGivenUp) {
     shell("mkdir lib; for i in $(ldconfig -p | grep -o 'libIex-[^ ]*' | sort -u); do mkfifo lib/$i; done");
     ASSERT_NE(shell("ls lib").out, "");
-    const RunResult result = shell("LD_LIBRARY_PATH=lib timeout 60 \"$graftal\" points m.rifs -q --size 16x12 "
-                                   "--points 100 -o a.exr");
+    const RunResult result =
+        shell("LD_LIBRARY_PATH=lib timeout 60 \"$graftal\" points m.rifs -q --size 16x12 "
+              "--points 100 -o a.exr");
     EXPECT_EQ(result.status, 3);
     EXPECT_THAT(result.err, HasSubstr("graftal: a library does not load"));
     shell("rm -r lib");

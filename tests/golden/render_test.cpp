@@ -61,7 +61,8 @@ TEST_F(Render, QuietIsSilent) {
 
 TEST_F(Render, PictureSaysWhichCommandMadeIt) {
     ASSERT_EQ(graftal("render " + gasket + small + "-o 'a b.png'").status, 0);
-    EXPECT_THAT(read("a b.png"), HasSubstr("graftal render sierpinski.inst --size 96x54")) << "and nothing of this machine";
+    EXPECT_THAT(read("a b.png"), HasSubstr("graftal render sierpinski.inst --size 96x54"))
+        << "and nothing of this machine";
     EXPECT_THAT(read("a b.png"), HasSubstr("graftal 0."));
 }
 
@@ -179,7 +180,8 @@ TEST_F(Render, CompareMeasuresAndJudges) {
     EXPECT_EQ(same.out, "max   0\nmean  0\nrms   0\np99   0\ncount 0 of 2\n");
     const RunResult apart = graftal("compare a.png b.png");
     EXPECT_EQ(apart.status, 1);
-    EXPECT_EQ(apart.out, "max   0.200000003\nmean  0.100000001\nrms   0.141421358\np99   0.200000003\ncount 1 of 2\n");
+    EXPECT_EQ(apart.out,
+              "max   0.200000003\nmean  0.100000001\nrms   0.141421358\np99   0.200000003\ncount 1 of 2\n");
     EXPECT_EQ(graftal("compare a.png b.png --threshold 0.21").status, 0);
     EXPECT_EQ(graftal("compare a.png b.png --threshold 0.19").status, 1);
     const RunResult sizes = graftal("compare a.png c.png --threshold 9");

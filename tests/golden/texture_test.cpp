@@ -18,8 +18,8 @@ class Textured : public CommandLine {};
 /// POV-Ray draws facets, which leave the round parts a little.
 TEST_F(Textured, BothEnginesShowTheSame) {
     for (const std::string engine : {"native", "povray"}) {
-        const RunResult result = graftal("render " + textured + "--size 320x200 -q --engine " + engine + " -o " +
-                                         engine + ".png");
+        const RunResult result =
+            graftal("render " + textured + "--size 320x200 -q --engine " + engine + " -o " + engine + ".png");
         ASSERT_EQ(result.status, 0) << result.err;
     }
     const ImageDifference difference = compare_images(picture("native.png"), picture("povray.png"), 0.1);
@@ -36,7 +36,8 @@ TEST_F(Textured, WhatIsClearIsNotThereNorThrowsShadows) {
     ASSERT_EQ(shell("cp '" + source_path("tests/golden/textured/leaf.png") + "' .").status, 0);
     for (const std::string engine : {"native", "povray"}) {
         SCOPED_TRACE(engine);
-        ASSERT_EQ(graftal("render a.inst --antialias off --size 64x64 -q -o a.png --engine " + engine).status, 0);
+        ASSERT_EQ(graftal("render a.inst --antialias off --size 64x64 -q -o a.png --engine " + engine).status,
+                  0);
         const Image image = picture("a.png");
         std::size_t grey = 0, leaf = 0;
         for (std::size_t i = 0; i < image.pixels.size(); i += static_cast<std::size_t>(image.channels)) {

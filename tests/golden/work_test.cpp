@@ -114,12 +114,13 @@ TEST_F(Work, ShellsHaveTheMaterialOfTheTerminal) {
 // whole was a box of 12 triangles.
 TEST_F(Work, AShellTakesWhatThereIsAndIsNotGivenUpForIt) {
     write("tree.inst", tree_limit);
-    write("bush.lsys", "lsys bush {\n"
-                       "  angle 25\n"
-                       "  steps 24\n"
-                       "  axiom X(1)\n"
-                       "  X(s) -> F(s)[+X(s*0.83)]F(s*0.97)[-X(s*0.79)][+X(s*0.71)]F(s*0.9)[-X(s*0.61)]X(s*0.53)\n"
-                       "}\n");
+    write("bush.lsys",
+          "lsys bush {\n"
+          "  angle 25\n"
+          "  steps 24\n"
+          "  axiom X(1)\n"
+          "  X(s) -> F(s)[+X(s*0.83)]F(s*0.97)[-X(s*0.79)][+X(s*0.71)]F(s*0.9)[-X(s*0.61)]X(s*0.53)\n"
+          "}\n");
     for (const std::string model : {"tree.inst", "bush.lsys"}) {
         const RunResult result = graftal("compile --size 320x180 -o a.pov --work 4 " + model);
         ASSERT_EQ(result.status, 0) << result.err;

@@ -16,7 +16,8 @@ std::optional<CompiledModel> compile_text(const std::string& name, const std::st
 /// The same for a model file of the project.
 std::optional<CompiledModel> compile_file(const std::string& path, const CompileOptions& options);
 
-/// The picture that POV-Ray makes of a compiled model, not antialiased unless asked for (as PovrayJob has it).
+/// The picture that POV-Ray makes of a compiled model, not antialiased unless asked for (as PovrayJob has
+/// it).
 Image draw(const CompiledModel& model, SampleFormat format, std::optional<int> antialias = {});
 
 /// The picture of a scene written by hand, which may include what the model was written to as `model.inc`.

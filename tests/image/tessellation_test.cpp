@@ -48,7 +48,8 @@ TEST(Tessellation, TernaryTreeOfFiveLevels) {
 }
 
 TEST(Tessellation, TernaryTreeOfTenLevels) {
-    expect_small_stray("scenes/hart/ternary_tree.inst", whole_in_meshes({240, 136}, 200'000'000), ImageSize{480, 270});
+    expect_small_stray("scenes/hart/ternary_tree.inst", whole_in_meshes({240, 136}, 200'000'000),
+                       ImageSize{480, 270});
 }
 
 TEST(Tessellation, Elm) {

@@ -40,9 +40,8 @@ std::optional<std::vector<Leaf>> plain_unfolding(const TraceModel& model, std::s
         stack.pop_back();
         const CutNode& node = cut.nodes[piece.node];
         if (node.sealed || leaves.size() + stack.size() > most) return std::nullopt;
-        const bool is_cut =
-            graftal::is_cut(node, piece.steps, detail_of(cut, model.projection, piece),
-                            model.projection.error_px());
+        const bool is_cut = graftal::is_cut(node, piece.steps, detail_of(cut, model.projection, piece),
+                                            model.projection.error_px());
         const auto add = [&](PrimitiveKind kind, const Affine& place, const Rgb& base) {
             if (is_singular(place, 1e-4) || norm(place.linear) < 1e-6) return false;
             leaves.push_back({kind, inverse(place), piece.tint.over(base)});
@@ -55,9 +54,8 @@ std::optional<std::vector<Leaf>> plain_unfolding(const TraceModel& model, std::s
                      node.mean.over(piece.inherited)))
                 return std::nullopt;
         } else {
-            for_each_edge(node, is_cut, [&](const CutEdge& edge) {
-                stack.push_back(descend(cut, piece, edge, is_cut));
-            });
+            for_each_edge(node, is_cut,
+                          [&](const CutEdge& edge) { stack.push_back(descend(cut, piece, edge, is_cut)); });
         }
     }
     return leaves;
@@ -76,7 +74,8 @@ PlainHit meet_plainly(const std::vector<Leaf>& leaves, const Ray& ray, const Ray
         Ray local{leaf.leaf_from_world(ray.origin), leaf.leaf_from_world.linear * ray.direction};
         const double unit = 1 / largest_entry(local.direction);
         // Brought near first, as intersect() asks.
-        const double shift = -glm::dot(local.origin, local.direction) / glm::dot(local.direction, local.direction);
+        const double shift =
+            -glm::dot(local.origin, local.direction) / glm::dot(local.direction, local.direction);
         local.origin = local(shift);
         local.direction *= unit;
         PrimitiveHit hit;
@@ -133,7 +132,8 @@ struct Tally {
     std::size_t models = 0, rays = 0, hits = 0, differing = 0;
 };
 
-void compare(const TraceModel& model, const std::vector<Leaf>& leaves, std::mt19937_64& random, Tally& tally) {
+void compare(const TraceModel& model, const std::vector<Leaf>& leaves, std::mt19937_64& random,
+             Tally& tally) {
     Traversal traversal(model), portable(model, Instructions::portable);
     const Box& box = model.edges.front().box;
     const double size = glm::length(box.size());
@@ -172,7 +172,8 @@ TEST(TraversalProperty, MeetsWhatThePlainUnfoldingMeets) {
         const std::vector<ObjectBounds> bounds = bound_objects(graph, components, contraction);
         const Box& box = bounds[graph.root].box;
         if (box.empty() || bounds[graph.root].unbounded) continue;
-        if (std::max(largest_entry(box.min), largest_entry(box.max)) > 1e100) continue; // refused by compile.cpp
+        if (std::max(largest_entry(box.min), largest_entry(box.max)) > 1e100)
+            continue; // refused by compile.cpp
         DetailOptions options;
         options.error_px = seed % 3 == 0 ? 2 : 0;
         if (options.error_px == 0 || seed % 2 == 0) options.steps = static_cast<unsigned>(seed % 4);

@@ -31,7 +31,7 @@ struct PointsSettings {
     std::optional<std::uint64_t> points;
     PointColour colour = PointColour::tint;
     Tone tone;
-    std::string card; ///< file, or ""
+    std::string card;   ///< file, or ""
     std::string target; ///< of `collage`
     double threshold = 0.5;
     bool light = false;
@@ -54,7 +54,7 @@ struct Options {
     std::optional<int> antialias = 2;
     std::string keep;
     bool unconfined = false; ///< POV-Ray
-    std::string identifier; ///< of `compile` to an .inc; "": as the model's file
+    std::string identifier;  ///< of `compile` to an .inc; "": as the model's file
     AnimationOptions animation;
     PointsSettings points;
     bool json = false;

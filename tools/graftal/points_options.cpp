@@ -39,7 +39,8 @@ void add_positive(CLI::App& app, const std::string& name, const std::string& hel
 std::string complete_card(Options& options) {
     const std::filesystem::path card = options.points.card;
     if (card.extension() != ".inst") return fmt::format("--card: '{}' does not end in .inst", card.string());
-    if (options.output.empty()) options.output = std::filesystem::path(card).replace_extension(".png").string();
+    if (options.output.empty())
+        options.output = std::filesystem::path(card).replace_extension(".png").string();
     const std::filesystem::path picture = options.output;
     if (picture.extension() != ".png") return "--card: its picture is a .png";
     if (picture.parent_path() != card.parent_path()) return "--card: its picture lies in the same folder";
@@ -84,9 +85,10 @@ void add_points_options(CLI::App& app, Options& options) {
                  settings.tone.gamma);
     app.add_flag("--transparent", settings.tone.transparent,
                  "No background: the picture gets an alpha channel");
-    app.add_option("--card", settings.card,
-                   "Also a model of a flat cube with the picture, in the place of a flat model: for terminals\n"
-                   "(default size 512x512, exposure 800; the picture is transparent)")
+    app.add_option(
+           "--card", settings.card,
+           "Also a model of a flat cube with the picture, in the place of a flat model: for terminals\n"
+           "(default size 512x512, exposure 800; the picture is transparent)")
         ->type_name("FILE.inst");
     app.parse_complete_callback([&app, &options, &settings] {
         if (settings.card.empty()) return;

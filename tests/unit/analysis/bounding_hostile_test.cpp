@@ -33,8 +33,8 @@ TEST(Bounding, SingularMaps) {
     expect_box(root_bounds(ifs({step_down})).box, {101, 1, 0}, {101, 1, 0});
 }
 
-// All of the part lies at minus infinity, as far as numbers go: the search finds no point of it, and must not take
-// one that it found before (of an instance that there need not be).
+// All of the part lies at minus infinity, as far as numbers go: the search finds no point of it, and must not
+// take one that it found before (of an instance that there need not be).
 TEST(Bounding, NothingIsReachedWhereAllOverflows) {
     Graph graph;
     const ObjectId ball = graph.primitive(PrimitiveKind::sphere);

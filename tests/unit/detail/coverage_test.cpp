@@ -296,8 +296,8 @@ TEST(Coverage, AMeshedSphereKeepsItsMeanShadow) {
 TEST(Coverage, OfACycleOfSingleInstancesEnds) {
     Graph graph = union_of(PrimitiveKind::sphere, {Affine{}});
     Object spiral{"spiral", {}, {}, {}, {}};
-    const Affine inwards = Affine::translate({1, 0, 0}) * Affine::scale({0.5, 0.6, 0.7}) *
-                           Affine::rotate({0, 0, 1}, 30);
+    const Affine inwards =
+        Affine::translate({1, 0, 0}) * Affine::scale({0.5, 0.6, 0.7}) * Affine::rotate({0, 0, 1}, 30);
     spiral.instances.push_back({static_cast<ObjectId>(graph.objects.size()), inwards, {}, {}, {}});
     const ObjectId id = graph.add(std::move(spiral));
     graph.objects[graph.root].instances.push_back({id, {}, {}, {}, {}});

@@ -50,8 +50,7 @@ inline Graph gasket(bool solid) {
             // The map that takes the canonical triangle's corners to three of the four.
             std::vector<Vec3> p;
             for (int i = 0; i < 4; ++i)
-                if (i != opposite)
-                    p.push_back(corners[i]);
+                if (i != opposite) p.push_back(corners[i]);
             const Vec3 centre = (p[0] + p[1] + p[2]) / 3.0;
             Affine place{Mat3(1.0), centre};
             place.linear[1] = p[0] - centre;

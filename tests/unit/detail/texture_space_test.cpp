@@ -16,9 +16,11 @@ using std::numbers::pi;
 
 TEST(TextureSpace, PicturesKeepTheirProportionsAsWholeOnes) {
     // A circumference of 2 pi, and as long, half as long, 3.4 times and hardly at all.
-    for (const auto& [length, around, along] :
-         {std::array{2 * pi, 1.0, 1.0}, {pi, 1.0, 1.0}, {6.8 * pi, 1.0, 3.0}, {6.8 * pi, 2.0, 7.0},
-          {1e-9, 5.0, 1.0}}) {
+    for (const auto& [length, around, along] : {std::array{2 * pi, 1.0, 1.0},
+                                                {pi, 1.0, 1.0},
+                                                {6.8 * pi, 1.0, 3.0},
+                                                {6.8 * pi, 2.0, 7.0},
+                                                {1e-9, 5.0, 1.0}}) {
         const double turns = length_in_turns(Mat3(1, 0, 0, 0, length, 0, 0, 0, 1));
         const TextureSpace space = texture_space(PrimitiveKind::cylinder, around, turns);
         EXPECT_EQ(space.around, around);

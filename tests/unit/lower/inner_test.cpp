@@ -84,8 +84,9 @@ TEST_F(Inner, isALetOfTheRootModel) {
 
 TEST_F(Inner, condensationSetsHaveArguments) {
     write("mast.inst", mast);
-    write("a.rifs", "use mast = \"mast.inst\"\nlet third = 0.3\nrifs a { map a { scale 0.5 }\n"
-                    "condense mast(third + 0.01)\ncondense mast\ncondense frustum(third)\nterminal mast(1)\n}");
+    write("a.rifs",
+          "use mast = \"mast.inst\"\nlet third = 0.3\nrifs a { map a { scale 0.5 }\n"
+          "condense mast(third + 0.01)\ncondense mast\ncondense frustum(third)\nterminal mast(1)\n}");
     lower("a.rifs");
     ASSERT_TRUE(graph_) << report();
     const Object& root = graph_->objects[graph_->root];

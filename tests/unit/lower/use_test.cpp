@@ -166,8 +166,7 @@ TEST(Language, follows_the_name_of_the_file) {
     SourceMap sources;
     Diagnostics diagnostics;
     EXPECT_FALSE(lower_text("tree.lsys", "lsys tree { }", {}, sources, diagnostics));
-    EXPECT_THAT(diagnostics.render(sources),
-                HasSubstr("tree.lsys:1:6: error: 'lsys tree' has no axiom"));
+    EXPECT_THAT(diagnostics.render(sources), HasSubstr("tree.lsys:1:6: error: 'lsys tree' has no axiom"));
     Diagnostics unknown;
     EXPECT_FALSE(lower_text("tree.txt", "", {}, sources, unknown));
     EXPECT_THAT(unknown.render(sources), HasSubstr("hint: the names of models end in .lsys, .rifs or .inst"));

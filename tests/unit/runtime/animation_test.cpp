@@ -185,7 +185,8 @@ TEST_F(AnimationFiles, StoreKnowsItsFrames) {
     const std::string strange = store.directory() + "/frame_12346.png";
     ASSERT_TRUE(write_image(strange, picture(3), SampleFormat::srgb8).ok());
     ASSERT_TRUE(
-        write_image(store.directory() + "/frame_12347.png", picture(3), SampleFormat::srgb8, {"", "", "u"}).ok());
+        write_image(store.directory() + "/frame_12347.png", picture(3), SampleFormat::srgb8, {"", "", "u"})
+            .ok());
     std::ofstream(store.directory() + "/.frame_00009.123.1.png") << "half";
     std::ofstream(store.directory() + "/notes.txt") << "mine";
     store.tidy();

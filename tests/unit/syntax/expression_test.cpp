@@ -95,17 +95,19 @@ TEST(Expression, functions_and_names) {
 }
 
 TEST(Expression, errors_say_what_is_wrong_and_where) {
-    EXPECT_EQ(error("1 + lenght", {{"length", 1}}), "t:1:5: error: unknown name 'lenght'\n"
-                                                    "    1 + lenght\n"
-                                                    "        ^~~~~~\n"
-                                                    "    hint: did you mean 'length'? known here: pi, length\n");
+    EXPECT_EQ(error("1 + lenght", {{"length", 1}}),
+              "t:1:5: error: unknown name 'lenght'\n"
+              "    1 + lenght\n"
+              "        ^~~~~~\n"
+              "    hint: did you mean 'length'? known here: pi, length\n");
     EXPECT_THAT(error("1/(2-2)"), HasSubstr("t:1:1: error: division by zero"));
     EXPECT_THAT(error("5 % 0"), HasSubstr("division by zero"));
     EXPECT_THAT(error("mod(5, 0)"), HasSubstr("division by zero"));
     EXPECT_THAT(error("sqrt(-1)"), HasSubstr("sqrt(-1) is not a finite number"));
     EXPECT_THAT(error("1e308*10"), HasSubstr("1e+308 * 10 is not a finite number"));
     EXPECT_THAT(error("lerp(1, 2)"), HasSubstr("'lerp' takes 3 arguments, not 2"));
-    EXPECT_THAT(error("lerp(1e308, -1e308, 2)"), HasSubstr("lerp(1e+308, -1e+308, 2) is not a finite number"));
+    EXPECT_THAT(error("lerp(1e308, -1e308, 2)"),
+                HasSubstr("lerp(1e+308, -1e+308, 2) is not a finite number"));
     EXPECT_THAT(error("pow(0, -1)"), HasSubstr("pow(0, -1) is not a finite number"));
     EXPECT_THAT(error("log(0)"), HasSubstr("log(0) is not a finite number"));
     EXPECT_THAT(error("tan(90)"), HasSubstr("tan(90) is not a finite number"));
@@ -174,7 +176,8 @@ TEST(ExpressionLists, every_list_of_numbers_may_be_a_row) {
     EXPECT_THAT(numbers("0 -1 0 rotate", vector), ElementsAre(0, -1, 0));
     EXPECT_THAT(numbers("<0 -1 0>", vector), ElementsAre(0, -1, 0));
     EXPECT_THAT(numbers("1 - 2 3*2 (4) scale 2", vector), ElementsAre(-1, 6, 4));
-    EXPECT_THAT(numbers("1 -2, 3, 4", vector), ElementsAre(-1, 3, 4)) << "where commas stand it is a difference";
+    EXPECT_THAT(numbers("1 -2, 3, 4", vector), ElementsAre(-1, 3, 4))
+        << "where commas stand it is a difference";
     EXPECT_THAT(numbers("1, 2 3", vector), ElementsAre(1, 2, 3));
     EXPECT_THAT(numbers("1 2\n3 4", vector), ElementsAre(1, 2, 3)) << "on the next line what is missing";
     EXPECT_THAT(numbers("1 pi 2", vector).size(), 3u);
@@ -184,7 +187,8 @@ TEST(ExpressionLists, every_list_of_numbers_may_be_a_row) {
     EXPECT_THAT(numbers("2 -3", scale), ElementsAre(2, -3));
     EXPECT_THAT(numbers("2 rotate 3", scale), ElementsAre(2));
     EXPECT_THAT(numbers("2\n3", scale), ElementsAre(2)) << "a row that may end does so with its line";
-    EXPECT_THAT(numbers("3 -1", [](TokenStream& s) { return parse_numbers(s, 1, 1, "steps"); }), ElementsAre(2));
+    EXPECT_THAT(numbers("3 -1", [](TokenStream& s) { return parse_numbers(s, 1, 1, "steps"); }),
+                ElementsAre(2));
 }
 
 TEST(ExpressionLists, wrong_counts_are_errors) {

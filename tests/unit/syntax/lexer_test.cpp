@@ -42,8 +42,9 @@ TEST(Lexer, a_number_may_be_followed_by_a_word) {
 }
 
 TEST(Lexer, two_dots_are_a_range_and_no_part_of_its_ends) {
-    EXPECT_THAT(Lexed("0..360 .5...7 1. .. a..b 2.5..3").texts(),
-                ElementsAre("0", "..", "360", ".5", "..", ".7", "1.", "..", "a", "..", "b", "2.5", "..", "3"));
+    EXPECT_THAT(
+        Lexed("0..360 .5...7 1. .. a..b 2.5..3").texts(),
+        ElementsAre("0", "..", "360", ".5", "..", ".7", "1.", "..", "a", "..", "b", "2.5", "..", "3"));
 }
 
 TEST(Lexer, knows_line_starts_and_space_before_tokens) {
@@ -97,9 +98,10 @@ TEST(Lexer, goes_on_after_each_error) {
 }
 
 TEST(Lexer, reads_lookalikes_as_what_they_were_meant_as_and_reports_each_once) {
-    const Lexed lexed("use a = \u201Cb.inst\u201D 'c' \uFF5B \uFF13, \u22122 \u2192 \u00D7 x\u00A0y\u00A0z\u00A0 \uFF5D");
-    EXPECT_THAT(lexed.texts(), ElementsAre("use", "a", "=", "b.inst", "c", "{", "\uFF13", ",", "-", "2", "->", "*", "x",
-                                           "y", "z", "}"));
+    const Lexed lexed(
+        "use a = \u201Cb.inst\u201D 'c' \uFF5B \uFF13, \u22122 \u2192 \u00D7 x\u00A0y\u00A0z\u00A0 \uFF5D");
+    EXPECT_THAT(lexed.texts(), ElementsAre("use", "a", "=", "b.inst", "c", "{", "\uFF13", ",", "-", "2", "->",
+                                           "*", "x", "y", "z", "}"));
     EXPECT_EQ(lexed.tokens[3].kind, TokenKind::string);
     EXPECT_EQ(lexed.tokens[6].number, 3);
     EXPECT_EQ(lexed.diagnostics.error_count(), 9u) << lexed.errors();

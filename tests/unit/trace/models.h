@@ -28,7 +28,8 @@ inline void place(Graph& graph, ObjectId user, ObjectId master, const Affine& ma
     graph.objects[user].instances.push_back(instance);
 }
 
-/// The model as the engine sees it, from the front and far enough away to see all of it in 640 pixels, or from `eye`.
+/// The model as the engine sees it, from the front and far enough away to see all of it in 640 pixels, or
+/// from `eye`.
 inline std::unique_ptr<TraceModel> traced(const Graph& graph, const DetailOptions& options,
                                           std::optional<Vec3> eye = {}) {
     const Components components = strong_components(graph);
@@ -36,7 +37,8 @@ inline std::unique_ptr<TraceModel> traced(const Graph& graph, const DetailOption
     const Box& box = bounds[graph.root].box;
     View view;
     view.size = {640, 480};
-    view.camera.location = box.empty() ? Vec3(0, 1, 5) : box.centre() + Vec3(0, 0, 2 * glm::length(box.size()));
+    view.camera.location =
+        box.empty() ? Vec3(0, 1, 5) : box.centre() + Vec3(0, 0, 2 * glm::length(box.size()));
     if (eye) view.camera.location = *eye;
     return std::make_unique<TraceModel>(prepare_cut(graph, components, bounds, options), view, options);
 }

@@ -66,7 +66,8 @@ std::size_t shoot(const TraceModel& model, int count) {
 TEST(Traversal, MeetsAPrimitiveThroughTwoInstances) {
     Graph graph = empty_graph();
     const ObjectId group = graph.add({"group", {}, {}, {}, {}});
-    place(graph, group, graph.primitive(PrimitiveKind::sphere), Affine::translate({0, 2, 0}), {{1, 0, 0}, 0.5});
+    place(graph, group, graph.primitive(PrimitiveKind::sphere), Affine::translate({0, 2, 0}),
+          {{1, 0, 0}, 0.5});
     place(graph, group, graph.primitive(PrimitiveKind::cube), Affine::translate({9, 0, 0}));
     place(graph, graph.root, group, Affine::scale({3, 3, 3}), {{0, 0, 1}, 0.5});
     const auto model = traced(graph, exact());
@@ -112,7 +113,8 @@ TEST(Traversal, GoesAsDeepAsTheErrorAsks) {
         std::mt19937_64 random(5);
         std::uniform_real_distribution<double> unit(-1, 1);
         for (int i = 0; i < 5000; ++i)
-            traversal.meets_any({{unit(random), unit(random), 4}, {0.1 * unit(random), 0.1 * unit(random), -1}}, {});
+            traversal.meets_any(
+                {{unit(random), unit(random), 4}, {0.1 * unit(random), 0.1 * unit(random), -1}}, {});
         const double visits = static_cast<double>(traversal.visits()) / 5000;
         EXPECT_LT(visits, last + 12) << error_px;
         last = visits;
@@ -313,7 +315,8 @@ TEST(Traversal, SurvivesRaysAndModelsOfAllKinds) {
     place(planes, planes.root, planes.primitive(PrimitiveKind::torus), Affine::translate({0, 3, 0}));
     EXPECT_GT(shoot(*traced(planes, exact()), 5000), 500u);
     Graph far = empty_graph();
-    place(far, far.root, far.primitive(PrimitiveKind::cone), Affine::translate({1e60, 0, 0}) * Affine::scale(Vec3(1e50)));
+    place(far, far.root, far.primitive(PrimitiveKind::cone),
+          Affine::translate({1e60, 0, 0}) * Affine::scale(Vec3(1e50)));
     shoot(*traced(far, exact()), 2000);
     Graph tiny = empty_graph();
     place(tiny, tiny.root, tiny.primitive(PrimitiveKind::cylinder), Affine::scale(Vec3(1e-90)));

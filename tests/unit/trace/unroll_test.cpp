@@ -66,7 +66,8 @@ Graph twisted(double squeeze) {
     const ObjectId ball = graph.primitive(PrimitiveKind::sphere);
     const ObjectId self = graph.add({"self", {}, {}, {}, {}});
     const auto turned = [](double angle_deg) {
-        return Affine::translate({0, 1.2, 0}) * Affine::rotate({0.3, 0.1, 1}, angle_deg) * Affine::scale(Vec3(0.6));
+        return Affine::translate({0, 1.2, 0}) * Affine::rotate({0.3, 0.1, 1}, angle_deg) *
+               Affine::scale(Vec3(0.6));
     };
     place(graph, self, ball, Affine::scale({0.2, 0.7, 0.2}), {{1, 0, 0}, 0.2});
     place(graph, self, self, turned(40), {{0, 1, 0}, 0.3});
@@ -107,7 +108,8 @@ TEST(Unroll, StaysSmall) {
     const ObjectId ball = graph.primitive(PrimitiveKind::sphere);
     const ObjectId self = graph.add({"self", {}, {}, {}, {}});
     for (int i = 0; i < 5000; ++i)
-        place(graph, self, i % 2 == 0 ? ball : self, Affine::translate({i, 0, 0}) * Affine::scale(Vec3(0.01)));
+        place(graph, self, i % 2 == 0 ? ball : self,
+              Affine::translate({i, 0, 0}) * Affine::scale(Vec3(0.01)));
     place(graph, graph.root, self, {});
     EXPECT_LE(traced(graph, options_of(1))->unrollings.size(), 1u); // the root's one part
     EXPECT_LE(traced(test::tetrahedron(), options_of(1))->edges.size(), 4000u);

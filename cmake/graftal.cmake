@@ -46,15 +46,17 @@ function(graftal_layer folder)
   target_precompile_headers(${name} REUSE_FROM graftal_headers)
 endfunction()
 
-# graftal_test(FOLDER USES folder...): one GoogleTest program from the sources of tests/FOLDER.
+# graftal_test(FOLDER USES folder...): one GoogleTest program from the sources of tests/FOLDER. The label of its tests is
+# the first folder of FOLDER: `ctest -L unit` is the inner loop.
 function(graftal_test folder)
   cmake_parse_arguments(arg "" "" "USES;LINK" ${ARGN})
   string(REPLACE "/" "_" name ${folder})
+  string(REGEX REPLACE "/.*" "" label ${folder})
   file(GLOB sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/tests/${folder}/*.cpp)
   graftal_targets(layers ${arg_USES})
   add_executable(${name}_test ${sources})
   target_link_libraries(${name}_test PRIVATE ${layers} ${arg_LINK} graftal_flags GTest::gmock GTest::gtest_main)
   target_precompile_headers(${name}_test REUSE_FROM graftal_test_headers)
   target_compile_definitions(${name}_test PRIVATE GRAFTAL_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
-  gtest_discover_tests(${name}_test TEST_PREFIX ${folder}/ PROPERTIES TIMEOUT 300 DISCOVERY_TIMEOUT 60)
+  gtest_discover_tests(${name}_test TEST_PREFIX ${folder}/ PROPERTIES LABELS ${label} TIMEOUT 300 DISCOVERY_TIMEOUT 60)
 endfunction()

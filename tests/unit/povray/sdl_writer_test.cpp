@@ -1,8 +1,8 @@
 #include "compiler/povray/sdl_writer.h"
 #include "tests/unit/broken_invariant.h"
+#include "tests/unit/comma_locale.h"
 
 #include <charconv>
-#include <clocale>
 #include <cmath>
 #include <string>
 
@@ -88,10 +88,10 @@ TEST(SdlNumber, PowersOfTenAndTheirNeighboursAreRight) {
 }
 
 TEST(SdlNumber, DoesNotFollowTheLocale) {
-    const char* const changed = std::setlocale(LC_ALL, "de_DE.UTF-8");
+    const CommaLocale comma;
+    ASSERT_TRUE(comma.installed());
     EXPECT_EQ(number(0.5, 9), "0.5");
     EXPECT_EQ(number(1.5e-30, 9), "1.5e-30");
-    if (changed) std::setlocale(LC_ALL, "C");
 }
 
 TEST(SdlWriter, MatrixHasTheImagesOfTheAxesThenOfTheOrigin) {

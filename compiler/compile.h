@@ -10,7 +10,7 @@
 #include "compiler/analysis/contraction.h"
 #include "compiler/graph/components.h"
 #include "compiler/graph/graph.h"
-#include "compiler/lower/lower.h"
+#include "compiler/languages/lower.h"
 #include "compiler/passes/pipeline.h"
 #include "compiler/povray/cut.h"
 #include "compiler/scene/scene.h"

@@ -8,9 +8,6 @@
 
 #include "compiler/lower/lower_settings.h"
 #include "compiler/support/number.h"
-#include "compiler/syntax/inst_parser.h"
-#include "compiler/syntax/lsys_parser.h"
-#include "compiler/syntax/rifs_parser.h"
 
 namespace graftal {
 
@@ -60,29 +57,6 @@ void check_size(std::span<const InnerParameter> parameters, Diagnostics& diagnos
         .with_hint("smaller 'members' make it smaller: inner a = 0.5 members 8");
 }
 
-/// A file's own statements, and those of its main block.
-struct Statements {
-    std::vector<SceneStatement> file, block;
-};
-
-const LsysBlock* main_block(const LsysFile& tree) {
-    if (tree.blocks.empty()) return nullptr;
-    const auto main = std::ranges::find_if(tree.blocks, [](const LsysBlock& block) { return block.is_main; });
-    return main == tree.blocks.end() ? &tree.blocks.back() : &*main;
-}
-
-Statements statements_of(FileId file, const SourceMap& sources) {
-    Diagnostics quiet;
-    const std::string language = model_language(file, sources);
-    if (language == "inst") return {parse_inst(sources, file, quiet).scene, {}};
-    if (language == "rifs") return {parse_rifs(sources, file, quiet).statements, {}};
-    if (language != "lsys") return {};
-    LsysFile tree = parse_lsys(sources, file, quiet);
-    Statements statements{std::move(tree.statements), {}};
-    if (const LsysBlock* main = main_block(tree)) statements.block = main->lets;
-    return statements;
-}
-
 } // namespace
 
 std::vector<InnerParameter> inner_parameters(const std::vector<SceneStatement>& statements,
@@ -110,8 +84,11 @@ std::vector<InnerParameter> inner_parameters_of(FileId file, Lowering& lowering)
     Lowering aside{.sources = lowering.sources,
                    .diagnostics = quiet,
                    .options = lowering.options,
+                   .languages = lowering.languages,
                    .loading = std::vector<LoadingFile>(2)};
-    const Statements statements = statements_of(file, lowering.sources);
+    const Language* const language = language_of(file, lowering.sources, lowering.languages);
+    if (!language) return {};
+    const InnerStatements statements = language->inner_statements(file, lowering.sources);
     const Environment of_file = evaluate_lets(statements.file, {}, aside);
     const Environment of_block = evaluate_lets(statements.block, of_file, aside);
     std::vector<SceneStatement> all = statements.file;

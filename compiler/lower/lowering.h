@@ -4,13 +4,18 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
 #include "compiler/graph/graph.h"
-#include "compiler/lower/lower.h"
+#include "compiler/lower/derivation.h"
+#include "compiler/lower/language.h"
+#include "compiler/lower/lower_options.h"
+#include "compiler/support/diagnostics.h"
+#include "compiler/support/source.h"
 #include "compiler/syntax/expression.h"
 
 namespace graftal {
@@ -23,13 +28,11 @@ struct LoadingFile {
 };
 
 /// What lowering one model shares between its files and front-ends.
-///
-/// A front-end is a function `std::optional<Graph> lower_LANGUAGE(FileId file, Lowering& lowering)`: nothing
-/// if it has added to failures(), else a graph that verify() accepts.
 struct Lowering {
     SourceMap& sources;
     Diagnostics& diagnostics;
     const LowerOptions& options;
+    std::span<const Language> languages;   ///< that models may be written in
     std::vector<LoadingFile> loading = {}; ///< from the root model to the file being lowered
     /// Models already lowered, by path and inner parameters; null after errors. A model used twice is read
     /// and reported once.
@@ -45,10 +48,6 @@ struct Lowering {
     /// front-end fails if this has grown since it began: errors alone are those of other files too.
     std::size_t failures() const { return diagnostics.error_count() + known_failures; }
 };
-
-/// Lowers a file by the front-end that its name asks for. `asked_for` is where errors about the choice
-/// belong.
-std::optional<Graph> lower_file(FileId file, Span asked_for, Lowering& lowering);
 
 /// The file that a model names, looked up beside the model's own; nothing after an error, if there is none,
 /// or it is no regular file: others (pipes, devices) could keep a compilation waiting for ever.

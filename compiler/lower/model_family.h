@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "compiler/graph/graph.h"
+#include "compiler/lower/derivation.h"
 #include "compiler/lower/inner_parameters.h"
-#include "compiler/lower/lower.h"
 
 namespace graftal {
 

@@ -3,7 +3,7 @@
 #include <mutex>
 #include <optional>
 
-#include "compiler/lower/orbit_model.h"
+#include "compiler/rifs/orbit_model.h"
 #include "compiler/support/bounds.h"
 #include "runtime/points/point_source.h"
 

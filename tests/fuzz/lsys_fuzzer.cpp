@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <string>
 
+#include "compiler/lsys/lsys_parser.h"
 #include "compiler/support/check.h"
-#include "compiler/syntax/lsys_parser.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     using namespace graftal;

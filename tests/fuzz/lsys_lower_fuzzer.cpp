@@ -8,7 +8,7 @@
 #include "compiler/analysis/contraction.h"
 #include "compiler/graph/components.h"
 #include "compiler/graph/verify.h"
-#include "compiler/lower/lower.h"
+#include "compiler/languages/lower.h"
 #include "compiler/passes/pipeline.h"
 #include "compiler/support/check.h"
 

@@ -4,7 +4,7 @@
 #include <cstdint>
 
 #include "compiler/graph/print.h"
-#include "compiler/lower/lower.h"
+#include "compiler/languages/lower.h"
 #include "compiler/support/check.h"
 #include "tests/property/random_graph.h"
 

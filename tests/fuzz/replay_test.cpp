@@ -14,7 +14,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
-#include "compiler/lower/lower.h"
+#include "compiler/languages/lower.h"
 #include "tests/fuzz/fuzz_targets.h"
 #include "tests/fuzz/syntax_mutator.h"
 

@@ -6,7 +6,7 @@
 
 #include "compiler/graph/print.h"
 #include "compiler/graph/verify.h"
-#include "compiler/lower/lower.h"
+#include "compiler/languages/lower.h"
 #include "compiler/support/check.h"
 
 namespace graftal {

@@ -11,7 +11,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "compiler/lower/lower.h"
+#include "compiler/languages/lower.h"
 #include "compiler/support/file.h"
 
 namespace graftal {

@@ -18,8 +18,8 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "compiler/lower/lower.h"
-#include "compiler/lower/orbit_model.h"
+#include "compiler/languages/lower.h"
+#include "compiler/rifs/orbit_model.h"
 #include "compiler/support/file.h"
 #include "compiler/support/printable.h"
 

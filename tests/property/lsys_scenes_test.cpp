@@ -7,8 +7,8 @@
 
 #include <gtest/gtest.h>
 
-#include "compiler/lower/lower.h"
-#include "tests/unit/lower/lsys_turtle.h"
+#include "compiler/languages/lower.h"
+#include "tests/unit/lsys/lsys_turtle.h"
 
 namespace graftal {
 namespace {

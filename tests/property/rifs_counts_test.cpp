@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "compiler/graph/unfold.h"
-#include "compiler/lower/lower.h"
+#include "compiler/languages/lower.h"
 
 namespace graftal {
 namespace {

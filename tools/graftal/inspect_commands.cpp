@@ -4,7 +4,7 @@
 
 #include "compiler/graph/emit_dot.h"
 #include "compiler/graph/print.h"
-#include "compiler/lower/orbit_model.h"
+#include "compiler/rifs/orbit_model.h"
 #include "compiler/support/file.h"
 #include "runtime/system/interruption.h"
 #include "runtime/system/process.h"

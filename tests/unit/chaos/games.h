@@ -9,7 +9,7 @@
 #include "compiler/analysis/bounding.h"
 #include "compiler/analysis/contraction.h"
 #include "compiler/chaos/chaos_game.h"
-#include "compiler/lower/lower.h"
+#include "compiler/languages/lower.h"
 
 namespace graftal::testing {
 

@@ -1,0 +1,15 @@
+#include "compiler/languages/languages.h"
+
+#include "compiler/inst/inst_language.h"
+#include "compiler/lsys/lsys_language.h"
+#include "compiler/rifs/rifs_language.h"
+
+namespace graftal {
+
+std::span<const Language> languages() {
+    // A text without a name that no keyword gives away is of the last: it is the text form of graphs.
+    static const Language table[] = {lsys_language(), rifs_language(), inst_language()};
+    return table;
+}
+
+} // namespace graftal

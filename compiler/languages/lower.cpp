@@ -1,0 +1,69 @@
+#include "compiler/languages/lower.h"
+
+#include <filesystem>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "compiler/graph/verify.h"
+#include "compiler/languages/languages.h"
+#include "compiler/lower/check_graph.h"
+#include "compiler/lower/lowering.h"
+#include "compiler/support/file.h"
+#include "compiler/support/number.h"
+
+namespace graftal {
+
+namespace {
+
+std::optional<Graph> lower_root(FileId file, const LowerOptions& options, SourceMap& sources,
+                                Diagnostics& diagnostics, std::optional<Derivation>* derivation) {
+    Lowering lowering{
+        .sources = sources, .diagnostics = diagnostics, .options = options, .languages = languages()};
+    const Language* const language = language_of(file, sources, languages());
+    if (options.time && !options.steps && !(language && language->has_time)) {
+        diagnostics
+            .error(Span{file, 0, 0}, fmt::format("--steps {}: only L-systems have times between their steps",
+                                                 shortest(*options.time)))
+            .with_hint("give a whole number");
+        return std::nullopt;
+    }
+    const std::filesystem::path path(sources.name(file));
+    lowering.loading.push_back({path.lexically_normal().string(), Span()});
+    std::optional<Graph> graph = lower_file(file, Span{file, 0, 0}, lowering);
+    if (diagnostics.has_errors() || (graph && !check_graph(*graph, diagnostics))) return std::nullopt;
+    if (graph) check_verified(*graph, "lower");
+    if (derivation) *derivation = std::move(lowering.derivation);
+    return graph;
+}
+
+} // namespace
+
+std::string model_language(FileId file, const SourceMap& sources) {
+    if (const Language* const language = language_of(file, sources, languages()))
+        return std::string(language->extension);
+    const std::string extension = std::filesystem::path(sources.name(file)).extension().string();
+    return extension.empty() ? "" : extension.substr(1);
+}
+
+std::optional<Graph> lower_model(const std::string& path, const LowerOptions& options, SourceMap& sources,
+                                 Diagnostics& diagnostics, Status& status,
+                                 std::optional<Derivation>* derivation) {
+    std::string text;
+    if (path != "-" && !options.root.empty() && !lies_in(path, options.root)) {
+        diagnostics.error(Span(), fmt::format("'{}' leads out of --root '{}'", path, options.root));
+        return std::nullopt;
+    }
+    status = read_text(path, text);
+    if (!status.ok()) return std::nullopt;
+    return lower_text(path, std::move(text), options, sources, diagnostics, derivation);
+}
+
+std::optional<Graph> lower_text(const std::string& name, std::string text, const LowerOptions& options,
+                                SourceMap& sources, Diagnostics& diagnostics,
+                                std::optional<Derivation>* derivation) {
+    const FileId file = sources.add(name == "-" ? std::string(standard_input) : name, std::move(text));
+    return lower_root(file, options, sources, diagnostics, derivation);
+}
+
+} // namespace graftal

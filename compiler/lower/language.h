@@ -1,0 +1,52 @@
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "compiler/graph/graph.h"
+#include "compiler/support/source.h"
+#include "compiler/syntax/scene_statements.h"
+
+namespace graftal {
+
+struct Lowering;
+
+/// Where a model may state its inner parameters.
+struct InnerStatements {
+    std::vector<SceneStatement> file;  ///< statements of the file
+    std::vector<SceneStatement> block; ///< statements of its main block, where the language has blocks
+};
+
+/// One language: a row of the table in languages/languages.h.
+struct Language {
+    std::string_view extension; ///< of the names of its files, without the dot
+    /// The words that begin its statements at the top of a file, apart from those of scene statements.
+    std::vector<std::string_view> keywords;
+    /// The words that begin statements inside its blocks. A file that begins with one of them is a model with
+    /// a fault.
+    std::vector<std::string_view> inner_keywords;
+    bool has_time = false; ///< a model can be drawn between two of its steps
+    /// The statements of a file that may hold inner parameters. Errors of the text are left to `lower`.
+    InnerStatements (*inner_statements)(FileId file, const SourceMap& sources);
+    /// Nothing if it has added to Lowering::failures(), else a graph that verify() accepts.
+    std::optional<Graph> (*lower)(FileId file, Lowering& lowering);
+};
+
+/// The language of a file: by its name, for standard input by the first word outside of braces that only one
+/// language begins a statement with, else the last of the table. Null where the name has none of their
+/// extensions.
+const Language* language_of(FileId file, const SourceMap& sources, std::span<const Language> languages);
+
+/// ".lsys, .rifs or .inst"
+std::string extensions(std::span<const Language> languages);
+
+/// The name that standard input has in a SourceMap.
+inline constexpr std::string_view standard_input = "<stdin>";
+
+/// Lowers a file in its own language. `asked_for` is where errors about the choice belong.
+std::optional<Graph> lower_file(FileId file, Span asked_for, Lowering& lowering);
+
+} // namespace graftal

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "compiler/support/status.h"
+#include "compiler/support/texture_facts.h"
+
+namespace graftal {
+
+struct OrbitModel;
+
+struct LowerOptions {
+    std::map<std::string, double, std::less<>> set; ///< `--set NAME=VALUE`: replaces the value of a `let`
+    std::optional<unsigned> steps; ///< derivation steps of an L-system, in place of what the model says
+    /// Looks at the picture that a material names. Without this, textures are taken on trust.
+    std::function<Status(const std::string& path, TextureFacts& facts)> look_at_texture;
+    /// The same between steps: L-systems whose drawing reads the time are drawn as old as this, after as many
+    /// steps as are done by then; others after `steps`, or if these are not given, too. Other languages have
+    /// no time: without `steps` it is an error.
+    std::optional<double> time;
+    std::optional<std::uint64_t> seed; ///< of what is random, in place of what the model says
+    /// Files that a model names, and the model itself, must lie in this folder, with all symbolic links
+    /// resolved;
+    /// "": they may lie anywhere.
+    std::string root;
+    bool exact = false; ///< L-systems are derived module by module: one honest random tree
+    std::uint64_t max_modules = 50'000'000; ///< of a derived word
+    std::uint64_t run_from = 4096; ///< derived words of so many modules make a run, if they repeat little
+    std::size_t max_objects = 1'000'000; ///< a model that enumerates more is an error
+    /// A model that draws nothing is an error; with this the root model may, with a note, and gives its
+    /// `derivation` but no graph.
+    bool may_draw_nothing = false;
+    /// Where the root model goes if it is an orbit (orbit_model.h), which has no graph: then nothing comes
+    /// back, but without an error. Null: an orbit is an error.
+    std::shared_ptr<const OrbitModel>* orbit = nullptr;
+};
+
+} // namespace graftal

@@ -1,0 +1,15 @@
+#pragma once
+
+#include "compiler/lsys/lsys_ast.h"
+#include "compiler/lsys/lsys_strings.h"
+
+namespace graftal {
+
+/// Parses the block at `header` into `file`; gives the place behind it. Statements of the file that stand in
+/// the block by mistake are reported, and read.
+std::size_t parse_lsys_block(const LsysHeader& header, LsysText& text, LsysFile& file);
+
+/// `use NAME = "path"`.
+bool parse_lsys_use(TokenStream& stream, LsysFile& file);
+
+} // namespace graftal

@@ -1,0 +1,127 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <initializer_list>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "compiler/lsys/lsys_ast.h"
+#include "compiler/lsys/module_table.h"
+#include "compiler/lsys/turtle_command.h"
+#include "compiler/support/affine.h"
+#include "compiler/support/diagnostics.h"
+#include "compiler/syntax/expression_code.h"
+
+// An L-system between its tree and its derivation: symbols numbered, names looked up, expressions compiled.
+
+namespace graftal {
+
+/// What a production serves.
+enum class RuleKind : std::uint8_t {
+    produce,   ///< a derivation step
+    decompose, ///< applied after each step, and to the axiom, until nothing is left to decompose
+    interpret, ///< applied when drawing, again and again
+};
+inline constexpr std::size_t rule_kind_count = 3;
+
+/// What of the time a production looks at, as a set.
+using TimeMask = std::uint8_t;
+enum TimeBit : TimeMask { reads_step = 1, reads_age = 2 };
+
+/// A module of a context or predecessor.
+struct LsysPattern {
+    SymbolId symbol = 0;
+    std::uint16_t arity = 0;
+};
+
+/// A module of a successor or axiom.
+struct LsysTemplate {
+    SymbolId symbol = 0;
+    std::vector<ExpressionCode> parameters;
+};
+
+struct LsysRule {
+    const LsysProduction* source = nullptr;
+    RuleKind kind = RuleKind::produce;
+    LsysPattern predecessor;
+    std::vector<LsysPattern> left;  ///< has no brackets
+    std::vector<LsysPattern> right; ///< brackets are balanced
+    /// The names that expressions may use: of the predecessor, then of the left context, then of the right.
+    std::vector<std::string_view> variables;
+    /// What the slots of the expressions mean: the variables, then `step` and `age` (or nothing, where names
+    /// of the model hide them), then as many random numbers as there are draws.
+    std::vector<std::string_view> slots;
+    TimeMask time = 0;       ///< what is read of it
+    std::uint32_t draws = 0; ///< calls of `normal` and `random` in the successor
+    std::optional<ExpressionCode> condition;
+    std::optional<ExpressionCode> probability;
+    std::vector<LsysTemplate> successor;
+
+    bool has_context() const { return !left.empty() || !right.empty(); }
+    /// Whether equal modules may become different ones.
+    bool is_random() const { return probability.has_value() || draws > 0; }
+};
+
+struct LsysGrammar {
+    const LsysBlock* source = nullptr; ///< must outlive the grammar
+    Environment lets;
+    std::vector<std::string> symbols;    ///< as strings write them; a model is `~NAME`
+    std::vector<TurtleCommand> commands; ///< of the symbols
+    std::vector<Span> first_uses;        ///< of the symbols
+    std::vector<LsysTemplate> axiom;
+    std::vector<LsysRule> rules;
+    /// The rules that may rewrite a symbol, of one kind, in the order in which they are tried: those with
+    /// contexts first, else as the text has them (ABOP, section 1.8).
+    std::array<std::vector<std::vector<std::uint32_t>>, rule_kind_count> rules_of;
+    std::vector<bool> ignored; ///< symbols that contexts look past
+    bool has_context = false;
+    bool is_stochastic = false; ///< some rule is random
+    /// What the rules of a kind that may rewrite a symbol read of the time.
+    std::array<std::vector<TimeMask>, rule_kind_count> time_of;
+    /// Symbols whose modules are drawn by their age, or by that of what they are drawn as, or rewritten by
+    /// it.
+    std::vector<bool> ages;
+    bool polygons_cross_branches =
+        false; ///< some `{` and its `}` lie in different branches or strings: `[+A{.].C.}`
+
+    double angle_deg = 90;
+    double step = 1;
+    std::optional<double> width; ///< nothing: automatic
+    Vec3 tropism{0, -1, 0};      ///< unit vector that `T` bends towards, in world space
+    std::uint64_t seed = 0;
+    std::optional<unsigned> steps; ///< nothing: not given, or infinite
+    bool infinite = false;
+
+    const std::vector<std::uint32_t>& candidates(RuleKind kind, SymbolId symbol) const {
+        return rules_of[static_cast<std::size_t>(kind)][symbol];
+    }
+    bool has_rules(RuleKind kind, SymbolId symbol) const { return !candidates(kind, symbol).empty(); }
+    bool has_rules(RuleKind kind) const;
+    /// By rules of any kind.
+    bool is_rewritten(SymbolId symbol) const;
+    TimeMask time(RuleKind kind, SymbolId symbol) const {
+        return time_of[static_cast<std::size_t>(kind)][symbol];
+    }
+    /// Of all rules of a kind.
+    TimeMask time(RuleKind kind) const;
+    /// Whether rules of a kind have random numbers in their successors.
+    bool draws(RuleKind kind) const;
+    /// Whether rules of a kind give chance a say.
+    bool is_random(RuleKind kind) const;
+    /// Whether some symbol has one of these commands.
+    bool uses(std::initializer_list<TurtleCommand> wanted) const;
+};
+
+/// Derivations of more steps are refused.
+inline constexpr unsigned max_derivation_steps = 10'000;
+
+/// Reports all that is wrong without deriving anything: unknown names, values out of range, symbols that
+/// nobody knows; warns of modules that mean nothing or that no production fits. `lets`: the values of the
+/// file's and the block's `let`s.
+std::optional<LsysGrammar> build_grammar(const LsysBlock& block, Environment lets, Diagnostics& diagnostics);
+
+} // namespace graftal

@@ -1,0 +1,217 @@
+#include "compiler/lsys/lsys_productions.h"
+
+#include <algorithm>
+#include <utility>
+
+#include <fmt/format.h>
+
+namespace graftal {
+
+namespace {
+
+using Formals = std::vector<LsysFormal>;
+
+bool is_bracket(std::string_view symbol) {
+    return symbol == "[" || symbol == "]" || symbol == "{" || symbol == "}";
+}
+
+/// `p1`, `rule_12`: small letters, then digits. A longer name without digits is more often a module that was
+/// not declared than a label.
+bool is_label(std::string_view word) {
+    const std::size_t digits = word.find_first_of("0123456789");
+    if (digits == std::string_view::npos || word[0] < 'a' || word[0] > 'z') return false;
+    return word.find_first_not_of("abcdefghijklmnopqrstuvwxyz_") == digits &&
+           word.find_first_not_of("0123456789", digits) == std::string_view::npos;
+}
+
+class ProductionParser {
+  public:
+    ProductionParser(const LsysStatement& statement, LsysText& text)
+        : statement_(statement), text_(text), diagnostics_(text.diagnostics),
+          reader_(text, statement.begin, statement.end) {}
+
+    std::optional<LsysProduction> parse() {
+        parse_label();
+        bool good = parse_left_side() && parse_condition() && parse_arrow();
+        if (good) good = parse_successor(); // its errors are independent of those of the parameters
+        return good && check_parameters() ? std::optional(std::move(production_)) : std::nullopt;
+    }
+
+  private:
+    void parse_label() {
+        const std::string_view word = statement_.word;
+        const std::size_t colon = statement_.begin + word.size();
+        if (!is_label(word) || text_.symbols.first_of(word) == word) return;
+        reader_.move_to(colon);
+        if (reader_.accept(':'))
+            production_.label = {word, text_.scanner.span(word)};
+        else
+            reader_.move_to(statement_.begin);
+    }
+
+    /// `left < predecessor > right`, up to the condition or arrow.
+    bool parse_left_side() {
+        const std::size_t begin = reader_.position();
+        Formals modules;
+        bool good = read_context(modules);
+        bool has_left = false;
+        if (reader_.accept('<')) {
+            has_left = true;
+            production_.left = std::move(modules);
+            modules.clear();
+            good = reader_.read_formals(modules) && good;
+        }
+        const std::size_t sign = reader_.position();
+        const bool has_right = reader_.accept('>');
+        if (has_right) good = read_context(production_.right) && good;
+        if (!good) return false;
+        if (has_left || has_right) good = check_contexts(begin, sign);
+        return check_predecessor(modules, has_left) && good;
+    }
+
+    /// `*` says that there is none.
+    bool read_context(Formals& modules) { return reader_.accept('*') || reader_.read_formals(modules); }
+
+    bool check_contexts(std::size_t begin, std::size_t end) {
+        if (statement_.section != LsysSection::block) {
+            diagnostics_.error(text_.scanner.span(begin, end + 1),
+                               "productions of 'interpret' and 'decompose' have no context");
+            return false;
+        }
+        for (const LsysFormal& module : production_.left)
+            if (is_bracket(module.symbol)) {
+                diagnostics_.error(module.span, "a left context has no brackets")
+                    .with_hint("it is matched along the way to the root, past all side branches");
+                return false;
+            }
+        return check_lsys_brackets(production_.right, text_);
+    }
+
+    bool check_predecessor(Formals& modules, bool has_left) {
+        if (modules.empty()) {
+            reader_.move_to(has_left ? reader_.position() : first_character());
+            reader_.expected("the module that is rewritten").with_hint("a production is written A -> B");
+            return false;
+        }
+        if (modules.size() > 1) return report_several(modules);
+        if (is_bracket(modules[0].symbol)) {
+            diagnostics_.error(modules[0].span, "a bracket cannot be rewritten");
+            return false;
+        }
+        if (modules[0].symbol == "%") {
+            diagnostics_.error(modules[0].span, "a cut cannot be rewritten")
+                .with_hint("it has removed the rest of its branch already when its turn would come");
+            return false;
+        }
+        production_.predecessor = std::move(modules[0]);
+        return true;
+    }
+
+    std::size_t first_character() const {
+        return production_.label.text.empty() ? statement_.begin : production_.label.span.end + 1;
+    }
+
+    bool report_several(const Formals& modules) {
+        const Span span = join(modules.front().span, modules.back().span);
+        Diagnostic& error =
+            diagnostics_.error(span, fmt::format("a production rewrites one module, not {}", modules.size()));
+        const std::string_view word =
+            lsys_name(text_.scanner.text().substr(span.begin, span.end - span.begin));
+        if (modules.back().symbol == "-")
+            error.with_hint("a probability stands behind the successor: A -> B : 0.5");
+        else if (word.size() > 1 && word.size() + 1 < span.end - span.begin)
+            error.with_hint(
+                fmt::format("a production begins with its module: F -> ...; a name of several letters is "
+                            "declared: modules {}",
+                            word));
+        else if (word.size() > 1)
+            error.with_hint(fmt::format("longer names are declared: modules {}", word));
+        else
+            error.with_hint("modules around it are its context: A < B > C -> ...");
+        return false;
+    }
+
+    bool parse_condition() {
+        if (!reader_.accept(':')) return true;
+        if (reader_.accept('*')) return true;
+        const std::optional<std::size_t> arrow = text_.scanner.find_arrow(reader_.position(), statement_.end);
+        production_.condition = reader_.read_expression(arrow.value_or(statement_.end), "'->'");
+        return production_.condition.has_value();
+    }
+
+    bool parse_arrow() {
+        const std::size_t size = reader_.at_arrow();
+        if (size == 0) {
+            Diagnostic& error = reader_.expected("'->'");
+            if (reader_.accept('<'))
+                error.with_hint("the left context comes first, and once: A < B > C -> ...");
+            return false;
+        }
+        const std::size_t begin = reader_.position();
+        reader_.move_to(begin + size);
+        production_.span = text_.scanner.span(statement_.begin, begin + size);
+        production_.successor.span = text_.scanner.span(begin, begin + size);
+        return true;
+    }
+
+    bool parse_successor() {
+        bool good = reader_.accept('*') || reader_.read_modules(production_.successor.modules);
+        if (reader_.accept(':')) {
+            production_.probability = reader_.read_expression(statement_.end, lsys_line_end);
+            return production_.probability && good;
+        }
+        if (!good || reader_.at_end()) return good;
+        Diagnostic& error = reader_.expected("a module or the end of the line");
+        if (reader_.at_arrow() > 0)
+            error.with_hint("every production stands on its own line");
+        else if (reader_.accept('*'))
+            error.with_hint("'*' stands alone, for the empty string");
+        else
+            error.with_hint("contexts stand before the arrow: A < B > C -> ...");
+        return false;
+    }
+
+    bool check_parameters() {
+        std::vector<const LsysName*> names;
+        for (const Formals* part : {&production_.left, &production_.right})
+            for (const LsysFormal& module : *part)
+                add(module, names);
+        add(production_.predecessor, names);
+        if (names.size() > max_lsys_parameters) {
+            diagnostics_.error(
+                production_.predecessor.span,
+                fmt::format("a production and its contexts have at most {} parameters", max_lsys_parameters));
+            return false;
+        }
+        std::stable_sort(names.begin(), names.end(), [](const LsysName* a, const LsysName* b) {
+            return std::pair(a->text, a->span.begin) < std::pair(b->text, b->span.begin);
+        });
+        const auto twin =
+            std::adjacent_find(names.begin(), names.end(),
+                               [](const LsysName* a, const LsysName* b) { return a->text == b->text; });
+        if (twin == names.end()) return true;
+        const LsysName& second = **(twin + 1);
+        diagnostics_.error(second.span, fmt::format("duplicate parameter '{}'", second.text))
+            .with_note((*twin)->span, "first named here");
+        return false;
+    }
+
+    static void add(const LsysFormal& module, std::vector<const LsysName*>& names) {
+        for (const LsysName& name : module.parameters)
+            names.push_back(&name);
+    }
+
+    const LsysStatement& statement_;
+    LsysText& text_;
+    Diagnostics& diagnostics_;
+    LsysStringReader reader_;
+    LsysProduction production_;
+};
+
+} // namespace
+
+std::optional<LsysProduction> parse_lsys_production(const LsysStatement& statement, LsysText& text) {
+    return ProductionParser(statement, text).parse();
+}
+
+} // namespace graftal

@@ -1,0 +1,264 @@
+#include "compiler/lsys/lsys_rewriter.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <numeric>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "compiler/support/counter_random.h"
+#include "compiler/support/number.h"
+
+namespace graftal {
+
+namespace {
+
+/// Probabilities as printed in books sum to 1 within this.
+constexpr double probability_slack = 0.0101;
+
+/// Modules at times of which it is known what becomes of them; more are forgotten.
+constexpr std::size_t most_timed = 1u << 22;
+
+} // namespace
+
+ChosenAlternative alternative_at(const std::vector<Alternative>& alternatives, double share) {
+    ChosenAlternative chosen{&alternatives.front()};
+    for (const Alternative& alternative : alternatives) {
+        if (alternative.probability <= 0) continue;
+        chosen = {&alternative, share / alternative.probability};
+        share -= alternative.probability;
+        if (share < 0) break;
+    }
+    chosen.within = std::clamp(chosen.within, 0.0, std::nextafter(1.0, 0.0));
+    return chosen;
+}
+
+std::optional<ModuleString> LsysRewriter::axiom() {
+    ModuleString string;
+    if (!append(grammar_.axiom, nullptr, {}, string)) return std::nullopt;
+    return string;
+}
+
+const std::vector<Alternative>* LsysRewriter::alternatives(RuleKind kind, ModuleId module,
+                                                           const Moment& moment) {
+    static const std::vector<Alternative> stays;
+    const std::uint32_t found = find(kind, module, moment);
+    if (found == error) return nullptr;
+    return found == none ? &stays : &alternatives_[found];
+}
+
+bool LsysRewriter::is_rewritten(RuleKind kind, ModuleId module, const Moment& moment) {
+    return grammar_.has_rules(kind, modules_.symbol(module)) && find(kind, module, moment) != none;
+}
+
+std::uint32_t LsysRewriter::find(RuleKind kind, ModuleId module, const Moment& moment) {
+    TimeMask reads = grammar_.time(kind, modules_.symbol(module));
+    if (birth_ != ModuleTable::no_birth && has_ages_) reads |= reads_step; // successors have their births
+    if (reads != 0) return find_timed(kind, module, moment, reads);
+    auto& known = known_[static_cast<std::size_t>(kind)];
+    if (known.size() <= module) known.resize(modules_.size() + modules_.size() / 2, unknown);
+    if (known[module] != unknown) return known[module];
+    const std::uint32_t computed = compute(kind, module, moment);
+    return known_[static_cast<std::size_t>(kind)][module] = computed;
+}
+
+std::uint32_t LsysRewriter::find_timed(RuleKind kind, ModuleId module, Moment moment, TimeMask reads) {
+    if (timed_.size() >= most_timed) {
+        timed_.clear();
+        timed_ids_.clear();
+    }
+    if (!(reads & reads_step)) moment.step = 0;
+    if (!(reads & reads_age)) moment.age = 0;
+    const std::uint64_t hash = mixed(
+        mixed(mixed(static_cast<std::uint64_t>(kind), module), std::bit_cast<std::uint64_t>(moment.step)),
+        std::bit_cast<std::uint64_t>(moment.age));
+    const auto next = static_cast<std::uint32_t>(timed_.size());
+    const std::uint32_t id = timed_ids_.find_or_add(hash, next, [&](std::uint32_t other) {
+        const Timed& known = timed_[other];
+        return known.kind == kind && known.module == module && known.moment.step == moment.step &&
+               known.moment.age == moment.age;
+    });
+    if (id != next) return timed_[id].found;
+    timed_.push_back({kind, module, moment, none});
+    const std::uint32_t computed = compute(kind, module, moment);
+    return timed_[id].found = computed;
+}
+
+std::uint32_t LsysRewriter::compute(RuleKind kind, ModuleId module, const Moment& moment) {
+    const auto& rules = grammar_.candidates(kind, modules_.symbol(module));
+    if (rules.empty()) return none;
+    std::vector<Alternative> found;
+    if (!collect(rules, module, moment, found)) {
+        failed_ = true;
+        return error;
+    }
+    if (found.empty()) return none;
+    alternatives_.push_back(std::move(found));
+    return static_cast<std::uint32_t>(alternatives_.size() - 1);
+}
+
+bool LsysRewriter::collect(const std::vector<std::uint32_t>& rules, ModuleId module, const Moment& moment,
+                           std::vector<Alternative>& found) {
+    const auto parameters = modules_.parameters(module);
+    const std::vector<double> values(parameters.begin(), parameters.end());
+    const auto first = try_rules(rules, values.size(), [&](const LsysRule& rule) {
+        if (rule.has_context()) return Fit::no;
+        Alternative alternative;
+        const Fit fit = apply(rule, values, moment, alternative);
+        if (fit == Fit::yes) found.push_back(std::move(alternative));
+        return fit;
+    });
+    if (!first) return false;
+    return !*first || !(*first)->probability || normalise(found, **first);
+}
+
+std::optional<ModuleString> LsysRewriter::draw(const Alternative& alternative, ModuleId module,
+                                               const Moment& moment, double within) {
+    const auto parameters = modules_.parameters(module);
+    const std::vector<double> values(parameters.begin(), parameters.end());
+    const auto set = std::min(draw_sets - 1, static_cast<std::uint32_t>(within * draw_sets));
+    ModuleString string;
+    if (append_successor(*alternative.rule, values, moment, set, string)) return string;
+    failed_ = true;
+    return std::nullopt;
+}
+
+/// Calls come one after the other, and of each the sets: a number in every 64th part of [0, 1). The first
+/// call's rise with the sets, so that those of any even choice of sets are spread evenly too; the others'
+/// come in an order that chance gives.
+const std::vector<double>& LsysRewriter::draws_of(const LsysRule& rule) {
+    const auto id = static_cast<std::size_t>(&rule - grammar_.rules.data());
+    draws_.resize(grammar_.rules.size());
+    std::vector<double>& draws = draws_[id];
+    if (!draws.empty()) return draws;
+    for (std::uint32_t call = 0; call < rule.draws; ++call) {
+        const CounterRandom random = CounterRandom(seed_).sequence(id).sequence(call);
+        std::array<std::uint32_t, draw_sets> strata;
+        std::iota(strata.begin(), strata.end(), 0u);
+        for (std::uint32_t i = draw_sets - 1; call > 0 && i > 0; --i)
+            std::swap(strata[i], strata[random(i) % (i + 1)]);
+        for (std::uint32_t set = 0; set < draw_sets; ++set)
+            draws.push_back((strata[set] + CounterRandom::unit(random(draw_sets + set))) / draw_sets);
+    }
+    return draws;
+}
+
+bool LsysRewriter::normalise(std::vector<Alternative>& found, const LsysRule& first) {
+    double sum = 0;
+    for (const Alternative& alternative : found)
+        sum += alternative.probability;
+    if (!sums_to_one(sum, first)) return false;
+    for (Alternative& alternative : found)
+        alternative.probability /= sum;
+    return true;
+}
+
+bool LsysRewriter::sums_to_one(double sum, const LsysRule& first) {
+    if (std::abs(sum - 1) <= probability_slack) return true;
+    diagnostics_
+        .error(
+            first.source->probability->span,
+            fmt::format("the probabilities of the productions that fit sum to {}, not to 1", shortest(sum)))
+        .with_note(first.source->span, "this is the first of them");
+    return false;
+}
+
+Fit LsysRewriter::apply(const LsysRule& rule, std::span<const double> values, const Moment& moment,
+                        Alternative& result) {
+    const std::size_t errors = diagnostics_.error_count();
+    if (!condition_holds(rule, values, moment))
+        return diagnostics_.error_count() > errors ? Fit::error : Fit::no;
+    const std::optional<double> chance = probability(rule, values, moment);
+    if (!chance) return Fit::error;
+    result.rule = &rule;
+    result.probability = *chance;
+    result.successor.clear();
+    if (rule.draws > 0) return Fit::yes;
+    return append_successor(rule, values, moment, 0, result.successor) ? Fit::yes : Fit::error;
+}
+
+/// Valid until the next call.
+std::span<const double> LsysRewriter::slots_of(const LsysRule& rule, std::span<const double> values,
+                                               const Moment& moment) {
+    if (rule.time == 0 && rule.draws == 0) return values;
+    slots_.assign(values.begin(), values.end());
+    slots_.push_back(moment.step);
+    slots_.push_back(moment.age);
+    return slots_;
+}
+
+bool LsysRewriter::condition_holds(const LsysRule& rule, std::span<const double> values,
+                                   const Moment& moment) {
+    if (!rule.condition) return true;
+    const std::optional<double> truth = value(*rule.condition, rule, slots_of(rule, values, moment));
+    return truth && *truth != 0;
+}
+
+std::optional<double> LsysRewriter::probability(const LsysRule& rule, std::span<const double> values,
+                                                const Moment& moment) {
+    if (!rule.probability) return 1;
+    const std::optional<double> chance = value(*rule.probability, rule, slots_of(rule, values, moment));
+    if (!chance || *chance >= 0) return chance;
+    diagnostics_.error(rule.source->probability->span,
+                       fmt::format("a probability must not be negative, but is {}", shortest(*chance)));
+    return std::nullopt;
+}
+
+bool LsysRewriter::append_successor(const LsysRule& rule, std::span<const double> values,
+                                    const Moment& moment, std::uint32_t set, ModuleString& string) {
+    std::span<const double> slots = slots_of(rule, values, moment);
+    if (rule.draws > 0) {
+        const std::vector<double>& draws = draws_of(rule);
+        for (std::uint32_t call = 0; call < rule.draws; ++call)
+            slots_.push_back(draws[call * draw_sets + set]);
+        slots = slots_;
+    }
+    return append(rule.successor, &rule, slots, string);
+}
+
+std::optional<double> LsysRewriter::value(const ExpressionCode& code, const LsysRule& rule,
+                                          std::span<const double> slots) {
+    const std::optional<double> result = code.value(slots);
+    if (!result) code.report(slots, grammar_.lets, rule.slots, diagnostics_);
+    return result;
+}
+
+bool LsysRewriter::append(const std::vector<LsysTemplate>& templates, const LsysRule* rule,
+                          std::span<const double> slots, ModuleString& string) {
+    const bool stamps = birth_ != ModuleTable::no_birth && (!rule || rule->kind != RuleKind::interpret);
+    for (const LsysTemplate& module : templates) {
+        arguments_.clear();
+        for (const ExpressionCode& code : module.parameters) {
+            const std::optional<double> argument = code.value(slots);
+            if (!argument) {
+                code.report(slots, grammar_.lets,
+                            rule ? std::span<const std::string_view>(rule->slots)
+                                 : std::span<const std::string_view>(),
+                            diagnostics_);
+                return false;
+            }
+            arguments_.push_back(*argument);
+        }
+        const bool stamped = stamps && grammar_.ages[module.symbol];
+        string.push_back(
+            modules_.intern(module.symbol, arguments_, stamped ? birth_ : ModuleTable::no_birth));
+    }
+    if (modules_.size() <= max_distinct_modules) return true;
+    diagnostics_
+        .error(rule ? rule->source->span : grammar_.source->name.span,
+               fmt::format("more than {} different modules are derived", max_distinct_modules))
+        .with_hint(explosion_hint());
+    return false;
+}
+
+const char* LsysRewriter::explosion_hint() const {
+    if (grammar_.draws(RuleKind::produce) || grammar_.draws(RuleKind::decompose))
+        return "random numbers that are rewritten make every module another one: draw them in 'interpret', "
+               "where nothing is made of them";
+    return "parameters that change without end make every part another one";
+}
+
+} // namespace graftal

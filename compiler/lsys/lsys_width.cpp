@@ -1,0 +1,49 @@
+#include "compiler/lsys/lsys_width.h"
+
+#include <algorithm>
+
+#include "compiler/support/number_range.h"
+
+namespace graftal {
+
+namespace {
+
+constexpr double thinnest_in_segments = 0.1;
+constexpr double thickest_in_segments = 0.8;
+constexpr double thinnest_in_figure = 1.0 / 400;
+
+/// Whether segments have other lengths than one step.
+bool has_lengths(const LsysGrammar& grammar) {
+    const auto has_length = [&](const LsysTemplate& module) {
+        const TurtleCommand command = grammar.commands[module.symbol];
+        return (command == TurtleCommand::draw || command == TurtleCommand::draw_unrecorded) &&
+               !module.parameters.empty();
+    };
+    return std::ranges::any_of(grammar.axiom, has_length) ||
+           std::ranges::any_of(grammar.rules, [&](const LsysRule& rule) {
+               return std::ranges::any_of(rule.successor, has_length);
+           });
+}
+
+} // namespace
+
+bool draws_lines(const LsysGrammar& grammar) {
+    return !grammar.width && !grammar.uses({TurtleCommand::width});
+}
+
+bool has_open_width(const LsysGrammar& grammar) {
+    return !grammar.width && (draws_lines(grammar) || has_lengths(grammar));
+}
+
+double stated_width(const LsysGrammar& grammar) {
+    return at_least_size(grammar.width.value_or(thinnest_in_segments * grammar.step));
+}
+
+double width_for(const LsysGrammar& grammar, const LengthTally& lengths, double reach) {
+    const double least = thinnest_in_segments * lengths.median();
+    const double most = thickest_in_segments * lengths.longest();
+    return at_least_size(draws_lines(grammar) ? std::clamp(thinnest_in_figure * reach, least, most)
+                                              : thinnest_in_segments * lengths.longest());
+}
+
+} // namespace graftal

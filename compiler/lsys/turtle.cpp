@@ -1,0 +1,439 @@
+#include "compiler/lsys/turtle.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include <fmt/format.h>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
+
+#include "compiler/support/angle.h"
+#include "compiler/support/number.h"
+#include "compiler/support/number_range.h"
+
+namespace graftal {
+
+namespace {
+
+/// `!` without an argument: the areas of two such branches sum to that of their parent.
+constexpr double thinning = std::numbers::sqrt2 / 2;
+
+/// They are cut into triangles in a time that goes with the square.
+constexpr std::size_t max_polygon_vertices = 10'000;
+/// Parts keep the vertices of those that they leave open.
+constexpr std::size_t max_polygon_nesting = 1000;
+
+double first_or(std::span<const double> parameters, double otherwise) {
+    return parameters.empty() ? otherwise : parameters[0];
+}
+
+/// What the first parameter of a command is, where it must stay in the range of numbers.
+const char* size_name(TurtleCommand command) {
+    switch (command) {
+    case TurtleCommand::draw:
+    case TurtleCommand::draw_unrecorded:
+    case TurtleCommand::move:
+    case TurtleCommand::move_unrecorded:
+        return "a length";
+    case TurtleCommand::width:
+        return "a width";
+    case TurtleCommand::sphere:
+    case TurtleCommand::disc:
+        return "a diameter";
+    case TurtleCommand::tropism:
+        return "an elasticity";
+    default:
+        return nullptr;
+    }
+}
+
+} // namespace
+
+Turtle::Turtle(TurtleContext& context, const TurtleState& start, Run* run)
+    : context_(context), run_(run), state_(start) {}
+
+bool Turtle::run(TurtleCommand command, std::span<const double> parameters,
+                 const std::optional<PlacedModel>& model, Span span, bool absolute) {
+    if (cut_depth_ > 0) return pass_over(command);
+    ++modules_;
+    if (absolute) note(reads_unit);
+    if (!in_range(command, parameters, model, span)) return false;
+    const double angle_deg = first_or(parameters, context_.angle_deg);
+    switch (command) {
+    case TurtleCommand::none:
+        return true;
+    case TurtleCommand::draw:
+        move(parameters, absolute, true, true, span);
+        break;
+    case TurtleCommand::draw_unrecorded:
+        move(parameters, absolute, true, false, span);
+        break;
+    case TurtleCommand::move:
+        move(parameters, absolute, false, true, span);
+        break;
+    case TurtleCommand::move_unrecorded:
+        move(parameters, absolute, false, false, span);
+        break;
+    case TurtleCommand::turn_left:
+        turn(Axis::up, angle_deg);
+        return true;
+    case TurtleCommand::turn_right:
+        turn(Axis::up, -angle_deg);
+        return true;
+    case TurtleCommand::pitch_down:
+        turn(Axis::right, -angle_deg);
+        return true;
+    case TurtleCommand::pitch_up:
+        turn(Axis::right, angle_deg);
+        return true;
+    case TurtleCommand::roll_left:
+        turn(Axis::ahead, -angle_deg);
+        return true;
+    case TurtleCommand::roll_right:
+        turn(Axis::ahead, angle_deg);
+        return true;
+    case TurtleCommand::turn_back:
+        turn(Axis::up, 180);
+        return true;
+    case TurtleCommand::level:
+        level();
+        return true;
+    case TurtleCommand::width:
+        return set_width(parameters, absolute, span);
+    case TurtleCommand::colour_up:
+        set_colour(parameters, 1);
+        return true;
+    case TurtleCommand::colour_down:
+        set_colour(parameters, -1);
+        return true;
+    case TurtleCommand::tropism:
+        state_.elasticity = first_or(parameters, 0);
+        writes_ |= reads_elasticity;
+        return true;
+    case TurtleCommand::open_branch:
+        open_branch();
+        return true;
+    case TurtleCommand::close_branch:
+        close_branch();
+        return true;
+    case TurtleCommand::cut:
+        cut();
+        return true;
+    case TurtleCommand::open_polygon:
+        polygons_.emplace_back();
+        break;
+    case TurtleCommand::close_polygon:
+        close_polygon(read_colour(), span);
+        break;
+    case TurtleCommand::vertex:
+        record_vertex(start_from_turtle_.translation);
+        break;
+    case TurtleCommand::start_cylinder:
+        start_cylinder();
+        return true;
+    case TurtleCommand::control_point:
+        add_control_point(span);
+        break;
+    case TurtleCommand::end_cylinder:
+        add_control_point(span);
+        state_.in_cylinder = false;
+        writes_ |= reads_cylinder;
+        break;
+    case TurtleCommand::sphere:
+    case TurtleCommand::disc:
+        add_ball(command, parameters, absolute, span);
+        break;
+    case TurtleCommand::model:
+        if (model) add_model(*model, absolute, span);
+        break;
+    }
+    return within_limits(span);
+}
+
+bool Turtle::in_range(TurtleCommand command, std::span<const double> parameters,
+                      const std::optional<PlacedModel>& model, Span span) {
+    const char* name = size_name(command);
+    double size = name && !parameters.empty() ? parameters[0] : 0;
+    if (command == TurtleCommand::model && model) {
+        name = "the scale of a model";
+        size = largest_entry(model->scale);
+    }
+    if (std::abs(size) <= largest_size) return true;
+    context_.diagnostics
+        .error(span, fmt::format("{} is at most {}, not {}", name, shortest(largest_size),
+                                 std::isfinite(size) ? shortest(size) : "one beyond all numbers"))
+        .with_hint("smaller factors or fewer steps keep the model within the range of numbers");
+    return false;
+}
+
+bool Turtle::pass_over(TurtleCommand command) {
+    if (command == TurtleCommand::open_branch) {
+        ++cut_depth_;
+    } else if (command == TurtleCommand::close_branch && --cut_depth_ == 0) {
+        ++modules_;
+        close_branch();
+    }
+    return true;
+}
+
+bool Turtle::within_limits(Span span) {
+    if (part_.instances.size() + vertex_count_ > context_.max_instances) {
+        context_.diagnostics.error(
+            span, fmt::format("more than {} parts are drawn in one place", context_.max_instances));
+        return false;
+    }
+    if (run_ && run_->size() > max_run_items) {
+        context_.diagnostics.error(span, fmt::format("more than {} single parts are drawn", max_run_items))
+            .with_hint("fewer steps draw fewer");
+        return false;
+    }
+    if (longest_polygon_ > max_polygon_vertices) {
+        context_.diagnostics.error(span,
+                                   fmt::format("a polygon has more than {} vertices", max_polygon_vertices));
+        return false;
+    }
+    if (state_.open_polygons + polygons_.size() > max_polygon_nesting) {
+        context_.diagnostics.error(
+            span, fmt::format("more than {} polygons are open in one place", max_polygon_nesting));
+        return false;
+    }
+    const Vec3 place = glm::abs(start_from_turtle_.translation);
+    if (place.x <= largest_size && place.y <= largest_size && place.z <= largest_size) return true;
+    context_.diagnostics.error(span, "the turtle goes farther than numbers reach")
+        .with_hint("fewer steps, or a 'step' that shrinks with them, keep the model small");
+    return false;
+}
+
+void Turtle::move(std::span<const double> parameters, bool absolute, bool draw, bool record, Span span) {
+    absolute = absolute || parameters.empty();
+    const double length = at_least_size(parameters.empty() ? context_.step * read_unit() : parameters[0]);
+    const bool fills = !polygons_.empty() || (note(reads_polygons), state_.open_polygons > 0);
+    if (draw) ++segments_;
+    if (absolute) unit_shift_ += std::abs(length);
+    if (draw && !fills && !(note(reads_cylinder), state_.in_cylinder)) {
+        const double width = line_width(length);
+        context_.bodies.add_segment(start_from_turtle_, length, width, read_colour(), span, sink(true));
+        note_radius(width / 2, width_source_);
+        if (context_.tallies && length != 0) part_.lengths.add(std::abs(length));
+    }
+    part_.unit_sensitivity.farthest = std::max(part_.unit_sensitivity.farthest, unit_shift_);
+    start_from_turtle_.translation += length * start_from_turtle_.linear[1];
+    part_.reach = std::max(part_.reach, glm::length(start_from_turtle_.translation));
+    way_ += std::abs(length);
+    part_.longest_way = std::max(part_.longest_way, way_);
+    for (auto [drift, total] :
+         {std::pair(&error_, &part_.error), std::pair(&sensitivity_, &part_.sensitivity)}) {
+        drift->shift = bounded(drift->shift + drift->turn * std::abs(length));
+        total->farthest = std::max(total->farthest, drift->shift);
+    }
+    if (fills && record) record_vertex(start_from_turtle_.translation);
+    if (draw) bend();
+}
+
+double Turtle::line_width(double length) {
+    constexpr double slenderness = 0.05;
+    return context_.limit && context_.lines ? slenderness * std::abs(length) : read_width();
+}
+
+/// By columns: what is not turned stays as it is, to the last bit.
+void Turtle::turn(Axis axis, double angle_deg) {
+    const auto [cosine, sine] = cos_sin_deg(angle_deg);
+    const int k = static_cast<int>(axis);
+    Vec3& first = start_from_turtle_.linear[(k + 1) % 3];
+    Vec3& second = start_from_turtle_.linear[(k + 2) % 3];
+    const Vec3 turned = cosine * first + sine * second;
+    second = cosine * second - sine * first;
+    first = turned;
+}
+
+/// L = V x H / |V x H|, U = H x L (ABOP, section 2.2); a turtle that heads straight up or down stays.
+void Turtle::level() {
+    note(reads_vertical);
+    const Vec3 heading = start_from_turtle_.linear[1];
+    const Vec3 left = glm::cross(state_.vertical, heading);
+    constexpr double least_sine = 1e-9;
+    if (!(glm::length(left) > least_sine)) return;
+    // The roll turns about the heading by the angle that the vertical turns about it.
+    sensitivity_.turn = bounded(sensitivity_.turn + (1 + sensitivity_.turn) / glm::length(left));
+    const Vec3 x = -glm::normalize(left);
+    start_from_turtle_.linear = Mat3(x, heading, glm::cross(x, heading));
+}
+
+/// Turns about H x T by the angle e |H x T| (ABOP, section 2.2), in radians.
+void Turtle::bend() {
+    note(reads_elasticity);
+    if (state_.elasticity == 0) return;
+    note(reads_tropism);
+    const Vec3 axis = glm::cross(start_from_turtle_.linear[1], state_.tropism);
+    const double sine = glm::length(axis);
+    sensitivity_.turn = bounded(sensitivity_.turn + std::abs(state_.elasticity) * (1 + sensitivity_.turn));
+    if (!(sine > 0)) return;
+    const double angle_deg = state_.elasticity * sine * 180 / std::numbers::pi;
+    start_from_turtle_.linear = Affine::rotate(axis, angle_deg).linear * start_from_turtle_.linear;
+}
+
+/// Of something round that is drawn here.
+void Turtle::note_radius(double radius, WidthSource source) {
+    part_.thickest = std::max(part_.thickest, radius);
+    const double own_error = source == width_source_ ? width_error_ * radius : 0;
+    part_.size_error.farthest = std::max(part_.size_error.farthest, size_shift_ + own_error);
+    part_.error.farthest = std::max(part_.error.farthest, error_.shift + own_error);
+    if (source == WidthSource::start) part_.width_sensitivity = std::max(part_.width_sensitivity, radius);
+    const double by_unit = source == WidthSource::unit ? radius : 0;
+    part_.unit_sensitivity.farthest = std::max(part_.unit_sensitivity.farthest, unit_shift_ + by_unit);
+}
+
+void Turtle::add_ball(TurtleCommand command, std::span<const double> parameters, bool absolute, Span span) {
+    part_.has_bodies = true;
+    ++bodies_;
+    const double diameter = parameters.empty() ? read_width() : parameters[0];
+    if (command == TurtleCommand::sphere)
+        context_.bodies.add_sphere(start_from_turtle_, diameter, read_colour(), span,
+                                   sink(parameters.empty()));
+    else
+        context_.bodies.add_disc(start_from_turtle_, diameter, read_colour(), span, sink(parameters.empty()));
+    if (parameters.empty())
+        note_radius(diameter / 2, width_source_);
+    else
+        note_radius(std::abs(diameter) / 2, absolute ? WidthSource::unit : WidthSource::sizes);
+}
+
+void Turtle::add_model(const PlacedModel& model, bool absolute, Span span) {
+    part_.has_bodies = true;
+    ++bodies_;
+    context_.bodies.add_model(model, start_from_turtle_, span, sink(false));
+    // Of primitives no point lies farther from their origin; with others the unit is never off.
+    constexpr double farthest = 2;
+    if (absolute) note_radius(farthest * largest_entry(model.scale), WidthSource::unit);
+}
+
+bool Turtle::set_width(std::span<const double> parameters, bool absolute, Span span) {
+    const double width = parameters.empty() ? thinning * read_width() : parameters[0];
+    if (width < 0) {
+        context_.diagnostics.error(span,
+                                   fmt::format("a width must not be negative, but is {}", shortest(width)));
+        return false;
+    }
+    state_.width = at_least_size(width);
+    if (!parameters.empty()) {
+        width_source_ = absolute ? WidthSource::unit : WidthSource::sizes;
+        if (!state_.in_cylinder) width_error_ = 0; // a taper has the width before, too
+    }
+    writes_ |= reads_width;
+    return true;
+}
+
+void Turtle::set_colour(std::span<const double> parameters, int step) {
+    const double number = parameters.empty() ? read_colour() + step : std::floor(parameters[0]);
+    state_.colour = context_.bodies.colour_index(number);
+    writes_ |= reads_colour;
+}
+
+/// With the rest of the branch go the ends of the polygons begun in it, and so the polygons.
+void Turtle::cut() {
+    cut_depth_ = 1;
+    const std::size_t before = branches_.empty() ? 0 : branches_.back().polygons;
+    if (polygons_.size() > before) polygons_.resize(before);
+}
+
+void Turtle::open_branch() {
+    branches_.push_back({start_from_turtle_, state_, writes_, error_, sensitivity_, way_, size_shift_,
+                         unit_shift_, width_error_, width_source_, polygons_.size()});
+}
+
+void Turtle::close_branch() {
+    if (branches_.empty()) return;
+    start_from_turtle_ = branches_.back().start_from_turtle;
+    const std::uint32_t open_polygons = state_.open_polygons; // no branch closes or opens them again
+    state_ = branches_.back().state;
+    state_.open_polygons = open_polygons;
+    writes_ = branches_.back().writes;
+    error_ = branches_.back().error;
+    sensitivity_ = branches_.back().sensitivity;
+    way_ = branches_.back().way;
+    size_shift_ = branches_.back().size_shift;
+    unit_shift_ = branches_.back().unit_shift;
+    width_error_ = branches_.back().width_error;
+    width_source_ = branches_.back().width_source;
+    branches_.pop_back();
+}
+
+void Turtle::record_vertex(Vec3 vertex) {
+    ++vertex_count_;
+    const bool here = !polygons_.empty();
+    if (!here) note(reads_polygons);
+    if (!here && state_.open_polygons == 0) return;
+    std::vector<Vec3>& vertices = here ? polygons_.back() : part_.vertices;
+    vertices.push_back(vertex);
+    longest_polygon_ = std::max(longest_polygon_, vertices.size());
+}
+
+/// A '}' that closes nothing is passed over.
+void Turtle::close_polygon(int colour, Span span) {
+    if (!polygons_.empty()) {
+        part_.has_bodies = true;
+        ++bodies_;
+        context_.bodies.add_polygon(polygons_.back(), colour, span, sink(false));
+        polygons_.pop_back();
+        return;
+    }
+    note(reads_polygon_count);
+    if (state_.open_polygons == 0) return;
+    --state_.open_polygons;
+    part_.polygon_ends.push_back({std::exchange(part_.vertices, {}), colour});
+}
+
+void Turtle::start_cylinder() {
+    state_.in_cylinder = true;
+    state_.control_point = start_from_turtle_.translation;
+    state_.control_width = read_width();
+    writes_ |= reads_cylinder | reads_control;
+}
+
+/// Also of the end: draws the piece of the cylinder that reaches to here.
+void Turtle::add_control_point(Span span) {
+    note(reads_cylinder);
+    if (!state_.in_cylinder) return;
+    note(reads_control);
+    const double width = read_width();
+    context_.bodies.add_taper(start_from_turtle_, state_.control_point, state_.control_width, width,
+                              read_colour(), span, sink(true));
+    for (const WidthSource source : {WidthSource::start, WidthSource::unit, WidthSource::sizes})
+        note_radius(std::max(width, state_.control_width) / 2, source); // its two widths may have any
+    start_cylinder();
+}
+
+TurtleState Turtle::state() const {
+    TurtleState result = state_;
+    const Mat3 turtle_from_start = glm::transpose(start_from_turtle_.linear);
+    result.tropism = turtle_from_start * state_.tropism;
+    result.vertical = turtle_from_start * state_.vertical;
+    result.open_polygons = state_.open_polygons + static_cast<std::uint32_t>(polygons_.size());
+    if (state_.in_cylinder)
+        result.control_point = turtle_from_start * (state_.control_point - start_from_turtle_.translation);
+    return result;
+}
+
+TurtlePart Turtle::finish() && {
+    part_.start_from_exit = start_from_turtle_;
+    part_.exit = state_;
+    part_.polygons = std::move(polygons_);
+    part_.exit_way = way_;
+    part_.error = {error_.turn, error_.shift, part_.error.farthest};
+    part_.size_error.exit_shift = size_shift_;
+    part_.sensitivity = {sensitivity_.turn, sensitivity_.shift, part_.sensitivity.farthest};
+    part_.unit_sensitivity.exit_shift = unit_shift_;
+    part_.exit_width_source = width_source_;
+    part_.exit_width_error = width_error_;
+    part_.writes = writes_;
+    part_.cut = cut_depth_ > 0;
+    part_.modules += modules_;
+    part_.segments += segments_;
+    part_.bodies += bodies_;
+    return std::move(part_);
+}
+
+} // namespace graftal

@@ -1,0 +1,285 @@
+#include "compiler/rifs/lower_orbit.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <memory>
+#include <type_traits>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "compiler/lower/lower_settings.h"
+#include "compiler/rifs/orbit_model.h"
+#include "compiler/rifs/rifs_system.h"
+#include "compiler/support/number.h"
+
+namespace graftal {
+
+namespace {
+
+constexpr double most_skipped = 1e9;
+constexpr std::size_t most_words = 100'000; ///< of one formula, with all functions written out
+
+class OrbitLowering {
+  public:
+    OrbitLowering(const RifsFile& tree, const OrbitBlock& block, Lowering& lowering)
+        : block_(block), lowering_(lowering), diagnostics_(lowering.diagnostics) {
+        model_.lets = block_lets(evaluate_lets(tree.statements, {}, lowering_));
+        check_set_names(model_.lets, {}, lowering_);
+        lower_settings(tree.statements, model_.lets, model_.scene, lowering_);
+    }
+
+    OrbitModel lower() && {
+        model_.name = block_.name.text;
+        model_.span = block_.name.span;
+        lower_start();
+        const RifsLooks looks(model_.lets, model_.scene.materials, diagnostics_);
+        if (block_.maps.empty())
+            diagnostics_.error(block_.name.span, fmt::format("'orbit {}' has no map", block_.name.text))
+                .with_hint("x = ...  y = ...");
+        for (const OrbitMap& map : block_.maps)
+            lower_map(map, looks);
+        check_probabilities();
+        add_colours();
+        return std::move(model_);
+    }
+
+  private:
+    /// A block's own lets; `--set` replaces their values too.
+    Environment block_lets(Environment names) {
+        for (const OrbitLet& let : block_.lets) {
+            const auto set = lowering_.options.set.find(let.name.text);
+            const std::optional<double> value = set != lowering_.options.set.end()
+                                                    ? set->second
+                                                    : evaluate(expanded(let.value), names, diagnostics_);
+            names.insert_or_assign(std::string(let.name.text), value.value_or(1));
+        }
+        return names;
+    }
+
+    const OrbitFunction* function_named(std::string_view name) const {
+        for (const OrbitFunction& function : block_.functions)
+            if (function.name.text == name) return &function;
+        return nullptr;
+    }
+
+    /// The expression with the block's functions written out: each may use those above it.
+    Expression expanded(const Expression& e) {
+        words_ = 0;
+        too_long_ = false;
+        return expanded(e, block_.functions.size(), {});
+    }
+
+    using Arguments = std::vector<std::pair<std::string_view, const Expression*>>;
+
+    Expression expanded(const Expression& e, std::size_t known, const Arguments& arguments) {
+        if (++words_ > most_words) {
+            if (!std::exchange(too_long_, true))
+                diagnostics_.error(e.span, fmt::format("this formula has more than {} words", most_words));
+            return {};
+        }
+        if (e.kind == Expression::Kind::name)
+            for (const auto& [name, value] : arguments)
+                if (e.text == name) {
+                    words_ += words_of(*value);
+                    return *value;
+                }
+        Expression copy;
+        copy.kind = e.kind;
+        copy.number = e.number;
+        copy.text = e.text;
+        copy.span = e.span;
+        for (const Expression& operand : e.operands)
+            copy.operands.push_back(expanded(operand, known, arguments));
+        return e.kind == Expression::Kind::call ? call_written_out(std::move(copy), known) : copy;
+    }
+
+    Expression call_written_out(Expression call, std::size_t known) {
+        const OrbitFunction* function = function_named(call.text);
+        if (!function) return call;
+        const auto place = static_cast<std::size_t>(function - block_.functions.data());
+        if (place >= known) {
+            diagnostics_.error(call.span, fmt::format("'{}' is not defined above", call.text))
+                .with_note(function->name.span, "it is defined here");
+            return {};
+        }
+        if (call.operands.size() != function->parameters.size()) {
+            diagnostics_
+                .error(call.span,
+                       fmt::format("'{}' takes {} argument{}, not {}", call.text, function->parameters.size(),
+                                   function->parameters.size() == 1 ? "" : "s", call.operands.size()))
+                .with_note(function->name.span, "it is defined here");
+            return {};
+        }
+        Arguments arguments;
+        for (std::size_t i = 0; i < call.operands.size(); ++i)
+            arguments.emplace_back(function->parameters[i].text, &call.operands[i]);
+        return expanded(function->body, place, arguments);
+    }
+
+    static std::size_t words_of(const Expression& e) {
+        std::size_t words = 1;
+        for (const Expression& operand : e.operands)
+            words += words_of(operand);
+        return words;
+    }
+
+    void lower_start() {
+        for (std::size_t i = 0; i < block_.start.size(); ++i)
+            model_.start[static_cast<int>(i)] =
+                evaluate(expanded(block_.start[i]), model_.lets, diagnostics_).value_or(0);
+        if (!block_.skip) return;
+        const double skip = evaluate(expanded(*block_.skip), model_.lets, diagnostics_).value_or(0);
+        if (!(skip >= 0 && skip <= most_skipped && skip == std::floor(skip)))
+            diagnostics_.error(
+                block_.skip->span,
+                fmt::format("'skip' must be a whole number from 0 to 1e9, not {}", shortest(skip)));
+        else
+            model_.skip = static_cast<std::uint64_t>(skip);
+    }
+
+    void lower_map(const OrbitMap& map, const RifsLooks& looks) {
+        OrbitFormulas formulas;
+        formulas.name = map.name.text;
+        formulas.span = map.span;
+        formulas.names = {"x", "y", "z"};
+        formulas.tint = looks.tint(map.look);
+        formulas.material = looks.material(map.look);
+        const std::optional<double> p = evaluate_probability(map.probability, model_.lets, diagnostics_);
+        formulas.probability = p.value_or(map.probability ? 0 : 1);
+        stated_ += map.probability.has_value();
+        for (const OrbitLet& let : map.lets) {
+            formulas.names.emplace_back(let.name.text);
+            formulas.sources.push_back(expanded(let.value));
+        }
+        static const Expression zero;
+        for (int axis = 0; axis < 3; ++axis) {
+            const std::optional<Expression>& coordinate = map.coordinates[axis];
+            if (!coordinate && axis < 2)
+                diagnostics_.error(map.span, fmt::format("this map has no formula '{} = ...'", "xyz"[axis]));
+            if (coordinate && axis == 2) model_.flat = false;
+            formulas.sources.push_back(coordinate ? expanded(*coordinate) : zero);
+        }
+        if (diagnostics_.has_errors()) return;
+        compile(formulas);
+        model_.maps.push_back(std::move(formulas));
+    }
+
+    /// Sources stay where they are when the formulas are moved: their vector's memory goes along.
+    void compile(OrbitFormulas& formulas) {
+        const std::size_t own = formulas.sources.size() - 3;
+        std::vector<std::string_view> visible = {"x", "y", "z"};
+        for (std::size_t i = 0; i < formulas.sources.size(); ++i) {
+            if (i > 0 && i <= own) visible.push_back(formulas.names[2 + i]);
+            const auto code =
+                ExpressionCode::compile(formulas.sources[i], model_.lets, visible, diagnostics_);
+            if (!code) continue;
+            formulas.codes.push_back(*code);
+        }
+    }
+
+    void check_probabilities() {
+        if (diagnostics_.has_errors()) return;
+        const auto maps = model_.maps.size();
+        if (stated_ > 0 && stated_ < maps)
+            diagnostics_.error(block_.name.span, "either all maps have a probability, or none")
+                .with_hint("without any they are equal");
+        double sum = 0;
+        for (const OrbitFormulas& map : model_.maps)
+            sum += map.probability;
+        if (!(sum > 0) && maps > 0)
+            diagnostics_.error(block_.name.span,
+                               fmt::format("the probabilities of 'orbit {}' are all 0", block_.name.text));
+    }
+
+    /// What the background is chosen by.
+    void add_colours() {
+        const ObjectId sphere = model_.scene.primitive(PrimitiveKind::sphere);
+        Object root;
+        root.name = model_.name;
+        for (const OrbitFormulas& map : model_.maps)
+            root.instances.push_back({sphere, Affine(), map.tint, map.material, map.span});
+        model_.scene.root = model_.scene.add(std::move(root));
+    }
+
+    const OrbitBlock& block_;
+    Lowering& lowering_;
+    Diagnostics& diagnostics_;
+    OrbitModel model_;
+    std::size_t stated_ = 0;
+    std::size_t words_ = 0; ///< of the formula that is being written out
+    bool too_long_ = false;
+};
+
+bool may_stand_there(const RifsFile& tree, Lowering& lowering) {
+    const OrbitBlock& orbit = tree.orbits.front();
+    Diagnostics& diagnostics = lowering.diagnostics;
+    if (!tree.blocks.empty() || !tree.uses.empty() || tree.orbits.size() > 1) {
+        Diagnostic& error = diagnostics.error(orbit.span, "an orbit stands alone in its file");
+        const Span other = !tree.blocks.empty() ? tree.blocks.front().name.span
+                           : !tree.uses.empty() ? tree.uses.front().name.span
+                                                : tree.orbits[1].span;
+        error.with_note(other, "beside it stands this");
+        return false;
+    }
+    if (lowering.at_root_model() && lowering.options.orbit) return true;
+    diagnostics
+        .error(orbit.span,
+               fmt::format("'orbit {}' is made of formulas, not of instances: it has no graph, only points",
+                           orbit.name.text))
+        .with_hint(lowering.at_root_model() ? "'graftal points' draws it, 'graftal check' checks it"
+                                            : "'graftal points' draws it; no model can use it");
+    return false;
+}
+
+} // namespace
+
+// The codes point into the sources, whose memory must go along when a model moves.
+static_assert(std::is_nothrow_move_constructible_v<OrbitFormulas>);
+
+void lower_orbit_file(const RifsFile& tree, Lowering& lowering) {
+    // What is used fails by an error of its own, whatever went wrong before.
+    if (lowering.at_root_model() && lowering.diagnostics.has_errors()) return;
+    if (!may_stand_there(tree, lowering)) return;
+    OrbitModel model = OrbitLowering(tree, tree.orbits.front(), lowering).lower();
+    if (lowering.diagnostics.has_errors()) return;
+    *lowering.options.orbit = std::make_shared<const OrbitModel>(std::move(model));
+}
+
+std::optional<Vec3> apply(const OrbitFormulas& map, Vec3 point, std::vector<double>& slots) {
+    const std::size_t own = map.codes.size() - 3;
+    slots.resize(3 + own);
+    for (int axis = 0; axis < 3; ++axis)
+        slots[static_cast<std::size_t>(axis)] = point[axis];
+    for (std::size_t i = 0; i < own; ++i) {
+        const std::optional<double> value = map.codes[i].value(std::span(slots).first(3 + i));
+        if (!value) return std::nullopt;
+        slots[3 + i] = *value;
+    }
+    Vec3 result;
+    for (int axis = 0; axis < 3; ++axis) {
+        const std::optional<double> value = map.codes[own + static_cast<std::size_t>(axis)].value(slots);
+        if (!value) return std::nullopt;
+        result[axis] = *value;
+    }
+    return result;
+}
+
+void OrbitModel::report(std::size_t number, Vec3 point, Diagnostics& diagnostics) const {
+    const OrbitFormulas& map = maps[number];
+    std::vector<double> slots;
+    for (int axis = 0; axis < 3; ++axis)
+        slots.push_back(point[axis]);
+    std::vector<std::string_view> visible = {"x", "y", "z"};
+    const std::size_t own = map.codes.size() - 3;
+    for (std::size_t i = 0; i < map.codes.size(); ++i) {
+        const std::optional<double> value = map.codes[i].value(slots);
+        if (!value) return map.codes[i].report(slots, lets, visible, diagnostics);
+        if (i >= own) continue;
+        slots.push_back(*value);
+        visible.push_back(map.names[3 + i]);
+    }
+}
+
+} // namespace graftal

@@ -1,0 +1,12 @@
+#pragma once
+
+#include "compiler/lower/lowering.h"
+#include "compiler/rifs/rifs_ast.h"
+
+namespace graftal {
+
+/// Lowers a `.rifs` file with an orbit to where the options ask for it, or reports why not: it must be the
+/// root model and stand alone in its file, and the options must ask (only `graftal points` and `check` do).
+void lower_orbit_file(const RifsFile& tree, Lowering& lowering);
+
+} // namespace graftal

@@ -1,0 +1,114 @@
+// Scene statements and lets, through the .inst front-end.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "compiler/languages/lower.h"
+
+namespace graftal {
+namespace {
+
+using ::testing::HasSubstr;
+
+struct Model {
+    SourceMap sources;
+    Diagnostics diagnostics;
+    std::optional<Graph> graph;
+
+    explicit Model(const std::string& statements, const LowerOptions& options = {}) {
+        graph = lower_text("m.inst", statements + "\nobject top { sphere scale: 2 }\n", options, sources,
+                           diagnostics);
+    }
+    std::string errors() const { return diagnostics.render(sources); }
+    const SceneSettings& settings() const { return graph->settings; }
+};
+
+TEST(Settings, LightsAreAsBrightAsOneLikes) {
+    const Model model("light { sun: 0, 1, 0  color: 5, 40.5, 0 }");
+    ASSERT_TRUE(model.graph) << model.errors();
+    EXPECT_EQ(model.settings().lights[0].rgb, Rgb(5, 40.5, 0));
+    EXPECT_NE(Model("light { sun: 0, 1, 0  color: 5, -1, 0 }").errors().find("brightness of a light"),
+              std::string::npos);
+}
+
+TEST(Settings, all_statements) {
+    const Model model(R"(
+        camera { location: 3, 2, 5  look_at: <0, 1, 0>  up: 0, 0, 1  angle: 40 }
+        light { location: 10, 20, 30  color: 1, 0.5, 0.25  shadowless }
+        light { sun: 1, 2, 3 }
+        background { zenith: 0.2, 0.4, 0.9  horizon: rgb <1, 1, 1> }
+        ground { height: -2  color: 0.1, 0.2, 0.3  material: stone }
+        material stone { color: 0.5, 0.5, 0.5  ambient: .2 diffuse: .7 specular: .3 roughness: .01 reflection: .4 }
+        steps: 12)");
+    ASSERT_TRUE(model.graph) << model.errors();
+    CameraSetting camera;
+    camera.location = Vec3(3, 2, 5);
+    camera.look_at = Vec3(0, 1, 0);
+    camera.up = Vec3(0, 0, 1);
+    camera.angle_deg = 40;
+    EXPECT_EQ(model.settings().camera, camera);
+    ASSERT_EQ(model.settings().lights.size(), 2u);
+    EXPECT_EQ(model.settings().lights[0], (LightSetting{{10, 20, 30}, false, {1, 0.5, 0.25}, true}));
+    EXPECT_EQ(model.settings().lights[1], (LightSetting{{1, 2, 3}, true, {1, 1, 1}, false}));
+    EXPECT_EQ(model.settings().background, (BackgroundSetting{{0.2, 0.4, 0.9}, Rgb(1, 1, 1)}));
+    EXPECT_EQ(model.settings().ground, (GroundSetting{-2, "stone", Rgb(0.1, 0.2, 0.3)}));
+    EXPECT_EQ(model.settings().steps, 12u);
+    ASSERT_EQ(model.graph->materials.size(), 1u);
+    EXPECT_EQ(model.graph->materials[0], (Material{"stone", Rgb(0.5), .2, .7, .3, .01, .4, {}}));
+}
+
+TEST(Settings, colons_and_commas_may_be_left_out_and_short_forms_work) {
+    const Model model("camera { orthographic, width 2.5 look_at 0,0,0 }\nbackground 0, 0, 1\nsteps 3");
+    ASSERT_TRUE(model.graph) << model.errors();
+    EXPECT_TRUE(model.settings().camera->orthographic);
+    EXPECT_EQ(model.settings().camera->width, 2.5);
+    EXPECT_EQ(model.settings().background, (BackgroundSetting{{0, 0, 1}, {}}));
+    EXPECT_EQ(model.settings().steps, 3u);
+}
+
+TEST(Settings, a_model_without_statements_says_nothing) {
+    const Model model("");
+    ASSERT_TRUE(model.graph);
+    EXPECT_EQ(model.settings(), SceneSettings());
+}
+
+TEST(Settings, lets_are_constants_in_the_order_of_the_text) {
+    const Model model("let a = 2, b = a*3\nlet c = b + 1\nbackground: 1/c, 0, 0");
+    ASSERT_TRUE(model.graph) << model.errors();
+    EXPECT_EQ(model.settings().background->rgb.r, 1.0 / 7);
+}
+
+TEST(Settings, set_replaces_a_let_and_what_follows_from_it) {
+    LowerOptions options;
+    options.set = {{"a", 4}};
+    const Model model("let a = 2, b = a/10\nbackground: b, 0, 0", options);
+    ASSERT_TRUE(model.graph) << model.errors();
+    EXPECT_EQ(model.settings().background->rgb.r, 0.4);
+}
+
+TEST(Settings, set_of_an_unknown_let_is_an_error_with_a_suggestion) {
+    LowerOptions options;
+    options.set = {{"lenght", 4}};
+    const Model model("let length = 2", options);
+    EXPECT_FALSE(model.graph);
+    EXPECT_EQ(model.errors(), "graftal: error: --set lenght: the model has no 'let lenght'\n"
+                              "    hint: did you mean 'length'? known here: length, steps\n");
+}
+
+TEST(Settings, set_of_nothing_finite_is_an_error) {
+    LowerOptions options;
+    options.set = {{"a", std::numeric_limits<double>::quiet_NaN()}};
+    EXPECT_THAT(Model("let a = 2", options).errors(), HasSubstr("--set a: the value is not finite"));
+}
+
+TEST(Settings, angles_just_inside_the_range_are_good) {
+    EXPECT_TRUE(Model("camera { angle: 179.999 }").graph);
+    EXPECT_TRUE(Model("camera { angle: 1e-3 }").graph);
+    EXPECT_FALSE(Model("camera { angle: 0 }").graph);
+    EXPECT_TRUE(Model("steps: 1000000000").graph);
+    EXPECT_FALSE(Model("steps: 1000000001").graph);
+    EXPECT_TRUE(Model("steps: 0").graph);
+}
+
+} // namespace
+} // namespace graftal

@@ -1,0 +1,186 @@
+// `use NAME = "file"`: other models inside a model.
+
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "compiler/languages/lower.h"
+
+namespace graftal {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::UnorderedElementsAre;
+
+/// Models in a folder that goes when the test does.
+class Use : public ::testing::Test {
+  protected:
+    Use() { std::filesystem::create_directories(folder_ / "parts"); }
+    ~Use() override { std::filesystem::remove_all(folder_); }
+
+    void write(const std::string& name, const std::string& text) { std::ofstream(folder_ / name) << text; }
+
+    void lower(const std::string& name, const LowerOptions& options = {}) {
+        sources_ = SourceMap();
+        diagnostics_ = Diagnostics();
+        graph_ = lower_model((folder_ / name).string(), options, sources_, diagnostics_, status_);
+    }
+    std::string errors() const { return diagnostics_.render(sources_); }
+    const Object& object(std::string_view name) const {
+        for (const Object& object : graph_->objects)
+            if (object.name == name) return object;
+        throw std::runtime_error("no object " + std::string(name));
+    }
+    std::vector<std::string> names() const {
+        std::vector<std::string> out;
+        for (const Object& object : graph_->objects)
+            out.push_back(object.name);
+        return out;
+    }
+
+    const std::filesystem::path folder_ = std::filesystem::temp_directory_path() /
+                                          ("graftal_use_" + std::to_string(::getpid()) + "_" +
+                                           ::testing::UnitTest::GetInstance()->current_test_info()->name());
+    SourceMap sources_;
+    Diagnostics diagnostics_;
+    Status status_;
+    std::optional<Graph> graph_;
+};
+
+TEST_F(Use, objects_are_prefixed_primitives_shared_and_settings_ignored) {
+    write("parts/leaf.inst",
+          "camera { angle: 3 } steps: 7 let k = 2\n"
+          "canonical object tip(n) { sphere scale: n } object leaf { union: tip(k), cube }");
+    write("a.inst", "use leaf = \"parts/leaf.inst\"\nobject a { union: leaf, sphere, leaf.tip(2) }");
+    lower("a.inst");
+    ASSERT_TRUE(graph_) << errors();
+    EXPECT_THAT(names(), UnorderedElementsAre("a", "leaf.leaf", "leaf.tip(2)", "sphere", "cube"));
+    EXPECT_EQ(graph_->settings, SceneSettings());
+    const std::vector<Instance>& instances = object("a").instances;
+    EXPECT_EQ(graph_->objects[instances[0].master].name, "leaf.leaf");
+    EXPECT_EQ(graph_->objects[instances[2].master].name, "leaf.tip(2)");
+    EXPECT_EQ(instances[1].master, object("leaf.tip(2)").instances[0].master);
+}
+
+TEST_F(Use, paths_start_at_the_using_file) {
+    write("parts/leaf.inst", "use vein = \"vein.inst\" object leaf { vein }");
+    write("parts/vein.inst", "object vein { cylinder }");
+    write("a.inst", "use leaf = \"./parts/../parts/leaf.inst\"\nobject a { leaf }");
+    lower("a.inst");
+    ASSERT_TRUE(graph_) << errors();
+    EXPECT_THAT(names(), UnorderedElementsAre("a", "leaf.leaf", "leaf.vein.vein", "cylinder"));
+}
+
+TEST_F(Use, equal_materials_are_shared_and_others_renamed) {
+    write("leaf.inst", "material green { color: 0, 1, 0 } material bark { color: 1, 0, 0 }\n"
+                       "object leaf { sphere material: green instance: cube material: bark }");
+    write("a.inst",
+          "use l = \"leaf.inst\"\nmaterial bark { color: 0, 0, 1 } material l.bark { color: 1, 1, 1 }\n"
+          "material green { color: 0, 1, 0 } object a { l material: bark }");
+    lower("a.inst");
+    ASSERT_TRUE(graph_) << errors();
+    std::vector<std::string> materials;
+    for (const Material& material : graph_->materials)
+        materials.push_back(material.name);
+    EXPECT_THAT(materials, ::testing::ElementsAre("bark", "l.bark", "green", "l.bark_2"));
+    EXPECT_EQ(object("l.leaf").instances[0].material, MaterialId(2));
+    EXPECT_EQ(object("l.leaf").instances[1].material, MaterialId(3));
+    EXPECT_EQ(object("a").instances[0].material, MaterialId(0));
+}
+
+TEST_F(Use, a_model_may_be_used_twice) {
+    write("leaf.inst", "object leaf { sphere }");
+    write("a.inst", "use l = \"leaf.inst\"\nuse m = \"leaf.inst\"\nobject a { union: l, m }");
+    lower("a.inst");
+    ASSERT_TRUE(graph_) << errors();
+    EXPECT_THAT(names(), UnorderedElementsAre("a", "l.leaf", "m.leaf", "sphere"));
+    EXPECT_EQ(sources_.size(), 2u) << "read once";
+}
+
+TEST_F(Use, set_speaks_to_the_root_model_only) {
+    write("leaf.inst", "let k = 2 object leaf { sphere scale: k }");
+    write("a.inst", "use l = \"leaf.inst\"\nlet k = 3\nobject a { l scale: k }");
+    LowerOptions options;
+    options.set = {{"k", 10}};
+    lower("a.inst", options);
+    ASSERT_TRUE(graph_) << errors();
+    EXPECT_EQ(object("a").instances[0].parent_from_child.linear[0][0], 10);
+    EXPECT_EQ(object("l.leaf").instances[0].parent_from_child.linear[0][0], 2);
+}
+
+TEST_F(Use, uses_that_double_the_model_are_bounded) {
+    write("m0.inst", "object o { sphere }");
+    for (int i = 1; i <= 25; ++i) {
+        const std::string below = "m" + std::to_string(i - 1) + ".inst";
+        write("m" + std::to_string(i) + ".inst",
+              "use a = \"" + below + "\"\nuse b = \"" + below + "\"\nobject o { union: a, b }");
+    }
+    lower("m12.inst");
+    EXPECT_TRUE(graph_) << errors();
+    LowerOptions options;
+    options.max_objects = 20'000;
+    lower("m25.inst", options);
+    EXPECT_FALSE(graph_);
+    EXPECT_THAT(errors(), HasSubstr("error: the model has more than 20000 objects"));
+}
+
+TEST_F(Use, a_long_chain_of_uses_is_an_error) {
+    for (int i = 0; i < 50; ++i)
+        write("m" + std::to_string(i) + ".inst",
+              "use a = \"m" + std::to_string(i + 1) + ".inst\"\nobject o { a }");
+    lower("m0.inst");
+    EXPECT_FALSE(graph_);
+    EXPECT_THAT(errors(), HasSubstr("models are used more than 32 deep"));
+    write("m31.inst", "object o { sphere }");
+    lower("m0.inst");
+    EXPECT_TRUE(graph_) << errors();
+}
+
+TEST_F(Use, a_device_is_refused_and_not_read) {
+    write("a.inst", "use z = \"/dev/zero\"\nobject a { z }");
+    lower("a.inst");
+    EXPECT_FALSE(graph_);
+    EXPECT_THAT(errors(), HasSubstr("'/dev/zero' is not a regular file"));
+}
+
+TEST_F(Use, an_orbit_fails_whatever_failed_before) {
+    write("points.rifs", "orbit o {\n start <1, 1>\n map m {\n  x = y\n  y = x\n }\n}");
+    write("a.inst", "let b = nothing\nuse z = \"points.rifs\"\nobject a { z }");
+    lower("a.inst");
+    EXPECT_FALSE(graph_);
+    EXPECT_THAT(errors(), HasSubstr("no model can use it"));
+}
+
+TEST_F(Use, a_root_model_that_is_not_there_is_a_failed_status) {
+    lower("nowhere.inst");
+    EXPECT_FALSE(graph_);
+    EXPECT_FALSE(status_.ok());
+    EXPECT_FALSE(diagnostics_.has_errors());
+}
+
+TEST(Language, follows_the_name_of_the_file) {
+    SourceMap sources;
+    Diagnostics diagnostics;
+    EXPECT_FALSE(lower_text("tree.lsys", "lsys tree { }", {}, sources, diagnostics));
+    EXPECT_THAT(diagnostics.render(sources), HasSubstr("tree.lsys:1:6: error: 'lsys tree' has no axiom"));
+    Diagnostics unknown;
+    EXPECT_FALSE(lower_text("tree.txt", "", {}, sources, unknown));
+    EXPECT_THAT(unknown.render(sources), HasSubstr("hint: the names of models end in .lsys, .rifs or .inst"));
+}
+
+TEST(Language, of_standard_input_follows_its_first_word) {
+    SourceMap sources;
+    Diagnostics diagnostics;
+    EXPECT_TRUE(lower_text("-", "# rifs\nlet a = 1\nobject rifs { sphere }", {}, sources, diagnostics));
+    EXPECT_TRUE(lower_text("-", "let a = 2\nrifs r {\n map m { scale 1/a }\n}", {}, sources, diagnostics))
+        << diagnostics.render(sources);
+    EXPECT_FALSE(lower_text("-", "let a = 1\nlsys tree { }", {}, sources, diagnostics));
+    EXPECT_THAT(diagnostics.render(sources), HasSubstr("<stdin>:2:6: error: 'lsys tree' has no axiom"));
+}
+
+} // namespace
+} // namespace graftal

@@ -1,0 +1,171 @@
+// Models that are made to take too long, or too much memory: they are refused soon, or drawn soon.
+
+#include <map>
+#include <string>
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "compiler/languages/lower.h"
+
+namespace graftal {
+namespace {
+
+using ::testing::HasSubstr;
+
+/// What is said about a file; "" if it compiles.
+std::string said(const std::string& text, const LowerOptions& options = {}) {
+    SourceMap sources;
+    Diagnostics diagnostics;
+    const std::optional<Graph> graph = lower_text("m.lsys", text, options, sources, diagnostics);
+    EXPECT_EQ(graph.has_value(), !diagnostics.has_errors());
+    return diagnostics.render(sources);
+}
+
+std::string block(const std::string& statements) {
+    return "lsys test {\n" + statements + "\n}\n";
+}
+
+std::string numbered(int count, const char* separator, const std::string& name) {
+    std::string text;
+    for (int i = 0; i < count; ++i)
+        text += fmt::format("{}{}{}", i == 0 ? "" : separator, name, i);
+    return text;
+}
+
+TEST(LsysLimits, partsThatAllDiffer) {
+    const std::string text = block("steps 10000\nwidth 1\naxiom A(1)\nA(n) -> F(n)[+A(n*1.01)]A(n+1)");
+    LowerOptions options;
+    options.max_objects = 12'000;
+    EXPECT_THAT(said(text, options), HasSubstr("the model has more than 12000 different parts"));
+}
+
+TEST(LsysLimits, fingerprintsThatDoNotTellPartsApart) {
+    // Bodies are tiny beside their distances; comparing each with all took minutes.
+    LowerOptions options;
+    options.max_objects = 100'000;
+    EXPECT_THAT(said(block("steps 10000\nwidth 1\naxiom A(0)\nA(n) -> F(n+1)[+A(n+1)]A(n*1.1)"), options),
+                HasSubstr("different parts"));
+}
+
+TEST(LsysLimits, polygons) {
+    const auto polygon = [](const char* vertices, int steps) {
+        return block(fmt::format("steps {}\naxiom {{A}}\nA -> {}", steps, vertices));
+    };
+    EXPECT_EQ(said(polygon("f+(179.3)A", 4000)), ""); // no corner is an ear: took the cube of the time
+    EXPECT_THAT(said(polygon("f+AA", 64)), HasSubstr("a polygon has more than 10000 vertices"));
+    EXPECT_THAT(said(polygon("f+{A}A", 2000)), HasSubstr("more than 1000 polygons are open in one place"));
+    EXPECT_THAT(said(block("steps 2000\naxiom A}\nA -> {fA")),
+                HasSubstr("more than 1000 polygons are open in one place"));
+}
+
+TEST(LsysLimits, distances) {
+    // Was a transform that is not finite, which the verifier of graphs stops at.
+    EXPECT_THAT(said(block("steps 10000\naxiom F\nF -> FF")), HasSubstr("farther than numbers reach"));
+    EXPECT_EQ(said(block("steps 300\naxiom F\nF -> FF")), "");
+}
+
+TEST(LsysLimits, sizesBeyondTheRange) {
+    // Each was a broken invariant of the verifier, or of the writer.
+    EXPECT_EQ(said(block("steps 2200\nwidth 0.1\naxiom X\nX -> F!X")), "");
+    EXPECT_EQ(said(block("steps 0\naxiom !(5e-324)F")), "");
+    EXPECT_EQ(said(block("steps 0\naxiom F(5e-324)@O(5e-324)~sphere(5e-324)~cube(5e-324,1)")), "");
+    EXPECT_THAT(said(block("steps 0\nwidth 5e-324\naxiom F")),
+                HasSubstr("m.lsys:3:7: error: 'width' must lie between 1e-100 and 1e+100, not 5e-324"));
+    EXPECT_THAT(said(block("steps 0\nstep 1e101\naxiom F")),
+                HasSubstr("'step' must lie between 1e-100 and 1e+100, not 1e+101"));
+    EXPECT_THAT(said(block("steps 600\naxiom A(1)\nA(w) -> A(w*2)\ninterpret A(w) -> !(w)F")),
+                HasSubstr("m.lsys:5:11: error: a width is at most 1e+100, not "));
+    EXPECT_THAT(said(block("steps 0\naxiom [f(1e101)]F")),
+                HasSubstr("a length is at most 1e+100, not 1e+101"));
+    EXPECT_THAT(said(block("steps 0\naxiom @o(0-1e101)")), HasSubstr("a diameter is at most 1e+100"));
+    EXPECT_THAT(said(block("steps 0\naxiom ~cube(1e200,1e-200)")),
+                HasSubstr("the scale of a model is at most"));
+    EXPECT_THAT(said(block("steps 0\naxiom ~cube(1e200,1e200)")), HasSubstr("not one beyond all numbers"));
+    EXPECT_THAT(said(block("steps 0\naxiom T(1e308)F~sphere")), HasSubstr("an elasticity is at most 1e+100"));
+}
+
+/// Different parts that a block makes.
+std::size_t parts_of(const std::string& statements) {
+    SourceMap sources;
+    Diagnostics diagnostics;
+    std::optional<Derivation> derivation;
+    lower_text("m.lsys", block(statements), {}, sources, diagnostics, &derivation);
+    EXPECT_TRUE(derivation) << diagnostics.render(sources);
+    return derivation ? derivation->parts : 0;
+}
+
+TEST(LsysLimits, stateOfTheTurtleThatGoesOnForEver) {
+    // Each made a part for every module of the word.
+    EXPECT_LT(parts_of("steps 30\nangle 60\naxiom X\nX -> FX+FX-FX;"), 300u); // colours are counted around
+    EXPECT_LT(parts_of("steps 30\naxiom X\nX -> F;(1e9)X+,FX,"), 300u);
+    EXPECT_LT(parts_of("steps 30\nangle 60\naxiom @GsX@Ge\nX -> FX+FX"), 100u); // far from a control point
+    EXPECT_LT(parts_of("steps 30\nwidth 1\naxiom X\nX -> F!X+F![X]-X"), 3000u); // ever thinner
+    EXPECT_LT(parts_of("steps 300\naxiom X\nX -> [{f+f+f.X}]+X"), 1000u);       // polygons in polygons
+}
+
+TEST(LsysLimits, coloursGoAroundInTheLimit) {
+    EXPECT_EQ(said(block("angle 60\nsteps infinite\naxiom F\nF -> F+;F-F")), "");
+}
+
+TEST(LsysLimits, limitsThatDoNotRepeatAreGivenUpSoon) {
+    // All of its directions were composed, for minutes.
+    EXPECT_THAT(said(block("angle 68\ntropism 1,-1,0\nsteps infinite\naxiom T(0.86)F\nL -> F$F\nF -> F+FL")),
+                HasSubstr("has no limit that was found: its levels do not repeat"));
+}
+
+TEST(LsysLimits, symbols) {
+    const std::string names = numbered(66'000, ", ", "m");
+    const std::string text =
+        block("modules " + names + "\nsteps 1\naxiom F\nF -> F" + numbered(66'000, " ", "m"));
+    EXPECT_THAT(said(text), HasSubstr("a block has at most 65535 different symbols"));
+}
+
+TEST(LsysLimits, parameters) {
+    const std::string many = numbered(257, ", ", "x"), some = numbered(256, ", ", "x");
+    EXPECT_THAT(said(block("steps 1\naxiom F\nF(" + many + ") -> F")),
+                HasSubstr("a production and its contexts have at most 256 parameters"));
+    EXPECT_THAT(said(block("let " + numbered(257, " = 1, ", "x") + " = 1\nsteps 1\naxiom F(" + many + ")")),
+                HasSubstr("a module has at most 256 parameters"));
+    EXPECT_EQ(said(block("steps 0\naxiom F(1)\nF(" + some + ") -> F(x255)")).find("error"),
+              std::string::npos);
+}
+
+TEST(LsysLimits, blocksThatPlaceBlocks) {
+    const auto chain = [](int count) {
+        std::string text = "lsys b0 {\nsteps 0\naxiom F\n}\n";
+        for (int i = 1; i < count; ++i)
+            text = fmt::format("lsys b{} {{\nsteps 0\naxiom F~b{}\n}}\n{}", i, i - 1, text);
+        return text + fmt::format("main lsys top {{\nsteps 0\naxiom ~b{}\n}}\n", count - 1);
+    };
+    EXPECT_EQ(said(chain(255)), "");
+    EXPECT_THAT(said(chain(20'000)), HasSubstr("blocks place each other more than 256 deep"));
+}
+
+TEST(LsysLimits, contextsThatNeverMatchAreSpokenOf) {
+    const auto warnings = [](const std::string& production) {
+        return said(block("steps 2\nignore +\naxiom I(0)+I[I]\n" + production +
+                          "\ninterpret I(n) -> F\ninterpret I -> F"));
+    };
+    const std::string hint = "    hint: this context never matches\n";
+    EXPECT_EQ(warnings("I(n) > I -> I(1)"), "");
+    EXPECT_EQ(warnings("I(n) > [I] -> I(1)"), "");
+    EXPECT_EQ(warnings("B < I(n) > C -> I(1)"),
+              "m.lsys:5:1: warning: no axiom or successor has a module 'B'\n"
+              "    B < I(n) > C -> I(1)\n"
+              "    ^\n" +
+                  hint);
+    EXPECT_EQ(warnings("I(n) > +I -> I(1)"), "m.lsys:5:8: warning: contexts look past '+'\n"
+                                             "    I(n) > +I -> I(1)\n"
+                                             "           ^\n" +
+                                                 hint);
+    EXPECT_EQ(warnings("I(n, m) < I -> F"),
+              "m.lsys:5:1: warning: no axiom or successor has a module 'I' with 2 parameters\n"
+              "    I(n, m) < I -> F\n"
+              "    ^~~~~~~\n" +
+                  hint);
+}
+
+} // namespace
+} // namespace graftal

@@ -6,6 +6,14 @@
 
 namespace graftal {
 
+/// What prepare_cut() has to know of the picture.
+struct PrepareOptions {
+    std::optional<unsigned> steps;     ///< levels; nothing: as deep as the error asks for
+    bool culls = true;                 ///< whether anything is culled for its size
+    std::vector<unsigned> root_levels; ///< as DetailOptions'
+    bool operator==(const PrepareOptions&) const = default;
+};
+
 struct DetailOptions {
     double error_px = 0.5; ///< parts whose diameter projects to at most this are culled; 0: nothing is
     std::optional<double> error_world;       ///< the same as a length in scene units, in place of error_px
@@ -20,6 +28,8 @@ struct DetailOptions {
 
     /// Whether anything is culled for its size.
     bool culls() const { return error_world ? *error_world > 0 : error_px > 0; }
+    PrepareOptions preparing() const { return {steps, culls(), root_levels}; }
+    bool operator==(const DetailOptions&) const = default;
 };
 
 } // namespace graftal

@@ -57,14 +57,14 @@ void mark_wide(CutGraph& cut) {
 } // namespace
 
 PreparedCut prepare_cut(const Graph& graph, const Components& components,
-                        const std::vector<ObjectBounds>& bounds, const DetailOptions& options) {
+                        const std::vector<ObjectBounds>& bounds, const PrepareOptions& options) {
     PreparedCut prepared;
     CutGraph& cut = prepared.cut = build_cut_graph(graph, components, bounds);
     if (!options.steps) drop_endings(cut);
     if (!options.root_levels.empty()) use_up_levels(cut, options.root_levels);
     split_into_halves(cut);
     prepared.symmetry = find_symmetry(cut);
-    if (options.culls() || (components.unending[graph.root] && options.steps))
+    if (options.culls || (components.unending[graph.root] && options.steps))
         fit_proxies(cut, prepared.symmetry);
     mark_wide(cut);
     mark_solid(cut);

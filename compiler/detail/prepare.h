@@ -6,7 +6,6 @@
 #include "compiler/analysis/bounding.h"
 #include "compiler/detail/cut_graph.h"
 #include "compiler/detail/detail_options.h"
-#include "compiler/detail/shell_sizes.h"
 #include "compiler/detail/shell_store.h"
 #include "compiler/detail/symmetry.h"
 #include "compiler/graph/components.h"
@@ -23,13 +22,11 @@ struct PreparedCut {
     Box bounds;                                                          ///< of the limit set
     std::uint64_t instances = 0;                                         ///< of the graph that it was made of
     std::unique_ptr<ShellStore> shells = std::make_unique<ShellStore>(); ///< of this graph
-    /// By node, once somebody has found them; none where they depend on the error that is allowed.
-    std::vector<ShellSizes> shell_sizes;
 };
 
 /// Requires what cut_graph() requires. O(graph).
 PreparedCut prepare_cut(const Graph& graph, const Components& components,
-                        const std::vector<ObjectBounds>& bounds, const DetailOptions& options);
+                        const std::vector<ObjectBounds>& bounds, const PrepareOptions& options);
 
 /// True, after an error, if nothing says how deep the graph is to be unfolded.
 bool refuse_endless(const Graph& graph, const Components& components, const DetailOptions& options,

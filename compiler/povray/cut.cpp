@@ -40,12 +40,10 @@ std::string readable_count(double count) {
 
 class Cutter {
   public:
-    Cutter(const Graph& graph, const Components& components, const std::vector<ObjectBounds>& bounds,
-           const View& view, const DetailOptions& options, const CutOptions& cut_options,
-           Diagnostics& diagnostics)
+    Cutter(const Graph& graph, const PreparedCut& prepared, const View& view, const DetailOptions& options,
+           const CutOptions& cut_options, Diagnostics& diagnostics)
         : graph_(graph), view_(view), options_(options), cut_options_(cut_options), diagnostics_(diagnostics),
-          prepared_(prepare_cut(graph, components, bounds, options)), cut_(prepared_.cut),
-          symmetry_(prepared_.symmetry) {}
+          prepared_(prepared), cut_(prepared_.cut), symmetry_(prepared_.symmetry) {}
 
     std::optional<Cut> run() {
         // Of what is not to be culled nobody knows a coarser picture.
@@ -284,7 +282,7 @@ class Cutter {
     const DetailOptions& options_;
     const CutOptions& cut_options_;
     Diagnostics& diagnostics_;
-    const PreparedCut prepared_;
+    const PreparedCut& prepared_;
     const CutGraph& cut_;
     const Symmetry& symmetry_;
     double cube_triangles_ = 0; ///< visible_cube_triangles(), whatever the error
@@ -301,7 +299,14 @@ std::optional<Cut> cut_graph(const Graph& graph, const Components& components,
                              const DetailOptions& detail, Diagnostics& diagnostics,
                              const CutOptions& options) {
     if (refuse_endless(graph, components, detail, diagnostics)) return std::nullopt;
-    return Cutter(graph, components, bounds, view, detail, options, diagnostics).run();
+    const PreparedCut prepared = prepare_cut(graph, components, bounds, detail.preparing());
+    return cut_prepared(graph, prepared, view, detail, diagnostics, options);
+}
+
+std::optional<Cut> cut_prepared(const Graph& graph, const PreparedCut& prepared, const View& view,
+                                const DetailOptions& detail, Diagnostics& diagnostics,
+                                const CutOptions& options) {
+    return Cutter(graph, prepared, view, detail, options, diagnostics).run();
 }
 
 } // namespace graftal

@@ -26,6 +26,7 @@ namespace graftal {
 
 struct CutOptions {
     bool flatten = false; ///< every leaf its own placement: the absolute specification
+    bool operator==(const CutOptions&) const = default;
 };
 
 /// A single exact primitive, or a baked mesh.
@@ -79,6 +80,8 @@ struct Cut : DrawnExtent {
     std::uint64_t estimated_bytes = 0; ///< of POV-Ray's memory
 };
 
+struct PreparedCut;
+
 /// Cuts the graph for the view. Nothing, after an error in `diagnostics`, where the budget cannot be kept
 /// (with culling off) or the depth has no end; a budget that only allows a coarser picture gives that, with
 /// a warning that states the error reached. Requires a verified graph whose contraction is proved or acyclic.
@@ -86,5 +89,11 @@ std::optional<Cut> cut_graph(const Graph& graph, const Components& components,
                              const std::vector<ObjectBounds>& bounds, const View& view,
                              const DetailOptions& detail, Diagnostics& diagnostics,
                              const CutOptions& options = {});
+
+/// The same, of a graph that is prepared already. Requires that it was by detail.preparing(), and that
+/// refuse_endless() lets it pass.
+std::optional<Cut> cut_prepared(const Graph& graph, const PreparedCut& prepared, const View& view,
+                                const DetailOptions& detail, Diagnostics& diagnostics,
+                                const CutOptions& options = {});
 
 } // namespace graftal

@@ -25,6 +25,7 @@ struct ZoomRequest {
     std::optional<Magnification> zoom; ///< about the address, the point looked at, or the model's middle
 
     bool active() const { return at || zoom; }
+    bool operator==(const ZoomRequest&) const = default;
 };
 
 struct Rerooted {

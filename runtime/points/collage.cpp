@@ -257,18 +257,18 @@ Collage measured(const AnalysedModel& model, const OrdinaryIfs& ifs, const Plane
 
 } // namespace
 
-std::optional<Collage> measure_collage(const std::string& path, const CollageOptions& options,
+std::optional<Collage> measure_collage(Session& session, const CollageOptions& options,
                                        Compilation& compilation) {
     Image image;
     compilation.status = read_image(options.target, image);
     if (!compilation.status.ok()) return std::nullopt;
-    CompileOptions compile = options.compile;
+    StageOptions compile = options.compile;
     compile.pipeline.keep_names = true;
-    compile.size = {image.width, image.height};
-    const std::optional<ViewedModel> viewed = view_model(path, compile, compilation);
+    compile.view.size = {image.width, image.height};
+    const std::shared_ptr<const ViewedModel> viewed = session.viewed(compile, compilation);
     if (!viewed) return std::nullopt;
     Diagnostics& diagnostics = compilation.diagnostics;
-    const AnalysedModel& model = viewed->model;
+    const AnalysedModel& model = *viewed->model;
     const std::optional<OrdinaryIfs> ifs = system_of(model, diagnostics);
     const std::optional<PlaneNorm> norm = ifs ? norm_of(*ifs, diagnostics) : std::nullopt;
     if (!norm) return std::nullopt;

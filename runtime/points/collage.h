@@ -3,12 +3,12 @@
 #include <optional>
 #include <string>
 
-#include "compiler/compile.h"
+#include "compiler/session/session.h"
 
 namespace graftal {
 
 struct CollageOptions {
-    CompileOptions compile;
+    StageOptions compile;
     std::string target; ///< a picture
     double threshold =
         0.5; ///< of the stored values: darker pixels are the target, or those of at least this alpha
@@ -36,7 +36,7 @@ struct Collage {
 
 /// Nothing after errors in `compilation.diagnostics`, or with a failed `compilation.status`: the target
 /// cannot be read.
-std::optional<Collage> measure_collage(const std::string& path, const CollageOptions& options,
+std::optional<Collage> measure_collage(Session& session, const CollageOptions& options,
                                        Compilation& compilation);
 
 } // namespace graftal

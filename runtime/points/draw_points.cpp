@@ -41,18 +41,19 @@ void note_planes(const Graph& graph, Diagnostics& diagnostics) {
             }
 }
 
-std::optional<ChaosGame> game_of(const AnalysedModel& model, Diagnostics& diagnostics) {
+std::optional<ChaosGame> game_of(const AnalysedModel& model, std::optional<unsigned> steps,
+                                 Diagnostics& diagnostics) {
     const double rate = model.contraction.verdict == Verdict::proved ? model.contraction.certificate.rate : 0;
     std::optional<ChaosGame> game;
-    if (model.steps && model.components.unending[model.graph.root]) {
-        const auto cut = unrolled(model.graph, model.components, model.bounds, *model.steps, most_unrolled);
+    if (steps && model.components.unending[model.graph.root]) {
+        const auto cut = unrolled(model.graph, model.components, model.bounds, *steps, most_unrolled);
         if (cut) {
             const std::vector<ObjectBounds> none(cut->objects.size());
             game = ChaosGame::of(*cut, strong_components(*cut), none, 0);
         } else {
             diagnostics.note(
                 model.graph.objects[model.graph.root].span,
-                fmt::format("{} levels are too many to tell from all: the limit is drawn", *model.steps));
+                fmt::format("{} levels are too many to tell from all: the limit is drawn", *steps));
         }
     }
     if (!game) game = ChaosGame::of(model.graph, model.components, model.bounds, rate);
@@ -169,7 +170,7 @@ bool is_cloud_name(const std::string& path) {
 std::uint64_t point_count(const PointsOptions& options) {
     if (options.points) return *options.points;
     if (is_cloud_name(options.output)) return points_of_cloud;
-    const ImageSize size = options.compile.size;
+    const ImageSize size = options.compile.view.size;
     return points_a_pixel * static_cast<std::uint64_t>(size.width) * static_cast<std::uint64_t>(size.height);
 }
 
@@ -199,7 +200,7 @@ namespace {
 
 Status place_card(const PointSource& source, const Box& box, const std::vector<Material>& materials,
                   const PointsOptions& options, PointsReport& report) {
-    const ImageSize size = options.compile.size;
+    const ImageSize size = options.compile.view.size;
     const std::string picture = std::filesystem::path(options.output).filename().string();
     const Interruption interruption;
     PendingFile card(options.card);
@@ -212,7 +213,7 @@ Status place_card(const PointSource& source, const Box& box, const std::vector<M
 std::optional<PointsReport> draw_orbit(const OrbitModel& model, const PointsOptions& options,
                                        Compilation& compilation) {
     constexpr std::uint64_t most_surveyed = 1u << 20;
-    if (options.compile.zoom.active()) {
+    if (options.compile.view.zoom.active()) {
         compilation.diagnostics
             .error(model.span, "an orbit has no parts that '--at' and '--zoom' could look at")
             .with_hint("--camera \"look_at=X,Y,0 width=W\" looks closer");
@@ -223,7 +224,7 @@ std::optional<PointsReport> draw_orbit(const OrbitModel& model, const PointsOpti
     if (source.report(compilation.diagnostics)) return std::nullopt;
     PointsReport report;
     report.maps = static_cast<std::uint32_t>(model.maps.size());
-    const View view = frame(model.scene, box, options.compile.size, options.compile.camera);
+    const View view = frame(model.scene, box, options.compile.view.size, options.compile.view.camera);
     compilation.status = options.card.empty() ? place_points(source, view, options, nullptr, report)
                                               : place_card(source, box, {}, options, report);
     if (source.report(compilation.diagnostics)) compilation.status = Status(); // which is why it was given up
@@ -234,24 +235,28 @@ std::optional<PointsReport> draw_orbit(const OrbitModel& model, const PointsOpti
 
 } // namespace
 
-std::optional<PointsReport> draw_points(const std::string& path, const PointsOptions& options,
+std::optional<PointsReport> draw_points(Session& session, const PointsOptions& options,
                                         Compilation& compilation) {
-    CompileOptions compile = options.compile;
+    StageOptions compile = options.compile;
     compile.pipeline.keep_names = true; // objects that differ in their chances only are not to be merged
+    compile.accept_orbit = true;
     std::shared_ptr<const OrbitModel> orbit;
-    compile.lower.orbit = &orbit;
-    const std::optional<ViewedModel> viewed = view_model(path, compile, compilation);
+    if (const auto lowered = session.lowered(compile, compilation))
+        orbit = lowered->orbit;
+    else
+        return std::nullopt;
     if (orbit) return draw_orbit(*orbit, options, compilation);
+    const std::shared_ptr<const ViewedModel> viewed = session.viewed(compile, compilation);
     if (!viewed) return std::nullopt;
     const Stopwatch watch;
-    const std::optional<ChaosGame> game = game_of(viewed->model, compilation.diagnostics);
+    const std::optional<ChaosGame> game = game_of(*viewed->model, viewed->steps, compilation.diagnostics);
     compilation.times.push_back({"chances", watch.seconds()});
     if (!game) return std::nullopt;
     PointsReport report;
     report.maps = game->map_count();
     const ChaosSource source(*game, compile.lower.seed.value_or(0));
-    const Graph& graph = viewed->model.graph;
-    const Box& box = viewed->model.bounds[graph.root].box;
+    const Graph& graph = viewed->model->graph;
+    const Box& box = viewed->model->bounds[graph.root].box;
     compilation.status = options.card.empty() ? place_points(source, viewed->view, options, nullptr, report)
                                               : place_card(source, box, graph.materials, options, report);
     compilation.times.push_back({"points", report.seconds});

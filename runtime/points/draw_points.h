@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "compiler/compile.h"
+#include "compiler/session/session.h"
 #include "compiler/support/file.h"
 #include "runtime/image/image.h"
 #include "runtime/points/point_source.h"
@@ -17,7 +17,7 @@ namespace graftal {
 bool is_cloud_name(const std::string& path);
 
 struct PointsOptions {
-    CompileOptions compile;
+    StageOptions compile;
     std::string output; ///< is_picture_name() or is_cloud_name()
     ImageMetadata metadata;
     std::optional<std::uint64_t> points; ///< nothing: 100 a pixel, or a million of a cloud
@@ -43,11 +43,11 @@ std::uint64_t point_count(const PointsOptions& options);
 Status place_points(const PointSource& source, const View& view, const PointsOptions& options,
                     PendingFile* card, PointsReport& report);
 
-/// Model file -> points, by random iteration on its graph (chaos/chaos_game.h) or by the formulas of an
+/// Model -> points, by random iteration on its graph (chaos/chaos_game.h) or by the formulas of an
 /// orbit. The file depends on model, options and seed, not on the number of threads. Nothing comes back, and
 /// no file, after errors in `compilation.diagnostics`, or with a failed `compilation.status`. Memory: that of
 /// the picture for each thread, or, where that is more than a gigabyte, once.
-std::optional<PointsReport> draw_points(const std::string& path, const PointsOptions& options,
+std::optional<PointsReport> draw_points(Session& session, const PointsOptions& options,
                                         Compilation& compilation);
 
 } // namespace graftal

@@ -9,7 +9,8 @@
 
 #include <fmt/format.h>
 
-#include "compiler/frame_animation.h"
+#include "compiler/session/shared_framing.h"
+#include "compiler/session/stages.h"
 #include "runtime/render/frame_clock.h"
 #include "runtime/render/frame_store.h"
 #include "runtime/render/native.h"
@@ -28,12 +29,6 @@ double seconds_since(Clock::time_point begin) {
     return std::chrono::duration<double>(Clock::now() - begin).count();
 }
 
-/// True if two frames show one model, whatever the camera does. `timed`: a model that is drawn by the time.
-bool same_model(const CompileOptions& a, const CompileOptions& b, bool timed) {
-    return a.steps == b.steps && a.lower.seed == b.lower.seed && a.lower.set == b.lower.set &&
-           (a.lower.time == b.lower.time || (a.steps && !timed));
-}
-
 /// Adds up the times of the stages over all frames.
 void add_times(const std::vector<StageTime>& times, std::vector<StageTime>& sums) {
     for (const StageTime& time : times) {
@@ -48,8 +43,8 @@ void add_times(const std::vector<StageTime>& times, std::vector<StageTime>& sums
 
 class Animation {
   public:
-    Animation(const std::string& path, const AnimateOptions& options)
-        : path_(path), options_(options), kind_(*animation_kind(options.output)),
+    Animation(Session& session, const AnimateOptions& options)
+        : session_(session), options_(options), kind_(*animation_kind(options.output)),
           store_(frames_directory(options.output), options.frames) {}
 
     AnimationOutcome run() {
@@ -67,8 +62,7 @@ class Animation {
   private:
     /// What moves, as it is in a frame.
     struct Moment {
-        CompileOptions compile;
-        double turn_deg = 0;
+        StageOptions compile;
         std::string name; ///< for messages
     };
 
@@ -76,7 +70,8 @@ class Animation {
         const std::size_t last = std::max<std::size_t>(options_.frames - 1, 1);
         const auto at = static_cast<double>(frame);
         const double t = eased(options_.ease, at / static_cast<double>(last));
-        Moment moment{options_.render.compile, turn(frame), {}};
+        Moment moment{options_.render.compile, {}};
+        moment.compile.view.turn_deg = turn(frame);
         for (const Sweep& sweep : options_.sweeps) {
             const std::string words = sweep.apply(t, moment.compile);
             moment.name += (moment.name.empty() ? "" : " ") + words;
@@ -99,30 +94,33 @@ class Animation {
 
     /// Analyses the models of all frames.
     bool measure() {
-        Moment before;
+        auto framing = std::make_shared<SharedFraming>();
         for (std::size_t frame = 0; frame < options_.frames; ++frame) {
             if (Interruption::signal()) return fail("", Status::failure("interrupted"));
-            Moment now = moment(frame);
-            if (frame == 0 || !same_model(before.compile, now.compile, timed_)) {
-                show({Stage::measuring, frame, options_.frames, {}, {}});
-                if (!measure_model(now)) return false;
-            }
-            sources_.push_back(model_sources_);
-            before = std::move(now);
+            show({Stage::measuring, frame, options_.frames, {}, {}});
+            if (!measure_model(moment(frame), *framing)) return false;
         }
-        framing_.settle(moment(0).compile.camera, options_.render.compile.size, options_.turn_deg != 0);
+        const ViewOptions view = moment(0).compile.view;
+        framing->settle(view.camera, view.size, options_.turn_deg != 0);
+        framing_ = std::move(framing);
         return true;
     }
 
-    bool measure_model(const Moment& now) {
+    bool measure_model(const Moment& now, SharedFraming& framing) {
         Compilation compilation;
-        const std::optional<AnalysedModel> model = analyse_model(path_, now.compile, compilation);
+        const std::uint64_t runs = session_.runs().analysed;
+        const std::shared_ptr<const AnalysedModel> model = session_.analysed(now.compile, compilation);
         if (!model) return fail(now.name, std::move(compilation));
-        if (options_.on_compiled) options_.on_compiled(compilation);
-        framing_.include(*model);
-        timed_ = model->derivation && model->derivation->timed;
-        model_sources_ = Digest().add(compilation.sources);
-        all_sources_.add(model_sources_.text());
+        add_times(compilation.times, outcome_.compilation.times);
+        const std::optional<unsigned> steps = levels_of(*model, now.compile.lower.steps);
+        if (sources_.empty() || session_.runs().analysed > runs || steps != steps_) {
+            if (options_.on_compiled) options_.on_compiled(compilation);
+            framing.include(*model, steps);
+            steps_ = steps;
+            model_sources_ = Digest().add(compilation.sources);
+            all_sources_.add(model_sources_.text());
+        }
+        sources_.push_back(model_sources_);
         return true;
     }
 
@@ -165,9 +163,7 @@ class Animation {
         if (Interruption::signal()) return fail("", Status::failure("interrupted"));
         show({Stage::drawing, frame, options_.frames, seconds_left, {}});
         Moment now = moment(frame);
-        now.compile.frame = [&](const AnalysedModel& model, bool part) {
-            return part ? view_of_part(model, now) : framing_.view(model, now.compile.camera, now.turn_deg);
-        };
+        now.compile.view.framing = framing_;
         RenderOptions render = options_.render;
         render.compile = now.compile;
         render.output = store_.path(frame);
@@ -188,13 +184,12 @@ class Animation {
 
     bool draw_frame_by_povray(std::size_t frame, RenderOptions& render, const Tell& tell,
                               Compilation& compilation) {
-        std::optional<CompiledModel> model = compile_model(path_, render.compile, compilation);
-        if (!model || !unchanged(frame, compilation)) return false;
+        if (!session_.compiled(render.compile, compilation) || !unchanged(frame, compilation)) return false;
         if (options_.on_compiled) options_.on_compiled(compilation);
         render.on_progress = [&](const PovrayProgress& povray) {
             if (povray.stage == PovrayProgress::Stage::rendering && povray.fraction) tell(*povray.fraction);
         };
-        const std::optional<RenderReport> report = draw_model(std::move(*model), render, compilation);
+        const std::optional<RenderReport> report = render_model(session_, render, compilation);
         if (!report) return false;
         outcome_.error_px = std::max(outcome_.error_px, report->error_px);
         outcome_.peak_bytes = std::max(outcome_.peak_bytes, report->peak_bytes);
@@ -203,12 +198,11 @@ class Animation {
 
     bool trace_frame(std::size_t frame, const RenderOptions& render, const Tell& tell,
                      Compilation& compilation) {
-        std::optional<ViewedModel> model = view_model(path_, render.compile, compilation);
-        if (!model || !unchanged(frame, compilation)) return false;
+        if (!session_.viewed(render.compile, compilation) || !unchanged(frame, compilation)) return false;
         NativeOptions native;
         native.render = render;
         native.on_progress = [&](const NativeProgress& progress) { tell(progress.fraction); };
-        const std::optional<NativeReport> report = trace_model(std::move(*model), native, compilation);
+        const std::optional<NativeReport> report = render_natively(session_, native, compilation);
         if (!report) return false;
         if (options_.on_compiled) options_.on_compiled(compilation); // not before: drawing has warnings, too
         outcome_.rays += report->rays;
@@ -221,14 +215,6 @@ class Animation {
         if (Digest().add(compilation.sources) == sources_[frame]) return true;
         compilation.status = Status::failure("the model was changed meanwhile; start again");
         return false;
-    }
-
-    /// A part that is looked at by itself (--at) is framed for its own frame; measure() does not know it.
-    View view_of_part(const AnalysedModel& part, const Moment& now) const {
-        SharedFraming framing;
-        framing.include(part);
-        framing.settle(now.compile.camera, now.compile.size, options_.turn_deg != 0);
-        return framing.view(part, now.compile.camera, now.turn_deg);
     }
 
     bool assemble() {
@@ -272,12 +258,12 @@ class Animation {
         return false;
     }
 
-    const std::string& path_;
+    Session& session_;
     const AnimateOptions& options_;
     AnimationKind kind_;
     FrameStore store_;
-    SharedFraming framing_;
-    bool timed_ = false; ///< the model measured last
+    std::shared_ptr<const SharedFraming> framing_;
+    std::optional<unsigned> steps_; ///< of the model measured last
     Digest model_sources_;
     Digest all_sources_;
     std::vector<Digest> sources_; ///< by frame
@@ -305,8 +291,8 @@ std::string frames_directory(const std::string& output) {
     return path.has_filename() ? output : path.parent_path().string();
 }
 
-AnimationOutcome animate_model(const std::string& path, const AnimateOptions& options) {
-    return Animation(path, options).run();
+AnimationOutcome animate_model(Session& session, const AnimateOptions& options) {
+    return Animation(session, options).run();
 }
 
 } // namespace graftal

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "compiler/compile.h"
+#include "compiler/session/session.h"
 #include "runtime/image/animation.h"
 #include "runtime/render/render.h"
 #include "runtime/render/sweep.h"
@@ -63,9 +63,10 @@ struct AnimationOutcome {
 };
 
 /// Draws the frames that are not there yet and puts them together. All models that are shown are analysed
-/// first: they are framed together, and a value that a model does not take is found before the first frame is
-/// drawn. However it ends, whole frames stay for the next run until the output is there, and the output is
-/// whole or not there. Interruptions as for render_model.
-AnimationOutcome animate_model(const std::string& path, const AnimateOptions& options);
+/// first, and the frames of one model share its analysis and preparation: they are framed together, and a
+/// value that a model does not take is found before the first frame is drawn. However it ends, whole frames
+/// stay for the next run until the output is there, and the output is whole or not there. Interruptions as
+/// for render_model.
+AnimationOutcome animate_model(Session& session, const AnimateOptions& options);
 
 } // namespace graftal

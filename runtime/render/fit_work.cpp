@@ -39,24 +39,25 @@ constexpr int most_broken_looks = 2;
 
 class Fitting {
   public:
-    Fitting(const View& view, const DetailOptions& options, double samples_a_pixel,
-            const std::function<ShaderLimits(const TraceModel&)>& limits_of, int threads,
-            const std::function<bool()>& cancelled)
-        : view_(view), options_(options), samples_(samples_a_pixel * view.size.width * view.size.height),
-          limits_of_(limits_of), threads_(threads), cancelled_(cancelled) {}
+    Fitting(std::shared_ptr<const PreparedCut> prepared, const View& view, const DetailOptions& options,
+            double samples_a_pixel, const std::function<ShaderLimits(const TraceModel&)>& limits_of,
+            int threads, const std::function<bool()>& cancelled)
+        : prepared_(std::move(prepared)), view_(view), options_(options),
+          samples_(samples_a_pixel * view.size.width * view.size.height), limits_of_(limits_of),
+          threads_(threads), cancelled_(cancelled) {}
 
-    FittedModel run(const std::function<PreparedCut()>& prepare) {
-        FittedModel fitted = fit(prepare);
+    FittedModel run() {
+        FittedModel fitted = fit();
         fitted.tried_seconds = tried_seconds_;
         return fitted;
     }
 
   private:
-    FittedModel fit(const std::function<PreparedCut()>& prepare) {
+    FittedModel fit() {
         FittedModel fitted;
         DetailOptions options = options_;
         int steps_left = options.culls() ? most_coarser_steps : 0;
-        make_anew(prepare, options, steps_left, fitted);
+        make_anew(options, steps_left, fitted);
         fitted.whole_seconds = fitted.seconds;
         fitted.allowed_seconds = std::numeric_limits<double>::infinity();
         if (!options.culls()) return fitted;
@@ -67,11 +68,11 @@ class Fitting {
             const int least = broken_looks_ < most_broken_looks ? 1 << broken_looks_ : most_coarser_steps;
             for (int i = 0; (i < least || i < steps) && (i == 0 || steps_left > 0); ++i)
                 make_coarser(options, steps_left);
-            PreparedCut prepared = std::move(fitted.model->prepared);
+            std::vector<ShellSizes> shell_sizes = std::move(fitted.model->shell_sizes);
             fitted.model.reset();
-            if (!make(std::move(prepared), options, fitted)) {
+            if (!make(std::move(shell_sizes), options, fitted)) {
                 note_memory(options, steps_left, fitted);
-                make_anew(prepare, options, steps_left, fitted);
+                make_anew(options, steps_left, fitted);
             }
         }
         while (too_much(fitted.seconds) && fitted.model->most_visits > fewest_visits) {
@@ -98,19 +99,18 @@ class Fitting {
     }
 
     /// As coarse as the memory asks for.
-    void make_anew(const std::function<PreparedCut()>& prepare, DetailOptions& options, int& steps_left,
-                   FittedModel& fitted) {
-        while (!make(prepare(), options, fitted))
+    void make_anew(DetailOptions& options, int& steps_left, FittedModel& fitted) {
+        while (!make({}, options, fitted))
             note_memory(options, steps_left, fitted);
     }
 
     /// False where it takes more memory than there is.
-    bool make(PreparedCut prepared, const DetailOptions& options, FittedModel& fitted) {
-        const std::uint64_t instances = prepared.instances;
+    bool make(std::vector<ShellSizes> shell_sizes, const DetailOptions& options, FittedModel& fitted) {
+        const std::uint64_t instances = prepared_->instances;
         work_seconds_ = work_beside_graph(options_.work_seconds, instances);
         slowness_ = slowness_of_graph(instances);
         try {
-            fitted.model = std::make_unique<TraceModel>(std::move(prepared), view_, options);
+            fitted.model = std::make_unique<TraceModel>(prepared_, view_, options, std::move(shell_sizes));
             tried_seconds_ += slowness_ * static_cast<double>(fitted.model->weighed) / WorkRates::kinds;
             fitted.error_px = options.error_px;
             fitted.seconds = seconds_for(*fitted.model);
@@ -202,6 +202,7 @@ class Fitting {
 
     double second_of_steps() const { return slowness_ / WorkRates::ray_steps; }
 
+    const std::shared_ptr<const PreparedCut> prepared_;
     const View& view_;
     const DetailOptions& options_;
     const double samples_;
@@ -217,11 +218,11 @@ class Fitting {
 
 } // namespace
 
-FittedModel fit_work(const std::function<PreparedCut()>& prepare, const View& view,
+FittedModel fit_work(std::shared_ptr<const PreparedCut> prepared, const View& view,
                      const DetailOptions& options, double samples_a_pixel,
                      const std::function<ShaderLimits(const TraceModel&)>& limits_of, int threads,
                      const std::function<bool()>& cancelled) {
-    return Fitting(view, options, samples_a_pixel, limits_of, threads, cancelled).run(prepare);
+    return Fitting(std::move(prepared), view, options, samples_a_pixel, limits_of, threads, cancelled).run();
 }
 
 } // namespace graftal

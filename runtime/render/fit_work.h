@@ -26,10 +26,10 @@ struct FittedModel {
 /// Tries rays over the whole picture, one for some pixels, and predicts what all of them take:
 /// `samples_a_pixel` in the end. Where that is more than the view's work_seconds, first what is culled grows,
 /// then rays are given up sooner. What is culled grows also where a model takes more memory than there is
-/// (`out_of_memory`); if none fits, or the model cannot be prepared, std::bad_alloc is thrown. Nothing but
+/// (`out_of_memory`); if none fits, std::bad_alloc is thrown. Nothing but
 /// counts decides, so the result is the same whatever the machine and its threads. `cancelled` is asked
 /// often; once it says true, any model comes back.
-FittedModel fit_work(const std::function<PreparedCut()>& prepare, const View& view,
+FittedModel fit_work(std::shared_ptr<const PreparedCut> prepared, const View& view,
                      const DetailOptions& options, double samples_a_pixel,
                      const std::function<ShaderLimits(const TraceModel&)>& limits_of, int threads,
                      const std::function<bool()>& cancelled);

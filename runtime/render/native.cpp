@@ -8,6 +8,7 @@
 
 #include "compiler/detail/coarser.h"
 #include "compiler/povray/povray_units.h"
+#include "compiler/session/stages.h"
 #include "runtime/render/fit_work.h"
 #include "runtime/render/samplings.h"
 #include "runtime/render/scene_files.h"
@@ -62,16 +63,23 @@ double work_as_asked(const FittedModel& fitted, const Looks& looks, ImageSize si
                     least_seconds(looks.wanted, size) / most_for_samples);
 }
 
+/// The picture that was asked for, for messages.
+struct Asked {
+    Span span; ///< of the model
+    ImageSize size;
+    const DetailOptions& detail;
+};
+
 /// Says what the work allowed has cost, or what a picture that leaves nothing out will take.
-void report_work(const FittedModel& fitted, const Looks& looks, const ViewedModel& viewed,
+void report_work(const FittedModel& fitted, const Looks& looks, const Asked& asked,
                  Diagnostics& diagnostics) {
-    const Span& span = viewed.model.graph.objects[viewed.model.graph.root].span;
-    const double allowed = viewed.detail.work_seconds;
-    const double seconds = seconds_as_asked(fitted, looks, viewed.view.size);
+    const Span& span = asked.span;
+    const double allowed = asked.detail.work_seconds;
+    const double seconds = seconds_as_asked(fitted, looks, asked.size);
     if (fitted.out_of_memory)
-        warn_of_limit(span, limit_of_memory(viewed.detail.memory_bytes),
-                      {fitted.error_px, viewed.detail.error_px}, diagnostics);
-    if (!viewed.detail.culls()) {
+        warn_of_limit(span, limit_of_memory(asked.detail.memory_bytes),
+                      {fitted.error_px, asked.detail.error_px}, diagnostics);
+    if (!asked.detail.culls()) {
         if (!(seconds > allowed)) return;
         diagnostics
             .note(span,
@@ -82,7 +90,7 @@ void report_work(const FittedModel& fitted, const Looks& looks, const ViewedMode
     }
     Limit limit = limit_of_work(allowed);
     limit.need = fmt::format("the picture as asked would take about {} seconds of one processor",
-                             readable_seconds(work_as_asked(fitted, looks, viewed.view.size)));
+                             readable_seconds(work_as_asked(fitted, looks, asked.size)));
     const std::string samples = samples_in_words(looks.affordable);
     if (!fitted.work_cut) {
         if (looks.fewer())
@@ -100,27 +108,25 @@ void report_work(const FittedModel& fitted, const Looks& looks, const ViewedMode
         limit.besides += fmt::format(", one for {0} by {0} pixels", block);
     else if (looks.fewer())
         limit.besides += (fitted.rays_cut ? ", " : ", by ") + samples + " for each pixel";
-    warn_of_limit(span, limit, {fitted.error_px, viewed.detail.error_px}, diagnostics);
+    warn_of_limit(span, limit, {fitted.error_px, asked.detail.error_px}, diagnostics);
 }
 
 /// Says what a picture takes that is too large even for one sample a pixel.
-void report_size(const Looks& looks, const ViewedModel& viewed, Diagnostics& diagnostics) {
-    const double seconds = least_seconds(looks.affordable, viewed.view.size);
-    if (!viewed.detail.culls() || !(seconds > viewed.detail.work_seconds)) return;
+void report_size(const Looks& looks, const Asked& asked, Diagnostics& diagnostics) {
+    const double seconds = least_seconds(looks.affordable, asked.size);
+    if (!asked.detail.culls() || !(seconds > asked.detail.work_seconds)) return;
     diagnostics
-        .note(viewed.model.graph.objects[viewed.model.graph.root].span,
-              fmt::format("a picture of this size takes {} seconds of one processor or more",
-                          readable_seconds(seconds)))
+        .note(asked.span, fmt::format("a picture of this size takes {} seconds of one processor or more",
+                                      readable_seconds(seconds)))
         .with_hint("--size makes it smaller");
 }
 
 /// Says how coarse the shells had to be.
-void report_shells(const TraceModel& model, const ViewedModel& viewed, Diagnostics& diagnostics) {
+void report_shells(const TraceModel& model, const Asked& asked, Diagnostics& diagnostics) {
     constexpr double step_of_details = 1.5; // a shell serves sizes of half an octave
     const double coarsest = model.meshes.coarsest_shell();
     if (coarsest > step_of_details)
-        warn_of_shells(viewed.model.graph.objects[viewed.model.graph.root].span,
-                       {coarsest * model.options.error_px, viewed.detail.error_px}, diagnostics);
+        warn_of_shells(asked.span, {coarsest * model.options.error_px, asked.detail.error_px}, diagnostics);
 }
 
 /// One picture, from the first sample to the last file.
@@ -231,55 +237,58 @@ class Drawing {
 
 } // namespace
 
-std::optional<NativeReport> render_natively(const std::string& path, const NativeOptions& options,
+std::optional<NativeReport> render_natively(Session& session, const NativeOptions& options,
                                             Compilation& compilation) {
-    const Stopwatch watch;
-    std::optional<ViewedModel> model = view_model(path, options.render.compile, compilation);
-    if (!model) return std::nullopt;
-    const double before = watch.seconds();
-    std::optional<NativeReport> report = trace_model(std::move(*model), options, compilation);
+    const Stopwatch whole;
+    const StageOptions& stages = options.render.compile;
+    PreparedView model;
+    model.viewed = session.viewed(stages, compilation);
+    if (!model.viewed) return std::nullopt;
+    compilation.status = check_writable(options.render.output);
+    if (compilation.status.ok()) compilation.status = load_textures(model.viewed->model->graph.materials);
+    if (!compilation.status.ok()) return std::nullopt;
+
+    const Stopwatch preparing;
+    const double before = whole.seconds();
+    const Interruption interruption; // from here on something may be half written
+    model.detail = resolved(stages.detail, *model.viewed);
+    model.prepared = session.prepared(stages, compilation);
+    if (!model.prepared) return std::nullopt;
+    std::optional<NativeReport> report = trace_model(model, options, preparing, compilation);
     if (report) report->first_picture_seconds += before;
     return report;
 }
 
-std::optional<NativeReport> trace_model(ViewedModel viewed, const NativeOptions& options,
-                                        Compilation& compilation) {
-    compilation.status = check_writable(options.render.output);
-    const AnalysedModel& analysed = viewed.model;
-    if (compilation.status.ok()) compilation.status = load_textures(analysed.graph.materials);
-    if (!compilation.status.ok()) return std::nullopt;
-    if (refuse_endless(analysed.graph, analysed.components, viewed.detail, compilation.diagnostics))
-        return std::nullopt;
-
-    const Stopwatch watch;
-    const Interruption interruption; // from here on something may be half written
+std::optional<NativeReport> trace_model(const PreparedView& prepared, const NativeOptions& options,
+                                        const Stopwatch& preparing, Compilation& compilation) {
+    const Interruption interruption;
+    const Graph& graph = prepared.viewed->model->graph;
+    const View& view = prepared.viewed->view;
+    const DetailOptions& detail = prepared.detail;
     Looks looks;
     looks.wanted = samplings_of(options.render.antialias, options.progressive);
-    looks.tried = viewed.detail.culls() ? with_fewer_samples(looks.wanted, viewed.view.size,
-                                                             most_for_samples * viewed.detail.work_seconds)
-                                        : looks.wanted;
-    const auto prepare = [&] {
-        return prepare_cut(analysed.graph, analysed.components, analysed.bounds, viewed.detail);
-    };
+    looks.tried = detail.culls()
+                      ? with_fewer_samples(looks.wanted, view.size, most_for_samples * detail.work_seconds)
+                      : looks.wanted;
     const double samples = samples_a_pixel(looks.tried);
-    const FittedModel fitted = fit_work(prepare, viewed.view, viewed.detail, samples, limits_of,
+    const FittedModel fitted = fit_work(prepared.prepared, view, detail, samples, limits_of,
                                         options.render.threads, [] { return Interruption::signal() != 0; });
     const TraceModel& model = *fitted.model;
     looks.affordable = looks.tried;
     if (fitted.rays_cut)
         looks.affordable = within_seconds(looks.tried, fitted.seconds / samples, fitted.allowed_seconds);
-    report_work(fitted, looks, viewed, compilation.diagnostics);
-    report_size(looks, viewed, compilation.diagnostics);
-    compilation.times.push_back({"prepare", watch.seconds()});
-    if (viewed.detail.culls() && !viewed.detail.steps)
-        note_shadowless(model.prepared.cut, analysed.graph, compilation.diagnostics);
+    const Asked asked{graph.objects[graph.root].span, view.size, detail};
+    report_work(fitted, looks, asked, compilation.diagnostics);
+    report_size(looks, asked, compilation.diagnostics);
+    compilation.times.push_back({"prepare", preparing.seconds()});
+    if (detail.culls() && !detail.steps) note_shadowless(model.prepared.cut, graph, compilation.diagnostics);
     const Stopwatch drawing_watch;
     Drawing drawing(model, std::move(looks.affordable), options);
     compilation.status = drawing.run();
     compilation.times.push_back({"trace", drawing_watch.seconds()});
-    report_shells(model, viewed, compilation.diagnostics);
+    report_shells(model, asked, compilation.diagnostics);
     NativeReport report = drawing.report();
-    report.first_picture_seconds += watch.seconds() - drawing_watch.seconds();
+    report.first_picture_seconds += preparing.seconds() - drawing_watch.seconds();
     if (!compilation.status.ok() && report.pictures == 0) return std::nullopt;
     return report;
 }

@@ -4,8 +4,9 @@
 #include <optional>
 #include <string>
 
-#include "compiler/compile.h"
+#include "compiler/session/session.h"
 #include "runtime/render/render.h"
+#include "runtime/render/stopwatch.h"
 #include "runtime/trace/picture_tracer.h"
 
 namespace graftal {
@@ -34,14 +35,22 @@ struct NativeReport {
     int pictures = 0;                 ///< written
 };
 
-/// Model file -> picture file, by the traversal of the graph itself. As render_model(); but if it is
+/// Model -> picture file, by the traversal of the graph itself. As render_model(); but if it is
 /// progressive, an interruption leaves the best picture so far, and a report of it with the status
 /// "interrupted".
-std::optional<NativeReport> render_natively(const std::string& path, const NativeOptions& options,
+std::optional<NativeReport> render_natively(Session& session, const NativeOptions& options,
                                             Compilation& compilation);
 
-/// The second half of render_natively(): what follows the view.
-std::optional<NativeReport> trace_model(ViewedModel model, const NativeOptions& options,
-                                        Compilation& compilation);
+/// What rays go through: the detail is resolved() for the view, and the graph prepared for both.
+struct PreparedView {
+    std::shared_ptr<const ViewedModel> viewed;
+    DetailOptions detail;
+    std::shared_ptr<const PreparedCut> prepared;
+};
+
+/// What follows the compiler in render_natively(). `preparing` runs since the preparation began. Pictures
+/// that the materials name are left out if they cannot be read.
+std::optional<NativeReport> trace_model(const PreparedView& model, const NativeOptions& options,
+                                        const Stopwatch& preparing, Compilation& compilation);
 
 } // namespace graftal

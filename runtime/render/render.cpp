@@ -77,8 +77,8 @@ std::uint64_t finite_objects(const Cut& cut) {
 
 PovrayJob job_for(const RenderOptions& options) {
     PovrayJob job;
-    job.width = options.compile.size.width;
-    job.height = options.compile.size.height;
+    job.width = options.compile.view.size.width;
+    job.height = options.compile.view.size.height;
     job.threads = options.threads;
     job.antialias = options.antialias;
     job.linear16 = options.format == SampleFormat::linear16 || is_exr_name(options.output);
@@ -157,16 +157,10 @@ bool worth_a_trial(const PovrayTime& guessed, double work_seconds) {
 
 } // namespace
 
-std::optional<RenderReport> render_model(const std::string& path, const RenderOptions& options,
+std::optional<RenderReport> render_model(Session& session, const RenderOptions& options,
                                          Compilation& compilation) {
-    std::optional<CompiledModel> model = compile_model(path, options.compile, compilation);
+    std::shared_ptr<const CompiledModel> model = session.compiled(options.compile, compilation);
     if (!model) return std::nullopt;
-    return draw_model(std::move(*model), options, compilation);
-}
-
-std::optional<RenderReport> draw_model(CompiledModel compiled, const RenderOptions& options,
-                                       Compilation& compilation) {
-    std::optional<CompiledModel> model(std::move(compiled));
     const Interruption interruption;
     TemporaryDirectory temporary;
     PovrayJob job = job_for(options);
@@ -182,6 +176,7 @@ std::optional<RenderReport> draw_model(CompiledModel compiled, const RenderOptio
     const double overlap = mean_overlap(model->cut, model->view);
     job.finite_objects = finite_objects(model->cut);
     model.reset(); // POV-Ray may need the memory
+    session.yield_memory();
     return_free_memory();
 
     PovrayTime time = guessed_time(job, overlap);

@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "compiler/compile.h"
+#include "compiler/session/session.h"
 #include "runtime/image/image.h"
 #include "runtime/povray/povray.h"
 
@@ -14,7 +14,7 @@ namespace graftal {
 enum class Engine { povray, native };
 
 struct RenderOptions {
-    CompileOptions compile;
+    StageOptions compile;
     std::string output;                        ///< where the picture goes: is_picture_name(output)
     ImageMetadata metadata;                    ///< to be written into it
     SampleFormat format = SampleFormat::srgb8; ///< of a PNG; an EXR is linear anyhow
@@ -40,15 +40,11 @@ struct RenderReport {
     double povray_seconds = 0;
 };
 
-/// Model file -> picture file, by POV-Ray. Nothing comes back after errors in `compilation.diagnostics` (the
-/// model's fault), or with a failed `compilation.status` (the environment's); then no file appears at the
-/// output. SIGINT, SIGTERM and SIGHUP during the rendering clean up and give the status "interrupted"; see
-/// Interruption::signal().
-std::optional<RenderReport> render_model(const std::string& path, const RenderOptions& options,
+/// Model -> picture file, by POV-Ray. What the session can give up goes before POV-Ray starts. Nothing comes
+/// back after errors in `compilation.diagnostics` (the model's fault), or with a failed `compilation.status`
+/// (the environment's); then no file appears at the output. SIGINT, SIGTERM and SIGHUP during the rendering
+/// clean up and give the status "interrupted"; see Interruption::signal().
+std::optional<RenderReport> render_model(Session& session, const RenderOptions& options,
                                          Compilation& compilation);
-
-/// The second half of render_model: what follows the compiler.
-std::optional<RenderReport> draw_model(CompiledModel model, const RenderOptions& options,
-                                       Compilation& compilation);
 
 } // namespace graftal

@@ -87,7 +87,7 @@ Status emit_to(std::FILE* file, const std::string& name, const CompiledModel& mo
 }
 
 std::string model_name(const CompiledModel& model) {
-    const std::string& path = model.model.path;
+    const std::string& path = model.model->path;
     return path == "-" ? "standard input" : std::filesystem::path(path).filename().string();
 }
 
@@ -141,7 +141,7 @@ Status print_scene(const CompiledModel& model, bool include, Diagnostics& diagno
                                   {.scene_name = model_name(model), .include = include}, palettes, [] {});
     if (!status.ok()) return status;
     if (!palettes.empty()) {
-        const Graph& graph = model.model.graph;
+        const Graph& graph = model.model->graph;
         diagnostics
             .error(graph.objects[graph.root].span,
                    fmt::format("the scene needs {} palette picture{} beside it, and standard output has no "

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "compiler/compile.h"
+#include "compiler/session/values.h"
 #include "compiler/support/status.h"
 
 namespace graftal {

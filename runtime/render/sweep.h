@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "compiler/compile.h"
+#include "compiler/session/stage_options.h"
 
 namespace graftal {
 
@@ -14,7 +14,7 @@ struct Sweep {
     std::string name; ///< of what runs, e.g. "--set k"
     /// Sets what it has come to at t in [0, 1]; returns the command line's words for that, e.g. "--set
     /// k=0.5".
-    std::function<std::string(double t, CompileOptions& options)> apply;
+    std::function<std::string(double t, StageOptions& options)> apply;
 };
 
 /// Replaces the sweep of the same name, or adds one.

@@ -284,7 +284,7 @@ double farthest_terminal(const TraceModel& model) {
 }
 
 /// By node of the cut; none if rays come through everywhere.
-std::vector<ShellSizes> shell_sizes(TraceModel& model) {
+std::vector<ShellSizes> found_shell_sizes(TraceModel& model) {
     const CutGraph& cut = model.prepared.cut;
     // Sizes are asked for by octaves. An eighth of one tells them apart, and nodes of all sizes share kinds.
     constexpr int grain = PieceKind::steps_an_octave / 8;
@@ -305,8 +305,8 @@ std::vector<ShellSizes> shell_sizes(TraceModel& model) {
 /// Where copies lie in each other so often that rays would not come through.
 void find_shells(TraceModel& model) {
     if (!model.projection.culls()) return;
-    std::vector<ShellSizes>& sizes = model.prepared.shell_sizes;
-    if (sizes.empty()) sizes = shell_sizes(model);
+    std::vector<ShellSizes>& sizes = model.shell_sizes;
+    if (sizes.empty()) sizes = found_shell_sizes(model);
     if (sizes.empty()) return;
     for (std::size_t i = 0; i < model.nodes.size(); ++i) {
         model.nodes[i].shell = sizes[model.layers.source[i]];
@@ -331,10 +331,12 @@ std::uint32_t TraceRun::edge_of(PrimitiveKind kind, std::uint16_t colour) const 
     return no_edge;
 }
 
-TraceModel::TraceModel(PreparedCut ready, const View& seen, const DetailOptions& cut_options)
-    : prepared(std::move(ready)), layers(layered(prepared.cut, prepared.root_steps)), view(seen),
-      options(cut_options), projection(view, options, options.error_px, nearest_to_eye(prepared.cut)),
-      meshes(prepared, most_shell_work(options)) {
+TraceModel::TraceModel(std::shared_ptr<const PreparedCut> ready, const View& seen,
+                       const DetailOptions& cut_options, std::vector<ShellSizes> known_shell_sizes)
+    : shared(std::move(ready)), prepared(*shared), layers(layered(prepared.cut, prepared.root_steps)),
+      view(seen), options(cut_options),
+      projection(view, options, options.error_px, nearest_to_eye(prepared.cut)),
+      meshes(prepared, most_shell_work(options)), shell_sizes(std::move(known_shell_sizes)) {
     least_detail_per_unit = least_detail(*this);
     const CutNode& root = prepared.cut.nodes[prepared.cut.root];
     for (const CutNode& node : prepared.cut.nodes)

@@ -10,6 +10,7 @@
 #include "compiler/detail/prepare.h"
 #include "compiler/detail/projection.h"
 #include "compiler/detail/run_cells.h"
+#include "compiler/detail/shell_sizes.h"
 #include "compiler/scene/scene.h"
 #include "runtime/image/texture.h"
 #include "runtime/trace/box_tree.h"
@@ -118,8 +119,9 @@ struct TraceRun {
 
 /// A prepared graph made ready for rays, for one view. It is read by many threads.
 struct TraceModel {
-    PreparedCut prepared;
-    LayeredGraph layers; ///< of prepared.cut
+    std::shared_ptr<const PreparedCut> shared; ///< never null; may be that of other views too
+    const PreparedCut& prepared;               ///< the same
+    LayeredGraph layers;                       ///< of prepared.cut
     View view;
     DetailOptions options;
     Projection projection;
@@ -143,6 +145,9 @@ struct TraceModel {
     /// More of them, for a ray that was given up before it met anything: it looks into no more parts that may
     /// be culled, so that few are left.
     std::uint64_t more_visits() const { return std::clamp<std::uint64_t>(most_visits, 32, 256); }
+    /// By node of the cut: what a model of another error may be given, too. Empty where rays come through
+    /// everywhere, and where the sizes depend on the error.
+    std::vector<ShellSizes> shell_sizes;
     bool has_shells = false;   ///< some node may be drawn as one
     std::uint64_t weighed = 0; ///< edges of kinds followed to find where (Weights)
     bool clear_texels = false; ///< some texture has them
@@ -154,8 +159,10 @@ struct TraceModel {
     /// The node as the cut has it.
     const CutNode& source(std::uint32_t node) const { return prepared.cut.nodes[layers.source[node]]; }
 
-    /// Textures that cannot be read are left out: see load_textures().
-    TraceModel(PreparedCut prepared, const View& view, const DetailOptions& options);
+    /// Textures that cannot be read are left out: see load_textures(). `known_shell_sizes`: of a model of the
+    /// same graph and view with another error, or empty.
+    TraceModel(std::shared_ptr<const PreparedCut> prepared, const View& view, const DetailOptions& options,
+               std::vector<ShellSizes> known_shell_sizes = {});
     TraceModel(const TraceModel&) = delete;
     TraceModel& operator=(const TraceModel&) = delete;
 };

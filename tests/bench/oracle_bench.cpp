@@ -37,16 +37,19 @@ struct Model {
 };
 
 /// A point of the model in the middle of its pixels that are hit, in reading order.
-Vec3 some_point(const ViewedModel& viewed, Vec3 otherwise) {
+Vec3 some_point(const DetailedModel& ours, Vec3 otherwise) {
+    const AnalysedModel& analysed = *ours.viewed->model;
+    const View& view = ours.viewed->view;
     const TraceModel model(
-        prepare_cut(viewed.model.graph, viewed.model.components, viewed.model.bounds, viewed.detail),
-        viewed.view, viewed.detail);
+        std::make_shared<const PreparedCut>(
+            prepare_cut(analysed.graph, analysed.components, analysed.bounds, ours.detail.preparing())),
+        view, ours.detail);
     Traversal traversal(model);
-    const CameraRays rays(viewed.view);
+    const CameraRays rays(view);
     std::vector<Vec3> points;
     constexpr int stride = 4;
-    for (int y = 0; y < viewed.view.size.height; y += stride)
-        for (int x = 0; x < viewed.view.size.width; x += stride) {
+    for (int y = 0; y < view.size.height; y += stride)
+        for (int x = 0; x < view.size.width; x += stride) {
             const Ray ray = rays.through(x, y);
             SurfaceHit hit;
             if (traversal.closest(ray, {}, hit)) points.push_back(ray(hit.t));
@@ -56,16 +59,17 @@ Vec3 some_point(const ViewedModel& viewed, Vec3 otherwise) {
                           : points[static_cast<std::size_t>(share * static_cast<double>(points.size()))];
 }
 
-Model model_of(const ViewedModel& viewed) {
+Model model_of(const DetailedModel& ours) {
+    const ViewedModel& viewed = *ours.viewed;
     Model model;
-    model.box = viewed.model.bounds[viewed.model.graph.root].box;
+    model.box = viewed.model->bounds[viewed.model->graph.root].box;
     const Vec3 centre = model.box.empty() ? Vec3(0.0) : model.box.centre();
     const Vec3 sides = model.box.empty() ? Vec3(2.0) : model.box.size();
     model.size = 0.5 * glm::length(sides);
     model.flat = std::min({sides.x, sides.y, sides.z}) < 1e-6 * model.size;
     model.camera = viewed.view.camera;
     if (viewed.view.ground) model.ground = viewed.view.ground->height;
-    model.point = some_point(viewed, centre);
+    model.point = some_point(ours, centre);
     return model;
 }
 
@@ -150,9 +154,9 @@ void print(const Request& request, const std::string& view, const OracleReport& 
 
 void ask(const Request& request, const std::string& view, const CameraSetting& camera,
          const OracleOptions& options) {
-    CompileOptions compile;
-    compile.size = request.size;
-    compile.camera = camera;
+    StageOptions compile;
+    compile.view.size = request.size;
+    compile.view.camera = camera;
     Compilation compilation;
     const std::optional<OracleReport> report = ask_oracle(request.path, compile, options, compilation);
     if (!report) {
@@ -167,30 +171,28 @@ void ask(const Request& request, const std::string& view, const CameraSetting& c
     keep(*report, request.folder + "/" + stem + "_" + view + (options.flatten ? "" : "_cut"));
 }
 
-bool cut_into_meshes(const ViewedModel& viewed) {
-    Diagnostics ignored;
-    const AnalysedModel& model = viewed.model;
-    const std::optional<Cut> cut =
-        cut_graph(model.graph, model.components, model.bounds, viewed.view, viewed.detail, ignored);
-    return cut && cut->triangle_count > 0;
+bool cut_into_meshes(const std::string& path, const StageOptions& options) {
+    Compilation ignored;
+    const auto compiled = Session(path).compiled(options, ignored);
+    return compiled && compiled->cut.triangle_count > 0;
 }
 
 int run(const Request& request) {
-    CompileOptions compile;
-    compile.size = request.size;
+    StageOptions compile;
+    compile.view.size = request.size;
     Compilation compilation;
-    const std::optional<ViewedModel> viewed = view_model(request.path, compile, compilation);
-    if (!viewed) {
+    const DetailedModel ours = look_at_file(request.path, compile, compilation);
+    if (!ours.viewed) {
         fmt::print(stderr, "{}{}", compilation.diagnostics.render(compilation.sources),
                    compilation.status.message());
         return 1;
     }
-    const Model model = model_of(*viewed);
+    const Model model = model_of(ours);
     const bool parallel = request.path.size() % 2 == 0; // one or the other, by nothing in particular
     ask(request, "own", {}, request.options);
     ask(request, parallel ? "side-parallel" : "side", from_the_side(model, parallel), request.options);
     ask(request, "close", close_up(model), request.options);
-    if (cut_into_meshes(*viewed)) {
+    if (cut_into_meshes(request.path, compile)) {
         OracleOptions meshes = request.options;
         meshes.flatten = false;
         ask(request, "own", {}, meshes);

@@ -14,9 +14,10 @@
 
 #include <embree3/rtcore.h>
 
-#include "compiler/compile.h"
 #include "compiler/detail/piece.h"
 #include "compiler/detail/tessellate.h"
+#include "compiler/session/session.h"
+#include "compiler/session/stages.h"
 #include "runtime/trace/camera_rays.h"
 #include "runtime/trace/traversal.h"
 
@@ -39,20 +40,19 @@ double peak_mib() {
 }
 
 std::unique_ptr<TraceModel> load(const std::string& path, const std::string& steps, double error_px) {
-    CompileOptions options;
-    options.size = size;
+    StageOptions options;
+    options.view.size = size;
     options.detail.error_px = error_px;
-    if (steps != "-") options.steps = static_cast<unsigned>(std::stoul(steps));
+    if (steps != "-") options.lower.steps = static_cast<unsigned>(std::stoul(steps));
     Compilation compilation;
-    const auto viewed = view_model(path, options, compilation);
-    if (!viewed) {
+    Session session(path);
+    const auto viewed = session.viewed(options, compilation);
+    const auto prepared = viewed ? session.prepared(options, compilation) : nullptr;
+    if (!prepared) {
         std::fputs(compilation.diagnostics.render(compilation.sources).c_str(), stderr);
         std::exit(1);
     }
-    const AnalysedModel& model = viewed->model;
-    return std::make_unique<TraceModel>(
-        prepare_cut(model.graph, model.components, model.bounds, viewed->detail), viewed->view,
-        viewed->detail);
+    return std::make_unique<TraceModel>(prepared, viewed->view, resolved(options.detail, *viewed));
 }
 
 std::vector<Ray> camera_rays(const View& view) {

@@ -37,8 +37,8 @@ class Beside : public fuzz::Scratch {
 
 /// What would only take longer is held down; what is refused or not stays as it is.
 void hold(Options& options, const fuzz::Scratch& scratch) {
-    CompileOptions& compile = options.compile;
-    compile.size = {std::min(compile.size.width, 40), std::min(compile.size.height, 30)};
+    StageOptions& compile = options.compile;
+    compile.view.size = {std::min(compile.view.size.width, 40), std::min(compile.view.size.height, 30)};
     compile.lower.root = scratch.path("");
     compile.lower.max_objects = 2000;
     compile.lower.max_modules = 20'000;

@@ -45,7 +45,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const double reach = box.empty() ? 1 : std::max(glm::length(box.size()), 1e-6);
     const Vec3 centre = box.empty() ? Vec3(0.0) : box.centre();
     view.camera.location = centre + Vec3(0, 0, 2 * reach);
-    const TraceModel model(prepare_cut(graph, components, bounds, options), view, options);
+    const TraceModel model(
+        std::make_shared<const PreparedCut>(prepare_cut(graph, components, bounds, options.preparing())),
+        view, options);
     Traversal traversal(model), portable(model, Instructions::portable);
     for (int i = 0; i < 16; ++i) {
         const Ray ray{centre + reach * vector(choices), vector(choices)};

@@ -10,7 +10,7 @@
 
 #include <gtest/gtest.h>
 
-#include "compiler/compile.h"
+#include "compiler/session/session.h"
 #include "compiler/support/file.h"
 
 namespace graftal {
@@ -32,7 +32,7 @@ class BadModel : public ::testing::TestWithParam<std::string> {};
 TEST_P(BadModel, is_explained) {
     std::filesystem::current_path(folder); // so that messages name the file and not the machine
     Compilation compilation;
-    const std::optional<AnalysedModel> model = analyse_model(GetParam(), {}, compilation);
+    const std::shared_ptr<const AnalysedModel> model = Session(GetParam()).analysed({}, compilation);
     EXPECT_TRUE(compilation.status.ok()) << compilation.status.message();
     EXPECT_FALSE(model);
     EXPECT_TRUE(compilation.diagnostics.has_errors());

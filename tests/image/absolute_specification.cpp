@@ -6,7 +6,7 @@ namespace graftal {
 
 namespace {
 
-template<typename Compile> std::optional<TwoWays> two_ways(CompileOptions options, const Compile& compile) {
+template<typename Compile> std::optional<TwoWays> two_ways(StageOptions options, const Compile& compile) {
     std::optional<CompiledModel> cut = compile(options);
     options.cut.flatten = true;
     std::optional<CompiledModel> flat = compile(options);
@@ -21,13 +21,13 @@ template<typename Compile> std::optional<TwoWays> two_ways(CompileOptions option
 
 } // namespace
 
-std::optional<TwoWays> two_ways_of_file(const std::string& path, CompileOptions options) {
-    return two_ways(std::move(options), [&](const CompileOptions& o) { return compile_file(path, o); });
+std::optional<TwoWays> two_ways_of_file(const std::string& path, StageOptions options) {
+    return two_ways(std::move(options), [&](const StageOptions& o) { return compile_file(path, o); });
 }
 
 std::optional<TwoWays> two_ways_of_text(const std::string& name, const std::string& text,
-                                        CompileOptions options) {
-    return two_ways(std::move(options), [&](const CompileOptions& o) { return compile_text(name, text, o); });
+                                        StageOptions options) {
+    return two_ways(std::move(options), [&](const StageOptions& o) { return compile_text(name, text, o); });
 }
 
 Agreement agreement_of(TwoWays ways) {

@@ -13,8 +13,8 @@ namespace {
 
 /// Covered area of the picture, in pixels, drawn with 16 rays a pixel.
 double covered_px(const std::string& path, double error_px) {
-    CompileOptions options;
-    options.size = {80, 45};
+    StageOptions options;
+    options.view.size = {80, 45};
     options.detail.error_px = error_px;
     const std::optional<CompiledModel> model = compile_file(path, options);
     if (!model) return 0;

@@ -42,8 +42,8 @@ TEST(Determinism, ScenesOfTheProject) {
         if (folder == "orbits" || folder == "plants") continue;
         const std::string path = std::filesystem::relative(entry.path(), GRAFTAL_SOURCE_DIR).string();
         SCOPED_TRACE(path);
-        CompileOptions options;
-        options.size = {160, 90};
+        StageOptions options;
+        options.view.size = {160, 90};
         const std::string first = written(compile_file(path, options), false);
         EXPECT_FALSE(first.empty());
         EXPECT_TRUE(first == written(compile_file(path, options), false)) << "the scenes differ";
@@ -55,7 +55,7 @@ TEST(Determinism, ScenesOfTheProject) {
 TEST(Determinism, ModelsAtRandom) {
     for (std::uint64_t seed = 1; seed <= 20; ++seed) {
         SCOPED_TRACE(seed);
-        const CompileOptions options = whole({160, 90}, 5);
+        const StageOptions options = whole({160, 90}, 5);
         for (const bool include : {false, true}) {
             const auto rifs = [&] {
                 return written(compile_text("a.rifs", random_rifs(seed), options), include);
@@ -73,7 +73,7 @@ TEST(Determinism, ModelsAtRandom) {
 TEST(Determinism, PicturesDoNotDependOnThreads) {
     RenderOptions options = measured(160, 120);
     options.antialias = 2;
-    options.compile.steps = 6;
+    options.compile.lower.steps = 6;
     options.threads = 1;
     const Image one = render_model_file("scenes/hart/elm.inst", options);
     for (const int threads : {2, 5}) {

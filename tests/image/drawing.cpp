@@ -13,12 +13,11 @@ namespace graftal {
 
 namespace {
 
-std::optional<CompiledModel> compile_path(const std::string& path, const CompileOptions& options) {
+std::optional<CompiledModel> compile_path(const std::string& path, const StageOptions& options) {
     Compilation compilation;
-    std::optional<CompiledModel> model = compile_model(path, options, compilation);
-    EXPECT_TRUE(model.has_value()) << compilation.diagnostics.render(compilation.sources)
-                                   << compilation.status.message();
-    return model;
+    const auto model = Session(path).compiled(options, compilation);
+    EXPECT_TRUE(model) << compilation.diagnostics.render(compilation.sources) << compilation.status.message();
+    return model ? std::optional(*model) : std::nullopt;
 }
 
 Image picture_of(const std::string& directory, ImageSize size, SampleFormat format,
@@ -41,7 +40,7 @@ Image picture_of(const std::string& directory, ImageSize size, SampleFormat form
 } // namespace
 
 std::optional<CompiledModel> compile_text(const std::string& name, const std::string& text,
-                                          const CompileOptions& options) {
+                                          const StageOptions& options) {
     TemporaryDirectory directory;
     EXPECT_TRUE(directory.create().ok());
     const std::string path = directory.path() + "/" + name;
@@ -49,7 +48,7 @@ std::optional<CompiledModel> compile_text(const std::string& name, const std::st
     return compile_path(path, options);
 }
 
-std::optional<CompiledModel> compile_file(const std::string& path, const CompileOptions& options) {
+std::optional<CompiledModel> compile_file(const std::string& path, const StageOptions& options) {
     return compile_path(GRAFTAL_SOURCE_DIR "/" + path, options);
 }
 
@@ -86,11 +85,11 @@ void show_pigments(CompiledModel& model) {
     }
 }
 
-CompileOptions whole(ImageSize size, std::optional<unsigned> steps) {
-    CompileOptions options;
-    options.size = size;
+StageOptions whole(ImageSize size, std::optional<unsigned> steps) {
+    StageOptions options;
+    options.view.size = size;
     options.detail.error_px = 0;
-    options.steps = steps;
+    options.lower.steps = steps;
     return options;
 }
 

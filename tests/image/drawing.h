@@ -3,7 +3,7 @@
 #include <optional>
 #include <string>
 
-#include "compiler/compile.h"
+#include "compiler/session/session.h"
 #include "runtime/image/image.h"
 
 namespace graftal {
@@ -11,10 +11,10 @@ namespace graftal {
 /// Compiles a model given as text, as render_model_text() takes it. Fails the test, with the diagnostics, if
 /// there is no scene.
 std::optional<CompiledModel> compile_text(const std::string& name, const std::string& text,
-                                          const CompileOptions& options);
+                                          const StageOptions& options);
 
 /// The same for a model file of the project.
-std::optional<CompiledModel> compile_file(const std::string& path, const CompileOptions& options);
+std::optional<CompiledModel> compile_file(const std::string& path, const StageOptions& options);
 
 /// The picture that POV-Ray makes of a compiled model, not antialiased unless asked for (as PovrayJob has
 /// it).
@@ -30,6 +30,6 @@ double share_covered(const Image& image);
 void show_pigments(CompiledModel& model);
 
 /// Culling off, to a depth: what both ways of writing a model draw alike.
-CompileOptions whole(ImageSize size, std::optional<unsigned> steps = {});
+StageOptions whole(ImageSize size, std::optional<unsigned> steps = {});
 
 } // namespace graftal

@@ -24,7 +24,7 @@ void expect_agreement_at_random(const std::string& name, std::string (*text_of)(
     for (std::uint64_t seed = 1; seed <= models; ++seed) {
         const std::string text = text_of(seed);
         SCOPED_TRACE(text);
-        CompileOptions options = whole(size, steps);
+        StageOptions options = whole(size, steps);
         options.cut.flatten = true;
         const std::optional<CompiledModel> flat = compile_text(name, text, options);
         if (!flat) return;

@@ -30,7 +30,7 @@ std::string by_hand(const std::string& identifier, bool left_handed) {
 }
 
 void expect_the_same_by_hand(const std::string& path, const std::string& identifier,
-                             const CompileOptions& options) {
+                             const StageOptions& options) {
     std::string text;
     ASSERT_TRUE(read_text(GRAFTAL_SOURCE_DIR "/" + path, text).ok());
     const std::string name = path.substr(path.rfind('/') + 1);
@@ -52,7 +52,7 @@ TEST(Include, PoundSign) {
 }
 
 TEST(Include, Elm) {
-    CompileOptions options = whole({240, 160});
+    StageOptions options = whole({240, 160});
     options.lower.set["levels"] = 5;
     expect_the_same_by_hand("scenes/hart/elm.inst", "Elm", options);
 }

@@ -217,7 +217,7 @@ class NativeLight : public testing::TestWithParam<LitScene> {};
 
 TEST_P(NativeLight, IsPovrays) {
     const LitScene& scene = GetParam();
-    CompileOptions options = whole(scene.size);
+    StageOptions options = whole(scene.size);
     options.cut.flatten = true;
     const std::optional<CompiledModel> model = compile_text("lit.inst", scene.text, options);
     ASSERT_TRUE(model);
@@ -240,7 +240,7 @@ INSTANTIATE_TEST_SUITE_P(Scenes, NativeLight, testing::ValuesIn(scenes),
 
 TEST(NativeLightSamples, ArePovraysOfAnAntialiasedPixel) {
     const LitScene& scene = scenes[1];
-    CompileOptions options = whole(scene.size);
+    StageOptions options = whole(scene.size);
     options.cut.flatten = true;
     const std::optional<CompiledModel> model = compile_text("lit.inst", scene.text, options);
     ASSERT_TRUE(model);

@@ -11,6 +11,7 @@
 
 #include "compiler/povray/emit_povray.h"
 #include "compiler/povray/povray_view.h"
+#include "compiler/session/stages.h"
 #include "compiler/support/file.h"
 #include "runtime/povray/povray.h"
 #include "runtime/render/native.h"
@@ -31,13 +32,18 @@ struct Seen {
     Rgb lit{0.0};
 };
 
+std::shared_ptr<const PreparedCut> prepared_of(const DetailedModel& ours) {
+    const AnalysedModel& model = *ours.viewed->model;
+    return std::make_shared<const PreparedCut>(
+        prepare_cut(model.graph, model.components, model.bounds, ours.detail.preparing()));
+}
+
 /// The native engine, asked about single places.
 class NativeEye {
   public:
-    NativeEye(const ViewedModel& viewed, const ShaderLimits& limits)
-        : model_(prepare_cut(viewed.model.graph, viewed.model.components, viewed.model.bounds, viewed.detail),
-                 viewed.view, viewed.detail),
-          traversal_(model_), groundless_(viewed.view), rays_(viewed.view), finder_(groundless_, traversal_),
+    NativeEye(const DetailedModel& ours, const ShaderLimits& limits)
+        : model_(prepared_of(ours), ours.viewed->view, ours.detail), traversal_(model_),
+          groundless_(ours.viewed->view), rays_(ours.viewed->view), finder_(groundless_, traversal_),
           shader_(model_.view, traversal_, limits) {
         groundless_.ground.reset();
     }
@@ -145,16 +151,16 @@ Status draw_depths(CompiledModel model, const DepthRange& range, int threads, Im
 }
 
 /// The cut for POV-Ray; and the error that it came to, for both engines.
-std::optional<Cut> cut_for_povray(ViewedModel& viewed, const OracleOptions& options,
+std::optional<Cut> cut_for_povray(DetailedModel& ours, const OracleOptions& options,
                                   Diagnostics& diagnostics) {
-    DetailOptions detail = viewed.detail;
+    DetailOptions detail = ours.detail;
     // Where every part is spelt out it shows its own normal, and not the limit's.
-    viewed.detail.limit_normals = detail.limit_normals = !options.flatten;
+    ours.detail.limit_normals = detail.limit_normals = !options.flatten;
     detail.memory_bytes = options.memory_bytes;
-    const AnalysedModel& model = viewed.model;
+    const AnalysedModel& model = *ours.viewed->model;
     Diagnostics found;
-    std::optional<Cut> cut =
-        cut_graph(model.graph, model.components, model.bounds, viewed.view, detail, found, {options.flatten});
+    std::optional<Cut> cut = cut_graph(model.graph, model.components, model.bounds, ours.viewed->view, detail,
+                                       found, {options.flatten});
     for (const Diagnostic& diagnostic : found.all()) {
         const std::string words = "allow an error of ";
         const std::size_t at = diagnostic.message.find(words);
@@ -165,20 +171,21 @@ std::optional<Cut> cut_for_povray(ViewedModel& viewed, const OracleOptions& opti
         constexpr double step = 1.25;
         const double times = std::stod(diagnostic.message.substr(at + words.size())) / cut->error_asked_px;
         const double coarser = std::pow(step, std::round(std::log(times) / std::log(step)));
-        if (viewed.detail.error_world) viewed.detail.error_world = *viewed.detail.error_world * coarser;
-        viewed.detail.error_px *= coarser;
+        if (ours.detail.error_world) ours.detail.error_world = *ours.detail.error_world * coarser;
+        ours.detail.error_px *= coarser;
     }
     return cut;
 }
 
 /// The same; where the eye is too near for any error in pixels, with one that is everywhere the same length.
-std::optional<Cut> any_cut_for_povray(ViewedModel& viewed, const OracleOptions& options,
+std::optional<Cut> any_cut_for_povray(DetailedModel& ours, const OracleOptions& options,
                                       Diagnostics& diagnostics) {
-    std::optional<Cut> cut = cut_for_povray(viewed, options, diagnostics);
-    if (cut || !viewed.detail.culls() || viewed.detail.error_world) return cut;
+    std::optional<Cut> cut = cut_for_povray(ours, options, diagnostics);
+    if (cut || !ours.detail.culls() || ours.detail.error_world) return cut;
     constexpr double finest_share = 1e-4;
-    viewed.detail.error_world = finest_share * viewed.model.bounds[viewed.model.graph.root].ball.radius;
-    return cut_for_povray(viewed, options, diagnostics);
+    ours.detail.error_world =
+        finest_share * ours.viewed->model->bounds[ours.viewed->model->graph.root].ball.radius;
+    return cut_for_povray(ours, options, diagnostics);
 }
 
 Shown shown_by_povray(const CompiledModel& model, const DepthRange& range, const OracleOptions& options,
@@ -199,7 +206,7 @@ Shown shown_by_povray(const CompiledModel& model, const DepthRange& range, const
 }
 
 /// Colours by the whole way to the file.
-Status draw_natively(const ViewedModel& viewed, int threads, Image& image) {
+Status draw_natively(const DetailedModel& ours, int threads, Image& image) {
     TemporaryDirectory directory;
     const Status status = directory.create();
     if (!status.ok()) return status;
@@ -209,7 +216,8 @@ Status draw_natively(const ViewedModel& viewed, int threads, Image& image) {
     options.render.antialias = std::nullopt;
     options.render.threads = threads;
     Compilation compilation;
-    if (!trace_model(viewed, options, compilation)) return compilation.status;
+    if (!trace_model({ours.viewed, ours.detail, prepared_of(ours)}, options, {}, compilation))
+        return compilation.status;
     return read_image(options.render.output, image);
 }
 
@@ -343,7 +351,13 @@ class Comparison {
 
 } // namespace
 
-std::optional<OracleReport> ask_oracle(const CompiledModel& theirs, const ViewedModel& ours,
+DetailedModel look_at_file(const std::string& path, const StageOptions& options, Compilation& compilation) {
+    DetailedModel model{Session(path).viewed(options, compilation), {}};
+    if (model.viewed) model.detail = resolved(options.detail, *model.viewed);
+    return model;
+}
+
+std::optional<OracleReport> ask_oracle(const CompiledModel& theirs, const DetailedModel& ours,
                                        const OracleOptions& options, Status& status) {
     OracleReport report;
     report.error_px = ours.detail.error_world ? 0 : ours.detail.error_px;
@@ -353,28 +367,28 @@ std::optional<OracleReport> ask_oracle(const CompiledModel& theirs, const Viewed
     constexpr double farthest_in_povray = 1e7;
     const PovrayUnits units = choose_units(theirs.cut, theirs.view.camera);
     NativeEye eye(ours, {.farthest = farthest_in_povray / units.scale});
-    report.native = shown_natively(eye, ours.view.size);
+    report.native = shown_natively(eye, ours.viewed->view.size);
     const DepthRange range = range_of(report.native);
     report.povray = shown_by_povray(theirs, range, options, status);
     if (status.ok() && options.lit) status = draw_natively(ours, options.threads, report.native.lit);
     if (!status.ok()) return std::nullopt;
-    Comparison(report, eye, theirs.cut, ours.view, range.step()).run();
+    Comparison(report, eye, theirs.cut, ours.viewed->view, range.step()).run();
     return report;
 }
 
-std::optional<OracleReport> ask_oracle(ViewedModel viewed, const OracleOptions& options,
+std::optional<OracleReport> ask_oracle(DetailedModel ours, const OracleOptions& options,
                                        Compilation& compilation) {
-    std::optional<Cut> cut = any_cut_for_povray(viewed, options, compilation.diagnostics);
+    std::optional<Cut> cut = any_cut_for_povray(ours, options, compilation.diagnostics);
     if (!cut) return std::nullopt;
-    const CompiledModel theirs{viewed.model, viewed.view, std::move(*cut)};
-    return ask_oracle(theirs, viewed, options, compilation.status);
+    const CompiledModel theirs{ours.viewed->model, ours.viewed->steps, ours.viewed->view, std::move(*cut)};
+    return ask_oracle(theirs, ours, options, compilation.status);
 }
 
-std::optional<OracleReport> ask_oracle(const std::string& path, const CompileOptions& compile,
+std::optional<OracleReport> ask_oracle(const std::string& path, const StageOptions& compile,
                                        const OracleOptions& options, Compilation& compilation) {
-    std::optional<ViewedModel> viewed = view_model(path, compile, compilation);
-    if (!viewed) return std::nullopt;
-    return ask_oracle(std::move(*viewed), options, compilation);
+    DetailedModel ours = look_at_file(path, compile, compilation);
+    if (!ours.viewed) return std::nullopt;
+    return ask_oracle(std::move(ours), options, compilation);
 }
 
 std::string summary(const OracleReport& report) {

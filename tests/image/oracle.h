@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "compiler/compile.h"
+#include "compiler/session/session.h"
 #include "runtime/image/image.h"
 
 namespace graftal {
@@ -57,18 +57,27 @@ struct OracleOptions {
     int threads = 0;
 };
 
+/// A model that is looked at, with the detail that both engines draw.
+struct DetailedModel {
+    std::shared_ptr<const ViewedModel> viewed;
+    DetailOptions detail; ///< resolved() for the view
+};
+
+/// The model in a file as it is to be drawn; nothing viewed if it cannot be, why is in the compilation.
+DetailedModel look_at_file(const std::string& path, const StageOptions& options, Compilation& compilation);
+
 /// What POV-Ray shows of `theirs` against what the native engine shows of `ours`, of one size. Nothing if an
 /// engine failed.
-std::optional<OracleReport> ask_oracle(const CompiledModel& theirs, const ViewedModel& ours,
+std::optional<OracleReport> ask_oracle(const CompiledModel& theirs, const DetailedModel& ours,
                                        const OracleOptions& options, Status& status);
 
 /// Draws a model by both engines. Where POV-Ray's memory asks for a coarser error, both draw with that.
 /// Nothing if the model cannot be compared; why is in `compilation`.
-std::optional<OracleReport> ask_oracle(ViewedModel model, const OracleOptions& options,
+std::optional<OracleReport> ask_oracle(DetailedModel model, const OracleOptions& options,
                                        Compilation& compilation);
 
 /// ask_oracle() of a model file.
-std::optional<OracleReport> ask_oracle(const std::string& path, const CompileOptions& compile,
+std::optional<OracleReport> ask_oracle(const std::string& path, const StageOptions& compile,
                                        const OracleOptions& options, Compilation& compilation);
 
 /// One line for people: the counts of the report.

@@ -19,38 +19,38 @@ namespace {
 
 constexpr ImageSize small{160, 120};
 
-CompileOptions plain(double error_px = 0.5) {
-    CompileOptions options;
-    options.size = small;
+StageOptions plain(double error_px = 0.5) {
+    StageOptions options;
+    options.view.size = small;
     options.detail.error_px = error_px;
     return options;
 }
 
-CompileOptions seen_from(const CameraSetting& camera, double error_px = 0.5) {
-    CompileOptions options = plain(error_px);
-    options.camera = camera;
+StageOptions seen_from(const CameraSetting& camera, double error_px = 0.5) {
+    StageOptions options = plain(error_px);
+    options.view.camera = camera;
     return options;
 }
 
-CompileOptions zoomed(const std::string& at, const std::string& zoom, double error_px) {
-    CompileOptions options = plain(error_px);
+StageOptions zoomed(const std::string& at, const std::string& zoom, double error_px) {
+    StageOptions options = plain(error_px);
     std::string problem;
-    options.zoom.at = parse_address(at, problem);
+    options.view.zoom.at = parse_address(at, problem);
     EXPECT_EQ(problem, "");
-    if (!zoom.empty()) options.zoom.zoom = Magnification::parse(zoom);
+    if (!zoom.empty()) options.view.zoom.zoom = Magnification::parse(zoom);
     return options;
 }
 
-CompileOptions stopped_after(unsigned steps) {
-    CompileOptions options = plain();
-    options.steps = steps;
+StageOptions stopped_after(unsigned steps) {
+    StageOptions options = plain();
+    options.lower.steps = steps;
     return options;
 }
 
 struct Question {
     const char* name;
     std::string path; ///< of a file of the project, or the name of what `text` would be in
-    CompileOptions options;
+    StageOptions options;
     double least_covered = 0.03;
     std::string text = {};
     bool overlaps = false; ///< parts of several colours lie one in the other, and either may be seen
@@ -198,8 +198,8 @@ void expect_agreement_at_random(const std::string& name, std::string (*text_of)(
     for (std::uint64_t seed = 101; seed <= 104; ++seed) {
         SCOPED_TRACE(seed);
         // Culled by size in half of them, by levels in the others.
-        CompileOptions options = seed % 2 ? plain(5) : plain(0);
-        if (seed % 2 == 0) options.steps = 3;
+        StageOptions options = seed % 2 ? plain(5) : plain(0);
+        if (seed % 2 == 0) options.lower.steps = 3;
         const std::optional<OracleReport> report = answer_to({"random", name, options, 0, text_of(seed)});
         ASSERT_TRUE(report);
         expect_agreement(*report, 0.01);
@@ -219,19 +219,19 @@ TEST(OracleAtRandom, Inst) {
 TEST(OracleItself, CanSayNo) {
     Compilation compilation;
     const std::string path = GRAFTAL_SOURCE_DIR "/scenes/hart/pound_sign.rifs";
-    const auto viewed = [&](unsigned steps) { return view_model(path, stopped_after(steps), compilation); };
-    const std::optional<ViewedModel> ours = viewed(2), coarser = viewed(1);
-    ASSERT_TRUE(ours && coarser);
-    const AnalysedModel& model = ours->model;
-    std::optional<Cut> cut = cut_graph(model.graph, model.components, model.bounds, ours->view, ours->detail,
-                                       compilation.diagnostics, {.flatten = true});
-    ASSERT_TRUE(cut);
-    CompiledModel theirs{model, ours->view, std::move(*cut)};
+    const DetailedModel ours = look_at_file(path, stopped_after(2), compilation);
+    const DetailedModel coarser = look_at_file(path, stopped_after(1), compilation);
+    ASSERT_TRUE(ours.viewed && coarser.viewed);
+    StageOptions flat = stopped_after(2);
+    flat.cut.flatten = true;
+    const auto compiled = Session(path).compiled(flat, compilation);
+    ASSERT_TRUE(compiled);
+    CompiledModel theirs = *compiled;
     Status status;
-    const auto ask = [&](const ViewedModel& viewed_model) {
+    const auto ask = [&](const DetailedModel& viewed_model) {
         return ask_oracle(theirs, viewed_model, {}, status);
     };
-    const std::optional<OracleReport> same = ask(*ours), other = ask(*coarser);
+    const std::optional<OracleReport> same = ask(ours), other = ask(coarser);
     ASSERT_TRUE(same && other);
     expect_agreement(*same, 0.1);
     EXPECT_GT(other->mask.untied + other->depth.untied, 100u) << summary(*other);
@@ -240,7 +240,7 @@ TEST(OracleItself, CanSayNo) {
     const double pixel = 2 * std::tan(theirs.view.camera.angle_deg * 3.14159 / 360) / small.width;
     theirs.view.camera.location +=
         0.2 * pixel * glm::length(theirs.view.camera.location) * theirs.view.camera.right;
-    const std::optional<OracleReport> moved = ask(*ours);
+    const std::optional<OracleReport> moved = ask(ours);
     ASSERT_TRUE(moved);
     EXPECT_GT(moved->mask.untied, 10u) << summary(*moved);
 }

@@ -9,7 +9,7 @@
 namespace graftal {
 
 CompiledModel parted_at(const CompiledModel& model, double mesh_triangles) {
-    CutGraph cut = build_cut_graph(model.model.graph, model.model.components, model.model.bounds);
+    CutGraph cut = build_cut_graph(model.model->graph, model.model->components, model.model->bounds);
     split_into_halves(cut);
     const Symmetry symmetry = find_symmetry(cut);
     fit_proxies(cut, symmetry);
@@ -17,7 +17,7 @@ CompiledModel parted_at(const CompiledModel& model, double mesh_triangles) {
     const Projection projection(model.view, options, 0, 1e-5);
     Piece root;
     root.node = cut.root;
-    root.steps = model.model.steps.value_or(unlimited_steps);
+    root.steps = model.steps.value_or(unlimited_steps);
     Weights weights(cut);
     Choice choice;
     choice.threshold = mesh_triangles;

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "compiler/compile.h"
+#include "compiler/session/session.h"
 
 namespace graftal {
 

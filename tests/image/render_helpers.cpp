@@ -16,7 +16,8 @@ Image render_path(const std::string& path, RenderOptions options, const std::str
     options.output = folder + "/picture.exr";
     if (options.format == SampleFormat::srgb8) options.output = folder + "/picture.png";
     Compilation compilation;
-    const std::optional<RenderReport> rendered = render_model(path, options, compilation);
+    Session session(path);
+    const std::optional<RenderReport> rendered = render_model(session, options, compilation);
     Image image;
     EXPECT_TRUE(rendered.has_value())
         << compilation.diagnostics.render(compilation.sources) << compilation.status.message();
@@ -31,7 +32,7 @@ Image render_path(const std::string& path, RenderOptions options, const std::str
 
 RenderOptions measured(int width, int height) {
     RenderOptions options;
-    options.compile.size = {width, height};
+    options.compile.view.size = {width, height};
     options.format = SampleFormat::linear16;
     options.antialias = std::nullopt;
     return options;

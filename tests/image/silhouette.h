@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "compiler/compile.h"
+#include "compiler/session/session.h"
 #include "runtime/image/image.h"
 
 namespace graftal {

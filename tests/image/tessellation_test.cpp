@@ -16,7 +16,7 @@ constexpr double most_stray_px = 0.25;
 
 /// The larger picture shows the meshes that were made for the smaller, so that its pixels measure sixteenths.
 /// What is thinner than one of those shows in one picture and not in the other: so the window on small parts.
-void expect_small_stray(const std::string& path, const CompileOptions& options,
+void expect_small_stray(const std::string& path, const StageOptions& options,
                         std::optional<ImageSize> window = {}) {
     const std::optional<TwoWays> ways = two_ways_of_file(path, options);
     if (!ways) return;
@@ -35,14 +35,14 @@ void expect_small_stray(const std::string& path, const CompileOptions& options,
 }
 
 /// Memory of which the absolute specification needs more than the share up to which it is preferred.
-CompileOptions whole_in_meshes(ImageSize size, std::uint64_t memory_bytes = 30'000'000) {
-    CompileOptions options = whole(size);
+StageOptions whole_in_meshes(ImageSize size, std::uint64_t memory_bytes = 30'000'000) {
+    StageOptions options = whole(size);
     options.detail.memory_bytes = memory_bytes;
     return options;
 }
 
 TEST(Tessellation, TernaryTreeOfFiveLevels) {
-    CompileOptions options = whole_in_meshes({160, 90});
+    StageOptions options = whole_in_meshes({160, 90});
     options.lower.set["levels"] = 5;
     expect_small_stray("scenes/hart/ternary_tree.inst", options);
 }
@@ -53,7 +53,7 @@ TEST(Tessellation, TernaryTreeOfTenLevels) {
 }
 
 TEST(Tessellation, Elm) {
-    CompileOptions options = whole_in_meshes({160, 90});
+    StageOptions options = whole_in_meshes({160, 90});
     options.lower.set["levels"] = 6;
     expect_small_stray("scenes/hart/elm.inst", options);
 }

@@ -13,13 +13,13 @@
 namespace graftal {
 namespace {
 
-CompileOptions zoomed(const std::string& at, const std::string& zoom, ImageSize size) {
-    CompileOptions options;
-    options.size = size;
+StageOptions zoomed(const std::string& at, const std::string& zoom, ImageSize size) {
+    StageOptions options;
+    options.view.size = size;
     std::string problem;
-    options.zoom.at = parse_address(at, problem);
+    options.view.zoom.at = parse_address(at, problem);
     EXPECT_EQ(problem, "");
-    options.zoom.zoom = Magnification::parse(zoom);
+    options.view.zoom.zoom = Magnification::parse(zoom);
     return options;
 }
 
@@ -70,17 +70,17 @@ TEST(Zoom, IsWhatMovingTheCameraGives) {
             std::string(model).find("pound") != std::string::npos ? Vec3(1.0 / 3, 1.0 / 3, 1) : Vec3(1, 1, 1);
         const char* const address =
             std::string(model).find("pound") != std::string::npos ? "(urf.llf)*" : "(a)*";
-        CompileOptions moved;
-        moved.size = {240, 135};
+        StageOptions moved;
+        moved.view.size = {240, 135};
         const Vec3 from_focus(1.2, 1.1, 3.1);
-        moved.camera.location = corner + from_focus;
-        moved.camera.look_at = corner;
-        moved.camera.angle_deg = 40;
-        CompileOptions zoom = moved;
+        moved.view.camera.location = corner + from_focus;
+        moved.view.camera.look_at = corner;
+        moved.view.camera.angle_deg = 40;
+        StageOptions zoom = moved;
         std::string problem;
-        zoom.zoom.at = parse_address(address, problem);
-        zoom.zoom.zoom = Magnification::of(16);
-        moved.camera.location = corner + from_focus / 16.0;
+        zoom.view.zoom.at = parse_address(address, problem);
+        zoom.view.zoom.zoom = Magnification::of(16);
+        moved.view.camera.location = corner + from_focus / 16.0;
         const auto by_zoom = compile_file(model, zoom), by_camera = compile_file(model, moved);
         ASSERT_TRUE(by_zoom && by_camera);
         const ImageDifference difference =
@@ -109,8 +109,8 @@ TEST(Zoom, NothingPopsFromFrameToFrame) {
     }
     const double step = (p.to - p.from) / std::max(1, p.frames - 1);
     const auto compiled = [&](int frame) {
-        CompileOptions options = zoomed(p.address, "1", {160, 90});
-        options.zoom.zoom = Magnification::exp2(p.from + step * frame);
+        StageOptions options = zoomed(p.address, "1", {160, 90});
+        options.view.zoom.zoom = Magnification::exp2(p.from + step * frame);
         return compile_file(p.model, options);
     };
     double worst_mean = 0, worst_p99 = 0, natural = 0;

@@ -9,7 +9,7 @@
 
 #include <gtest/gtest.h>
 
-#include "compiler/compile.h"
+#include "compiler/session/session.h"
 #include "tests/property/nearest.h"
 
 namespace graftal {
@@ -99,22 +99,22 @@ class ChaosGame : public ::testing::TestWithParam<std::string> {};
 // each point lies within sqrt(3) errors of a corner; drawn corners lie near points up to how densely 10^5
 // points can cover the set.
 TEST_P(ChaosGame, PointsAndGeometryAreCloseBothWays) {
-    CompileOptions options;
-    options.size = {320, 240};
+    StageOptions options;
+    options.view.size = {320, 240};
     options.detail.error_px = 8;
     Compilation compilation;
-    const std::optional<CompiledModel> compiled =
-        compile_model(std::string(GRAFTAL_SOURCE_DIR) + "/" + GetParam(), options, compilation);
+    const std::shared_ptr<const CompiledModel> compiled =
+        Session(std::string(GRAFTAL_SOURCE_DIR) + "/" + GetParam()).compiled(options, compilation);
     ASSERT_TRUE(compiled) << compilation.diagnostics.render(compilation.sources);
-    const std::vector<Vec3> points = chaos_points(compiled->model);
+    const std::vector<Vec3> points = chaos_points(*compiled->model);
     const std::vector<Vec3> drawn = drawn_points(compiled->cut);
     ASSERT_FALSE(drawn.empty());
 
-    const Ball& ball = compiled->model.bounds[compiled->model.graph.root].ball;
+    const Ball& ball = compiled->model->bounds[compiled->model->graph.root].ball;
     const Camera& camera = compiled->view.camera;
     // The least resolution over the model gives the largest error in scene units.
     const double pixels_per_unit =
-        camera.pixels_per_unit(ball.centre + camera.direction * ball.radius, options.size.width);
+        camera.pixels_per_unit(ball.centre + camera.direction * ball.radius, options.view.size.width);
     const double error = compiled->cut.error_px / pixels_per_unit;
     RecordProperty("error", std::to_string(error));
 

@@ -1,6 +1,6 @@
 // The pipeline as a whole: text -> analysed model -> cut.
 
-#include "compiler/compile.h"
+#include "compiler/session/session.h"
 
 #include <algorithm>
 #include <filesystem>
@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include "compiler/session/stages.h"
 #include "compiler/support/file.h"
 
 namespace graftal {
@@ -32,14 +33,14 @@ class Compile : public testing::Test {
         std::filesystem::remove_all(folder_);
     }
 
-    std::optional<AnalysedModel> analyse(const std::string& text, bool for_report = false) {
+    std::shared_ptr<const AnalysedModel> analyse(const std::string& text, bool for_report = false) {
         EXPECT_TRUE(write_text("model.inst", text).ok());
-        return analyse_model("model.inst", options_, compilation_, for_report);
+        return Session("model.inst").analysed(options_, compilation_, for_report);
     }
     std::string messages() const { return compilation_.diagnostics.render(compilation_.sources); }
 
     std::filesystem::path folder_;
-    CompileOptions options_;
+    StageOptions options_;
     Compilation compilation_;
 };
 
@@ -50,7 +51,7 @@ const char* const gasket = "object gasket {\n"
                            "}\n";
 
 TEST_F(Compile, AModelThatContractsIsAnalysed) {
-    const std::optional<AnalysedModel> model = analyse(gasket);
+    const std::shared_ptr<const AnalysedModel> model = analyse(gasket);
     ASSERT_TRUE(model) << messages();
     EXPECT_EQ(messages(), "");
     EXPECT_EQ(model->contraction.verdict, Verdict::proved);
@@ -59,7 +60,7 @@ TEST_F(Compile, AModelThatContractsIsAnalysed) {
     const Box& box = model->bounds[model->graph.root].box;
     EXPECT_NEAR(box.max.y, 1, 1e-9);
     EXPECT_NEAR(box.min.x, -0.8, 1e-9);
-    EXPECT_EQ(model->steps, std::nullopt);
+    EXPECT_EQ(levels_of(*model, std::nullopt), std::nullopt);
 }
 
 TEST_F(Compile, StagesAreTimedInTheirOrder) {
@@ -75,9 +76,8 @@ TEST_F(Compile, StagesAreTimedInTheirOrder) {
 
 TEST_F(Compile, StepsOfTheCommandLineComeBeforeTheModels) {
     const std::string text = "steps: 4\n" + std::string(gasket);
-    EXPECT_EQ(analyse(text)->steps, 4u);
-    options_.steps = 7;
-    EXPECT_EQ(analyse(text)->steps, 7u);
+    EXPECT_EQ(levels_of(*analyse(text), std::nullopt), 4u);
+    EXPECT_EQ(levels_of(*analyse(text), 7u), 7u);
 }
 
 const char* const growing = "object tree {\n"
@@ -98,7 +98,7 @@ TEST_F(Compile, ACycleThatGrowsIsAnErrorThatNamesIt) {
 }
 
 TEST_F(Compile, ForAReportTheVerdictIsTheResult) {
-    const std::optional<AnalysedModel> model = analyse(growing, true);
+    const std::shared_ptr<const AnalysedModel> model = analyse(growing, true);
     ASSERT_TRUE(model);
     EXPECT_EQ(model->contraction.verdict, Verdict::refuted);
     EXPECT_TRUE(model->bounds.empty());
@@ -132,7 +132,7 @@ TEST_F(Compile, AnUnknownPassIsReportedWithTheKnownOnes) {
 }
 
 TEST_F(Compile, AFileThatCannotBeReadIsTheEnvironmentsFault) {
-    EXPECT_FALSE(analyse_model("none.inst", options_, compilation_));
+    EXPECT_FALSE(Session("none.inst").analysed(options_, compilation_));
     EXPECT_FALSE(compilation_.diagnostics.has_errors());
     EXPECT_EQ(compilation_.status.message(), "cannot open 'none.inst': No such file or directory");
 }
@@ -140,16 +140,16 @@ TEST_F(Compile, AFileThatCannotBeReadIsTheEnvironmentsFault) {
 TEST_F(Compile, ABadModelStopsBeforeAnalysis) {
     EXPECT_FALSE(analyse("object a { instance: b }\n"));
     EXPECT_THAT(messages(), HasSubstr("unknown object 'b'"));
-    EXPECT_FALSE(compile_model("model.inst", options_, compilation_));
+    EXPECT_FALSE(Session("model.inst").compiled(options_, compilation_));
 }
 
 TEST_F(Compile, CompilesToACutForTheView) {
     ASSERT_TRUE(write_text("model.inst", gasket).ok());
-    options_.size = {320, 240};
-    options_.steps = 3;
-    const std::optional<CompiledModel> model = compile_model("model.inst", options_, compilation_);
+    options_.view.size = {320, 240};
+    options_.lower.steps = 3;
+    const auto model = Session("model.inst").compiled(options_, compilation_);
     ASSERT_TRUE(model) << messages();
-    EXPECT_EQ(model->view.size, options_.size);
+    EXPECT_EQ(model->view.size, options_.view.size);
     EXPECT_EQ(model->cut.leaf_count, 27);
     EXPECT_FALSE(model->cut.bounds.empty());
     const auto timed = [&](const char* stage) {
@@ -162,7 +162,7 @@ TEST_F(Compile, CompilesToACutForTheView) {
 
 TEST_F(Compile, AModelOfPlanesOnlyHasAView) {
     ASSERT_TRUE(write_text("model.inst", "object floor { instance: plane }\n").ok());
-    EXPECT_TRUE(compile_model("model.inst", options_, compilation_)) << messages();
+    EXPECT_TRUE(Session("model.inst").compiled(options_, compilation_)) << messages();
 }
 
 TEST_F(Compile, PointsAndSpecksAreNoCrash) {
@@ -175,7 +175,7 @@ TEST_F(Compile, PointsAndSpecksAreNoCrash) {
     for (const std::string& text : models) {
         ASSERT_TRUE(write_text("model.inst", text).ok());
         Compilation compilation;
-        const bool compiled = compile_model("model.inst", options_, compilation).has_value();
+        const bool compiled = Session("model.inst").compiled(options_, compilation) != nullptr;
         EXPECT_NE(compiled, compilation.diagnostics.has_errors()) << text;
     }
 }

@@ -1,7 +1,7 @@
 // The frames of an animation are framed together: all that is shown is in the picture, and nothing but what
 // moves changes.
 
-#include "compiler/frame_animation.h"
+#include "compiler/session/shared_framing.h"
 
 #include <cmath>
 #include <numbers>
@@ -10,25 +10,32 @@
 
 #include "compiler/graph/unfold.h"
 #include "compiler/scene/outline.h"
+#include "compiler/session/session.h"
+#include "compiler/session/stages.h"
 
 namespace graftal {
 namespace {
 
 constexpr ImageSize size{400, 300};
 
-AnalysedModel analysed(const std::string& scene, const CompileOptions& options = {}) {
+/// A model and the levels that are shown of it.
+struct Shown {
+    std::shared_ptr<const AnalysedModel> model;
+    std::optional<unsigned> steps;
+};
+
+Shown analysed(const std::string& scene, const StageOptions& options = {}) {
     Compilation compilation;
-    std::optional<AnalysedModel> model =
-        analyse_model(std::string(GRAFTAL_SOURCE_DIR "/scenes/") + scene, options, compilation);
+    Session session(std::string(GRAFTAL_SOURCE_DIR "/scenes/") + scene);
+    const auto model = session.analysed(options, compilation);
     EXPECT_TRUE(model) << scene << "\n" << compilation.diagnostics.render(compilation.sources);
-    return std::move(model.value());
+    return {model, levels_of(*model, options.lower.steps)};
 }
 
-SharedFraming framed(const std::vector<const AnalysedModel*>& models, bool turning,
-                     const CameraOverride& camera = {}) {
+SharedFraming framed(const std::vector<Shown>& models, bool turning, const CameraOverride& camera = {}) {
     SharedFraming framing;
-    for (const AnalysedModel* model : models)
-        framing.include(*model);
+    for (const Shown& shown : models)
+        framing.include(*shown.model, shown.steps);
     framing.settle(camera, size, turning);
     return framing;
 }
@@ -39,7 +46,8 @@ struct Spread {
     double x = 0, y = 0;
 };
 
-Spread spread(const AnalysedModel& model, const View& view) {
+Spread spread(const Shown& shown, const View& view) {
+    const AnalysedModel& model = *shown.model;
     const Camera& camera = view.camera;
     const double half = std::tan(camera.angle_deg * std::numbers::pi / 360);
     const double aspect = static_cast<double>(size.width) / size.height;
@@ -56,7 +64,7 @@ Spread spread(const AnalysedModel& model, const View& view) {
         }
         return true;
     };
-    EXPECT_TRUE(unfold(model.graph, model.components, model.steps, 3'000'000, add));
+    EXPECT_TRUE(unfold(model.graph, model.components, shown.steps, 3'000'000, add));
     return most;
 }
 
@@ -73,14 +81,14 @@ struct TurnCase {
 class Turntable : public testing::TestWithParam<TurnCase> {};
 
 TEST_P(Turntable, KeepsTheModelInThePictureAtOneDistance) {
-    CompileOptions options;
-    options.steps = GetParam().steps;
-    const AnalysedModel model = analysed(GetParam().scene, options);
-    const SharedFraming framing = framed({&model}, true);
-    const View front = framing.view(model, {}, 0);
+    StageOptions options;
+    options.lower.steps = GetParam().steps;
+    const Shown model = analysed(GetParam().scene, options);
+    const SharedFraming framing = framed({model}, true);
+    const View front = framing.view(*model.model, {}, 0);
     double widest = 0;
     for (int frame = 0; frame < 16; ++frame) {
-        const View view = framing.view(model, {}, 360.0 * frame / 16);
+        const View view = framing.view(*model.model, {}, 360.0 * frame / 16);
         const Spread most = spread(model, view);
         EXPECT_LE(most.x, 0.93) << frame;
         EXPECT_LE(most.y, 0.93) << frame;
@@ -94,8 +102,8 @@ TEST_P(Turntable, KeepsTheModelInThePictureAtOneDistance) {
         }
     }
     EXPECT_GT(widest, 0.7) << "the model fills the picture in some frame";
-    EXPECT_TRUE(same(framing.view(model, {}, 360).camera, front.camera)) << "the loop is closed";
-    EXPECT_TRUE(same(framing.view(model, {}, -720).camera, front.camera));
+    EXPECT_TRUE(same(framing.view(*model.model, {}, 360).camera, front.camera)) << "the loop is closed";
+    EXPECT_TRUE(same(framing.view(*model.model, {}, -720).camera, front.camera));
 }
 
 INSTANTIATE_TEST_SUITE_P(Scenes, Turntable,
@@ -105,16 +113,16 @@ INSTANTIATE_TEST_SUITE_P(Scenes, Turntable,
                                          TurnCase{"ifs/menger_sponge.rifs", 3}));
 
 TEST(SharedFraming, GrowthHappensInThePicture) {
-    std::vector<AnalysedModel> models;
+    std::vector<Shown> models;
     for (const unsigned steps : {1u, 2u, 3u, 4u}) {
-        CompileOptions options;
-        options.steps = steps;
+        StageOptions options;
+        options.lower.steps = steps;
         models.push_back(analysed("abop/fig1_24f.lsys", options));
     }
-    const SharedFraming framing = framed({&models[0], &models[1], &models[2], &models[3]}, false);
-    const View first = framing.view(models[0], {}, 0);
-    for (const AnalysedModel& model : models) {
-        const View view = framing.view(model, {}, 0);
+    const SharedFraming framing = framed(models, false);
+    const View first = framing.view(*models[0].model, {}, 0);
+    for (const Shown& model : models) {
+        const View view = framing.view(*model.model, {}, 0);
         EXPECT_TRUE(same(view.camera, first.camera));
         EXPECT_EQ(view.sky.zenith, first.sky.zenith);
         const Spread most = spread(model, view);
@@ -125,16 +133,18 @@ TEST(SharedFraming, GrowthHappensInThePicture) {
 }
 
 TEST(SharedFraming, WhatIsLeftOpenIsAsInTheFirstFrame) {
-    const AnalysedModel model = analysed("hart/pound_sign.rifs");
+    const Shown model = analysed("hart/pound_sign.rifs");
     const CameraOverride wide{.angle_deg = 40}, narrow{.angle_deg = 10};
-    const SharedFraming framing = framed({&model}, false, wide);
-    const Camera first = framing.view(model, wide, 0).camera, last = framing.view(model, narrow, 0).camera;
+    const SharedFraming framing = framed({model}, false, wide);
+    const Camera first = framing.view(*model.model, wide, 0).camera,
+                 last = framing.view(*model.model, narrow, 0).camera;
     EXPECT_EQ(first.location, last.location);
     EXPECT_EQ(last.angle_deg, 10);
 
     const CameraOverride far{.location = Vec3(0, 0, 20)}, near{.location = Vec3(0, 0, 4)};
-    const SharedFraming approach = framed({&model}, false, far);
-    EXPECT_EQ(approach.view(model, far, 0).camera.angle_deg, approach.view(model, near, 0).camera.angle_deg);
+    const SharedFraming approach = framed({model}, false, far);
+    EXPECT_EQ(approach.view(*model.model, far, 0).camera.angle_deg,
+              approach.view(*model.model, near, 0).camera.angle_deg);
 }
 
 } // namespace

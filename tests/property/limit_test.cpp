@@ -8,7 +8,8 @@
 #include <gtest/gtest.h>
 
 #include "compiler/analysis/counts.h"
-#include "compiler/compile.h"
+#include "compiler/languages/lower.h"
+#include "compiler/session/values.h"
 #include "tests/property/nearest.h"
 
 namespace graftal {

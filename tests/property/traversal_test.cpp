@@ -177,8 +177,9 @@ TEST(TraversalProperty, MeetsWhatThePlainUnfoldingMeets) {
         DetailOptions options;
         options.error_px = seed % 3 == 0 ? 2 : 0;
         if (options.error_px == 0 || seed % 2 == 0) options.steps = static_cast<unsigned>(seed % 4);
-        const TraceModel model(prepare_cut(graph, components, bounds, options), view_of(graph, bounds),
-                               options);
+        const TraceModel model(
+            std::make_shared<const PreparedCut>(prepare_cut(graph, components, bounds, options.preparing())),
+            view_of(graph, bounds), options);
         const auto leaves = plain_unfolding(model, 400);
         if (!leaves || leaves->empty()) continue;
         std::mt19937_64 random(seed);

@@ -97,7 +97,8 @@ int run_animate(const Options& options) {
     animate.on_progress = [&](const AnimationProgress& progress) { bar.show(progress_text(progress)); };
     animate.on_compiled = [&](const Compilation& compilation) { warnings.say_new(compilation); };
 
-    const AnimationOutcome outcome = animate_model(options.operands.front(), animate);
+    Session session(options.operands.front(), Keep::for_views);
+    const AnimationOutcome outcome = animate_model(session, animate);
     bar.clear();
     if (!outcome.done && !outcome.frame.empty()) complain("at " + outcome.frame + ":");
     const int status = conclude(options, outcome.compilation);

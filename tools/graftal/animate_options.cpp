@@ -24,7 +24,7 @@ std::string complete_animation(Options& options) {
             options.output);
     if (kind == AnimationKind::gif && animation.rate.hundredths > fastest_gif.hundredths)
         return fmt::format("--fps: a GIF shows at most {:g} frames a second", fastest_gif.per_second());
-    const ImageSize size = options.compile.size;
+    const ImageSize size = options.compile.view.size;
     if (kind == AnimationKind::video && (size.width % 2 != 0 || size.height % 2 != 0))
         return fmt::format("--size: a video needs an even width and height, such as {}x{}",
                            size.width + size.width % 2, size.height + size.height % 2);

@@ -64,8 +64,8 @@ int run_collage(const Options& options) {
     collage_options.threshold = options.points.threshold;
     collage_options.light = options.points.light;
     Compilation compilation;
-    const std::optional<Collage> collage =
-        measure_collage(options.operands.front(), collage_options, compilation);
+    Session session(options.operands.front(), Keep::nothing);
+    const std::optional<Collage> collage = measure_collage(session, collage_options, compilation);
     const int status = conclude(options, compilation);
     if (!collage || status != exit_done) return status;
     if (!options.json) return print_output(collage_text(options, *collage));

@@ -5,6 +5,7 @@
 #include "compiler/graph/emit_dot.h"
 #include "compiler/graph/print.h"
 #include "compiler/rifs/orbit_model.h"
+#include "compiler/session/session.h"
 #include "compiler/support/file.h"
 #include "runtime/system/interruption.h"
 #include "runtime/system/process.h"
@@ -24,10 +25,13 @@ std::string verdict_text(const Contraction& contraction) {
 
 int check_one(const Options& options, const std::string& path) {
     Compilation compilation;
-    CompileOptions compile = compile_options(options);
+    StageOptions compile = compile_options(options);
+    compile.accept_orbit = true;
+    Session session(path, Keep::nothing);
     std::shared_ptr<const OrbitModel> orbit;
-    compile.lower.orbit = &orbit;
-    const std::optional<AnalysedModel> model = analyse_model(path, compile, compilation);
+    if (const auto lowered = session.lowered(compile, compilation)) orbit = lowered->orbit;
+    std::shared_ptr<const AnalysedModel> model;
+    if (!orbit && compilation.status.ok()) model = session.analysed(compile, compilation);
     const int status = conclude(options, compilation);
     if (status == exit_done && orbit && !options.quiet)
         return print_output(fmt::format("{}: ok, an orbit of {} map{}: 'graftal points' draws it\n", path,
@@ -75,16 +79,18 @@ int run_check(const Options& options) {
 
 int run_print(const Options& options) {
     Compilation compilation;
-    const std::optional<AnalysedModel> model =
-        analyse_model(options.operands.front(), compile_options(options), compilation, true);
+    Session session(options.operands.front(), Keep::nothing);
+    const std::shared_ptr<const AnalysedModel> model =
+        session.analysed(compile_options(options), compilation, true);
     const int status = conclude(options, compilation);
     return model && status == exit_done ? print_output(print(model->graph)) : status;
 }
 
 int run_graph(const Options& options) {
     Compilation compilation;
-    const std::optional<AnalysedModel> model =
-        analyse_model(options.operands.front(), compile_options(options), compilation, true);
+    Session session(options.operands.front(), Keep::nothing);
+    const std::shared_ptr<const AnalysedModel> model =
+        session.analysed(compile_options(options), compilation, true);
     if (model) {
         const std::string dot = emit_dot(model->graph, model->components);
         compilation.status = options.output.ends_with(".svg") ? write_svg(dot, options.output)

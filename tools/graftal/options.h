@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "compiler/compile.h"
+#include "compiler/session/stage_options.h"
 #include "runtime/image/animation.h"
 #include "runtime/image/image.h"
 #include "runtime/points/tone.h"
@@ -42,7 +42,7 @@ struct Options {
     Command command = Command::render;
     std::vector<std::string> operands; ///< the model or models; for compare the two pictures
     std::string output;                ///< of render, animate, compile and graph; "-" is standard output
-    CompileOptions compile;
+    StageOptions compile;
     std::string dump_after; ///< a pass, "all", or ""
     bool time = false;
     bool quiet = false;

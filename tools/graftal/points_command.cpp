@@ -51,7 +51,8 @@ int run_points(const Options& options) {
     if (!options.quiet) say_what_points_take(points);
     Compilation compilation;
     bar.show("compiling...");
-    const std::optional<PointsReport> report = draw_points(options.operands.front(), points, compilation);
+    Session session(options.operands.front(), Keep::nothing);
+    const std::optional<PointsReport> report = draw_points(session, points, compilation);
     bar.clear();
     const int status = conclude(options, compilation);
     if (report && !options.quiet) say(done_text(options, *report));

@@ -93,7 +93,7 @@ void add_points_options(CLI::App& app, Options& options) {
     app.parse_complete_callback([&app, &options, &settings] {
         if (settings.card.empty()) return;
         settings.tone.transparent = true;
-        if (app.count("--size") == 0) options.compile.size = {512, 512};
+        if (app.count("--size") == 0) options.compile.view.size = {512, 512};
         if (app.count("--exposure") == 0) settings.tone.exposure = 800;
     });
     app.footer("Examples:\n"

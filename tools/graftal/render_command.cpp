@@ -74,7 +74,8 @@ int render_by_tracer(const Options& options) {
     };
     Compilation compilation;
     bar.show("compiling...");
-    const std::optional<NativeReport> report = render_natively(options.operands.front(), native, compilation);
+    Session session(options.operands.front(), Keep::nothing);
+    const std::optional<NativeReport> report = render_natively(session, native, compilation);
     bar.clear();
     const int status = conclude(options, compilation);
     if (report && !options.quiet) say(fmt::format("{}: {}\n", options.output, native_text(*report)));
@@ -99,7 +100,8 @@ int run_render(const Options& options) {
 
     Compilation compilation;
     bar.show("compiling...");
-    const std::optional<RenderReport> report = render_model(options.operands.front(), render, compilation);
+    Session session(options.operands.front(), Keep::nothing);
+    const std::optional<RenderReport> report = render_model(session, render, compilation);
     bar.clear();
     const int status = conclude(options, compilation);
     if (report && !options.quiet)
@@ -112,8 +114,9 @@ int run_render(const Options& options) {
 
 int run_compile(const Options& options) {
     Compilation compilation;
-    const std::optional<CompiledModel> model =
-        compile_model(options.operands.front(), compile_options(options), compilation);
+    Session session(options.operands.front(), Keep::nothing);
+    const std::shared_ptr<const CompiledModel> model =
+        session.compiled(compile_options(options), compilation);
     if (model) {
         const Interruption interruption;
         const bool include = options.output.ends_with(".inc");

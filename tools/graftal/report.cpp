@@ -73,8 +73,8 @@ std::string rays_text(const TraceStatistics& rays, double seconds) {
     return text;
 }
 
-CompileOptions compile_options(const Options& options) {
-    CompileOptions compile = options.compile;
+StageOptions compile_options(const Options& options) {
+    StageOptions compile = options.compile;
     compile.lower.look_at_texture = look_at_texture;
     if (options.dump_after.empty()) return compile;
     compile.pipeline.after_each = [wanted = options.dump_after](const Pass& pass, const Graph& graph) {

@@ -4,7 +4,8 @@
 #include <string>
 #include <string_view>
 
-#include "compiler/compile.h"
+#include "compiler/session/stage_options.h"
+#include "compiler/session/values.h"
 #include "runtime/trace/picture_tracer.h"
 #include "tools/graftal/options.h"
 
@@ -31,6 +32,6 @@ int print_output(std::string_view text);
 std::string rays_text(const TraceStatistics& rays, double seconds);
 
 /// The options of the compiler with `--dump-after` connected.
-CompileOptions compile_options(const Options& options);
+StageOptions compile_options(const Options& options);
 
 } // namespace graftal

@@ -51,7 +51,7 @@ std::optional<std::string> pass_named(const std::string& text, bool all_allowed)
 }
 
 void add_common(CLI::App& app, Options& options) {
-    CompileOptions& compile = options.compile;
+    StageOptions& compile = options.compile;
     constexpr std::uint64_t most_steps = 4'000'000'000;
     add_swept(
         app, options, "--steps", "N",
@@ -60,10 +60,10 @@ void add_common(CLI::App& app, Options& options) {
         [](const std::string& text) { return parse_steps(text, most_steps); },
         [](const std::string& text) { return parse_steps_sweep(text, most_steps); },
         [&](const StepsValue& steps) {
-            compile.steps.reset();
+            compile.lower.steps.reset();
             compile.lower.time.reset();
             if (steps.whole)
-                compile.steps = static_cast<unsigned>(*steps.whole);
+                compile.lower.steps = static_cast<unsigned>(*steps.whole);
             else
                 compile.lower.time = steps.time;
         });
@@ -121,15 +121,15 @@ void add_common(CLI::App& app, Options& options) {
 }
 
 void add_camera(CLI::App& app, Options& options) {
-    CompileOptions& compile = options.compile;
+    StageOptions& compile = options.compile;
     add_value(app, "--size", "WxH", "Size of the picture in pixels (default 1280x720)",
               "a size such as 1280x720, at most 32768 a side", parse_size,
-              [&](ImageSize size) { compile.size = size; });
+              [&](ImageSize size) { compile.view.size = size; });
     const auto camera = [&compile, &sweeps = options.animation.sweeps,
                          swept = can_sweep(app)](const std::vector<std::string>& texts) {
         for (const std::string& text : texts) {
-            const std::string problem = swept ? parse_camera_sweeps(text, compile.camera, sweeps)
-                                              : parse_camera(text, compile.camera);
+            const std::string problem = swept ? parse_camera_sweeps(text, compile.view.camera, sweeps)
+                                              : parse_camera(text, compile.view.camera);
             if (!problem.empty()) throw CLI::ValidationError("--camera: " + problem);
         }
     };
@@ -141,8 +141,8 @@ void add_camera(CLI::App& app, Options& options) {
         ->type_name("\"WORDS\"");
     const auto address = [&compile](const std::string& text) {
         std::string problem;
-        compile.zoom.at = parse_address(text, problem);
-        if (!compile.zoom.at) throw CLI::ValidationError(fmt::format("--at: '{}': {}", text, problem));
+        compile.view.zoom.at = parse_address(text, problem);
+        if (!compile.view.zoom.at) throw CLI::ValidationError(fmt::format("--at: '{}': {}", text, problem));
     };
     app.add_option_function<std::string>("--at", address,
                                          "Look at the part with this address, from its own frame: names of "
@@ -153,12 +153,12 @@ void add_camera(CLI::App& app, Options& options) {
     add_swept(app, options, "--zoom", "F",
               "Enlarge F times, such as 1e100 or 2^330, about the part at --at, else the point looked at",
               "a number above 0, such as 1e100 or 2^330", Magnification::parse, parse_zoom_sweep,
-              [&](Magnification zoom) { compile.zoom.zoom = zoom; });
+              [&](Magnification zoom) { compile.view.zoom.zoom = zoom; });
 }
 
 void add_view(CLI::App& app, Options& options) {
     add_camera(app, options);
-    CompileOptions& compile = options.compile;
+    StageOptions& compile = options.compile;
     CLI::Option* pixels = add_value(
         app, "--error", "PX", "Leave out what is smaller than this on the picture (default 0.5; 0: nothing)",
         "a number of pixels, 0 or more", [](const std::string& text) { return parse_at_least(text, 0); },

@@ -1,146 +1,21 @@
-#include <fmt/format.h>
-#include <nlohmann/json.hpp>
-
-#include "compiler/analysis/counts.h"
+#include "compiler/session/session.h"
+#include "compiler/session/stages.h"
+#include "compiler/session/stats.h"
 #include "tools/graftal/commands.h"
 #include "tools/graftal/report.h"
 
 namespace graftal {
 
-namespace {
-
-using Json = nlohmann::ordered_json;
-
-const char* name_of(Verdict verdict) {
-    switch (verdict) {
-    case Verdict::acyclic:
-        return "acyclic";
-    case Verdict::proved:
-        return "proved";
-    case Verdict::refuted:
-        return "refuted";
-    case Verdict::undecided:
-        return "undecided";
-    }
-    return "";
-}
-
-template<typename Value> Json or_null(const std::optional<Value>& value) {
-    return value ? Json(*value) : Json(nullptr);
-}
-
-Json vector_json(Vec3 v) {
-    return Json::array({v.x, v.y, v.z});
-}
-
-Json contraction_json(const AnalysedModel& model) {
-    const Contraction& contraction = model.contraction;
-    const bool cyclic = contraction.verdict != Verdict::acyclic;
-    Json cycle = Json::array();
-    for (const GraphStep& step : contraction.worst_cycle)
-        cycle.push_back(model.graph.objects[step.object].name);
-    Json json = {{"verdict", name_of(contraction.verdict)},
-                 {"rate", cyclic ? Json(contraction.rate()) : Json(nullptr)},
-                 {"cycle", cyclic ? std::move(cycle) : Json(nullptr)}};
-    if (!cyclic) return json;
-    json["lower"] = contraction.lower;
-    json["upper"] = contraction.upper;
-    if (contraction.verdict == Verdict::proved)
-        json["certificate"] = {
-            {"rate", contraction.certificate.rate},
-            {"depth", contraction.certificate.depth},
-            {"holds", certificate_holds(model.graph, model.components, contraction.certificate)}};
-    return json;
-}
-
-Json bounds_json(const AnalysedModel& model) {
-    if (model.bounds.empty()) return nullptr;
-    const ObjectBounds& bounds = model.bounds[model.graph.root];
-    if (bounds.box.empty()) return nullptr;
-    return {{"min", vector_json(bounds.box.min)}, {"max", vector_json(bounds.box.max)}};
-}
-
-/// By the name of the model.
-Json families_json(const Derivation& derivation) {
-    Json families = Json::object();
-    for (const FamilyReport& family : derivation.families)
-        families[family.model] = {{"parameters", family.parameters},
-                                  {"members", family.used},
-                                  {"possible", family.possible},
-                                  {"error", family.error}};
-    return families;
-}
-
-Json stats_json(const AnalysedModel& model, const SourceMap& sources) {
-    const Graph& graph = model.graph;
-    const bool empty = graph.objects.empty();
-    const bool converges =
-        model.contraction.verdict == Verdict::proved || model.contraction.verdict == Verdict::acyclic;
-    Json json = {
-        {"model", model.path},
-        {"language", model_language(0, sources)},
-        {"objects", graph.objects.size()},
-        {"instances", instance_count(graph) + run_part_count(graph)},
-        {"written", {{"objects", model.written.objects}, {"instances", model.written.instances}}},
-        {"steps", or_null(model.derivation ? model.derivation->steps : model.steps)},
-        {"leaves", empty ? Json("0") : or_null(count_leaves(graph, model.components, model.steps))},
-        {"contraction", contraction_json(model)},
-        {"dimension",
-         converges && !empty ? or_null(similarity_dimension(graph, model.components)) : Json(nullptr)},
-        {"bounds", bounds_json(model)},
-        {"unbounded", !model.bounds.empty() && model.bounds[graph.root].unbounded},
-        {"error", model.derivation ? model.derivation->error : 0},
-    };
-    if (const std::optional<Derivation>& derivation = model.derivation) {
-        if (derivation->timed) json["time"] = derivation->time;
-        const bool finite = derivation->steps.has_value();
-        json["modules"] = finite ? Json(derivation->modules) : Json(nullptr);
-        json["segments"] = finite ? Json(derivation->segments) : Json(nullptr);
-        json["compiled"] = {{"way", derivation->way}, {"parts", derivation->parts}};
-        if (derivation->size_step > 0) json["compiled"]["size_step"] = derivation->size_step;
-        if (derivation->variants > 1) {
-            json["compiled"]["variants"] = derivation->variants;
-            json["compiled"]["drift"] = derivation->drift;
-        }
-        if (!derivation->families.empty()) json["families"] = families_json(*derivation);
-    }
-    return json;
-}
-
-std::string text_of(const Json& value) {
-    if (value.is_string()) return value.get<std::string>();
-    if (!value.is_array()) return value.is_null() ? "-" : value.dump();
-    std::string text;
-    for (const Json& item : value)
-        text += (text.empty() ? "" : " ") + text_of(item);
-    return text;
-}
-
-/// One line a key; the keys of nested objects behind the outer one.
-void append_lines(const Json& json, const std::string& prefix, std::string& out) {
-    for (const auto& [key, value] : json.items()) {
-        if (value.is_object())
-            append_lines(value, prefix + key + " ", out);
-        else
-            out += fmt::format("{:<28} {}\n", prefix + key, text_of(value));
-    }
-}
-
-} // namespace
-
 int run_stats(const Options& options) {
     Compilation compilation;
-    CompileOptions compile = compile_options(options);
+    StageOptions compile = compile_options(options);
     compile.lower.may_draw_nothing = true;
-    const std::optional<AnalysedModel> model =
-        analyse_model(options.operands.front(), compile, compilation, true);
+    Session session(options.operands.front(), Keep::nothing);
+    const std::shared_ptr<const AnalysedModel> model = session.analysed(compile, compilation, true);
     const int status = conclude(options, compilation);
     if (!model || status != exit_done) return status;
-    const Json json = stats_json(*model, compilation.sources);
-    if (options.json) return print_output(json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
-    std::string text;
-    append_lines(json, "", text);
-    return print_output(text);
+    const auto text = options.json ? stats_json : stats_text;
+    return print_output(text(*model, levels_of(*model, compile.lower.steps), compilation.sources));
 }
 
 } // namespace graftal

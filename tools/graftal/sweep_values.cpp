@@ -29,8 +29,8 @@ std::string text_of(Vec3 v) {
 
 /// One swept word of a camera: `from` and `to` each set the same member.
 Sweep camera_sweep(const std::string& name, const CameraOverride& from, const CameraOverride& to) {
-    const auto apply = [=](double t, CompileOptions& options) {
-        CameraOverride& camera = options.camera;
+    const auto apply = [=](double t, StageOptions& options) {
+        CameraOverride& camera = options.view.camera;
         std::string text = "--camera " + name + "=";
         const auto sweep_vector = [&](auto member) {
             if (!(from.*member)) return;
@@ -61,12 +61,12 @@ std::optional<Sweep> parse_steps_sweep(std::string_view text, std::uint64_t most
     if (!range) return std::nullopt;
     const auto from = parse_steps(range->first, most), to = parse_steps(range->second, most);
     if (!from || !to) return std::nullopt;
-    const auto apply = [a = *from, b = *to](double t, CompileOptions& options) {
+    const auto apply = [a = *from, b = *to](double t, StageOptions& options) {
         options.lower.time = swept(a.time, b.time, t);
-        options.steps.reset();
+        options.lower.steps.reset();
         if (!a.whole || !b.whole) return fmt::format("--steps {:.6g}", *options.lower.time);
-        options.steps = static_cast<unsigned>(swept_whole(*a.whole, *b.whole, t));
-        return fmt::format("--steps {}", *options.steps);
+        options.lower.steps = static_cast<unsigned>(swept_whole(*a.whole, *b.whole, t));
+        return fmt::format("--steps {}", *options.lower.steps);
     };
     return Sweep{"--steps", apply};
 }
@@ -74,7 +74,7 @@ std::optional<Sweep> parse_steps_sweep(std::string_view text, std::uint64_t most
 std::optional<Sweep> parse_seed_sweep(std::string_view text) {
     const auto range = parse_whole_range(text, UINT64_MAX);
     if (!range) return std::nullopt;
-    return Sweep{"--seed", [range = *range](double t, CompileOptions& options) {
+    return Sweep{"--seed", [range = *range](double t, StageOptions& options) {
                      options.lower.seed = swept_whole(range.first, range.second, t);
                      return fmt::format("--seed {}", *options.lower.seed);
                  }};
@@ -95,7 +95,7 @@ std::optional<Sweep> parse_setting_sweep(std::string_view text) {
         step = *given;
     }
     const auto apply = [=, name = from->first, a = from->second, b = to->second](double t,
-                                                                                 CompileOptions& options) {
+                                                                                 StageOptions& options) {
         const double value = step > 0 ? swept_by_steps(a, b, step, t) : swept(a, b, t);
         options.lower.set[name] = value;
         return fmt::format("--set {}={:.6g}", name, value);
@@ -108,9 +108,9 @@ std::optional<Sweep> parse_zoom_sweep(std::string_view text) {
     if (!range) return std::nullopt;
     const auto from = Magnification::parse(range->first), to = Magnification::parse(range->second);
     if (!from || !to) return std::nullopt;
-    return Sweep{"--zoom", [from = from->log2(), to = to->log2()](double t, CompileOptions& options) {
+    return Sweep{"--zoom", [from = from->log2(), to = to->log2()](double t, StageOptions& options) {
                      const double log2 = swept(from, to, t);
-                     options.zoom.zoom = Magnification::exp2(log2);
+                     options.view.zoom.zoom = Magnification::exp2(log2);
                      return fmt::format("--zoom 2^{:.6g}", log2);
                  }};
 }

@@ -28,7 +28,7 @@ TEST(PrepareCut, LevelsOfTheRootBelongToItsInstances) {
     DetailOptions options;
     options.steps = 5;
     options.root_levels = {0, 2};
-    const PreparedCut prepared = prepare_cut(graph, components, bounds, options);
+    const PreparedCut prepared = prepare_cut(graph, components, bounds, options.preparing());
     const CutNode& root = prepared.cut.nodes[prepared.cut.root];
     ASSERT_EQ(root.edges.size(), 1u);
     EXPECT_EQ(root.edges[0].levels, 3u);

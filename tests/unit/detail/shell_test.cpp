@@ -37,7 +37,7 @@ Graph corners_graph(int dimensions, double share, int copies = 1) {
 }
 
 PreparedCut prepared(const Graph& graph, const DetailOptions& options = {}) {
-    return prepare_cut(graph, strong_components(graph), test::bounds_of(graph), options);
+    return prepare_cut(graph, strong_components(graph), test::bounds_of(graph), options.preparing());
 }
 
 double detail_for(const CutGraph& cut, double cells_across) {

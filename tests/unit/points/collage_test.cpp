@@ -63,13 +63,14 @@ class CollageTest : public ::testing::Test {
     /// The model's points as an opaque set.
     std::string picture_of(const std::string& model, std::map<std::string, double, std::less<>> set = {}) {
         PointsOptions options;
-        options.compile.size = {200, 160};
+        options.compile.view.size = {200, 160};
         options.compile.lower.set = std::move(set);
         options.output = directory_.path() + "/target.png";
         options.points = 1'500'000;
         options.tone.transparent = true;
         Compilation compilation;
-        EXPECT_TRUE(draw_points(model, options, compilation))
+        Session session(model);
+        EXPECT_TRUE(draw_points(session, options, compilation))
             << compilation.diagnostics.render(compilation.sources);
         return options.output;
     }
@@ -79,7 +80,8 @@ class CollageTest : public ::testing::Test {
         options.target = target;
         options.threshold = 0.001;
         Compilation compilation;
-        auto collage = measure_collage(model, options, compilation);
+        Session session(model);
+        auto collage = measure_collage(session, options, compilation);
         message_ = compilation.diagnostics.render(compilation.sources) + compilation.status.message();
         return collage;
     }

@@ -32,13 +32,14 @@ class Points : public ::testing::Test {
                                      std::uint64_t points, int threads = 2,
                                      PointColour colour = PointColour::tint) {
         PointsOptions options;
-        options.compile.size = {160, 120};
+        options.compile.view.size = {160, 120};
         options.output = path(output);
         options.points = points;
         options.threads = threads;
         options.colour = colour;
         Compilation compilation;
-        auto report = draw_points(model, options, compilation);
+        Session session(model);
+        auto report = draw_points(session, options, compilation);
         message_ = compilation.diagnostics.render(compilation.sources) + compilation.status.message();
         return report;
     }

@@ -220,8 +220,7 @@ TEST(RunCut, WhatIsOutOfSightIsNamedWhereMemoryLacks) {
 
 TEST(RunCut, CellsHoldNoEdges) {
     const Bounded model(two_branches(20'000, false));
-    const PreparedCut prepared =
-        prepare_cut(model.graph, model.components, model.bounds, DetailOptions{.error_px = 1});
+    const PreparedCut prepared = prepare_cut(model.graph, model.components, model.bounds, {});
     std::size_t edges = 0, items = 0;
     for (const CutNode& node : prepared.cut.nodes) {
         edges += node.edges.size();

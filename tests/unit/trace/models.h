@@ -40,7 +40,9 @@ inline std::unique_ptr<TraceModel> traced(const Graph& graph, const DetailOption
     view.camera.location =
         box.empty() ? Vec3(0, 1, 5) : box.centre() + Vec3(0, 0, 2 * glm::length(box.size()));
     if (eye) view.camera.location = *eye;
-    return std::make_unique<TraceModel>(prepare_cut(graph, components, bounds, options), view, options);
+    return std::make_unique<TraceModel>(
+        std::make_shared<const PreparedCut>(prepare_cut(graph, components, bounds, options.preparing())),
+        view, options);
 }
 
 /// Four half-size copies of itself at the corners of a tetrahedron, to the limit; the leaf a ball.

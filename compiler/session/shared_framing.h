@@ -3,8 +3,9 @@
 #include <optional>
 #include <vector>
 
-#include "compiler/compile.h"
 #include "compiler/scene/extremes.h"
+#include "compiler/scene/scene.h"
+#include "compiler/session/values.h"
 
 namespace graftal {
 
@@ -13,8 +14,8 @@ namespace graftal {
 /// so is the background. A plant that grows therefore grows in the picture.
 class SharedFraming {
   public:
-    /// One of the models that are shown, the first frame's first.
-    void include(const AnalysedModel& model);
+    /// One of the models that are shown to so many levels, the first frame's first.
+    void include(const AnalysedModel& model, std::optional<unsigned> steps);
 
     /// All models are known. `camera` is the first frame's; `turning` says that it will go round.
     void settle(const CameraOverride& camera, ImageSize size, bool turning);
@@ -22,6 +23,8 @@ class SharedFraming {
     /// The view of a frame whose camera has gone `turn_deg` round the vertical axis through the middle of the
     /// bounds, towards its right. Multiples of 360 give equal views. Requires settle().
     View view(const AnalysedModel& model, const CameraOverride& camera, double turn_deg) const;
+
+    bool turning() const { return turning_; }
 
   private:
     Camera frame(const CameraSetting& setting) const;

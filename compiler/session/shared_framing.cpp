@@ -1,13 +1,13 @@
-#include "compiler/frame_animation.h"
+#include "compiler/session/shared_framing.h"
 
 #include <cmath>
 #include <numbers>
 
 #include <glm/geometric.hpp>
 
-#include "compiler/frame_model.h"
 #include "compiler/scene/backdrop.h"
 #include "compiler/scene/framing.h"
+#include "compiler/session/frame_model.h"
 
 namespace graftal {
 
@@ -42,14 +42,14 @@ class Turn {
 
 } // namespace
 
-void SharedFraming::include(const AnalysedModel& model) {
+void SharedFraming::include(const AnalysedModel& model, std::optional<unsigned> steps) {
     if (!first_setting_) first_setting_ = model.graph.settings.camera.value_or(CameraSetting{});
     if (colours_.size() < most_colours) {
         const std::vector<Rgb> colours = sample_colours(model.graph);
         colours_.insert(colours_.end(), colours.begin(), colours.end());
     }
     if (model.bounds[model.graph.root].box.empty()) return; // its stand-in would count
-    const Sight sight = sight_of(model);
+    const Sight sight = sight_of(model, steps);
     bounds_.include(sight.bounds);
     extremes_.include(sight.outliner(directions_all_round()));
 }

@@ -1,4 +1,4 @@
-#include "compiler/frame_model.h"
+#include "compiler/session/frame_model.h"
 
 #include <utility>
 
@@ -11,10 +11,10 @@ namespace {
 
 /// The corners of all that is drawn of an unending model by its steps: a tree of a few levels may be a small
 /// part of its limit set, and terminals may reach beyond it. Nothing where there is too much to look at.
-std::vector<Vec3> corners_of_levels(const AnalysedModel& model) {
+std::vector<Vec3> corners_of_levels(const AnalysedModel& model, unsigned steps) {
     constexpr std::uint64_t most_leaves = 200'000;
     constexpr unsigned most_steps = 200; // a leaf may lie that deep
-    if (*model.steps > most_steps) return {};
+    if (steps > most_steps) return {};
     std::vector<Vec3> points;
     const auto add = [&](const UnfoldedLeaf& leaf) {
         for (const Vec3& corner :
@@ -22,7 +22,7 @@ std::vector<Vec3> corners_of_levels(const AnalysedModel& model) {
             points.push_back(leaf.world_from_object(corner));
         return true;
     };
-    if (!unfold(model.graph, model.components, model.steps, most_leaves, add)) return {};
+    if (!unfold(model.graph, model.components, steps, most_leaves, add)) return {};
     return points;
 }
 
@@ -35,9 +35,9 @@ Box box_of(const std::vector<Vec3>& points) {
 
 } // namespace
 
-Sight sight_of(const AnalysedModel& model) {
-    if (model.steps && model.components.unending[model.graph.root]) {
-        std::vector<Vec3> points = corners_of_levels(model);
+Sight sight_of(const AnalysedModel& model, std::optional<unsigned> steps) {
+    if (steps && model.components.unending[model.graph.root]) {
+        std::vector<Vec3> points = corners_of_levels(model, *steps);
         if (!points.empty()) {
             const Box box = box_of(points);
             return {box, [points = std::move(points)](const auto&) { return points; }};
@@ -50,8 +50,9 @@ Sight sight_of(const AnalysedModel& model) {
             }};
 }
 
-View frame_model(const AnalysedModel& model, ImageSize size, const CameraOverride& camera) {
-    const Sight sight = sight_of(model);
+View frame_model(const AnalysedModel& model, std::optional<unsigned> steps, ImageSize size,
+                 const CameraOverride& camera) {
+    const Sight sight = sight_of(model, steps);
     return frame(model.graph, sight.bounds, size, camera, sight.outliner);
 }
 

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <optional>
+
+#include "compiler/scene/scene.h"
+#include "compiler/session/values.h"
+
+namespace graftal {
+
+struct Sight {
+    Box bounds;        ///< a stand-in where there is nothing but planes
+    Outliner outliner; ///< of it, while the model lives
+};
+
+/// What is to be seen of a model: an unending one by its levels, if it has a number of them (`steps`) that
+/// can be looked at part by part, else its limit set.
+Sight sight_of(const AnalysedModel& model, std::optional<unsigned> steps);
+
+/// The view of a model as it will be drawn.
+View frame_model(const AnalysedModel& model, std::optional<unsigned> steps, ImageSize size,
+                 const CameraOverride& camera);
+
+} // namespace graftal

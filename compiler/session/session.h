@@ -1,0 +1,152 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "compiler/detail/prepare.h"
+#include "compiler/session/stage_options.h"
+#include "compiler/session/values.h"
+
+namespace graftal {
+
+/// What a session holds on to.
+enum class Keep {
+    everything, ///< the last value of each stage
+    for_views,  ///< what the next view needs: for animations
+    nothing,    ///< each value only until the next stage has used it: for a single picture
+};
+
+/// How often each stage ran.
+struct StageRuns {
+    std::uint64_t source = 0;
+    std::uint64_t lowered = 0;
+    std::uint64_t analysed = 0;
+    std::uint64_t viewed = 0;
+    std::uint64_t prepared = 0;
+    std::uint64_t compiled = 0;
+    bool operator==(const StageRuns&) const = default;
+};
+
+/// A model on its way from text to picture: owns the last value of each stage, and runs a stage again exactly
+/// if its inputs are others than those of its last run (README.md). Used by one thread at a time; the values
+/// that it gives may be read by many, and outlive it.
+///
+/// Each function gives a value, or null after errors in `diagnostics` or with a failed `status`. What it puts
+/// into the compilation is what a fresh run would say; `times` gets only what was run.
+class Session {
+  public:
+    /// A model in a file, "-" for standard input, which is read once and when it is asked for.
+    explicit Session(std::string path, Keep keep = Keep::everything);
+    /// A model that is a text already. `name` decides the language, and where used files are looked up.
+    Session(std::string name, std::string text, Keep keep = Keep::everything);
+
+    /// The model's own text is this from now on, whatever its file says.
+    void edit(std::string text);
+    /// Files are read again where they are needed next.
+    void reload();
+
+    /// The model before passes; one that is an orbit has no graph (StageOptions::accept_orbit).
+    std::shared_ptr<const LoweredModel> lowered(const StageOptions& options, Compilation& compilation);
+    /// One that does not converge is an error, unless it is wanted `for_report`: then the verdict is part of
+    /// the result. Null without an error for an orbit that is accepted.
+    std::shared_ptr<const AnalysedModel> analysed(const StageOptions& options, Compilation& compilation,
+                                                  bool for_report = false);
+    std::shared_ptr<const ViewedModel> viewed(const StageOptions& options, Compilation& compilation);
+    /// The graph made ready for any engine. An unfolding without an end is an error.
+    std::shared_ptr<const PreparedCut> prepared(const StageOptions& options, Compilation& compilation);
+    /// The cut for POV-Ray.
+    std::shared_ptr<const CompiledModel> compiled(const StageOptions& options, Compilation& compilation);
+
+    /// Gives up what `keep` does not want kept while another program draws.
+    void yield_memory();
+
+    const StageRuns& runs() const { return runs_; }
+
+  private:
+    /// The last run of a stage. `serial` numbers runs with different inputs: a stage after it has this number
+    /// for an input. The value is null where the stage failed, or where it was given up since.
+    template<typename Key, typename Value> struct Slot {
+        std::optional<Key> key;
+        std::uint64_t serial = 0;
+        std::shared_ptr<Value> value;
+        bool failed = false;
+        Diagnostics findings; ///< of this stage and all before it
+    };
+
+    struct SourceKey {
+        std::string root;
+        std::uint64_t edits = 0;
+        bool operator==(const SourceKey&) const = default;
+    };
+    struct LowerKey {
+        std::uint64_t source = 0;
+        LowerOptions options;
+        bool accept_orbit = false;
+    };
+    struct AnalyseKey {
+        std::uint64_t lowered = 0;
+        std::string stop_after;
+        bool keep_names = false;
+        bool operator==(const AnalyseKey&) const = default;
+    };
+    struct ViewKey {
+        std::uint64_t analysed = 0;
+        std::optional<unsigned> steps;
+        ViewOptions options;
+        bool operator==(const ViewKey&) const = default;
+    };
+    struct PrepareKey {
+        std::uint64_t analysed = 0;
+        std::uint64_t viewed = 0; ///< under a zoom, which gives the graph a new root; else 0
+        PrepareOptions options;
+        bool operator==(const PrepareKey&) const = default;
+    };
+    struct CompileKey {
+        std::uint64_t prepared = 0;
+        std::uint64_t viewed = 0;
+        DetailOptions detail;
+        CutOptions cut;
+        bool operator==(const CompileKey&) const = default;
+    };
+
+    /// What lowering gives does not depend on the steps and times that it does not read.
+    bool same_inputs(const LowerKey& before, const LowerKey& now) const;
+    PrepareKey prepare_key(const StageOptions& options) const;
+
+    // Each sees to it that its slot is of these options and, if it is `wanted`, has a value. False where the
+    // stage or one before it failed. The compilation gets the findings.
+    bool need_source(const StageOptions& options, Compilation& compilation);
+    bool need_lowered(const StageOptions& options, bool wanted, Compilation& compilation);
+    bool need_analysed(const StageOptions& options, bool wanted, Compilation& compilation);
+    bool need_viewed(const StageOptions& options, Compilation& compilation);
+    bool need_prepared(const StageOptions& options, Compilation& compilation);
+    bool need_compiled(const StageOptions& options, Compilation& compilation);
+
+    /// Forgets the last run. With the `same` inputs the next one has its number.
+    template<typename Of> void restart(Of& slot, bool same);
+    template<typename Of, typename Key, typename Value>
+    void finish(Of& slot, Key key, std::optional<Value> value, Diagnostics findings);
+
+    std::string path_;
+    std::optional<std::string> text_; ///< in place of the file's
+    std::uint64_t edits_ = 0;
+    Keep keep_;
+    StageRuns runs_;
+    std::uint64_t serials_ = 0;
+
+    Slot<SourceKey, Source> source_;
+    Slot<LowerKey, LoweredModel> lowered_;
+    SourceMap sources_;       ///< of the last lowering
+    bool reads_steps_ = true; ///< the last lowering: what it gives depends on steps and on the time
+    bool reads_time_ = true;
+    Slot<AnalyseKey, AnalysedModel> analysed_;
+    Slot<ViewKey, ViewedModel> viewed_;
+    Slot<PrepareKey, PreparedCut> prepared_;
+    Slot<CompileKey, CompiledModel> compiled_;
+};
+
+} // namespace graftal

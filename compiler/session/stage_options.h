@@ -1,0 +1,38 @@
+#pragma once
+
+#include <memory>
+
+#include "compiler/detail/detail_options.h"
+#include "compiler/lower/lower_options.h"
+#include "compiler/passes/pipeline.h"
+#include "compiler/povray/cut.h"
+#include "compiler/scene/scene.h"
+#include "compiler/zoom/reroot.h"
+
+namespace graftal {
+
+class SharedFraming;
+
+/// From where a model is looked at, and in how many pixels.
+struct ViewOptions {
+    ImageSize size;
+    CameraOverride camera;
+    ZoomRequest zoom;
+    /// Of an animation, whose frames are framed together; null: the model is framed by itself.
+    std::shared_ptr<const SharedFraming> framing;
+    double turn_deg = 0; ///< with a framing: how far the camera has gone round the model
+    bool operator==(const ViewOptions&) const = default;
+};
+
+/// The options of all stages of a session, those of each stage by themselves.
+struct StageOptions {
+    LowerOptions lower; ///< its steps are those of the command line, for all languages
+    /// An orbit (orbit_model.h) is no error: it has no graph, and ends at the stage of lowering.
+    bool accept_orbit = false;
+    PipelineOptions pipeline;
+    ViewOptions view;
+    DetailOptions detail; ///< its steps and root levels are filled in: see resolved()
+    CutOptions cut;
+};
+
+} // namespace graftal

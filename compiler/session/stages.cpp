@@ -1,0 +1,201 @@
+#include "compiler/session/stages.h"
+
+#include <algorithm>
+#include <utility>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "compiler/analysis/model_range.h"
+#include "compiler/graph/verify.h"
+#include "compiler/languages/lower.h"
+#include "compiler/session/frame_model.h"
+#include "compiler/session/shared_framing.h"
+#include "compiler/session/stage_clock.h"
+#include "compiler/support/check.h"
+#include "compiler/support/file.h"
+#include "compiler/support/number.h"
+#include "compiler/support/number_range.h"
+
+namespace graftal {
+
+namespace {
+
+Graph optimise(Graph graph, const PipelineOptions& options, std::vector<StageTime>& times) {
+    std::vector<PassTime> pass_times;
+    graph = run_pipeline(std::move(graph), options, &pass_times);
+    for (PassTime& time : pass_times)
+        times.push_back({std::move(time.name), time.seconds});
+    return graph;
+}
+
+std::string digits(double value, int count) {
+    std::string out;
+    append_number(out, value, count);
+    return out;
+}
+
+/// Where the model says the step of a cycle; a generated instance stands for its object.
+Span span_of(const Graph& graph, const GraphStep& step) {
+    const Object& object = graph.objects[step.object];
+    const Span span = object.instances[step.instance].span;
+    return span.known() ? span : object.span;
+}
+
+void report_refuted(const Graph& graph, const Contraction& contraction, Diagnostics& diagnostics) {
+    const std::vector<GraphStep>& cycle = contraction.worst_cycle;
+    diagnostics
+        .error(span_of(graph, cycle.front()),
+               fmt::format("the cycle {} does not contract: its spectral radius is {}{}",
+                           describe_cycle(graph, cycle), digits(contraction.rate(), 6),
+                           cycle.size() > 1 ? " an instance" : ""))
+        .with_hint("an object may contain itself only if every way round makes it smaller: scale down an "
+                   "instance of the cycle");
+}
+
+void report_undecided(const Graph& graph, const Contraction& contraction, Diagnostics& diagnostics) {
+    const std::vector<GraphStep>& cycle = contraction.worst_cycle;
+    const Span span = cycle.empty() ? graph.objects[graph.root].span : span_of(graph, cycle.front());
+    Diagnostic& error = diagnostics.error(
+        span,
+        fmt::format("cannot prove that every cycle contracts: the factor an instance lies between {} and {}",
+                    digits(contraction.lower, 12), digits(contraction.upper, 12)));
+    error.with_hint("a slightly smaller scale on the instances that expand settles it");
+    if (!cycle.empty())
+        error.with_note(span,
+                        fmt::format("the cycle that contracts least is {}", describe_cycle(graph, cycle)));
+}
+
+/// Whether the limit of the unfolding is known to exist.
+bool converges(const Contraction& contraction) {
+    return contraction.verdict == Verdict::acyclic || contraction.verdict == Verdict::proved;
+}
+
+View view_of(const AnalysedModel& model, std::optional<unsigned> steps, const ViewOptions& options,
+             bool part) {
+    if (!options.framing) return frame_model(model, steps, options.size, options.camera);
+    if (!part) return options.framing->view(model, options.camera, options.turn_deg);
+    // A part that is looked at by itself (--at) is framed for its own frame, which the models do not know.
+    SharedFraming own;
+    own.include(model, steps);
+    own.settle(options.camera, options.size, options.framing->turning());
+    return own.view(model, options.camera, options.turn_deg);
+}
+
+/// What frames an object as if it were the model; the camera that the model gives is meant for its root.
+FrameObject framing_of(const AnalysedModel& model, std::optional<unsigned> steps,
+                       const ViewOptions& options) {
+    return [&model, steps, &options](ObjectId object, unsigned used_levels) {
+        if (object == model.graph.root) return view_of(model, steps, options, false);
+        AnalysedModel part = model;
+        part.graph.root = object;
+        part.graph.settings.camera.reset();
+        return view_of(part, steps ? std::optional(*steps - used_levels) : steps, options, true);
+    };
+}
+
+/// Gives the model a new root at the place that the zoom asks for.
+std::optional<ViewedModel> zoom_in(const AnalysedModel& model, std::optional<unsigned> steps,
+                                   const ViewOptions& options, Diagnostics& diagnostics) {
+    std::optional<Vec3> look_at = options.camera.look_at;
+    if (!look_at && model.graph.settings.camera) look_at = model.graph.settings.camera->look_at;
+    std::optional<Rerooted> rerooted =
+        reroot({model.graph, model.components, model.bounds, steps}, options.zoom,
+               framing_of(model, steps, options), look_at, diagnostics);
+    if (!rerooted) return std::nullopt;
+    auto zoomed = std::make_shared<AnalysedModel>();
+    zoomed->path = model.path;
+    zoomed->written = model.written;
+    zoomed->graph = std::move(rerooted->graph);
+    zoomed->components = std::move(rerooted->components);
+    zoomed->contraction = model.contraction;
+    zoomed->bounds = std::move(rerooted->bounds);
+    zoomed->derivation = model.derivation;
+    return ViewedModel{std::move(zoomed), steps, std::move(rerooted->view), std::move(rerooted->root_levels),
+                       rerooted->zoom};
+}
+
+} // namespace
+
+std::optional<Source> read_source(const std::string& path, const std::string& root, Diagnostics& diagnostics,
+                                  Status& status) {
+    if (path != "-" && !root.empty() && !lies_in(path, root)) {
+        diagnostics.error(Span(), fmt::format("'{}' leads out of --root '{}'", path, root));
+        return std::nullopt;
+    }
+    Source source{path, {}};
+    status = read_text(path, source.text);
+    if (!status.ok()) return std::nullopt;
+    return source;
+}
+
+std::optional<LoweredModel> lower_source(const Source& source, const LowerOptions& options, bool accept_orbit,
+                                         SourceMap& sources, Diagnostics& diagnostics) {
+    LoweredModel model{source.path, {}, {}, {}};
+    LowerOptions own = options;
+    own.orbit = accept_orbit ? &model.orbit : nullptr;
+    model.graph = lower_text(source.path, source.text, own, sources, diagnostics, &model.derivation);
+    const bool draws_nothing = model.derivation && options.may_draw_nothing && !diagnostics.has_errors();
+    if (!model.graph && !model.orbit && !draws_nothing) return std::nullopt;
+    return model;
+}
+
+bool check_pass(const std::string& name, Diagnostics& diagnostics) {
+    std::vector<std::string> names;
+    for (const Pass& pass : pipeline())
+        names.emplace_back(pass.name);
+    if (name.empty() || std::find(names.begin(), names.end(), name) != names.end()) return true;
+    diagnostics.error({}, fmt::format("there is no pass '{}'", name))
+        .with_hint(fmt::format("the passes are {}", fmt::join(names, ", ")));
+    return false;
+}
+
+std::optional<AnalysedModel> analyse(LoweredModel lowered, const PipelineOptions& options,
+                                     Diagnostics& diagnostics, std::vector<StageTime>& times) {
+    AnalysedModel model;
+    model.path = std::move(lowered.path);
+    model.derivation = std::move(lowered.derivation);
+    if (!lowered.graph) return model;
+    check_verified(*lowered.graph, "after lowering");
+    model.written = {lowered.graph->objects.size(),
+                     instance_count(*lowered.graph) + run_part_count(*lowered.graph)};
+    model.graph = optimise(std::move(*lowered.graph), options, times);
+    StageClock clock(times);
+    model.components = clock.run("components", [&] { return strong_components(model.graph); });
+    model.contraction =
+        clock.run("contraction", [&] { return decide_contraction(model.graph, model.components); });
+    if (!converges(model.contraction)) return model;
+    model.bounds = clock.run("bounding",
+                             [&] { return bound_objects(model.graph, model.components, model.contraction); });
+    if (!check_range(model.graph, model.components, model.bounds, diagnostics)) return std::nullopt;
+    return model;
+}
+
+bool refuse_divergent(const AnalysedModel& model, Diagnostics& diagnostics) {
+    if (model.graph.objects.empty() || converges(model.contraction)) return false;
+    if (model.contraction.verdict == Verdict::refuted)
+        report_refuted(model.graph, model.contraction, diagnostics);
+    else
+        report_undecided(model.graph, model.contraction, diagnostics);
+    return true;
+}
+
+std::optional<unsigned> levels_of(const AnalysedModel& model, std::optional<unsigned> asked) {
+    return asked && !model.derivation ? asked : model.graph.settings.steps;
+}
+
+std::optional<ViewedModel> look_at(std::shared_ptr<const AnalysedModel> model, std::optional<unsigned> steps,
+                                   const ViewOptions& options, Diagnostics& diagnostics) {
+    if (options.zoom.active()) return zoom_in(*model, steps, options, diagnostics);
+    View view = view_of(*model, steps, options, false);
+    return ViewedModel{std::move(model), steps, std::move(view), {}, {}};
+}
+
+DetailOptions resolved(DetailOptions asked, const ViewedModel& viewed) {
+    asked.steps = viewed.steps;
+    asked.root_levels = viewed.root_levels;
+    if (asked.error_world) asked.error_world = std::min(viewed.zoom.times(*asked.error_world), largest_size);
+    return asked;
+}
+
+} // namespace graftal

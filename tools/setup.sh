@@ -18,15 +18,19 @@ install_packages() {
         DEBIAN_FRONTEND=noninteractive "${as_root[@]}" apt-get install -qq -y --no-install-recommends "${missing[@]}" >&2
 }
 
+# Where ccache is installed, CMake is to use it.
+use_ccache() {
+    if command -v ccache >/dev/null; then
+        export CMAKE_CXX_COMPILER_LAUNCHER=${CMAKE_CXX_COMPILER_LAUNCHER-ccache}
+    fi
+}
+
 # build PRESET [TARGET...]: configures on first use, then builds what has changed.
 build() {
     local preset=$1
     shift
-    if command -v ccache >/dev/null; then
-        export CMAKE_CXX_COMPILER_LAUNCHER=${CMAKE_CXX_COMPILER_LAUNCHER-ccache}
-    fi
-    # CI decides on -Werror when CMake runs, so there it always does.
-    if [[ ! -f $root/build/$preset/build.ninja || -n ${CI-} ]]; then
+    use_ccache
+    if [[ ! -f $root/build/$preset/build.ninja ]]; then
         (cd "$root" && cmake --preset "$preset" >&2) || return
     fi
     cmake --build "$root/build/$preset" ${1+--target "$@"} >&2

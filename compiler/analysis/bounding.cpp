@@ -13,6 +13,7 @@
 #include "compiler/analysis/run_bounds.h"
 #include "compiler/analysis/support_query.h"
 #include "compiler/analysis/tight_ball.h"
+#include "compiler/graph/planes.h"
 #include "compiler/support/check.h"
 
 namespace graftal {
@@ -59,7 +60,7 @@ class Bounder {
   public:
     Bounder(const Graph& graph, const Components& components, const Contraction& contraction)
         : graph_(graph), components_(components), contraction_(contraction), outers_(graph.objects.size()),
-          unbounded_(graph.objects.size(), false), search_(graph, outers_),
+          unbounded_(plane_holders(graph, components)), search_(graph, outers_),
           effort_(queries(graph, components)),
           pieces_of_ball_(std::clamp<std::size_t>(400'000 / graph.objects.size(), 4, 400)) {}
 
@@ -98,7 +99,6 @@ class Bounder {
         if (object.run) return bound_run(id, object.run);
         Outer& outer = outers_[id];
         for (const Instance& instance : object.instances) {
-            unbounded_[id] = unbounded_[id] || unbounded_[instance.master];
             const Outer& part = outers_[instance.master];
             if (part.empty) continue;
             outer.box.include(transformed(instance.parent_from_child, part.box));
@@ -113,7 +113,6 @@ class Bounder {
 
     void bound_primitive(ObjectId id, PrimitiveKind kind) {
         const ObjectBounds bounds = primitive_bounds(kind);
-        unbounded_[id] = bounds.unbounded;
         if (bounds.unbounded) return;
         Outer& outer = outers_[id];
         outer.box = bounds.box;
@@ -198,7 +197,7 @@ class Bounder {
     const Components& components_;
     const Contraction& contraction_;
     Outers outers_;
-    std::vector<bool> unbounded_;
+    const std::vector<bool> unbounded_;
     SupportSearch search_;
     Effort effort_;
     std::size_t pieces_of_ball_;

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <numbers>
 #include <numeric>
-#include <queue>
 #include <span>
 
 #include <glm/common.hpp>
@@ -14,6 +14,7 @@
 #include "compiler/detail/congruence.h"
 #include "compiler/detail/ellipsoid_fit.h"
 #include "compiler/detail/shadow.h"
+#include "compiler/graph/walk.h"
 
 namespace graftal {
 
@@ -127,7 +128,8 @@ class Measurer {
     void unfold(NodeId root, std::size_t most) {
         parts_.clear();
         std::size_t bodies = 0;
-        std::priority_queue<std::pair<double, std::int64_t>> largest;
+        using Waiting = std::pair<double, std::int64_t>; // its size, and less its place among the parts
+        Walk<Waiting, std::less<>> largest;
         const auto open = [&](const Part& parent, std::size_t reused) {
             const std::vector<CutEdge>& edges = cut_.nodes[parent.node].edges;
             for (std::uint32_t i = 0; i < edges.size(); ++i) {
@@ -141,16 +143,15 @@ class Measurer {
                 bodies += bodies_of(part);
                 // The earlier of two that are alike first.
                 if (opens(part))
-                    largest.emplace(part.scale * cut_.nodes[part.node].ball.radius,
-                                    -static_cast<std::int64_t>(at));
+                    largest.push(
+                        {part.scale * cut_.nodes[part.node].ball.radius, -static_cast<std::int64_t>(at)});
             }
         };
         open({root, {}, 1, 0, {}}, SIZE_MAX);
         // A cycle of single instances would be opened for ever, and never make more parts.
-        for (std::size_t opened = 0; !largest.empty() && opened < 4 * most && bodies < bodies_a_piece * most;
-             ++opened) {
-            const auto at = static_cast<std::size_t>(-largest.top().second);
-            largest.pop();
+        Waiting next;
+        while (largest.visits() < 4 * most && bodies < bodies_a_piece * most && largest.next(next)) {
+            const auto at = static_cast<std::size_t>(-next.second);
             const Part part = parts_[at];
             if (parts_.size() + cut_.nodes[part.node].edges.size() <= most + 1) open(part, at);
         }

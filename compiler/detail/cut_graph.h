@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "compiler/analysis/bounding.h"
-#include "compiler/graph/components.h"
 #include "compiler/graph/graph.h"
+#include "compiler/graph/path.h"
+#include "compiler/support/bounds.h"
 
 namespace graftal {
 
@@ -58,26 +58,17 @@ struct CutNode {
     MeanColour mean;
 };
 
-/// The graph prepared for cutting: same unfolding, fewer and more alike nodes.
-///   - A map that all instances of an object share is moved to the edges that lead to the object, so that the
-///     attractors of an IFS, all images of one set, become one node.
-///   - Objects that are equal then are merged.
-///   - Ending objects of one instance vanish into their users' edges.
+/// A graph after the passes for detail, with what unfolding it asks for at every edge.
 struct CutGraph {
     std::vector<CutNode> nodes;
     std::vector<Material> materials;
     NodeId root = 0;
-    std::vector<std::size_t> root_instances; ///< of the root's edges: some instances draw nothing
-    bool tinted = false;                     ///< some instance has a tint
+    bool tinted = false;     ///< some instance has a tint
     bool contractive = true; ///< every edge within a cycle has stretch < 1: products of stretches end
 };
 
 /// Every node once, and after the nodes it leads to except those that lead back to it.
 std::vector<NodeId> masters_first(const CutGraph& cut);
-
-/// Requires what cut_graph() requires. O(graph).
-CutGraph build_cut_graph(const Graph& graph, const Components& components,
-                         const std::vector<ObjectBounds>& bounds);
 
 /// Sets the mean colours anew, by the weights of the edges. Exact for ending nodes, converging geometrically
 /// for the others.
@@ -89,13 +80,6 @@ void mark_solid(CutGraph& cut);
 /// The edges that a visit follows: all of them, or those of a cut node. None of a cell, which has others.
 inline const std::vector<CutEdge>& followed_edges(const CutNode& node, bool cut) {
     return cut ? node.stop_edges : node.edges;
-}
-
-inline constexpr std::uint32_t unlimited_steps = UINT32_MAX;
-
-/// Levels left after an edge; requires steps >= edge.levels.
-inline std::uint32_t steps_after(std::uint32_t steps, const CutEdge& edge) {
-    return steps == unlimited_steps ? steps : steps - edge.levels;
 }
 
 } // namespace graftal

@@ -2,15 +2,13 @@
 
 #include <cstdint>
 #include <optional>
-#include <vector>
 
 namespace graftal {
 
 /// What prepare_cut() has to know of the picture.
 struct PrepareOptions {
-    std::optional<unsigned> steps;     ///< levels; nothing: as deep as the error asks for
-    bool culls = true;                 ///< whether anything is culled for its size
-    std::vector<unsigned> root_levels; ///< as DetailOptions'
+    std::optional<unsigned> steps; ///< levels; nothing: as deep as the error asks for
+    bool culls = true;             ///< whether anything is culled for its size
     bool operator==(const PrepareOptions&) const = default;
 };
 
@@ -19,8 +17,6 @@ struct DetailOptions {
     std::optional<double> error_world;       ///< the same as a length in scene units, in place of error_px
     std::optional<unsigned> steps;           ///< levels; nothing: as deep as the error asks for
     std::uint64_t memory_bytes = 2ull << 30; ///< POV-Ray's estimated peak
-    std::vector<unsigned>
-        root_levels;           ///< that each of the root's instances uses up; empty: as the graph says
     double work_seconds = 30;  ///< of one processor, for the picture (work.h); infinite: whatever it takes
     bool visible_only = false; ///< drop what is out of the picture, with its shadows and reflections
     /// Whether proxies show the limit's normals (limit_normal.h), or their own.
@@ -28,7 +24,7 @@ struct DetailOptions {
 
     /// Whether anything is culled for its size.
     bool culls() const { return error_world ? *error_world > 0 : error_px > 0; }
-    PrepareOptions preparing() const { return {steps, culls(), root_levels}; }
+    PrepareOptions preparing() const { return {steps, culls()}; }
     bool operator==(const DetailOptions&) const = default;
 };
 

@@ -2,10 +2,10 @@
 
 #include <algorithm>
 
+#include "compiler/detail/piece.h"
 #include "compiler/detail/piece_kind.h"
 #include "compiler/detail/run_cells.h"
 #include "compiler/detail/texture_space.h"
-#include "compiler/support/stretch.h"
 
 namespace graftal {
 
@@ -114,9 +114,7 @@ void LeafWalk::push_items() {
         for (const Paint& paint : paints_) {
             Paint& child = paint_stack_.emplace_back(paint);
             child.pair = symmetry_.pair[edge.child];
-            if (!edge.material) continue;
-            child.material = edge.material;
-            child.inherited = cut_.materials[*edge.material].rgb;
+            look_through(cut_, cut_.nodes[visit_.shape], false, edge, paint, child);
         }
     };
     for (std::size_t i = cell.first + cell.count; i-- > cell.first;) {
@@ -140,10 +138,9 @@ bool LeafWalk::is_new(const Visit& child) {
 
 void LeafWalk::fill_child(const CutEdge& edge, bool is_cut, double detail, Visit& child) const {
     child.shape = edge.child;
-    child.steps = steps_after(visit_.steps, edge);
+    child.steps = steps_below(visit_.steps, edge);
     child.representative_from_node = visit_.representative_from_node * edge.node_from_child;
-    child.scale = edge.similarity ? visit_.scale * edge.stretch
-                                  : largest_stretch(child.representative_from_node.linear);
+    child.scale = size_below(visit_.scale, edge, child.representative_from_node.linear);
     child.depth = visit_.depth;
     if (cut_.nodes[edge.child].primitive) child.turns = length_in_turns(edge.node_from_child.linear);
     child.culled_detail = is_cut && detail <= 1 ? detail : visit_.culled_detail;
@@ -156,13 +153,7 @@ void LeafWalk::fill_child(const Paint& paint, std::size_t edge, bool is_cut, Pai
     const CutNode& colours = cut_.nodes[pair.b];
     const CutEdge& twin = followed_edges(colours, is_cut)[(is_cut ? pair.stop_edge : pair.edge)[edge]];
     child.pair = (is_cut ? pair.stop_pair : pair.edge_pair)[edge];
-    child.tint = paint.tint * twin.tint;
-    child.inherited = is_cut && colours.terminal ? colours.mean.over(paint.inherited) : paint.inherited;
-    child.material = paint.material;
-    if (twin.material) {
-        child.material = twin.material;
-        child.inherited = cut_.materials[*twin.material].rgb;
-    }
+    look_through(cut_, colours, is_cut, twin, paint, child);
 }
 
 } // namespace graftal

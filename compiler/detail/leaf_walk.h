@@ -6,8 +6,9 @@
 #include <vector>
 
 #include "compiler/detail/alike_set.h"
-#include "compiler/detail/bake.h"
+#include "compiler/detail/baked.h"
 #include "compiler/detail/limit_normal.h"
+#include "compiler/detail/symmetry.h"
 
 namespace graftal {
 

@@ -1,31 +1,22 @@
 #include "compiler/detail/piece.h"
 
 #include <limits>
-#include <vector>
 
 #include "compiler/detail/run_cells.h"
 #include "compiler/detail/texture_space.h"
-#include "compiler/support/stretch.h"
+#include "compiler/graph/walk.h"
 
 namespace graftal {
 
 Piece descend(const CutGraph& cut, const Piece& piece, const CutEdge& edge, bool piece_is_cut) {
     Piece child;
     child.node = edge.child;
-    child.steps = steps_after(piece.steps, edge);
+    child.steps = steps_below(piece.steps, edge);
     child.world_from_node = piece.world_from_node * edge.node_from_child;
-    child.scale =
-        edge.similarity ? piece.scale * edge.stretch : largest_stretch(child.world_from_node.linear);
-    child.tint = piece.tint * edge.tint;
-    const CutNode& node = cut.nodes[piece.node];
-    child.inherited = piece_is_cut && node.terminal ? node.mean.over(piece.inherited) : piece.inherited;
-    child.material = piece.material;
+    child.scale = size_below(piece.scale, edge, child.world_from_node.linear);
+    look_through(cut, cut.nodes[piece.node], piece_is_cut, edge, piece, child);
     child.faint = piece.faint;
     if (cut.nodes[edge.child].primitive) child.turns = length_in_turns(edge.node_from_child.linear);
-    if (edge.material) {
-        child.material = edge.material;
-        child.inherited = cut.materials[*edge.material].rgb;
-    }
     return child;
 }
 
@@ -51,19 +42,18 @@ PieceKind kind_of(const CutGraph& cut, const Projection& projection, const Piece
 Weights::Weight weight_of(const CutGraph& cut, const Projection& projection, Weights& weights,
                           const Piece& piece) {
     Weights::Weight sum;
-    std::vector<Piece> stack = {piece};
-    for (int most_parts = 10'000; !stack.empty(); --most_parts) {
-        const Piece part = stack.back();
-        stack.pop_back();
+    Walk<Piece> walk;
+    walk.push(piece);
+    constexpr std::uint64_t most_parts = 10'000;
+    for (Piece part; walk.next(part);) {
         const PieceKind kind = weights.normalised(kind_of(cut, projection, part));
         const CutNode& node = cut.nodes[part.node];
-        if (!node.unbounded || node.primitive || most_parts <= 0) {
+        if (!node.unbounded || node.primitive || walk.visits() > most_parts) {
             sum += weights.of(kind);
             continue;
         }
         const bool ends = weights.is_cut(kind);
-        for_each_edge(node, ends,
-                      [&](const CutEdge& edge) { stack.push_back(descend(cut, part, edge, ends)); });
+        for_each_edge(node, ends, [&](const CutEdge& edge) { walk.push(descend(cut, part, edge, ends)); });
     }
     return sum;
 }

@@ -23,6 +23,20 @@ struct Piece {
     bool faint = false;                 ///< it stands for a set without area that was culled
 };
 
+/// The look of what an edge leads to, of anything that has a `tint`, the `inherited` colour of what names no
+/// material, and the `material`. What stands for a cut node takes on the node's mean colour.
+template<typename Looks>
+void look_through(const CutGraph& cut, const CutNode& parent, bool parent_is_cut, const CutEdge& edge,
+                  const Looks& before, Looks& after) {
+    after.tint = before.tint * edge.tint;
+    after.inherited =
+        parent_is_cut && parent.terminal ? parent.mean.over(before.inherited) : before.inherited;
+    after.material = before.material;
+    if (!edge.material) return;
+    after.material = edge.material;
+    after.inherited = cut.materials[*edge.material].rgb;
+}
+
 /// Steps down one edge. What stands for a cut node takes on the node's mean colour.
 Piece descend(const CutGraph& cut, const Piece& piece, const CutEdge& edge, bool piece_is_cut);
 

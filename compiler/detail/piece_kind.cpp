@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "compiler/detail/ending.h"
+
 namespace graftal {
 
 double PieceKind::steps_of(double detail) {
@@ -27,7 +29,7 @@ double cut_detail(const CutNode& node, double error_px) {
 
 bool ends_by(const CutNode& node, std::uint32_t steps, bool small) {
     if (node.primitive || node.unbounded) return false;
-    return (node.unending && steps == 0) || (node.cullable && small);
+    return ends_recursion(node, steps, small);
 }
 
 bool is_cut(const CutNode& node, std::uint32_t steps, double detail, double error_px) {

@@ -2,14 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
-#include <queue>
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
 #include "compiler/detail/run_cells.h"
 #include "compiler/detail/surface_samples.h"
+#include "compiler/graph/walk.h"
 
 namespace graftal {
 
@@ -72,11 +73,9 @@ bool PointSystem::add_large_parts() {
     whole.black.inherited = Rgb(0.0);
     whole.white.inherited = Rgb(1.0);
     whole.size = std::numeric_limits<double>::infinity();
-    std::priority_queue<Part> queue;
-    queue.push(whole);
-    for (std::size_t parts = 0; !queue.empty() && parts < most_large_parts; ++parts) {
-        const Part part = queue.top();
-        queue.pop();
+    Walk<Part, std::less<>> walk({.most_visits = most_large_parts});
+    walk.push(whole);
+    for (Part part; walk.next(part);) {
         const CutNode& node = cut_.nodes[part.black.node];
         const bool cut = node.unending && part.black.steps == 0;
         bool fits = true;
@@ -88,8 +87,8 @@ bool PointSystem::add_large_parts() {
                 return;
             }
             child.size = 2 * child.black.scale * cut_.nodes[edge.child].ball.radius;
-            if (child.size > least_large_part * cell && queue.size() < most_large_parts)
-                queue.push(std::move(child));
+            if (child.size > least_large_part * cell && walk.waiting() < most_large_parts)
+                walk.push(std::move(child));
         });
         if (!fits) return false;
     }
@@ -135,13 +134,14 @@ std::optional<std::uint32_t> PointSystem::state_number(StateKey key) {
 }
 
 bool PointSystem::add_states(StateKey root) {
-    std::priority_queue<std::pair<double, std::uint32_t>> queue;
+    using Reached = std::pair<double, std::uint32_t>; // a stretch, and a state
+    Walk<Reached, std::less<>> walk;
     const auto first = state_number(root);
     states_[*first].stretch = 1;
-    queue.emplace(1.0, *first);
-    for (std::size_t relaxations = 0; !queue.empty();) {
-        const auto [stretch, number] = queue.top();
-        queue.pop();
+    walk.push({1.0, *first});
+    std::size_t relaxations = 0;
+    for (Reached reached; walk.next(reached);) {
+        const auto [stretch, number] = reached;
         if (stretch < states_[number].stretch) continue;
         const CutNode& node = node_of(states_[number]);
         if (node.unbounded) return false;
@@ -152,13 +152,13 @@ bool PointSystem::add_states(StateKey root) {
         if (states_[number].tiny) continue;
         for (const CutEdge& edge : followed_edges(node, states_[number].cut)) {
             if (cut_.nodes[edge.child].primitive) continue;
-            const auto child = state_number({edge.child, steps_after(steps, edge)});
+            const auto child = state_number({edge.child, steps_below(steps, edge)});
             work_ += moves_a_relaxation;
             if (!child || ++relaxations > most_relaxations || work_ > most_work_) return false;
             const double child_stretch = stretch * stretch_of(edge);
             if (!(child_stretch > states_[*child].stretch * (1 + 1e-12))) continue;
             states_[*child].stretch = child_stretch;
-            queue.emplace(child_stretch, *child);
+            walk.push({child_stretch, *child});
         }
     }
     // What no way reaches with a size has none.
@@ -182,7 +182,7 @@ bool PointSystem::start(std::uint32_t number) {
     for (const CutEdge& edge : followed_edges(node, state.cut)) {
         if (cut_.nodes[edge.child].primitive) continue;
         work_ += moves_a_relaxation;
-        states_[*state_number({edge.child, steps_after(state.key.second, edge)})].uses.push_back(
+        states_[*state_number({edge.child, steps_below(state.key.second, edge)})].uses.push_back(
             {number, &edge});
     }
     if (!fits || work_ > most_work_) return false;

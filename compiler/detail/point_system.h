@@ -12,7 +12,7 @@
 #include "compiler/detail/cell_table.h"
 #include "compiler/detail/inside_grid.h"
 #include "compiler/detail/piece.h"
-#include "compiler/detail/shell_points.h"
+#include "compiler/detail/point_set.h"
 #include "compiler/support/id_table.h"
 
 namespace graftal {

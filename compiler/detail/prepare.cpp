@@ -4,8 +4,8 @@
 #include <utility>
 #include <vector>
 
+#include "compiler/detail/build_cut_graph.h"
 #include "compiler/detail/coverage.h"
-#include "compiler/support/check.h"
 
 namespace graftal {
 
@@ -17,18 +17,6 @@ namespace {
 void drop_endings(CutGraph& cut) {
     for (CutNode& node : cut.nodes)
         if (!node.terminal && !node.sealed) node.stop_edges.clear();
-}
-
-/// The root counts as a level itself, so that it is never the one that is cut.
-void use_up_levels(CutGraph& cut, const std::vector<unsigned>& root_levels) {
-    CutNode root = cut.nodes[cut.root];
-    for (std::size_t i = 0; i < root.edges.size(); ++i) {
-        const std::size_t instance = cut.root_instances[i];
-        GRAFTAL_CHECK(instance < root_levels.size(), "cut: root levels and instances differ");
-        if (root.edges[i].levels > 0) root.edges[i].levels = root_levels[instance] + 1;
-    }
-    cut.root = static_cast<NodeId>(cut.nodes.size());
-    cut.nodes.push_back(std::move(root));
 }
 
 /// Parts that are drawn wider than they are make what holds them wider, too.
@@ -57,12 +45,13 @@ void mark_wide(CutGraph& cut) {
 } // namespace
 
 PreparedCut prepare_cut(const Graph& graph, const Components& components,
-                        const std::vector<ObjectBounds>& bounds, const PrepareOptions& options) {
+                        const std::vector<ObjectBounds>& bounds, const PrepareOptions& options,
+                        const PassObserver& after_each) {
     PreparedCut prepared;
-    CutGraph& cut = prepared.cut = build_cut_graph(graph, components, bounds);
+    BoundedGraph passed =
+        run_passes(detail_passes(), {graph, bounds}, {.stop_after = {}, .after_each = after_each});
+    CutGraph& cut = prepared.cut = build_cut_graph(std::move(passed.graph), passed.bounds);
     if (!options.steps) drop_endings(cut);
-    if (!options.root_levels.empty()) use_up_levels(cut, options.root_levels);
-    split_into_halves(cut);
     prepared.symmetry = find_symmetry(cut);
     if (options.culls || (components.unending[graph.root] && options.steps))
         fit_proxies(cut, prepared.symmetry);
@@ -70,7 +59,7 @@ PreparedCut prepare_cut(const Graph& graph, const Components& components,
     mark_solid(cut);
     prepared.bounds = bounds[graph.root].box;
     prepared.instances = instance_count(graph);
-    if (options.steps) prepared.root_steps = *options.steps + (options.root_levels.empty() ? 0 : 1);
+    if (options.steps) prepared.root_steps = *options.steps;
     return prepared;
 }
 

@@ -9,6 +9,7 @@
 #include "compiler/detail/shell_store.h"
 #include "compiler/detail/symmetry.h"
 #include "compiler/graph/components.h"
+#include "compiler/passes/pipeline.h"
 #include "compiler/support/diagnostics.h"
 
 namespace graftal {
@@ -24,9 +25,10 @@ struct PreparedCut {
     std::unique_ptr<ShellStore> shells = std::make_unique<ShellStore>(); ///< of this graph
 };
 
-/// Requires what cut_graph() requires. O(graph).
+/// Runs the passes for detail, which `after_each` sees. Requires what cut_graph() requires. O(graph).
 PreparedCut prepare_cut(const Graph& graph, const Components& components,
-                        const std::vector<ObjectBounds>& bounds, const PrepareOptions& options);
+                        const std::vector<ObjectBounds>& bounds, const PrepareOptions& options,
+                        const PassObserver& after_each = {});
 
 /// True, after an error, if nothing says how deep the graph is to be unfolded.
 bool refuse_endless(const Graph& graph, const Components& components, const DetailOptions& options,

@@ -7,7 +7,7 @@
 #include <optional>
 #include <vector>
 
-#include "compiler/detail/bake.h"
+#include "compiler/detail/baked.h"
 #include "compiler/detail/shell_store.h"
 
 namespace graftal {

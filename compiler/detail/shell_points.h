@@ -1,55 +1,10 @@
 #pragma once
 
-#include <array>
 #include <cstdint>
-#include <memory>
-#include <optional>
-#include <vector>
 
-#include "compiler/detail/cut_graph.h"
-#include "compiler/detail/inside_grid.h"
+#include "compiler/detail/point_set.h"
 
 namespace graftal {
-
-/// What a point shows: fixed + open * (the colour that the node inherits); tints on the way are in it.
-struct PointPaint {
-    std::array<float, 3> fixed{};
-    float open = 1;
-    std::int32_t material = -1; ///< none: the one that the node inherits
-
-    Rgb over(Rgb inherited) const {
-        return Rgb(fixed[0], fixed[1], fixed[2]) + static_cast<double>(open) * inherited;
-    }
-    /// Seen through an edge; `parent`: of a cut node that is drawn by its terminal, else null.
-    PointPaint through(const CutEdge& edge, const CutNode* parent,
-                       const std::vector<Material>& materials) const;
-};
-
-/// Of a shell's surface, about; one that would have more is coarser.
-inline constexpr double most_shell_cells = 7e5;
-
-/// What may be spent on points.
-struct PointLimits {
-    std::uint64_t work = 300'000'000; ///< in all: points moved and sampled, cells flooded
-    std::size_t points = 8'000'000;   ///< kept at once, of all nodes
-};
-
-/// Points of what a node draws, at most one in each cell of a grid.
-struct PointSet {
-    double cell = 0;                          ///< side of a cell, in the node's units
-    Vec3 middle{0.0};                         ///< where the grid's coordinates are 0
-    bool flat = false;                        ///< all points lie in z = middle.z
-    std::vector<std::array<float, 3>> points; ///< from the middle, in the node's units
-    std::vector<PointPaint> paints;           ///< by point; empty: all plain
-    std::shared_ptr<const InsideGrid> inside; ///< what no eye outside can see; none if nothing is
-    std::uint64_t work = 0;                   ///< that it took, also where nothing came of it
-    /// Who asks for cells of a side between these gets the same points: where the limits decide, however
-    /// fine.
-    double finest_asked = 0, coarsest_asked = 0;
-
-    /// Whether the point (from the middle) is well inside.
-    bool is_inside(const std::array<float, 3>& point) const { return inside && inside->has(point); }
-};
 
 /// Draws a node as points, cells of the side 1 / `detail_per_unit` apart, or more where the limits do not
 /// suffice. The work grows with the number of cells that are met and not with the number of parts that lie in

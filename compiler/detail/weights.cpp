@@ -4,10 +4,10 @@
 #include <cmath>
 #include <limits>
 
-#include "compiler/detail/bake.h"
+#include "compiler/detail/baked.h"
 #include "compiler/detail/coverage.h"
 #include "compiler/detail/run_cells.h"
-#include "compiler/detail/shell_points.h"
+#include "compiler/detail/point_set.h"
 #include "compiler/detail/tessellate.h"
 
 namespace graftal {
@@ -89,7 +89,7 @@ std::int32_t Weights::mesh_bin(const PieceKind& kind) {
 }
 
 PieceKind Weights::child_kind(const PieceKind& parent, const CutEdge& edge) const {
-    PieceKind kind{edge.child, steps_after(parent.steps, edge), parent.unit_step};
+    PieceKind kind{edge.child, steps_below(parent.steps, edge), parent.unit_step};
     if (kind.unit_step != PieceKind::endless_detail && kind.unit_step != PieceKind::tiny) {
         // Products of stretches end only if every edge contracts; volumes always do.
         const double change = PieceKind::steps_of(cut_.contractive ? edge.stretch : edge.volume_stretch);

@@ -43,14 +43,19 @@ class Parts {
         Affine place;
         Tint tint;
         const Material* material = nullptr;
+        std::uint32_t levels = levels_of_master;
         double chance = 0;
     };
 
     std::size_t count() const { return object_.run ? object_.run->part_count() : object_.instances.size(); }
 
     Part of(const Instance& instance) const {
-        return {graph_.objects[instance.master].name, instance.parent_from_child, instance.tint,
-                material(instance.material), instance.chance};
+        return {graph_.objects[instance.master].name,
+                instance.parent_from_child,
+                instance.tint,
+                material(instance.material),
+                instance.levels,
+                instance.chance};
     }
 
     /// Requires that one is left.
@@ -62,7 +67,7 @@ class Parts {
         if (!at_ball_) ++next_;
         return {name_of(ball ? PrimitiveKind::sphere : item.kind),
                 ball ? run_from_ball(item) : run_from_body(item), Tint(),
-                material(object_.run_materials[item.colour]), 0};
+                material(object_.run_materials[item.colour])};
     }
 
   private:
@@ -79,7 +84,7 @@ class Parts {
 bool equal(const Parts::Part& x, const Parts::Part& y) {
     if (x.master != y.master || (x.material == nullptr) != (y.material == nullptr)) return false;
     if (x.material && !(*x.material == *y.material)) return false;
-    return x.place == y.place && x.tint == y.tint && x.chance == y.chance;
+    return x.place == y.place && x.tint == y.tint && x.levels == y.levels && x.chance == y.chance;
 }
 
 bool equal(const Graph& a, const Object& x, const Graph& b, const Object& y) {

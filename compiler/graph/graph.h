@@ -20,6 +20,10 @@
 // so many pixels across: a card or a few triangles in place of a leaf's recursion. What is nearer is
 // unfolded.
 //
+// An instance may state its levels in place of that count. A zoom's new root does, whose pieces have used up
+// the levels on the way to them. So does an object that is taken apart: its *parts*, unending masters of
+// instances of no level, are drawn where it is drawn whole, and are never cut themselves.
+//
 // Tints compose along a path from the root by PathTint, parent in front. The material nearest to the
 // primitive wins.
 
@@ -68,12 +72,16 @@ class Run;
 using ObjectId = std::uint32_t;
 using MaterialId = std::uint32_t;
 
+/// One level if the master is unending, else none.
+inline constexpr std::uint32_t levels_of_master = UINT32_MAX;
+
 struct Instance {
     ObjectId master = 0;
     Affine parent_from_child;
     Tint tint;
     std::optional<MaterialId> material; ///< nothing: as the parent says
     Span span;
+    std::uint32_t levels = levels_of_master; ///< that it takes, where it states them ("Levels")
     /// Its share of the object's random points (chaos/chances.h), relative to the other instances of the
     /// object; 0: not stated, or none beside others that are. Pictures of surfaces do not depend on it.
     double chance = 0;
@@ -113,10 +121,10 @@ std::size_t instance_count(const Graph& graph);
 /// The primitives that its runs hold, each run once.
 std::size_t run_part_count(const Graph& graph);
 
-/// Equal structure: the same unions, names, instances (in order), transforms to the last bit, tints, chances,
-/// materials, settings and root, and as many primitives. A run equals the instances that it means; it names
-/// kinds and not objects, so where a graph has one, primitives are not counted. Ids may differ, spans do not
-/// count.
+/// Equal structure: the same unions, names, instances (in order), transforms to the last bit, tints, levels,
+/// chances, materials, settings and root, and as many primitives. A run equals the instances that it means;
+/// it names kinds and not objects, so where a graph has one, primitives are not counted. Ids may differ,
+/// spans do not count.
 bool equal(const Graph& a, const Graph& b);
 
 } // namespace graftal

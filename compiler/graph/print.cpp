@@ -146,7 +146,7 @@ class Printer {
         out_ += "  instance: ";
         out_ += name_of(kind);
         out_ += '\n';
-        print_attributes({0, place, Tint(), material, Span(), 0});
+        print_attributes({0, place, Tint(), material, Span()});
     }
 
     /// Writes the instances from `first` on that are placed alike as one statement, as Hart's texts do.
@@ -167,7 +167,7 @@ class Printer {
 
     static bool placed_alike(const Instance& a, const Instance& b) {
         return a.parent_from_child == b.parent_from_child && a.tint == b.tint && a.material == b.material &&
-               a.chance == b.chance;
+               a.levels == b.levels && a.chance == b.chance;
     }
 
     const std::string& master_name(const Instance& instance) const {
@@ -187,6 +187,8 @@ class Printer {
         const Tint& tint = instance.tint;
         if (!(tint == Tint())) print_numbers("    tint", {tint.rgb.r, tint.rgb.g, tint.rgb.b, tint.alpha});
         if (instance.material) out_ += "    material: " + graph_.materials[*instance.material].name + "\n";
+        if (instance.levels != levels_of_master)
+            out_ += "    // levels: " + std::to_string(instance.levels) + "\n";
         if (instance.chance > 0) print_numbers("    chance", {instance.chance});
     }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "compiler/graph/path.h"
 #include "compiler/graph/run.h"
 #include "compiler/support/check.h"
 
@@ -13,17 +14,8 @@ namespace {
 /// Which instances of an object are drawn.
 enum class Draw : std::uint8_t { all, ending, terminal };
 
-/// Where a path from the root stands.
-struct Place {
-    ObjectId object = 0;
-    unsigned level = 0;
-    Affine world_from_object;
-    PathTint tint;
-    std::optional<MaterialId> material;
-};
-
 struct Frame {
-    Place place;
+    PathState place;
     Draw draw = Draw::all;
     std::size_t next = 0;
 };
@@ -35,7 +27,7 @@ class Unfolding {
         : graph_(graph), components_(components), steps_(steps), leaves_left_(max_leaves), visit_(visit) {}
 
     bool run() {
-        if (!open(Place{graph_.root, 0, {}, {}, {}})) return false;
+        if (!open(PathState{graph_.root, {}, {}, {}, 0})) return false;
         while (!stack_.empty()) {
             Frame& frame = stack_.back();
             const Instance* instance = next_instance(frame);
@@ -43,7 +35,7 @@ class Unfolding {
                 stack_.pop_back();
                 continue;
             }
-            if (!open(below(frame.place, *instance))) return false;
+            if (!open(descend(frame.place, *instance, components_))) return false;
         }
         return true;
     }
@@ -59,18 +51,12 @@ class Unfolding {
         return nullptr;
     }
 
-    Place below(const Place& parent, const Instance& instance) const {
-        return {instance.master, parent.level + (components_.unending[instance.master] ? 1u : 0u),
-                parent.world_from_object * instance.parent_from_child, parent.tint * PathTint(instance.tint),
-                instance.material ? instance.material : parent.material};
-    }
-
     /// Draws the place if it is a leaf, else pushes it; false if the visitor has had enough.
-    bool open(const Place& place) {
+    bool open(const PathState& place) {
         const Object& object = graph_.objects[place.object];
         if (object.primitive) return draw_leaf(place, object.primitive);
         if (object.run) return draw_run(place, object);
-        if (!components_.unending[place.object] || !steps_ || place.level < *steps_) {
+        if (!components_.unending[place.object] || !steps_ || place.levels < *steps_) {
             stack_.push_back({place, Draw::all});
         } else if (object.terminal) {
             stack_.push_back({place, Draw::terminal});
@@ -82,13 +68,15 @@ class Unfolding {
         return true;
     }
 
-    bool draw_run(const Place& place, const Object& object) {
+    bool draw_run(const PathState& place, const Object& object) {
         for (std::size_t i = 0; i < object.run->size(); ++i) {
             const RunItem& item = (*object.run)[i];
             const std::optional<MaterialId>& own = object.run_materials[item.colour];
             const auto part = [&](const Affine& run_from_part) {
-                return Place{place.object, place.level, place.world_from_object * run_from_part, place.tint,
-                             own ? own : place.material};
+                PathState leaf = place;
+                leaf.world_from_object = place.world_from_object * run_from_part;
+                if (own) leaf.material = own;
+                return leaf;
             };
             if (!draw_leaf(part(run_from_body(item)), item.kind)) return false;
             if (item.ball && !draw_leaf(part(run_from_ball(item)), PrimitiveKind::sphere)) return false;
@@ -101,7 +89,7 @@ class Unfolding {
                            [&](const Instance& instance) { return !components_.unending[instance.master]; });
     }
 
-    bool draw_leaf(const Place& place, std::optional<PrimitiveKind> primitive) {
+    bool draw_leaf(const PathState& place, std::optional<PrimitiveKind> primitive) {
         if (leaves_left_ == 0) return false;
         --leaves_left_;
         return visit_({primitive, place.object, place.world_from_object, place.tint, place.material});

@@ -20,8 +20,9 @@ struct UnfoldedLeaf {
 
 /// Visits every leaf of the unfolding to `steps` levels (graph.h, "Levels") depth first, in the order of the
 /// instances. Stops and returns false when `visit` does, or before leaf `max_leaves` + 1. The plain
-/// definition of what a graph means: tests use it, and framing where a model has few levels; nothing fast
-/// does. Memory O(depth); requires `steps` if the graph is unending.
+/// definition of what a graph means: tests hold all else to it, and framing looks by it at a model of few
+/// levels. It keeps one frame for each object on the path and no children that wait (walk.h): memory
+/// O(depth). Requires `steps` if the graph is unending.
 bool unfold(const Graph& graph, const Components& components, std::optional<unsigned> steps,
             std::uint64_t max_leaves, const std::function<bool(const UnfoldedLeaf&)>& visit);
 

@@ -8,6 +8,8 @@
 #include <fmt/format.h>
 
 #include "compiler/graph/components.h"
+#include "compiler/graph/path.h"
+#include "compiler/graph/planes.h"
 #include "compiler/graph/run.h"
 #include "compiler/support/check.h"
 #include "compiler/support/number.h"
@@ -196,9 +198,10 @@ class Verifier {
 
     void check_cycles() {
         const Components components = strong_components(graph_);
-        const std::vector<bool> holds_plane = plane_holders(components);
+        const std::vector<bool> holds_plane = plane_holders(graph_, components);
         const std::vector<bool> returns = terminals_that_return(graph_, components);
         for (ObjectId id = 0; id < graph_.objects.size(); ++id) {
+            check_parts(id, components);
             const std::optional<Instance>& terminal = graph_.objects[id].terminal;
             if (terminal && components.unending[terminal->master])
                 flaw(id, "the terminal '{}' is unending", graph_.objects[terminal->master].name);
@@ -210,20 +213,16 @@ class Verifier {
         }
     }
 
-    /// By object: reaches a plane by instances.
-    std::vector<bool> plane_holders(const Components& components) const {
-        std::vector<bool> holds(graph_.objects.size(), false);
-        for (const std::vector<ObjectId>& members : components.members) {
-            const bool any = std::any_of(members.begin(), members.end(), [&](ObjectId member) {
-                const Object& object = graph_.objects[member];
-                return object.primitive == PrimitiveKind::plane ||
-                       std::any_of(object.instances.begin(), object.instances.end(),
-                                   [&](const Instance& instance) { return holds[instance.master]; });
-            });
-            for (const ObjectId member : members)
-                holds[member] = any;
+    /// Every way round a cycle takes a level.
+    void check_parts(ObjectId id, const Components& components) {
+        for (const Instance& instance : graph_.objects[id].instances) {
+            if (!is_part(instance, components)) continue;
+            const Object& part = graph_.objects[instance.master];
+            const bool has_parts =
+                std::any_of(part.instances.begin(), part.instances.end(),
+                            [&](const Instance& other) { return is_part(other, components); });
+            if (part.terminal || has_parts) flaw(id, "the part '{}' has a terminal or parts", part.name);
         }
-        return holds;
     }
 
     const Graph& graph_;

@@ -302,7 +302,8 @@ class InstLowerer {
             if (!master || !placement) continue;
             Instance instance{*master,         placement->parent_from_child,
                               placement->tint, placement->material,
-                              reference.span,  chance};
+                              reference.span};
+            instance.chance = chance;
             if (group.terminal)
                 object.terminal = instance;
             else
@@ -333,7 +334,8 @@ class InstLowerer {
             const Affine map = placement->parent_from_child * place.parent_from_child;
             lost = lost || !range_fault(map).empty();
             object.instances.push_back({*masters[place.master], map, place.tint, placement->material,
-                                        group.masters[place.master].span, chance});
+                                        group.masters[place.master].span});
+            object.instances.back().chance = chance;
         };
         lower_scatter(group, context, {begin, take}, scratch_);
         if (lost)

@@ -1,6 +1,7 @@
 #include "compiler/passes/drop_unreachable.h"
 
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "compiler/passes/rewrite.h"
@@ -31,8 +32,8 @@ std::vector<bool> reachable_objects(const Graph& graph) {
 
 } // namespace
 
-Graph drop_unreachable(Graph graph) {
-    const std::vector<std::uint32_t> new_object = compact(graph.objects, reachable_objects(graph));
+Rewritten drop_unreachable(Graph graph) {
+    std::vector<ObjectId> new_object = compact(graph.objects, reachable_objects(graph));
     graph.root = new_object[graph.root];
 
     std::vector<bool> used(graph.materials.size(), false);
@@ -44,7 +45,10 @@ Graph drop_unreachable(Graph graph) {
 
     const std::vector<std::uint32_t> new_material = compact(graph.materials, used);
     for_each_material(graph, [&](MaterialId& material) { material = new_material[material]; });
-    return graph;
+    Renumbering renumbering;
+    renumbering.origin = origins(new_object, graph.objects.size());
+    renumbering.now = std::move(new_object);
+    return {std::move(graph), std::move(renumbering)};
 }
 
 } // namespace graftal

@@ -64,7 +64,8 @@ Placement placement_of(const Instance& instance, std::optional<double> terminal_
         put(instance.tint.rgb[channel]);
     put(instance.tint.alpha);
     const std::uint64_t material = instance.material ? *instance.material + std::uint64_t{1} : 0;
-    placement[next++] = material << 1 | (terminal_px ? 1u : 0u);
+    const std::uint64_t levels = instance.levels + 1; // 0: those of the master
+    placement[next++] = levels << 33 | material << 1 | (terminal_px ? 1u : 0u);
     put(terminal_px.value_or(0));
     put(chance);
     return placement;
@@ -317,7 +318,7 @@ class Refinement {
 
 } // namespace
 
-Graph merge_equivalent(Graph graph) {
+Rewritten merge_equivalent(Graph graph) {
     const Partition partition = Refinement(graph).run();
     std::vector<ObjectId> first_of(partition.block_count());
     std::vector<bool> keep(graph.objects.size(), false);
@@ -326,11 +327,15 @@ Graph merge_equivalent(Graph graph) {
         first_of[block] = *std::min_element(members.begin(), members.end());
         keep[first_of[block]] = true;
     }
-    const std::vector<std::uint32_t> new_object = compact(graph.objects, keep);
-    const auto merged = [&](ObjectId object) { return new_object[first_of[partition.block_of(object)]]; };
-    for_each_instance(graph, [&](Instance& instance) { instance.master = merged(instance.master); });
-    graph.root = merged(graph.root);
-    return graph;
+    const std::vector<std::uint32_t> of_kept = compact(graph.objects, keep);
+    Renumbering renumbering;
+    renumbering.now.reserve(of_kept.size());
+    for (ObjectId object = 0; object < of_kept.size(); ++object)
+        renumbering.now.push_back(of_kept[first_of[partition.block_of(object)]]);
+    renumbering.origin = origins(renumbering.now, graph.objects.size());
+    for_each_instance(graph, [&](Instance& instance) { instance.master = renumbering.now[instance.master]; });
+    graph.root = renumbering.now[graph.root];
+    return {std::move(graph), std::move(renumbering)};
 }
 
 } // namespace graftal

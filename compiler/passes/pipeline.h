@@ -1,40 +1,56 @@
 #pragma once
 
 #include <functional>
-#include <optional>
 #include <span>
 #include <string>
-#include <string_view>
 #include <vector>
 
+#include "compiler/analysis/bounding.h"
+#include "compiler/analysis/contraction.h"
 #include "compiler/graph/graph.h"
+#include "compiler/passes/renumbering.h"
 
 namespace graftal {
 
 /// One pass: Graph -> Graph, never changing what unfold() gives (tests/property holds each to it).
 struct Pass {
-    const char* name;    ///< its function, its files, its `--dump-after` name and its test folder
+    const char* name;    ///< unique: its function, files and test; of a function's second row, with `_again`
     const char* summary; ///< one line for `--help-passes`
-    Graph (*run)(Graph);
-    bool keeps_names; ///< every object that is left has the name and the instances, in order, that it had
+    Rewritten (*run)(Graph, const std::vector<ObjectBounds>&); ///< the bounds may be empty before analysis
+    bool settles;                                              ///< a second run changes nothing
 };
 
-/// All passes in the order in which they run.
-std::span<const Pass> pipeline();
+/// All passes that run before analysis, in their order: what is printed, counted and analysed is the graph
+/// after them.
+std::span<const Pass> model_passes();
+
+/// All passes that run on what is drawn, after analysis and after a zoom has given the graph its root.
+/// They need the bounds.
+std::span<const Pass> detail_passes();
 
 struct PassTime {
     std::string name;
     double seconds = 0;
 };
 
+/// Sees the graph after each pass, for --dump-after; may be empty.
+using PassObserver = std::function<void(const Pass&, const Graph&)>;
+
 struct PipelineOptions {
-    std::string stop_after;  ///< run up to and with this pass; empty: all
-    bool keep_names = false; ///< leave out the passes that do not: addresses are to be found
-    std::function<void(const Pass&, const Graph&)> after_each; ///< for --dump-after; may be empty
+    std::string stop_after; ///< run up to and with this pass; empty: all
+    PassObserver after_each;
 };
 
-/// Runs the passes in order and verifies the graph after each; aborts, naming the pass, if one broke it.
-/// Requires that `stop_after` is empty or names a pass.
-Graph run_pipeline(Graph graph, const PipelineOptions& options = {}, std::vector<PassTime>* times = nullptr);
+/// A graph and what the passes carry over.
+struct BoundedGraph {
+    Graph graph;
+    std::vector<ObjectBounds> bounds; ///< of its objects; empty before analysis
+    std::vector<GraphStep> path = {}; ///< instances that somebody follows; only before analysis
+};
+
+/// Runs the passes in order, carries over what is known, and verifies the graph after each; throws, naming
+/// the pass, if one broke it. Requires that `stop_after` is empty or names a pass of these.
+BoundedGraph run_passes(std::span<const Pass> passes, BoundedGraph graph, const PipelineOptions& options = {},
+                        std::vector<PassTime>* times = nullptr);
 
 } // namespace graftal

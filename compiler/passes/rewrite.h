@@ -30,7 +30,8 @@ template<typename Visit> void for_each_material(Graph& graph, const Visit& visit
             if (material) visit(*material);
 }
 
-/// Keeps the marked elements in their order. Returns the new index by old index, UINT32_MAX for the dropped.
+/// Keeps the marked elements in their order. Returns the new index by old index, UINT32_MAX for the dropped
+/// (Renumbering::dropped).
 template<typename T> std::vector<std::uint32_t> compact(std::vector<T>& all, const std::vector<bool>& keep) {
     std::vector<std::uint32_t> new_index(all.size(), UINT32_MAX);
     std::uint32_t kept = 0;
@@ -41,6 +42,14 @@ template<typename T> std::vector<std::uint32_t> compact(std::vector<T>& all, con
     }
     all.erase(all.begin() + kept, all.end());
     return new_index;
+}
+
+/// By new index the old one: the first that became it.
+inline std::vector<std::uint32_t> origins(const std::vector<std::uint32_t>& new_index, std::size_t count) {
+    std::vector<std::uint32_t> origin(count);
+    for (std::size_t old = new_index.size(); old-- > 0;)
+        if (new_index[old] != UINT32_MAX) origin[new_index[old]] = static_cast<std::uint32_t>(old);
+    return origin;
 }
 
 } // namespace graftal

@@ -1,19 +1,13 @@
 #pragma once
 
-#include <cstdint>
+#include <optional>
 
 #include "compiler/detail/symmetry.h"
 #include "compiler/povray/choose.h"
-#include "compiler/povray/cut.h"
+#include "compiler/povray/cut_parts.h"
+#include "compiler/povray/place_pieces.h"
 
 namespace graftal {
-
-struct AssemblyLimits {
-    std::size_t max_placements = 0;
-    std::size_t max_triangles = 0;
-    double work_seconds = 0; ///< by WorkRates (work.h)
-    double slowness = 1;     ///< slowness_of_graph()
-};
 
 class ShellStore;
 

@@ -6,13 +6,13 @@
 
 #include <fmt/format.h>
 
-#include "compiler/detail/calibrate.h"
 #include "compiler/detail/coarser.h"
 #include "compiler/detail/coverage.h"
 #include "compiler/detail/cut_graph.h"
 #include "compiler/detail/prepare.h"
 #include "compiler/detail/work.h"
 #include "compiler/povray/assemble.h"
+#include "compiler/povray/calibrate.h"
 #include "compiler/povray/choose.h"
 #include "compiler/povray/povray_costs.h"
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "compiler/povray/cut.h"
+#include "compiler/povray/cut_parts.h"
 #include "compiler/scene/scene.h"
 
 namespace graftal {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "compiler/detail/run_cells.h"
-#include "compiler/povray/choose.h"
+#include "compiler/detail/piece.h"
 
 namespace graftal {
 

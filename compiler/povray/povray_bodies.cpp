@@ -6,6 +6,7 @@
 
 #include <glm/geometric.hpp>
 
+#include "compiler/povray/literal_form.h"
 #include "compiler/povray/povray_mesh.h"
 #include "compiler/povray/povray_names.h"
 #include "compiler/povray/regular_matrix.h"
@@ -19,8 +20,6 @@ namespace {
 constexpr int digits = 9;
 /// Primitives that are smaller than this are written with a matrix: POV-Ray loses small ones without.
 constexpr double least_literal = 1e-3;
-/// Lengths and angles that differ by less are equal.
-constexpr double equal_share = 1e-12;
 
 /// SDL of the canonical primitives (graph.h), up to the modifiers.
 std::string canonical(PrimitiveKind kind) {
@@ -45,31 +44,10 @@ std::string canonical(PrimitiveKind kind) {
     GRAFTAL_CHECK(false, "emit_povray: unknown primitive");
 }
 
-bool at_right_angles(Vec3 a, Vec3 b) {
-    return std::abs(glm::dot(a, b)) <= equal_share * glm::length(a) * glm::length(b);
-}
-
-bool equal_lengths(Vec3 a, Vec3 b) {
-    return std::abs(glm::length(a) - glm::length(b)) <= equal_share * glm::length(a);
-}
-
-/// A cross-section in the plane of columns 0 and 2 stays a circle, upright on column 1.
-bool keeps_round(const Mat3& m) {
+/// POV-Ray finds it without a matrix.
+bool is_large_enough(const Mat3& m) {
     return glm::length(m[0]) >= least_literal && glm::length(m[1]) >= least_literal &&
-           equal_lengths(m[0], m[2]) && at_right_angles(m[0], m[2]) && at_right_angles(m[0], m[1]) &&
-           at_right_angles(m[1], m[2]);
-}
-
-/// Each column along one axis: boxes stay boxes.
-bool keeps_axes(const Mat3& m) {
-    for (int column = 0; column < 3; ++column) {
-        int along = 0;
-        for (int row = 0; row < 3; ++row)
-            along += m[column][row] != 0;
-        if (along != 1 || glm::length(m[column]) < least_literal) return false;
-    }
-    // A singular map can send two columns along the same axis.
-    return at_right_angles(m[0], m[1]) && at_right_angles(m[0], m[2]) && at_right_angles(m[1], m[2]);
+           glm::length(m[2]) >= least_literal;
 }
 
 bool write_triangle(SdlWriter& out, const Affine& a) {
@@ -90,17 +68,15 @@ bool write_triangle(SdlWriter& out, const Affine& a) {
 /// Writes the primitive without a matrix, up to the modifiers, where that is possible.
 bool write_literal(SdlWriter& out, PrimitiveKind kind, const Affine& a) {
     const Mat3& m = a.linear;
+    if (kind == PrimitiveKind::triangle) return write_triangle(out, a);
+    if (!needs_no_matrix(kind, m) || !is_large_enough(m)) return false;
     switch (family_of(kind)) {
-    case PrimitiveKind::triangle:
-        return write_triangle(out, a);
     case PrimitiveKind::sphere:
-        if (!keeps_round(m) || !equal_lengths(m[0], m[1])) return false;
         out << "sphere { ";
         out.vector(a.translation, digits) << ", ";
         out.number(glm::length(m[0]), digits);
         return true;
     case PrimitiveKind::cube: {
-        if (!keeps_axes(m)) return false;
         const Vec3 half = glm::abs(m[0]) + glm::abs(m[1]) + glm::abs(m[2]);
         out << "box { ";
         out.vector(a.translation - half, digits) << ", ";
@@ -108,7 +84,6 @@ bool write_literal(SdlWriter& out, PrimitiveKind kind, const Affine& a) {
         return true;
     }
     case PrimitiveKind::cylinder:
-        if (!keeps_round(m)) return false;
         out << "cylinder { ";
         out.vector(a.translation, digits) << ", ";
         out.vector(a.translation + m[1], digits) << ", ";
@@ -116,13 +91,13 @@ bool write_literal(SdlWriter& out, PrimitiveKind kind, const Affine& a) {
         return true;
     case PrimitiveKind::cone:
     case PrimitiveKind::frustum:
-        if (!keeps_round(m)) return false;
         out << "cone { ";
         out.vector(a.translation, digits) << ", ";
         out.number(glm::length(m[0]), digits) << ", ";
         out.vector(a.translation + m[1], digits) << ", ";
         out.number(top_radius(kind) * glm::length(m[0]), digits);
         return true;
+    case PrimitiveKind::triangle:
     case PrimitiveKind::torus:
     case PrimitiveKind::plane:
         return false;
@@ -131,11 +106,6 @@ bool write_literal(SdlWriter& out, PrimitiveKind kind, const Affine& a) {
 }
 
 } // namespace
-
-void ProgressMarks::mark() {
-    out_ << "\n#debug \"@@" << std::min<std::uint64_t>(done_ * 100 / parts_, 100) << "\\n\"\n";
-    next_ = done_ * 100 / parts_ + 1;
-}
 
 PovrayBodies::PovrayBodies(const Cut& cut, const std::string& prefix) : cut_(cut), uses_(cut.bodies.size()) {
     std::vector<bool> placed(cut.bodies.size());

@@ -5,31 +5,11 @@
 #include <string_view>
 #include <vector>
 
-#include "compiler/povray/cut.h"
+#include "compiler/povray/cut_parts.h"
+#include "compiler/povray/progress_marks.h"
 #include "compiler/povray/sdl_writer.h"
 
 namespace graftal {
-
-/// Marks the way through a scene: `#debug "@@p\n"` after each percent of its parts, which POV-Ray prints as
-/// it reads them. A part is a placement or a triangle; they take about as long to parse.
-class ProgressMarks {
-  public:
-    ProgressMarks(SdlWriter& out, std::uint64_t parts, bool enabled)
-        : out_(out), parts_(enabled ? parts : 0) {}
-
-    /// After one more part. Only between tokens.
-    void step() {
-        if (++done_ * 100 >= next_ * parts_ && parts_ > 0) mark();
-    }
-
-  private:
-    void mark();
-
-    SdlWriter& out_;
-    std::uint64_t parts_;
-    std::uint64_t done_ = 0;
-    std::uint64_t next_ = 1; ///< percent
-};
 
 /// Writes the bodies of a cut: meshes as declarations, and all as placed objects.
 class PovrayBodies {

@@ -1,49 +1,18 @@
 #include "compiler/povray/povray_costs.h"
 
-#include <algorithm>
-#include <cmath>
 #include <variant>
 
-#include <glm/geometric.hpp>
+#include "compiler/povray/literal_form.h"
 
 namespace graftal {
 
 namespace {
 
-/// Whether the primitive stays of its kind: emit writes it without a matrix then.
-bool stays_of_its_kind(PrimitiveKind kind, const Mat3& m) {
-    constexpr double slack = 1e-9;
-    const auto upright = [&](int i, int j) {
-        return std::abs(glm::dot(m[i], m[j])) <= slack * glm::length(m[i]) * glm::length(m[j]);
-    };
-    const auto equal = [&](int i, int j) {
-        return std::abs(glm::length(m[i]) - glm::length(m[j])) <= slack * glm::length(m[i]);
-    };
-    switch (family_of(kind)) {
-    case PrimitiveKind::triangle:
-        return true;
-    case PrimitiveKind::sphere:
-        return upright(0, 1) && upright(0, 2) && upright(1, 2) && equal(0, 1) && equal(0, 2);
-    case PrimitiveKind::cube:
-        for (int column = 0; column < 3; ++column)
-            if (std::count(&m[column].x, &m[column].x + 3, 0.0) != 2) return false;
-        return true;
-    case PrimitiveKind::cylinder:
-    case PrimitiveKind::cone:
-    case PrimitiveKind::frustum:
-        return upright(0, 1) && upright(0, 2) && upright(1, 2) && equal(0, 2);
-    case PrimitiveKind::plane:
-    case PrimitiveKind::torus:
-        return false;
-    }
-    return false;
-}
-
 double placement_bytes(const Body& body, const Affine& world_from_body) {
     const auto* const kind = std::get_if<PrimitiveKind>(&body.shape);
     if (!kind) return PovrayCosts::placement;
     return PovrayCosts::primitive(*kind) +
-           (stays_of_its_kind(*kind, world_from_body.linear) ? 0 : PovrayCosts::matrix);
+           (needs_no_matrix(*kind, world_from_body.linear) ? 0 : PovrayCosts::matrix);
 }
 
 } // namespace

@@ -2,7 +2,7 @@
 
 #include <cstdint>
 
-#include "compiler/povray/cut.h"
+#include "compiler/povray/cut_parts.h"
 
 namespace graftal {
 

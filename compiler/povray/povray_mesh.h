@@ -2,8 +2,8 @@
 
 #include <string_view>
 
-#include "compiler/povray/cut.h"
-#include "compiler/povray/povray_bodies.h"
+#include "compiler/povray/cut_parts.h"
+#include "compiler/povray/progress_marks.h"
 #include "compiler/povray/sdl_writer.h"
 
 namespace graftal {

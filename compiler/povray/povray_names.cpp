@@ -1,7 +1,5 @@
 #include "compiler/povray/povray_names.h"
 
-#include "compiler/povray/emit_povray.h"
-
 #include <algorithm>
 
 namespace graftal {

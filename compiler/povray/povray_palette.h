@@ -4,8 +4,8 @@
 #include <string>
 #include <utility>
 
-#include "compiler/povray/cut.h"
-#include "compiler/povray/emit_povray.h"
+#include "compiler/povray/cut_parts.h"
+#include "compiler/povray/povray_output.h"
 
 namespace graftal {
 

@@ -8,8 +8,8 @@
 #include <unordered_map>
 #include <vector>
 
-#include "compiler/povray/cut.h"
-#include "compiler/povray/emit_povray.h"
+#include "compiler/povray/cut_parts.h"
+#include "compiler/povray/povray_output.h"
 #include "compiler/povray/povray_names.h"
 #include "compiler/support/id_table.h"
 

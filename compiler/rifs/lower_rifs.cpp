@@ -261,10 +261,12 @@ class RifsLowering {
             object.instances.push_back(placed(parts_.at(&under.condense[i]), &node));
             object.instances.back().chance = at(chances.condensations, i);
         }
-        for (std::size_t i = 0; i < node.masters.size(); ++i)
-            if (!system_.nodes[node.masters[i]].empty)
-                object.instances.push_back({ids[node.masters[i]], node.map, node.tint, node.material,
-                                            node.source->name.span, at(chances.masters, i)});
+        for (std::size_t i = 0; i < node.masters.size(); ++i) {
+            if (system_.nodes[node.masters[i]].empty) continue;
+            object.instances.push_back(
+                {ids[node.masters[i]], node.map, node.tint, node.material, node.source->name.span});
+            object.instances.back().chance = at(chances.masters, i);
+        }
         const std::optional<RifsPart>& terminal =
             node.source->terminal ? node.source->terminal : under.terminal;
         if (terminal) set_terminal(object, *terminal, &node);
@@ -281,11 +283,12 @@ class RifsLowering {
             if (chances_)
                 root.instances.back().chance = stated_chance(chances_->condensation(system_.main, i));
         }
-        for (const std::uint32_t start : main.start)
-            if (!system_.nodes[start].empty)
-                root.instances.push_back({ids[start], Affine(), Tint(), std::nullopt,
-                                          system_.nodes[start].source->name.span,
-                                          chances_ ? stated_chance(chances_->share[start]) : 0});
+        for (const std::uint32_t start : main.start) {
+            if (system_.nodes[start].empty) continue;
+            root.instances.push_back(
+                {ids[start], Affine(), Tint(), std::nullopt, system_.nodes[start].source->name.span});
+            if (chances_) root.instances.back().chance = stated_chance(chances_->share[start]);
+        }
         if (main.source->terminal) set_terminal(root, *main.source->terminal, nullptr);
         graph_.root = graph_.add(std::move(root));
     }

@@ -152,9 +152,7 @@ bool Session::need_analysed(const StageOptions& options, bool wanted, Compilatio
         return false;
     }
     if (!need_lowered(options, false, compilation)) return false;
-    PipelineOptions pipeline = options.pipeline;
-    pipeline.keep_names |= options.view.zoom.active();
-    AnalyseKey key{lowered_.serial, pipeline.stop_after, pipeline.keep_names};
+    AnalyseKey key{lowered_.serial, options.pipeline.stop_after, options.view.zoom.at};
     const bool same = analysed_.key == key;
     if (!same || (wanted && !analysed_.value && !analysed_.failed)) {
         if (!need_lowered(options, true, compilation)) return false;
@@ -170,7 +168,7 @@ bool Session::need_analysed(const StageOptions& options, bool wanted, Compilatio
         findings = lowered_.findings;
         ++runs_.analysed;
         std::optional<AnalysedModel> model =
-            analyse(std::move(lowered), pipeline, findings, compilation.times);
+            analyse(std::move(lowered), options.view.zoom.at, options.pipeline, findings, compilation.times);
         finish(analysed_, std::move(key), std::move(model), std::move(findings));
     }
     compilation.diagnostics = analysed_.findings;
@@ -215,7 +213,9 @@ bool Session::need_prepared(const StageOptions& options, Compilation& compilatio
     restart(prepared_, same);
     ++runs_.prepared;
     finish(prepared_, std::move(key),
-           std::optional(prepare_cut(model.graph, model.components, model.bounds, detail.preparing())), {});
+           std::optional(prepare_cut(model.graph, model.components, model.bounds, detail.preparing(),
+                                     options.pipeline.after_each)),
+           {});
     return true;
 }
 

@@ -90,7 +90,7 @@ class Session {
     struct AnalyseKey {
         std::uint64_t lowered = 0;
         std::string stop_after;
-        bool keep_names = false;
+        std::optional<Address> at; ///< of a zoom: it is found by names, which passes do not keep
         bool operator==(const AnalyseKey&) const = default;
     };
     struct ViewKey {

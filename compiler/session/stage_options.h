@@ -31,7 +31,7 @@ struct StageOptions {
     bool accept_orbit = false;
     PipelineOptions pipeline;
     ViewOptions view;
-    DetailOptions detail; ///< its steps and root levels are filled in: see resolved()
+    DetailOptions detail; ///< its steps are filled in: see resolved()
     CutOptions cut;
 };
 

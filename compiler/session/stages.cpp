@@ -21,12 +21,23 @@ namespace graftal {
 
 namespace {
 
-Graph optimise(Graph graph, const PipelineOptions& options, std::vector<StageTime>& times) {
+/// Runs the passes. The path that an address led to follows the objects that it leads through.
+Graph optimise(Graph graph, std::optional<GraphPath>& at, const PipelineOptions& options,
+               std::vector<StageTime>& times) {
     std::vector<PassTime> pass_times;
-    graph = run_pipeline(std::move(graph), options, &pass_times);
+    BoundedGraph before{std::move(graph), {}};
+    if (at) {
+        before.path = at->steps;
+        before.path.insert(before.path.end(), at->cycle.begin(), at->cycle.end());
+    }
+    BoundedGraph after = run_passes(model_passes(), std::move(before), options, &pass_times);
+    if (at) {
+        const auto end = after.path.begin() + static_cast<std::ptrdiff_t>(at->steps.size());
+        at = GraphPath{{after.path.begin(), end}, {end, after.path.end()}};
+    }
     for (PassTime& time : pass_times)
         times.push_back({std::move(time.name), time.seconds});
-    return graph;
+    return std::move(after.graph);
 }
 
 std::string digits(double value, int count) {
@@ -100,7 +111,7 @@ std::optional<ViewedModel> zoom_in(const AnalysedModel& model, std::optional<uns
     std::optional<Vec3> look_at = options.camera.look_at;
     if (!look_at && model.graph.settings.camera) look_at = model.graph.settings.camera->look_at;
     std::optional<Rerooted> rerooted =
-        reroot({model.graph, model.components, model.bounds, steps}, options.zoom,
+        reroot({model.graph, model.components, model.bounds, steps, model.at}, options.zoom,
                framing_of(model, steps, options), look_at, diagnostics);
     if (!rerooted) return std::nullopt;
     auto zoomed = std::make_shared<AnalysedModel>();
@@ -111,8 +122,7 @@ std::optional<ViewedModel> zoom_in(const AnalysedModel& model, std::optional<uns
     zoomed->contraction = model.contraction;
     zoomed->bounds = std::move(rerooted->bounds);
     zoomed->derivation = model.derivation;
-    return ViewedModel{std::move(zoomed), steps, std::move(rerooted->view), std::move(rerooted->root_levels),
-                       rerooted->zoom};
+    return ViewedModel{std::move(zoomed), rerooted->steps, std::move(rerooted->view), rerooted->zoom};
 }
 
 } // namespace
@@ -142,7 +152,7 @@ std::optional<LoweredModel> lower_source(const Source& source, const LowerOption
 
 bool check_pass(const std::string& name, Diagnostics& diagnostics) {
     std::vector<std::string> names;
-    for (const Pass& pass : pipeline())
+    for (const Pass& pass : model_passes())
         names.emplace_back(pass.name);
     if (name.empty() || std::find(names.begin(), names.end(), name) != names.end()) return true;
     diagnostics.error({}, fmt::format("there is no pass '{}'", name))
@@ -150,8 +160,9 @@ bool check_pass(const std::string& name, Diagnostics& diagnostics) {
     return false;
 }
 
-std::optional<AnalysedModel> analyse(LoweredModel lowered, const PipelineOptions& options,
-                                     Diagnostics& diagnostics, std::vector<StageTime>& times) {
+std::optional<AnalysedModel> analyse(LoweredModel lowered, const std::optional<Address>& at,
+                                     const PipelineOptions& options, Diagnostics& diagnostics,
+                                     std::vector<StageTime>& times) {
     AnalysedModel model;
     model.path = std::move(lowered.path);
     model.derivation = std::move(lowered.derivation);
@@ -159,7 +170,12 @@ std::optional<AnalysedModel> analyse(LoweredModel lowered, const PipelineOptions
     check_verified(*lowered.graph, "after lowering");
     model.written = {lowered.graph->objects.size(),
                      instance_count(*lowered.graph) + run_part_count(*lowered.graph)};
-    model.graph = optimise(std::move(*lowered.graph), options, times);
+    // Names are those of the text only here: equal objects are merged next.
+    if (at) {
+        model.at = find_path(*lowered.graph, *at, diagnostics);
+        if (!model.at) return std::nullopt;
+    }
+    model.graph = optimise(std::move(*lowered.graph), model.at, options, times);
     StageClock clock(times);
     model.components = clock.run("components", [&] { return strong_components(model.graph); });
     model.contraction =
@@ -188,12 +204,11 @@ std::optional<ViewedModel> look_at(std::shared_ptr<const AnalysedModel> model, s
                                    const ViewOptions& options, Diagnostics& diagnostics) {
     if (options.zoom.active()) return zoom_in(*model, steps, options, diagnostics);
     View view = view_of(*model, steps, options, false);
-    return ViewedModel{std::move(model), steps, std::move(view), {}, {}};
+    return ViewedModel{std::move(model), steps, std::move(view), {}};
 }
 
 DetailOptions resolved(DetailOptions asked, const ViewedModel& viewed) {
     asked.steps = viewed.steps;
-    asked.root_levels = viewed.root_levels;
     if (asked.error_world) asked.error_world = std::min(viewed.zoom.times(*asked.error_world), largest_size);
     return asked;
 }

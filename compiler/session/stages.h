@@ -25,10 +25,11 @@ std::optional<LoweredModel> lower_source(const Source& source, const LowerOption
 bool check_pass(const std::string& name, Diagnostics& diagnostics);
 
 /// Passes and analysis. A model that does not converge has its verdict and no bounds. Nothing after an error:
-/// the model is larger than numbers go. `times` gets those of its parts. Requires that the model is no orbit,
-/// and check_pass().
-std::optional<AnalysedModel> analyse(LoweredModel lowered, const PipelineOptions& options,
-                                     Diagnostics& diagnostics, std::vector<StageTime>& times);
+/// the model is larger than numbers go, or has no such address. `at`: of a zoom. `times` gets those of its
+/// parts. Requires that the model is no orbit, and check_pass().
+std::optional<AnalysedModel> analyse(LoweredModel lowered, const std::optional<Address>& at,
+                                     const PipelineOptions& options, Diagnostics& diagnostics,
+                                     std::vector<StageTime>& times);
 
 /// True, after an error, for a model that is not proved to converge.
 bool refuse_divergent(const AnalysedModel& model, Diagnostics& diagnostics);

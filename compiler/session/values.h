@@ -18,6 +18,7 @@
 #include "compiler/scene/scene.h"
 #include "compiler/support/diagnostics.h"
 #include "compiler/support/source.h"
+#include "compiler/zoom/address.h"
 #include "compiler/zoom/magnification.h"
 
 namespace graftal {
@@ -65,15 +66,15 @@ struct AnalysedModel {
     Contraction contraction;
     std::vector<ObjectBounds> bounds;     ///< empty unless the contraction is proved or acyclic
     std::optional<Derivation> derivation; ///< of an L-system
+    std::optional<GraphPath> at;          ///< where the zoom's address leads
 };
 
 /// A model that is looked at: what every engine starts from.
 struct ViewedModel {
     std::shared_ptr<const AnalysedModel> model; ///< never null; under a zoom the one with a new root
-    std::optional<unsigned> steps;              ///< levels of recursion
+    std::optional<unsigned> steps;              ///< levels of recursion, of the new root under a zoom
     View view;
-    std::vector<unsigned> root_levels; ///< that the root's instances use up (DetailOptions)
-    Magnification zoom;                ///< how much larger than in the world lengths are
+    Magnification zoom; ///< how much larger than in the world lengths are
 };
 
 /// A model ready to emit.

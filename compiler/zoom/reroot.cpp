@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
 
+#include "compiler/graph/path.h"
 #include "compiler/scene/framing.h"
 #include "compiler/zoom/focus.h"
 #include "compiler/zoom/surroundings.h"
@@ -53,13 +54,11 @@ class Rerooter {
     }
 
     bool find_focus(const std::optional<Vec3>& look_at) {
-        if (request_.at) {
-            std::optional<GraphPath> path = find_path(model_.graph, *request_.at, diagnostics_);
-            if (!path) return false;
-            if (path->endless() && !request_.zoom)
+        if (model_.at) {
+            if (model_.at->endless() && !request_.zoom)
                 return refuse("an address without an end is a point, and has no frame to look from",
                               "give the repetition a count, or say how far to go with --zoom F");
-            focus_ = focus_of_path(model_.graph, model_.bounds, std::move(*path));
+            focus_ = focus_of_path(model_.graph, model_.bounds, *model_.at);
         } else if (look_at) {
             focus_ = focus_at_point(model_.graph, model_.bounds, *look_at);
         } else {
@@ -130,7 +129,7 @@ class Rerooter {
         for (const GraphStep& step : path.steps) {
             const Instance& instance = model_.graph.objects[step.object].instances[step.instance];
             object = instance.master;
-            levels += model_.components.unending[object] ? 1 : 0;
+            levels += levels_of(instance, model_.components);
             world_from_object = world_from_object * instance.parent_from_child.linear;
             const double most = largest_entry(world_from_object);
             if (most > 0) world_from_object = world_from_object * std::ldexp(1.0, -std::ilogb(most));
@@ -204,7 +203,7 @@ class Rerooter {
             const Outcome outcome = around_.descend(step.instance, focus, frame_reach(below));
             if (outcome == Outcome::flat) return refuse_flat(step);
             if (outcome == Outcome::too_many) return refuse_crowd();
-            if (outcome == Outcome::no_level && request_.at) return refuse_depth(around_.own().levels + 1);
+            if (outcome == Outcome::no_level && model_.at) return refuse_depth(around_.own().levels + 1);
             if (outcome == Outcome::no_level) break;
             scale = below;
             ++result_.depth;
@@ -253,7 +252,7 @@ class Rerooter {
 
     /// Where nothing recurs, a place is known to as many digits as a number has.
     bool refuse_end() {
-        if (request_.at)
+        if (model_.at)
             return refuse(fmt::format("the address ends after {} steps, before the zoom does",
                                       focus_.path.steps.size()),
                           "make it longer, for instance by a repetition at its end: (a.b)*");
@@ -294,8 +293,8 @@ class Rerooter {
             instance.span = root.span;
             bounds.box.include(transformed(instance.parent_from_child, of_piece.box));
             bounds.unbounded = bounds.unbounded || of_piece.unbounded;
+            if (model_.components.unending[piece.object]) instance.levels = piece.levels + 1;
             root.instances.push_back(instance);
-            result_.root_levels.push_back(piece.levels);
             error = std::max(error, stretch * piece.error);
         }
         if (ground_) add_ground(root, bounds);
@@ -309,6 +308,7 @@ class Rerooter {
         graph.root = graph.add(std::move(root));
         result_.bounds.push_back(bounds);
         result_.components = strong_components(graph);
+        if (model_.steps) result_.steps = *model_.steps + 1;
         warn(px(error), too_large);
         return true;
     }
@@ -328,7 +328,6 @@ class Rerooter {
         graph.materials.back().name = free_name("ground", graph.materials);
         bounds.unbounded = true;
         root.instances.push_back(plane);
-        result_.root_levels.push_back(0);
     }
 
     static Tint straight(const PathTint& path) {

@@ -32,18 +32,21 @@ struct Rerooted {
     Graph graph; ///< the old one with one more object, its root
     Components components;
     std::vector<ObjectBounds> bounds;
-    std::vector<unsigned> root_levels; ///< that the root's instances use up (DetailOptions)
+    /// One more than the model's: the new root is never the one that is cut, so it counts as a level. Its
+    /// instances state the levels that lead to their masters.
+    std::optional<unsigned> steps;
     View view;
     Magnification zoom;    ///< how much larger than in the world lengths are
     std::size_t depth = 0; ///< instances from the old root to where the new one begins
 };
 
-/// What a new root is made from. The graph's names are those of the address: not yet merged.
+/// What a new root is made from.
 struct ZoomModel {
     const Graph& graph;
     const Components& components;
     const std::vector<ObjectBounds>& bounds;
     std::optional<unsigned> steps;
+    std::optional<GraphPath> at = {}; ///< where the address leads, if there is one (find_path())
 };
 
 /// The view that shows an object by itself, as if its frame were the world; of the root, the whole model. Of

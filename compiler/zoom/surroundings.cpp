@@ -8,6 +8,9 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
+#include "compiler/graph/path.h"
+#include "compiler/graph/walk.h"
+
 namespace graftal {
 
 namespace {
@@ -63,13 +66,11 @@ double Surroundings::radius(const NearPiece& piece) const {
 
 /// Nothing where no level is left for it.
 std::optional<NearPiece> Surroundings::child(const NearPiece& piece, const Instance& instance) const {
-    NearPiece child = piece;
-    child.object = instance.master;
-    child.frame_from_piece = piece.frame_from_piece * instance.parent_from_child;
+    const PathState path =
+        graftal::descend({piece.object, piece.frame_from_piece, piece.tint, piece.material, piece.levels},
+                         instance, components_);
+    NearPiece child{path.object, path.world_from_object, piece.error, path.tint, path.material, path.levels};
     child.error += rounding * reach_of(child.frame_from_piece, bounds_[instance.master].ball);
-    child.tint = piece.tint * PathTint(instance.tint);
-    if (instance.material) child.material = instance.material;
-    child.levels += components_.unending[instance.master] ? 1 : 0;
     if (steps_ && child.levels > *steps_) return std::nullopt;
     return child;
 }
@@ -100,11 +101,9 @@ bool Surroundings::divisible(const NearPiece& piece) const {
 
 bool Surroundings::keep(NearPiece first, Vec3 focus, double reach, double size,
                         std::vector<NearPiece>& kept) {
-    std::vector<NearPiece> stack;
-    stack.push_back(std::move(first));
-    while (!stack.empty()) {
-        const NearPiece piece = std::move(stack.back());
-        stack.pop_back();
+    Walk<NearPiece> walk;
+    walk.push(std::move(first));
+    for (NearPiece piece; walk.next(piece);) {
         if (++looks_ > most_looks) return false;
         if (!in_reach(piece, focus, reach)) continue;
         if (piece.error > lost_share * size) {
@@ -117,10 +116,9 @@ bool Surroundings::keep(NearPiece first, Vec3 focus, double reach, double size,
             kept.push_back(piece);
             continue;
         }
-        if (stack.size() + kept.size() > 2 * most_pieces) return false;
-        const std::vector<Instance>& instances = graph_.objects[piece.object].instances;
-        for (std::size_t i = instances.size(); i-- > 0;)
-            if (std::optional<NearPiece> part = child(piece, instances[i])) stack.push_back(std::move(*part));
+        if (walk.waiting() + kept.size() > 2 * most_pieces) return false;
+        for (const Instance& instance : graph_.objects[piece.object].instances)
+            if (std::optional<NearPiece> part = child(piece, instance)) walk.push(std::move(*part));
     }
     return true;
 }

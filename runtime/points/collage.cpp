@@ -263,7 +263,6 @@ std::optional<Collage> measure_collage(Session& session, const CollageOptions& o
     compilation.status = read_image(options.target, image);
     if (!compilation.status.ok()) return std::nullopt;
     StageOptions compile = options.compile;
-    compile.pipeline.keep_names = true;
     compile.view.size = {image.width, image.height};
     const std::shared_ptr<const ViewedModel> viewed = session.viewed(compile, compilation);
     if (!viewed) return std::nullopt;

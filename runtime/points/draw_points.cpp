@@ -238,7 +238,6 @@ std::optional<PointsReport> draw_orbit(const OrbitModel& model, const PointsOpti
 std::optional<PointsReport> draw_points(Session& session, const PointsOptions& options,
                                         Compilation& compilation) {
     StageOptions compile = options.compile;
-    compile.pipeline.keep_names = true; // objects that differ in their chances only are not to be merged
     compile.accept_orbit = true;
     std::shared_ptr<const OrbitModel> orbit;
     if (const auto lowered = session.lowered(compile, compilation))

@@ -92,13 +92,13 @@ Traversal::FlatPart Traversal::flat_child(const LaneMap& world_from_node, std::u
     FlatPart child;
     compose(world_from_node, edge.parent_from_child, child.world_from_node);
     child.edge = number | (cut ? from_cut : 0);
-    child.steps = steps == unlimited_steps ? steps : steps - edge.levels;
+    child.steps = steps_below(steps, edge);
     return child;
 }
 
 void Traversal::scale_child(FlatPart& child, double scale) const {
     const TraceEdge& edge = model_.edges[child.edge & ~from_cut];
-    child.scale = edge.similarity ? scale * edge.stretch : largest_stretch(linear_of(child.world_from_node));
+    child.scale = size_below(scale, edge, linear_of(child.world_from_node));
 }
 
 Ball Traversal::drawn_ball(const FlatPart& part, double scale) const {

@@ -54,7 +54,7 @@ class Layering {
         if (node.unending && steps == 0 && !node.unbounded && !node.sealed) node.edges.clear();
         for (std::vector<CutEdge>* edges : {&node.edges, &node.stop_edges})
             for (CutEdge& edge : *edges)
-                edge.child = copy_of(edge.child, steps >= edge.levels ? steps - edge.levels : 0);
+                edge.child = copy_of(edge.child, steps >= edge.levels ? steps_below(steps, edge) : 0);
         if (node.cell) node.cell = copy_of(node.cell);
         result_.cut.nodes.push_back(std::move(node));
     }

@@ -7,6 +7,7 @@
 #include <optional>
 #include <vector>
 
+#include "compiler/detail/ending.h"
 #include "compiler/detail/prepare.h"
 #include "compiler/detail/projection.h"
 #include "compiler/detail/run_cells.h"
@@ -173,10 +174,10 @@ inline bool is_endless(const TraceNode& node) {
            (node.kind == TraceNode::Kind::primitive && node.primitive == PrimitiveKind::plane);
 }
 
-/// The rule of the cut (detail.h). `detail`: of the part's diameter.
+/// The rule of the cut. `detail`: of the part's diameter.
 inline bool is_cut(const TraceNode& node, std::uint32_t steps, double detail) {
     if (node.kind == TraceNode::Kind::unbounded || node.kind == TraceNode::Kind::crushed) return false;
-    return (node.unending && steps == 0) || (node.cullable && detail <= node.cut_detail);
+    return ends_recursion(node, steps, detail <= node.cut_detail);
 }
 
 /// Reads the textures of the materials, as the model will; or says which cannot be read.

@@ -12,56 +12,11 @@
 #include <glm/geometric.hpp>
 
 #include "compiler/detail/least_width.h"
-#include "compiler/detail/texture_space.h"
 #include "compiler/support/stretch.h"
+#include "runtime/trace/ray_range.h"
 #include "runtime/trace/traversal.h"
 
 namespace graftal {
-
-/// A ray crosses no primitive's surface more often: the torus.
-inline constexpr int most_crossings = 4;
-/// Allows for the rounding of what is a little more than enough.
-inline constexpr double surely_more = 1 - 1e-6;
-
-/// One bit for each lane that is true.
-template<Instructions instructions> GRAFTAL_INLINE std::uint32_t bits_of(const Int8& lanes) {
-#if defined(__x86_64__) && !defined(__clang__)
-    if constexpr (instructions == Instructions::avx2) {
-        std::uint32_t bits;
-        // An intrinsic could not be inlined from here: only the caller is compiled for AVX2. Clang looks at
-        // the operands before it inlines.
-        __asm__("vmovmskps %1, %0" : "=r"(bits) : "x"(lanes));
-        return bits;
-    }
-#endif
-    std::uint32_t bits = 0;
-    for (int lane = 0; lane < 8; ++lane)
-        bits |= static_cast<std::uint32_t>(lanes[lane] & 1) << lane;
-    return bits;
-}
-
-/// The range of t in which a ray is within a box; empty where least > most.
-GRAFTAL_INLINE RayRange range_in(const Box& box, const Ray& ray, RayRange range) {
-    for (int axis = 0; axis < 3; ++axis) {
-        const double d = ray.direction[axis];
-        if (d == 0) {
-            if (ray.origin[axis] < box.min[axis] || ray.origin[axis] > box.max[axis]) return {1, 0};
-            continue;
-        }
-        const double inverse = 1 / d;
-        const double a = (box.min[axis] - ray.origin[axis]) * inverse;
-        const double b = (box.max[axis] - ray.origin[axis]) * inverse;
-        range.least = std::max(range.least, std::min(a, b));
-        range.most = std::min(range.most, std::max(a, b));
-    }
-    return range;
-}
-
-/// The box, larger by what rounding and widened parts may need.
-inline Box enlarged(const Box& box, Vec3 margin) {
-    const Vec3 more = 1e-9 * box.size() + margin;
-    return {box.min - more, box.max + more};
-}
 
 template<Instructions instructions> struct Traversal::Kernel {
     Traversal& self;
@@ -485,82 +440,11 @@ template<Instructions instructions> struct Traversal::Kernel {
         self.way_.push_back(entry.entry | (parent.cut ? from_cut : 0));
     }
 
-    /// Meets an item of the frame's run.
-    void meet_item(const Entry& entry) {
-        self.depth_ = entry.frame + 1;
-        const Frame& frame = self.frames_[entry.frame];
-        const TraceRun& run = model.runs[model.nodes[frame.node].run];
-        const RunItem& item = (*run.run)[entry.entry];
-        const Affine& run_from_frame = model.graph_from_frame[frame.node];
-        const Ray ray{run_from_frame(vec3_of(frame.origin + splat(entry.at) * frame.direction)),
-                      run_from_frame.linear * vec3_of(frame.direction)};
-        const Vec3 from_base = ray.origin - item.base;
-        if (item.kind == PrimitiveKind::sphere ||
-            !passes_line(ray.direction, from_base, item.axis, item.radius))
-            meet_body(item.kind, run.pictured ? run_from_body(item) : run_from_round_body(item), run, item,
-                      ray, entry);
-        if (item.ball && !passes_point(ray.direction, from_base - item.axis, item.radius))
-            meet_body(PrimitiveKind::sphere, run.pictured ? run_from_ball(item) : run_from_round_ball(item),
-                      run, item, ray, entry);
-    }
-
-    // Most boxes that are met are met beside their part, and that is sooner told than where a ray meets it.
-    static constexpr double surely_beside = 1 + 1e-9;
-
-    /// Whether a ray goes by a line at this distance or more, for sure.
-    GRAFTAL_INLINE static bool passes_line(Vec3 direction, Vec3 from_line, Vec3 along, double distance) {
-        const Vec3 upright = glm::cross(direction, along);
-        const double apart = glm::dot(from_line, upright);
-        return apart * apart > surely_beside * distance * distance * glm::dot(upright, upright);
-    }
-
-    GRAFTAL_INLINE static bool passes_point(Vec3 direction, Vec3 from_point, double distance) {
-        const Vec3 moment = glm::cross(direction, from_point);
-        return glm::dot(moment, moment) >
-               surely_beside * distance * distance * glm::dot(direction, direction);
-    }
-
+    /// Meets an item of the frame's run (traversal_runs.h).
+    void meet_item(const Entry& entry);
     /// `ray`: from where the entry begins, in units of the frame's.
     void meet_body(PrimitiveKind kind, const Affine& run_from_body, const TraceRun& run, const RunItem& item,
-                   const Ray& ray, const Entry& entry) {
-        const Frame& frame = self.frames_[entry.frame];
-        // Its axes are at right angles: dividing by the squares of their lengths turns the map round.
-        const Mat3& m = run_from_body.linear;
-        const Vec3 squares(glm::dot(m[0], m[0]), glm::dot(m[1], m[1]), glm::dot(m[2], m[2]));
-        const Vec3 from_base = ray.origin - run_from_body.translation;
-        const Vec3 origin = from_base * m / squares;
-        const Vec3 direction = ray.direction * m / squares;
-        const double largest = largest_component(lanes_of(direction));
-        if (!(largest > 0 && largest < 1 / least_scale)) return;
-        const Ray inner{origin, direction / largest};
-        const double base = t_of(entry), speed = frame.speed * largest;
-        RayRange near = range_from(base, speed);
-        PrimitiveHit hit;
-        if (!intersect(kind, inner, near, hit)) return;
-        std::uint32_t look = no_edge;
-        double turns = 1;
-        if (model.clear_texels) {
-            look = run.edge_of(kind, item.colour);
-            turns = length_in_turns(m);
-            for (int crossing = 0; self.is_clear(look, entry.frame, turns, inner(hit.t)); ++crossing) {
-                near.least = hit.t;
-                if (crossing == most_crossings || !intersect(kind, inner, near, hit)) return;
-            }
-        }
-        if (!set_best(base + hit.t / speed)) return;
-        if (look == no_edge) {
-            look = run.edge_of(kind, item.colour);
-            turns = length_in_turns(m);
-        }
-        self.best_.normal = hit.normal;
-        self.best_.point = inner(hit.t);
-        self.best_.turns = turns;
-        self.best_.proxy_node = no_edge;
-        compose(frame.world_from_node, LaneMap(inverse(model.graph_from_frame[frame.node]) * run_from_body),
-                self.best_.world_from_leaf);
-        self.keep_way(entry.frame);
-        self.way_.push_back(look);
-    }
+                   const Ray& ray, const Entry& entry);
 
     /// A primitive of what stands for a set without area.
     GRAFTAL_INLINE void meet_faint(const TraceNode& node, const TraceEdge& edge, const Frame& parent,

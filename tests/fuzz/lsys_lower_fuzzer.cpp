@@ -30,7 +30,7 @@ std::string lower_and_check(const std::string& text, bool exact) {
     diagnostics.render(sources);
     if (!graph) return {};
     check_verified(*graph, "lsys fuzzer: after lowering");
-    const Graph result = run_pipeline(std::move(*graph), {});
+    const Graph result = run_passes(model_passes(), {std::move(*graph), {}}).graph;
     check_verified(result, "lsys fuzzer: after the passes");
     const Components components = strong_components(result);
     const Contraction contraction = decide_contraction(result, components);

@@ -31,7 +31,7 @@ Vec3 vector(testing::Choices& choices) {
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     testing::Choices choices(std::span(data, size));
-    const Graph graph = drop_unreachable(testing::random_graph(choices, {.max_objects = 5}));
+    const Graph graph = drop_unreachable(testing::random_graph(choices, {.max_objects = 5})).graph;
     const Components components = strong_components(graph);
     const Contraction contraction = decide_contraction(graph, components);
     if (contraction.verdict != Verdict::acyclic && contraction.verdict != Verdict::proved) return 0;

@@ -2,15 +2,17 @@
 
 #include <gtest/gtest.h>
 
+#include "compiler/detail/build_cut_graph.h"
 #include "compiler/detail/coverage.h"
 #include "compiler/detail/shell_store.h"
+#include "compiler/passes/pipeline.h"
 #include "compiler/povray/assemble.h"
 
 namespace graftal {
 
 CompiledModel parted_at(const CompiledModel& model, double mesh_triangles) {
-    CutGraph cut = build_cut_graph(model.model->graph, model.model->components, model.model->bounds);
-    split_into_halves(cut);
+    BoundedGraph passed = run_passes(detail_passes(), {model.model->graph, model.model->bounds});
+    CutGraph cut = build_cut_graph(std::move(passed.graph), passed.bounds);
     const Symmetry symmetry = find_symmetry(cut);
     fit_proxies(cut, symmetry);
     const DetailOptions options;

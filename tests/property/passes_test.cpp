@@ -8,6 +8,8 @@
 
 #include <gtest/gtest.h>
 
+#include "compiler/analysis/bounding.h"
+#include "compiler/analysis/contraction.h"
 #include "compiler/graph/components.h"
 #include "compiler/graph/print.h"
 #include "compiler/graph/verify.h"
@@ -42,7 +44,7 @@ TEST(RandomGraph, IsAlwaysValidAndVariesEnough) {
         of_many += many;
         terminals += terminal;
         tinted += tint;
-        unreachable += drop_unreachable(graph).objects.size() < graph.objects.size();
+        unreachable += drop_unreachable(graph).graph.objects.size() < graph.objects.size();
     }
     for (const int count : {cyclic, of_many, terminals, tinted, unreachable})
         EXPECT_GT(count, static_cast<int>(graph_count) / 5);
@@ -54,25 +56,50 @@ TEST(Passes, KeepWhatAGraphUnfoldsTo) {
         Choices choices(seed);
         const Graph graph =
             random_graph(choices, {.cycles = seed % 3 != 0, .settings = false, .runs = seed % 4 == 0});
-        const LawCheck check = check_laws(graph, 5, 1000);
+        const LawCheck check = check_laws(model_passes(), {graph, {}}, 5, 1000);
         ASSERT_EQ(check.violation, "") << "seed " << seed << "\n" << print(graph);
         depths += check.depths_compared;
-        const Graph reachable = drop_unreachable(graph);
-        merged += merge_equivalent(reachable).objects.size() < reachable.objects.size();
+        const Graph reachable = drop_unreachable(graph).graph;
+        merged += merge_equivalent(reachable).graph.objects.size() < reachable.objects.size();
     }
     EXPECT_GT(depths, 5 * graph_count) << "too few comparisons to trust the law";
     EXPECT_GT(merged, graph_count / 4) << "too few graphs in which something merged";
+}
+
+TEST(Passes, ForDetailKeepWhatAGraphUnfoldsToAndWhereItsObjectsAre) {
+    unsigned depths = 0, moved = 0, parts = 0;
+    for (std::uint64_t seed = 0; seed < graph_count; ++seed) {
+        Choices choices(seed);
+        const Graph graph = random_graph(choices, {.cycles = seed % 5 != 0,
+                                                   .duplicates = false,
+                                                   .settings = false,
+                                                   .runs = seed % 4 == 0,
+                                                   .exact = true,
+                                                   .mirrored = true});
+        const Components components = strong_components(graph);
+        const Contraction contraction = decide_contraction(graph, components);
+        ASSERT_TRUE(contraction.verdict == Verdict::proved || contraction.verdict == Verdict::acyclic);
+        const LawCheck check =
+            check_laws(detail_passes(), {graph, bound_objects(graph, components, contraction)}, 4, 1000);
+        ASSERT_EQ(check.violation, "") << "seed " << seed << "\n" << print(graph);
+        depths += check.depths_compared;
+        moved += check.moved;
+        parts += check.parts;
+    }
+    EXPECT_GT(depths, 8 * graph_count) << "too few comparisons to trust the law";
+    EXPECT_GT(moved, graph_count / 5);
+    EXPECT_GT(parts, graph_count / 4);
 }
 
 TEST(MergeEquivalent, UndoesPlantedDuplicates) {
     unsigned cyclic = 0;
     for (std::uint64_t seed = 0; seed < graph_count; ++seed) {
         Choices choices(seed);
-        const Graph plain = merge_equivalent(random_graph(choices, {.duplicates = false}));
+        const Graph plain = merge_equivalent(random_graph(choices, {.duplicates = false})).graph;
         Graph planted = plain;
         plant_duplicates(planted, choices);
         ASSERT_GT(planted.objects.size(), plain.objects.size());
-        const Graph merged = merge_equivalent(planted);
+        const Graph merged = merge_equivalent(planted).graph;
         ASSERT_EQ(merged.objects.size(), plain.objects.size()) << "seed " << seed << "\n" << print(planted);
         EXPECT_TRUE(equal(merged, plain)) << "seed " << seed << ": the first of the equals keeps its name";
         cyclic += strong_components(plain).any_cycle();
@@ -86,7 +113,7 @@ TEST(MergeEquivalent, TheOrderOfObjectsDoesNotMatter) {
         const Graph graph = random_graph(choices, {.settings = false});
         const Graph other = permuted(graph, choices);
         ASSERT_TRUE(equal(graph, other));
-        const Graph merged = merge_equivalent(graph), other_merged = merge_equivalent(other);
+        const Graph merged = merge_equivalent(graph).graph, other_merged = merge_equivalent(other).graph;
         ASSERT_EQ(merged.objects.size(), other_merged.objects.size()) << "seed " << seed;
     }
 }
@@ -141,8 +168,8 @@ TEST(MergeEquivalent, IsTheCoarsestPartition) {
         Graph graph = uniform_graph(choices);
         if (choices.one_in(2)) plant_duplicates(graph, choices);
         const std::size_t expected = class_count(graph);
-        ASSERT_EQ(merge_equivalent(graph).objects.size(), expected) << "seed " << seed << "\n"
-                                                                    << print(graph);
+        ASSERT_EQ(merge_equivalent(graph).graph.objects.size(), expected) << "seed " << seed << "\n"
+                                                                          << print(graph);
         merged += expected < graph.objects.size();
     }
     EXPECT_GT(merged, 1500u);

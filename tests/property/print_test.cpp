@@ -51,7 +51,8 @@ TEST(Print, ReadsBackEqualAfterEveryPass) {
             ASSERT_TRUE(back) << pass.name << ", seed " << seed << "\n" << messages;
             EXPECT_TRUE(equal(graph, *back)) << pass.name << ", seed " << seed << "\n" << print(graph);
         };
-        run_pipeline(random_graph(choices, {.runs = seed % 4 == 0, .huge = 1e99}), options);
+        run_passes(model_passes(), {random_graph(choices, {.runs = seed % 4 == 0, .huge = 1e99}), {}},
+                   options);
     }
 }
 

@@ -90,7 +90,19 @@ class Generator {
         }
     }
 
+    Affine exact_transform() {
+        const std::uint32_t turn = choices_.below(3);
+        const double scale = choices_.one_in(2) ? 0.5 : 0.25;
+        Affine a{Mat3(0.0), {eighths(), eighths(), eighths()}};
+        for (std::uint32_t column = 0; column < 3; ++column)
+            a.linear[column][(column + turn) % 3] = choices_.one_in(4) ? -scale : scale;
+        return a;
+    }
+
+    double eighths() { return choices_.below(17) / 8.0 - 1; }
+
     Affine transform() {
+        if (options_.exact) return exact_transform();
         switch (choices_.below(8)) {
         case 0:
             return {};
@@ -185,6 +197,18 @@ class Generator {
                 instance.master = master;
             }
             instances.push_back(instance);
+        }
+        if (options_.mirrored && choices_.one_in(2)) add_mirror_images(graph_.objects[unions_[i]].instances);
+    }
+
+    void add_mirror_images(std::vector<Instance>& instances) {
+        Vec3 mirror(1.0);
+        mirror[choices_.below(3)] = -1;
+        const std::size_t count = instances.size();
+        for (std::size_t i = 0; i < count; ++i) {
+            Instance image = instances[i];
+            image.parent_from_child = Affine::scale(mirror) * image.parent_from_child;
+            instances.push_back(image);
         }
     }
 

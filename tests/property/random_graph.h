@@ -32,7 +32,11 @@ struct RandomGraphOptions {
     bool duplicates = true; ///< plants copies of objects under other names, in three graphs of four
     bool settings = true;   ///< random scene statements
     bool runs = false;      ///< some unions are runs (graph/run.h)
-    double huge = 1e200;    ///< the largest number in a transform; models have none beyond 1e100
+    /// Maps are powers of two times symmetries of the cube, moved by eighths, and contract: products are
+    /// exact.
+    bool exact = false;
+    bool mirrored = false; ///< some unions are their own mirror images
+    double huge = 1e200;   ///< the largest number in a transform; models have none beyond 1e100
 };
 
 /// A graph that verify() accepts: unions in every relation, shared and nested masters, cycles through one

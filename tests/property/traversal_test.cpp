@@ -164,8 +164,10 @@ TEST(TraversalProperty, MeetsWhatThePlainUnfoldingMeets) {
     Tally tally;
     for (std::uint64_t seed = 1; seed <= 1200; ++seed) {
         testing::Choices choices(seed);
-        const Graph graph = drop_unreachable(
-            testing::random_graph(choices, {.duplicates = false, .runs = seed > 1000 || seed % 4 == 0}));
+        const Graph graph =
+            drop_unreachable(
+                testing::random_graph(choices, {.duplicates = false, .runs = seed > 1000 || seed % 4 == 0}))
+                .graph;
         const Components components = strong_components(graph);
         const Contraction contraction = decide_contraction(graph, components);
         if (contraction.verdict != Verdict::acyclic && contraction.verdict != Verdict::proved) continue;

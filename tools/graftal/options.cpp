@@ -2,12 +2,14 @@
 
 #include <filesystem>
 #include <functional>
+#include <span>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include "compiler/passes/pipeline.h"
 #include "compiler/povray/emit_povray.h"
+#include "compiler/povray/povray_names.h"
 #include "tools/graftal/animate_options.h"
 #include "tools/graftal/commands.h"
 #include "tools/graftal/option_values.h"
@@ -221,9 +223,14 @@ int usage_error(const std::string& message, const std::string& command) {
 }
 
 std::string passes_text() {
-    std::string text;
-    for (const Pass& pass : pipeline())
-        text += fmt::format("{:<20} {}\n", pass.name, pass.summary);
+    std::string text = "Before analysis, for all commands:\n";
+    const auto add = [&](std::span<const Pass> passes) {
+        for (const Pass& pass : passes)
+            text += fmt::format("  {:<22} {}\n", pass.name, pass.summary);
+    };
+    add(model_passes());
+    text += "After it, on what is drawn:\n";
+    add(detail_passes());
     return text;
 }
 

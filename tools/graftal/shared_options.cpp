@@ -44,8 +44,11 @@ void add_swept(CLI::App& app, Options& options, const std::string& name, const s
 std::optional<std::string> pass_named(const std::string& text, bool all_allowed) {
     if (all_allowed && text == "all") return text;
     std::vector<std::string> names;
-    for (const Pass& pass : pipeline())
+    for (const Pass& pass : model_passes())
         names.emplace_back(pass.name);
+    if (all_allowed)
+        for (const Pass& pass : detail_passes())
+            names.emplace_back(pass.name);
     if (std::find(names.begin(), names.end(), text) != names.end()) return text;
     throw CLI::ValidationError(fmt::format("there is no pass '{}' ({})", text, choices(text, names)));
 }

@@ -50,8 +50,7 @@ struct Fitted {
 
 Fitted fitted(const Graph& graph) {
     Fitted result;
-    result.cut = build_cut_graph(graph, strong_components(graph), test::bounds_of(graph));
-    split_into_halves(result.cut);
+    result.cut = test::cut_of(graph);
     result.symmetry = find_symmetry(result.cut);
     result.draws = fit_proxies(result.cut, result.symmetry);
     return result;

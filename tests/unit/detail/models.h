@@ -2,13 +2,16 @@
 
 #include <cmath>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <glm/geometric.hpp>
 
 #include "compiler/analysis/bounding.h"
+#include "compiler/detail/build_cut_graph.h"
 #include "compiler/graph/components.h"
 #include "compiler/graph/graph.h"
+#include "compiler/passes/pipeline.h"
 
 namespace graftal::test {
 
@@ -93,6 +96,12 @@ inline std::vector<ObjectBounds> bounds_of(const Graph& graph) {
     for (ObjectBounds& b : bounds)
         b.ball = {b.box.centre(), 0.5 * glm::length(b.box.size())};
     return bounds;
+}
+
+/// The cut of a graph after the passes for detail.
+inline CutGraph cut_of(const Graph& graph) {
+    BoundedGraph passed = run_passes(detail_passes(), {graph, bounds_of(graph)});
+    return build_cut_graph(std::move(passed.graph), passed.bounds);
 }
 
 } // namespace graftal::test

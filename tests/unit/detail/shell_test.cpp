@@ -285,6 +285,7 @@ TEST(ShellStore, KeepsTheLastThatItHasRoomFor) {
 TEST(Shell, TintsAndMaterialsAreTheLeaves) {
     Graph graph;
     graph.materials.resize(1);
+    graph.materials[0].name = "green";
     graph.materials[0].rgb = Rgb(0.2, 0.4, 0.1);
     const ObjectId cube = graph.primitive(PrimitiveKind::cube);
     Object set{"set", {}, {}, {}, {}};

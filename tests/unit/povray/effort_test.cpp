@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include "compiler/detail/calibrate.h"
+#include "compiler/povray/calibrate.h"
 #include "compiler/detail/cut_graph.h"
 #include "compiler/detail/symmetry.h"
 #include "compiler/detail/weights.h"
@@ -19,10 +19,6 @@ namespace {
 
 double between(double low, double high, std::mt19937& random) {
     return std::uniform_real_distribution<double>(low, high)(random);
-}
-
-CutGraph cut_of(const Graph& graph) {
-    return build_cut_graph(graph, strong_components(graph), test::bounds_of(graph));
 }
 
 /// `size` nodes, each a union of images of others by the same unequal scales.
@@ -89,7 +85,7 @@ TEST(Effort, MapsThatShearAreCalibratedWithoutUnfoldingThemAll) {
     for (int i = 0; i < 3; ++i)
         root.instances.push_back({master, Affine::translate({4.0 * i, 0, 0}), {}, {}, {}});
     graph.root = graph.add(std::move(root));
-    CutGraph cut = cut_of(graph);
+    CutGraph cut = test::cut_of(graph);
     const Symmetry symmetry = find_symmetry(cut);
     std::uint64_t visits = 0;
     const double triangles = visible_cube_triangles(cut, symmetry, unlimited_steps, &visits);
@@ -117,7 +113,7 @@ TEST(Effort, CrowdsThatDifferInOneInstanceAreNotComparedForEver) {
         root.instances.push_back({graph.add(std::move(object)), {}, {}, {}, {}});
     }
     graph.root = graph.add(std::move(root));
-    CutGraph cut = cut_of(graph);
+    CutGraph cut = test::cut_of(graph);
     EXPECT_LE(find_symmetry(cut).comparisons, 10'100'000u); // each crowd with each before: 130 million
 }
 

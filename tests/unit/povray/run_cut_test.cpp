@@ -11,6 +11,7 @@
 #include <gtest/gtest.h>
 
 #include "compiler/analysis/contraction.h"
+#include "compiler/detail/build_cut_graph.h"
 #include "compiler/detail/prepare.h"
 #include "compiler/detail/run_cells.h"
 #include "compiler/povray/cut.h"
@@ -249,7 +250,7 @@ TEST(RunCut, ProxiesAreAsDarkAsWhatTheyStandFor) {
         object.run_materials.resize(1);
         graph.root = graph.add(std::move(object));
         const Bounded model(std::move(graph));
-        CutGraph cut = build_cut_graph(model.graph, model.components, model.bounds);
+        const CutGraph cut = build_cut_graph(model.graph, model.bounds);
         const CutNode& cell = cut.nodes[cut.root];
         ASSERT_TRUE(cell.cell);
         const double share = std::pow(cell.node_from_proxy.linear[0][0] / (0.5 * cell.cell->box.size().x), 2);

@@ -40,7 +40,7 @@ Graph balls() {
 
 struct Model {
     Graph graph = balls();
-    CutGraph cut = build_cut_graph(graph, strong_components(graph), test::bounds_of(graph));
+    CutGraph cut = test::cut_of(graph);
     Symmetry symmetry = find_symmetry(cut);
 };
 

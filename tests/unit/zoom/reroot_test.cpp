@@ -76,9 +76,12 @@ Tried try_zoom(const Graph& graph, const std::string& at, const std::string& zoo
     if (!zoom.empty()) request.zoom = Magnification::parse(zoom);
     Diagnostics diagnostics;
     Tried tried;
-    tried.rerooted = reroot(
-        {graph, components, bounds, steps}, request, [](ObjectId, unsigned) { return face_on(2.5); }, look_at,
-        diagnostics);
+    std::optional<GraphPath> path;
+    if (request.at) path = find_path(graph, *request.at, diagnostics);
+    if (path || !request.at)
+        tried.rerooted = reroot(
+            {graph, components, bounds, steps, path}, request,
+            [](ObjectId, unsigned) { return face_on(2.5); }, look_at, diagnostics);
     for (const Diagnostic& diagnostic : diagnostics.all())
         (diagnostic.severity == Severity::error ? tried.error : tried.warning) += diagnostic.message;
     EXPECT_EQ(tried.rerooted.has_value(), tried.error.empty());
@@ -268,11 +271,15 @@ TEST(Reroot, StepsCountFromTheOldRoot) {
     const Graph graph = corner_maps(triangle, {});
     const Tried tried = try_zoom(graph, "(up)*10", "", {}, 14u);
     ASSERT_TRUE(tried.rerooted) << tried.error;
-    ASSERT_EQ(tried.rerooted->root_levels.size(),
-              tried.rerooted->graph.objects[tried.rerooted->graph.root].instances.size());
-    for (const unsigned levels : tried.rerooted->root_levels)
-        EXPECT_LE(levels, 14u);
-    EXPECT_GE(*std::max_element(tried.rerooted->root_levels.begin(), tried.rerooted->root_levels.end()), 7u);
+    EXPECT_EQ(tried.rerooted->steps, 15u);
+    const Graph& rerooted = tried.rerooted->graph;
+    std::uint32_t most = 0;
+    for (const Instance& instance : rerooted.objects[rerooted.root].instances) {
+        ASSERT_NE(instance.levels, levels_of_master);
+        EXPECT_LE(instance.levels, 15u);
+        most = std::max(most, instance.levels);
+    }
+    EXPECT_GE(most, 8u);
 }
 
 TEST(Reroot, LightsAndGroundFollow) {
@@ -291,7 +298,8 @@ TEST(Reroot, LightsAndGroundFollow) {
         std::string problem;
         request.at = parse_address("(up)*", problem);
         request.zoom = Magnification::parse(zoom);
-        return reroot({graph, components, bounds, {}}, request, frame, {}, diagnostics)->view;
+        const std::optional<GraphPath> at = find_path(graph, *request.at, diagnostics);
+        return reroot({graph, components, bounds, {}, at}, request, frame, {}, diagnostics)->view;
     };
     EXPECT_EQ(zoomed("4").lights[0].location, Vec3(0, 8, 0));
     EXPECT_FALSE(zoomed("4").lights[0].sun);
@@ -316,7 +324,8 @@ TEST(Reroot, TheGroundStaysInTheWorld) {
     std::string problem;
     // In the frame of the second `left`, half as large and about (-7/8, -1/2) / 2.
     request.at = parse_address("left.left", problem);
-    const auto rerooted = reroot({graph, components, bounds, {}}, request, frame, {}, diagnostics);
+    const std::optional<GraphPath> at = find_path(graph, *request.at, diagnostics);
+    const auto rerooted = reroot({graph, components, bounds, {}, at}, request, frame, {}, diagnostics);
     ASSERT_TRUE(rerooted);
     EXPECT_FALSE(rerooted->view.ground);
     const Instance& plane = rerooted->graph.objects[rerooted->graph.root].instances.back();

@@ -4,7 +4,7 @@
 #include <set>
 
 #include "compiler/detail/bake.h"
-#include "compiler/detail/calibrate.h"
+#include "compiler/povray/calibrate.h"
 #include "compiler/detail/piece_kind.h"
 #include "compiler/detail/weights.h"
 

@@ -1,4 +1,4 @@
-#include "compiler/detail/run_placements.h"
+#include "compiler/povray/run_placements.h"
 
 namespace graftal {
 

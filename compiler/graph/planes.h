@@ -1,0 +1,13 @@
+#pragma once
+
+#include <vector>
+
+#include "compiler/graph/components.h"
+#include "compiler/graph/graph.h"
+
+namespace graftal {
+
+/// By object: whether it is a plane, or reaches one by instances. O(graph).
+std::vector<bool> plane_holders(const Graph& graph, const Components& components);
+
+} // namespace graftal

@@ -1,0 +1,37 @@
+#pragma once
+
+// Where POV-Ray's text goes, and what goes with it.
+
+#include <functional>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "compiler/support/tint.h"
+
+namespace graftal {
+
+/// Receives text piece by piece, so that a scene of gigabytes never lies in memory; returns false to stop.
+using TextSink = std::function<bool(std::string_view)>;
+
+/// A picture that the scene refers to: the palette of a mesh with more colours than a colour_map holds, or
+/// the texture of a material.
+struct PaletteImage {
+    std::string file_name; ///< beside the scene; PNG, 16 bit, linear
+    int width = 0;
+    int height = 0;
+    std::span<const Rgb> pixels; ///< row by row, top first, of a palette of the cut; may end early
+    std::string texture = {};    ///< Material::texture: then no palette; RGBA, 8 bit, alpha 0 or 1
+};
+
+struct PovrayOptions {
+    std::string scene_name; ///< of the model, for comments and file names; any text (it is made harmless)
+    bool include = false;   ///< `.inc`: declares the object in model coordinates, and draws nothing
+    std::string file_name;  ///< of the `.inc`, for the comment that says how to use it, and its pictures
+    bool progress = false;  ///< emits `#debug` marks that the driver reads as parse progress
+    /// What the `.inc` declares, and what all its names begin with; "": by the model's name. Requires an
+    /// is_model_identifier().
+    std::string identifier = {};
+};
+
+} // namespace graftal

@@ -1,0 +1,74 @@
+#pragma once
+
+// Where a ray is in boxes and goes by parts, as the traversal asks it of every part.
+
+#include <algorithm>
+#include <cstdint>
+
+#include <glm/geometric.hpp>
+
+#include "runtime/trace/traversal.h"
+
+namespace graftal {
+
+/// A ray crosses no primitive's surface more often: the torus.
+inline constexpr int most_crossings = 4;
+/// Allows for the rounding of what is a little more than enough.
+inline constexpr double surely_more = 1 - 1e-6;
+
+/// One bit for each lane that is true.
+template<Instructions instructions> GRAFTAL_INLINE std::uint32_t bits_of(const Int8& lanes) {
+#if defined(__x86_64__) && !defined(__clang__)
+    if constexpr (instructions == Instructions::avx2) {
+        std::uint32_t bits;
+        // An intrinsic could not be inlined from here: only the caller is compiled for AVX2. Clang looks at
+        // the operands before it inlines.
+        __asm__("vmovmskps %1, %0" : "=r"(bits) : "x"(lanes));
+        return bits;
+    }
+#endif
+    std::uint32_t bits = 0;
+    for (int lane = 0; lane < 8; ++lane)
+        bits |= static_cast<std::uint32_t>(lanes[lane] & 1) << lane;
+    return bits;
+}
+
+/// The range of t in which a ray is within a box; empty where least > most.
+GRAFTAL_INLINE RayRange range_in(const Box& box, const Ray& ray, RayRange range) {
+    for (int axis = 0; axis < 3; ++axis) {
+        const double d = ray.direction[axis];
+        if (d == 0) {
+            if (ray.origin[axis] < box.min[axis] || ray.origin[axis] > box.max[axis]) return {1, 0};
+            continue;
+        }
+        const double inverse = 1 / d;
+        const double a = (box.min[axis] - ray.origin[axis]) * inverse;
+        const double b = (box.max[axis] - ray.origin[axis]) * inverse;
+        range.least = std::max(range.least, std::min(a, b));
+        range.most = std::min(range.most, std::max(a, b));
+    }
+    return range;
+}
+
+/// The box, larger by what rounding and widened parts may need.
+inline Box enlarged(const Box& box, Vec3 margin) {
+    const Vec3 more = 1e-9 * box.size() + margin;
+    return {box.min - more, box.max + more};
+}
+
+// Most boxes that are met are met beside their part, and that is sooner told than where a ray meets it.
+inline constexpr double surely_beside = 1 + 1e-9;
+
+/// Whether a ray goes by a line at this distance or more, for sure.
+GRAFTAL_INLINE bool passes_line(Vec3 direction, Vec3 from_line, Vec3 along, double distance) {
+    const Vec3 upright = glm::cross(direction, along);
+    const double apart = glm::dot(from_line, upright);
+    return apart * apart > surely_beside * distance * distance * glm::dot(upright, upright);
+}
+
+GRAFTAL_INLINE bool passes_point(Vec3 direction, Vec3 from_point, double distance) {
+    const Vec3 moment = glm::cross(direction, from_point);
+    return glm::dot(moment, moment) > surely_beside * distance * distance * glm::dot(direction, direction);
+}
+
+} // namespace graftal

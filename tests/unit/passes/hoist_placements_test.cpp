@@ -1,0 +1,91 @@
+#include "compiler/passes/hoist_placements.h"
+
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+namespace graftal {
+namespace {
+
+const Affine half = Affine::scale(Vec3(0.5));
+const Affine aside = Affine::translate({2, 0, 0});
+
+Instance instance_of(ObjectId master, const Affine& map = {}) {
+    Instance instance;
+    instance.master = master;
+    instance.parent_from_child = map;
+    return instance;
+}
+
+ObjectId add_union(Graph& graph, const std::string& name, std::vector<Instance> instances) {
+    Object object;
+    object.name = name;
+    object.instances = std::move(instances);
+    return graph.add(std::move(object));
+}
+
+TEST(HoistPlacements, MovesASharedMapToTheUsers) {
+    Graph graph;
+    const ObjectId sphere = graph.primitive(PrimitiveKind::sphere),
+                   cube = graph.primitive(PrimitiveKind::cube);
+    const ObjectId pair = add_union(graph, "pair", {instance_of(sphere, half), instance_of(cube, half)});
+    graph.root = add_union(graph, "root", {instance_of(pair, aside), instance_of(pair)});
+    const auto [after, renumbering] = hoist_placements(graph);
+    EXPECT_EQ(after.objects[pair].instances[0].parent_from_child, Affine());
+    EXPECT_EQ(after.objects[graph.root].instances[0].parent_from_child, aside * half);
+    EXPECT_EQ(after.objects[graph.root].instances[1].parent_from_child, half);
+    EXPECT_EQ(renumbering.now, (std::vector<ObjectId>{0, 1, 2, 3}));
+    EXPECT_EQ(renumbering.taken[pair].parent_from_rest, half);
+    EXPECT_EQ(renumbering.taken[graph.root].parent_from_rest, Affine()) << "a root has no users";
+    ASSERT_TRUE(renumbering.united.contains(pair));
+    EXPECT_EQ(renumbering.united.at(pair), (std::vector<ObjectId>{sphere, cube}));
+    const std::vector<ObjectBounds> bounds = carried_over(
+        renumbering,
+        {primitive_bounds(PrimitiveKind::sphere), primitive_bounds(PrimitiveKind::cube), {}, {}});
+    EXPECT_EQ(bounds[pair].box.max, Vec3(1.0));
+}
+
+TEST(HoistPlacements, LeavesNothingOfAnEndingObjectOfOneInstance) {
+    Graph graph;
+    const ObjectId sphere = graph.primitive(PrimitiveKind::sphere);
+    const ObjectId inner = add_union(graph, "inner", {instance_of(sphere, half)});
+    const ObjectId outer = add_union(graph, "outer", {instance_of(inner, aside)});
+    graph.root = add_union(graph, "root", {instance_of(outer), instance_of(sphere)});
+    const auto [after, renumbering] = hoist_placements(graph);
+    EXPECT_EQ(after.objects[graph.root].instances[0].master, sphere);
+    EXPECT_EQ(after.objects[graph.root].instances[0].parent_from_child, aside * half);
+    EXPECT_EQ(renumbering.now[outer], sphere);
+    EXPECT_EQ(renumbering.taken[outer].parent_from_rest, aside * half);
+}
+
+TEST(HoistPlacements, TheTerminalStaysWhereItIs) {
+    Graph graph;
+    const ObjectId sphere = graph.primitive(PrimitiveKind::sphere);
+    const ObjectId self = add_union(graph, "self", {});
+    graph.objects[self].instances = {instance_of(self, half), instance_of(self, half)};
+    graph.objects[self].terminal = instance_of(sphere, aside);
+    graph.root = add_union(graph, "root", {instance_of(self)});
+    const auto [after, renumbering] = hoist_placements(graph);
+    const Affine& root_from_self = after.objects[graph.root].instances[0].parent_from_child;
+    EXPECT_EQ(root_from_self, half);
+    EXPECT_EQ(root_from_self * after.objects[self].terminal->parent_from_child, aside);
+}
+
+TEST(HoistPlacements, KeepsWhatIsNotSharedOrFlat) {
+    Graph graph;
+    const ObjectId sphere = graph.primitive(PrimitiveKind::sphere);
+    const Affine flat = Affine::scale({1, 0, 1});
+    const ObjectId two = add_union(graph, "two", {instance_of(sphere, half), instance_of(sphere, aside)});
+    const ObjectId crushed =
+        add_union(graph, "crushed", {instance_of(sphere, flat), instance_of(sphere, flat)});
+    graph.root = add_union(graph, "root", {instance_of(two), instance_of(crushed)});
+    const auto [after, renumbering] = hoist_placements(graph);
+    EXPECT_TRUE(equal(after, graph));
+    EXPECT_TRUE(renumbering.united.empty());
+}
+
+} // namespace
+} // namespace graftal

@@ -6,8 +6,8 @@
 
 #include "compiler/detail/baked.h"
 #include "compiler/detail/coverage.h"
-#include "compiler/detail/run_cells.h"
 #include "compiler/detail/point_set.h"
+#include "compiler/detail/run_cells.h"
 #include "compiler/detail/tessellate.h"
 
 namespace graftal {

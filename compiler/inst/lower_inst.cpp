@@ -301,8 +301,7 @@ class InstLowerer {
             const std::optional<ObjectId> master = resolve(reference, parent);
             if (stopped_) return;
             if (!master || !placement) continue;
-            Instance instance{*master,         placement->parent_from_child,
-                              placement->tint, placement->material,
+            Instance instance{*master, placement->parent_from_child, placement->tint, placement->material,
                               reference.span};
             instance.chance = chance;
             if (group.terminal)

@@ -57,7 +57,8 @@ TEST_F(CommandLine, PointsMakePicturesAndClouds) {
 TEST_F(CommandLine, PointsThatFailLeaveNothing) {
     RunResult result = graftal("points " + fern + " --points 1e15 -o a.ply");
     EXPECT_EQ(result.status, 3);
-    EXPECT_THAT(result.err, HasSubstr("no room for 'a.ply': 1000000000000000 points take 13.3 PiB, but only "));
+    EXPECT_THAT(result.err,
+                HasSubstr("no room for 'a.ply': 1000000000000000 points take 13.3 PiB, but only "));
     result = graftal("points " + fern + small + "-o nowhere/a.png");
     EXPECT_EQ(result.status, 3);
     EXPECT_THAT(result.err, HasSubstr("cannot write 'nowhere/a.png'"));

@@ -329,8 +329,9 @@ TEST(InstHostile, unbounded_recursion_ends_soon_and_names_the_chain) {
     std::string errors;
     EXPECT_LT(seconds_of("canonical object f(n) { union: f(n + 1), f(n + 1) }\nobject top { f(0) }", &errors),
               5);
-    EXPECT_THAT(errors, HasSubstr("m.inst:1:32: error: the model uses object 'f' with more than 100000 different "
-                                  "arguments: top -> f(0) -> f(1) -> f(2) -> ... -> f(99999) -> f(1e+05)\n"));
+    EXPECT_THAT(errors,
+                HasSubstr("m.inst:1:32: error: the model uses object 'f' with more than 100000 different "
+                          "arguments: top -> f(0) -> f(1) -> f(2) -> ... -> f(99999) -> f(1e+05)\n"));
 }
 
 TEST(InstHostile, doubling_recursion_is_bounded_by_the_number_of_objects) {

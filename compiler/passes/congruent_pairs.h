@@ -216,9 +216,9 @@ template<typename Shape> class CongruentPairs {
         if (is_identity(pair)) return match_itself(index);
         if (shape_.fixed(pair.a)) return false;
         if (const auto kind = shape_.primitive(pair.a)) return preserves(*kind, pair.b_from_a);
-        // Proxies must be congruent too where they are drawn.
-        const Affine* proxy = shape_.proxy(pair.a);
-        if (proxy && !takes_ellipsoid(pair.b_from_a, *proxy, *shape_.proxy(pair.b))) return false;
+        // Proxies must be congruent too where they are drawn. The other node may draw none.
+        const Affine *proxy = shape_.proxy(pair.a), *other = shape_.proxy(pair.b);
+        if (proxy && (!other || !takes_ellipsoid(pair.b_from_a, *proxy, *other))) return false;
         NodePair matched = pair;
         if (!match_edges(shape_.edges(pair.a), shape_.edges(pair.b), pair.b_from_a, matched.edge,
                          matched.edge_pair) ||

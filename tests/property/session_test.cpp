@@ -235,8 +235,8 @@ TEST_P(Runs, AStageRunsAgainIfAnInputOfItsOwnDiffers) {
               is_lsys() ? (StageRuns{0, 1, 1, 1, 1, 1}) : (StageRuns{0, 0, 0, 1, 1, 1}));
     EXPECT_EQ(after([&] { options_.lower.set[templates[GetParam()].parameter] = 0.2; }),
               (StageRuns{0, 1, 1, 1, 1, 1}));
-    // A zoom needs the names of objects, and gives the graph a new root.
-    EXPECT_EQ(after([&] { options_.view.zoom.zoom = Magnification::of(2); }), (StageRuns{0, 0, 1, 1, 1, 1}));
+    // A zoom gives the graph that was analysed a new root.
+    EXPECT_EQ(after([&] { options_.view.zoom.zoom = Magnification::of(2); }), (StageRuns{0, 0, 0, 1, 1, 1}));
     EXPECT_EQ(after([&] { options_.view.camera.angle_deg = 40; }), (StageRuns{0, 0, 0, 1, 1, 1}));
 }
 

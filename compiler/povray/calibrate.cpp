@@ -4,9 +4,9 @@
 #include <set>
 
 #include "compiler/detail/bake.h"
-#include "compiler/povray/calibrate.h"
 #include "compiler/detail/piece_kind.h"
 #include "compiler/detail/weights.h"
+#include "compiler/povray/calibrate.h"
 
 namespace graftal {
 

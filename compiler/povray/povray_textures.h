@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "compiler/povray/cut_parts.h"
-#include "compiler/povray/povray_output.h"
 #include "compiler/povray/povray_names.h"
+#include "compiler/povray/povray_output.h"
 #include "compiler/support/id_table.h"
 
 namespace graftal {

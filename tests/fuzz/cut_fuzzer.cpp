@@ -57,8 +57,11 @@ std::string scene_of(const Cut& cut, const View& view, bool include) {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     testing::Choices choices(std::span(data, size));
     const bool runs = choices.one_in(4);
-    const Graph graph = drop_unreachable(testing::random_graph(
-        choices, {.max_objects = 5, .runs = runs, .huge = choices.one_in(4) ? 1e100 : 10})).graph;
+    const Graph graph =
+        drop_unreachable(
+            testing::random_graph(choices,
+                                  {.max_objects = 5, .runs = runs, .huge = choices.one_in(4) ? 1e100 : 10}))
+            .graph;
     const Components components = strong_components(graph);
     const Contraction contraction = decide_contraction(graph, components);
     if (contraction.verdict != Verdict::acyclic && contraction.verdict != Verdict::proved) return 0;

@@ -5,10 +5,10 @@
 
 #include <gtest/gtest.h>
 
-#include "compiler/povray/calibrate.h"
 #include "compiler/detail/cut_graph.h"
 #include "compiler/detail/symmetry.h"
 #include "compiler/detail/weights.h"
+#include "compiler/povray/calibrate.h"
 #include "compiler/povray/choose.h"
 #include "tests/unit/detail/models.h"
 

@@ -1,7 +1,7 @@
 // Laws that hold for rays at random, by means that share nothing with the code under test: functions that are
 // negative inside of each solid, sampled densely, and the meshes that the cut bakes.
 
-#include "runtime/trace/intersect.h"
+#include "compiler/primitives/intersect.h"
 
 #include <algorithm>
 #include <array>
@@ -12,22 +12,23 @@
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
-#include "compiler/detail/tessellate.h"
+#include "compiler/primitives/tapered.h"
+#include "compiler/primitives/tessellate.h"
 
 namespace graftal {
 namespace {
 
-const PrimitiveKind solids[] = {PrimitiveKind::sphere, PrimitiveKind::cube,  PrimitiveKind::cylinder,
-                                PrimitiveKind::cone,   PrimitiveKind::torus, tapered(1. / 128),
-                                tapered(0.25),         tapered(0.75),        tapered(127. / 128)};
+const Primitive solids[] = {PrimitiveKind::sphere, PrimitiveKind::cube,  PrimitiveKind::cylinder,
+                            PrimitiveKind::cone,   PrimitiveKind::torus, tapered(1. / 128),
+                            tapered(0.25),         tapered(0.75),        tapered(127. / 128)};
 
 double out_of(Vec3 p) {
     return std::sqrt(p.x * p.x + p.z * p.z);
 }
 
 /// Distances from the faces that bound a solid, negative inwards: a solid is where all are.
-std::array<double, 3> faces(PrimitiveKind kind, Vec3 p) {
-    switch (kind) {
+std::array<double, 3> faces(const Primitive& kind, Vec3 p) {
+    switch (kind.kind()) {
     case PrimitiveKind::sphere:
         return {glm::length(p) - 1, -2, -2};
     case PrimitiveKind::cube:
@@ -43,19 +44,19 @@ std::array<double, 3> faces(PrimitiveKind kind, Vec3 p) {
     }
 }
 
-double outside(PrimitiveKind kind, Vec3 p) {
+double outside(const Primitive& kind, Vec3 p) {
     const auto all = faces(kind, p);
     return std::max({all[0], all[1], all[2]});
 }
 
 /// Whether two faces are so near that a gradient by differences means nothing.
-bool near_edge(PrimitiveKind kind, Vec3 p) {
+bool near_edge(const Primitive& kind, Vec3 p) {
     auto all = faces(kind, p);
     std::sort(all.begin(), all.end());
     return all[2] - all[1] < 1e-4 || out_of(p) < 1e-3;
 }
 
-Vec3 gradient(PrimitiveKind kind, Vec3 p) {
+Vec3 gradient(const Primitive& kind, Vec3 p) {
     constexpr double h = 1e-6;
     Vec3 result;
     for (int i = 0; i < 3; ++i) {
@@ -80,7 +81,7 @@ class RandomRays {
                 return v / std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
     }
     /// Near, inside, far, along axes and planes, and just about touching.
-    Ray next(PrimitiveKind kind) {
+    Ray next(const Primitive& kind) {
         switch (random_() % 8) {
         case 0:
             return {in_box(1), direction()};
@@ -113,14 +114,14 @@ class RandomRays {
         return {target + back, -back / size};
     }
     /// In the tangent plane of a point of the surface, moved in by `depth`.
-    Ray touching(PrimitiveKind kind, double depth) {
+    Ray touching(const Primitive& kind, double depth) {
         const Vec3 start = in_box(1);
         const auto hit = hit_of(kind, {start, direction()});
         if (!hit) return {start, direction()};
         const Vec3 across = glm::cross(hit->second.normal, direction());
         return from(hit->first - depth * hit->second.normal, uniform(1, 4) * across);
     }
-    static std::optional<std::pair<Vec3, PrimitiveHit>> hit_of(PrimitiveKind kind, const Ray& ray) {
+    static std::optional<std::pair<Vec3, PrimitiveHit>> hit_of(const Primitive& kind, const Ray& ray) {
         PrimitiveHit hit;
         if (!intersect(kind, ray, {}, hit)) return {};
         return std::pair(ray(hit.t), hit);
@@ -130,7 +131,7 @@ class RandomRays {
 };
 
 /// Expects `inside` of the ray between two crossings, but for what lies next to the surface.
-void expect_uncrossed(PrimitiveKind kind, const Ray& ray, double least, double most, bool inside,
+void expect_uncrossed(const Primitive& kind, const Ray& ray, double least, double most, bool inside,
                       int samples) {
     for (int i = 1; i < samples; ++i) {
         const double g = outside(kind, ray(least + (most - least) * i / samples));
@@ -139,7 +140,7 @@ void expect_uncrossed(PrimitiveKind kind, const Ray& ray, double least, double m
 }
 
 /// Follows a ray through all of its crossings.
-int follow(PrimitiveKind kind, const Ray& ray) {
+int follow(const Primitive& kind, const Ray& ray) {
     const double middle = -glm::dot(ray.origin, ray.direction) / glm::dot(ray.direction, ray.direction);
     const double reach = 2 / glm::length(ray.direction), far = std::max(middle + reach, 0.0);
     double last = 0, start = std::max(0.0, middle - reach);
@@ -162,7 +163,7 @@ int follow(PrimitiveKind kind, const Ray& ray) {
 }
 
 TEST(IntersectProperty, EveryCrossingIsFoundOnTheSurface) {
-    for (const PrimitiveKind kind : solids) {
+    for (const Primitive& kind : solids) {
         RandomRays rays(3);
         int crossings = 0;
         const int count = kind == PrimitiveKind::torus ? 40000 : 8000;
@@ -225,9 +226,9 @@ std::optional<double> meet_mesh(const TessellatedPrimitive& mesh, const Ray& ray
 }
 
 TEST(IntersectProperty, AgreesWithTheMeshes) {
-    for (PrimitiveKind kind :
-         {PrimitiveKind::triangle, PrimitiveKind::sphere, PrimitiveKind::cube, PrimitiveKind::cylinder,
-          PrimitiveKind::cone, PrimitiveKind::torus, tapered(0.125), tapered(0.75)}) {
+    for (const Primitive& kind : std::initializer_list<Primitive>{
+             PrimitiveKind::triangle, PrimitiveKind::sphere, PrimitiveKind::cube, PrimitiveKind::cylinder,
+             PrimitiveKind::cone, PrimitiveKind::torus, tapered(0.125), tapered(0.75)}) {
         const TessellatedPrimitive& mesh = tessellated(kind, max_fineness(kind));
         const double error = tessellation_error(kind, max_fineness(kind));
         RandomRays rays(9);

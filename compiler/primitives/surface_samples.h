@@ -4,7 +4,7 @@
 
 #include <glm/geometric.hpp>
 
-#include "compiler/detail/tessellate.h"
+#include "compiler/primitives/tessellate.h"
 #include "compiler/support/affine.h"
 
 namespace graftal {
@@ -13,10 +13,10 @@ namespace graftal {
 /// one of them, nearly; curved surfaces are meshed to half of that. Stops, and returns false, once `add`
 /// does. Requires another kind than plane.
 template<typename Add>
-bool sample_surface(PrimitiveKind kind, const Affine& place, double spacing, const Add& add) {
+bool sample_surface(const Primitive& primitive, const Affine& place, double spacing, const Add& add) {
     const double size = norm(place.linear);
     if (!(2 * size > spacing)) return add(place(Vec3(0.0)));
-    const TessellatedPrimitive& mesh = tessellated(kind, fineness_for(kind, 0.5 * spacing / size));
+    const TessellatedPrimitive& mesh = tessellated(primitive, fineness_for(primitive, 0.5 * spacing / size));
     for (const auto& triangle : mesh.triangles) {
         const Vec3 a = place(mesh.vertices[triangle[0]]);
         const Vec3 b = place(mesh.vertices[triangle[1]]) - a, c = place(mesh.vertices[triangle[2]]) - a;

@@ -1,4 +1,5 @@
-#include "runtime/trace/intersect.h"
+#include "compiler/primitives/intersect.h"
+#include "compiler/primitives/tapered.h"
 
 #include <cmath>
 #include <limits>
@@ -8,6 +9,8 @@
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
+#include "tests/unit/primitives/all_primitives.h"
+
 namespace graftal {
 namespace {
 
@@ -16,20 +19,16 @@ constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr auto triangle = PrimitiveKind::triangle, sphere = PrimitiveKind::sphere, cube = PrimitiveKind::cube,
                plane = PrimitiveKind::plane, cylinder = PrimitiveKind::cylinder, cone = PrimitiveKind::cone,
                torus = PrimitiveKind::torus;
-const PrimitiveKind frustum = tapered(0.5);
+const Primitive frustum = tapered(0.5);
 
-std::optional<PrimitiveHit> meet(PrimitiveKind kind, Vec3 origin, Vec3 direction, RayRange range = {}) {
+std::optional<PrimitiveHit> meet(const Primitive& kind, Vec3 origin, Vec3 direction, RayRange range = {}) {
     PrimitiveHit hit;
     if (!intersect(kind, {origin, direction}, range, hit)) return {};
     return hit;
 }
 
-PrimitiveKind kind_at(int index) {
-    return static_cast<PrimitiveKind>(index % primitive_kind_count);
-}
-
 struct Case {
-    PrimitiveKind kind;
+    Primitive kind = PrimitiveKind::sphere;
     Vec3 origin, direction;
     double t;
     Vec3 normal;
@@ -130,13 +129,13 @@ TEST(Intersect, TakesTheFirstCrossingWithinTheRange) {
     EXPECT_FALSE(meet(plane, {0, 3, 0}, {0, -1, 0}, {3, 9}));
     EXPECT_FALSE(meet(triangle, {0, 0, 3}, {0, 0, -1}, {0, 3}));
     EXPECT_FALSE(meet(torus, {3, 0, 0}, {-1, 0, 0}, {2.3, 3.7}));
-    for (int i = 0; i < primitive_kind_count; ++i)
-        EXPECT_FALSE(meet(kind_at(i), {0, 0.25, 0.5}, {0.1, 0.2, 1}, {nan, nan}));
+    for (const Primitive& primitive : test::all_primitives())
+        EXPECT_FALSE(meet(primitive, {0, 0.25, 0.5}, {0.1, 0.2, 1}, {nan, nan}));
 }
 
 TEST(Intersect, MissesWhatIsNotThere) {
     const struct {
-        PrimitiveKind kind;
+        Primitive kind = PrimitiveKind::sphere;
         Vec3 origin, direction;
     } cases[] = {
         {triangle, {0, 1.001, 1}, {0, 0, -1}},  {triangle, {0, -0.501, 1}, {0, 0, -1}},
@@ -183,7 +182,7 @@ TEST(Intersect, LosesNoRayBetweenFaces) {
     std::mt19937_64 random(5);
     std::uniform_real_distribution<double> wide(-4, 4), angle(0, 6.283185307179586), one(-1, 1);
     int met = 0;
-    const auto aim = [&](PrimitiveKind kind, Vec3 target, Vec3 inside) {
+    const auto aim = [&](const Primitive& kind, Vec3 target, Vec3 inside) {
         // Towards what is inside, from where the ray comes through the target first.
         const Vec3 way = (inside - target) * std::exp(wide(random));
         const auto hit = meet(kind, target - way, way);
@@ -191,11 +190,11 @@ TEST(Intersect, LosesNoRayBetweenFaces) {
         ASSERT_NEAR(hit->t, 1, 1e-13 * std::max(1.0, 1 / glm::length(way))) << name_of(kind);
         ++met;
     };
-    const PrimitiveKind capped[] = {cylinder, cone, frustum, tapered(1. / 128), tapered(127. / 128)};
+    const Primitive capped[] = {cylinder, cone, frustum, tapered(1. / 128), tapered(127. / 128)};
     for (int i = 0; i < 20000; ++i) {
         const double turn = angle(random);
         const Vec3 out(std::cos(turn), 0, std::sin(turn));
-        for (const PrimitiveKind kind : capped) {
+        for (const Primitive& kind : capped) {
             const Vec3 inside(0.3 * one(random) * out.z, 0.5 + 0.2 * one(random), 0.3 * one(random) * out.x);
             aim(kind, out, inside);
             aim(kind, out * top_radius(kind) + Vec3(0, 1, 0), inside);
@@ -210,7 +209,7 @@ TEST(Intersect, LosesNoRayBetweenFaces) {
 
 TEST(Intersect, GrazingRaysFindTheSurfaceOrNothing) {
     const struct {
-        PrimitiveKind kind;
+        Primitive kind = PrimitiveKind::sphere;
         Vec3 origin, direction;
         double least_t, most_t;
     } cases[] = {
@@ -259,7 +258,8 @@ TEST(Intersect, StartsOnTheSurface) {
         c.range.least = 1e-12;
         expect(c, i++);
     }
-    for (const PrimitiveKind kind : {sphere, cube, cylinder, cone, frustum, plane, triangle}) {
+    for (const Primitive& kind :
+         std::initializer_list<Primitive>{sphere, cube, cylinder, cone, frustum, plane, triangle}) {
         const double top = kind == triangle || kind == plane ? 0 : 1;
         EXPECT_FALSE(meet(kind, {0, top, 0}, {0, 1, 1}, {1e-12, infinity})) << name_of(kind);
     }
@@ -267,19 +267,19 @@ TEST(Intersect, StartsOnTheSurface) {
 }
 
 TEST(Intersect, TurnsDownWhatIsNotFinite) {
-    for (int kind = 0; kind < primitive_kind_count; ++kind)
+    for (const Primitive& primitive : test::all_primitives())
         for (int i = 0; i < 3; ++i)
             for (const double bad : {nan, infinity, -infinity, 1e300}) {
                 Ray ray{{0.1, 0.2, 3}, {0, 0, -1}};
                 ray.origin[i] = bad;
-                EXPECT_FALSE(meet(kind_at(kind), ray.origin, ray.direction));
+                EXPECT_FALSE(meet(primitive, ray.origin, ray.direction));
                 ray = {{0.1, 0.2, 3}, {0, 0, -1}};
                 ray.direction[i] = bad;
-                EXPECT_FALSE(meet(kind_at(kind), ray.origin, ray.direction));
+                EXPECT_FALSE(meet(primitive, ray.origin, ray.direction));
             }
-    for (int kind = 0; kind < primitive_kind_count; ++kind)
+    for (const Primitive& primitive : test::all_primitives())
         for (const Vec3 direction : {Vec3(0.0), Vec3(-0.0), Vec3(5e-324), Vec3(1e-300)})
-            EXPECT_FALSE(meet(kind_at(kind), {0.1, 0.2, 0.3}, direction));
+            EXPECT_FALSE(meet(primitive, {0.1, 0.2, 0.3}, direction));
 }
 
 TEST(Intersect, NeverGivesNonsense) {
@@ -292,6 +292,7 @@ TEST(Intersect, NeverGivesNonsense) {
         return random() % 8 < weird ? odd[random() % std::size(odd)] : plain(random);
     };
     int met = 0;
+    const std::vector<Primitive> all = test::all_primitives();
     for (int i = 0; i < 1'000'000; ++i) {
         const unsigned weird = i % 5;
         const Ray ray{{number(weird), number(weird), number(weird)},
@@ -299,7 +300,7 @@ TEST(Intersect, NeverGivesNonsense) {
         const RayRange range{i % 3 ? 0 : number(weird), i % 3 ? infinity : number(weird)};
         PrimitiveHit hit;
         // Half of them frusta would be too many.
-        const PrimitiveKind kind = kind_at(i % 2 ? i / 2 % 8 : i / 2);
+        const Primitive& kind = all[static_cast<std::size_t>(i % 2 ? i / 2 % 8 : i / 2) % all.size()];
         if (!intersect(kind, ray, range, hit)) continue;
         ++met;
         ASSERT_TRUE(std::isfinite(hit.t) && hit.t > range.least && hit.t < range.most)

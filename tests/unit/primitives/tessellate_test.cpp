@@ -1,4 +1,5 @@
-#include "compiler/detail/tessellate.h"
+#include "compiler/primitives/tapered.h"
+#include "compiler/primitives/tessellate.h"
 #include "tests/unit/broken_invariant.h"
 
 #include <algorithm>
@@ -12,13 +13,15 @@
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
+#include "tests/unit/primitives/all_primitives.h"
+
 namespace graftal {
 namespace {
 
-constexpr PrimitiveKind closed_kinds[] = {PrimitiveKind::sphere, PrimitiveKind::cube, PrimitiveKind::cylinder,
-                                          PrimitiveKind::cone, PrimitiveKind::torus};
-const PrimitiveKind curved_kinds[] = {PrimitiveKind::sphere, PrimitiveKind::cylinder, PrimitiveKind::cone,
-                                      PrimitiveKind::torus,  tapered(0.75),           tapered(0.125)};
+const Primitive closed_kinds[] = {PrimitiveKind::sphere, PrimitiveKind::cube, PrimitiveKind::cylinder,
+                                  PrimitiveKind::cone, PrimitiveKind::torus};
+const Primitive curved_kinds[] = {PrimitiveKind::sphere, PrimitiveKind::cylinder, PrimitiveKind::cone,
+                                  PrimitiveKind::torus,  tapered(0.75),           tapered(0.125)};
 
 using Key = std::tuple<double, double, double>;
 Key key(Vec3 p) {
@@ -33,9 +36,9 @@ double segment_distance(double x, double y, Vec3 a, Vec3 b) {
 }
 
 /// Distance from the true surface.
-double distance(PrimitiveKind kind, Vec3 p) {
+double distance(const Primitive& kind, Vec3 p) {
     const double out = std::hypot(p.x, p.z);
-    switch (family_of(kind)) {
+    switch (kind.kind()) {
     case PrimitiveKind::sphere:
         return std::abs(glm::length(p) - 1);
     case PrimitiveKind::torus:
@@ -66,7 +69,7 @@ Vec3 face_normal(const TessellatedPrimitive& mesh, const std::array<std::uint32_
 }
 
 TEST(Tessellate, EveryEdgeOfAClosedSurfaceIsSharedOnceEachWay) {
-    for (const PrimitiveKind kind : closed_kinds)
+    for (const Primitive& kind : closed_kinds)
         for (int fineness = 0; fineness <= std::min(4, max_fineness(kind)); ++fineness) {
             const auto& mesh = tessellated(kind, fineness);
             std::map<std::pair<Key, Key>, int> edges;
@@ -90,8 +93,7 @@ TEST(Tessellate, VolumesAreThoseOfTheSolids) {
 }
 
 TEST(Tessellate, NoTriangleIsDegenerateAndNormalsAreOfUnitLengthAndOutward) {
-    for (int k = 0; k < primitive_kind_count; ++k) {
-        const auto kind = static_cast<PrimitiveKind>(k);
+    for (const Primitive& kind : test::all_primitives()) {
         if (kind == PrimitiveKind::plane) continue;
         for (int fineness = 0; fineness <= std::min(5, max_fineness(kind)); ++fineness) {
             const auto& mesh = tessellated(kind, fineness);
@@ -101,7 +103,7 @@ TEST(Tessellate, NoTriangleIsDegenerateAndNormalsAreOfUnitLengthAndOutward) {
             for (const auto& t : mesh.triangles) {
                 const Vec3 normal = face_normal(mesh, t);
                 // The upper cap of a frustum may be small.
-                const double size = family_of(kind) == PrimitiveKind::frustum ? top_radius(kind) : 1;
+                const double size = kind == PrimitiveKind::frustum ? top_radius(kind) : 1;
                 ASSERT_GT(glm::length(normal), 1e-7 * size * size) << name_of(kind) << " " << fineness;
                 for (const std::uint32_t corner : t) {
                     used.insert(corner);
@@ -117,7 +119,7 @@ TEST(Tessellate, NoTriangleIsDegenerateAndNormalsAreOfUnitLengthAndOutward) {
 
 TEST(Tessellate, StatedErrorIsReachedAndNeverExceeded) {
     constexpr int grid = 16;
-    for (const PrimitiveKind kind : curved_kinds)
+    for (const Primitive& kind : curved_kinds)
         for (int fineness = 0; fineness <= 4; ++fineness) {
             const auto& mesh = tessellated(kind, fineness);
             double worst = 0;
@@ -152,7 +154,7 @@ TEST(Tessellate, RimOfAPrismIsWithinTheErrorOfTheTrueRim) {
 }
 
 TEST(Tessellate, EachFinenessQuartersTheError) {
-    for (const PrimitiveKind kind : curved_kinds)
+    for (const Primitive& kind : curved_kinds)
         for (int fineness = 2; fineness <= max_fineness(kind); ++fineness) {
             const double ratio = tessellation_error(kind, fineness - 1) / tessellation_error(kind, fineness);
             EXPECT_GT(ratio, 3) << name_of(kind) << " " << fineness;
@@ -161,7 +163,7 @@ TEST(Tessellate, EachFinenessQuartersTheError) {
 }
 
 TEST(Tessellate, FinenessForIsTheLeastThatServes) {
-    for (const PrimitiveKind kind : curved_kinds) {
+    for (const Primitive& kind : curved_kinds) {
         EXPECT_EQ(fineness_for(kind, 10), 0);
         EXPECT_EQ(fineness_for(kind, 0), max_fineness(kind));
         EXPECT_EQ(fineness_for(kind, -1), max_fineness(kind));

@@ -129,6 +129,13 @@ bool stays_triangle(const Mat3&) {
     return true;
 }
 
+std::string superellipsoid_text(const Primitive& primitive) {
+    // POV-Ray's stands on the z axis.
+    const std::string& name = name_of(primitive); // superellipsoid(e, n)
+    const std::size_t open = name.find('(') + 1;
+    return "superellipsoid { <" + name.substr(open, name.size() - open - 1) + "> rotate x*90";
+}
+
 std::string polygon_text(const Primitive& primitive) {
     std::string points;
     std::size_t count = 0;
@@ -203,6 +210,8 @@ constexpr PovrayPrimitive row_of(PrimitiveKind kind) {
                 costs<336>};
     case PrimitiveKind::frustum:
         return {cone_text, write_cone, keeps_round, costs<640>};
+    case PrimitiveKind::superellipsoid:
+        return {superellipsoid_text, nullptr, nullptr, costs<352>, nullptr, true};
     case PrimitiveKind::polygon:
         return {polygon_text, nullptr, nullptr, costs<320>, polygon_bytes, true};
     case PrimitiveKind::mesh:

@@ -45,7 +45,8 @@ inline Vec3 random_point_of(const Primitive& kind, std::mt19937& random) {
         return {ring * std::cos(angle), .25 * std::sin(around), ring * std::sin(angle)};
     }
     case PrimitiveKind::plane:
-    case PrimitiveKind::polygon: // tests/unit/primitives holds these to their own surfaces
+    case PrimitiveKind::superellipsoid: // tests/unit/primitives holds these to their own surfaces
+    case PrimitiveKind::polygon:
     case PrimitiveKind::mesh:
         break;
     }

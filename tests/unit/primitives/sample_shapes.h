@@ -41,6 +41,9 @@ inline MeshData tetrahedron() {
 /// Some of every kind.
 inline std::vector<Primitive> sample_primitives() {
     std::vector<Primitive> samples = some_primitives();
+    for (const double e : {0.1, 0.5, 1.0, 2.0})
+        for (const double n : {0.2, 1.0, 1.7, 2.0})
+            samples.push_back(made_of(PrimitiveKind::superellipsoid, {e, n}));
     samples.push_back(made_of(PrimitiveKind::polygon, {0, 0, 2, 0, 1, 1, 2, 2, 0, 2}));
     samples.push_back(made_of(PrimitiveKind::polygon, framed_square()));
     samples.push_back(mesh_primitive("tetrahedron.obj", tetrahedron()));

@@ -23,6 +23,30 @@ std::string fault_of(PrimitiveKind kind, const std::vector<double>& numbers) {
     return fault;
 }
 
+TEST(Superellipsoid, IsASphereOctahedronOrCylinderAtItsEnds) {
+    const auto reach = [](double e, double n, Vec3 direction) {
+        return primitive_support(made_of(PrimitiveKind::superellipsoid, {e, n}), direction);
+    };
+    EXPECT_NEAR(reach(1, 1, {1, 2, 2}), 3, 1e-12);   // a sphere
+    EXPECT_NEAR(reach(2, 2, {0.5, 2, 1}), 2, 1e-12); // an octahedron
+    EXPECT_NEAR(reach(1, 0.1, {3, 1, 4}), 6, 0.2);   // nearly a cylinder: 5 + 1
+    EXPECT_NEAR(reach(1, 2, {3, 1, 4}), 5, 1e-12);   // a double cone
+    EXPECT_NEAR(traits_of(PrimitiveKind::superellipsoid).area(made_of(PrimitiveKind::superellipsoid, {1, 1})),
+                4 * 3.14159265, 0.02);
+}
+
+TEST(Superellipsoid, RefusesOtherExponents) {
+    EXPECT_THAT(fault_of(PrimitiveKind::superellipsoid, {0.05, 1}), HasSubstr("between 0.1 and 2"));
+    EXPECT_THAT(fault_of(PrimitiveKind::superellipsoid, {1, 2.5}), HasSubstr("not at 2.5"));
+}
+
+TEST(Superellipsoid, IsNamedByItsNumbers) {
+    const Primitive shape = made_of(PrimitiveKind::superellipsoid, {0.25, 1});
+    EXPECT_EQ(name_of(shape), "superellipsoid(0.25, 1)");
+    EXPECT_EQ(shape, made_of(PrimitiveKind::superellipsoid, {0.25, 1}));
+    EXPECT_NE(shape, made_of(PrimitiveKind::superellipsoid, {1, 0.25}));
+}
+
 TEST(Polygon, LeavesHolesAndFillsIslands) {
     const Primitive frame = made_of(PrimitiveKind::polygon, test::framed_square());
     EXPECT_NEAR(traits_of(frame).area(frame), 4 - 1 + 0.08, 1e-12);

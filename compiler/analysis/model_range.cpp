@@ -44,7 +44,7 @@ bool check_terminal(const Object& object, const ObjectBounds& bounds, const Obje
     diagnostics
         .error(object.terminal->span, fmt::format("the terminal of '{}' reaches {} times as far as '{}'",
                                                   object.name, how_far, object.name))
-        .with_hint("a terminal is drawn in place of its object where that is too small to see; make it about "
+        .with_hint("graftal draws a terminal in place of an object that is too small to see; make it about "
                    "as large");
     return false;
 }

@@ -25,7 +25,7 @@ class SupportSearch {
     SupportSearch(const Graph& graph, const Outers& outers) : graph_(graph), outers_(outers) {}
 
     /// Stops when upper - lower <= tolerance or after about `most_pieces` pieces; `upper` is true anyway,
-    /// but for 1e-12 of the object's size. Requires an object that is no primitive and not
+    /// except for 1e-12 of the object's size. Requires an object that is neither a primitive nor
     /// empty.
     Support run(ObjectId object, Vec3 direction, double tolerance, std::uint64_t most_pieces);
 

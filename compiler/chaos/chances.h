@@ -27,7 +27,7 @@ using Chances = std::vector<std::vector<double>>;
 ///   something; they are made to, by the choice of t, if a level has more than 0.95 of the area of the one
 ///   before.
 ///
-/// Requires the bounds of all objects. O(graph), but for some dozen rounds through cyclic components.
+/// Requires the bounds of all objects. O(graph), plus a few dozen rounds through each cyclic component.
 Chances chances_of(const Graph& graph, const Components& components, const std::vector<ObjectBounds>& bounds);
 
 /// |det|^(2/3), the area-like size of a map of space; for flat rows of codes |ad - bc|.

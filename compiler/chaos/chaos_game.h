@@ -24,7 +24,7 @@
 
 namespace graftal {
 
-/// What is seen of a point but for its place.
+/// How a point looks: everything that is visible of it except its place.
 struct Paint {
     float red = 0, green = 0, blue = 0; ///< premultiplied
     float through = 1;                  ///< share of what lies behind

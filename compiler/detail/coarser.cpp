@@ -40,12 +40,11 @@ void warn_of_limit(const Span& root, const Limit& limit, const CoarserError& err
 
 void warn_of_shells(const Span& root, const CoarserError& error, Diagnostics& diagnostics) {
     diagnostics
-        .warning(root,
-                 fmt::format("copies lie in each other so often that their surface is drawn with an error of "
-                             "{:.2f} px, not {:.2f} px",
-                             error.px, error.asked_px))
-        .with_hint(
-            "more --work buys more points of the surface; a smaller picture, or fewer --steps, need fewer");
+        .warning(root, fmt::format("so many copies overlap that graftal draws their surface with an error of "
+                                   "{:.2f} px, not {:.2f} px",
+                                   error.px, error.asked_px))
+        .with_hint("a larger --work allows more points of the surface; a smaller picture or fewer --steps "
+                   "need fewer points");
 }
 
 } // namespace graftal

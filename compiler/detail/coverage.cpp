@@ -40,7 +40,7 @@ constexpr int most_rounds = 10;
 /// Bodies that may be drawn for cycles, besides once for each node. Any scene of ours needs less than a
 /// tenth.
 constexpr std::uint64_t most_repeated_draws = 4'000'000;
-/// A primitive of several bodies may make a measurement so much dearer.
+/// How much more a measurement may cost for a primitive of several bodies.
 constexpr std::size_t bodies_a_piece = 4;
 
 /// The axes of an icosahedron, then those of a dodecahedron, turned away from the coordinate axes and

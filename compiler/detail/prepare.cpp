@@ -67,9 +67,8 @@ bool refuse_endless(const Graph& graph, const Components& components, const Deta
                     Diagnostics& diagnostics) {
     if (!components.unending[graph.root] || options.steps || options.culls()) return false;
     diagnostics
-        .error(graph.objects[graph.root].span,
-               "the recursion has no end, and nothing says how deep to draw it")
-        .with_hint("give a depth with --steps N, or a size in pixels with --error");
+        .error(graph.objects[graph.root].span, "the recursion has no end, and no option limits its depth")
+        .with_hint("set a depth with --steps N, or a smallest size in pixels with --error");
     return true;
 }
 
@@ -82,10 +81,10 @@ void note_shadowless(const CutGraph& cut, const Graph& graph, Diagnostics& diagn
             cut.nodes, [&](const CutNode& user) { return std::ranges::any_of(user.edges, widens_proxy); }))
         return;
     diagnostics
-        .note(graph.objects[graph.root].span, "some set here has no area (its dimension is at most 2): its "
-                                              "smallest parts are drawn a pixel wide")
-        .with_hint(
-            "name what they look like, and up to how many pixels they look so: 'terminal sphere below 4'");
+        .note(graph.objects[graph.root].span, "a set in this model has no area (its dimension is at most 2): "
+                                              "graftal draws its smallest parts one pixel wide")
+        .with_hint("name a shape for these parts, and the size in pixels up to which they have it: 'terminal "
+                   "sphere below 4'");
 }
 
 double nearest_to_eye(const CutGraph& cut) {

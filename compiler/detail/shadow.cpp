@@ -76,7 +76,8 @@ Shadow::Point Shadow::project(Vec3 point) const {
             glm::dot(from_centre, up_) * unit_ + 0.5 * size_};
 }
 
-/// False for what is nowhere near the grid, or has no place: all would be a single point but for this.
+/// False for a point far from the grid, or without a place. Without this test, all would become a single
+/// point.
 bool Shadow::is_near(const Point& point) {
     constexpr double far = 1e15;
     return std::abs(point.x) < far && std::abs(point.y) < far;

@@ -84,7 +84,7 @@ class Finder {
             spread += glm::distance(edge.node_from_child(pairs_.centre(edge.child)), pairs_.centre(id));
             stretch += edge.stretch;
         }
-        // Of points that coincide but for rounding the spread is noise.
+        // If points coincide up to rounding, their spread is noise.
         if (spread < 1e-6 * node.ball.radius) spread = 0;
         const std::size_t kind = node.cell        ? 2'000'000 + std::size_t{id} // like no other
                                  : node.primitive ? 1'000'000 + number_of(*node.primitive)

@@ -6,9 +6,9 @@
 
 namespace graftal {
 
-/// The graph as `.inst` text (docs/language.md); reading it back gives an equal() graph, numbers to the
-/// last bit, but for primitives that nothing uses, which are not written, and levels that instances state,
-/// which are comments: no model states them. Requires a verified graph. Deterministic, O(graph).
+/// The graph as `.inst` text (docs/language.md). Reading it back gives an equal() graph, to the last bit of
+/// each number. Unused primitives are not written, and levels that instances state are comments, since no
+/// model states them. Requires a verified graph. Deterministic, O(graph).
 std::string print(const Graph& graph);
 
 } // namespace graftal

@@ -94,8 +94,9 @@ void InstIndex::add(const InstDefinition& definition, Diagnostics& diagnostics) 
     named.push_back(&definition);
     if (definition.rendered)
         diagnostics
-            .error(definition.span, fmt::format("the rendered object '{}' has a parameter", definition.name))
-            .with_hint("make it a 'canonical object' and render an object that instances it");
+            .error(definition.span,
+                   fmt::format("the object '{}' is drawn, but has a parameter", definition.name))
+            .with_hint("make it a 'canonical object', and add an object without parameters that contains it");
 }
 
 const InstDefinition* InstIndex::match(std::string_view name, const std::vector<double>& arguments,

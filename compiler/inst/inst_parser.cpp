@@ -51,7 +51,7 @@ class BodyParser {
                 Diagnostic& error =
                     stream_.expected(fmt::format("'}}' at the end of object '{}'", definition_.name));
                 if (material)
-                    error.with_hint("a material is defined outside of objects; in them stands its name, "
+                    error.with_hint("define materials outside of objects; inside, write the material's name: "
                                     "'material: NAME'");
                 error.with_note(open.span, "to close this '{'");
                 closed_ = false;
@@ -188,7 +188,7 @@ class BodyParser {
                 const bool block = stream_.at("{");
                 Diagnostic& error = stream_.expected(fmt::format("the name of an object after '{}'", after));
                 if (block)
-                    error.with_hint(fmt::format("names stand without braces: '{}: sphere, cube'", after));
+                    error.with_hint(fmt::format("write names without braces: '{}: sphere, cube'", after));
                 return false;
             }
             InstReference reference;
@@ -236,7 +236,7 @@ class BodyParser {
                                         [](const InstGroup& g) { return g.terminal; });
         if (other != definition_.groups.end())
             diagnostics_
-                .error(group.span, fmt::format("object '{}' has a terminal already", definition_.name))
+                .error(group.span, fmt::format("object '{}' already has a terminal", definition_.name))
                 .with_note(other->span, "first given here");
         if (group.masters.size() > 1)
             diagnostics_.error(group.masters[1].span, "'terminal' names one object only");
@@ -248,7 +248,7 @@ class BodyParser {
     InstGroup* current(const Token& keyword) {
         if (!definition_.groups.empty()) return &definition_.groups.back();
         if (!failed_)
-            diagnostics_.error(keyword.span, fmt::format("'{}' has no object to work on", keyword.text))
+            diagnostics_.error(keyword.span, fmt::format("'{}' has no object to apply to", keyword.text))
                 .with_hint("name the objects first, with 'union:' or 'instance:'");
         failed_ = true;
         return nullptr;
@@ -291,7 +291,7 @@ class BodyParser {
         InstGroup* group = current(keyword);
         if (!group) return true;
         if (group->material)
-            diagnostics_.error(name->span, "these objects have a material already")
+            diagnostics_.error(name->span, "these objects already have a material")
                 .with_note(group->material_span, "first given here");
         group->material = name->text;
         group->material_span = name->span;
@@ -313,7 +313,7 @@ class BodyParser {
         if (!group) return true;
         if (group->terminal) {
             diagnostics_.error(keyword.span, "a terminal has no chance")
-                .with_hint("it stands for the whole object, wherever that is cut");
+                .with_hint("a terminal stands for the whole object wherever graftal cuts it");
         } else if (group->chance) {
             diagnostics_.error(keyword.span, "duplicate 'chance'")
                 .with_note(group->chance->span, "first given here");
@@ -337,7 +337,7 @@ class BodyParser {
         if (!group) return true;
         if (!group->terminal) {
             diagnostics_.error(keyword.span, "'below' belongs to a terminal")
-                .with_hint("it says from which size in pixels down the terminal takes the object's place");
+                .with_hint("it sets the size in pixels below which the terminal replaces the object");
         } else if (group->below) {
             diagnostics_.error(keyword.span, "duplicate 'below'")
                 .with_note(group->below->span, "first given here");
@@ -468,9 +468,10 @@ class FileParser {
         const bool other_language = token.is("rifs") || token.is("lsys");
         const bool assigns = token.kind == TokenKind::name && stream_.peek(1).is("=");
         stream_.expected("an object or a scene statement")
-            .with_hint(other_language ? fmt::format("the name of such a model ends in .{}", token.text)
-                       : assigns      ? fmt::format("'let {} = ...' names a number", token.text)
-                                      : choices(token.text, file_keywords()));
+            .with_hint(other_language
+                           ? fmt::format("name the file of such a model with the extension .{}", token.text)
+                       : assigns ? fmt::format("'let {} = ...' names a number", token.text)
+                                 : choices(token.text, file_keywords()));
     }
 
     /// Skips to a token that begins a line and a statement, outside of braces.

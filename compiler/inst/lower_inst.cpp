@@ -98,7 +98,7 @@ class InstLowerer {
         }
         if (primitive_kind_named(use.name) || use.name.find('.') != std::string::npos) {
             diagnostics_.error(use.name_span, fmt::format("'{}' cannot name a model", use.name))
-                .with_hint("use a name without dots that is no primitive");
+                .with_hint("use a name without dots that is not a primitive's");
             return;
         }
         const std::size_t known = graph_.objects.size();
@@ -260,7 +260,7 @@ class InstLowerer {
                         fmt::format("the model has more than {} objects", most));
         if (enumerated && ++tuples_[&definition] > max_argument_tuples)
             return stop(use, definition, parent, name,
-                        fmt::format("object '{}' is reached with more than {} different arguments",
+                        fmt::format("the model uses object '{}' with more than {} different arguments",
                                     definition.name, max_argument_tuples));
         Object object;
         object.name = name;
@@ -293,7 +293,8 @@ class InstLowerer {
         work_ += definition.size + index_.patterns(definition.name, definition.parameters.size()).size();
         if (work_ > max_work) {
             stop(reached_[index].use, definition, reached_[index].parent,
-                 graph_.objects[reached_[index].id].name, "the model takes too much work to enumerate");
+                 graph_.objects[reached_[index].id].name,
+                 "the model takes too much work to list all its objects");
             return;
         }
         environment_ = lets_;
@@ -360,7 +361,7 @@ class InstLowerer {
         };
         lower_scatter(group, context, {begin, take}, scratch_);
         if (lost)
-            scratch_.error(group.span, "the sizes or places of these leave the range of numbers")
+            scratch_.error(group.span, "the sizes or places of these instances leave the range of numbers")
                 .with_hint(range_hint);
     }
 
@@ -455,8 +456,8 @@ class InstLowerer {
         if (rendered.size() > 1) add_scene(rendered);
         if (!rendered.empty() || !module_.complete || failed()) return;
         const Span place = module_.definitions.empty() ? module_.end : module_.definitions.back().span;
-        diagnostics_.error(place, "the model renders nothing: no object stands without 'canonical'")
-            .with_hint("write 'object NAME { ... }' for what the picture shows");
+        diagnostics_.error(place, "the model draws nothing: every object is 'canonical'")
+            .with_hint("write 'object NAME { ... }' for the object that the picture shows");
     }
 
     void add_scene(const std::vector<const Reached*>& rendered) {

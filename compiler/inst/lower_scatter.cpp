@@ -134,7 +134,7 @@ class ScatterLowerer {
         if (scatter_.apart && order() != ScatterOrder::poisson)
             diagnostics_.error(scatter_.apart->span, "only 'by: poisson' keeps places 'apart'");
         if (!scatter_.count && !scatter_.apart)
-            diagnostics_.error(group_.span, "nothing says how many there are")
+            diagnostics_.error(group_.span, "the number of instances is missing")
                 .with_hint("give 'count: n', or 'apart: d' for as many as fit");
     }
 
@@ -150,7 +150,7 @@ class ScatterLowerer {
         if (scatter_.weights.empty()) return;
         if (scatter_.weights.size() != group_.masters.size()) {
             diagnostics_.error(scatter_.weights_span,
-                               fmt::format("as many weights as objects are needed: {}, not {}",
+                               fmt::format("each object needs one weight: {} in all, not {}",
                                            group_.masters.size(), scatter_.weights.size()));
             return;
         }
@@ -190,15 +190,16 @@ class ScatterLowerer {
         area.within = *within;
         if (area.size() >= least_share * within->size()) return area;
         diagnostics_
-            .error(scatter_.over->span, area.size() > 0 ? "less than a hundredth of this area is left"
-                                                        : "nothing of this area is left")
-            .with_note(scatter_.except.front().span, "this is left out");
+            .error(scatter_.over->span, area.size() > 0
+                                            ? "the exceptions leave less than a hundredth of this area"
+                                            : "the exceptions leave nothing of this area")
+            .with_note(scatter_.except.front().span, "this exception");
         return std::nullopt;
     }
 
     std::optional<FlatArea> lower_over() {
         if (!scatter_.over) {
-            diagnostics_.error(group_.span, "nothing says where these stand")
+            diagnostics_.error(group_.span, "the area of these instances is missing")
                 .with_hint("give 'over: x0, z0, x1, z1', 'over: disc r' or 'over: ground'");
             return std::nullopt;
         }
@@ -219,7 +220,7 @@ class ScatterLowerer {
             const FlatArea area = FlatArea::round(centre, glm::distance(Vec2(from.x, from.z), centre));
             if (area.size() > 0 && std::isfinite(area.size())) return area;
         }
-        diagnostics_.error(scatter_.over->span, "nothing says how far the ground reaches")
+        diagnostics_.error(scatter_.over->span, "the extent of the ground is missing")
             .with_hint("write 'ground { area: x0, z0, x1, z1 }' or 'ground { area: disc r }', or give the "
                        "camera a 'location' and a 'look_at'");
         return std::nullopt;
@@ -244,7 +245,7 @@ class ScatterLowerer {
             .error(group_.span, fmt::format("more than {} places fit, and the graph has no room for more "
                                             "instances",
                                             context_.most))
-            .with_hint("enlarge 'apart', or give 'count'");
+            .with_hint("give a larger 'apart', or a 'count'");
         return std::nullopt;
     }
 
@@ -264,13 +265,13 @@ class ScatterLowerer {
 
     std::nullopt_t refuse_places(std::size_t placed, double apart) {
         if (order() != ScatterOrder::poisson)
-            diagnostics_.error(scatter_.count->span, "this area has no such pattern")
-                .with_hint("leave less of it out, or place them 'by: poisson'");
+            diagnostics_.error(scatter_.count->span, "this pattern does not fit into the area")
+                .with_hint("use smaller exceptions, or place the instances 'by: poisson'");
         else
             diagnostics_
                 .error(scatter_.count->span, fmt::format("only {} of {} places fit {} apart", placed,
                                                          shortest(*count_), shortest(apart)))
-                .with_hint("lower 'count' or 'apart', or leave one of them out");
+                .with_hint("lower 'count' or 'apart', or give only one of them");
         return std::nullopt;
     }
 

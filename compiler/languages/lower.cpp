@@ -23,7 +23,7 @@ std::optional<Graph> lower_root(FileId file, const LowerOptions& options, Source
     const Language* const language = language_of(file, sources, languages());
     if (options.time && !options.steps && !(language && language->has_time)) {
         diagnostics
-            .error(Span{file, 0, 0}, fmt::format("--steps {}: only L-systems have times between their steps",
+            .error(Span{file, 0, 0}, fmt::format("--steps {}: only L-systems have times between two steps",
                                                  shortest(*options.time)))
             .with_hint("give a whole number");
         return std::nullopt;

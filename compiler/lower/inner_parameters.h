@@ -42,7 +42,7 @@ std::vector<double> nearest_member(std::span<const InnerParameter> parameters,
 /// These values by name.
 Environment named_values(std::span<const InnerParameter> parameters, const std::vector<double>& values);
 
-/// The first argument for a parameter that lies outside of [0, 1], but for rounding, as the error "'k' of
+/// The first argument for a parameter that lies outside of [0, 1] by more than rounding, as the error "'k' of
 /// 'leaf' lies between 0 and 1, not at 2"; an empty text if there is none.
 std::string inner_argument_error(std::string_view model, std::span<const InnerParameter> parameters,
                                  std::span<const double> arguments);

@@ -215,7 +215,9 @@ void lower_texture(const Fields& fields, Lowering& lowering, Material& material)
     if (const SceneField* texture = fields.find("texture"))
         read_texture(*texture, !fields.flag("color"), lowering, material);
     else if (fields.flag("around"))
-        fields.error("around", "'around' says how often a texture goes round, and there is none");
+        fields.error(
+            "around",
+            "'around' sets how often a texture repeats around the shape, but the material has no texture");
     const auto counts = [](double x) { return x >= 1 && x <= most_around && x == std::floor(x); };
     material.around = fields.number("around", counts, "be a whole number between 1 and 1000").value_or(1);
 }

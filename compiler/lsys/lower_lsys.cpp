@@ -36,7 +36,7 @@ class LsysLowering {
     std::optional<Graph> run() && {
         if (tree_.blocks.empty() && !failed())
             diagnostics_.error({file_, 0, 0}, "this file has no 'lsys' block")
-                .with_hint("lsys NAME { axiom F  F -> F[+F]F }, each statement on its line");
+                .with_hint("write lsys NAME { axiom F  F -> F[+F]F }, with each statement on its own line");
         lets_ = evaluate_lets(tree_.statements, {}, lowering_, given_inner());
         inner_parameters(tree_.statements, lets_, diagnostics_); // for its checks
         lower_settings(tree_.statements, lets_, graph_, lowering_);
@@ -167,7 +167,9 @@ class LsysLowering {
             diagnostics_.error(block.name.span, fmt::format("duplicate block '{}'", block.name.text))
                 .with_note(first->second, "first defined here");
         else if (use != uses_.end())
-            diagnostics_.error(block.name.span, fmt::format("'{}' is a used model already", block.name.text))
+            diagnostics_
+                .error(block.name.span,
+                       fmt::format("'{}' is already the name of a used model", block.name.text))
                 .with_note(use->second.span, "first defined here");
         else if (primitive_kind_named(block.name.text))
             diagnostics_.error(block.name.span,
@@ -205,7 +207,7 @@ class LsysLowering {
         const std::string_view name = block.source->name.text;
         if (block.under_way) {
             diagnostics_.error(use, fmt::format("'{}' would place itself", name))
-                .with_hint("a model inside itself is what productions are for");
+                .with_hint("write productions for a model inside itself");
             return std::nullopt;
         }
         if (nesting_ == max_block_nesting) {
@@ -262,9 +264,10 @@ class LsysLowering {
             if (form_of(kind) == PrimitiveForm::plain) known.emplace_back(name_of(kind));
         const std::string hint = did_you_mean(name, known);
         diagnostics_.error(span, fmt::format("'~{}' names no used model and no block of this file", name))
-            .with_hint(hint.empty()
-                           ? fmt::format("use {} = \"FILE\" at the top of the file makes it one", name)
-                           : hint);
+            .with_hint(
+                hint.empty()
+                    ? fmt::format("write use {} = \"FILE\" at the top of the file to load a model", name)
+                    : hint);
     }
 
     ModelPlacer placer(const std::map<SymbolId, Model>& models) {
@@ -310,9 +313,7 @@ class LsysLowering {
             steps = grammar.steps;
         if (!steps) steps = graph_.settings.steps;
         if (!steps)
-            diagnostics_
-                .error(span, fmt::format("'lsys {}' does not say how many steps to derive",
-                                         block.source->name.text))
+            diagnostics_.error(span, fmt::format("'lsys {}' has no number of steps", block.source->name.text))
                 .with_hint(is_root(block) ? "add 'steps 5' to it, or '--steps 5' to the command"
                                           : "add 'steps 5' to it");
         else if (*steps > max_derivation_steps)

@@ -33,7 +33,7 @@ class BlockParser {
         if (!outline.closed && opened && !text_.stray_brace_said) report_open(outline.end);
         if (opened && !axiom_said_)
             diagnostics_.error(block_.name.span, fmt::format("'lsys {}' has no axiom", block_.name.text))
-                .with_hint("axiom F gives the string that the derivation begins with");
+                .with_hint("write axiom F for the string that the derivation begins with");
         block_.broken = diagnostics_.error_count() > errors;
         file_.blocks.push_back(std::move(block_));
         return outline.end;
@@ -67,7 +67,7 @@ class BlockParser {
         const bool dash = at < size && scanner_.text()[at] == '-';
         Diagnostic& error =
             scanner_.expected(fmt::format("'{{' after '{}'", name), at, size, "the end of the file");
-        if (dash) error.with_hint("a name is made of letters, digits and _");
+        if (dash) error.with_hint("a name consists of letters, digits and _");
     }
 
     /// `lsys my plant {`: reported; the block is read all the same if its '{' stands on the line.
@@ -217,8 +217,7 @@ class BlockParser {
         if (reader.at_end()) return true;
         const bool arrow = reader.at_arrow() > 0;
         Diagnostic& error = reader.expected("a module or the end of the line");
-        if (arrow)
-            error.with_hint("every statement and every production stands on its own line, without ';'");
+        if (arrow) error.with_hint("write every statement and every production on its own line, without ';'");
         return false;
     }
 
@@ -236,8 +235,8 @@ class BlockParser {
             const bool number = stream.peek().kind == TokenKind::number;
             if (number) {
                 stream.expected("the name of a material")
-                    .with_hint(
-                        "a material of the file has the colour: material petal { color: 0.7, 0.1, 0.3 }");
+                    .with_hint("define the colour as a material of the file: material petal { color: 0.7, "
+                               "0.1, 0.3 }");
                 return;
             }
             const std::optional<Token> name = stream.expect_name("the name of a material");
@@ -270,8 +269,8 @@ class BlockParser {
 
     void declare(LsysName name) {
         if (is_lsys_keyword(name.text) || name.text == "lsys" || name.text == "main") {
-            diagnostics_.error(name.span,
-                               fmt::format("'{}' is a word of the language and no module's name", name.text));
+            diagnostics_.error(
+                name.span, fmt::format("'{}' is a word of the language and cannot name a module", name.text));
         } else if (name.text.find('.') != std::string_view::npos) {
             diagnostics_.error(name.span, "the name of a module has no dots");
         } else if (name.text.size() > max_lsys_symbol) {
@@ -291,8 +290,8 @@ class BlockParser {
         const char* section = statement.section == LsysSection::interpret ? "interpret" : "decompose";
         diagnostics_
             .error(scanner_.span(statement.word),
-                   fmt::format("only productions stand in '{}', not '{}'", section, statement.word))
-            .with_hint("close it with '}' before");
+                   fmt::format("'{}' may contain only productions, not '{}'", section, statement.word))
+            .with_hint("close it with '}' first");
         axiom_said_ |= statement.word == "axiom";
     }
 
@@ -312,7 +311,7 @@ class BlockParser {
         axiom_said_ |= meant == "axiom";
         if (statement.begin == statement.end && statement.section != LsysSection::block) {
             diagnostics_.error(scanner_.span(statement.begin, statement.end), "expected a production or '{'")
-                .with_hint("interpret A -> F, or interpret { with one production a line }");
+                .with_hint("write interpret A -> F, or interpret { with one production per line }");
         } else if (word.size() > 1) {
             diagnostics_.error(scanner_.span(word), fmt::format("unknown statement '{}'", word))
                 .with_hint(choices(word, lsys_keywords()));
@@ -329,7 +328,7 @@ class BlockParser {
             diagnostics_
                 .error(scanner_.span(statement.begin, statement.end),
                        "this is neither a statement nor a production")
-                .with_hint("a production has an arrow: A -> B");
+                .with_hint("write a production with an arrow: A -> B");
     }
 
     /// `A = B`, `A => B`, and arrows of other characters.
@@ -354,8 +353,8 @@ class BlockParser {
         if (found.empty()) return false;
         diagnostics_.error(scanner_.span(found), fmt::format("expected '->', found '{}'", found))
             .with_hint(found == "=" || found == ":="
-                           ? "a production is written A -> B, and 'let a = 3' names a number"
-                           : "a production is written A -> B");
+                           ? "write a production as A -> B, and a named number as 'let a = 3'"
+                           : "write a production as A -> B");
         return true;
     }
 
@@ -367,7 +366,7 @@ class BlockParser {
     void parse_misplaced(TokenStream& stream, std::string_view word) {
         diagnostics_
             .error(stream.peek().span,
-                   fmt::format("'{}' stands outside the braces of 'lsys {}'", word, block_.name.text))
+                   fmt::format("'{}' must be outside the braces of 'lsys {}'", word, block_.name.text))
             .with_hint("close the block with '}' before it");
         if (word == "use")
             parse_lsys_use(stream, file_);

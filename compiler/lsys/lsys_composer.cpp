@@ -127,7 +127,7 @@ std::uint32_t LsysComposer::chance_module(ModuleId module) const {
     const ModuleTable& modules = rewriter_.modules();
     if (!is_timed_ || FoldedWord::is_piece(module)) return module;
     std::uint64_t hash = modules.symbol(module);
-    for (const double parameter : modules.parameters(module)) // but for rounding
+    for (const double parameter : modules.parameters(module)) // equal up to rounding
         hash = mixed(hash, std::bit_cast<std::uint32_t>(static_cast<float>(parameter)));
     return static_cast<std::uint32_t>(mixed(hash, 1) >> 32);
 }
@@ -183,9 +183,9 @@ bool LsysComposer::refuse_to_wait(SymbolId symbol) {
         grammar.time(RuleKind::produce, symbol) != 0 ? RuleKind::produce : RuleKind::decompose;
     context_.diagnostics
         .error(grammar.rules[grammar.candidates(kind, symbol).front()].source->span,
-               fmt::format("too many different modules wait for the productions of '{}'",
+               fmt::format("the productions of '{}' must handle too many different modules",
                            grammar.symbols[symbol]))
-        .with_hint("fewer steps are tried faster, as are modules with fewer different parameters");
+        .with_hint("use fewer steps, or modules with fewer different parameters");
     return false;
 }
 
@@ -337,8 +337,8 @@ bool LsysComposer::resize(Lookup& found, const Task& task, bool absolute) {
     if (found.state.unit <= largest_size && found.state.width <= largest_size) return true;
     context_.diagnostics
         .error(task.span,
-               fmt::format("a size here is less than {} of what the model began with", shortest(least_size)))
-        .with_hint("fewer steps keep the model within the range of numbers");
+               fmt::format("a size here is less than {} of the model's first size", shortest(least_size)))
+        .with_hint("use fewer steps to keep the model within the range of numbers");
     return false;
 }
 
@@ -407,8 +407,8 @@ bool LsysComposer::start_task(ModuleId module, Stage stage, const TurtleState& s
         context_.diagnostics
             .error(span, fmt::format("the {} of '{}' does not end",
                                      stage == 0 ? "interpretation" : "decomposition", name))
-            .with_hint(
-                "these productions are applied again and again until none fits: a condition must end it");
+            .with_hint("graftal applies these productions again and again until none fits: add a condition "
+                       "that ends this");
         return false;
     }
     if (!has_room(span)) return false;

@@ -62,10 +62,9 @@ bool LsysDecomposer::refuse(ModuleId module, const char* what) {
     const LsysRule& rule = grammar.rules[grammar.candidates(RuleKind::decompose, symbol).front()];
     diagnostics_
         .error(rule.source->span, fmt::format("the decomposition of '{}' {}", grammar.symbols[symbol], what))
-        .with_hint(
-            fmt::format("at most {} levels and {} modules are followed; a module that comes back needs a "
-                        "condition that becomes false",
-                        max_decomposition_depth, max_modules_));
+        .with_hint(fmt::format("graftal follows at most {} levels and {} modules; give a module that recurs "
+                               "a condition that becomes false",
+                               max_decomposition_depth, max_modules_));
     return false;
 }
 

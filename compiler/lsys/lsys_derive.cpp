@@ -155,7 +155,7 @@ bool LsysDeriver::is_short_enough(std::uint64_t length) {
     diagnostics_
         .error(block.steps ? block.steps->span : block.name.span,
                fmt::format("the derivation has more than {} modules after step {}", max_modules_, step_))
-        .with_hint("fewer steps give a shorter one");
+        .with_hint("use fewer steps for a shorter one");
     return false;
 }
 

@@ -321,10 +321,10 @@ class Drawer {
         }
         diagnostics_
             .error(grammar_.source->steps->span,
-                   fmt::format("'lsys {}' has no limit that was found: its levels do not repeat",
+                   fmt::format("graftal found no limit of 'lsys {}': its levels do not repeat",
                                grammar_.source->name.text))
             .with_hint(
-                "the levels of a limit differ in their size only: all lengths and widths change alike");
+                "the levels of a limit may differ only in size: all lengths and widths must change alike");
         return std::nullopt;
     }
 

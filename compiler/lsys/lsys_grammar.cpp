@@ -290,7 +290,7 @@ class GrammarBuilder {
         const auto matches = [&](const LsysPattern& pattern, const LsysFormal& source) {
             std::string problem;
             if (grammar_.ignored[pattern.symbol] && !is_bracket(pattern.symbol))
-                problem = fmt::format("contexts look past '{}'", source.symbol);
+                problem = fmt::format("contexts skip '{}'", source.symbol);
             else if (!symbols.contains(pattern.symbol))
                 problem = fmt::format("no axiom or successor has a module '{}'", source.symbol);
             else if (!known.contains({pattern.symbol, pattern.arity}))
@@ -339,10 +339,9 @@ class GrammarBuilder {
                 if (!block_.broken && !is_rewritten(use.symbol, use.arity)) warn_of_arity(use, name);
             } else if (!is_letter(name)) {
                 diagnostics_.error(use.span, fmt::format("'{}' means nothing to the turtle", name))
-                    .with_hint(
-                        name == "\""
-                            ? "strings of modules stand without quotes: axiom F"
-                            : "letters stand for modules; docs/language.md lists the turtle's symbols");
+                    .with_hint(name == "\""
+                                   ? "write strings of modules without quotes: axiom F"
+                                   : "use letters for modules; docs/language.md lists the turtle's symbols");
             } else if (!seen_by_contexts.contains(use.symbol) && !declared.contains(name)) {
                 word.idle.push_back(&use);
             }
@@ -384,7 +383,7 @@ class GrammarBuilder {
         const Span span = join(word.idle.front()->span, word.idle.back()->span);
         if (word.idle.size() == 1) {
             diagnostics_.warning(span, fmt::format("{} has no production and draws nothing", quoted))
-                .with_hint(fmt::format("'modules{}' says that this is meant", names));
+                .with_hint(fmt::format("write 'modules{}' if you mean this", names));
             return;
         }
         std::vector<std::string> declared;
@@ -395,8 +394,9 @@ class GrammarBuilder {
             .with_hint(
                 !meant.empty()
                     ? meant
-                    : fmt::format("'modules {}' makes one name of them, 'modules{}' says that this is meant",
-                                  word.text, names));
+                    : fmt::format(
+                          "write 'modules {}' to make one name of them, or 'modules{}' if you mean this",
+                          word.text, names));
     }
 
     void warn_of_arity(const Use& use, const std::string& name) {

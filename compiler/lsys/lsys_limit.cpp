@@ -193,8 +193,9 @@ class LevelFolder {
             if (!condition || !mentions(*condition, name)) continue;
             diagnostics_
                 .error(condition->span,
-                       fmt::format("'{}' changes from step to step, so that this decides when to stop", name))
-                .with_hint("a derivation with an end has a finite number of steps: give 'steps N'");
+                       fmt::format("'{}' changes from step to step, so this condition decides when to stop",
+                                   name))
+                .with_hint("such a derivation ends, so give a number of steps: 'steps N'");
             return false;
         }
         return true;

@@ -17,10 +17,11 @@ std::string hint_outside(const TokenStream& stream) {
     const Token& word = stream.peek();
     if (word.kind != TokenKind::name) return {};
     if (is_lsys_keyword(word.text) || stream.peek(1).is("->"))
-        return "the statements of an L-system stand in a block: lsys NAME { ... }";
+        return "write the statements of an L-system in a block: lsys NAME { ... }";
     if (word.is("rifs") || word.is("object") || word.is("canonical"))
-        return fmt::format("the name of such a model ends in .{}", word.is("rifs") ? "rifs" : "inst");
-    if (stream.peek(1).is("{")) return fmt::format("a block begins with its kind: lsys {} {{", word.text);
+        return fmt::format("name the file of such a model with the extension .{}",
+                           word.is("rifs") ? "rifs" : "inst");
+    if (stream.peek(1).is("{")) return fmt::format("begin a block with its kind: lsys {} {{", word.text);
     if (stream.peek(1).is("=")) return fmt::format("'let {} = ...' names a number", word.text);
     std::vector<std::string> words = {"lsys", "main", "use"};
     words.insert(words.end(), scene_keywords().begin(), scene_keywords().end());

@@ -81,7 +81,7 @@ class ProductionParser {
         for (const LsysFormal& module : production_.left)
             if (is_bracket(module.symbol)) {
                 diagnostics_.error(module.span, "a left context has no brackets")
-                    .with_hint("it is matched along the way to the root, past all side branches");
+                    .with_hint("graftal matches it along the way to the root, past all side branches");
                 return false;
             }
         return check_lsys_brackets(production_.right, text_);
@@ -90,7 +90,7 @@ class ProductionParser {
     bool check_predecessor(Formals& modules, bool has_left) {
         if (modules.empty()) {
             reader_.move_to(has_left ? reader_.position() : first_character());
-            reader_.expected("the module that is rewritten").with_hint("a production is written A -> B");
+            reader_.expected("the module that is rewritten").with_hint("write a production as A -> B");
             return false;
         }
         if (modules.size() > 1) return report_several(modules);
@@ -100,7 +100,7 @@ class ProductionParser {
         }
         if (modules[0].symbol == "%") {
             diagnostics_.error(modules[0].span, "a cut cannot be rewritten")
-                .with_hint("it has removed the rest of its branch already when its turn would come");
+                .with_hint("it has already removed the rest of its branch before a production could apply");
             return false;
         }
         production_.predecessor = std::move(modules[0]);
@@ -118,16 +118,15 @@ class ProductionParser {
         const std::string_view word =
             lsys_name(text_.scanner.text().substr(span.begin, span.end - span.begin));
         if (modules.back().symbol == "-")
-            error.with_hint("a probability stands behind the successor: A -> B : 0.5");
+            error.with_hint("write a probability after the successor: A -> B : 0.5");
         else if (word.size() > 1 && word.size() + 1 < span.end - span.begin)
-            error.with_hint(
-                fmt::format("a production begins with its module: F -> ...; a name of several letters is "
-                            "declared: modules {}",
-                            word));
+            error.with_hint(fmt::format(
+                "begin a production with its module: F -> ...; declare a name of several letters: modules {}",
+                word));
         else if (word.size() > 1)
-            error.with_hint(fmt::format("longer names are declared: modules {}", word));
+            error.with_hint(fmt::format("declare longer names: modules {}", word));
         else
-            error.with_hint("modules around it are its context: A < B > C -> ...");
+            error.with_hint("write the modules around it as its context: A < B > C -> ...");
         return false;
     }
 
@@ -144,7 +143,7 @@ class ProductionParser {
         if (size == 0) {
             Diagnostic& error = reader_.expected("'->'");
             if (reader_.accept('<'))
-                error.with_hint("the left context comes first, and once: A < B > C -> ...");
+                error.with_hint("write the left context first, and only once: A < B > C -> ...");
             return false;
         }
         const std::size_t begin = reader_.position();
@@ -163,11 +162,11 @@ class ProductionParser {
         if (!good || reader_.at_end()) return good;
         Diagnostic& error = reader_.expected("a module or the end of the line");
         if (reader_.at_arrow() > 0)
-            error.with_hint("every production stands on its own line");
+            error.with_hint("write every production on its own line");
         else if (reader_.accept('*'))
-            error.with_hint("'*' stands alone, for the empty string");
+            error.with_hint("write '*' alone, for the empty string");
         else
-            error.with_hint("contexts stand before the arrow: A < B > C -> ...");
+            error.with_hint("write contexts before the arrow: A < B > C -> ...");
         return false;
     }
 

@@ -249,16 +249,16 @@ bool LsysRewriter::append(const std::vector<LsysTemplate>& templates, const Lsys
     if (modules_.size() <= max_distinct_modules) return true;
     diagnostics_
         .error(rule ? rule->source->span : grammar_.source->name.span,
-               fmt::format("more than {} different modules are derived", max_distinct_modules))
+               fmt::format("the derivation has more than {} different modules", max_distinct_modules))
         .with_hint(explosion_hint());
     return false;
 }
 
 const char* LsysRewriter::explosion_hint() const {
     if (grammar_.draws(RuleKind::produce) || grammar_.draws(RuleKind::decompose))
-        return "random numbers that are rewritten make every module another one: draw them in 'interpret', "
-               "where nothing is made of them";
-    return "parameters that change without end make every part another one";
+        return "random numbers in modules that keep growing make every module different: draw them in "
+               "'interpret' instead";
+    return "parameters that change without end make every part different";
 }
 
 } // namespace graftal

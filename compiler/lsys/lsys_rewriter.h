@@ -95,7 +95,7 @@ class LsysRewriter {
     std::optional<double> probability(const LsysRule& rule, std::span<const double> values,
                                       const Moment& moment);
 
-    /// The three above at once: tries the rule and, if it fits, says what it gives; but for what is drawn.
+    /// The three above at once: tries the rule and, if it fits, says what it gives. Leaves chance to draw().
     Fit apply(const LsysRule& rule, std::span<const double> values, const Moment& moment,
               Alternative& result);
 

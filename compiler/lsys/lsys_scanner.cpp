@@ -178,7 +178,7 @@ class LsysStatementEnd {
 
 void LsysScanner::report_second_statement(std::string_view word) const {
     if (std::exchange(second_statement_said_, true)) return;
-    diagnostics_.error(span(word), fmt::format("'{}' stands behind another statement on its line", word))
+    diagnostics_.error(span(word), fmt::format("'{}' follows another statement on the same line", word))
         .with_hint("every statement stands on its own line, and ends without ';'");
 }
 

@@ -116,7 +116,7 @@ bool LsysStream::refuse_length(std::uint32_t word) {
         .error(
             block.steps ? block.steps->span : block.name.span,
             fmt::format("the derivation has more than {} modules after step {}", options_.max_modules, word))
-        .with_hint("fewer steps give a shorter one");
+        .with_hint("use fewer steps for a shorter one");
     return false;
 }
 
@@ -141,8 +141,8 @@ bool LsysStream::emit(const Module& module, std::uint32_t repeated) {
             diagnostics_
                 .error(chosen.rule->source->span, fmt::format("the interpretation of '{}' does not end",
                                                               grammar_.symbols[module.symbol]))
-                .with_hint(
-                    "these productions are applied again and again until none fits: a condition must end it");
+                .with_hint("graftal applies these productions again and again until none fits: add a "
+                           "condition that ends this");
             return false;
         }
     }

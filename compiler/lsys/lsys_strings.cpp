@@ -28,7 +28,7 @@ bool is_blank(char c) {
     return c == ' ' || c == '\t' || c == '\r' || c == '\n' || c == '\f' || c == '\v';
 }
 
-constexpr const char* probability_hint = "a probability stands behind the successor: A -> B : 0.5";
+constexpr const char* probability_hint = "write a probability after the successor: A -> B : 0.5";
 
 } // namespace
 
@@ -186,13 +186,13 @@ bool LsysStringReader::take_room(const Raw& raw) {
 bool LsysStringReader::stray() {
     const char c = scanner_.text()[at_];
     if (c == ')') {
-        expected("a module").with_hint("nothing opens this ')'");
+        expected("a module").with_hint("this ')' closes nothing");
         ++at_;
         return false;
     }
     Diagnostic& error = expected("a module");
-    if (c == '@') error.with_hint("a directive is '@' and a letter: @o");
-    if (c == '=') error.with_hint("an arrow is written ->, and after the word of a statement stands no '='");
+    if (c == '@') error.with_hint("write a directive as '@' and a letter: @o");
+    if (c == '=') error.with_hint("write an arrow as ->, and no '=' after the word of a statement");
     if (c != '(') {
         do
             ++at_;
@@ -203,7 +203,7 @@ bool LsysStringReader::stray() {
         return false;
     }
     error.with_hint(at_ > 0 && scanner_.text()[at_ - 1] == '>' ? probability_hint
-                                                               : "parameters follow their module: F(1)");
+                                                               : "write parameters after their module: F(1)");
     at_ = scanner_.parenthesis_end(at_, end_).value_or(end_);
     return false;
 }
@@ -213,7 +213,7 @@ void LsysStringReader::warn_of_comment() {
     if (warned_ || !rest().starts_with("// ") || at_ == 0 || !is_blank(scanner_.text()[at_ - 1])) return;
     warned_ = true;
     text_.diagnostics.warning(scanner_.span(at_, at_ + 2), "in a string '//' is two turns, no comment")
-        .with_hint("comments in strings begin with '#'; turns can be written without a space around them");
+        .with_hint("begin comments in strings with '#', or write the turns without spaces around them");
 }
 
 template<class Take> bool LsysStringReader::read(Take take_module) {
@@ -237,7 +237,7 @@ bool LsysStringReader::read_formals(std::vector<LsysFormal>& modules) {
     return read([&](const Raw& raw) {
         modules.push_back({raw.symbol, {}, raw.span});
         if (raw.symbol == "~") {
-            text_.diagnostics.error(raw.span, "a model stands in successors only")
+            text_.diagnostics.error(raw.span, "only a successor may contain a model")
                 .with_hint("rewrite a module, and let its successor place the model");
             return false;
         }
@@ -261,8 +261,8 @@ bool LsysStringReader::read_symbols(std::vector<LsysName>& symbols) {
         const bool bracket = turtle_brackets.find(raw.symbol) != std::string_view::npos;
         if (raw.parameters || bracket) {
             text_.diagnostics.error(raw.parameters.value_or(raw.span),
-                                    bracket ? "brackets are never ignored or considered"
-                                            : "symbols are listed without parameters");
+                                    bracket ? "contexts cannot ignore or consider brackets"
+                                            : "list symbols without parameters");
         } else if (const auto [twin, fresh] = listed.try_emplace(raw.symbol, raw.span); !fresh) {
             text_.diagnostics.error(raw.span, fmt::format("'{}' is listed twice", raw.symbol))
                 .with_note(twin->second, "first listed here");
@@ -278,8 +278,8 @@ bool LsysStringReader::read_symbols(std::vector<LsysName>& symbols) {
 /// `F()`. Reported.
 bool LsysStringReader::refuse_empty(TokenStream& stream, const Raw& raw) {
     if (!stream.at(")")) return false;
-    text_.diagnostics.error(*raw.parameters, "there is no parameter between these parentheses")
-        .with_hint(fmt::format("a module without parameters is written '{}'", raw.symbol));
+    text_.diagnostics.error(*raw.parameters, "these parentheses contain no parameter")
+        .with_hint(fmt::format("write a module without parameters as '{}'", raw.symbol));
     return true;
 }
 
@@ -313,10 +313,11 @@ bool LsysStringReader::read_names(const Raw& raw, std::vector<LsysName>& names) 
         if (number) {
             const bool probability = raw.symbol == "-" && at_arrow() > 0;
             stream.expected("the name of a parameter")
-                .with_hint(probability
-                               ? probability_hint
-                               : fmt::format("a condition tells values apart: {0}(n) : n == {1} -> ...",
-                                             raw.symbol, stream.peek().text));
+                .with_hint(
+                    probability
+                        ? probability_hint
+                        : fmt::format("use a condition to distinguish values: {0}(n) : n == {1} -> ...",
+                                      raw.symbol, stream.peek().text));
             return false;
         }
         const std::optional<Token> name = stream.expect_name("the name of a parameter");
@@ -336,7 +337,7 @@ std::optional<Expression> LsysStringReader::read_expression(std::size_t end, std
     if (stream.at("}"))
         text_.finish(stream);
     else if (stream.at("="))
-        stream.expected(end_name).with_hint("equality is written ==");
+        stream.expected(end_name).with_hint("write equality as ==");
     else
         stream.expected(end_name);
     return std::nullopt;
@@ -353,7 +354,7 @@ template<class Module> bool check_lsys_brackets(const std::vector<Module>& modul
             open.push_back(&module);
             if (open.size() <= max_lsys_nesting) continue;
             text.diagnostics.error(module.span,
-                                   fmt::format("brackets are nested more than {} deep", max_lsys_nesting));
+                                   fmt::format("brackets nest more than {} deep", max_lsys_nesting));
             return false;
         }
         if (!open.empty()) {

@@ -222,8 +222,9 @@ std::optional<RunId> LsysSuccessors::add_successor(const ModuleString& successor
 
 std::optional<RunId> LsysSuccessors::add_run(std::span<const ModuleId> run, Span place) {
     if (runs_.has_room(run.size())) return runs_.add(run);
-    diagnostics_.error(place, fmt::format("in one step, different modules become more than {} modules",
-                                          ModuleRuns::most_modules));
+    diagnostics_.error(
+        place, fmt::format("in one step, the successors of different modules have more than {} modules",
+                           ModuleRuns::most_modules));
     return std::nullopt;
 }
 

@@ -164,8 +164,8 @@ bool Turtle::in_range(TurtleCommand command, std::span<const double> parameters,
     if (std::abs(size) <= largest_size) return true;
     context_.diagnostics
         .error(span, fmt::format("{} is at most {}, not {}", name, shortest(largest_size),
-                                 std::isfinite(size) ? shortest(size) : "one beyond all numbers"))
-        .with_hint("smaller factors or fewer steps keep the model within the range of numbers");
+                                 std::isfinite(size) ? shortest(size) : "an infinite one"))
+        .with_hint("use smaller factors or fewer steps to keep the model within the range of numbers");
     return false;
 }
 
@@ -182,12 +182,13 @@ bool Turtle::pass_over(TurtleCommand command) {
 bool Turtle::within_limits(Span span) {
     if (part_.instances.size() + vertex_count_ > context_.max_instances) {
         context_.diagnostics.error(
-            span, fmt::format("more than {} parts are drawn in one place", context_.max_instances));
+            span, fmt::format("the model draws more than {} parts in one place", context_.max_instances));
         return false;
     }
     if (run_ && run_->size() > max_run_items) {
-        context_.diagnostics.error(span, fmt::format("more than {} single parts are drawn", max_run_items))
-            .with_hint("fewer steps draw fewer");
+        context_.diagnostics
+            .error(span, fmt::format("the model draws more than {} single parts", max_run_items))
+            .with_hint("use fewer steps to draw fewer parts");
         return false;
     }
     if (longest_polygon_ > max_polygon_vertices) {
@@ -202,8 +203,8 @@ bool Turtle::within_limits(Span span) {
     }
     const Vec3 place = glm::abs(start_from_turtle_.translation);
     if (place.x <= largest_size && place.y <= largest_size && place.z <= largest_size) return true;
-    context_.diagnostics.error(span, "the turtle goes farther than numbers reach")
-        .with_hint("fewer steps, or a 'step' that shrinks with them, keep the model small");
+    context_.diagnostics.error(span, "the turtle goes beyond the range of numbers")
+        .with_hint("use fewer steps, or a 'step' that shrinks with them, to keep the model small");
     return false;
 }
 

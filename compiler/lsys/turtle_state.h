@@ -59,7 +59,7 @@ class DirectionTable {
     /// `tolerance`: a distance between unit vectors, at most 1.
     explicit DirectionTable(double tolerance = rounding) : tolerance_(tolerance) {}
 
-    /// Requires a vector no longer than 1, but for rounding.
+    /// Requires a vector no longer than 1, up to rounding.
     Vec3 representative(Vec3 direction);
 
   private:
@@ -74,7 +74,7 @@ class RotationTable {
   public:
     RotationTable() { representative(Mat3(1.0)); } // exactly, for what comes near it
 
-    /// Requires a rotation, but for rounding, and gives one.
+    /// Requires a rotation, up to rounding, and gives one.
     Mat3 representative(const Mat3& rotation);
 
   private:

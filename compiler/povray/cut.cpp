@@ -230,7 +230,7 @@ class Cutter {
         Limit limit =
             failed_by_work_ ? limit_of_work(options_.work_seconds) : limit_of_memory(options_.memory_bytes);
         if (!options_.visible_only && reaches_out_of_sight())
-            limit.or_else = ", leave out what the picture does not show with --visible-only";
+            limit.or_else = ", leave out invisible parts with --visible-only";
         return limit;
     }
 
@@ -254,11 +254,11 @@ class Cutter {
     std::nullopt_t refuse_size() {
         if (failed_by_work_) {
             diagnostics_
-                .error(
-                    graph_.objects[graph_.root].span,
-                    fmt::format("{} leaves take more than the {:g} seconds of work allowed, however coarse",
-                                readable_count(choice_.leaves), options_.work_seconds))
-                .with_hint("give more with --work, lower --steps, or draw it with --engine native");
+                .error(graph_.objects[graph_.root].span,
+                       fmt::format("{} leaves take more than the {:g} seconds of work allowed, even drawn as "
+                                   "coarsely as possible",
+                                   readable_count(choice_.leaves), options_.work_seconds))
+                .with_hint("allow more with --work, lower --steps, or use --engine native");
             return std::nullopt;
         }
         const auto memory = static_cast<double>(options_.memory_bytes);
@@ -272,8 +272,9 @@ class Cutter {
                                need, readable_bytes(memory)))
             .with_hint(
                 cut_options_.flatten
-                    ? "leave out --flatten, cull with --error, lower --steps, or allow more with --memory"
-                    : "cull with --error, lower --steps, or allow more with --memory");
+                    ? "drop --flatten, leave out small parts with --error, lower --steps, or allow more with "
+                      "--memory"
+                    : "leave out small parts with --error, lower --steps, or allow more with --memory");
         return std::nullopt;
     }
 

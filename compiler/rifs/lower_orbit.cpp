@@ -184,7 +184,7 @@ class OrbitLowering {
         const auto maps = model_.maps.size();
         if (stated_ > 0 && stated_ < maps)
             diagnostics_.error(block_.name.span, "either all maps have a probability, or none")
-                .with_hint("without any they are equal");
+                .with_hint("without any, all maps are equally likely");
         double sum = 0;
         for (const OrbitFormulas& map : model_.maps)
             sum += map.probability;
@@ -216,17 +216,17 @@ bool may_stand_there(const RifsFile& tree, Lowering& lowering) {
     const OrbitBlock& orbit = tree.orbits.front();
     Diagnostics& diagnostics = lowering.diagnostics;
     if (!tree.blocks.empty() || !tree.uses.empty() || tree.orbits.size() > 1) {
-        Diagnostic& error = diagnostics.error(orbit.span, "an orbit stands alone in its file");
+        Diagnostic& error = diagnostics.error(orbit.span, "an orbit must be alone in its file");
         const Span other = !tree.blocks.empty() ? tree.blocks.front().name.span
                            : !tree.uses.empty() ? tree.uses.front().name.span
                                                 : tree.orbits[1].span;
-        error.with_note(other, "beside it stands this");
+        error.with_note(other, "this statement is beside it");
         return false;
     }
     if (lowering.at_root_model() && lowering.options.orbit) return true;
     diagnostics
         .error(orbit.span,
-               fmt::format("'orbit {}' is made of formulas, not of instances: it has no graph, only points",
+               fmt::format("'orbit {}' consists of formulas, not of instances: it has no graph, only points",
                            orbit.name.text))
         .with_hint(lowering.at_root_model() ? "'graftal points' draws it, 'graftal check' checks it"
                                             : "'graftal points' draws it; no model can use it");

@@ -125,7 +125,8 @@ class RifsLowering {
         for (const RifsBlock& block : tree_.blocks)
             if (const auto use = uses_.find(block.name.text); use != uses_.end())
                 diagnostics_
-                    .error(block.name.span, fmt::format("'{}' is a used model already", block.name.text))
+                    .error(block.name.span,
+                           fmt::format("'{}' is already the name of a used model", block.name.text))
                     .with_note(use->second.span, "first defined here");
     }
 
@@ -196,8 +197,8 @@ class RifsLowering {
                     known.emplace_back(name_of(kind));
         for (const auto& [used, use] : uses_)
             known.emplace_back(used);
-        diagnostics_.error(name.span, fmt::format("'{}' is no primitive and no used model", name.text))
-            .with_hint(choices(name.text, known) + "; 'use NAME = \"FILE\"' names a model");
+        diagnostics_.error(name.span, fmt::format("'{}' is neither a primitive nor a used model", name.text))
+            .with_hint(choices(name.text, known) + "; write 'use NAME = \"FILE\"' to load a model");
         return std::nullopt;
     }
 
@@ -212,9 +213,8 @@ class RifsLowering {
         const auto lowered = parts_.find(&part);
         if (lowered == parts_.end() || !components.unending[lowered->second.master]) return;
         diagnostics_
-            .error(part.master.span,
-                   fmt::format("the terminal '{}' goes on for ever itself", part.master.text))
-            .with_hint("a terminal is drawn where recursion is cut; 'condense' may be recursive");
+            .error(part.master.span, fmt::format("the terminal '{}' recurs without end", part.master.text))
+            .with_hint("graftal draws a terminal where it cuts recursion; only 'condense' may be recursive");
     }
 
     void add_objects() {

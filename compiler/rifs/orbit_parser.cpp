@@ -64,7 +64,7 @@ class OrbitParser {
         const bool assigns = stream_.peek(1).is(":") && stream_.peek(2).is("=");
         Diagnostic& error = stream_.expected(expected);
         if (assigns)
-            error.with_hint(fmt::format("a formula is written {} = ...", word.text));
+            error.with_hint(fmt::format("write a formula as {} = ...", word.text));
         else if (word.kind == TokenKind::name)
             error.with_hint(did_you_mean(word.text, words));
         if (stream_.next().is("{")) stream_.skip_block();
@@ -97,7 +97,8 @@ class OrbitParser {
             if (!value) return false;
             if (is_coordinate(name->text))
                 diagnostics_.error(name->span, fmt::format("'{}' is a coordinate of the point", name->text))
-                    .with_hint(fmt::format("the new one is given by '{} = ...', without 'let'", name->text));
+                    .with_hint(
+                        fmt::format("give the new coordinate as '{} = ...', without 'let'", name->text));
             const auto same = [&](const OrbitLet& let) { return let.name.text == name->text; };
             if (const auto first = std::find_if(lets.begin(), lets.end(), same); first != lets.end())
                 diagnostics_.error(name->span, fmt::format("duplicate let '{}'", name->text))
@@ -134,7 +135,7 @@ class OrbitParser {
     bool add_function(OrbitFunction function) {
         const RifsName& name = function.name;
         if (expression_function(name.text))
-            diagnostics_.error(name.span, fmt::format("the function '{}' is known already", name.text));
+            diagnostics_.error(name.span, fmt::format("the function '{}' already exists", name.text));
         const auto same = [&](const OrbitFunction& other) { return other.name.text == name.text; };
         const auto first = std::find_if(block_.functions.begin(), block_.functions.end(), same);
         if (first != block_.functions.end())

@@ -275,11 +275,11 @@ void warn_empty(const RifsNode& node, Diagnostics& diagnostics) {
         diagnostics
             .warning(node.source->name.span,
                      fmt::format("map '{}' draws nothing: no map leads to it", node.name))
-            .with_hint(fmt::format("an edge 'x -> {}' lets it be applied after x", node.name));
+            .with_hint(fmt::format("write an edge 'x -> {}' to let it follow x", node.name));
     else
         diagnostics.warning(
             node.source->name.span,
-            fmt::format("map '{}' draws nothing: all that leads to it draws nothing", node.name));
+            fmt::format("map '{}' draws nothing: only maps that draw nothing lead to it", node.name));
 }
 
 } // namespace
@@ -317,10 +317,10 @@ void mark_empty(RifsSystem& system, Diagnostics& diagnostics) {
                                      [&](std::uint32_t node) { return nodes[node].empty; });
     if (nothing && main.source->condense.empty())
         diagnostics
-            .error(main.source->name.span,
-                   fmt::format("'rifs {}' is empty: no sequence of its maps goes on for ever",
-                               main.source->name.text))
-            .with_hint("its control digraph needs a cycle that the start reaches, or a 'condense'");
+            .error(
+                main.source->name.span,
+                fmt::format("'rifs {}' is empty: no sequence of its maps is endless", main.source->name.text))
+            .with_hint("add edges so that the start reaches a cycle, or add a 'condense'");
 }
 
 } // namespace graftal

@@ -58,9 +58,10 @@ class RifsParser {
 
     std::string hint_outside(const Token& word, const std::vector<std::string>& words) const {
         if (word.is("lsys") || word.is("object") || word.is("canonical"))
-            return fmt::format("the name of such a model ends in .{}", word.is("lsys") ? "lsys" : "inst");
+            return fmt::format("name the file of such a model with the extension .{}",
+                               word.is("lsys") ? "lsys" : "inst");
         if (at_rifs_item(stream_))
-            return fmt::format("'{}' stands in a block: rifs NAME {{ ... }}", word.text);
+            return fmt::format("write '{}' in a block: rifs NAME {{ ... }}", word.text);
         if (stream_.peek(1).is("=")) return fmt::format("'let {} = ...' names a number", word.text);
         return choices(word.kind == TokenKind::name ? word.text : "", words);
     }
@@ -133,8 +134,8 @@ class RifsParser {
         const Token word = stream_.peek();
         if (at_scene_statement(stream_) || word.is("use")) {
             diagnostics_
-                .error(word.span,
-                       fmt::format("'{}' stands outside the braces of 'rifs {}'", word.text, block.name.text))
+                .error(word.span, fmt::format("'{}' must be outside the braces of 'rifs {}'", word.text,
+                                              block.name.text))
                 .with_hint("close the block with '}' before it");
             if (word.is("use")) return parse_use();
             parse_scene_statement(stream_, file_.statements);
@@ -149,9 +150,9 @@ class RifsParser {
     }
 
     std::string hint_inside(const Token& word) const {
-        if (word.kind == TokenKind::number) return "rows of numbers stand in 'codes 2d { ... }'";
+        if (word.kind == TokenKind::number) return "write rows of numbers in 'codes 2d { ... }'";
         if (word.kind != TokenKind::name) return {};
-        if (stream_.peek(1).is("=")) return fmt::format("'let {} = ...' stands before the block", word.text);
+        if (stream_.peek(1).is("=")) return fmt::format("write 'let {} = ...' before the block", word.text);
         return did_you_mean(word.text, {"map", "codes", "follow", "start", "condense", "terminal"});
     }
 

@@ -123,7 +123,7 @@ class SystemBuilder {
             diagnostics_
                 .error(block.maps.front().probability->span,
                        fmt::format("the probabilities of 'rifs {}' are all 0", block.name.text))
-                .with_hint("without any of them the maps are chosen by their size");
+                .with_hint("without any of them, graftal chooses maps by their size");
         else if (std::abs(sum - 1) > probability_slack)
             diagnostics_.warning(block.name.span,
                                  fmt::format("the probabilities of 'rifs {}' add up to {}, not 1",
@@ -174,10 +174,9 @@ std::optional<double> evaluate_probability(const std::optional<Expression>& prob
         tiny ? fmt::format("a probability must be 0 or at least 1e-100, not {}", shortest(*p))
              : fmt::format("a probability must lie between 0 and 1, not {}", shortest(*p)));
     if (row > 0)
-        error.with_hint(
-            fmt::format("it is the last number of row {}: leave the last number out of all rows, and "
-                        "the maps are chosen by their size",
-                        row));
+        error.with_hint(fmt::format("it is the last number of row {}: remove the last number from all rows "
+                                    "to choose maps by their size",
+                                    row));
     return std::nullopt;
 }
 
@@ -203,7 +202,7 @@ std::optional<MaterialId> RifsLooks::material(const RifsLook& look) const {
     const std::string hint = choices(look.material->text, known);
     diagnostics_.error(look.material->span, fmt::format("unknown material '{}'", look.material->text))
         .with_hint(hint.empty()
-                       ? fmt::format("material {} {{ color: 0.5, 0.4, 0.1 }} before the block defines it",
+                       ? fmt::format("define it before the block: material {} {{ color: 0.5, 0.4, 0.1 }}",
                                      look.material->text)
                        : hint);
     return std::nullopt;

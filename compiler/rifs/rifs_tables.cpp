@@ -48,7 +48,7 @@ bool parse_row_numbers(TokenStream& stream, const CodeColumns& columns, RifsMap&
     const Token first = stream.peek();
     const bool bracket = first.is("[") || first.is("(");
     if (bracket && (first.is("[") || stream.peek(2).kind == TokenKind::number)) {
-        stream.expected("a number").with_hint("the numbers of a row stand without brackets");
+        stream.expected("a number").with_hint("write the numbers of a row without brackets");
         return false;
     }
     for (bool begins = true; begins || (!at_row_end(stream) && !at_rifs_look(stream)); begins = false) {

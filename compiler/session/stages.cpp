@@ -59,9 +59,9 @@ void report_refuted(const Graph& graph, const Contraction& contraction, Diagnost
         .error(span_of(graph, cycle.front()),
                fmt::format("the cycle {} does not contract: its spectral radius is {}{}",
                            describe_cycle(graph, cycle), digits(contraction.rate(), 6),
-                           cycle.size() > 1 ? " an instance" : ""))
-        .with_hint("an object may contain itself only if every way round makes it smaller: scale down an "
-                   "instance of the cycle");
+                           cycle.size() > 1 ? " per instance" : ""))
+        .with_hint("an object may contain itself only if every way around the cycle makes it smaller: scale "
+                   "down an instance of the cycle");
 }
 
 void report_undecided(const Graph& graph, const Contraction& contraction, Diagnostics& diagnostics) {
@@ -69,9 +69,9 @@ void report_undecided(const Graph& graph, const Contraction& contraction, Diagno
     const Span span = cycle.empty() ? graph.objects[graph.root].span : span_of(graph, cycle.front());
     Diagnostic& error = diagnostics.error(
         span,
-        fmt::format("cannot prove that every cycle contracts: the factor an instance lies between {} and {}",
+        fmt::format("cannot prove that every cycle contracts: the factor per instance lies between {} and {}",
                     digits(contraction.lower, 12), digits(contraction.upper, 12)));
-    error.with_hint("a slightly smaller scale on the instances that expand settles it");
+    error.with_hint("give the instances that expand a slightly smaller scale");
     if (!cycle.empty())
         error.with_note(span,
                         fmt::format("the cycle that contracts least is {}", describe_cycle(graph, cycle)));

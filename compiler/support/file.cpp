@@ -35,7 +35,7 @@ Status read_stream(std::FILE* stream, const std::string& path, std::string& text
     char buffer[1 << 16];
     while (const std::size_t count = std::fread(buffer, 1, sizeof buffer, stream)) {
         if (text.size() + count > max_bytes)
-            return Status::failure(fmt::format("'{}' is longer than {} bytes", path, max_bytes));
+            return Status::failure(fmt::format("'{}' is too long: more than {} bytes", path, max_bytes));
         text.append(buffer, count);
     }
     return std::ferror(stream) ? system_failure("read", path) : Status();
@@ -113,10 +113,9 @@ Status output_target(const std::string& path, std::string& target) {
     }
     target = at.string();
     if (!is_special_file(target) || std::filesystem::is_directory(target, error)) return {};
-    return Status::failure(
-        fmt::format("cannot write '{}': it is not a regular file ('-o -' writes to standard "
-                    "output, where a command can)",
-                    path));
+    return Status::failure(fmt::format("cannot write '{}': it is not a regular file (use '-o -' to write to "
+                                       "standard output, if the command can)",
+                                       path));
 }
 
 int lock_path(const std::string& path) {
@@ -157,7 +156,7 @@ Status PendingFile::check_written() const {
     const bool there = ::stat(temporary_.c_str(), &info) == 0;
     if (!there && errno != ENOENT) return system_failure("write", path_);
     if (there && (info.st_size > 0 || info.st_mtim.tv_sec != never_written[1].tv_sec)) return {};
-    return Status::failure(fmt::format("cannot write '{}': nothing came", path_));
+    return Status::failure(fmt::format("cannot write '{}': no data came", path_));
 }
 
 PendingFile::~PendingFile() {

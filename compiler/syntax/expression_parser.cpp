@@ -19,7 +19,7 @@ struct Mode {
         false; ///< of several numbers, commas or not: a sign that begins a line begins what comes next
 };
 
-constexpr const char* vector_hint = "a vector is written x, y, z or <x, y, z>";
+constexpr const char* vector_hint = "write a vector as x, y, z or <x, y, z>";
 
 /// How tightly a binary operator binds; 0 for other tokens. The power binds tighter than signs and is
 /// parsed apart.
@@ -77,7 +77,7 @@ class ExpressionParser {
     std::nullopt_t refuse_percent(const Token& op) {
         stream_.diagnostics()
             .error(op.span, "'%' is the remainder of a division, and its right side is missing")
-            .with_hint("a share is a number from 0 to 1: 0.5 in place of 50%");
+            .with_hint("write a share as a number from 0 to 1: 0.5 instead of 50%");
         return std::nullopt;
     }
 
@@ -110,7 +110,7 @@ class ExpressionParser {
         if (kind != TokenKind::number && (kind != TokenKind::name || at_keyword())) {
             const bool equals = stream_.at("=");
             Diagnostic& error = stream_.expected("a number");
-            if (equals) error.with_hint("values follow their word without '='");
+            if (equals) error.with_hint("write values after their word without '='");
             return std::nullopt;
         }
         const Token token = stream_.next();
@@ -189,9 +189,8 @@ class ExpressionParser {
 
     bool enter() {
         if (++depth_ <= TokenStream::max_nesting) return true;
-        stream_.diagnostics().error(
-            stream_.previous().span,
-            fmt::format("expressions are nested more than {} deep", TokenStream::max_nesting));
+        stream_.diagnostics().error(stream_.previous().span, fmt::format("expressions nest more than {} deep",
+                                                                         TokenStream::max_nesting));
         return false;
     }
 
@@ -310,8 +309,9 @@ class NumberList {
     std::vector<Expression> numbers_;
 };
 
-constexpr std::string_view colour_hint = "a colour is red, green and blue from 0 to 1: 1, 0.5, 0 is orange";
-constexpr std::string_view tint_hint = "a tint is a colour and an alpha: r, g, b, a or rgb <r, g, b> a";
+constexpr std::string_view colour_hint =
+    "write a colour as red, green and blue from 0 to 1: 1, 0.5, 0 is orange";
+constexpr std::string_view tint_hint = "write a tint as a colour and an alpha: r, g, b, a or rgb <r, g, b> a";
 
 /// Names that people try, and what they are here.
 std::string_view named_colour(std::string_view name) {
@@ -334,7 +334,7 @@ bool refuse_named_colour(TokenStream& stream) {
                       (after.kind == TokenKind::name && !after.first_on_line && !is_keyword(after));
     if (numbers.empty() || list) return false;
     stream.diagnostics()
-        .error(token.span, fmt::format("'{}' is no number, and colours have no names here", token.text))
+        .error(token.span, fmt::format("'{}' is not a number, and colours have no names here", token.text))
         .with_hint(fmt::format("{} is {}", token.text, numbers));
     return true;
 }

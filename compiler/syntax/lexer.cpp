@@ -111,7 +111,7 @@ class Lexer {
     void refuse_utf16() {
         if (begin_ == 0)
             diagnostics_.error({file_, 0, 0}, "this text is in UTF-16")
-                .with_hint("save it in UTF-8, which most editors call the encoding");
+                .with_hint("save the file in the encoding UTF-8");
         at_ = text_.size();
     }
 
@@ -148,9 +148,9 @@ class Lexer {
         at_ = std::min(text_.find('\n', at_), text_.size());
         const std::string_view line = text_.substr(begin, at_ - begin);
         if (!first_on_line_ || (!line.starts_with("#define ") && !line.starts_with("#include "))) return;
-        diagnostics_.warning(span_from(begin), "this line is a comment, since it begins with '#'")
+        diagnostics_.warning(span_from(begin), "this line is a comment, because it begins with '#'")
             .with_hint(line[1] == 'd' ? "'let NAME = VALUE' names a number"
-                                      : "'use NAME = \"FILE\"' takes another model");
+                                      : "write 'use NAME = \"FILE\"' to load another model");
     }
 
     void skip_block_comment() {
@@ -214,8 +214,8 @@ class Lexer {
         at_ += hex_colour_size(text_.substr(at_));
         const std::array<double, 3> rgb = hex_colour(text_.substr(begin, at_ - begin));
         diagnostics_.error(span_from(begin), "a colour is three numbers, and '#' begins a comment")
-            .with_hint(fmt::format("red, green and blue from 0 to 1, linear: {}, {}, {}", shortest(rgb[0]),
-                                   shortest(rgb[1]), shortest(rgb[2])));
+            .with_hint(fmt::format("write linear red, green and blue from 0 to 1: {}, {}, {}",
+                                   shortest(rgb[0]), shortest(rgb[1]), shortest(rgb[2])));
         const auto say = [&](double number) {
             Token& token = add(TokenKind::number, begin);
             token.number = number;

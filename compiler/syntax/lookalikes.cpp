@@ -81,11 +81,11 @@ std::string unexpected_character(std::string_view character) {
 std::string lookalike_hint(std::string_view character) {
     const CodePoint point = code_point(character, 0);
     if (point.value == degree) return "angles are in degrees and need no sign";
-    if (point.value == '\'') return "strings stand in double quotes: \"leaf.rifs\"";
+    if (point.value == '\'') return "write strings in double quotes: \"leaf.rifs\"";
     const std::optional<Lookalike> look = lookalike(point.value);
-    if (look && look->meant == " ") return fmt::format("it is {}; write a blank", look->name);
+    if (look && look->meant == " ") return fmt::format("it is {}; write a space", look->name);
     if (look) return fmt::format("it is {}; write {}", look->name, look->meant);
-    return is_foreign_letter(point.value) ? "names are made of the letters a to z and A to Z, digits and _"
+    return is_foreign_letter(point.value) ? "write names with the letters a to z and A to Z, digits and _"
                                           : "";
 }
 

@@ -41,7 +41,7 @@ class LineParser {
     /// Reports the second of two lines that may stand once.
     void refuse_twice(bool given, Span span, std::string_view keyword) {
         if (given)
-            stream_.diagnostics().error(span, fmt::format("this scatter has its '{}' already", keyword));
+            stream_.diagnostics().error(span, fmt::format("this scatter already has its '{}'", keyword));
     }
 
     bool parse_number(std::optional<Expression>& target, Span span, std::string_view keyword) {

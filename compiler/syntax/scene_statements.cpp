@@ -224,8 +224,8 @@ class StatementParser {
     bool defines_material() {
         if (!stream_.at("material") || !stream_.peek(2).is("{")) return false;
         stream_.diagnostics()
-            .error(stream_.peek().span, "a material is defined outside of other statements")
-            .with_hint(fmt::format("here stands its name: 'material: {}'", stream_.peek(1).text));
+            .error(stream_.peek().span, "define materials outside of other statements")
+            .with_hint(fmt::format("here, write the material's name: 'material: {}'", stream_.peek(1).text));
         for (int i = 0; i < 3; ++i)
             stream_.next();
         stream_.skip_block();

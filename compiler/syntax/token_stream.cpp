@@ -12,7 +12,7 @@ namespace graftal {
 namespace {
 
 constexpr std::size_t longest_shown = 40;
-constexpr const char* name_hint = "a name is made of letters, digits and _, and does not begin with a digit";
+constexpr const char* name_hint = "a name consists of letters, digits and _, and does not begin with a digit";
 
 bool opens(const Token& token) {
     return token.is("{") || token.is("(") || token.is("[");
@@ -44,7 +44,7 @@ void TokenStream::check_nesting() {
         if (opens(token)) ++depth;
         if (closes(token) && depth > 0) --depth;
         if (depth <= max_nesting) continue;
-        diagnostics_.error(token.span, fmt::format("brackets are nested more than {} deep", max_nesting));
+        diagnostics_.error(token.span, fmt::format("brackets nest more than {} deep", max_nesting));
         tokens_.erase(tokens_.begin(), tokens_.end() - 1);
         return;
     }
@@ -56,9 +56,8 @@ void TokenStream::drop_semicolons() {
     for (Token& token : tokens_) {
         const bool semicolon = token.is(";");
         if (semicolon && !reported)
-            diagnostics_.error(token.span, "nothing is to be closed with ';'")
-                .with_hint(
-                    "take out every ';': what stands on a line ends with its line, or where the next begins");
+            diagnostics_.error(token.span, "no statement ends with ';'")
+                .with_hint("remove every ';': a statement ends with its line, or where the next one begins");
         reported |= semicolon;
         first_on_line |= token.first_on_line;
         if (semicolon) continue;
@@ -98,7 +97,7 @@ std::optional<Token> TokenStream::expect_name(std::string_view what) {
     if (at_name()) return next();
     Diagnostic& error = expected(what);
     if (peek().kind == TokenKind::number) error.with_hint(name_hint);
-    if (peek().kind == TokenKind::string) error.with_hint("names stand without quotes");
+    if (peek().kind == TokenKind::string) error.with_hint("write names without quotes");
     return std::nullopt;
 }
 

@@ -45,8 +45,9 @@ bool parse_rotation(TokenStream& stream, TransformLine& line) {
             .with_hint("write x, y, z or <x, y, z>, then the degrees: 'rotate: y, 30'");
         return false;
     }
-    std::optional<Expression> degrees = parse_last(
-        stream, "the degrees", "an axis, then the angle: 'rotate: y, 30'; several turns are several lines");
+    std::optional<Expression> degrees =
+        parse_last(stream, "the degrees",
+                   "write an axis, then the angle: 'rotate: y, 30'; write several turns as several lines");
     if (!degrees) return false;
     line.numbers.push_back(std::move(*degrees));
     return true;

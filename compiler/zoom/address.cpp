@@ -39,10 +39,10 @@ class Parser {
     }
 
     std::optional<Steps> address(int depth) {
-        if (depth > deepest) return fail("brackets too deep");
+        if (depth > deepest) return fail("the brackets nest too deep");
         Steps steps;
         do {
-            if (!cycle_.empty()) return fail("nothing can follow what is repeated for ever");
+            if (!cycle_.empty()) return fail("no step can follow an endless repetition");
             std::optional<Steps> next = part(depth);
             if (!next) return std::nullopt;
             if (steps.size() + next->size() > most_address_steps)
@@ -57,7 +57,7 @@ class Parser {
         if (take('(')) {
             std::optional<Steps> inner = address(depth + 1);
             if (!inner) return std::nullopt;
-            if (!cycle_.empty()) return fail("only the whole end of an address can be repeated for ever");
+            if (!cycle_.empty()) return fail("only the end of an address can repeat forever");
             if (!take(')')) return fail("')' expected");
             steps = std::move(*inner);
         } else {
@@ -67,7 +67,7 @@ class Parser {
         }
         if (!take('*')) return steps;
         if (place_ >= text_.size() || !std::isdigit(static_cast<unsigned char>(text_[place_]))) {
-            if (depth > 0) return fail("only the end of an address can be repeated for ever");
+            if (depth > 0) return fail("only the end of an address can repeat forever");
             cycle_ = std::move(steps);
             return Steps{};
         }
@@ -84,7 +84,7 @@ class Parser {
         AddressStep step;
         if (take('"')) {
             const std::size_t end = text_.find('"', place_);
-            if (end == std::string_view::npos) return fail("the quotation has no end");
+            if (end == std::string_view::npos) return fail("the closing quote is missing");
             step.name = text_.substr(place_, end - place_);
             place_ = end + 1;
             if (step.name.empty()) return fail("an empty name");
@@ -93,11 +93,11 @@ class Parser {
         }
         if (take('#')) {
             const std::optional<std::uint32_t> index = number();
-            if (!index || *index == 0) return fail("a number, 1 or more, expected after '#'");
+            if (!index || *index == 0) return fail("expected a number, 1 or more, after '#'");
             step.index = *index;
         } else if (step.name.empty()) {
-            return fail(place_ < text_.size() ? fmt::format("a name expected, not '{}'", text_[place_])
-                                              : "a name expected");
+            return fail(place_ < text_.size() ? fmt::format("expected a name, not '{}'", text_[place_])
+                                              : "expected a name");
         }
         return step;
     }

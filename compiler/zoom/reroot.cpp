@@ -56,8 +56,8 @@ class Rerooter {
     bool find_focus(const std::optional<Vec3>& look_at) {
         if (model_.at) {
             if (model_.at->endless() && !request_.zoom)
-                return refuse("an address without an end is a point, and has no frame to look from",
-                              "give the repetition a count, or say how far to go with --zoom F");
+                return refuse("an endless address is a point, and a point has no frame of its own",
+                              "give the repetition a count, or give a magnification with --zoom F");
             focus_ = focus_of_path(model_.graph, model_.bounds, *model_.at);
         } else if (look_at) {
             focus_ = focus_at_point(model_.graph, model_.bounds, *look_at);
@@ -163,9 +163,9 @@ class Rerooter {
     }
 
     bool refuse_depth(unsigned levels) {
-        return refuse(fmt::format("the address is {} levels deep, and --steps ends the model after {}",
+        return refuse(fmt::format("the address is {} levels deep, but --steps ends the model after {}",
                                   levels, *model_.steps),
-                      "give more --steps, or a shorter address");
+                      "give a larger --steps or a shorter address");
     }
 
     /// Nothing while the frame is so large that no digit of the picture is left in it.
@@ -231,7 +231,7 @@ class Rerooter {
             fmt::format("the address leads through '{}', which flattens space: there is no way back "
                         "from its frame to the world around it",
                         model_.graph.objects[instance.master].name),
-            "choose an address around it");
+            "choose an address that avoids it");
     }
 
     bool refuse_crowd() {
@@ -243,11 +243,10 @@ class Rerooter {
     }
 
     bool refuse_condition(double condition) {
-        return refuse(
-            fmt::format("the maps on the way stretch space {:.2g} times more one way than another: no "
-                        "digits are left for what lies around",
-                        condition),
-            "zoom in less, or choose an address along similarities");
+        return refuse(fmt::format("the maps on the way stretch space {:.2g} times more in one direction than "
+                                  "in another: no digits remain for the surroundings",
+                                  condition),
+                      "zoom in less, or choose an address along similarities");
     }
 
     /// Where nothing recurs, a place is known to as many digits as a number has.
@@ -255,9 +254,9 @@ class Rerooter {
         if (model_.at)
             return refuse(fmt::format("the address ends after {} steps, before the zoom does",
                                       focus_.path.steps.size()),
-                          "make it longer, for instance by a repetition at its end: (a.b)*");
+                          "make it longer, for instance with a repetition at its end: (a.b)*");
         return refuse("the zoom needs more digits than the point has",
-                      "give an address in place of the point: --at a.b.(c.d)*");
+                      "give an address instead of the point: --at a.b.(c.d)*");
     }
 
     double px(double picture_length) const {
@@ -299,10 +298,10 @@ class Rerooter {
         }
         if (ground_) add_ground(root, bounds);
         if (root.instances.empty() && too_large > 0)
-            return refuse("one surface fills the picture there",
+            return refuse("at this zoom, one surface fills the picture",
                           "zoom in less, or choose another place with --at or look_at");
         if (root.instances.empty())
-            return refuse("nothing of the model is left there",
+            return refuse("at this zoom, no part of the model is in the picture",
                           "zoom in less, or choose another place with --at or look_at");
         if (!bounds.box.empty()) bounds.ball = {bounds.box.centre(), 0.5 * glm::length(bounds.box.size())};
         graph.root = graph.add(std::move(root));
@@ -339,15 +338,17 @@ class Rerooter {
             diagnostics_.warning(
                 span(), fmt::format("rounding moves parts around this place by up to {:.2g} px", error_px));
         if (around_.lost() > 0)
-            diagnostics_.warning(span(),
-                                 fmt::format("{} parts that may touch this place are left out: rounding "
-                                             "hides where they lie",
-                                             around_.lost()));
+            diagnostics_.warning(
+                span(),
+                fmt::format(
+                    "graftal left out {} parts that may touch this place: rounding hides where they lie",
+                    around_.lost()));
         if (too_large > 0)
-            diagnostics_.warning(span(),
-                                 fmt::format("{} primitives over {} times larger than all that is drawn "
-                                             "are left out",
-                                             too_large, largest_primitive));
+            diagnostics_.warning(
+                span(),
+                fmt::format(
+                    "graftal left out {} primitives that are over {} times larger than everything drawn",
+                    too_large, largest_primitive));
     }
 
     /// The name, or the name with a number, that none of these has.

@@ -49,7 +49,8 @@ class AnimatedPng {
         if (header_.empty())
             status = put_head(*chunks);
         else if (header_ != chunks->front().data)
-            status = Status::failure(fmt::format("'{}' differs in size or kind from the first frame", frame));
+            status =
+                Status::failure(fmt::format("'{}' has another size or kind than the first frame", frame));
         // The header begins with width and height; the frame covers all, from the corner on, and stays.
         if (status.ok())
             status = put_chunk("fcTL", big_endian(sequence_++) + header_.substr(0, 8) + big_endian(0) +

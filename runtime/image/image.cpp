@@ -81,7 +81,7 @@ Module load_in_time() {
         return load_module();
     } catch (const std::system_error& error) {
         return {nullptr,
-                fmt::format("no thread can be made to watch libraries load: {}", error.code().message())};
+                fmt::format("cannot make a thread to watch libraries load: {}", error.code().message())};
     }
 }
 

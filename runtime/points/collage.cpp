@@ -201,12 +201,12 @@ std::optional<OrdinaryIfs> system_of(const AnalysedModel& model, Diagnostics& di
                                           model.components.unending[model.graph.root]
                                               ? "not every map may follow every map"
                                               : "it does not contain itself"))
-            .with_hint("the collage theorem takes one target, and a set that is the union of its own images");
+            .with_hint("the collage theorem needs one target, and a set that is the union of its own images");
         return std::nullopt;
     }
     for (const Instance& map : ifs->maps)
         if (!is_flat(map.parent_from_child)) {
-            diagnostics.error(map.span, "this map leaves the plane z = 0: a picture is no target for it");
+            diagnostics.error(map.span, "this map leaves the plane z = 0, so a picture cannot be its target");
             return std::nullopt;
         }
     return ifs;
@@ -216,8 +216,8 @@ std::optional<PlaneNorm> norm_of(const OrdinaryIfs& ifs, Diagnostics& diagnostic
     const PlaneNorm norm = contracting_norm(ifs.maps);
     if (norm.rate < 1) return norm;
     diagnostics.error(ifs.maps.front().span,
-                      fmt::format("no norm was found in which each map contracts; in the plane's own they "
-                                  "lengthen up to {} times",
+                      fmt::format("graftal found no norm in which each map contracts; in the plane's own "
+                                  "norm, the maps lengthen up to {} times",
                                   shortest(norm.rate)));
     return std::nullopt;
 }
@@ -273,8 +273,8 @@ std::optional<Collage> measure_collage(Session& session, const CollageOptions& o
     if (!norm) return std::nullopt;
     const Span root = model.graph.objects[model.graph.root].span;
     if (!faces_plane(viewed->view.camera)) {
-        diagnostics.error(root, "the camera does not look straight at the plane z = 0 by parallel rays")
-            .with_hint("--camera \"orthographic\" may do it, or a camera statement without a location");
+        diagnostics.error(root, "the camera must look straight at the plane z = 0, by parallel rays")
+            .with_hint("try --camera \"orthographic\", or a camera statement without a location");
         return std::nullopt;
     }
     bool by_alpha = false;
@@ -289,7 +289,7 @@ std::optional<Collage> measure_collage(Session& session, const CollageOptions& o
     }
     const Grid grid(viewed->view, ifs->maps, model.bounds[model.graph.root].ball);
     if (!grid.fits()) {
-        diagnostics.error(root, "the model reaches too far beyond the picture to be compared with it");
+        diagnostics.error(root, "the model reaches too far beyond the picture for a comparison");
         return std::nullopt;
     }
     Collage collage = measured(model, *ifs, *norm, grid, *target);

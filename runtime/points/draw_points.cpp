@@ -36,7 +36,7 @@ void note_planes(const Graph& graph, Diagnostics& diagnostics) {
     for (const Object& object : graph.objects)
         for (const Instance& instance : object.instances)
             if (graph.objects[instance.master].primitive == PrimitiveKind::plane) {
-                diagnostics.note(instance.span, "a plane has no end, and gets no points");
+                diagnostics.note(instance.span, "a plane has no end, so it gets no points");
                 return;
             }
 }
@@ -53,14 +53,14 @@ std::optional<ChaosGame> game_of(const AnalysedModel& model, std::optional<unsig
         } else {
             diagnostics.note(
                 model.graph.objects[model.graph.root].span,
-                fmt::format("{} levels are too many to tell from all: the limit is drawn", *steps));
+                fmt::format("{} levels look the same as infinitely many: graftal draws the limit", *steps));
         }
     }
     if (!game) game = ChaosGame::of(model.graph, model.components, model.bounds, rate);
     note_planes(model.graph, diagnostics);
     if (!game)
         diagnostics.error(model.graph.objects[model.graph.root].span,
-                          "there is nothing in this model to take points of");
+                          "this model contains nothing that could get points");
     return game;
 }
 
@@ -214,8 +214,7 @@ std::optional<PointsReport> draw_orbit(const OrbitModel& model, const PointsOpti
                                        Compilation& compilation) {
     constexpr std::uint64_t most_surveyed = 1u << 20;
     if (options.compile.view.zoom.active()) {
-        compilation.diagnostics
-            .error(model.span, "an orbit has no parts that '--at' and '--zoom' could look at")
+        compilation.diagnostics.error(model.span, "an orbit has no parts for '--at' and '--zoom'")
             .with_hint("--camera \"look_at=X,Y,0 width=W\" looks closer");
         return std::nullopt;
     }

@@ -104,7 +104,7 @@ bool OrbitSource::report(Diagnostics& diagnostics) const {
                    "the orbit diverges: in step {} it goes from <{}, {}{}> farther than {} from the origin",
                    astray_->steps, shortest(p.x), shortest(p.y), model_.flat ? "" : ", " + shortest(p.z),
                    shortest(farthest_of_orbit)))
-        .with_hint("another 'start' or other parameters may stay");
+        .with_hint("try another 'start' or other parameters");
     return true;
 }
 

@@ -39,8 +39,9 @@ Status check_room(const std::string& path, std::uint64_t points) {
     if (error) return Status();
     const double needed = static_cast<double>(points) * bytes_of_point + 1024;
     if (needed <= static_cast<double>(space.available)) return Status();
-    return Status::failure(fmt::format("no room for '{}': {} points take {}, and {} are free", path, points,
-                                       bytes_text(needed), bytes_text(static_cast<double>(space.available))));
+    return Status::failure(fmt::format("no room for '{}': {} points take {}, but only {} is free", path,
+                                       points, bytes_text(needed),
+                                       bytes_text(static_cast<double>(space.available))));
 }
 
 /// Comments of a header end with their line.

@@ -47,7 +47,7 @@ struct PointWork {
     std::function<bool()> cancelled;
 };
 
-/// Points of one stream; streams are as long, but for the last.
+/// Points of one stream. All streams have this length, except the last.
 inline constexpr std::uint64_t points_of_stream = 1u << 17;
 
 /// Calls `take(worker, points)` for batches of points, all together those of the streams 0, 1, ... up to the

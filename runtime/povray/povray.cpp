@@ -50,12 +50,13 @@ bool is_there(const std::string& path) {
 std::string failure(const PovrayJob& job, const PovrayLog& log, const ProcessResult& process) {
     if (process.interrupted) return "interrupted";
     if (process.signal == SIGKILL)
-        return "POV-Ray was killed; it may have run out of memory (a smaller --memory makes a smaller scene)";
+        return "the system killed POV-Ray; it may have run out of memory (use a smaller --memory for a "
+               "smaller scene)";
     if (process.signal == SIGXCPU)
-        return fmt::format("POV-Ray was stopped: it took more than {} seconds of processor time",
+        return fmt::format("graftal stopped POV-Ray: it took more than {} seconds of processor time",
                            job.cpu_seconds);
     if (process.signal == SIGXFSZ)
-        return "POV-Ray was stopped: it wrote a file larger than any picture of this size";
+        return "graftal stopped POV-Ray: it wrote a file larger than any picture of this size";
     if (process.signal) return fmt::format("POV-Ray crashed: {}", ::strsignal(process.signal));
     if (process.exit_code != 0)
         return fmt::format("POV-Ray failed with status {}:{}", process.exit_code, complaints(job, log));
@@ -63,7 +64,7 @@ std::string failure(const PovrayJob& job, const PovrayLog& log, const ProcessRes
         return fmt::format("POV-Ray ended with status 0 but did not finish:{}", complaints(job, log));
     if (!is_there(in_directory(job, job.picture))) return "POV-Ray finished without writing the picture";
     if (log.illegal_matrix)
-        return "POV-Ray changed a placement that is too small for it: the picture is wrong";
+        return "POV-Ray changed a placement that is too small for its precision: the picture is wrong";
     if (log.no_objects) return "POV-Ray found no objects in the scene";
     if (job.finite_objects && log.finite_objects && *job.finite_objects != *log.finite_objects)
         return fmt::format("POV-Ray found {} objects in a scene of {}: the picture is wrong",
@@ -124,7 +125,7 @@ std::vector<std::string> povray_arguments(const PovrayJob& job) {
 Status povray_available(const std::string& program) {
     if (find_program(program)) return {};
     return Status::failure(
-        fmt::format("cannot find the program '{}'; install it by 'apt-get install povray'", program));
+        fmt::format("cannot find the program '{}'; install it with 'apt-get install povray'", program));
 }
 
 PovrayResult run_povray(const PovrayJob& job) {

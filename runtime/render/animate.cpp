@@ -213,7 +213,7 @@ class Animation {
     /// Between the compiler and what draws: the model is still the one that was measured.
     bool unchanged(std::size_t frame, Compilation& compilation) const {
         if (Digest().add(compilation.sources) == sources_[frame]) return true;
-        compilation.status = Status::failure("the model was changed meanwhile; start again");
+        compilation.status = Status::failure("the model changed during the animation; start again");
         return false;
     }
 

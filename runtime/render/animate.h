@@ -32,7 +32,7 @@ struct AnimationProgress {
 };
 
 struct AnimateOptions {
-    RenderOptions render; ///< of every frame, but for what moves, the output and the stamp
+    RenderOptions render; ///< of every frame, except moving values, the output and the stamp
     Engine engine = Engine::povray;
     std::string output; ///< animation_kind(output) is known
     std::size_t frames = 60;

@@ -54,7 +54,7 @@ Status FrameStore::create() {
     // The run that had the lock may have removed it just now.
     if (lock_ >= 0 && fs::exists(directory_, error)) return {};
     return Status::failure(
-        fmt::format("another run of graftal is at work on the frames in '{}'", directory_));
+        fmt::format("another run of graftal is working on the frames in '{}'", directory_));
 }
 
 FrameStore::~FrameStore() {

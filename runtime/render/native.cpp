@@ -83,9 +83,10 @@ void report_work(const FittedModel& fitted, const Looks& looks, const Asked& ask
         if (!(seconds > allowed)) return;
         diagnostics
             .note(span,
-                  fmt::format("this picture takes about {} seconds of one processor: nothing is left out",
-                              readable_seconds(seconds)))
-            .with_hint("--error 0.5 leaves out what nobody can see");
+                  fmt::format(
+                      "this picture takes about {} seconds of one processor, because nothing is left out",
+                      readable_seconds(seconds)))
+            .with_hint("use --error 0.5 to leave out invisible detail");
         return;
     }
     Limit limit = limit_of_work(allowed);
@@ -95,19 +96,19 @@ void report_work(const FittedModel& fitted, const Looks& looks, const Asked& ask
     if (!fitted.work_cut) {
         if (looks.fewer())
             diagnostics
-                .warning(span, fmt::format("{} allow {} for each pixel, not {}", limit.allowed,
+                .warning(span, fmt::format("{} allow {} per pixel, not {}", limit.allowed,
                                            samples == "one" ? "one sample" : samples + " samples",
                                            samples_in_words(looks.wanted)))
                 .with_hint(limit.need + ": give them with " + limit.option +
                            ", or ask for fewer samples with --antialias");
         return;
     }
-    if (fitted.rays_cut) limit.besides = ", and rays that meet too much are given up";
+    if (fitted.rays_cut) limit.besides = ", and graftal gives up rays that meet too many parts";
     const int block = looks.affordable.back().block;
     if (block > 1)
-        limit.besides += fmt::format(", one for {0} by {0} pixels", block);
+        limit.besides += fmt::format(", one per {0} by {0} pixels", block);
     else if (looks.fewer())
-        limit.besides += (fitted.rays_cut ? ", " : ", by ") + samples + " for each pixel";
+        limit.besides += (fitted.rays_cut ? ", " : ", by ") + samples + " per pixel";
     warn_of_limit(span, limit, {fitted.error_px, asked.detail.error_px}, diagnostics);
 }
 
@@ -116,9 +117,9 @@ void report_size(const Looks& looks, const Asked& asked, Diagnostics& diagnostic
     const double seconds = least_seconds(looks.affordable, asked.size);
     if (!asked.detail.culls() || !(seconds > asked.detail.work_seconds)) return;
     diagnostics
-        .note(asked.span, fmt::format("a picture of this size takes {} seconds of one processor or more",
+        .note(asked.span, fmt::format("a picture of this size takes at least {} seconds of one processor",
                                       readable_seconds(seconds)))
-        .with_hint("--size makes it smaller");
+        .with_hint("choose a smaller picture with --size");
 }
 
 /// Says how coarse the shells had to be.
@@ -181,7 +182,7 @@ class Drawing {
         report_.finer_share = static_cast<double>(traced) / static_cast<double>(pixels());
     }
 
-    /// Returns the number of pixels that are done, all but for an interruption.
+    /// Returns the number of finished pixels: all, unless it was interrupted.
     std::size_t trace(const Sampling& sampling) {
         const Stopwatch watch;
         std::size_t traced = 0;

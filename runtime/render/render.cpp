@@ -56,7 +56,7 @@ Status finish_picture(const PovrayJob& job, const RenderOptions& options) {
     if (!status.ok()) return status;
     if (Interruption::signal()) return Status::failure("interrupted");
     if (image.width != job.width || image.height != job.height)
-        return Status::failure(fmt::format("POV-Ray made a picture of {} x {} pixels, not {} x {}",
+        return Status::failure(fmt::format("POV-Ray wrote a picture of {} x {} pixels, not {} x {}",
                                            image.width, image.height, job.width, job.height));
     return write_image(options.output, image, options.format, options.metadata);
 }

@@ -145,9 +145,9 @@ Status print_scene(const CompiledModel& model, bool include, Diagnostics& diagno
         diagnostics
             .error(graph.objects[graph.root].span,
                    fmt::format("the scene needs {} palette picture{} beside it, and standard output has no "
-                               "place for one",
+                               "place for pictures",
                                palettes.size(), palettes.size() == 1 ? "" : "s"))
-            .with_hint("write the scene to a file by '-o SCENE.pov'");
+            .with_hint("write the scene to a file with '-o SCENE.pov'");
         return {};
     }
     return copy_to_standard_output(file.get());

@@ -42,10 +42,10 @@ std::string last_line(std::string text) {
 
 Status video_available() {
     if (find_program(program)) return {};
-    return Status::failure(
-        fmt::format("cannot find the program '{0}'; install it by 'apt-get install {0}', or make an animated "
-                    ".png or .gif",
-                    program));
+    return Status::failure(fmt::format(
+        "cannot find the program '{0}'; install it with 'apt-get install {0}', or make an animated "
+        ".png or .gif",
+        program));
 }
 
 Status write_video(const std::string& path, const FrameStore& frames, FrameRate rate) {
@@ -62,8 +62,7 @@ Status write_video(const std::string& path, const FrameStore& frames, FrameRate 
     const ProcessResult result = run_process(options);
     if (!result.status.ok()) return result.status;
     if (result.interrupted) return Status::failure("interrupted");
-    if (result.signal)
-        return Status::failure(fmt::format("'{}' was ended by signal {}", program, result.signal));
+    if (result.signal) return Status::failure(fmt::format("'{}' ended by signal {}", program, result.signal));
     if (result.exit_code != 0)
         return Status::failure(
             fmt::format("'{}' failed with status {}: {}", program, result.exit_code, last_line(messages)));

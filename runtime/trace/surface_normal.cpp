@@ -14,7 +14,7 @@ Vec3 transformed_normal(const LaneMap& map, Vec3 normal) {
     Mat3 m = map.affine().linear;
     const double largest = largest_entry(m);
     m /= largest;
-    // The cofactors are the inverse transposed, but for the determinant.
+    // The cofactors are the inverse transposed, up to a factor, the determinant.
     const Vec3 n = normal.x * glm::cross(m[1], m[2]) + normal.y * glm::cross(m[2], m[0]) +
                    normal.z * glm::cross(m[0], m[1]);
     const double length = glm::length(n);

@@ -73,7 +73,7 @@ class Animate : public CommandLine {
 TEST_F(Animate, TurntableGoesRoundOnceAndCloses) {
     const RunResult once = graftal("animate " + pound_sign + small + "--frames 12 -o once/");
     ASSERT_EQ(once.status, 0) << once.err;
-    EXPECT_THAT(once.err, StartsWith("once/: 12 frames, 25 a second; error at most "));
+    EXPECT_THAT(once.err, StartsWith("once/: 12 frames, 25 per second; error at most "));
     EXPECT_EQ(once.out, "");
     for (int a = 1; a <= 12; ++a)
         for (int b = 1; b < a; ++b)
@@ -162,7 +162,7 @@ TEST_F(Animate, SweepsRunTogetherWithTheCamera) {
     ASSERT_EQ(graftal("animate -q dust.inst --steps 1..9 --frames 1 -o c" + small).status, 0);
     EXPECT_EQ(files_in("c"), "frame_0001.png\n");
     const RunResult shorter = graftal("animate dust.inst --steps 2..2 --frames 1 -o b" + small);
-    EXPECT_THAT(shorter.err, HasSubstr("graftal: 'b' holds 1 frame of another animation too\n"));
+    EXPECT_THAT(shorter.err, HasSubstr("graftal: 'b' also holds 1 frame of another animation\n"));
 }
 
 TEST_F(Animate, GifIsTheDefaultAndQuietIsSilent) {
@@ -179,20 +179,19 @@ TEST_F(Animate, KilledPovrayIsStatusThreeAndTheNextRunGoesOn) {
     const std::string command = pound_sign + small + "--frames 4 -o a.png --keep-frames";
     const RunResult killed = with_povray(command);
     EXPECT_EQ(killed.status, 3);
-    EXPECT_EQ(killed.err,
-              "graftal: at frame 3 of 4:\n"
-              "graftal: POV-Ray was killed; it may have run out of memory (a smaller --memory makes a "
-              "smaller scene)\n"
-              "graftal: 2 of 4 frames are in 'a.frames'; the same command goes on from there\n");
+    EXPECT_EQ(killed.err, "graftal: at frame 3 of 4:\n"
+                          "graftal: the system killed POV-Ray; it may have run out of memory (use a smaller "
+                          "--memory for a smaller scene)\n"
+                          "graftal: 2 of 4 frames are in 'a.frames'; the same command goes on from there\n");
     EXPECT_EQ(files(), "a.frames bin whole");
     EXPECT_EQ(files_in("a.frames"), "frame_0001.png frame_0002.png\n");
     EXPECT_EQ(temporary_files(), "");
     const RunResult rest = graftal("animate " + command);
     EXPECT_EQ(rest.status, 0);
-    EXPECT_THAT(rest.err, HasSubstr("; 2 were there already; "));
+    EXPECT_THAT(rest.err, HasSubstr("; 2 were there before; "));
     expect_same_frames("whole", "a.frames", 4);
     const RunResult again = graftal("animate " + command + " --fps 10");
-    EXPECT_THAT(again.err, HasSubstr("4 frames, 10 a second; 4 were there already; "));
+    EXPECT_THAT(again.err, HasSubstr("4 frames, 10 per second; 4 were there before; "));
 }
 
 TEST_F(Animate, SignalsStopCleanlyAndTheNextRunGoesOn) {
@@ -207,7 +206,7 @@ TEST_F(Animate, SignalsStopCleanlyAndTheNextRunGoesOn) {
         EXPECT_EQ(temporary_files(), "");
         const RunResult rest = graftal("animate " + pound_sign + small + "--frames 2 -o a.gif");
         EXPECT_EQ(rest.status, 0);
-        EXPECT_THAT(rest.err, HasSubstr("; 1 were there already; "));
+        EXPECT_THAT(rest.err, HasSubstr("; 1 were there before; "));
         EXPECT_EQ(files(), "a.gif bin");
         std::filesystem::remove(path("a.gif"));
     }
@@ -221,7 +220,7 @@ TEST_F(Animate, OnlyFramesOfTheSameMakingCount) {
     const auto redrawn = [&](const std::string& options) {
         const RunResult result = with_povray("dust.inst --frames 3 -o a" + small + options);
         EXPECT_EQ(result.status, 0) << result.err;
-        const std::size_t at = result.err.find(" were there already");
+        const std::size_t at = result.err.find(" were there before");
         return at == std::string::npos ? 3 : 3 - (result.err[at - 1] - '0');
     };
     EXPECT_EQ(redrawn(""), 3);
@@ -280,7 +279,7 @@ TEST_F(Animate, VideosAreMadeByTheProgramFfmpeg) {
     const RunResult missing = shell(run);
     EXPECT_EQ(missing.status, 3);
     EXPECT_EQ(missing.err,
-              "graftal: cannot find the program 'ffmpeg'; install it by 'apt-get install ffmpeg', or make "
+              "graftal: cannot find the program 'ffmpeg'; install it with 'apt-get install ffmpeg', or make "
               "an animated .png or .gif\n");
     EXPECT_EQ(files(), "bin");
     write("bin/ffmpeg",

@@ -20,19 +20,20 @@ TEST_F(CommandLine, UsageErrorsAreStatusTwoAndPointAtTheHelp) {
     const struct {
         std::string arguments, message;
     } cases[] = {
-        {"", "graftal: which command?\nTry 'graftal --help' for more information.\n"},
+        {"", "graftal: no command given: try 'graftal render MODEL'\nTry 'graftal --help' for more "
+             "information.\n"},
         {"rendr x.inst",
          "graftal: there is no command 'rendr' (did you mean 'render'? known here: render, animate,"},
-        {"fern.rifs", "graftal: a command comes first: 'graftal render fern.rifs'\n"},
+        {"fern.rifs", "graftal: name a command first, such as 'graftal render fern.rifs'\n"},
         {"draw x.inst",
          "there is no command 'draw' (known here: render, animate, points, collage, compile, check"},
-        {"render", "graftal: which model? 'graftal render MODEL'\n"},
-        {"check", "graftal: which model? 'graftal check MODEL'\n"},
+        {"render", "graftal: no model given: try 'graftal render MODEL'\n"},
+        {"check", "graftal: no model given: try 'graftal check MODEL'\n"},
         {"compare", "graftal: 'compare' takes two pictures: 'graftal compare A B'\n"},
         {"compare one.png two.png three.png",
          "graftal: 'compare' takes two pictures: 'graftal compare A B'\n"},
         {"render a.inst b.inst",
-         "graftal: 'b.inst' is one word too many: 'render' takes MODEL; a name with blanks"},
+         "graftal: 'b.inst' is one word too many: 'render' takes MODEL; put a name with spaces in quotes"},
         {"render a.inst --no-such-option", "graftal: 'render' has no option '--no-such-option'\n"},
         {"render a.inst --siez 3x4", "graftal: 'render' has no option '--siez' (did you mean '--size'?)\n"},
         {"render a.inst --size=3x4 --stesp=4",
@@ -40,7 +41,7 @@ TEST_F(CommandLine, UsageErrorsAreStatusTwoAndPointAtTheHelp) {
         {"render a.inst -x", "graftal: 'render' has no option '-x'\n"},
         {"render a.inst --size", "graftal: --size needs a value: --size WxH\n"},
         {"render a.inst --set", "graftal: --set needs a value: --set NAME=VALUE\n"},
-        {"compile a.inst --name A", "graftal: --name says what an .inc declares; give '-o FILE.inc', too\n"},
+        {"compile a.inst --name A", "graftal: --name names what an .inc declares: give '-o FILE.inc' too\n"},
         {"compile a.inst -o a.inc --name fern", "--name: 'fern' is not a name of at most 24 letters"},
         {"render a.inst --size 0x100", "--size: '0x100' is not a size such as 1280x720"},
         {"render a.inst --size 100", "--size: '100' is not"},
@@ -51,7 +52,7 @@ TEST_F(CommandLine, UsageErrorsAreStatusTwoAndPointAtTheHelp) {
         {"render a.inst --error -1", "--error: '-1' is not"},
         {"render a.inst --error nan", "--error: 'nan' is not"},
         {"render a.inst --error 1 --error-world 1",
-         "graftal: --error and --error-world exclude each other\n"},
+         "graftal: --error and --error-world exclude each other: give only one of them\n"},
         {"render a.inst --steps -3", "--steps: '-3' is not"},
         {"render a.inst --steps 1e3", "--steps: '1e3' is not"},
         {"render a.inst --set x", "--set: 'x' is not of the form NAME=NUMBER"},
@@ -69,11 +70,11 @@ TEST_F(CommandLine, UsageErrorsAreStatusTwoAndPointAtTheHelp) {
         {"render a.inst --engine native --visible-only", "--visible-only: the native engine follows every"},
         {"animate a.inst --engine native --visible-only", "--visible-only: the native engine follows every"},
         {"render - --engine native", "standard input has no name"},
-        {"render a.inst --engine native -o a.jpg", "'a.jpg' ends neither in .png nor in .exr"},
+        {"render a.inst --engine native -o a.jpg", "'a.jpg': the name of a picture must end in .png or .exr"},
         {"render a.inst --camera location=1,2", "--camera: 'location=1,2' is not of the form location=X,Y,Z"},
         {"render a.inst --camera 'angle=180'", "--camera: angle must lie between 0 and 180 degrees"},
         {"render a.inst --camera 'zoom=2'", "--camera: 'zoom=2' is none of"},
-        {"render a.inst -o a.jpg", "graftal: 'a.jpg' ends neither in .png nor in .exr\n"},
+        {"render a.inst -o a.jpg", "graftal: 'a.jpg': the name of a picture must end in .png or .exr\n"},
         {"render -", "standard input has no name"},
         {"animate a.inst --frames 0", "--frames: '0' is not a whole number from 1 to 100000"},
         {"animate a.inst --frames 1000000000", "--frames: '1000000000' is not"},
@@ -89,14 +90,15 @@ TEST_F(CommandLine, UsageErrorsAreStatusTwoAndPointAtTheHelp) {
         {"animate a.inst --camera orthographic=1..2", "is none of"},
         {"animate a.inst --turn 10..20", "--turn: '10..20' is not"},
         {"animate a.inst --fps 0", "--fps: '0' is not a number from 0.01 to 240"},
-        {"animate a.inst --fps 60", "--fps: a GIF shows at most 50 frames a second"},
+        {"animate a.inst --fps 60", "--fps: a GIF shows at most 50 frames per second"},
         {"animate a.inst --ease fast", "--ease: 'fast' is neither linear nor smooth"},
         {"animate a.inst -o a.mp4 --size 63x48", "a video needs an even width and height, such as 64x48"},
-        {"animate a.inst -o a.jpg", "'a.jpg' ends in none of .gif, .png, .apng, .mp4, .webm"},
-        {"animate -", "give it as a file, not as standard input"},
+        {"animate a.inst -o a.jpg",
+         "'a.jpg': the name of an animation must end in .gif, .png, .apng, .mp4 or .webm"},
+        {"animate -", "give the model as a file, not on standard input"},
         {"render a.inst --steps 1..3", "--steps: '1..3' is not a number from 0 to 4000000000\n"},
-        {"compile a.inst -o a.png", "'a.png' ends neither in .pov nor in .inc"},
-        {"graph a.inst -o a.pdf", "'a.pdf' ends neither in .dot nor in .svg"},
+        {"compile a.inst -o a.png", "'a.png': the name of a scene must end in .pov or .inc"},
+        {"graph a.inst -o a.pdf", "'a.pdf': the name of a graph's drawing must end in .dot or .svg"},
         {"print a.inst --after drop_unreachabel", "did you mean 'drop_unreachable'?"},
         {"stats a.inst --dump-after nothing", "there is no pass 'nothing' (known here: "},
         {"compare one.png", "graftal: 'compare' takes two pictures: 'graftal compare A B'\n"},
@@ -185,10 +187,11 @@ TEST_F(CommandLine, MissingProgramsAreNamedWithTheirPackages) {
     const RunResult povray = shell("PATH=/nowhere \"$graftal\" render " + gasket + " -o a.png");
     EXPECT_EQ(povray.status, 3);
     EXPECT_EQ(povray.err,
-              "graftal: cannot find the program 'povray'; install it by 'apt-get install povray'\n");
+              "graftal: cannot find the program 'povray'; install it with 'apt-get install povray'\n");
     const RunResult dot = shell("PATH=/nowhere \"$graftal\" graph " + gasket + " -o a.svg");
     EXPECT_EQ(dot.status, 3);
-    EXPECT_EQ(dot.err, "graftal: cannot find the program 'dot'; install it by 'apt-get install graphviz'\n");
+    EXPECT_EQ(dot.err,
+              "graftal: cannot find the program 'dot'; install it with 'apt-get install graphviz'\n");
     EXPECT_EQ(files(), "");
 }
 

@@ -28,7 +28,7 @@ TEST_F(Memory, WhatDoesNotSufficeIsSaidWithTheStage) {
         const RunResult result = shell("ulimit -d 400000; \"$graftal\" " + command + " bed.inst");
         EXPECT_EQ(result.status, 1) << command << result.err;
         EXPECT_THAT(result.err,
-                    HasSubstr("out of memory in the stage lower: graftal may take 2048 MiB itself; "
+                    HasSubstr("out of memory in the stage lower: graftal may use 2048 MiB itself; "
                               "allow more with --memory"))
             << command;
         EXPECT_EQ(files(), "bed.inst") << command;

@@ -42,8 +42,8 @@ TEST_F(Native, MakesAPictureNamedAfterTheModelHere) {
     const RunResult result = render(gasket + small);
     EXPECT_EQ(result.status, 0) << result.err;
     EXPECT_EQ(result.out, "");
-    EXPECT_THAT(result.err, MatchesRegex("sierpinski.png: 4 samples a pixel in [0-9]+\\.[0-9][0-9] s, "
-                                         "[0-9.]+ million rays a second\n"));
+    EXPECT_THAT(result.err, MatchesRegex("sierpinski.png: 4 samples per pixel in [0-9]+\\.[0-9][0-9] s, "
+                                         "[0-9.]+ million rays per second\n"));
     EXPECT_EQ(files(), "sierpinski.png");
     EXPECT_EQ(temporary_files(), "");
     expect_size("sierpinski.png", 96, 54);
@@ -54,11 +54,11 @@ TEST_F(Native, MakesAPictureNamedAfterTheModelHere) {
 TEST_F(Native, SaysHowManySamplesThereAre) {
     const struct {
         const char *options, *samples;
-    } cases[] = {{"--antialias off", ": 1 sample a pixel in "},
-                 {"--antialias 1", ": 1 sample a pixel in "},
-                 {"--antialias 3", ": 16 samples a pixel in "},
-                 {"--antialias 3 --antialias off", ": 1 sample a pixel in "},
-                 {"--antialias 3 --progressive", ": 16 samples a pixel in "},
+    } cases[] = {{"--antialias off", ": 1 sample per pixel in "},
+                 {"--antialias 1", ": 1 sample per pixel in "},
+                 {"--antialias 3", ": 16 samples per pixel in "},
+                 {"--antialias 3 --antialias off", ": 1 sample per pixel in "},
+                 {"--antialias 3 --progressive", ": 16 samples per pixel in "},
                  {"--antialias 3 --progressive", "; the first of 5 pictures after 0."},
                  {"--antialias off --progressive", "; the first of 4 pictures after 0."}};
     for (const auto& [options, samples] : cases) {
@@ -137,8 +137,9 @@ TEST_F(Native, FaultyModelIsStatusOneAndTouchesNoFile) {
         {"bad.inst", "bad.inst:2:12: error: "},
         {"- <bad.inst", ":2:12: error: "},
         {"dust.inst", "does not contract"},
-        {gasket + "--error 0", "error: the recursion has no end, and nothing says how deep to draw it"},
-        {gasket + "--error-world 0", "hint: give a depth with --steps N, or a size in pixels with --error"},
+        {gasket + "--error 0", "error: the recursion has no end, and no option limits its depth"},
+        {gasket + "--error-world 0",
+         "hint: set a depth with --steps N, or a smallest size in pixels with --error"},
         {gasket + "--at down", "error: the address does not exist"},
         {gasket + "--set k=1", "error: "},
     };
@@ -190,7 +191,7 @@ TEST_F(Native, NoSpaceIsStatusThreeAndLeavesTheOldPicture) {
     const RunResult some = with_room(6, elm + "--size 320x180 --progressive");
     EXPECT_EQ(some.status, 3);
     EXPECT_THAT(some.err, StartsWith("graftal: cannot write picture 'a.png': File too large\n"
-                                     "a.png: unfinished: 1 sample for "));
+                                     "a.png: unfinished: 1 sample per "));
     EXPECT_EQ(files(), "a.png");
     expect_size("a.png", 320, 180);
 }
@@ -207,8 +208,9 @@ TEST_F(NativeAnimation, FramesAgreeWithPovrays) {
     const RunResult result =
         shell("PATH=/nowhere \"$graftal\" animate --engine native -o native/ " + turning);
     ASSERT_EQ(result.status, 0) << result.err;
-    EXPECT_THAT(result.err,
-                MatchesRegex("native/: 3 frames, 25 a second; [0-9.]+ million rays a second; [0-9]+ s\n"));
+    EXPECT_THAT(
+        result.err,
+        MatchesRegex("native/: 3 frames, 25 per second; [0-9.]+ million rays per second; [0-9]+ s\n"));
     ASSERT_EQ(graftal("animate -q -o povray/ " + turning).status, 0);
     for (int i = 1; i <= 3; ++i) {
         const RunResult compared =
@@ -223,7 +225,7 @@ TEST_F(NativeAnimation, FramesOfOneEngineAreNotTheOthers) {
     const auto found = [&](const std::string& options) {
         const RunResult result = graftal("animate " + turning + options);
         EXPECT_EQ(result.status, 0) << result.err;
-        const std::size_t at = result.err.find(" were there already");
+        const std::size_t at = result.err.find(" were there before");
         return at == std::string::npos ? 0 : result.err[at - 1] - '0';
     };
     EXPECT_EQ(found("--engine native"), 0);

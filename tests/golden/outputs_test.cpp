@@ -92,7 +92,7 @@ TEST_F(Outputs, TwoRunsDoNotShareTheFramesOfAnAnimation) {
                                  "a.gif\necho $?\nflock frames " + command + "frames/\necho $?");
     EXPECT_EQ(held.out, "3\n3\n");
     EXPECT_THAT(held.err,
-                HasSubstr("graftal: another run of graftal is at work on the frames in 'a.frames'\n"));
+                HasSubstr("graftal: another run of graftal is working on the frames in 'a.frames'\n"));
     EXPECT_EQ(files(), "a.frames frames m.rifs");
     // Together, both are done or told so, and no frame is lost to the other's tidying.
     const RunResult both = shell(command + "a.gif & " + command + "a.gif; echo $?; wait $!; echo $?");
@@ -111,7 +111,7 @@ TEST_F(Outputs, APictureOfAnotherSizeIsNone) {
     const RunResult result =
         shell("chmod +x bin/povray; PATH=$PWD/bin:$PATH $graftal render m.rifs -q --size 16x12 -o a.png");
     EXPECT_EQ(result.status, 3);
-    EXPECT_THAT(result.err, HasSubstr("graftal: POV-Ray made a picture of 2 x 3 pixels, not 16 x 12\n"));
+    EXPECT_THAT(result.err, HasSubstr("graftal: POV-Ray wrote a picture of 2 x 3 pixels, not 16 x 12\n"));
     EXPECT_EQ(files(), "bin m.rifs");
 }
 

@@ -24,7 +24,7 @@ TEST_F(CommandLine, PointsUsage) {
         {"points a.rifs --color red", "--color: 'red' is neither tint nor map nor density"},
         {"points a.rifs --exposure 0", "--exposure: '0' is not a number above 0"},
         {"points a.rifs --gamma nan", "--gamma: 'nan' is not a number above 0"},
-        {"points a.rifs -o a.jpg", "'a.jpg' ends neither in .png nor in .exr nor in .ply"},
+        {"points a.rifs -o a.jpg", "'a.jpg': the name must end in .png, .exr or .ply"},
         {"points a.rifs -o a.ply --color density", "a cloud has no pixels to count points in"},
         {"points -", "standard input has no name"},
         {"points a.rifs --error 1", "--error"},
@@ -57,7 +57,7 @@ TEST_F(CommandLine, PointsMakePicturesAndClouds) {
 TEST_F(CommandLine, PointsThatFailLeaveNothing) {
     RunResult result = graftal("points " + fern + " --points 1e15 -o a.ply");
     EXPECT_EQ(result.status, 3);
-    EXPECT_THAT(result.err, HasSubstr("no room for 'a.ply': 1000000000000000 points take 13.3 PiB, and "));
+    EXPECT_THAT(result.err, HasSubstr("no room for 'a.ply': 1000000000000000 points take 13.3 PiB, but only "));
     result = graftal("points " + fern + small + "-o nowhere/a.png");
     EXPECT_EQ(result.status, 3);
     EXPECT_THAT(result.err, HasSubstr("cannot write 'nowhere/a.png'"));
@@ -85,7 +85,7 @@ TEST_F(CommandLine, OrbitsAreForPointsOnly) {
     for (const char* command : {"render", "stats", "print", "animate"}) {
         const RunResult result = graftal(command + (" " + flower));
         EXPECT_EQ(result.status, 1) << command;
-        EXPECT_THAT(result.err, HasSubstr("is made of formulas, not of instances")) << command;
+        EXPECT_THAT(result.err, HasSubstr("consists of formulas, not of instances")) << command;
         EXPECT_THAT(result.err, HasSubstr("'graftal points' draws it")) << command;
     }
     EXPECT_EQ(files(), "");

@@ -169,8 +169,8 @@ TEST_F(Progressive, InterruptionLeavesTheBestPictureSoFar) {
         run.send(signal);
         EXPECT_EQ(run.wait(), 128 + signal);
         EXPECT_THAT(run.messages(),
-                    AllOf(HasSubstr("graftal: interrupted\na.png: unfinished: 1 sample for "),
-                          MatchesRegex(".* in [0-9]+\\.[0-9][0-9] s, [0-9.e-]+ million rays a second.*")));
+                    AllOf(HasSubstr("graftal: interrupted\na.png: unfinished: 1 sample per "),
+                          MatchesRegex(".* in [0-9]+\\.[0-9][0-9] s, [0-9.e-]+ million rays per second.*")));
         const Image image = picture("a.png");
         EXPECT_EQ(image.width, 1280);
         EXPECT_EQ(image.height, 720);
@@ -223,7 +223,7 @@ TEST_F(Progressive, AnimationGoesOnAfterAnInterruption) {
     EXPECT_EQ(shell("ls -A a | grep -v '^frame_000.[.]png$'").out, "") << "no temporary";
     BackgroundRun rest = start("animate", "a/", turning);
     EXPECT_EQ(rest.wait(), 0) << rest.messages();
-    EXPECT_THAT(rest.messages(), HasSubstr(" were there already; "));
+    EXPECT_THAT(rest.messages(), HasSubstr(" were there before; "));
     ASSERT_EQ(start("animate", "b/", turning).wait(), 0);
     for (int i = 1; i <= 6; ++i) {
         const std::string name = fmt::format("/frame_{:04}.png", i);

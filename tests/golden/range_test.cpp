@@ -155,8 +155,7 @@ TEST_F(Range, MessagesSayWhere) {
          "    object a { sphere scale: 1e-308 }\n"
          "                      ^~~~~~~~~~~~~\n"
          "    hint: the sizes and coordinates of a model lie between 1e-100 and 1e+100, and --zoom looks "
-         "closer than "
-         "that\n"},
+         "closer than that\n"},
         {"b.inst", "canonical object b { sphere scale: 1e-60 }\nobject c { b scale: 1e-60 }",
          "b.inst:2:8: error: the model is smaller than 1e-100 units"},
         {"c.inst",

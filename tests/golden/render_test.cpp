@@ -168,7 +168,7 @@ TEST_F(Render, SceneWithPalettesHasNoPlaceOnStandardOutput) {
     const RunResult result = graftal("compile " + pound_sign + small);
     EXPECT_EQ(result.status, 1);
     EXPECT_EQ(result.out, "");
-    EXPECT_THAT(result.err, HasSubstr("write the scene to a file by '-o SCENE.pov'"));
+    EXPECT_THAT(result.err, HasSubstr("write the scene to a file with '-o SCENE.pov'"));
 }
 
 TEST_F(Render, CompareMeasuresAndJudges) {

@@ -84,7 +84,7 @@ TEST_F(Work, WhereEveryRayMeetsTooMuchFewerAreTraced) {
         shell("\"$graftal\" render --engine native --size 160x90 --work 0.002 --steps 35 cones.rifs "
               "-o a.png --threads 2");
     EXPECT_EQ(result.status, 0) << result.err;
-    EXPECT_THAT(result.err, HasSubstr("and rays that meet too much are given up, one for"));
+    EXPECT_THAT(result.err, HasSubstr("and graftal gives up rays that meet too many parts, one per"));
     EXPECT_EQ(picture("a.png").width, 160);
 }
 

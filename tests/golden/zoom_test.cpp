@@ -36,15 +36,15 @@ TEST_F(Zoom, WrongAddressesAndFactors) {
         const char* message;
     };
     const Case cases[] = {
-        {"--at up..left", 2, "--at: 'up..left': a name expected, not '.' at character 4"},
-        {"--at ''", 2, "--at: '': a name expected at character 1"},
+        {"--at up..left", 2, "--at: 'up..left': expected a name, not '.' at character 4"},
+        {"--at ''", 2, "--at: '': expected a name at character 1"},
         {"--zoom 0", 2, "--zoom: '0' is not a number above 0, such as 1e100 or 2^330"},
         {"--zoom big", 2, "is not a number above 0"},
         {"--at down", 1, "error: the address does not exist: 'top' has no part 'down'"},
         {"--at 'up#2'", 1, "'top' has no part 'up#2'"},
-        {"--at '(up)*'", 1, "an address without an end is a point"},
+        {"--at '(up)*'", 1, "an endless address is a point"},
         {"--at up.left --zoom 1e40", 1, "the address ends after 2 steps, before the zoom does"},
-        {"--at '(up)*' --zoom 2^60 --steps 12", 1, "levels deep, and --steps ends the model after 12"},
+        {"--at '(up)*' --zoom 2^60 --steps 12", 1, "levels deep, but --steps ends the model after 12"},
         {"--camera 'look_at=0.1,0.2,0' --zoom 1e100", 1, "the zoom needs more digits than the point has"},
     };
     for (const Case& c : cases) {

@@ -90,9 +90,9 @@ TEST(Zoom, IsWhatMovingTheCameraGives) {
     }
 }
 
-/// What frame i shows if it is made of the parts chosen for frame i + 1: the same picture but for what
-/// changed its level. `GRAFTAL_POP=MODEL ADDRESS FROM TO FRAMES` measures a whole animation and prints every
-/// pair (docs/benchmarks/popping.md).
+/// What frame i shows if it is made of the parts chosen for frame i + 1: the same picture, except where
+/// a part changed its level. `GRAFTAL_POP=MODEL ADDRESS FROM TO FRAMES` measures a whole animation and prints
+/// every pair (docs/benchmarks/popping.md).
 struct Popping {
     std::string model = "scenes/ifs/sierpinski_tetrahedron.rifs", address = "(a.b)*";
     double from = 4, to = 4.2; ///< zoom, as powers of two

@@ -90,11 +90,11 @@ const char* const growing = "object tree {\n"
 
 TEST_F(Compile, ACycleThatGrowsIsAnErrorThatNamesIt) {
     EXPECT_FALSE(analyse(growing));
-    EXPECT_THAT(messages(), HasSubstr("does not contract: its spectral radius is 1.22474 an instance\n"));
+    EXPECT_THAT(messages(), HasSubstr("does not contract: its spectral radius is 1.22474 per instance\n"));
     EXPECT_THAT(messages(), HasSubstr("tree -> branch -> tree"));
     EXPECT_THAT(messages(), StartsWith("model.inst:3:"));
-    EXPECT_THAT(messages(), HasSubstr("hint: an object may contain itself only if every way round makes it "
-                                      "smaller: scale down an instance of the cycle\n"));
+    EXPECT_THAT(messages(), HasSubstr("hint: an object may contain itself only if every way around the cycle "
+                                      "makes it smaller: scale down an instance of the cycle\n"));
 }
 
 TEST_F(Compile, ForAReportTheVerdictIsTheResult) {
@@ -111,8 +111,8 @@ TEST_F(Compile, ARotationAloneDoesNotContract) {
               "model.inst:1:22: error: the cycle a -> a does not contract: its spectral radius is 1\n"
               "    object a { instance: a rotate: y, 30  instance: sphere }\n"
               "                         ^\n"
-              "    hint: an object may contain itself only if every way round makes it smaller: scale "
-              "down an instance of the cycle\n");
+              "    hint: an object may contain itself only if every way around the cycle makes it smaller: "
+              "scale down an instance of the cycle\n");
 }
 
 TEST_F(Compile, AModelBeyondNumbersIsAnErrorNotAHang) {

@@ -17,7 +17,7 @@ namespace graftal::testing {
 
 namespace {
 
-/// To the last bit, but for the sign of zero; huge transforms may overflow on the way down.
+/// To the last bit, except for the sign of zero. Huge transforms may overflow on the way down.
 void append(std::string& out, double value) {
     out += std::isnan(value) ? "nan" : shortest(value);
     out += ' ';

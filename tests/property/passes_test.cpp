@@ -118,7 +118,7 @@ TEST(MergeEquivalent, TheOrderOfObjectsDoesNotMatter) {
     }
 }
 
-/// Objects that are all alike but for what they lead to, so that only refinement tells them apart.
+/// Objects that differ only in the objects that they lead to, so that only refinement tells them apart.
 Graph uniform_graph(Choices& choices) {
     Graph graph;
     const ObjectId ends[] = {graph.primitive(PrimitiveKind::sphere), graph.primitive(PrimitiveKind::cube)};

@@ -111,7 +111,7 @@ class Generator {
             return Affine::translate({1, 0, 0}) * Affine::scale(Vec3(0.5));
         case 2:
             return Affine::scale(Vec3(0.5));
-        case 3: // the same but for signs of zeros
+        case 3: // the same except for signs of zeros
             return {Mat3(0.5, -0.0, 0, 0, 0.5, -0.0, -0.0, 0, 0.5), Vec3(-0.0)};
         case 4:
             return Affine::rotate({0, 1, 0}, 30.0 * choices_.below(12)) * Affine::scale({-0.4, 0.6, 0.3});

@@ -66,16 +66,16 @@ AnimateOptions animate_options(const Options& options) {
 }
 
 std::string done_text(const Options& options, const AnimationOutcome& outcome) {
-    std::string text = fmt::format("{}: {} frames, {:g} a second", options.output, options.animation.frames,
+    std::string text = fmt::format("{}: {} frames, {:g} per second", options.output, options.animation.frames,
                                    options.animation.rate.per_second());
-    if (outcome.found > 0) text += fmt::format("; {} were there already", outcome.found);
+    if (outcome.found > 0) text += fmt::format("; {} were there before", outcome.found);
     if (outcome.drawn > 0 && options.engine == Engine::povray)
         text += fmt::format("; error at most {:.2g} px", outcome.error_px);
     if (outcome.drawn > 0 && options.engine == Engine::native)
         text += "; " + rays_text(outcome.rays, outcome.trace_seconds);
     text += fmt::format("; {}\n", duration_text(outcome.seconds));
     if (outcome.strangers > 0)
-        text += fmt::format("graftal: '{}' holds {} frame{} of another animation too\n", options.output,
+        text += fmt::format("graftal: '{}' also holds {} frame{} of another animation\n", options.output,
                             outcome.strangers, outcome.strangers == 1 ? "" : "s");
     return text;
 }

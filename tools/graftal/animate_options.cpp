@@ -13,17 +13,17 @@ namespace graftal {
 std::string complete_animation(Options& options) {
     AnimationOptions& animation = options.animation;
     if (options.operands.front() == "-")
-        return "an animation reads its model more than once: give it as a file, not as standard input";
+        return "an animation reads its model more than once: give the model as a file, not on standard input";
     if (options.output.empty())
         options.output = std::filesystem::path(options.operands.front()).stem().string() + ".gif";
     const std::optional<AnimationKind> kind = animation_kind(options.output);
     if (!kind)
-        return fmt::format(
-            "'{}' ends in none of .gif, .png, .apng, .mp4, .webm; a directory of frames has no "
-            "extension, or a slash at the end",
-            options.output);
+        return fmt::format("'{}': the name of an animation must end in .gif, .png, .apng, .mp4 or .webm; the "
+                           "name of a directory "
+                           "of frames has no extension, or ends in a slash",
+                           options.output);
     if (kind == AnimationKind::gif && animation.rate.hundredths > fastest_gif.hundredths)
-        return fmt::format("--fps: a GIF shows at most {:g} frames a second", fastest_gif.per_second());
+        return fmt::format("--fps: a GIF shows at most {:g} frames per second", fastest_gif.per_second());
     const ImageSize size = options.compile.view.size;
     if (kind == AnimationKind::video && (size.width % 2 != 0 || size.height % 2 != 0))
         return fmt::format("--size: a video needs an even width and height, such as {}x{}",

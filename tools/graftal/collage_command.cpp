@@ -29,7 +29,7 @@ Json collage_json(const Options& options, const Collage& collage) {
 
 std::string criterion(const Options& options, const Collage& collage) {
     return fmt::format("{} {:g}",
-                       collage.by_alpha       ? "of an alpha of at least"
+                       collage.by_alpha       ? "with an alpha of at least"
                        : options.points.light ? "lighter than"
                                               : "darker than",
                        options.points.threshold);
@@ -39,19 +39,21 @@ std::string collage_text(const Options& options, const Collage& collage) {
     const auto length = [&](double units) {
         return fmt::format("{:.4g} ({:.3g} pixels)", units, units / collage.pixel);
     };
-    std::string text = fmt::format("target         {} of {} pixels, those {}\n", collage.target_pixels,
+    std::string text = fmt::format("target         {} of {} pixels: those {}\n", collage.target_pixels,
                                    collage.pixels, criterion(options, collage));
     text += fmt::format("maps           {}", collage.maps);
     if (collage.condensations > 0) text += fmt::format(", and {} condensed", collage.condensations);
     text += fmt::format(
         "\ncontractivity  {:.6g}{}\n", collage.contractivity,
         collage.euclidean ? "" : fmt::format(", in a norm of condition {:.4g}", collage.condition));
-    text += fmt::format("epsilon        {}, of the target from its images\n", length(collage.epsilon));
-    text += fmt::format("bound          {}, of the target from the attractor\n", length(collage.bound));
     text +=
-        "measured       " +
-        (collage.distance ? length(*collage.distance) : std::string("-, the attractor has too many parts")) +
-        "\n";
+        fmt::format("epsilon        {}, distance of the target from its images\n", length(collage.epsilon));
+    text += fmt::format("bound          {}, limit of the distance of the target from the attractor\n",
+                        length(collage.bound));
+    text += "measured       " +
+            (collage.distance ? length(*collage.distance)
+                              : std::string("-, because the attractor has too many parts")) +
+            "\n";
     return text;
 }
 

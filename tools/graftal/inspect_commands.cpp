@@ -20,7 +20,7 @@ namespace {
 std::string verdict_text(const Contraction& contraction) {
     return contraction.verdict == Verdict::acyclic
                ? std::string("no cycles")
-               : fmt::format("contracts by {:.6g} an instance", contraction.rate());
+               : fmt::format("contracts by {:.6g} per instance", contraction.rate());
 }
 
 int check_one(const Options& options, const std::string& path) {
@@ -43,7 +43,7 @@ int check_one(const Options& options, const std::string& path) {
 /// DOT -> SVG by Graphviz's own program, which writes beside the output and is renamed.
 Status write_svg(const std::string& dot, const std::string& output) {
     if (!find_program("dot"))
-        return Status::failure("cannot find the program 'dot'; install it by 'apt-get install graphviz'");
+        return Status::failure("cannot find the program 'dot'; install it with 'apt-get install graphviz'");
     const Interruption interruption;
     TemporaryDirectory directory;
     Status status = directory.create();

@@ -60,13 +60,14 @@ int run_command_line(int argc, char** argv) {
 /// Some libraries abort or crash where they get no memory or cannot open a file of the system's: of those
 /// behind OpenImageIO some do while they are loaded.
 void end_after_crash(int) {
-    end_at_once("graftal: internal error: crashed, or a library did; memory, files or threads of the system "
-                "may be used up\n");
+    end_at_once("graftal: internal error: graftal or one of its libraries crashed; the system may have no "
+                "memory, files "
+                "or threads left\n");
 }
 
 /// Others wait for ever where they get no thread (image.cpp).
 void end_after_waiting(int) {
-    end_at_once("graftal: a library does not load; memory, files or threads of the system may be used up\n");
+    end_at_once("graftal: a library does not load; the system may have no memory, files or threads left\n");
 }
 
 void handle_crashes() {

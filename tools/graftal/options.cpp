@@ -27,24 +27,24 @@ namespace {
 void add_render(CLI::App& app, Options& options) {
     add_model(app, options);
     app.add_option("-o,--output", options.output,
-                   "Picture, .png or .exr (default: MODEL's name + .png, here)")
+                   "Picture to write, .png or .exr (default: MODEL's name + .png, in this folder)")
         ->type_name("FILE");
     add_view(app, options);
     add_common(app, options);
     add_drawing(app, options);
     app.add_flag_callback(
         "--linear", [&] { options.format = SampleFormat::linear16; },
-        "Write a 16-bit PNG of linear values, for measuring; else 8-bit sRGB");
+        "Write a 16-bit PNG of linear values, for measurements (default: 8-bit sRGB)");
     app.add_flag("--progressive", options.progressive,
-                 "With --engine native: write coarse pictures first, each in place of the one before; "
-                 "Ctrl-C keeps the last");
-    app.add_option("--keep", options.keep, "Leave POV-Ray's scene and its palettes in this directory")
+                 "With --engine native: write coarse pictures first, then finer ones under the same name; "
+                 "Ctrl-C keeps the last one");
+    app.add_option("--keep", options.keep, "Keep POV-Ray's scene and its palettes in this directory")
         ->type_name("DIR");
     app.footer("Examples:\n"
                "  graftal render scenes/hart/pound_sign.rifs            # makes pound_sign.png\n"
                "  graftal render fern.rifs -o fern.exr --size 600x900\n"
                "  graftal render tree.inst --camera \"location=0,2,9 look_at=0,1,0 angle=30\"\n"
-               "  graftal render gasket.inst --steps 6 --error 0        # six levels, nothing left out\n"
+               "  graftal render gasket.inst --steps 6 --error 0        # six levels, with every part\n"
                "  graftal print tree.inst | graftal render - -o tree.png\n"
                "  graftal render fern.rifs --engine native              # the same picture, much sooner\n"
                "  graftal render forest.inst --engine native --progressive --size 1920x1080");
@@ -53,19 +53,19 @@ void add_render(CLI::App& app, Options& options) {
 void add_animate(CLI::App& app, Options& options) {
     AnimationOptions& animation = options.animation;
     add_model(app, options);
-    app.add_option(
-           "-o,--output", options.output,
-           "Animation, .gif, .png (animated), .mp4 or .webm; a name without extension is a directory of "
-           "frames (default: MODEL's name + .gif, here)")
+    app.add_option("-o,--output", options.output,
+                   "Animation to write, .gif, .png (animated), .mp4 or .webm; a name without extension is a "
+                   "directory "
+                   "of frames (default: MODEL's name + .gif, in this folder)")
         ->type_name("FILE");
     add_value(
-        app, "--frames", "N", "Frames of the animation (default 60)", "a whole number from 1 to 100000",
+        app, "--frames", "N", "Number of frames (default 60)", "a whole number from 1 to 100000",
         [](const std::string& text) { return parse_whole(text, 1, 100'000); },
         [&](std::uint64_t frames) { animation.frames = frames; });
-    add_value(app, "--fps", "F", "Frames a second (default 25)", "a number from 0.01 to 240",
+    add_value(app, "--fps", "F", "Frames per second (default 25)", "a number from 0.01 to 240",
               parse_frame_rate, [&](FrameRate rate) { animation.rate = rate; });
     add_value(app, "--turn", "DEGREES",
-              "Turn the camera about the model's vertical axis (default: 360 if nothing else moves)",
+              "Turn the camera around the model's vertical axis (default: 360 if nothing else moves)",
               "a number from -36000 to 36000", parse_turn, [&](double turn) { animation.turn_deg = turn; });
     const auto ease = [&animation](const std::string& text) {
         if (text != "linear" && text != "smooth")
@@ -73,20 +73,20 @@ void add_animate(CLI::App& app, Options& options) {
         animation.ease = text == "smooth" ? Ease::smooth : Ease::linear;
     };
     app.add_option_function<std::string>("--ease", ease,
-                                         "Move evenly, or slowly at both ends (default linear)")
+                                         "Move evenly, or start and end slowly (default linear)")
         ->type_name("linear|smooth")
         ->take_last();
-    app.add_flag("--keep-frames", animation.keep_frames, "Leave the frames in the directory NAME.frames");
+    app.add_flag("--keep-frames", animation.keep_frames, "Keep the frames in the directory NAME.frames");
     add_view(app, options);
     add_common(app, options);
     add_drawing(app, options);
     app.footer(
-        "What is given as A..B runs from A to B over the animation: --steps, --seed, --set NAME=A..B\n"
-        "(NAME=A..B:1 in whole numbers), and the numbers and vectors of --camera. Frames that are done stay "
-        "in\n"
-        "NAME.frames until the animation is: after an interruption the same command goes on from there.\n"
+        "A value written A..B runs from A to B over the animation. You can write it for --steps, --seed,\n"
+        "--zoom, --set NAME=A..B (NAME=A..B:1 in whole numbers) and the numbers and vectors of --camera.\n"
+        "graftal keeps finished frames in NAME.frames until the animation is complete. After an\n"
+        "interruption, the same command goes on from there.\n"
         "Examples:\n"
-        "  graftal animate scenes/hart/pound_sign.rifs           # once round it: pound_sign.gif\n"
+        "  graftal animate scenes/hart/pound_sign.rifs           # once around it: pound_sign.gif\n"
         "  graftal animate plant.lsys --steps 1..12 --frames 48 --fps 12 -o growth.png\n"
         "  graftal animate tree.inst --set a=10..30 --turn 90 --ease smooth -o tree.mp4\n"
         "  graftal animate fern.rifs --camera \"look_at=0,9,0 width=10..0.1\" -o zoom.webm\n"
@@ -95,15 +95,16 @@ void add_animate(CLI::App& app, Options& options) {
 
 void add_compile(CLI::App& app, Options& options) {
     add_model(app, options);
-    app.add_option("-o,--output", options.output,
-                   "Scene: .pov draws the model, .inc declares it for use in a scene of your own; palettes "
-                   "appear beside it (default: the scene on standard output)")
+    app.add_option(
+           "-o,--output", options.output,
+           "Scene to write: .pov draws the model, .inc declares it for use in your own scene; graftal "
+           "writes palettes beside it (default: the scene on standard output)")
         ->type_name("FILE");
     add_value(
         app, "--name", "NAME",
-        "What an .inc declares, and what its names begin with (default: as the model's file)",
-        "a name of at most 24 letters, digits and '_' that begins with a capital, as POV-Ray's own words do "
-        "not",
+        "Name that an .inc declares, and that its other names begin with (default: the model's file name)",
+        "a name of at most 24 letters, digits and '_' that begins with a capital letter (POV-Ray's own words "
+        "do not)",
         [](const std::string& text) -> std::optional<std::string> {
             return is_model_identifier(text) ? std::optional(text) : std::nullopt;
         },
@@ -122,12 +123,12 @@ void add_check(CLI::App& app, Options& options) {
         ->expected(1, -1)
         ->type_name("");
     add_common(app, options);
-    app.footer("Example:\n  graftal check scenes/*/*.rifs      # status 1 if any model is at fault");
+    app.footer("Example:\n  graftal check scenes/*/*.rifs      # exit status 1 if any model is faulty");
 }
 
 void add_stats(CLI::App& app, Options& options) {
     add_model(app, options);
-    app.add_flag("--json", options.json, "One JSON object on standard output");
+    app.add_flag("--json", options.json, "Print one JSON object on standard output");
     add_common(app, options);
     app.footer("Examples:\n"
                "  graftal stats scenes/hart/pound_sign.rifs\n"
@@ -136,8 +137,8 @@ void add_stats(CLI::App& app, Options& options) {
 
 void add_after(CLI::App& app, Options& options, const std::string& verb) {
     add_value(
-        app, "--after", "PASS", verb + " the graph as it is after this pass (default: after all)", "a pass",
-        [](const std::string& text) { return pass_named(text, false); },
+        app, "--after", "PASS", verb + " the graph as it is after this pass (default: after all passes)",
+        "a pass", [](const std::string& text) { return pass_named(text, false); },
         [&](const std::string& pass) { options.compile.pipeline.stop_after = pass; });
 }
 
@@ -152,32 +153,34 @@ void add_print(CLI::App& app, Options& options) {
 
 void add_graph(CLI::App& app, Options& options) {
     add_model(app, options);
-    app.add_option("-o,--output", options.output,
-                   "Drawing of the graph: .dot, or .svg by Graphviz (default: DOT on standard output)")
+    app.add_option(
+           "-o,--output", options.output,
+           "Drawing of the graph to write: .dot, or .svg by Graphviz (default: DOT on standard output)")
         ->type_name("FILE");
     add_after(app, options, "Draw");
     add_common(app, options);
-    app.footer("Examples:\n"
-               "  graftal graph pound_sign.rifs -o pound_sign.svg\n"
-               "  graftal graph pound_sign.rifs | dot -Tpdf > pound_sign.pdf\n"
-               "  graftal graph gasket.inst --after drop_unreachable     # before equal objects are merged");
+    app.footer(
+        "Examples:\n"
+        "  graftal graph pound_sign.rifs -o pound_sign.svg\n"
+        "  graftal graph pound_sign.rifs | dot -Tpdf > pound_sign.pdf\n"
+        "  graftal graph gasket.inst --after drop_unreachable     # before the merging of equal objects");
 }
 
 void add_compare(CLI::App& app, Options& options) {
-    app.add_option("A B", options.operands, "Two pictures of one size")
+    app.add_option("A B", options.operands, "Two pictures of the same size")
         ->required()
         ->expected(2)
         ->type_name("");
     add_value(
-        app, "--threshold", "T", "Largest difference of a sample that passes, 0..1 (default 0)",
+        app, "--threshold", "T", "Largest difference of a sample that still passes, 0..1 (default 0)",
         "a number, 0 or more", [](const std::string& text) { return parse_at_least(text, 0); },
         [&](double threshold) { options.threshold = threshold; });
-    app.add_flag("-q,--quiet", options.quiet, "No figures; the exit status only");
+    app.add_flag("-q,--quiet", options.quiet, "Print no numbers; give only the exit status");
     app.footer(
-        "Prints max, mean and rms of |a - b| over all samples as they are stored (no colour\n"
-        "conversion), p99, which 99 of 100 pixels do not exceed, and count, the number of pixels over\n"
-        "the threshold. Status 0 if count is 0, 1 if not or if the sizes differ, 3 if a picture cannot\n"
-        "be read.\n"
+        "Prints max, mean and rms of |a - b| over all samples, as the files store them (no colour\n"
+        "conversion); p99, which 99 of 100 pixels do not exceed; and count, the number of pixels over\n"
+        "the threshold. The exit status is 0 if count is 0, 1 if it is not or if the sizes differ, and\n"
+        "3 if graftal cannot read a picture.\n"
         "Example:\n  graftal compare before.png after.png --threshold 0.01");
 }
 
@@ -203,17 +206,17 @@ struct CommandEntry {
 };
 
 constexpr CommandEntry commands[] = {
-    {Command::render, "render", "Make a picture of a model, by POV-Ray or by rays through its graph",
+    {Command::render, "render", "Draw a picture of a model, with POV-Ray or graftal's own ray tracer",
      add_render},
-    {Command::animate, "animate", "Make an animation of a model: turning, growing, changing", add_animate},
-    {Command::points, "points", "Make a picture or a cloud of random points of a model", add_points},
+    {Command::animate, "animate", "Make an animation of a model that turns, grows or changes", add_animate},
+    {Command::points, "points", "Draw a model by random points, as a picture or a point cloud", add_points},
     {Command::collage, "collage", "Measure how well a model's maps cover a target picture", add_collage},
     {Command::compile, "compile", "Write a model as a POV-Ray scene", add_compile},
-    {Command::check, "check", "Read models and say what is wrong with them", add_check},
-    {Command::stats, "stats", "Sizes, contraction, dimension and bounds of a model", add_stats},
+    {Command::check, "check", "Check models, and report what is wrong with them", add_check},
+    {Command::stats, "stats", "Print the sizes, contraction, dimension and bounds of a model", add_stats},
     {Command::print, "print", "Print the graph of a model as .inst text", add_print},
     {Command::graph, "graph", "Draw the graph of a model", add_graph},
-    {Command::compare, "compare", "Measure how far two pictures are apart", add_compare},
+    {Command::compare, "compare", "Measure how much two pictures differ", add_compare},
 };
 
 int usage_error(const std::string& message, const std::string& command) {
@@ -238,12 +241,14 @@ std::string passes_text() {
 /// --memory, and goes into every part in its place, as --flatten wants it.
 std::string refused_by_engine(const Options& options) {
     if (options.engine == Engine::povray)
-        return options.progressive
-                   ? "--progressive needs '--engine native': POV-Ray shows nothing before its picture is done"
-                   : "";
-    if (!options.keep.empty()) return "--keep: the native engine writes no scene";
+        return options.progressive ? "--progressive needs '--engine native': POV-Ray shows nothing before "
+                                     "its picture is finished"
+                                   : "";
+    if (!options.keep.empty())
+        return "--keep: the native engine writes no scene; leave out --keep, or give '--engine povray'";
     if (options.compile.detail.visible_only)
-        return "--visible-only: the native engine follows every ray, and so throws all shadows";
+        return "--visible-only: the native engine follows every ray and so draws all shadows; leave out "
+               "--visible-only, or give '--engine povray'";
     return {};
 }
 
@@ -255,22 +260,22 @@ std::string complete(Options& options) {
     const bool from_stdin = options.operands.front() == "-";
     if (options.command == Command::render) {
         if (options.output.empty() && from_stdin)
-            return "a model from standard input has no name: say where the picture goes by '-o FILE'";
+            return "a model from standard input has no name: name the picture with '-o FILE'";
         if (options.output.empty())
             options.output = std::filesystem::path(options.operands.front()).stem().string() + ".png";
         if (!is_picture_name(options.output))
-            return fmt::format("'{}' ends neither in .png nor in .exr", options.output);
+            return fmt::format("'{}': the name of a picture must end in .png or .exr", options.output);
     }
     if (options.command == Command::animate) return complete_animation(options);
     if (options.command == Command::points) return complete_points(options);
     if (options.output.empty()) options.output = "-";
     const bool to_stdout = options.output == "-";
     if (options.command == Command::compile && !to_stdout && extension != ".pov" && extension != ".inc")
-        return fmt::format("'{}' ends neither in .pov nor in .inc", options.output);
+        return fmt::format("'{}': the name of a scene must end in .pov or .inc", options.output);
     if (!options.identifier.empty() && extension != ".inc")
-        return "--name says what an .inc declares; give '-o FILE.inc', too";
+        return "--name names what an .inc declares: give '-o FILE.inc' too";
     if (options.command == Command::graph && !to_stdout && extension != ".dot" && extension != ".svg")
-        return fmt::format("'{}' ends neither in .dot nor in .svg", options.output);
+        return fmt::format("'{}': the name of a graph's drawing must end in .dot or .svg", options.output);
     return {};
 }
 
@@ -278,14 +283,17 @@ std::string complete(Options& options) {
 
 ParsedCommandLine parse_command_line(int argc, const char* const* argv) {
     Options options;
-    CLI::App app("graftal compiles fractal and plant models into object-instance graphs, and those into\n"
-                 "POV-Ray scenes and pictures.",
-                 "graftal");
+    CLI::App app(
+        "graftal compiles small text models of fractals and plants into object-instance graphs, and\n"
+        "the graphs into pictures and POV-Ray scenes.",
+        "graftal");
     app.set_version_flag("--version", "graftal " GRAFTAL_VERSION);
     bool help_passes = false;
     app.add_flag("--help-passes", help_passes, "List the passes of the compiler");
-    app.footer("'graftal COMMAND --help' explains a command and shows examples.\n"
-               "Exit status: 0 done, 1 the model or the result is at fault, 2 usage, 3 the environment.");
+    app.footer(
+        "'graftal COMMAND --help' explains a command and shows examples. If you are new to graftal, start\n"
+        "with docs/tutorial.md.\n"
+        "Exit status: 0 success, 1 faulty model or result, 2 wrong command line, 3 faulty environment.");
     for (const CommandEntry& entry : commands) {
         CLI::App* command = app.add_subcommand(entry.name, entry.summary);
         entry.add(*command, options);

@@ -29,7 +29,7 @@ void say_what_points_take(const PointsOptions& points) {
     const double seconds = static_cast<double>(point_count(points)) / points_a_second;
     if (seconds > worth_saying_s)
         say(fmt::format("graftal: {} points will take about {} seconds of one processor; ask for fewer "
-                        "with --points\n",
+                        "points with --points\n",
                         point_count(points), readable_seconds(seconds)));
 }
 
@@ -39,7 +39,7 @@ std::string done_text(const Options& options, const PointsReport& report) {
         text += fmt::format(", {:.3g} % of them in the picture",
                             100 * static_cast<double>(report.inside) / static_cast<double>(report.points));
     const double millions = 1e-6 * static_cast<double>(report.points) / std::max(report.seconds, 1e-9);
-    return text + fmt::format(", in {:.2f} s, {:.3g} million a second\n", report.seconds, millions);
+    return text + fmt::format(", in {:.2f} s, {:.3g} million per second\n", report.seconds, millions);
 }
 
 } // namespace

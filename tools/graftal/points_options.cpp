@@ -42,10 +42,10 @@ std::string complete_card(Options& options) {
     if (options.output.empty())
         options.output = std::filesystem::path(card).replace_extension(".png").string();
     const std::filesystem::path picture = options.output;
-    if (picture.extension() != ".png") return "--card: its picture is a .png";
-    if (picture.parent_path() != card.parent_path()) return "--card: its picture lies in the same folder";
+    if (picture.extension() != ".png") return "--card: the name of its picture must end in .png";
+    if (picture.parent_path() != card.parent_path()) return "--card: its picture must lie in the same folder";
     if (!is_card_picture(picture.filename().string()))
-        return "--card: a name of a picture without quotes, backslashes and control characters";
+        return "--card: the name of its picture must not contain quotes, backslashes or control characters";
     return {};
 }
 
@@ -54,7 +54,8 @@ std::string complete_card(Options& options) {
 void add_points_options(CLI::App& app, Options& options) {
     PointsSettings& settings = options.points;
     app.add_option("-o,--output", options.output,
-                   "Picture, .png or .exr, or a cloud of points, .ply (default: MODEL's name + .png, here)")
+                   "Picture to write, .png or .exr, or a point cloud, .ply (default: MODEL's name + .png, in "
+                   "this folder)")
         ->type_name("FILE");
     const auto points = [&settings](const std::string& text) {
         settings.points = parse_points(text);
@@ -62,7 +63,8 @@ void add_points_options(CLI::App& app, Options& options) {
             throw CLI::ValidationError(
                 fmt::format("--points: '{}' is not a whole number from 1 to 1e15, such as 1e9", text));
     };
-    app.add_option_function<std::string>("--points", points, "Points (default: 100 a pixel; of a cloud 1e6)")
+    app.add_option_function<std::string>("--points", points,
+                                         "Number of points (default: 100 per pixel; for a cloud 1e6)")
         ->type_name("N")
         ->take_last();
     const auto colour = [&settings](const std::string& text) {
@@ -75,20 +77,20 @@ void add_points_options(CLI::App& app, Options& options) {
         settings.colour = found->second;
     };
     app.add_option_function<std::string>("--color", colour,
-                                         "Colours: the model's tints; one for each map, by the last; or how "
-                                         "dense points lie (default tint)")
+                                         "Colour by the model's tints, by the last map, or by the density of "
+                                         "the points (default tint)")
         ->type_name("tint|map|density")
         ->take_last();
-    add_positive(app, "--exposure", "How much few points show beside many (default 30)",
+    add_positive(app, "--exposure", "How clearly a few points show beside many (default 30)",
                  settings.tone.exposure);
-    add_positive(app, "--gamma", "Above 1 lightens what is thin, below 1 darkens it (default 1)",
+    add_positive(app, "--gamma", "Above 1 lightens the thin parts, below 1 darkens them (default 1)",
                  settings.tone.gamma);
     app.add_flag("--transparent", settings.tone.transparent,
-                 "No background: the picture gets an alpha channel");
-    app.add_option(
-           "--card", settings.card,
-           "Also a model of a flat cube with the picture, in the place of a flat model: for terminals\n"
-           "(default size 512x512, exposure 800; the picture is transparent)")
+                 "Write an alpha channel instead of a background");
+    app.add_option("--card", settings.card,
+                   "Also write a model of a flat cube that bears the picture, in place of a flat model, for "
+                   "use as a\n"
+                   "terminal (default size 512x512, exposure 800; the picture is transparent)")
         ->type_name("FILE.inst");
     app.parse_complete_callback([&app, &options, &settings] {
         if (settings.card.empty()) return;
@@ -109,21 +111,23 @@ std::string complete_points(Options& options) {
     if (!options.points.card.empty())
         if (std::string wrong = complete_card(options); !wrong.empty()) return wrong;
     if (options.output.empty() && options.operands.front() == "-")
-        return "a model from standard input has no name: say where the points go by '-o FILE'";
+        return "a model from standard input has no name: name the picture with '-o FILE'";
     if (options.output.empty())
         options.output = std::filesystem::path(options.operands.front()).stem().string() + ".png";
     if (is_cloud_name(options.output))
         return options.points.colour == PointColour::density
-                   ? "--color density: a cloud has no pixels to count points in"
+                   ? "--color density: a cloud has no pixels to count points in; write a picture, or choose "
+                     "tint or map"
                    : "";
     if (!is_picture_name(options.output))
-        return fmt::format("'{}' ends neither in .png nor in .exr nor in .ply", options.output);
+        return fmt::format("'{}': the name must end in .png, .exr or .ply", options.output);
     return {};
 }
 
 void add_collage_options(CLI::App& app, Options& options) {
-    app.add_option("TARGET", options.points.target,
-                   "Picture of the target set: its dark pixels, or, where it has an alpha, its opaque ones")
+    app.add_option(
+           "TARGET", options.points.target,
+           "Picture of the target set: its dark pixels, or its opaque pixels if it has an alpha channel")
         ->required()
         ->type_name("");
     const auto set = [&options](const std::string& model) { options.operands = {model}; };
@@ -138,15 +142,16 @@ void add_collage_options(CLI::App& app, Options& options) {
     };
     app.add_option_function<std::string>(
            "--threshold", threshold,
-           "The target's pixels are darker than this, or at least as opaque (default 0.5)")
+           "Pixels darker than this, or at least this opaque, belong to the target (default 0.5)")
         ->type_name("T")
         ->take_last();
-    app.add_flag("--light", options.points.light, "The target's pixels are the lighter ones");
-    app.add_flag("--json", options.json, "One JSON object on standard output");
-    app.footer("The picture is laid over the view that 'points' and 'render' have of the model at its size.\n"
-               "Example:\n"
-               "  graftal points leaf.rifs --size 400x400 --transparent -o leaf.png\n"
-               "  graftal collage leaf.png leaf.rifs");
+    app.add_flag("--light", options.points.light, "The lighter pixels belong to the target");
+    app.add_flag("--json", options.json, "Print one JSON object on standard output");
+    app.footer(
+        "graftal lays the picture over the view that 'points' and 'render' have of the model at its size.\n"
+        "Example:\n"
+        "  graftal points leaf.rifs --size 400x400 --transparent -o leaf.png\n"
+        "  graftal collage leaf.png leaf.rifs");
 }
 
 } // namespace graftal

@@ -44,13 +44,13 @@ RenderOptions render_options(const Options& options) {
     return render;
 }
 
-/// "4 samples a pixel", "1 sample a pixel", "1 sample for 8x8 pixels"
+/// "4 samples per pixel", "1 sample per pixel", "1 sample per 8x8 pixels"
 std::string samples_text(double a_pixel) {
     if (a_pixel > 0 && a_pixel < 1) {
         const double block = std::round(std::sqrt(1 / a_pixel));
-        return fmt::format("1 sample for {0:g}x{0:g} pixels", block);
+        return fmt::format("1 sample per {0:g}x{0:g} pixels", block);
     }
-    return fmt::format("{:g} sample{} a pixel", a_pixel, a_pixel == 1 ? "" : "s");
+    return fmt::format("{:g} sample{} per pixel", a_pixel, a_pixel == 1 ? "" : "s");
 }
 
 std::string native_text(const NativeReport& report) {
@@ -94,7 +94,7 @@ int run_render(const Options& options) {
         if (!(seconds > 0.5 * options.compile.detail.work_seconds)) return;
         bar.clear();
         say(fmt::format("graftal: POV-Ray will take about {} seconds of one processor; '--engine native' is "
-                        "faster, and a larger --error or a smaller --memory or --size means less work\n",
+                        "faster; a larger --error or a smaller --memory or --size means less work\n",
                         readable_seconds(seconds)));
     };
 

@@ -50,7 +50,7 @@ int conclude_out_of_memory(const std::bad_alloc& fault) noexcept {
     if (memory_limit() > 0)
         length +=
             std::snprintf(text + length, sizeof text - static_cast<std::size_t>(length),
-                          ": graftal may take %llu MiB itself; allow more with --memory, or draw less with "
+                          ": graftal may use %llu MiB itself; allow more with --memory, or draw less with "
                           "--steps or --error",
                           static_cast<unsigned long long>(memory_limit() >> 20));
     text[length++] = '\n';
@@ -68,8 +68,9 @@ int print_output(std::string_view text) {
 
 std::string rays_text(const TraceStatistics& rays, double seconds) {
     const double millions = 1e-6 * static_cast<double>(rays.camera_rays) / std::max(seconds, 1e-9);
-    std::string text = fmt::format("{:.3g} million rays a second", millions);
-    if (rays.given_up > 0) text += fmt::format("; {} rays met too much and were given up", rays.given_up);
+    std::string text = fmt::format("{:.3g} million rays per second", millions);
+    if (rays.given_up > 0)
+        text += fmt::format("; graftal gave up {} rays that met too many parts", rays.given_up);
     return text;
 }
 

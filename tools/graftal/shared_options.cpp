@@ -58,7 +58,8 @@ void add_common(CLI::App& app, Options& options) {
     constexpr std::uint64_t most_steps = 4'000'000'000;
     add_swept(
         app, options, "--steps", "N",
-        "Depth: levels of the recursion, derivation steps of an L-system; 7.3: a growing one between two",
+        "Depth: levels of recursion, or derivation steps of an L-system; 7.3 shows a growing plant between "
+        "steps 7 and 8",
         "a number from 0 to 4000000000",
         [](const std::string& text) { return parse_steps(text, most_steps); },
         [](const std::string& text) { return parse_steps_sweep(text, most_steps); },
@@ -86,9 +87,9 @@ void add_common(CLI::App& app, Options& options) {
         }
     };
     app.add_option_function<std::vector<std::string>>("--set", set,
-                                                      "Replace the value of a 'let' of the model, or of a "
-                                                      "setting: steps; of an .lsys also angle, step, width, "
-                                                      "seed (may be repeated)")
+                                                      "Replace the value of a 'let' in the model, or of the "
+                                                      "setting steps; in an .lsys also of angle, step, width "
+                                                      "and seed (may be repeated)")
         ->allow_extra_args(false)
         ->type_name(sweeps ? "NAME=VALUE[..VALUE[:STEP]]" : "NAME=VALUE");
     add_swept(
@@ -97,8 +98,8 @@ void add_common(CLI::App& app, Options& options) {
         [&](std::uint64_t seed) { compile.lower.seed = seed; });
     add_value(
         app, "--root", "FOLDER",
-        "Read models, and the models and pictures that they name, in this folder only, wherever symbolic "
-        "links lead",
+        "Read models, and the models and pictures that they name, only from this folder; graftal resolves "
+        "symbolic links first",
         "a folder",
         [](const std::string& text) {
             std::error_code error;
@@ -106,21 +107,22 @@ void add_common(CLI::App& app, Options& options) {
         },
         [&](const std::string& root) { compile.lower.root = root; });
     app.add_flag("--exact", compile.lower.exact,
-                 "Derive L-systems module by module, so that a random one is one honest sample");
+                 "Derive L-systems module by module, so that a random plant is one true random sample");
     add_value(app, "--memory", "BYTES",
-              "Memory that graftal may take, and POV-Ray after it; suffixes K M G (default 2G)",
+              "Memory that graftal may use, and POV-Ray after it; suffixes K M G (default 2G)",
               "a number of bytes such as 512M", parse_bytes,
               [&](std::uint64_t bytes) { compile.detail.memory_bytes = bytes; });
     add_value(
-        app, "--threads", "N", "Threads to use (default: all processors)", "a whole number from 1 to 512",
-        [](const std::string& text) { return parse_whole(text, 1, 512); },
+        app, "--threads", "N", "Number of threads (default: one per processor)",
+        "a whole number from 1 to 512", [](const std::string& text) { return parse_whole(text, 1, 512); },
         [&](std::uint64_t threads) { options.threads = static_cast<int>(threads); });
     add_value(
-        app, "--dump-after", "PASS", "Print the graph on standard error after this pass, or after 'all'",
-        "a pass", [](const std::string& text) { return pass_named(text, true); },
+        app, "--dump-after", "PASS",
+        "Print the graph on standard error after this pass, or after each with 'all'", "a pass",
+        [](const std::string& text) { return pass_named(text, true); },
         [&](const std::string& pass) { options.dump_after = pass; });
-    app.add_flag("--time", options.time, "Print the time of each stage on standard error");
-    app.add_flag("-q,--quiet", options.quiet, "No progress and no summary; errors and warnings only");
+    app.add_flag("--time", options.time, "Print how long each stage takes, on standard error");
+    app.add_flag("-q,--quiet", options.quiet, "Print only errors and warnings, no progress and no summary");
 }
 
 void add_camera(CLI::App& app, Options& options) {
@@ -139,7 +141,7 @@ void add_camera(CLI::App& app, Options& options) {
     app.add_option_function<std::vector<std::string>>(
            "--camera", camera,
            "Camera: any of location=X,Y,Z look_at=X,Y,Z up=X,Y,Z angle=DEGREES orthographic width=UNITS; the "
-           "rest is as the model says or automatic")
+           "model sets the rest, or graftal chooses it")
         ->allow_extra_args(false)
         ->type_name("\"WORDS\"");
     const auto address = [&compile](const std::string& text) {
@@ -147,27 +149,31 @@ void add_camera(CLI::App& app, Options& options) {
         compile.view.zoom.at = parse_address(text, problem);
         if (!compile.view.zoom.at) throw CLI::ValidationError(fmt::format("--at: '{}': {}", text, problem));
     };
-    app.add_option_function<std::string>("--at", address,
-                                         "Look at the part with this address, from its own frame: names of "
-                                         "objects on the way from the root, "
-                                         "such as up.left.(right.up)*40; X#2 is the second instance of X")
+    app.add_option_function<std::string>(
+           "--at", address,
+           "Look at the part with this address, from its own frame: the names of "
+           "the objects on the way from the root, such as "
+           "up.left.(right.up)*40; X#2 is the second instance of X")
         ->type_name("ADDRESS")
         ->take_last();
-    add_swept(app, options, "--zoom", "F",
-              "Enlarge F times, such as 1e100 or 2^330, about the part at --at, else the point looked at",
-              "a number above 0, such as 1e100 or 2^330", Magnification::parse, parse_zoom_sweep,
-              [&](Magnification zoom) { compile.view.zoom.zoom = zoom; });
+    add_swept(
+        app, options, "--zoom", "F",
+        "Enlarge F times, such as 1e100 or 2^330, around the part at --at, or else the point that the camera "
+        "looks at",
+        "a number above 0, such as 1e100 or 2^330", Magnification::parse, parse_zoom_sweep,
+        [&](Magnification zoom) { compile.view.zoom.zoom = zoom; });
 }
 
 void add_view(CLI::App& app, Options& options) {
     add_camera(app, options);
     StageOptions& compile = options.compile;
     CLI::Option* pixels = add_value(
-        app, "--error", "PX", "Leave out what is smaller than this on the picture (default 0.5; 0: nothing)",
+        app, "--error", "PX",
+        "Leave out parts smaller than this in the picture (default 0.5; 0 keeps every part)",
         "a number of pixels, 0 or more", [](const std::string& text) { return parse_at_least(text, 0); },
         [&](double error) { compile.detail.error_px = error; });
     add_value(
-        app, "--error-world", "X", "The same as a length in the model's units",
+        app, "--error-world", "X", "Like --error, but a length in the model's units",
         "0, or a length from 1e-100 to 1e100",
         [](const std::string& text) {
             const std::optional<double> error = parse_at_least(text, 0);
@@ -177,14 +183,14 @@ void add_view(CLI::App& app, Options& options) {
         ->excludes(pixels);
     add_value(
         app, "--work", "SECONDS",
-        "Work for the picture, about so many seconds of one processor; what takes more is drawn coarser "
-        "(default 40)",
+        "Limit of the work for a picture, roughly in seconds of one processor; graftal draws coarser where a "
+        "picture would take more (default 30)",
         "a number of seconds above 0", [](const std::string& text) { return parse_at_least(text, 1e-3); },
         [&](double seconds) { compile.detail.work_seconds = seconds; });
     app.add_flag("--visible-only", compile.detail.visible_only,
-                 "Leave out what the camera does not see, with the shadows that it would throw");
+                 "Leave out parts that the camera does not see, and their shadows too");
     app.add_flag("--flatten", compile.cut.flatten,
-                 "Spell out every part in its place, without sharing (for comparison)");
+                 "Write every part in its place, without sharing (for comparison)");
 }
 
 void add_model(CLI::App& app, Options& options) {
@@ -203,12 +209,12 @@ void add_drawing(CLI::App& app, Options& options) {
         options.engine = text == "native" ? Engine::native : Engine::povray;
     };
     app.add_option_function<std::string>(
-           "--engine", engine, "What draws: povray, or graftal's own ray tracer, native (default povray)")
+           "--engine", engine, "Renderer: povray, or native, graftal's own ray tracer (default povray)")
         ->type_name("povray|native")
         ->take_last();
     app.add_flag("--unconfined", options.unconfined,
-                 "Let POV-Ray read and write all that you can, with your environment and without limits: for "
-                 "programs that start it somewhere else");
+                 "Run POV-Ray unconfined: with your permissions, your environment and no limits (for a "
+                 "program in its place that runs it somewhere else)");
     const auto antialias = [&options](const std::string& text) {
         const auto depth = parse_whole(text, 1, 9);
         if (!depth && text != "off")
@@ -216,8 +222,8 @@ void add_drawing(CLI::App& app, Options& options) {
                 fmt::format("--antialias: '{}' is neither 'off' nor a whole number from 1 to 9", text));
         options.antialias = depth ? std::optional(static_cast<int>(*depth)) : std::nullopt;
     };
-    app.add_option_function<std::string>("--antialias", antialias,
-                                         "Smooth edges by up to 4^(N-1) samples a pixel, or off (default 2)")
+    app.add_option_function<std::string>(
+           "--antialias", antialias, "Smooth edges with up to 4^(N-1) samples per pixel, or off (default 2)")
         ->type_name("off|N")
         ->take_last();
 }

@@ -55,19 +55,19 @@ std::string extra_words(const CLI::App& command) {
     });
     if (option != words.end()) return unknown_option(*option, command);
     const std::string word = words.empty() ? "" : words.front();
-    return fmt::format("'{}' is one word too many: '{}' takes {}; a name with blanks stands in quotes", word,
+    return fmt::format("'{}' is one word too many: '{}' takes {}; put a name with spaces in quotes", word,
                        command.get_name(), operands_text(command));
 }
 
 } // namespace
 
 std::string wrong_command(int argc, const char* const* argv, const std::vector<std::string>& commands) {
-    if (argc < 2) return "which command?";
+    if (argc < 2) return "no command given: try 'graftal render MODEL'";
     const std::string word = argv[1];
     const bool known = std::find(commands.begin(), commands.end(), word) != commands.end();
     if (word.empty() || word.front() == '-' || known) return {};
     if (word.find_first_of("./") != std::string::npos)
-        return fmt::format("a command comes first: 'graftal render {}'", word);
+        return fmt::format("name a command first, such as 'graftal render {}'", word);
     return fmt::format("there is no command '{}' ({})", word, choices(word, commands));
 }
 
@@ -78,12 +78,12 @@ std::string usage_message(const CLI::ParseError& error, const CLI::App& command)
     const CLI::Option* const option = option_in(message, command);
     if (dynamic_cast<const CLI::ExcludesError*>(&error) && option) {
         const std::string other = message.substr(message.rfind(' ') + 1);
-        return fmt::format("{} and {} exclude each other", option->get_name(), other);
+        return fmt::format("{} and {} exclude each other: give only one of them", option->get_name(), other);
     }
     if (option) return fmt::format("{} needs a value: {}", option->get_name(), option_text(*option));
     const std::string operands = operands_text(command);
     if (operands == "A B") return "'compare' takes two pictures: 'graftal compare A B'";
-    return fmt::format("which model? 'graftal {} {}'", command.get_name(), operands);
+    return fmt::format("no model given: try 'graftal {} {}'", command.get_name(), operands);
 }
 
 } // namespace graftal

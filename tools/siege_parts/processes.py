@@ -120,7 +120,7 @@ def faults(ended, said, words, output, left, temporary, trouble):
         found.append(f'{command}: {name}')
     elif ended.code not in (0, 1, 2) and not (ended.code == 3 and (trouble.status_3 or honest(said))):
         found.append(f'{command}: status {ended.code}: {kind(said)}')
-    said_of_library = 'crashed, or a library did' in said and trouble.status_3
+    said_of_library = 'one of its libraries crashed' in said and trouble.status_3
     if not said_of_library and re.search(r'internal error|broken invariant|terminate called|Sanitizer|runtime error:', said):
         found.append(f'{command}: {kind(said)}')
     if ended.code not in (0, None) and not said.strip() and not trouble.mute and '-q' not in words and '--quiet' not in words:

@@ -169,7 +169,7 @@ TEST(LsysDeriver, longWordsAreErrorsBeforeTheyTakeMemory) {
               R"(m.lsys:2:1: error: the derivation has more than 1000 modules after step 10
     steps 5
     ^~~~~
-    hint: fewer steps give a shorter one
+    hint: use fewer steps for a shorter one
 )");
     EXPECT_EQ(derived("axiom F\nF -> FF", 3, 0, 8), "FFFFFFFF");
     EXPECT_THAT(derived("axiom FFF", 0, 0, 2), HasSubstr("more than 2 modules after step 0"));

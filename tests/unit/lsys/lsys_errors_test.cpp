@@ -55,7 +55,7 @@ m.lsys:5:10: error: '}' without '{'
         {R"e(F -> F[(2)])e", R"e(m.lsys:3:8: error: expected a module, found '('
     F -> F[(2)]
            ^
-    hint: parameters follow their module: F(1)
+    hint: write parameters after their module: F(1)
 )e"},
         {R"e(A(x -> F(x)
 B -> F)e",
@@ -86,57 +86,57 @@ TEST(LsysErrors, leftSides) {
         {R"e(-> F)e", R"e(m.lsys:3:1: error: expected the module that is rewritten, found '->'
     -> F
     ^~
-    hint: a production is written A -> B
+    hint: write a production as A -> B
 )e"},
         {R"e(p1: -> F)e", R"e(m.lsys:3:5: error: expected the module that is rewritten, found '->'
     p1: -> F
         ^~
-    hint: a production is written A -> B
+    hint: write a production as A -> B
 )e"},
         {R"e(A < -> F)e", R"e(m.lsys:3:5: error: expected the module that is rewritten, found '->'
     A < -> F
         ^~
-    hint: a production is written A -> B
+    hint: write a production as A -> B
 )e"},
         {R"e([A] < B > [C -> F)e", R"e(m.lsys:3:1: error: a left context has no brackets
     [A] < B > [C -> F
     ^
-    hint: it is matched along the way to the root, past all side branches
+    hint: graftal matches it along the way to the root, past all side branches
 )e"},
         {R"e(A < B < C -> F)e", R"e(m.lsys:3:7: error: expected '->', found '<'
     A < B < C -> F
           ^
-    hint: the left context comes first, and once: A < B > C -> ...
+    hint: write the left context first, and only once: A < B > C -> ...
 )e"},
         {R"e(A > B < C -> F)e", R"e(m.lsys:3:7: error: expected '->', found '<'
     A > B < C -> F
           ^
-    hint: the left context comes first, and once: A < B > C -> ...
+    hint: write the left context first, and only once: A < B > C -> ...
 )e"},
         {R"e(Bud -> F)e", R"e(m.lsys:3:1: error: a production rewrites one module, not 3
     Bud -> F
     ^~~
-    hint: longer names are declared: modules Bud
+    hint: declare longer names: modules Bud
 )e"},
         {R"e(Bud : n > 1 -> F)e", R"e(m.lsys:3:1: error: a production rewrites one module, not 3
     Bud : n > 1 -> F
     ^~~
-    hint: longer names are declared: modules Bud
+    hint: declare longer names: modules Bud
 )e"},
         {R"e(A B -> F)e", R"e(m.lsys:3:1: error: a production rewrites one module, not 2
     A B -> F
     ^~~
-    hint: modules around it are its context: A < B > C -> ...
+    hint: write the modules around it as its context: A < B > C -> ...
 )e"},
         {R"e(A -(0.33)-> F)e", R"e(m.lsys:3:5: error: expected the name of a parameter, found '0.33'
     A -(0.33)-> F
         ^~~~
-    hint: a probability stands behind the successor: A -> B : 0.5
+    hint: write a probability after the successor: A -> B : 0.5
 )e"},
         {R"e(A(0) -> F)e", R"e(m.lsys:3:3: error: expected the name of a parameter, found '0'
     A(0) -> F
       ^
-    hint: a condition tells values apart: A(n) : n == 0 -> ...
+    hint: use a condition to distinguish values: A(n) : n == 0 -> ...
 )e"},
         {R"e(A(x) < B(x) -> F)e", R"e(m.lsys:3:10: error: duplicate parameter 'x'
     A(x) < B(x) -> F
@@ -152,15 +152,15 @@ m.lsys:3:3: note: first named here
     A(x, x) -> F
       ^
 )e"},
-        {R"e(A() -> F())e", R"e(m.lsys:3:2: error: there is no parameter between these parentheses
+        {R"e(A() -> F())e", R"e(m.lsys:3:2: error: these parentheses contain no parameter
     A() -> F()
      ^~
-    hint: a module without parameters is written 'A'
+    hint: write a module without parameters as 'A'
 )e"},
         {R"e(A(x) : x = 1 -> F)e", R"e(m.lsys:3:10: error: expected '->', found '='
     A(x) : x = 1 -> F
              ^
-    hint: equality is written ==
+    hint: write equality as ==
 )e"},
         {R"e(A(x) : -> F)e", R"e(m.lsys:3:8: error: expected a number, found '->'
     A(x) : -> F
@@ -177,7 +177,7 @@ m.lsys:3:8: note: to close this '('
     A(x) : (x > 1 -> F
            ^
 )e"},
-        {R"e(~leaf -> F)e", R"e(m.lsys:3:1: error: a model stands in successors only
+        {R"e(~leaf -> F)e", R"e(m.lsys:3:1: error: only a successor may contain a model
     ~leaf -> F
     ^~~~~
     hint: rewrite a module, and let its successor place the model
@@ -196,22 +196,22 @@ TEST(LsysErrors, successors) {
         {R"e(A ->(0.33) F)e", R"e(m.lsys:3:5: error: expected a module, found '('
     A ->(0.33) F
         ^
-    hint: a probability stands behind the successor: A -> B : 0.5
+    hint: write a probability after the successor: A -> B : 0.5
 )e"},
         {R"e(A -> B -> C)e", R"e(m.lsys:3:8: error: expected a module or the end of the line, found '->'
     A -> B -> C
            ^~
-    hint: every production stands on its own line
+    hint: write every production on its own line
 )e"},
         {R"e(A -> F*2)e", R"e(m.lsys:3:7: error: expected a module or the end of the line, found '*'
     A -> F*2
           ^
-    hint: '*' stands alone, for the empty string
+    hint: write '*' alone, for the empty string
 )e"},
         {R"e(A -> F < G)e", R"e(m.lsys:3:8: error: expected a module or the end of the line, found '<'
     A -> F < G
            ^
-    hint: contexts stand before the arrow: A < B > C -> ...
+    hint: write contexts before the arrow: A < B > C -> ...
 )e"},
         {R"e(A -> F?G @1 ~ ~3 F))e", R"e(m.lsys:3:7: error: expected a module, found '?'
     A -> F?G @1 ~ ~3 F)
@@ -219,7 +219,7 @@ TEST(LsysErrors, successors) {
 m.lsys:3:10: error: expected a module, found '@'
     A -> F?G @1 ~ ~3 F)
              ^
-    hint: a directive is '@' and a letter: @o
+    hint: write a directive as '@' and a letter: @o
 m.lsys:3:15: error: expected the name of a model after '~', found '~'
     A -> F?G @1 ~ ~3 F)
                   ^
@@ -231,7 +231,7 @@ m.lsys:3:16: error: expected the name of a model after '~', found '3'
 m.lsys:3:19: error: expected a module, found ')'
     A -> F?G @1 ~ ~3 F)
                       ^
-    hint: nothing opens this ')'
+    hint: this ')' closes nothing
 )e"},
         {R"e(A -> ωF)e", R"e(m.lsys:3:6: error: expected a module, found 'ω'
     A -> ωF
@@ -242,11 +242,11 @@ A -> F //[//A] // )e",
          R"e(m.lsys:3:8: warning: in a string '//' is two turns, no comment
     A -> F // the branch
            ^~
-    hint: comments in strings begin with '#'; turns can be written without a space around them
+    hint: begin comments in strings with '#', or write the turns without spaces around them
 m.lsys:4:16: warning: in a string '//' is two turns, no comment
     A -> F //[//A] // 
                    ^~
-    hint: comments in strings begin with '#'; turns can be written without a space around them
+    hint: begin comments in strings with '#', or write the turns without spaces around them
 )e"},
         {R"e(A -> F(1 + [2))e", R"e(m.lsys:3:12: error: expected a number, found '['
     A -> F(1 + [2)
@@ -267,12 +267,12 @@ TEST(LsysErrors, statements) {
         {R"e(F = F+F)e", R"e(m.lsys:3:3: error: expected '->', found '='
     F = F+F
       ^
-    hint: a production is written A -> B, and 'let a = 3' names a number
+    hint: write a production as A -> B, and a named number as 'let a = 3'
 )e"},
         {R"e(F → F)e", R"e(m.lsys:3:3: error: expected '->', found '→'
     F → F
       ^
-    hint: a production is written A -> B
+    hint: write a production as A -> B
 )e"},
         {R"e(angle
 angle: 60 70
@@ -329,13 +329,13 @@ ignore H)e",
 m.lsys:3:8: note: first listed here
     ignore +-+
            ^
-m.lsys:4:8: error: brackets are never ignored or considered
+m.lsys:4:8: error: contexts cannot ignore or consider brackets
     ignore [F]
            ^
-m.lsys:4:10: error: brackets are never ignored or considered
+m.lsys:4:10: error: contexts cannot ignore or consider brackets
     ignore [F]
              ^
-m.lsys:5:9: error: symbols are listed without parameters
+m.lsys:5:9: error: list symbols without parameters
     ignore F(2)
             ^~~
 m.lsys:6:7: error: expected symbols after 'ignore', found the end of the line
@@ -344,7 +344,7 @@ m.lsys:6:7: error: expected symbols after 'ignore', found the end of the line
 m.lsys:7:10: error: expected a module or the end of the line, found '->'
     ignore F -> G
              ^~
-    hint: every statement and every production stands on its own line, without ';'
+    hint: write every statement and every production on its own line, without ';'
 m.lsys:9:1: error: a block has either 'ignore' or 'consider'
     consider G
     ^~~~~~~~
@@ -360,7 +360,7 @@ m.lsys:8:1: note: first given here
 )e"},
         {R"e(modules axiom, a.b, Bud
 modules Bud 33)e",
-         R"e(m.lsys:3:9: error: 'axiom' is a word of the language and no module's name
+         R"e(m.lsys:3:9: error: 'axiom' is a word of the language and cannot name a module
     modules axiom, a.b, Bud
             ^~~~~
 m.lsys:3:16: error: the name of a module has no dots
@@ -392,15 +392,15 @@ m.lsys:4:6: error: expected '=' after 'c', found the end of the line
          R"e(m.lsys:3:13: error: productions of 'interpret' and 'decompose' have no context
     interpret { A < B -> F
                 ^~~~~~~
-m.lsys:4:2: error: only productions stand in 'interpret', not 'angle'
+m.lsys:4:2: error: 'interpret' may contain only productions, not 'angle'
      angle 60
      ^~~~~
-    hint: close it with '}' before
+    hint: close it with '}' first
 )e"},
         {R"e(interpret)e", R"e(m.lsys:3:10: error: expected a production or '{'
     interpret
              ^
-    hint: interpret A -> F, or interpret { with one production a line }
+    hint: write interpret A -> F, or interpret { with one production per line }
 )e"},
         {R"e(interpret A > B -> F)e",
          R"e(m.lsys:3:11: error: productions of 'interpret' and 'decompose' have no context
@@ -412,11 +412,11 @@ camera { location: 1, 2, 3
   angle: 40
 }
 A -> F)e",
-         R"e(m.lsys:3:1: error: 'use' stands outside the braces of 'lsys a'
+         R"e(m.lsys:3:1: error: 'use' must be outside the braces of 'lsys a'
     use leaf = "x.rifs"
     ^~~
     hint: close the block with '}' before it
-m.lsys:4:1: error: 'camera' stands outside the braces of 'lsys a'
+m.lsys:4:1: error: 'camera' must be outside the braces of 'lsys a'
     camera { location: 1, 2, 3
     ^~~~~~
     hint: close the block with '}' before it
@@ -467,7 +467,7 @@ m.lsys:1:8: note: to close this '{'
 m.lsys:1:6: error: 'lsys a' has no axiom
     lsys a {
          ^
-    hint: axiom F gives the string that the derivation begins with
+    hint: write axiom F for the string that the derivation begins with
 )e"},
         {R"e(lsys a {
 axiom F
@@ -498,7 +498,7 @@ m.lsys:1:8: note: to close this '{'
          R"e(m.lsys:1:6: error: 'lsys a' has no axiom
     lsys a { }
          ^
-    hint: axiom F gives the string that the derivation begins with
+    hint: write axiom F for the string that the derivation begins with
 )e"},
         {R"e(lsys a {
 axoim F
@@ -534,7 +534,7 @@ axiom F }
 m.lsys:1:1: error: expected 'lsys', 'use' or a scene statement, found 'foo'
     foo { $ }
     ^~~
-    hint: a block begins with its kind: lsys foo {
+    hint: begin a block with its kind: lsys foo {
 m.lsys:3:9: error: '}' without '{'
     axiom F }
             ^
@@ -585,10 +585,10 @@ TEST(LsysErrors, limitsAreSaidOnce) {
         return said.substr(0, said.find('\n'));
     };
     EXPECT_EQ(first_error("lsys a {\naxiom " + std::string(300, '[') + "\n}"),
-              "m.lsys:2:263: error: brackets are nested more than 256 deep");
+              "m.lsys:2:263: error: brackets nest more than 256 deep");
     EXPECT_EQ(
         first_error("lsys a {\naxiom F(" + std::string(300, '(') + "1" + std::string(300, ')') + ")\n}"),
-        "m.lsys:2:264: error: brackets are nested more than 256 deep");
+        "m.lsys:2:264: error: brackets nest more than 256 deep");
     std::string many = "lsys a {\naxiom " + std::string(60'000, 'F') + "\nA -> " + std::string(60'000, 'F');
     many += "\nB -> F\nC -> F\n}";
     EXPECT_EQ(first_error(many), "m.lsys:3:40005: error: the strings have more than 100000 modules in all");

@@ -126,7 +126,7 @@ TEST_F(Points, OrbitsThatAreWrongAreExplained) {
          "either all maps have a probability"},
         {"orbit o { map { x = y y = x probability 2 } }\n", "a probability must lie between 0 and 1, not 2"},
         {"orbit o { map { x = y y = x material m } }\n", "unknown material 'm'"},
-        {"orbit o { x = y  y = x }\norbit p { x = y  y = x }\n", "an orbit stands alone in its file"},
+        {"orbit o { x = y  y = x }\norbit p { x = y  y = x }\n", "an orbit must be alone in its file"},
     };
     for (const auto& [text, message] : cases) {
         ASSERT_TRUE(write_text(path("o.rifs"), text).ok());

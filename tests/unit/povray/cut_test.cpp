@@ -222,7 +222,7 @@ TEST(Cut, ThatASetWithoutAreaIsDrawnWiderThanItIsIsNoted) {
         if (diagnostics.all().empty()) return std::string();
         const Diagnostic& note = diagnostics.all().front();
         EXPECT_EQ(note.severity, Severity::note);
-        EXPECT_NE(note.message.find("drawn a pixel wide"), std::string::npos) << note.message;
+        EXPECT_NE(note.message.find("one pixel wide"), std::string::npos) << note.message;
         return note.hint;
     };
     // The hint says how to draw it larger.
@@ -252,7 +252,7 @@ TEST(Cut, RecursionWithoutAnEndIsRefused) {
     Diagnostics diagnostics;
     EXPECT_FALSE(cut(test::gasket(false), {.error_px = 0}, diagnostics).has_value());
     ASSERT_EQ(diagnostics.error_count(), 1u);
-    EXPECT_EQ(diagnostics.all()[0].message, "the recursion has no end, and nothing says how deep to draw it");
+    EXPECT_EQ(diagnostics.all()[0].message, "the recursion has no end, and no option limits its depth");
 }
 
 TEST(Cut, AnEyeOnTheModelStillEnds) {

@@ -210,8 +210,7 @@ TEST(RunCut, WhatIsOutOfSightIsNamedWhereMemoryLacks) {
         return diagnostics.render(SourceMap());
     };
     const std::string near = hints(0.05), far = hints(3);
-    EXPECT_NE(near.find("--memory, leave out what the picture does not show with --visible-only"),
-              std::string::npos)
+    EXPECT_NE(near.find("--memory, leave out invisible parts with --visible-only"), std::string::npos)
         << near;
     EXPECT_NE(far.find("allow an error of"), std::string::npos) << far;
     EXPECT_EQ(far.find("--visible-only"), std::string::npos) << far;

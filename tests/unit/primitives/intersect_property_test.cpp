@@ -130,7 +130,7 @@ class RandomRays {
     std::mt19937_64 random_;
 };
 
-/// Expects `inside` of the ray between two crossings, but for what lies next to the surface.
+/// Expects `inside` of the ray between two crossings, except next to the surface.
 void expect_uncrossed(const Primitive& kind, const Ray& ray, double least, double most, bool inside,
                       int samples) {
     for (int i = 1; i < samples; ++i) {

@@ -237,12 +237,12 @@ TEST(LowerRifs, deadMapsAreDroppedWithAWarning) {
         return std::string(text).replace(text.find('%'), 1, more);
     };
     EXPECT_EQ(complaints(with("")), "w 2:7: map 'a' draws nothing: no map leads to it\n"
-                                    "w 3:7: map 'b' draws nothing: all that leads to it draws nothing\n"
-                                    "w 4:7: map 'c' draws nothing: all that leads to it draws nothing\n");
+                                    "w 3:7: map 'b' draws nothing: only maps that draw nothing lead to it\n"
+                                    "w 4:7: map 'c' draws nothing: only maps that draw nothing lead to it\n");
     EXPECT_EQ(masters(*lower(with("")).graph, "r"), "d");
-    EXPECT_NE(complaints(with("start a, b"))
-                  .find("1:6: 'rifs r' is empty: no sequence of its maps goes on for ever"),
-              std::string::npos);
+    EXPECT_NE(
+        complaints(with("start a, b")).find("1:6: 'rifs r' is empty: no sequence of its maps is endless"),
+        std::string::npos);
     const Graph condensed = graph_of(with("condense sphere"));
     EXPECT_EQ(masters(condensed, "a"), "sphere");
     EXPECT_EQ(masters(condensed, "c"), "sphere b");
@@ -256,8 +256,8 @@ TEST(LowerRifs, emptyBlocksEmptyThoseThatTakeThem) {
     EXPECT_EQ(complaints("rifs x { map a { scale 1/2 } map b { scale 1/2 } follow a -> b }\n"
                          "rifs y { map c from x { scale 1 } map d { scale 1/2 } }\n"),
               "w 1:14: map 'a' draws nothing: no map leads to it\n"
-              "w 1:34: map 'b' draws nothing: all that leads to it draws nothing\n"
-              "w 2:14: map 'c' draws nothing: all that leads to it draws nothing\n");
+              "w 1:34: map 'b' draws nothing: only maps that draw nothing lead to it\n"
+              "w 2:14: map 'c' draws nothing: only maps that draw nothing lead to it\n");
 }
 
 TEST(LowerRifs, namesThatAreNotThere) {
@@ -266,8 +266,8 @@ TEST(LowerRifs, namesThatAreNotThere) {
                                                           "                ^~\n"
                                                           "    hint: did you mean 'b'? known here: a, b\n");
     EXPECT_EQ(complaints(two_maps("start q\nterminal cbue\ncondense leaf")),
-              "5:10: 'cbue' is no primitive and no used model\n"
-              "6:10: 'leaf' is no primitive and no used model\n"
+              "5:10: 'cbue' is neither a primitive nor a used model\n"
+              "6:10: 'leaf' is neither a primitive nor a used model\n"
               "4:7: 'rifs r' has no map 'q'\n");
     EXPECT_EQ(complaints("rifs r { map a from s { scale 1/2 } map b { scale 1/2 material wood } }"),
               "1:64: unknown material 'wood'\n"
@@ -340,8 +340,7 @@ TEST(LowerRifs, mapsThatCannotBe) {
     };
     EXPECT_EQ(
         hint("rifs r { codes 2d {\n.5 0 0 .5 0 0 1\n.5 0 0 .5 1 0 -.2\n} }"),
-        "it is the last number of row 2: leave the last number out of all rows, and the maps are chosen by "
-        "their size");
+        "it is the last number of row 2: remove the last number from all rows to choose maps by their size");
     EXPECT_EQ(complaints("rifs r { codes 2d {\n.5 0 0 .5 0 0 .3\n.5 0 0 .5 1 0 .3\n} }"),
               "w 1:6: the probabilities of 'rifs r' add up to 0.6, not 1\n");
     EXPECT_EQ(complaints("rifs r { codes 2d {\n 0 0 0 .5 0 0\n .5 0 0 .5 0 1\n }\n"
@@ -371,7 +370,7 @@ TEST(LowerRifs, allErrorsOfAFileAreReportedInOneRun) {
         "3:11: expected a transform, 'tint', 'material', 'probability', 'terminal' or '}', found 'scle'\n"
         "1:17: 'angle' must lie between 0 and 180 degrees, not 200\n"
         "4:17: unknown name 'nope'\n"
-        "6:12: 'x' is no primitive and no used model\n"
+        "6:12: 'x' is neither a primitive nor a used model\n"
         "5:15: 'rifs r' has no map 'c'\n");
 }
 

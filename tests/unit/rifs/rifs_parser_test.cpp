@@ -188,8 +188,8 @@ TEST(RifsParser, aMissingBraceIsFoundWhereTheNextItemBegins) {
 
 TEST(RifsParser, sceneStatementsStandOutside) {
     EXPECT_EQ(complaints("rifs r {\n  map a { scale 1/2 }\n  steps 3\n  use x = \"y\"\n}\nsteps 4\n"),
-              "3:3: 'steps' stands outside the braces of 'rifs r'\n"
-              "4:3: 'use' stands outside the braces of 'rifs r'\n");
+              "3:3: 'steps' must be outside the braces of 'rifs r'\n"
+              "4:3: 'use' must be outside the braces of 'rifs r'\n");
 }
 
 TEST(RifsParser, deepNestingIsOneError) {
@@ -197,7 +197,7 @@ TEST(RifsParser, deepNestingIsOneError) {
     for (const std::string& text :
          {braces, "rifs r " + braces, "rifs r { map a " + braces, "rifs r { follow " + braces,
           "rifs r { codes 2d { 1 2 " + std::string(100'000, '(')})
-        EXPECT_EQ(complaints(text).find("nested more than 256 deep"), complaints(text).rfind("nested"))
+        EXPECT_EQ(complaints(text).find("nest more than 256 deep"), complaints(text).rfind("nested"))
             << text.size();
 }
 

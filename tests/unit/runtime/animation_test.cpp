@@ -143,7 +143,7 @@ TEST_F(AnimationFiles, FailuresLeaveNoFile) {
     wide.height = width;
     ASSERT_TRUE(write_image(frames.back(), wide, SampleFormat::srgb8).ok());
     EXPECT_THAT(write_animated_png(path("a.png"), frames, {2500}, [](auto) { return true; }).message(),
-                HasSubstr("differs in size"));
+                HasSubstr("has another size"));
     EXPECT_EQ(file_count(), before);
 }
 

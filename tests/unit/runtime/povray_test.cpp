@@ -146,7 +146,7 @@ TEST_F(Povray, MissingPovraySaysHowToInstallIt) {
     scene("sphere { 0, 1 }\n");
     job_.program = "graftal-no-povray";
     EXPECT_EQ(run_povray(job_).status.message(),
-              "cannot find the program 'graftal-no-povray'; install it by 'apt-get install povray'");
+              "cannot find the program 'graftal-no-povray'; install it with 'apt-get install povray'");
 }
 
 TEST_F(Povray, CrashIsReported) {

@@ -63,7 +63,7 @@ TEST_F(Files, ReadingStopsAtTheLimit) {
     ASSERT_TRUE(write_text(path("big"), std::string(1000, 'x')).ok());
     std::string text;
     EXPECT_TRUE(read_text(path("big"), text, 1000).ok());
-    EXPECT_EQ(read_text(path("big"), text, 999).message(), "'" + path("big") + "' is longer than 999 bytes");
+    EXPECT_EQ(read_text(path("big"), text, 999).message(), "'" + path("big") + "' is too long: more than 999 bytes");
     const Status endless = read_text("/dev/zero", text, 1 << 20);
     EXPECT_FALSE(endless.ok()) << "an endless device must not fill the memory";
     EXPECT_LE(text.size(), std::size_t{1} << 20);

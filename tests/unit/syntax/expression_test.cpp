@@ -125,14 +125,14 @@ TEST(Expression, errors_say_what_is_wrong_and_where) {
 
 TEST(Expression, depth_and_length_are_bounded) {
     EXPECT_EQ(value(std::string(200, '(') + "1" + std::string(200, ')')), 1);
-    EXPECT_THAT(error(std::string(100'000, '(')), HasSubstr("nested more than 256 deep"));
-    EXPECT_THAT(error(std::string(100'000, '-') + "1"), HasSubstr("nested more than 256 deep"));
+    EXPECT_THAT(error(std::string(100'000, '(')), HasSubstr("nest more than 256 deep"));
+    EXPECT_THAT(error(std::string(100'000, '-') + "1"), HasSubstr("nest more than 256 deep"));
     std::string powers = "1", sums = "1", calls;
     for (int i = 0; i < 100'000; ++i) {
         powers += "^1";
         sums += "+1";
     }
-    EXPECT_THAT(error(powers), HasSubstr("nested more than 256 deep"));
+    EXPECT_THAT(error(powers), HasSubstr("nest more than 256 deep"));
     EXPECT_THAT(error(sums), HasSubstr("more than 1000 terms"));
 }
 
@@ -202,9 +202,9 @@ TEST(ExpressionLists, wrong_counts_are_errors) {
     EXPECT_THAT(errors("1, 2, 3, 4"), HasSubstr("'scale' takes 1 to 3 numbers, not more"));
     EXPECT_THAT(errors("<1, 2"), HasSubstr("expected '>', found the end of the file"));
     EXPECT_THAT(errors("{"), HasSubstr("expected a number, found '{'"));
-    EXPECT_THAT(errors("[1 2]"), HasSubstr("a vector is written x, y, z or <x, y, z>"));
-    EXPECT_THAT(errors("(1, 2)"), HasSubstr("a vector is written x, y, z or <x, y, z>"));
-    EXPECT_THAT(errors("50%"), HasSubstr("0.5 in place of 50%"));
+    EXPECT_THAT(errors("[1 2]"), HasSubstr("write a vector as x, y, z or <x, y, z>"));
+    EXPECT_THAT(errors("(1, 2)"), HasSubstr("write a vector as x, y, z or <x, y, z>"));
+    EXPECT_THAT(errors("50%"), HasSubstr("0.5 instead of 50%"));
 }
 
 } // namespace

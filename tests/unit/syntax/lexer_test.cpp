@@ -94,7 +94,7 @@ TEST(Lexer, goes_on_after_each_error) {
                               "t.inst:2:3: error: unexpected character '\xC3\xA9'\n"
                               "    c \xC3\xA9 d\n"
                               "      ^\n"
-                              "    hint: names are made of the letters a to z and A to Z, digits and _\n");
+                              "    hint: write names with the letters a to z and A to Z, digits and _\n");
 }
 
 TEST(Lexer, reads_lookalikes_as_what_they_were_meant_as_and_reports_each_once) {
@@ -106,7 +106,7 @@ TEST(Lexer, reads_lookalikes_as_what_they_were_meant_as_and_reports_each_once) {
     EXPECT_EQ(lexed.tokens[6].number, 3);
     EXPECT_EQ(lexed.diagnostics.error_count(), 9u) << lexed.errors();
     EXPECT_THAT(lexed.errors(), HasSubstr("unexpected character U+00A0"));
-    EXPECT_THAT(lexed.errors(), HasSubstr("hint: it is a no-break space; write a blank"));
+    EXPECT_THAT(lexed.errors(), HasSubstr("hint: it is a no-break space; write a space"));
     EXPECT_THAT(Lexed("color: #ff8000").texts(), ElementsAre("color", ":", "#ff8000", "#ff8000", "#ff8000"));
     EXPECT_EQ(Lexed("color: #ff8000").tokens[3].number, 0.216) << "linear";
     EXPECT_THAT(Lexed("color: #ffx\nscale #fff").texts(), ElementsAre("color", ":", "scale")) << "comments";

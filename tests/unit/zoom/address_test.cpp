@@ -50,22 +50,22 @@ TEST(Address, SaysWhatIsWrong) {
         const char* problem;
     };
     const Case cases[] = {
-        {"", "a name expected"},
-        {"a.", "a name expected"},
-        {".a", "a name expected, not '.'"},
-        {"a..b", "a name expected, not '.'"},
+        {"", "expected a name"},
+        {"a.", "expected a name"},
+        {".a", "expected a name, not '.'"},
+        {"a..b", "expected a name, not '.'"},
         {"(a", "')' expected"},
         {"a)", "unexpected ')'"},
-        {"a#0", "a number, 1 or more, expected after '#'"},
-        {"a#x", "a number, 1 or more, expected after '#'"},
-        {"(a)*.b", "nothing can follow what is repeated for ever"},
-        {"((a)*)*3", "only the end of an address can be repeated for ever"},
-        {"\"a", "the quotation has no end"},
+        {"a#0", "expected a number, 1 or more, after '#'"},
+        {"a#x", "expected a number, 1 or more, after '#'"},
+        {"(a)*.b", "no step can follow an endless repetition"},
+        {"((a)*)*3", "only the end of an address can repeat forever"},
+        {"\"a", "the closing quote is missing"},
         {"\"\"", "an empty name"},
         {"a*9999999", "more than 1000000 steps"},
         {"a*99999999999", "more than 1000000 steps"},
         {"((((a)*1000)*1000)*1000)*1000", "more than 1000000 steps"},
-        {std::string(1000, '('), "brackets too deep"},
+        {std::string(1000, '('), "the brackets nest too deep"},
     };
     for (const Case& c : cases) {
         std::string problem;

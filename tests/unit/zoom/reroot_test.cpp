@@ -245,13 +245,13 @@ TEST(Reroot, APointIsAnAddressWhereItRecurs) {
 TEST(Reroot, RefusesWithAReason) {
     const Graph graph = corner_maps(triangle, {});
     EXPECT_EQ(try_zoom(graph, "(up)*", "").error,
-              "an address without an end is a point, and has no frame to look from");
+              "an endless address is a point, and a point has no frame of its own");
     EXPECT_EQ(try_zoom(graph, "up.left", "1e30").error,
               "the address ends after 2 steps, before the zoom does");
     EXPECT_EQ(try_zoom(graph, "(up)*", "2^50", {}, 20u).error,
-              "the address is 21 levels deep, and --steps ends the model after 20");
+              "the address is 21 levels deep, but --steps ends the model after 20");
     EXPECT_EQ(try_zoom(graph, "up.up.up", "", {}, 2u).error,
-              "the address is 3 levels deep, and --steps ends the model after 2");
+              "the address is 3 levels deep, but --steps ends the model after 2");
 
     Graph flat = corner_maps(triangle, {});
     for (Instance& instance : flat.objects[1].instances)

@@ -71,7 +71,7 @@ def sdl_matrix(m):
 
 
 def primitive(graph, instance):
-    """Its text, but for the brace that ends it."""
+    """Its text, except the brace that ends it."""
     look = ''
     if instance.material:
         look = ' texture { pigment { rgb <%s> } finish { F_%s } }' % (

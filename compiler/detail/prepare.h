@@ -9,6 +9,7 @@
 #include "compiler/detail/shell_store.h"
 #include "compiler/detail/symmetry.h"
 #include "compiler/graph/components.h"
+#include "compiler/support/control.h"
 #include "compiler/support/diagnostics.h"
 
 namespace graftal {
@@ -26,7 +27,8 @@ struct PreparedCut {
 
 /// Requires what cut_graph() requires. O(graph).
 PreparedCut prepare_cut(const Graph& graph, const Components& components,
-                        const std::vector<ObjectBounds>& bounds, const PrepareOptions& options);
+                        const std::vector<ObjectBounds>& bounds, const PrepareOptions& options,
+                        const Control& control = no_control());
 
 /// True, after an error, if nothing says how deep the graph is to be unfolded.
 bool refuse_endless(const Graph& graph, const Components& components, const DetailOptions& options,

@@ -90,6 +90,7 @@ class Unfolding {
             stack.pop_back();
             limits.work_seconds -= (1 + more_work_) / WorkRates::leaves;
             more_work_ = 0;
+            if (limits.meter) limits.meter->add();
             if (placed.size() + runs.part_count() > limits.max_placements || limits.work_seconds < 0)
                 return false;
             const std::size_t before = runs.part_count();
@@ -562,6 +563,7 @@ std::optional<Cut> assemble_within(AssemblyLimits& limits, const CutGraph& cut, 
         request.most_visits = static_cast<std::uint64_t>(std::min(limits.work_seconds, 1e6) *
                                                          WorkRates::visits / limits.slowness);
         baked.push_back(bake(cut, symmetry, request, most_triangles));
+        if (limits.meter) limits.meter->add(baked.back().visits);
         triangles += baked.back().triangles;
         limits.work_seconds -=
             limits.slowness * static_cast<double>(baked.back().visits) / WorkRates::visits +

@@ -28,6 +28,17 @@ struct InstTint {
     Span span;
 };
 
+/// `repeat n { ... }` or `n * { ... }`: what is repeated stands n times; in each copy what the block says
+/// comes once more than in the one before, and in the first not at all.
+struct InstRepeat {
+    Expression count;
+    std::vector<TransformLine> transforms;
+    std::vector<InstTint> tints;
+    std::optional<Expression> hue;
+    std::uint32_t size = 0; ///< tokens
+    Span span;
+};
+
 /// `union:`, `instance:`, a bare name, `terminal:` or `scatter:`, and the lines after it, which hold for each
 /// of its masters, the first line applied first.
 struct InstGroup {
@@ -40,7 +51,10 @@ struct InstGroup {
     std::vector<InstTint> tints;
     std::optional<std::string> material;
     Span material_span;
+    std::uint32_t size = 0;           ///< tokens: what evaluating it once costs, its repeats aside
     std::optional<Expression> chance; ///< of each of the masters
+    std::unique_ptr<Expression> hue;  ///< degrees by which all colours of the masters turn
+    std::vector<std::shared_ptr<const InstRepeat>> repeats; ///< around the group, the outermost first
     Span span;
 };
 
@@ -60,6 +74,7 @@ struct InstDefinition {
     std::string name;
     bool rendered = false;
     std::vector<InstParameter> parameters;
+    std::optional<Expression> weight; ///< among the definitions of the same name and parameters
     std::vector<InstGroup> groups;
     std::size_t size = 0; ///< tokens: what enumerating it once costs
     Span span;            ///< of the name with its parameters

@@ -91,8 +91,8 @@ class Evaluator {
         const auto draw = draws_.find(&e);
         if (draw == draws_.end()) {
             diagnostics_.error(e.span,
-                               fmt::format("'{}' draws random numbers, which only the successors of an "
-                                           "L-system's productions have",
+                               fmt::format("'{}' draws random numbers, which only the lines of an object "
+                                           "(.inst) and the successors of productions (.lsys) have",
                                            e.text));
             return std::nullopt;
         }

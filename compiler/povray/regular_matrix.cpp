@@ -3,10 +3,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <utility>
 
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
+
+#include "compiler/support/jacobi.h"
 
 namespace graftal {
 
@@ -30,26 +31,8 @@ struct Axes {
 };
 
 Axes axes_of(Mat3 a) {
-    // One-sided Jacobi: rotate pairs of columns until all are at right angles.
     Mat3 turn(1.0);
-    for (int sweep = 0; sweep < 30; ++sweep) {
-        bool rotated = false;
-        for (const auto& [p, q] : {std::pair{0, 1}, {0, 2}, {1, 2}}) {
-            const double alpha = glm::dot(a[p], a[p]), beta = glm::dot(a[q], a[q]),
-                         gamma = glm::dot(a[p], a[q]);
-            if (gamma == 0 || std::abs(gamma) <= 1e-15 * std::sqrt(alpha * beta)) continue;
-            rotated = true;
-            const double zeta = (beta - alpha) / (2 * gamma);
-            const double t = std::copysign(1.0, zeta) / (std::abs(zeta) + std::hypot(1.0, zeta));
-            const double c = 1 / std::hypot(1.0, t);
-            for (Mat3* m : {&a, &turn}) {
-                const Vec3 column = (*m)[p];
-                (*m)[p] = c * column - c * t * (*m)[q];
-                (*m)[q] = c * t * column + c * (*m)[q];
-            }
-        }
-        if (!rotated) break;
-    }
+    make_columns_orthogonal(a, &turn);
     std::array<int, 3> order = {0, 1, 2};
     std::stable_sort(order.begin(), order.end(),
                      [&](int i, int j) { return glm::length(a[i]) > glm::length(a[j]); });

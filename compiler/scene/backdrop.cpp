@@ -9,6 +9,7 @@
 #include <glm/geometric.hpp>
 
 #include "compiler/graph/run.h"
+#include "compiler/support/counter_random.h"
 
 namespace graftal {
 
@@ -17,34 +18,29 @@ namespace {
 constexpr int path_count = 400;
 constexpr int path_length = 60; // by then half-covering tints leave 1e-18 of what is below
 
-/// Of 0 to n - 1; the same sequence everywhere (splitmix64).
-class Dice {
+/// Whole numbers from 0 to n - 1; the same sequence everywhere.
+class Rolls {
   public:
-    std::size_t roll(std::size_t n) {
-        state_ += 0x9e3779b97f4a7c15u;
-        std::uint64_t z = state_;
-        z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
-        z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
-        return static_cast<std::size_t>((z ^ (z >> 31)) % n);
-    }
+    std::size_t next(std::size_t n) { return static_cast<std::size_t>(random_(++count_) % n); }
 
   private:
-    std::uint64_t state_ = 0;
+    CounterRandom random_{0};
+    std::uint64_t count_ = 0;
 };
 
-Rgb colour_of_path(const Graph& graph, Dice& dice) {
+Rgb colour_of_path(const Graph& graph, Rolls& rolls) {
     PathTint tint;
     Rgb base = Material{}.rgb;
     ObjectId at = graph.root;
     for (int step = 0; step < path_length; ++step) {
         const Object& object = graph.objects[at];
         if (object.run) {
-            const RunItem& item = (*object.run)[dice.roll(object.run->size())];
+            const RunItem& item = (*object.run)[rolls.next(object.run->size())];
             if (const auto material = object.run_materials[item.colour])
                 base = graph.materials[*material].rgb;
         }
         if (object.primitive || object.instances.empty()) break;
-        const Instance& instance = object.instances[dice.roll(object.instances.size())];
+        const Instance& instance = object.instances[rolls.next(object.instances.size())];
         tint = tint * PathTint(instance.tint);
         if (instance.material) base = graph.materials[*instance.material].rgb;
         at = instance.master;
@@ -86,10 +82,10 @@ Shades choose(const std::vector<Rgb>& colours, Shades light, Shades dark) {
 } // namespace
 
 std::vector<Rgb> sample_colours(const Graph& graph) {
-    Dice dice;
+    Rolls rolls;
     std::vector<Rgb> colours;
     for (int i = 0; i < path_count; ++i)
-        colours.push_back(colour_of_path(graph, dice));
+        colours.push_back(colour_of_path(graph, rolls));
     return colours;
 }
 

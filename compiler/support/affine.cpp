@@ -10,6 +10,7 @@
 
 #include "compiler/support/angle.h"
 #include "compiler/support/check.h"
+#include "compiler/support/jacobi.h"
 #include "compiler/support/stretch.h"
 
 namespace graftal {
@@ -39,29 +40,8 @@ Vec3 singular_values(const Mat3& linear) {
     const int exponent = std::ilogb(largest);
     const double half_scale = std::exp2(-exponent / 2), rest_scale = std::exp2(-exponent - -exponent / 2);
 
-    // One-sided Jacobi: rotate pairs of columns until all are orthogonal; their lengths are the answer.
-    constexpr int enough_sweeps = 6;
     Mat3 a = linear * half_scale * rest_scale;
-    for (int sweep = 0; sweep < 30; ++sweep) {
-        bool rotated = false;
-        for (const auto& [p, q] : {std::pair{0, 1}, {0, 2}, {1, 2}}) {
-            const double alpha = glm::dot(a[p], a[p]);
-            const double beta = glm::dot(a[q], a[q]);
-            const double gamma = glm::dot(a[p], a[q]);
-            if (std::abs(gamma) <= 1e-16 * std::sqrt(alpha * beta) || gamma == 0) continue;
-            // What a singular map leaves of a column is rounding noise, and never comes to be at right
-            // angles.
-            if (sweep >= enough_sweeps && std::min(alpha, beta) < 1e-30 * std::max(alpha, beta)) continue;
-            rotated = true;
-            const double zeta = (beta - alpha) / (2 * gamma);
-            const double t = std::copysign(1.0, zeta) / (std::abs(zeta) + std::sqrt(1 + zeta * zeta));
-            const double c = 1 / std::sqrt(1 + t * t);
-            const Vec3 column = a[p];
-            a[p] = c * column - c * t * a[q];
-            a[q] = c * t * column + c * a[q];
-        }
-        if (!rotated) break;
-    }
+    make_columns_orthogonal(a);
     Vec3 lengths(glm::length(a[0]), glm::length(a[1]), glm::length(a[2]));
     if (lengths.x < lengths.y) std::swap(lengths.x, lengths.y);
     if (lengths.y < lengths.z) std::swap(lengths.y, lengths.z);

@@ -10,8 +10,13 @@
 
 namespace graftal {
 
-// PNG files, by libpng; image.h is the interface to use. Each function returns what went wrong, in words,
-// or "".
+// PNG files, by libpng; image.h is the interface to use. Each function returns what went wrong, in words, or
+// "".
+//
+// OpenImageIO could write them too, but to load it costs more than a small picture: `render pound_sign.rifs
+// --engine native
+// --steps 2 --size 64x36 --threads 1` takes 0.035 s of the processor and 9 MiB with a PNG by libpng, and 0.40
+// s and 135 MiB with an EXR by the module of picture files (the median of three).
 
 /// Whether the file begins as a PNG does, whatever its name; nothing, with errno, where it cannot be read.
 std::optional<bool> is_png_file(const std::string& path);

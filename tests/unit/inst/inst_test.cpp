@@ -1,4 +1,3 @@
-#include <ctime>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -316,20 +315,16 @@ TEST(Inst, a_root_that_is_instanced_itself_reads_back) {
               "scale: 1/3 }"));
 }
 
-/// Of the processor: what else the machine does is no fault of ours.
-double seconds_of(const std::string& text, std::string* errors) {
-    const std::clock_t begin = std::clock();
+/// What is said of a model that has faults. Where a limit ends the work the message names that limit; where
+/// texts are long they are so long that time in their square would never end.
+std::string errors_of(const std::string& text) {
     const Model model(text);
     EXPECT_FALSE(model.graph);
-    *errors = model.errors();
-    return static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
+    return model.errors();
 }
 
 TEST(InstHostile, unbounded_recursion_ends_soon_and_names_the_chain) {
-    std::string errors;
-    EXPECT_LT(seconds_of("canonical object f(n) { union: f(n + 1), f(n + 1) }\nobject top { f(0) }", &errors),
-              5);
-    EXPECT_THAT(errors,
+    EXPECT_THAT(errors_of("canonical object f(n) { union: f(n + 1), f(n + 1) }\nobject top { f(0) }"),
                 HasSubstr("m.inst:1:32: error: the model uses object 'f' with more than 100000 different "
                           "arguments: top -> f(0) -> f(1) -> f(2) -> ... -> f(99999) -> f(1e+05)\n"));
 }
@@ -351,33 +346,27 @@ TEST(InstHostile, wide_objects_are_bounded_by_the_number_of_instances) {
     std::string many = "sphere";
     for (int i = 0; i < 999; ++i)
         many += ", sphere";
-    std::string errors;
-    EXPECT_LT(seconds_of("canonical object f(0) { sphere }\ncanonical object f(n) { union: f(n - 1), " +
-                             many + " }\nobject top { f(50000) }",
-                         &errors),
-              10);
-    EXPECT_THAT(errors, HasSubstr("the model has more than 4000000 instances"));
+    EXPECT_THAT(errors_of("canonical object f(0) { sphere }\ncanonical object f(n) { union: f(n - 1), " +
+                          many + " }\nobject top { f(50000) }"),
+                HasSubstr("the model has more than 4000000 instances"));
 }
 
 TEST(InstHostile, long_lines_times_many_objects_are_bounded) {
     std::string lines;
     for (int i = 0; i < 20'000; ++i)
         lines += " rotate: y, n";
-    std::string errors;
-    EXPECT_LT(seconds_of("canonical object f(0) { sphere }\ncanonical object f(n) { instance: f(n - 1)" +
-                             lines + " }\nobject top { f(90000) }",
-                         &errors),
-              20);
-    EXPECT_THAT(errors, HasSubstr("the model takes too much work to list all its objects"));
+    EXPECT_THAT(errors_of("canonical object f(0) { sphere }\ncanonical object f(n) { instance: f(n - 1)" +
+                          lines + " }\nobject top { f(90000) }"),
+                HasSubstr("the model takes too much work to list all its objects"));
 }
 
 TEST(InstHostile, nested_braces_give_one_error) {
-    std::string errors;
-    EXPECT_LT(seconds_of("object x " + std::string(100'000, '{') + std::string(100'000, '}'), &errors), 2);
+    const std::string errors =
+        errors_of("object x " + std::string(1'000'000, '{') + std::string(1'000'000, '}'));
     EXPECT_THAT(errors, HasSubstr("m.inst:1:266: error: brackets nest more than 256 deep"));
     EXPECT_EQ(errors.find("error:"), errors.rfind("error:"));
-    EXPECT_LT(seconds_of("object x { sphere " + std::string(100'000, '('), &errors), 2);
-    EXPECT_THAT(errors, HasSubstr("brackets nest more than 256 deep"));
+    EXPECT_THAT(errors_of("object x { sphere " + std::string(1'000'000, '(')),
+                HasSubstr("brackets nest more than 256 deep"));
 }
 
 TEST(InstHostile, a_chain_of_100000_objects_is_legal) {
@@ -394,13 +383,12 @@ TEST(InstHostile, a_chain_of_100000_objects_is_legal) {
 }
 
 TEST(InstHostile, many_errors_end) {
-    std::string errors, text;
+    std::string text;
     for (int i = 0; i < 100'000; ++i)
         text += "canonical object o" + std::to_string(i) + " { unknown" + std::to_string(i) + " }\n";
-    EXPECT_LT(seconds_of(text, &errors), 5);
-    EXPECT_THAT(errors, HasSubstr("unknown object 'unknown99'"));
-    EXPECT_LT(seconds_of(std::string(1'000'000, '}'), &errors), 5);
-    EXPECT_LT(seconds_of(std::string(1'000'000, '\xFF'), &errors), 5);
+    EXPECT_THAT(errors_of(text), HasSubstr("unknown object 'unknown99'"));
+    for (const char wrong : {'}', '\xFF'})
+        EXPECT_THAT(errors_of(std::string(1'000'000, wrong)), HasSubstr("error: "));
 }
 
 } // namespace

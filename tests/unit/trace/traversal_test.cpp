@@ -1,6 +1,5 @@
 #include "runtime/trace/traversal.h"
 
-#include <chrono>
 #include <cmath>
 #include <limits>
 #include <random>
@@ -190,11 +189,10 @@ TEST(Traversal, GivesUpWhereItWouldNotEnd) {
     const auto model = traced(graph, exact());
     Traversal traversal(*model);
     SurfaceHit hit;
-    const auto start = std::chrono::steady_clock::now();
     EXPECT_TRUE(traversal.closest({{0, 0, 10}, {0, 0, -1}}, {}, hit));
     EXPECT_NEAR(hit.t, 9, 1e-5);
     EXPECT_EQ(traversal.given_up(), 1u);
-    EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(2));
+    EXPECT_LE(traversal.visits(), model->most_visits + model->more_visits() + 64);
 }
 
 TEST(Traversal, TakesPartsThatCoincideForOne) {

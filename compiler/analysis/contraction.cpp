@@ -44,8 +44,8 @@ struct Findings {
     int depth = 1;
 };
 
-/// Effort left for all components together; none may take more than half of it.
-struct Effort {
+/// For all components together; none may take more than half of it.
+struct EffortLeft {
     std::uint64_t edge_visits = 6'000'000;
     std::uint64_t products = 2'000'000;
 };
@@ -82,7 +82,7 @@ MetricChoice by_cycle_mean(const CycleGraph& cycle, Findings& findings) {
 /// Step 2: other metrics. Gives the one with the least rate; the certificate becomes the one that makes the
 /// first bounds small, where one proves anything.
 MetricChoice by_metrics(const CycleGraph& cycle, const MetricChoice& plain, Findings& findings,
-                        Effort& effort) {
+                        EffortLeft& effort) {
     const auto width = [](const MetricChoice& choice) {
         const double rate = std::exp(choice.log_rate);
         return rate <= provable_rate ? choice.condition / (1 - rate) : INFINITY;
@@ -104,7 +104,7 @@ MetricChoice by_metrics(const CycleGraph& cycle, const MetricChoice& plain, Find
 }
 
 /// Step 3: paths. With a proof at hand a little effort, to narrow the interval.
-void by_paths(const CycleGraph& cycle, const MetricChoice& choice, Findings& findings, Effort& effort) {
+void by_paths(const CycleGraph& cycle, const MetricChoice& choice, Findings& findings, EffortLeft& effort) {
     const bool proved = findings.rate <= provable_rate;
     PathSearchLimits limits;
     limits.log_lower = std::log(std::max(findings.lower, 1e-300));
@@ -121,7 +121,7 @@ void by_paths(const CycleGraph& cycle, const MetricChoice& choice, Findings& fin
         take_certificate(findings, choice, found.log_rate, found.depth);
 }
 
-Findings examine(const CycleGraph& cycle, Effort& effort) {
+Findings examine(const CycleGraph& cycle, EffortLeft& effort) {
     Findings findings;
     const MetricChoice plain = by_cycle_mean(cycle, findings);
     const auto settled = [&findings] {
@@ -167,7 +167,7 @@ Contraction decide_contraction(const Graph& graph, const Components& components)
     result.certificate.metric.assign(graph.objects.size(), Mat3(1.0));
     result.certificate.log_weight.assign(graph.objects.size(), 0.0);
     const std::vector<std::uint32_t> places = places_in_components(components);
-    Effort effort;
+    EffortLeft effort;
     for (std::uint32_t c = 0; c < components.members.size(); ++c) {
         if (!components.cyclic[c]) continue;
         const CycleGraph cycle = cycle_graph(graph, components, places, c);

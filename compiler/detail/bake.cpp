@@ -51,7 +51,7 @@ struct PartKey {
 };
 
 /// The leaves of one finish.
-struct Part {
+struct BakedPart {
     std::optional<MaterialId> material;
     bool textured = false;
     PathTint tint;
@@ -114,10 +114,10 @@ class Baker {
                               ? std::launch::deferred
                               : std::launch::async | std::launch::deferred;
         const std::future<void> coloured = std::async(when, [this] { colour_leaves(); });
-        for (Part& part : parts_)
+        for (BakedPart& part : parts_)
             build(part);
         coloured.wait();
-        for (Part& part : parts_)
+        for (BakedPart& part : parts_)
             finish(part);
     }
 
@@ -147,7 +147,7 @@ class Baker {
             if (!seen.insert(static_cast<std::uint32_t>(leaf.kind), mark)) continue;
             const auto [place_of_part, added] = part_of_.emplace(key_of(leaf), parts_.size());
             if (added) add_part(leaf);
-            Part& part = parts_[place_of_part->second];
+            BakedPart& part = parts_[place_of_part->second];
             const TessellatedPrimitive& coarsest = tessellated(leaf.kind, 0);
             part.smooth = part.smooth || part.textured || !coarsest.normals.empty();
             part.leaves.push_back({place, leaf.kind, leaf.normals, leaf.turns});
@@ -224,7 +224,7 @@ class Baker {
         parts_.back().slots.reserve(expected_leaves());
     }
 
-    void build(Part& part) {
+    void build(BakedPart& part) {
         MeshBuilder builder(part.smooth);
         const Affine body_from_representative = inverse(baked_.representative_from_body);
         for (std::uint32_t number = 0; number < part.leaves.size(); ++number) {
@@ -257,7 +257,7 @@ class Baker {
         return true;
     }
 
-    void finish(Part& part) {
+    void finish(BakedPart& part) {
         if (part.mesh.triangles.empty()) return;
         if (part.textured) {
             GRAFTAL_CHECK(request_.painters.size() == 1, "bake: a picture has one painter");
@@ -288,7 +288,7 @@ class Baker {
     std::size_t max_triangles_;
     std::uint64_t widened_ = 0; ///< leaves
     Baked baked_;
-    std::vector<Part> parts_;
+    std::vector<BakedPart> parts_;
     std::map<PartKey, std::size_t> part_of_;
     std::vector<std::uint64_t> numbers_; ///< of the leaves that are kept, in the order of the walk
 };

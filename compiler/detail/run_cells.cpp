@@ -14,8 +14,8 @@ namespace {
 using std::numbers::pi;
 
 /// As of other objects (cut_graph.cpp).
-constexpr std::size_t uncullable_leaves = 16;
-constexpr double thinnest_proxy = 0.02;
+constexpr std::size_t uncullable_leaves_of_run = 16;
+constexpr double thinnest_proxy_of_run = 0.02;
 
 CutEdge edge_to(const RunSource& source, const RunItem& item, PrimitiveKind kind, const Affine& place,
                 double length) {
@@ -46,10 +46,10 @@ double mean_shadow(const RunItem& item) {
     return (2 * pi * middle * glm::length(item.axis) + (item.ball ? 4 : 2) * pi * middle * middle) / 4;
 }
 
-class Builder {
+class RunCellBuilder {
   public:
-    Builder(CutGraph& cut, const std::shared_ptr<const RunSource>& source, const RunBounds& bounds,
-            const std::vector<Material>& materials)
+    RunCellBuilder(CutGraph& cut, const std::shared_ptr<const RunSource>& source, const RunBounds& bounds,
+                   const std::vector<Material>& materials)
         : cut_(cut), source_(source), bounds_(bounds), materials_(materials) {}
 
     void fill(CutNode& node, std::size_t level, std::size_t index) {
@@ -112,7 +112,7 @@ class Builder {
                 mean.open += area;
         }
         node.mean = shadow > 0 ? MeanColour{mean.fixed / shadow, mean.open / shadow} : MeanColour{};
-        node.cullable = leaves > uncullable_leaves;
+        node.cullable = leaves > uncullable_leaves_of_run;
         node.ball = {centre, std::min(reach, 0.5 * glm::length(box.size()))};
         // Parts that lie anyhow in the ellipsoid hide each other: so much of its shadow is left dark (Beer's
         // law).
@@ -135,7 +135,7 @@ class Builder {
 
     static Vec3 half_of(const Box& box) {
         const Vec3 half = 0.5 * box.size();
-        return glm::max(half, Vec3(thinnest_proxy * std::max({half.x, half.y, half.z, 1e-12})));
+        return glm::max(half, Vec3(thinnest_proxy_of_run * std::max({half.x, half.y, half.z, 1e-12})));
     }
 
     CutGraph& cut_;
@@ -164,7 +164,7 @@ std::size_t edge_count(const CutNode& node, bool cut) {
 
 void add_run_nodes(CutGraph& cut, CutNode& node, const std::shared_ptr<const RunSource>& source,
                    const RunBounds& bounds) {
-    Builder(cut, source, bounds, cut.materials).fill(node, bounds.level_count() - 1, 0);
+    RunCellBuilder(cut, source, bounds, cut.materials).fill(node, bounds.level_count() - 1, 0);
 }
 
 } // namespace graftal

@@ -20,7 +20,7 @@ using std::numbers::pi;
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr int torus_parts = 12;
-constexpr int prism_sides = 8;
+constexpr int shadow_prism_sides = 8;
 
 /// The least integer that is not below a number within the range of int; what std::ceil gives, which is a
 /// call of the library.
@@ -48,11 +48,11 @@ struct ConvexPart {
 /// A prism or pyramid in place of what is round about the y axis, as long around: the shadows of slender
 /// ones, which are what there are most of, are as wide.
 ConvexPart round_part(double top) {
-    const double radius = pi / (prism_sides * std::sin(pi / prism_sides));
-    ConvexPart part{{}, prism_sides};
+    const double radius = pi / (shadow_prism_sides * std::sin(pi / shadow_prism_sides));
+    ConvexPart part{{}, shadow_prism_sides};
     for (const Affine& ring : {Affine(), Affine{Mat3(top), Vec3(0, 1, 0)}})
-        for (int i = 0; i < prism_sides; ++i) {
-            const double angle = 2 * pi * i / prism_sides;
+        for (int i = 0; i < shadow_prism_sides; ++i) {
+            const double angle = 2 * pi * i / shadow_prism_sides;
             part.corners.push_back(ring(Vec3(radius * std::cos(angle), 0, radius * std::sin(angle))));
         }
     return part;

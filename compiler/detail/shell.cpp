@@ -21,7 +21,7 @@ constexpr double triangles_a_point = 3;
 /// Of a point's cells and their faces, in moves of a point.
 constexpr std::uint64_t work_of_surface = 10;
 /// Of the work, what points may take: the rest is for their surface, and for a coarser one if need be.
-constexpr double share_of_points = 0.8;
+constexpr double share_of_work_for_points = 0.8;
 /// A surface of too many triangles tells how many more there would be: its cells grow by that, somewhat more,
 /// and no more than this at once.
 constexpr int most_tries = 4;
@@ -302,7 +302,7 @@ void bake_into(Baked& baked, const CutGraph& cut, const ShellRequest& request, s
     std::uint64_t work_left = std::min(limits.work, request.most_work);
     double detail_per_unit = request.detail_per_unit;
     for (int tries = 0; tries < most_tries; ++tries) {
-        limits.work = static_cast<std::uint64_t>(share_of_points * static_cast<double>(work_left));
+        limits.work = static_cast<std::uint64_t>(share_of_work_for_points * static_cast<double>(work_left));
         baked.shell_work += limits.work; // all that it may take, until it is known
         const auto set = store.points(cut, request.node, request.steps, detail_per_unit, limits);
         const std::uint64_t work = set->work + work_of_surface * set->points.size();

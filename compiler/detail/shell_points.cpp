@@ -15,7 +15,7 @@ using CoarseStates = PointSystem::CoarseStates;
 /// Grids that tell inside from outside are coarser than the points'.
 constexpr double first_cells_across = 96, coarse_step = 2.5;
 /// A set this many cells wide is not worth a look inside.
-constexpr double least_cells_across = 48;
+constexpr double least_cells_of_surface = 48;
 /// Of the points allowed, what is aimed at.
 constexpr double share_of_points = 0.45;
 /// What a finer grid takes is not certain: all the work suffices for so many runs, and a first look gets

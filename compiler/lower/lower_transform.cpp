@@ -14,7 +14,7 @@ namespace graftal {
 
 namespace {
 
-using Kind = TransformLine::Kind;
+using LineKind = TransformLine::Kind;
 
 template<std::size_t count>
 std::optional<std::array<double, count>> evaluate_all(const std::vector<Expression>& values,
@@ -159,26 +159,26 @@ std::optional<Affine> lower_transform(const TransformLine& line, const Environme
     if (!n) return std::nullopt;
     std::optional<Affine> map;
     switch (line.kind) {
-    case Kind::scale:
+    case LineKind::scale:
         map = Affine::scale(scale_factors(*n, line.numbers.size()));
         break;
-    case Kind::rotate:
+    case LineKind::rotate:
         map = rotation(line, *n, diagnostics);
         break;
-    case Kind::translate:
+    case LineKind::translate:
         map = Affine::translate({(*n)[0], (*n)[1], (*n)[2]});
         break;
-    case Kind::shear:
+    case LineKind::shear:
         map = shear(line.axes, (*n)[0]);
         break;
-    case Kind::matrix:
-    case Kind::projection:
+    case LineKind::matrix:
+    case LineKind::projection:
         map = from_rows(*n);
         break;
     }
     const std::string_view keyword = transform_keywords[static_cast<std::size_t>(line.kind)];
-    if (!map || !check_map(*map, line.kind == Kind::projection, line.span, fmt::format("this {}", keyword),
-                           diagnostics))
+    if (!map || !check_map(*map, line.kind == LineKind::projection, line.span,
+                           fmt::format("this {}", keyword), diagnostics))
         return std::nullopt;
     return map;
 }
@@ -208,7 +208,7 @@ std::optional<Affine> lower_transforms(const std::vector<TransformLine>& lines,
     for (const TransformLine& line : lines) {
         const std::optional<Affine> map = lower_transform(line, environment, diagnostics);
         good = good && map;
-        projection |= line.kind == Kind::projection;
+        projection |= line.kind == LineKind::projection;
         if (good) product = product ? *map * *product : *map;
     }
     if (!good) return std::nullopt;

@@ -18,22 +18,22 @@ struct Degree {
 constexpr Degree of(double degree) {
     return {false, degree};
 }
-constexpr Degree none{};
+constexpr Degree no_degree{};
 
 /// Of a sum, and of whatever takes sizes of one kind only.
 Degree alike(Degree a, Degree b) {
     if (a.any) return b;
     if (b.any || (a.of && b.of && *a.of == *b.of)) return a;
-    return none;
+    return no_degree;
 }
 
 Degree number_if(Degree a) {
-    return a.any || a.of == 0.0 ? of(0) : none;
+    return a.any || a.of == 0.0 ? of(0) : no_degree;
 }
 
 /// Of comparisons: both sides grow alike, so that the answer stays.
 Degree answer_if(Degree a) {
-    return a.any || a.of ? of(0) : none;
+    return a.any || a.of ? of(0) : no_degree;
 }
 
 /// Where sizes are named; variables by their place.
@@ -53,9 +53,9 @@ Degree degree_of(const Expression& e, const SizeNames& sizes);
 
 Degree power_of(const Expression& base, const Expression& exponent, const SizeNames& sizes) {
     const Degree b = degree_of(base, sizes);
-    if (!number_if(degree_of(exponent, sizes)).of) return none;
+    if (!number_if(degree_of(exponent, sizes)).of) return no_degree;
     if (number_if(b).of) return of(0);
-    if (!b.of || exponent.kind != Expression::Kind::number) return none;
+    if (!b.of || exponent.kind != Expression::Kind::number) return no_degree;
     return of(*b.of * exponent.number);
 }
 
@@ -74,9 +74,9 @@ Degree degree_of_call(const Expression& e, const SizeNames& sizes) {
         e.text == "min" || e.text == "max" || e.text == "mod" || e.text == "normal" || e.text == "random";
     if (mixes && count == 2) return alike(operand(0), operand(1));
     if (e.text == "lerp" && count == 3)
-        return number_if(operand(2)).of ? alike(operand(0), operand(1)) : none;
+        return number_if(operand(2)).of ? alike(operand(0), operand(1)) : no_degree;
     for (std::size_t i = 0; i < count; ++i)
-        if (!number_if(operand(i)).of) return none;
+        if (!number_if(operand(i)).of) return no_degree;
     return of(0);
 }
 
@@ -86,13 +86,13 @@ Degree degree_of_binary(const Expression& e, const SizeNames& sizes) {
     if (e.text == "+" || e.text == "-" || e.text == "%") return alike(a, b);
     if (e.text == "*") {
         if (a.any || b.any) return a.any ? a : b;
-        return a.of && b.of ? of(*a.of + *b.of) : none;
+        return a.of && b.of ? of(*a.of + *b.of) : no_degree;
     }
     if (e.text == "/") {
         if (a.any) return a;
-        return a.of && b.of ? of(*a.of - *b.of) : none;
+        return a.of && b.of ? of(*a.of - *b.of) : no_degree;
     }
-    if (e.text == "&&" || e.text == "||") return answer_if(a).of && answer_if(b).of ? of(0) : none;
+    if (e.text == "&&" || e.text == "||") return answer_if(a).of && answer_if(b).of ? of(0) : no_degree;
     return answer_if(alike(a, b));
 }
 
@@ -109,7 +109,7 @@ Degree degree_of(const Expression& e, const SizeNames& sizes) {
     case Expression::Kind::call:
         return degree_of_call(e, sizes);
     }
-    return none;
+    return no_degree;
 }
 
 /// The sizes that an expression names, as often as it does.

@@ -12,7 +12,7 @@ namespace {
 /// Of the sequences of a seed, those of the steps choose productions; this one interprets.
 constexpr std::uint64_t interpreting = UINT64_MAX - 1;
 /// Interpretations may follow each other so often.
-constexpr std::uint32_t most_repeated = 1000;
+constexpr std::uint32_t most_interpretations = 1000;
 
 } // namespace
 
@@ -130,7 +130,7 @@ bool LsysStream::emit(const Module& module, std::uint32_t repeated) {
         if (!choose(RuleKind::interpret, module, moment, draw, chosen)) return false;
         if (chosen.rule) {
             if (chosen.rule->is_random()) ++interpreted_;
-            if (repeated < most_repeated) {
+            if (repeated < most_interpretations) {
                 push(chosen, module, moment,
                      {.word = options_.steps,
                       .birth = module.birth,

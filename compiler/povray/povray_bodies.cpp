@@ -17,7 +17,7 @@ namespace graftal {
 
 namespace {
 
-constexpr int digits = 9;
+constexpr int body_digits = 9;
 /// Primitives that are smaller than this are written with a matrix: POV-Ray loses small ones without.
 constexpr double least_literal = 1e-3;
 
@@ -59,9 +59,9 @@ bool write_triangle(SdlWriter& out, const Affine& a) {
     // Slivers too: the matrix form keeps them whole.
     if (longest < least_literal || area < least_literal * longest * longest) return false;
     out << "triangle { ";
-    out.vector(top, digits) << ", ";
-    out.vector(left, digits) << ", ";
-    out.vector(right, digits);
+    out.vector(top, body_digits) << ", ";
+    out.vector(left, body_digits) << ", ";
+    out.vector(right, body_digits);
     return true;
 }
 
@@ -73,29 +73,29 @@ bool write_literal(SdlWriter& out, PrimitiveKind kind, const Affine& a) {
     switch (family_of(kind)) {
     case PrimitiveKind::sphere:
         out << "sphere { ";
-        out.vector(a.translation, digits) << ", ";
-        out.number(glm::length(m[0]), digits);
+        out.vector(a.translation, body_digits) << ", ";
+        out.number(glm::length(m[0]), body_digits);
         return true;
     case PrimitiveKind::cube: {
         const Vec3 half = glm::abs(m[0]) + glm::abs(m[1]) + glm::abs(m[2]);
         out << "box { ";
-        out.vector(a.translation - half, digits) << ", ";
-        out.vector(a.translation + half, digits);
+        out.vector(a.translation - half, body_digits) << ", ";
+        out.vector(a.translation + half, body_digits);
         return true;
     }
     case PrimitiveKind::cylinder:
         out << "cylinder { ";
-        out.vector(a.translation, digits) << ", ";
-        out.vector(a.translation + m[1], digits) << ", ";
-        out.number(glm::length(m[0]), digits);
+        out.vector(a.translation, body_digits) << ", ";
+        out.vector(a.translation + m[1], body_digits) << ", ";
+        out.number(glm::length(m[0]), body_digits);
         return true;
     case PrimitiveKind::cone:
     case PrimitiveKind::frustum:
         out << "cone { ";
-        out.vector(a.translation, digits) << ", ";
-        out.number(glm::length(m[0]), digits) << ", ";
-        out.vector(a.translation + m[1], digits) << ", ";
-        out.number(top_radius(kind) * glm::length(m[0]), digits);
+        out.vector(a.translation, body_digits) << ", ";
+        out.number(glm::length(m[0]), body_digits) << ", ";
+        out.vector(a.translation + m[1], body_digits) << ", ";
+        out.number(top_radius(kind) * glm::length(m[0]), body_digits);
         return true;
     case PrimitiveKind::triangle:
     case PrimitiveKind::torus:

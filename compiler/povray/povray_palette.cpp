@@ -10,7 +10,7 @@ namespace graftal {
 
 namespace {
 
-constexpr int colour_digits = 7;
+constexpr int palette_digits = 7;
 constexpr int step_digits = 9;
 constexpr int widest_picture = 4096;
 
@@ -18,7 +18,7 @@ void append_colour(std::string& out, Rgb rgb) {
     out += "rgb <";
     for (int i = 0; i < 3; ++i) {
         if (i > 0) out += ",";
-        append_number(out, rgb[i], colour_digits);
+        append_number(out, rgb[i], palette_digits);
     }
     out += ">";
 }

@@ -13,7 +13,7 @@ namespace graftal {
 
 namespace {
 
-constexpr int digits = 12;
+constexpr int view_digits = 12;
 constexpr double sun_distance = 1e6;
 
 void write_rgb(SdlWriter& out, Rgb rgb) {
@@ -28,20 +28,21 @@ void write_camera(SdlWriter& out, const Camera& camera, ImageSize size, const Po
         camera.orthographic ? width : 0.5 * width / std::tan(camera.angle_deg * std::numbers::pi / 360);
     out << "camera {\n  " << (camera.orthographic ? std::string_view("orthographic") : "perspective")
         << "\n  location ";
-    out.vector(units(camera.location), digits) << "\n  direction ";
-    out.vector(depth * camera.direction, digits) << "\n  right ";
-    out.vector(width * camera.right, digits) << "\n  up ";
-    out.vector(width / aspect * camera.up, digits) << "\n}\n";
+    out.vector(units(camera.location), view_digits) << "\n  direction ";
+    out.vector(depth * camera.direction, view_digits) << "\n  right ";
+    out.vector(width * camera.right, view_digits) << "\n  up ";
+    out.vector(width / aspect * camera.up, view_digits) << "\n}\n";
 }
 
 void write_light(SdlWriter& out, const Light& light, const PovrayUnits& units, Vec3 centre) {
     const Vec3 target = units(centre);
     out << "light_source { ";
-    out.vector(light.sun ? target + sun_distance * light.location : units(light.location), digits) << " ";
+    out.vector(light.sun ? target + sun_distance * light.location : units(light.location), view_digits)
+        << " ";
     write_rgb(out, light.rgb);
     if (light.sun) {
         out << " parallel point_at ";
-        out.vector(target, digits);
+        out.vector(target, view_digits);
     }
     out << (light.shadowless ? std::string_view(" shadowless }\n") : " }\n");
 }
@@ -59,10 +60,10 @@ void write_sky(SdlWriter& out, const Sky& sky) {
     const std::string_view axes[] = {"x*(", "y*(", "z*("};
     for (int i = 0; i < 3; ++i) {
         out << axes[i];
-        out.number(slope * sky.axis[i], digits) << ") + ";
+        out.number(slope * sky.axis[i], view_digits) << ") + ";
     }
     out << "(";
-    out.number(-slope * sky.from, digits) << "))) }\n  color_map { [0 ";
+    out.number(-slope * sky.from, view_digits) << "))) }\n  color_map { [0 ";
     write_rgb(out, sky.horizon);
     out << "] [1 ";
     write_rgb(out, sky.zenith);
@@ -79,7 +80,8 @@ void write_view(SdlWriter& out, const View& view, const PovrayUnits& units, Vec3
     write_sky(out, view.sky);
     if (view.ground) {
         out << "plane { y, ";
-        out.number(units(Vec3(0, view.ground->height, 0)).y, digits) << "\n  " << ground_texture << " }\n";
+        out.number(units(Vec3(0, view.ground->height, 0)).y, view_digits)
+            << "\n  " << ground_texture << " }\n";
     }
 }
 

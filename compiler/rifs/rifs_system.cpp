@@ -19,7 +19,7 @@ namespace {
 
 constexpr double probability_slack = 0.02;
 /// Beyond this a suggestion for a misspelt name would take longer than it is worth.
-constexpr std::size_t most_candidates = 1000;
+constexpr std::size_t most_candidate_materials = 1000;
 
 class SystemBuilder {
   public:
@@ -198,7 +198,7 @@ std::optional<MaterialId> RifsLooks::material(const RifsLook& look) const {
     if (found != ids_.end()) return found->second;
     std::vector<std::string> known;
     for (const Material& material : materials_)
-        if (known.size() < most_candidates) known.push_back(material.name);
+        if (known.size() < most_candidate_materials) known.push_back(material.name);
     const std::string hint = choices(look.material->text, known);
     diagnostics_.error(look.material->span, fmt::format("unknown material '{}'", look.material->text))
         .with_hint(hint.empty()

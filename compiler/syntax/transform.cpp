@@ -12,7 +12,7 @@ namespace graftal {
 
 namespace {
 
-using Kind = TransformLine::Kind;
+using LineKind = TransformLine::Kind;
 
 bool is_axis(char c) {
     return c == 'x' || c == 'y' || c == 'z';
@@ -67,9 +67,9 @@ bool parse_shear(TokenStream& stream, TransformLine& line) {
 }
 
 bool parse_operands(TokenStream& stream, TransformLine& line, std::string_view keyword) {
-    if (line.kind == Kind::rotate) return parse_rotation(stream, line);
-    if (line.kind == Kind::shear) return parse_shear(stream, line);
-    const std::size_t min = line.kind == Kind::scale ? 1 : line.kind == Kind::translate ? 2 : 12;
+    if (line.kind == LineKind::rotate) return parse_rotation(stream, line);
+    if (line.kind == LineKind::shear) return parse_shear(stream, line);
+    const std::size_t min = line.kind == LineKind::scale ? 1 : line.kind == LineKind::translate ? 2 : 12;
     const std::size_t max = std::max<std::size_t>(min, 3);
     const std::string_view hint = min == 12 ? "three rows: m00, m01, m02, tx, and so on" : "";
     std::optional<std::vector<Expression>> numbers =
@@ -90,7 +90,7 @@ std::optional<TransformLine> parse_transform(TokenStream& stream) {
     const Token keyword = stream.next();
     const auto place = std::find(transform_keywords.begin(), transform_keywords.end(), keyword.text);
     TransformLine line;
-    line.kind = static_cast<Kind>(place - transform_keywords.begin());
+    line.kind = static_cast<LineKind>(place - transform_keywords.begin());
     stream.accept(":");
     if (!parse_operands(stream, line, keyword.text)) return std::nullopt;
     line.span = stream.span_from(keyword.span);

@@ -19,10 +19,10 @@ namespace graftal {
 
 namespace {
 
-struct Close {
+struct CloseFile {
     void operator()(std::FILE* file) const { std::fclose(file); }
 };
-using OpenFile = std::unique_ptr<std::FILE, Close>;
+using OpenFile = std::unique_ptr<std::FILE, CloseFile>;
 
 /// The first complaint of libpng; of fixed size, for no destructor would run on the way out of libpng.
 struct Complaint {

@@ -8,17 +8,17 @@ namespace graftal {
 
 namespace {
 
-constexpr float infinity = std::numeric_limits<float>::infinity();
+constexpr float infinite = std::numeric_limits<float>::infinity();
 /// Compares false with all: an empty box would be turned inside out by the signs of a ray.
-constexpr float nowhere = std::numeric_limits<float>::quiet_NaN();
+constexpr float no_box = std::numeric_limits<float>::quiet_NaN();
 constexpr std::size_t width = 8;
 constexpr int bins = 16;
 /// Deeper than this, halves by number take the place of the heuristic.
 constexpr int deepest_by_area = 32;
 
 struct FloatBox {
-    std::array<float, 3> lower{infinity, infinity, infinity};
-    std::array<float, 3> upper{-infinity, -infinity, -infinity};
+    std::array<float, 3> lower{infinite, infinite, infinite};
+    std::array<float, 3> upper{-infinite, -infinite, -infinite};
 
     void include(const std::array<float, 3>& low, const std::array<float, 3>& high) {
         for (std::size_t i = 0; i < 3; ++i) {
@@ -88,14 +88,14 @@ Split best_split(Items items, const FloatBox& middles) {
         for (std::size_t bin = bins - 1; bin > 0; --bin) {
             right.include(box[bin].lower, box[bin].upper);
             right_count += count[bin];
-            right_cost[bin] = right_count > 0 ? right_count * right.half_area() : infinity;
+            right_cost[bin] = right_count > 0 ? right_count * right.half_area() : infinite;
         }
         FloatBox left;
         double left_count = 0;
         for (std::size_t bin = 1; bin < bins; ++bin) {
             left.include(box[bin - 1].lower, box[bin - 1].upper);
             left_count += count[bin - 1];
-            const double cost = left_count > 0 ? left_count * left.half_area() + right_cost[bin] : infinity;
+            const double cost = left_count > 0 ? left_count * left.half_area() + right_cost[bin] : infinite;
             if (cost < best.cost) best = {cost, axis, static_cast<int>(bin)};
         }
     }
@@ -112,7 +112,7 @@ std::size_t split(Items items, int depth, std::size_t grain) {
     }
     if (depth < deepest_by_area) {
         const Split best = best_split(items, middles);
-        if (best.cost < infinity) {
+        if (best.cost < infinite) {
             const Bins bin_of(middles.lower[best.axis], middles.upper[best.axis]);
             const auto part = std::partition(items.begin(), items.end(), [&](const BoxedItem& item) {
                 return bin_of(half_middle(item, best.axis)) < best.bin;
@@ -128,10 +128,10 @@ std::size_t split(Items items, int depth, std::size_t grain) {
     return in_grains(items.size() / 2, items.size(), grain); // in one place, or too deep: any halves will do
 }
 
-class Builder {
+class TreeBuilder {
   public:
     /// `packed`: takes the items, unless it is null.
-    explicit Builder(std::vector<BoxNode>& nodes, std::vector<PackedNode>* packed = nullptr)
+    explicit TreeBuilder(std::vector<BoxNode>& nodes, std::vector<PackedNode>* packed = nullptr)
         : nodes_(nodes), packed_(packed) {}
 
     std::uint32_t build(Items items, int depth) {
@@ -139,7 +139,7 @@ class Builder {
             Items items;
             double area;
         };
-        std::vector<Part> parts = {{items, infinity}};
+        std::vector<Part> parts = {{items, infinite}};
         int levels = 0;
         // Where items are packed, nodes below are full.
         std::size_t grain = packed_ ? width : 1;
@@ -203,7 +203,7 @@ class Builder {
     static float step_between(float lower, float upper) {
         float step = (upper - lower) / last_byte;
         while (lower + last_byte * step < upper)
-            step = std::nextafter(step, infinity);
+            step = std::nextafter(step, infinite);
         return step;
     }
 
@@ -227,8 +227,8 @@ class Builder {
         BoxNode node{};
         for (int axis = 0; axis < 3; ++axis)
             for (std::size_t lane = 0; lane < width; ++lane) {
-                node.side[0][axis][lane] = nowhere;
-                node.side[1][axis][lane] = nowhere;
+                node.side[0][axis][lane] = no_box;
+                node.side[1][axis][lane] = no_box;
             }
         return node;
     }
@@ -245,19 +245,19 @@ BoxedItem::BoxedItem(const Box& box, double extent, std::uint32_t number) : item
     constexpr double slack = 4e-6;
     for (int axis = 0; axis < 3; ++axis) {
         const auto i = static_cast<std::size_t>(axis);
-        lower[i] = std::nextafter(static_cast<float>(box.min[axis] - slack * extent), -infinity);
-        upper[i] = std::nextafter(static_cast<float>(box.max[axis] + slack * extent), infinity);
+        lower[i] = std::nextafter(static_cast<float>(box.min[axis] - slack * extent), -infinite);
+        upper[i] = std::nextafter(static_cast<float>(box.max[axis] + slack * extent), infinite);
     }
 }
 
 std::uint32_t build_box_tree(std::vector<BoxedItem>& items, std::vector<BoxNode>& nodes) {
-    return items.empty() ? no_tree : Builder(nodes).build(items, 0);
+    return items.empty() ? no_tree : TreeBuilder(nodes).build(items, 0);
 }
 
 std::uint32_t build_packed_tree(std::vector<BoxedItem>& items, std::vector<BoxNode>& nodes,
                                 std::vector<PackedNode>& packed) {
     if (items.empty()) return no_tree;
-    Builder builder(nodes, &packed);
+    TreeBuilder builder(nodes, &packed);
     return items.size() <= width ? builder.pack(items) : builder.build(items, 0);
 }
 

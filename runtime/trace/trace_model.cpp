@@ -43,9 +43,10 @@ TraceNode::Kind kind_of(const CutNode& node) {
 constexpr std::size_t most_edges_spelt_out = 200'000;
 
 /// Fills in nodes, edges and boxes of a model.
-class Builder {
+class ModelBuilder {
   public:
-    explicit Builder(TraceModel& model) : model_(model), cut_(model.layers.cut), bounds_(drawn_bounds(cut_)) {
+    explicit ModelBuilder(TraceModel& model)
+        : model_(model), cut_(model.layers.cut), bounds_(drawn_bounds(cut_)) {
         std::size_t edges = 0;
         for (NodeId id = 0; id < cut_.nodes.size(); ++id) {
             model_.graph_from_frame.push_back(graph_from_frame(cut_.nodes[id], bounds_.node[id]));
@@ -348,7 +349,7 @@ TraceModel::TraceModel(std::shared_ptr<const PreparedCut> ready, const View& see
         textures.push_back(material.texture.empty() ? nullptr : load_texture(material.texture, ignored));
         clear_texels = clear_texels || (textures.back() && textures.back()->coverage < 1);
     }
-    Builder(*this).build();
+    ModelBuilder(*this).build();
     terminal_reach = farthest_terminal(*this);
     find_shells(*this);
     add_unrollings(*this);

@@ -18,10 +18,10 @@ using testing::AllOf;
 using testing::HasSubstr;
 using testing::StartsWith;
 
-const std::string pound_sign = "'" + source_path("scenes/hart/pound_sign.rifs") + "' --steps 2 ";
+const std::string two_steps = pound_sign + "--steps 2 ";
 const std::string weed = "'" + source_path("scenes/abop/fig1_24f.lsys") + "' ";
 const std::string tree = "'" + source_path("scenes/hart/ternary_tree.inst") + "' ";
-const std::string small = " --size 48x36 --antialias off ";
+const std::string few_pixels = " --size 48x36 --antialias off ";
 
 /// A cycle that contracts while k < 1.
 const std::string dust = "let k = 0.5\n"
@@ -71,7 +71,7 @@ class Animate : public CommandLine {
 };
 
 TEST_F(Animate, TurntableGoesRoundOnceAndCloses) {
-    const RunResult once = graftal("animate " + pound_sign + small + "--frames 12 -o once/");
+    const RunResult once = graftal("animate " + two_steps + few_pixels + "--frames 12 -o once/");
     ASSERT_EQ(once.status, 0) << once.err;
     EXPECT_THAT(once.err, StartsWith("once/: 12 frames, 25 per second; error at most "));
     EXPECT_EQ(once.out, "");
@@ -80,7 +80,7 @@ TEST_F(Animate, TurntableGoesRoundOnceAndCloses) {
             EXPECT_GT(differing(frame("once", a), frame("once", b)), 50u) << a << " " << b;
 
     // Twice round: the frame after the last of the first turn is the first.
-    ASSERT_EQ(graftal("animate -q " + pound_sign + small + "--frames 4 --turn 720 -o twice").status, 0);
+    ASSERT_EQ(graftal("animate -q " + two_steps + few_pixels + "--frames 4 --turn 720 -o twice").status, 0);
     for (int i = 1; i <= 2; ++i) {
         EXPECT_EQ(differing(frame("twice", i), frame("twice", i + 2)), 0u) << i;
         EXPECT_EQ(differing(frame("twice", i), frame("once", 6 * i - 5)), 0u) << "framed alike";
@@ -91,7 +91,8 @@ TEST_F(Animate, TurntableGoesRoundOnceAndCloses) {
 
 TEST_F(Animate, PlantGrowsInThePicture) {
     ASSERT_EQ(
-        graftal("animate -q " + weed + small + "--steps 1..4 --frames 4 -o growth.png --keep-frames").status,
+        graftal("animate -q " + weed + few_pixels + "--steps 1..4 --frames 4 -o growth.png --keep-frames")
+            .status,
         0);
     EXPECT_EQ(files(), "growth.frames growth.png");
     std::uint64_t covered = 0;
@@ -137,8 +138,9 @@ TEST_F(Animate, PlantsWithAgesGrowWithoutJumps) {
 TEST_F(Animate, ValuesOfModelsAreSwept) {
     write("weed.lsys",
           "let a = 20\nlsys weed {\n  angle a\n  steps 3\n  axiom F\n  F -> FF-[-F+F]+[+F-F]\n}\n");
-    ASSERT_EQ(graftal("animate -q weed.lsys --set a=10..40 --frames 3 -o weed" + small).status, 0);
-    ASSERT_EQ(graftal("animate -q " + tree + "--set levels=1..2:1 --frames 4 -o tree" + small).status, 0);
+    ASSERT_EQ(graftal("animate -q weed.lsys --set a=10..40 --frames 3 -o weed" + few_pixels).status, 0);
+    ASSERT_EQ(graftal("animate -q " + tree + "--set levels=1..2:1 --frames 4 -o tree" + few_pixels).status,
+              0);
     EXPECT_GT(differing(frame("weed", 1), frame("weed", 2)), 10u);
     EXPECT_GT(differing(frame("weed", 2), frame("weed", 3)), 10u);
     for (const int i : {1, 3})
@@ -152,21 +154,21 @@ TEST_F(Animate, SweepsRunTogetherWithTheCamera) {
     const RunResult result =
         graftal("animate -q dust.inst --steps 1..2 --set k=0.2..0.3 --turn 90 --ease smooth "
                 "--camera 'angle=60..30 look_at=0,0,0..1,0,0' --frames 3 -o a" +
-                small);
+                few_pixels);
     ASSERT_EQ(result.status, 0) << result.err;
     EXPECT_GT(differing(frame("a", 1), frame("a", 2)), 10u);
     EXPECT_GT(differing(frame("a", 2), frame("a", 3)), 10u);
     // From A to A, and more frames than whole numbers.
-    ASSERT_EQ(graftal("animate -q dust.inst --steps 2..2 --frames 2 -o b" + small).status, 0);
+    ASSERT_EQ(graftal("animate -q dust.inst --steps 2..2 --frames 2 -o b" + few_pixels).status, 0);
     EXPECT_EQ(differing(frame("b", 1), frame("b", 2)), 0u);
-    ASSERT_EQ(graftal("animate -q dust.inst --steps 1..9 --frames 1 -o c" + small).status, 0);
+    ASSERT_EQ(graftal("animate -q dust.inst --steps 1..9 --frames 1 -o c" + few_pixels).status, 0);
     EXPECT_EQ(files_in("c"), "frame_0001.png\n");
-    const RunResult shorter = graftal("animate dust.inst --steps 2..2 --frames 1 -o b" + small);
+    const RunResult shorter = graftal("animate dust.inst --steps 2..2 --frames 1 -o b" + few_pixels);
     EXPECT_THAT(shorter.err, HasSubstr("graftal: 'b' also holds 1 frame of another animation\n"));
 }
 
 TEST_F(Animate, GifIsTheDefaultAndQuietIsSilent) {
-    const RunResult result = shell("\"$graftal\" animate --quiet --frames 2 " + pound_sign + small);
+    const RunResult result = shell("\"$graftal\" animate --quiet --frames 2 " + two_steps + few_pixels);
     EXPECT_EQ(result.status, 0);
     EXPECT_EQ(result.out + result.err, "");
     EXPECT_EQ(files(), "pound_sign.gif");
@@ -174,9 +176,9 @@ TEST_F(Animate, GifIsTheDefaultAndQuietIsSilent) {
 }
 
 TEST_F(Animate, KilledPovrayIsStatusThreeAndTheNextRunGoesOn) {
-    ASSERT_EQ(graftal("animate -q " + pound_sign + small + "--frames 4 -o whole").status, 0);
+    ASSERT_EQ(graftal("animate -q " + two_steps + few_pixels + "--frames 4 -o whole").status, 0);
     write_povray(3, "kill -9 $$");
-    const std::string command = pound_sign + small + "--frames 4 -o a.png --keep-frames";
+    const std::string command = two_steps + few_pixels + "--frames 4 -o a.png --keep-frames";
     const RunResult killed = with_povray(command);
     EXPECT_EQ(killed.status, 3);
     EXPECT_EQ(killed.err, "graftal: at frame 3 of 4:\n"
@@ -197,14 +199,14 @@ TEST_F(Animate, KilledPovrayIsStatusThreeAndTheNextRunGoesOn) {
 TEST_F(Animate, SignalsStopCleanlyAndTheNextRunGoesOn) {
     for (const auto& [name, number] : {std::pair("INT", SIGINT), {"TERM", SIGTERM}}) {
         write_povray(2, fmt::format("kill -{} $PPID; exec sleep 20", name));
-        const RunResult stopped = with_povray(pound_sign + small + "--frames 2 -o a.gif");
+        const RunResult stopped = with_povray(two_steps + few_pixels + "--frames 2 -o a.gif");
         EXPECT_EQ(stopped.status, 128 + number);
         EXPECT_THAT(stopped.err, AllOf(HasSubstr("graftal: interrupted\n"),
                                        HasSubstr("1 of 2 frames are in 'a.frames'; the "
                                                  "same command goes on from there\n")));
         EXPECT_EQ(files(), "a.frames bin");
         EXPECT_EQ(temporary_files(), "");
-        const RunResult rest = graftal("animate " + pound_sign + small + "--frames 2 -o a.gif");
+        const RunResult rest = graftal("animate " + two_steps + few_pixels + "--frames 2 -o a.gif");
         EXPECT_EQ(rest.status, 0);
         EXPECT_THAT(rest.err, HasSubstr("; 1 were there before; "));
         EXPECT_EQ(files(), "a.gif bin");
@@ -218,7 +220,7 @@ TEST_F(Animate, OnlyFramesOfTheSameMakingCount) {
           "use leaf = \"leaf.inst\"\nobject dust {\n    union: leaf, cube translate: 1, 0, 0\n}\n");
     write_quick_povray();
     const auto redrawn = [&](const std::string& options) {
-        const RunResult result = with_povray("dust.inst --frames 3 -o a" + small + options);
+        const RunResult result = with_povray("dust.inst --frames 3 -o a" + few_pixels + options);
         EXPECT_EQ(result.status, 0) << result.err;
         const std::size_t at = result.err.find(" were there before");
         return at == std::string::npos ? 3 : 3 - (result.err[at - 1] - '0');
@@ -240,17 +242,17 @@ TEST_F(Animate, OnlyFramesOfTheSameMakingCount) {
 
 TEST_F(Animate, FaultOfOneFrameNamesIt) {
     write("dust.inst", dust);
-    const RunResult result = graftal("animate dust.inst --set k=0.2..1.1 --frames 10 -o a" + small);
+    const RunResult result = graftal("animate dust.inst --set k=0.2..1.1 --frames 10 -o a" + few_pixels);
     EXPECT_EQ(result.status, 1);
     EXPECT_THAT(result.err,
                 AllOf(StartsWith("graftal: at frame 9 of 10 (--set k=1):\ndust.inst:3:15: error: "),
                       HasSubstr("does not contract")));
     EXPECT_EQ(files(), "dust.inst") << "found before anything is drawn";
     // Frames of an earlier run stay.
-    ASSERT_EQ(graftal("animate -q dust.inst --set k=0.2..0.3 --frames 2 -o a" + small).status, 0);
-    EXPECT_EQ(graftal("animate dust.inst --set k=0.2..1.1 --frames 2 -o a" + small).status, 1);
+    ASSERT_EQ(graftal("animate -q dust.inst --set k=0.2..0.3 --frames 2 -o a" + few_pixels).status, 0);
+    EXPECT_EQ(graftal("animate dust.inst --set k=0.2..1.1 --frames 2 -o a" + few_pixels).status, 1);
     EXPECT_EQ(files_in("a"), "frame_0001.png frame_0002.png\n");
-    EXPECT_EQ(graftal("animate dust.inst --set nothing=1..2 --frames 2" + small).status, 1);
+    EXPECT_EQ(graftal("animate dust.inst --set nothing=1..2 --frames 2" + few_pixels).status, 1);
 }
 
 TEST_F(Animate, EnvironmentIsStatusThree) {
@@ -259,7 +261,7 @@ TEST_F(Animate, EnvironmentIsStatusThree) {
     std::filesystem::create_directory(path("c.gif"));
     const std::string before = files();
     for (const std::string output : {"taken", "taken/", "taken/a.gif", "no/such/a.gif", "b.gif", "c.gif"}) {
-        const RunResult result = graftal("animate " + pound_sign + small + "--frames 2 -o " + output);
+        const RunResult result = graftal("animate " + two_steps + few_pixels + "--frames 2 -o " + output);
         EXPECT_EQ(result.status, 3) << output;
         EXPECT_THAT(result.err, AllOf(StartsWith("graftal: cannot "), HasSubstr(output.substr(0, 1))))
             << output;
@@ -267,7 +269,7 @@ TEST_F(Animate, EnvironmentIsStatusThree) {
     }
     EXPECT_EQ(read("taken") + read("b.frames"), "minemine");
     EXPECT_EQ(graftal("animate none.inst").status, 3);
-    EXPECT_EQ(shell("PATH=/nowhere \"$graftal\" animate " + pound_sign + "-o a.gif").status, 3);
+    EXPECT_EQ(shell("PATH=/nowhere \"$graftal\" animate " + two_steps + "-o a.gif").status, 3);
     EXPECT_EQ(files(), before);
 }
 
@@ -275,7 +277,7 @@ TEST_F(Animate, VideosAreMadeByTheProgramFfmpeg) {
     std::filesystem::create_directory(path("bin"));
     ASSERT_EQ(shell("ln -s $(command -v povray) bin/povray").status, 0);
     const std::string run =
-        "PATH=\"$PWD/bin\" \"$graftal\" animate " + pound_sign + small + "--frames 2 -o a.mp4";
+        "PATH=\"$PWD/bin\" \"$graftal\" animate " + two_steps + few_pixels + "--frames 2 -o a.mp4";
     const RunResult missing = shell(run);
     EXPECT_EQ(missing.status, 3);
     EXPECT_EQ(missing.err,
@@ -298,13 +300,15 @@ TEST_F(Animate, VideosAreMadeByTheProgramFfmpeg) {
 
 TEST_F(Animate, VideosPlay) {
     for (const std::string name : {"a.mp4", "b%d.webm"}) {
-        ASSERT_EQ(graftal("animate -q " + pound_sign + small + "--frames 2 --fps 12.5 -o " + name).status, 0);
+        ASSERT_EQ(graftal("animate -q " + two_steps + few_pixels + "--frames 2 --fps 12.5 -o " + name).status,
+                  0);
         const RunResult probe = shell(
             "ffprobe -v error -count_frames -show_entries stream=r_frame_rate,nb_read_frames,width " + name);
         EXPECT_THAT(probe.out, AllOf(HasSubstr("width=48\n"), HasSubstr("r_frame_rate=25/2\n"),
                                      HasSubstr("nb_read_frames=2\n")));
     }
-    ASSERT_EQ(graftal("animate -q " + pound_sign + small + "--frames 2 -o c.png --keep-frames").status, 0);
+    ASSERT_EQ(graftal("animate -q " + two_steps + few_pixels + "--frames 2 -o c.png --keep-frames").status,
+              0);
     ASSERT_EQ(shell("ffmpeg -v error -i c.png -vsync passthrough c_%d.png").status, 0);
     for (int i = 1; i <= 2; ++i)
         EXPECT_EQ(differing(picture(fmt::format("c_{}.png", i)), frame("c.frames", i)), 0u) << i;
@@ -321,7 +325,7 @@ TEST_F(Animate, CommandsOfThePageWork) {
     for (std::size_t at = page.find(mark); at != std::string::npos; at = page.find(mark, at + 1), ++count) {
         const std::size_t begin = at + mark.size();
         const std::string words = page.substr(begin, page.find('\n', begin) - begin);
-        const RunResult result = with_povray("-q " + words + " --frames 2" + small + "--error 4");
+        const RunResult result = with_povray("-q " + words + " --frames 2" + few_pixels + "--error 4");
         EXPECT_EQ(result.status, 0) << words << "\n" << result.err;
     }
     EXPECT_GE(count, 8);

@@ -46,4 +46,9 @@ class CommandLine : public testing::Test {
 /// A path in the project.
 std::string source_path(const std::string& name);
 
+/// Models, as words of a shell with a blank behind them, and a size for pictures of them.
+inline const std::string gasket = "'" + source_path("scenes/hart/sierpinski.inst") + "' ";
+inline const std::string pound_sign = "'" + source_path("scenes/hart/pound_sign.rifs") + "' ";
+inline const std::string small = " --size 96x54 ";
+
 } // namespace graftal

@@ -12,8 +12,6 @@ using testing::HasSubstr;
 using testing::Not;
 using testing::StartsWith;
 
-const std::string gasket = "'" + source_path("scenes/hart/sierpinski.inst") + "'";
-const std::string pound_sign = "'" + source_path("scenes/hart/pound_sign.rifs") + "'";
 const std::string bad_model = "object top {\n    union: nowhere\n}\n";
 
 TEST_F(CommandLine, UsageErrorsAreStatusTwoAndPointAtTheHelp) {

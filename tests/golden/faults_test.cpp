@@ -47,11 +47,11 @@ class Faults : public CommandLine {
     }
 };
 
-const std::string small = " m.rifs -q --size 16x12 ";
+const std::string m_of_few_pixels = " m.rifs -q --size 16x12 ";
 
 TEST_F(Faults, NoMemoryIsSaidWithoutTakingAny) {
-    for (const std::string& command :
-         {std::string("check m.rifs"), "compile" + small + "-o a.pov", "points" + small + "-o a.png"})
+    for (const std::string& command : {std::string("check m.rifs"), "compile" + m_of_few_pixels + "-o a.pov",
+                                       "points" + m_of_few_pixels + "-o a.png"})
         for (const int number : {1, 10, 100, 1000, 3000, 5000}) {
             const RunResult result = with("alloc:" + std::to_string(number) + ":stay", command);
             EXPECT_THAT(result.status, AnyOf(Eq(1), Eq(3))) << command << number << result.err;
@@ -165,7 +165,7 @@ TEST_F(Faults, CoarserFramesAreSaid) {
 TEST_F(Faults, ATemporaryThatCannotBeLookedAtIsNotLeft) {
     for (int number = 1; number <= 20; ++number) {
         const RunResult result =
-            with("stat:" + std::to_string(number) + ":stay", "compile" + small + "-o a.pov");
+            with("stat:" + std::to_string(number) + ":stay", "compile" + m_of_few_pixels + "-o a.pov");
         EXPECT_THAT(result.status, AnyOf(Eq(0), Eq(1), Eq(3))) << number;
         EXPECT_EQ(result.status == 0, result.err.empty()) << number << result.err;
         EXPECT_EQ(shell("rm -f a.pov; ls -A").out, "m.rifs\n") << number;
@@ -179,14 +179,14 @@ TEST_F(Faults, ScratchGoesWhereNothingCanBeOpened) {
             const int at = kind == "alloc" ? 6000 + 60 * number : number;
             shell("rm -f a.png");
             const RunResult result =
-                with(kind + ":" + std::to_string(at) + ":stay", "render" + small + "-o a.png");
+                with(kind + ":" + std::to_string(at) + ":stay", "render" + m_of_few_pixels + "-o a.png");
             EXPECT_THAT(result.status, AnyOf(Eq(0), Eq(1), Eq(3))) << kind << at << result.err;
             EXPECT_EQ(temporary_files(), "") << kind << at << result.err;
         }
 }
 
 TEST_F(Faults, ATemporaryFileThatCannotBeReadAgainIsSaid) {
-    const RunResult result = with("seek:1:stay", "compile" + small + "-o -");
+    const RunResult result = with("seek:1:stay", "compile" + m_of_few_pixels + "-o -");
     EXPECT_EQ(result.status, 3);
     EXPECT_THAT(result.err, HasSubstr("graftal: cannot write 'a temporary file': Input/output error"));
 }

@@ -17,10 +17,7 @@ using testing::HasSubstr;
 using testing::MatchesRegex;
 using testing::StartsWith;
 
-const std::string gasket = "'" + source_path("scenes/hart/sierpinski.inst") + "' ";
-const std::string pound_sign = "'" + source_path("scenes/hart/pound_sign.rifs") + "' ";
 const std::string elm = "'" + source_path("scenes/hart/elm.inst") + "' --steps 4 ";
-const std::string small = " --size 96x54 ";
 
 class Native : public CommandLine {
   protected:

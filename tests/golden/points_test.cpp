@@ -11,7 +11,7 @@ using testing::StartsWith;
 
 const std::string fern = "'" + source_path("scenes/ifs/fern.rifs") + "'";
 const std::string flower = "'" + source_path("scenes/orbits/gumowski_mira.rifs") + "'";
-const std::string small = " --size 80x60 --points 20000 ";
+const std::string few_points = " --size 80x60 --points 20000 ";
 
 TEST_F(CommandLine, PointsUsage) {
     const struct {
@@ -40,17 +40,17 @@ TEST_F(CommandLine, PointsUsage) {
 }
 
 TEST_F(CommandLine, PointsMakePicturesAndClouds) {
-    const RunResult result = graftal("points " + fern + small);
+    const RunResult result = graftal("points " + fern + few_points);
     EXPECT_EQ(result.status, 0) << result.err;
     EXPECT_THAT(result.err, StartsWith("fern.png: 20000 points, in "));
     EXPECT_EQ(picture("fern.png").width, 80);
-    EXPECT_EQ(graftal("points " + fern + small + "-q --transparent -o a.exr").err, "");
+    EXPECT_EQ(graftal("points " + fern + few_points + "-q --transparent -o a.exr").err, "");
     EXPECT_EQ(picture("a.exr").channels, 4);
-    EXPECT_EQ(graftal("points " + flower + small + "--color density -o b.png").status, 0);
+    EXPECT_EQ(graftal("points " + flower + few_points + "--color density -o b.png").status, 0);
     EXPECT_EQ(graftal("points " + fern + " --points 1000 -o c.ply").status, 0);
     EXPECT_THAT(read("c.ply"), StartsWith("ply\nformat binary_little_endian 1.0\ncomment graftal "));
-    EXPECT_EQ(graftal("points - -o d.png" + small + "< " + fern).status, 0);
-    EXPECT_EQ(graftal("points - -o e.png" + small + "< " + flower).status, 0);
+    EXPECT_EQ(graftal("points - -o d.png" + few_points + "< " + fern).status, 0);
+    EXPECT_EQ(graftal("points - -o e.png" + few_points + "< " + flower).status, 0);
     EXPECT_EQ(files(), "a.exr b.png c.ply d.png e.png fern.png");
 }
 
@@ -59,11 +59,11 @@ TEST_F(CommandLine, PointsThatFailLeaveNothing) {
     EXPECT_EQ(result.status, 3);
     EXPECT_THAT(result.err,
                 HasSubstr("no room for 'a.ply': 1000000000000000 points take 13.3 PiB, but only "));
-    result = graftal("points " + fern + small + "-o nowhere/a.png");
+    result = graftal("points " + fern + few_points + "-o nowhere/a.png");
     EXPECT_EQ(result.status, 3);
     EXPECT_THAT(result.err, HasSubstr("cannot write 'nowhere/a.png'"));
     write("o.rifs", "orbit o { x = x + 1\n  y = z }\n");
-    EXPECT_EQ(graftal("points o.rifs" + small).status, 0);
+    EXPECT_EQ(graftal("points o.rifs" + few_points).status, 0);
     write("o.rifs", "orbit o { x = 3*x + 1\n  y = 0 }\n");
     result = graftal("points o.rifs -o b.png");
     EXPECT_EQ(result.status, 1);

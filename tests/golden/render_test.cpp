@@ -20,10 +20,6 @@ namespace {
 
 using testing::HasSubstr;
 
-const std::string gasket = "'" + source_path("scenes/hart/sierpinski.inst") + "'";
-const std::string pound_sign = "'" + source_path("scenes/hart/pound_sign.rifs") + "'";
-const std::string small = " --size 96x54 ";
-
 class Render : public CommandLine {};
 
 TEST_F(Render, MakesAPictureNamedAfterTheModelHere) {

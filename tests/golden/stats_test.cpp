@@ -17,8 +17,6 @@ class Stats : public CommandLine {
     }
 };
 
-const std::string pound_sign = "'" + source_path("scenes/hart/pound_sign.rifs") + "'";
-
 TEST_F(Stats, HaveTheirDocumentedKeys) {
     const Json json = stats(pound_sign);
     for (const char* key : {"model", "language", "objects", "instances", "steps", "leaves", "contraction",

@@ -14,8 +14,6 @@ namespace {
 
 using ::testing::HasSubstr;
 
-const std::string gasket = "'" + source_path("scenes/hart/sierpinski.inst") + "' ";
-
 class Zoom : public CommandLine {};
 
 TEST_F(Zoom, CommandsOfThePageWork) {

@@ -18,8 +18,8 @@ constexpr ImageSize size = {128, 96};
 /// By seed, so that all levels get their turn.
 constexpr double thresholds[] = {40, 200, 1000, std::numeric_limits<double>::infinity()};
 
-void expect_agreement_at_random(const std::string& name, std::string (*text_of)(std::uint64_t),
-                                unsigned steps) {
+void expect_the_flattened_to_agree(const std::string& name, std::string (*text_of)(std::uint64_t),
+                                   unsigned steps) {
     double widest = 0, largest = 0;
     for (std::uint64_t seed = 1; seed <= models; ++seed) {
         const std::string text = text_of(seed);
@@ -42,11 +42,11 @@ void expect_agreement_at_random(const std::string& name, std::string (*text_of)(
 }
 
 TEST(FlattenRandom, Rifs) {
-    expect_agreement_at_random("random.rifs", random_rifs, 4);
+    expect_the_flattened_to_agree("random.rifs", random_rifs, 4);
 }
 
 TEST(FlattenRandom, Inst) {
-    expect_agreement_at_random("random.inst", random_inst, 5);
+    expect_the_flattened_to_agree("random.inst", random_inst, 5);
 }
 
 } // namespace

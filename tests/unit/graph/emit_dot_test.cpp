@@ -9,7 +9,7 @@ namespace {
 using testing::HasSubstr;
 using testing::Not;
 
-Instance instance_of(ObjectId master) {
+Instance edge_to(ObjectId master) {
     Instance instance;
     instance.master = master;
     return instance;
@@ -24,10 +24,10 @@ TEST(EmitDot, NodesEdgesAndClusters) {
     b.name = "b(2, 0.5)";
     graph.root = graph.add(root);
     const ObjectId a_id = graph.add(a), b_id = graph.add(b);
-    graph.objects[graph.root].instances = {instance_of(a_id), instance_of(sphere), instance_of(a_id)};
-    graph.objects[a_id].instances = {instance_of(b_id)};
-    graph.objects[b_id].instances = {instance_of(a_id), instance_of(a_id), instance_of(a_id)};
-    graph.objects[b_id].terminal = instance_of(sphere);
+    graph.objects[graph.root].instances = {edge_to(a_id), edge_to(sphere), edge_to(a_id)};
+    graph.objects[a_id].instances = {edge_to(b_id)};
+    graph.objects[b_id].instances = {edge_to(a_id), edge_to(a_id), edge_to(a_id)};
+    graph.objects[b_id].terminal = edge_to(sphere);
     EXPECT_EQ(emit_dot(graph, strong_components(graph)), "digraph graftal {\n"
                                                          "  rankdir=TB;\n"
                                                          "  node [fontname=\"Helvetica\", shape=ellipse];\n"
@@ -51,7 +51,7 @@ TEST(EmitDot, NamesCannotBecomeDot) {
     Graph graph;
     Object evil;
     evil.name = "x\"];\nevil [label=\"\\";
-    evil.instances = {instance_of(0)};
+    evil.instances = {edge_to(0)};
     graph.add(evil);
     const std::string text = emit_dot(graph, strong_components(graph));
     EXPECT_THAT(text, HasSubstr("[label=\"x\\\"];?evil [label=\\\"\\\\\", peripheries=2];\n"));
@@ -61,7 +61,7 @@ TEST(EmitDot, ASelfInstanceIsACluster) {
     Graph graph;
     Object loop;
     loop.name = "loop";
-    loop.instances = {instance_of(0)};
+    loop.instances = {edge_to(0)};
     graph.add(loop);
     EXPECT_THAT(emit_dot(graph, strong_components(graph)), HasSubstr("subgraph cluster_0 {"));
     graph.objects[0].instances[0].master = graph.primitive(PrimitiveKind::cube);

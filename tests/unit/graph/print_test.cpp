@@ -5,7 +5,7 @@
 namespace graftal {
 namespace {
 
-Instance instance_of(ObjectId master, const Affine& parent_from_child = {}) {
+Instance placed(ObjectId master, const Affine& parent_from_child = {}) {
     Instance instance;
     instance.master = master;
     instance.parent_from_child = parent_from_child;
@@ -24,11 +24,11 @@ TEST(Print, ObjectsInOrderInstancesGroupedAsHartWritesThem) {
     const ObjectId triangle = graph.primitive(PrimitiveKind::triangle);
     const ObjectId gasket = add_union(graph, "gasket", {});
     const Affine half = Affine::scale(Vec3(0.5));
-    const ObjectId up = add_union(graph, "up", {instance_of(gasket, Affine::translate({0, 0.5, 0}) * half)});
-    const ObjectId tip = add_union(graph, "tip(3, -0.5)", {instance_of(triangle)});
-    graph.objects[gasket].instances = {instance_of(up), instance_of(up), instance_of(tip, half),
-                                       instance_of(triangle, half), instance_of(up)};
-    graph.objects[gasket].terminal = instance_of(tip);
+    const ObjectId up = add_union(graph, "up", {placed(gasket, Affine::translate({0, 0.5, 0}) * half)});
+    const ObjectId tip = add_union(graph, "tip(3, -0.5)", {placed(triangle)});
+    graph.objects[gasket].instances = {placed(up), placed(up), placed(tip, half), placed(triangle, half),
+                                       placed(up)};
+    graph.objects[gasket].terminal = placed(tip);
     graph.objects[gasket].terminal_px = 7.5;
     graph.root = gasket;
     EXPECT_EQ(print(graph), "object gasket {\n"
@@ -55,8 +55,8 @@ TEST(Print, MatricesGoRowByRowAndFlatOnesAreProjections) {
     a.linear = Mat3(11, 21, 31, 12, 22, 32, 13, 23, 34); // m[column][row]
     a.translation = {14, 24, 0.1};
     graph.root = add_union(graph, "a",
-                           {instance_of(cube, a), instance_of(cube, Affine::scale({1, 1, 0})),
-                            instance_of(cube, Affine::scale(Vec3(-0.0, -0.0, 1e-200)))});
+                           {placed(cube, a), placed(cube, Affine::scale({1, 1, 0})),
+                            placed(cube, Affine::scale(Vec3(-0.0, -0.0, 1e-200)))});
     EXPECT_EQ(print(graph), "object a {\n"
                             "  instance: cube\n"
                             "    matrix: 11, 12, 13, 14, 21, 22, 23, 24, 31, 32, 34, 0.1\n"
@@ -70,7 +70,7 @@ TEST(Print, MatricesGoRowByRowAndFlatOnesAreProjections) {
 TEST(Print, ChancesThatAreStated) {
     Graph graph;
     const ObjectId cone = graph.primitive(PrimitiveKind::cone);
-    Instance rare = instance_of(cone), never = rare, often = rare;
+    Instance rare = placed(cone), never = rare, often = rare;
     rare.chance = 0.1;
     often.chance = 2;
     graph.root = add_union(graph, "a", {rare, rare, never, often});
@@ -92,7 +92,7 @@ TEST(Print, TintsAndMaterials) {
     graph.materials.push_back({});
     graph.materials[0].name = "bark";
     const ObjectId cone = graph.primitive(PrimitiveKind::cone);
-    Instance plain = instance_of(cone), clear = plain, brown = plain;
+    Instance plain = placed(cone), clear = plain, brown = plain;
     clear.tint = {{1, 0, 0}, 0}; // draws nothing, but is not the default
     brown.tint = {{0.5, 0.25, 0}, 0.9};
     brown.material = 0;
@@ -121,7 +121,7 @@ TEST(Print, TintsAndMaterials) {
 
 TEST(Print, SceneStatements) {
     Graph graph;
-    graph.root = add_union(graph, "a", {instance_of(graph.primitive(PrimitiveKind::sphere))});
+    graph.root = add_union(graph, "a", {placed(graph.primitive(PrimitiveKind::sphere))});
     SceneSettings& settings = graph.settings;
     settings.camera = CameraSetting{Vec3(0, 1, -5), Vec3(0.0), Vec3(0, 0, 1), 40.5, true, 3};
     settings.lights = {{Vec3(1, 2, 3), false, Rgb(1.0), true}, {Vec3(0, 1, 0), true, Rgb(0.5, 0, 0), false}};
@@ -167,9 +167,8 @@ TEST(Equal, SeesEveryDifferenceThatCounts) {
     graph.materials.push_back({});
     graph.materials[0].name = "m";
     const ObjectId sphere = graph.primitive(PrimitiveKind::sphere);
-    const ObjectId b =
-        add_union(graph, "b", {instance_of(sphere), instance_of(sphere, Affine::scale(Vec3(2.0)))});
-    graph.root = add_union(graph, "a", {instance_of(b)});
+    const ObjectId b = add_union(graph, "b", {placed(sphere), placed(sphere, Affine::scale(Vec3(2.0)))});
+    graph.root = add_union(graph, "a", {placed(b)});
     EXPECT_TRUE(equal(graph, graph));
 
     Graph spans = graph;
@@ -192,7 +191,7 @@ TEST(Equal, SeesEveryDifferenceThatCounts) {
         differs([&](Graph& g) { g.objects[b].instances[0].parent_from_child.linear[0][0] = 1 + 2.3e-16; }));
     EXPECT_TRUE(differs([&](Graph& g) { g.objects[b].instances[0].tint.rgb.r = 1; }));
     EXPECT_TRUE(differs([&](Graph& g) { g.objects[b].instances[0].material = 0; }));
-    EXPECT_TRUE(differs([&](Graph& g) { g.objects[b].terminal = instance_of(sphere); }));
+    EXPECT_TRUE(differs([&](Graph& g) { g.objects[b].terminal = placed(sphere); }));
     EXPECT_TRUE(differs([&](Graph& g) { g.objects[b].terminal_px = 3; }));
     EXPECT_TRUE(differs([&](Graph& g) { g.materials[0].roughness = 1; }));
     EXPECT_TRUE(differs([&](Graph& g) { g.settings.steps = 3; }));

@@ -13,7 +13,7 @@ namespace {
 
 using testing::HasSubstr;
 
-Instance instance_of(ObjectId master) {
+Instance halved(ObjectId master) {
     Instance instance;
     instance.master = master;
     instance.parent_from_child = Affine::scale(Vec3(0.5));
@@ -32,9 +32,9 @@ class Verify : public testing::Test {
         root = graph_.add(root_object);
         loop = graph_.add(loop_object);
         sphere = graph_.primitive(PrimitiveKind::sphere);
-        graph_.objects[root].instances = {instance_of(loop)};
-        graph_.objects[loop].instances = {instance_of(loop), instance_of(sphere)};
-        graph_.objects[loop].terminal = instance_of(sphere);
+        graph_.objects[root].instances = {halved(loop)};
+        graph_.objects[loop].instances = {halved(loop), halved(sphere)};
+        graph_.objects[loop].terminal = halved(sphere);
         graph_.objects[loop].instances[0].material = 0;
         graph_.objects[loop].instances[0].tint = {{0, 1, 0.5}, 1};
         graph_.root = root;
@@ -78,10 +78,10 @@ TEST_F(Verify, MastersAndMaterialsExist) {
 }
 
 TEST_F(Verify, PrimitivesAreBareAndUnionsAreNot) {
-    graph_.objects[sphere].instances = {instance_of(root)};
+    graph_.objects[sphere].instances = {halved(root)};
     expect_flaw(sphere, "a primitive with instances");
     graph_.objects[sphere].instances.clear();
-    graph_.objects[sphere].terminal = instance_of(sphere);
+    graph_.objects[sphere].terminal = halved(sphere);
     expect_flaw(sphere, "a primitive with a terminal");
     graph_.objects[sphere].terminal.reset();
     graph_.objects[sphere].terminal_px = 3;
@@ -138,9 +138,9 @@ TEST_F(Verify, TintsLieInTheUnitInterval) {
 }
 
 TEST_F(Verify, TerminalsEnd) {
-    graph_.objects[root].terminal = instance_of(loop);
+    graph_.objects[root].terminal = halved(loop);
     expect_flaw(root, "the terminal 'loop(3, -0.5)' is unending");
-    graph_.objects[root].terminal = instance_of(sphere);
+    graph_.objects[root].terminal = halved(sphere);
     EXPECT_TRUE(verify(graph_).empty());
 }
 
@@ -148,14 +148,14 @@ TEST_F(Verify, PlanesStayOutOfCycles) {
     const ObjectId plane = graph_.primitive(PrimitiveKind::plane);
     Object floor_object;
     floor_object.name = "floor";
-    floor_object.instances = {instance_of(plane)};
+    floor_object.instances = {halved(plane)};
     const ObjectId floor = graph_.add(floor_object);
-    graph_.objects[root].instances.push_back(instance_of(floor));
+    graph_.objects[root].instances.push_back(halved(floor));
     EXPECT_TRUE(verify(graph_).empty()) << "beside a cycle";
     graph_.objects[loop].terminal->master = floor;
     expect_flaw(loop, "a plane is reached through a cycle");
     graph_.objects[loop].terminal.reset();
-    graph_.objects[loop].instances.push_back(instance_of(floor));
+    graph_.objects[loop].instances.push_back(halved(floor));
     expect_flaw(loop, "a plane is reached through a cycle");
 }
 

@@ -317,14 +317,14 @@ TEST(Inst, a_root_that_is_instanced_itself_reads_back) {
 
 /// What is said of a model that has faults. Where a limit ends the work the message names that limit; where
 /// texts are long they are so long that time in their square would never end.
-std::string errors_of(const std::string& text) {
+std::string what_is_said_of(const std::string& text) {
     const Model model(text);
     EXPECT_FALSE(model.graph);
     return model.errors();
 }
 
 TEST(InstHostile, unbounded_recursion_ends_soon_and_names_the_chain) {
-    EXPECT_THAT(errors_of("canonical object f(n) { union: f(n + 1), f(n + 1) }\nobject top { f(0) }"),
+    EXPECT_THAT(what_is_said_of("canonical object f(n) { union: f(n + 1), f(n + 1) }\nobject top { f(0) }"),
                 HasSubstr("m.inst:1:32: error: the model uses object 'f' with more than 100000 different "
                           "arguments: top -> f(0) -> f(1) -> f(2) -> ... -> f(99999) -> f(1e+05)\n"));
 }
@@ -346,26 +346,28 @@ TEST(InstHostile, wide_objects_are_bounded_by_the_number_of_instances) {
     std::string many = "sphere";
     for (int i = 0; i < 999; ++i)
         many += ", sphere";
-    EXPECT_THAT(errors_of("canonical object f(0) { sphere }\ncanonical object f(n) { union: f(n - 1), " +
-                          many + " }\nobject top { f(50000) }"),
-                HasSubstr("the model has more than 4000000 instances"));
+    EXPECT_THAT(
+        what_is_said_of("canonical object f(0) { sphere }\ncanonical object f(n) { union: f(n - 1), " + many +
+                        " }\nobject top { f(50000) }"),
+        HasSubstr("the model has more than 4000000 instances"));
 }
 
 TEST(InstHostile, long_lines_times_many_objects_are_bounded) {
     std::string lines;
     for (int i = 0; i < 20'000; ++i)
         lines += " rotate: y, n";
-    EXPECT_THAT(errors_of("canonical object f(0) { sphere }\ncanonical object f(n) { instance: f(n - 1)" +
-                          lines + " }\nobject top { f(90000) }"),
-                HasSubstr("the model takes too much work to list all its objects"));
+    EXPECT_THAT(
+        what_is_said_of("canonical object f(0) { sphere }\ncanonical object f(n) { instance: f(n - 1)" +
+                        lines + " }\nobject top { f(90000) }"),
+        HasSubstr("the model takes too much work to list all its objects"));
 }
 
 TEST(InstHostile, nested_braces_give_one_error) {
     const std::string errors =
-        errors_of("object x " + std::string(1'000'000, '{') + std::string(1'000'000, '}'));
+        what_is_said_of("object x " + std::string(1'000'000, '{') + std::string(1'000'000, '}'));
     EXPECT_THAT(errors, HasSubstr("m.inst:1:266: error: brackets nest more than 256 deep"));
     EXPECT_EQ(errors.find("error:"), errors.rfind("error:"));
-    EXPECT_THAT(errors_of("object x { sphere " + std::string(1'000'000, '(')),
+    EXPECT_THAT(what_is_said_of("object x { sphere " + std::string(1'000'000, '(')),
                 HasSubstr("brackets nest more than 256 deep"));
 }
 
@@ -386,9 +388,9 @@ TEST(InstHostile, many_errors_end) {
     std::string text;
     for (int i = 0; i < 100'000; ++i)
         text += "canonical object o" + std::to_string(i) + " { unknown" + std::to_string(i) + " }\n";
-    EXPECT_THAT(errors_of(text), HasSubstr("unknown object 'unknown99'"));
+    EXPECT_THAT(what_is_said_of(text), HasSubstr("unknown object 'unknown99'"));
     for (const char wrong : {'}', '\xFF'})
-        EXPECT_THAT(errors_of(std::string(1'000'000, wrong)), HasSubstr("error: "));
+        EXPECT_THAT(what_is_said_of(std::string(1'000'000, wrong)), HasSubstr("error: "));
 }
 
 } // namespace

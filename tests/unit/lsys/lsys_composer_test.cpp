@@ -17,58 +17,58 @@ using testing::plain_figure;
 using testing::Stroke;
 using testing::Unfolding;
 
-constexpr double width = 0.25;
+constexpr double start_width = 0.25;
 
-std::string block(const std::string& statements) {
+std::string lsys_block(const std::string& statements) {
     return "width 0.25\n" + statements;
 }
 
-struct Model {
+struct GrowingModel {
     const char* name;
     std::string text;
     unsigned most_steps;
 };
 
-std::vector<Model> models() {
+std::vector<GrowingModel> growing_models() {
     return {
-        {"koch", block("angle 60\naxiom F--F--F\nF -> F+F--F+F"), 5},
-        {"islands", block("axiom F+F+F+F\nF -> F+f-FF+F+FF+Ff+FF-f+FF-F-FF-Ff-FFF\nf -> ffffff"), 2},
-        {"dragon", block("modules l r\naxiom Fl\nl -> l+rF+\nr -> -Fl-r"), 10},
+        {"koch", lsys_block("angle 60\naxiom F--F--F\nF -> F+F--F+F"), 5},
+        {"islands", lsys_block("axiom F+F+F+F\nF -> F+f-FF+F+FF+Ff+FF-f+FF-F-FF-Ff-FFF\nf -> ffffff"), 2},
+        {"dragon", lsys_block("modules l r\naxiom Fl\nl -> l+rF+\nr -> -Fl-r"), 10},
         {"gosper",
-         block("modules F_l F_r\nangle 60\naxiom F_l\nF_l -> F_l+F_r++F_r-F_l--F_lF_l-F_r+\n"
-               "F_r -> -F_l+F_rF_r++F_r+F_l--F_l-F_r\ninterpret {\nF_l -> F\nF_r -> F\n}"),
+         lsys_block("modules F_l F_r\nangle 60\naxiom F_l\nF_l -> F_l+F_r++F_r-F_l--F_lF_l-F_r+\n"
+                    "F_r -> -F_l+F_rF_r++F_r+F_l--F_l-F_r\ninterpret {\nF_l -> F\nF_r -> F\n}"),
          4},
         {"hilbert",
-         block("axiom A\nA -> B-F+CFC+F-D&F^D-F+&&CFC+F+B//\nB -> A&F^CFB^F^D^^-F-D^|F^B|FC^F^A//\n"
-               "C -> |D^|F^B-F+C^F^A&&FA&F^C+F+B^F^D//\nD -> |CFB-F+B|FA&F^A&&FB-F+B|FC//"),
+         lsys_block("axiom A\nA -> B-F+CFC+F-D&F^D-F+&&CFC+F+B//\nB -> A&F^CFB^F^D^^-F-D^|F^B|FC^F^A//\n"
+                    "C -> |D^|F^B-F+C^F^A&&FA&F^C+F+B^F^D//\nD -> |CFB-F+B|FA&F^A&&FB-F+B|FC//"),
          3},
-        {"plant", block("angle 22.5\naxiom X\nX -> F-[[X]+X]+F[+FX]-X\nF -> FF"), 5},
+        {"plant", lsys_block("angle 22.5\naxiom X\nX -> F-[[X]+X]+F[+FX]-X\nF -> FF"), 5},
         {"bush",
-         block("angle 22.5\naxiom A\nA -> [&FL!A]/////'[&FL!A]///////'[&FL!A]\nF -> S/////F\nS -> FL\n"
-               "L -> ['''^^{-f+f+f-|-f+f+f}]"),
+         lsys_block("angle 22.5\naxiom A\nA -> [&FL!A]/////'[&FL!A]///////'[&FL!A]\nF -> S/////F\nS -> FL\n"
+                    "L -> ['''^^{-f+f+f-|-f+f+f}]"),
          5},
         {"sympodial",
-         block("axiom A(1,0.1)\nA(l,w) -> !(w)F(l)[&(10)B(l*0.9,w*0.7)]/(180)[&(60)B(l*0.7,w*0.7)]\n"
-               "B(l,w) -> !(w)F(l)[+(10)$B(l*0.9,w*0.7)][-(60)$B(l*0.7,w*0.7)]"),
+         lsys_block("axiom A(1,0.1)\nA(l,w) -> !(w)F(l)[&(10)B(l*0.9,w*0.7)]/(180)[&(60)B(l*0.7,w*0.7)]\n"
+                    "B(l,w) -> !(w)F(l)[+(10)$B(l*0.9,w*0.7)][-(60)$B(l*0.7,w*0.7)]"),
          8},
         {"tropism",
-         block("tropism 0.3, -1, 0.2\naxiom T(0.22)!(1)F(2)/(45)A\n"
-               "A -> !(1.732)F(0.5)[&(19)F(0.5)A]/(95)[&(19)F(0.5)A]/(133)[&(19)F(0.5)A]\n"
-               "F(l) -> F(l*1.109)\n!(w) -> !(w*1.732)"),
+         lsys_block("tropism 0.3, -1, 0.2\naxiom T(0.22)!(1)F(2)/(45)A\n"
+                    "A -> !(1.732)F(0.5)[&(19)F(0.5)A]/(95)[&(19)F(0.5)A]/(133)[&(19)F(0.5)A]\n"
+                    "F(l) -> F(l*1.109)\n!(w) -> !(w*1.732)"),
          5},
-        {"stems", block("angle 30\naxiom A\nA -> T(0.3)F$[+A]F[-;(3)!A]T,A"), 5},
+        {"stems", lsys_block("angle 30\naxiom A\nA -> T(0.3)F$[+A]F[-;(3)!A]T,A"), 5},
         {"counting",
-         block("axiom A(3,1)\nA(t,l) : t > 0 -> F(l)[+(30)A(t-1,l/2)]A(t-1,l)\n"
-               "A(t,l) : t <= 0 -> F(l)-(l*10)A(2,l*0.7)"),
+         lsys_block("axiom A(3,1)\nA(t,l) : t > 0 -> F(l)[+(30)A(t-1,l/2)]A(t-1,l)\n"
+                    "A(t,l) : t <= 0 -> F(l)-(l*10)A(2,l*0.7)"),
          7},
-        {"cordate", block("angle 18\naxiom F[A][B]\nA -> [+A{.].C.}\nB -> [-B{.].C.}\nC -> gC"), 7},
+        {"cordate", lsys_block("angle 18\naxiom F[A][B]\nA -> [+A{.].C.}\nB -> [-B{.].C.}\nC -> gC"), 7},
         {"polygons over productions",
-         block("angle 40\naxiom F{A}\nA -> .G[+B{.]f+A\nB -> f.+f.-B}[&{C]\nC -> f-.fC."), 5},
-        {"decomposed", block("axiom A\nA -> I(5)[+A]A\ndecompose I(n) : n > 0 -> F(n)+(n)I(n-1)"), 5},
-        {"cut", block("axiom A\nA -> F[+A]F[-A]B\nB -> FF%FA"), 5},
-        {"branch that is cut", block("axiom A\nA -> F[+AB]-A\nB -> %"), 6},
-        {"nothing alike", block("axiom A(1)\nA(x) -> F(x)[+(x)A(x*0.93+0.11)]\\(x*7)^(3)F(x/3)A(x*0.81+0.2)"),
-         8},
+         lsys_block("angle 40\naxiom F{A}\nA -> .G[+B{.]f+A\nB -> f.+f.-B}[&{C]\nC -> f-.fC."), 5},
+        {"decomposed", lsys_block("axiom A\nA -> I(5)[+A]A\ndecompose I(n) : n > 0 -> F(n)+(n)I(n-1)"), 5},
+        {"cut", lsys_block("axiom A\nA -> F[+A]F[-A]B\nB -> FF%FA"), 5},
+        {"branch that is cut", lsys_block("axiom A\nA -> F[+AB]-A\nB -> %"), 6},
+        {"nothing alike",
+         lsys_block("axiom A(1)\nA(x) -> F(x)[+(x)A(x*0.93+0.11)]\\(x*7)^(3)F(x/3)A(x*0.81+0.2)"), 8},
     };
 }
 
@@ -114,10 +114,10 @@ void expect_same_area(const Figure& wanted, const Graph& graph, const std::strin
 }
 
 TEST(LsysComposer, drawsWhatThePlainTurtleDraws) {
-    for (const Model& model : models())
+    for (const GrowingModel& model : growing_models())
         for (unsigned steps = 0; steps <= model.most_steps; ++steps) {
             const std::string what = fmt::format("{} after {} steps", model.name, steps);
-            const Figure wanted = plain_figure(model.text, steps, width);
+            const Figure wanted = plain_figure(model.text, steps, start_width);
             if (wanted.strokes.empty() && wanted.polygons.empty()) continue;
             for (const bool exact : {false, true}) {
                 LowerOptions options;
@@ -188,7 +188,7 @@ TEST(LsysComposer, drawsRandomModels) {
     for (int i = 0; i < 400; ++i) {
         const std::string text = random_statements(random);
         for (unsigned steps = 0; steps <= 4; ++steps) {
-            const Figure wanted = plain_figure(text, steps, width);
+            const Figure wanted = plain_figure(text, steps, start_width);
             if (wanted.modules > 100'000) break;
             const CompiledLsys compiled(text, steps);
             expect_same(wanted, compiled.graph, fmt::format("{}\nafter {} steps", text, steps));
@@ -298,7 +298,7 @@ std::pair<double, double> snapped(const std::string& statements, unsigned steps,
     Composing composing(statements, {.snap_angle = angle_deg * std::numbers::pi / 180});
     Graph& graph = composing.graph;
     TurtleState start;
-    start.width = width;
+    start.width = start_width;
     start.tropism = Vec3(0, -1, 0);
     start.vertical = Vec3(0, 1, 0);
     auto part = composing.composer.compose(steps, start);
@@ -308,7 +308,7 @@ std::pair<double, double> snapped(const std::string& statements, unsigned steps,
     root.instances = part->instances;
     graph.root = graph.add(std::move(root));
     const Unfolding found(graph);
-    const Figure wanted = plain_figure(statements, steps, width);
+    const Figure wanted = plain_figure(statements, steps, start_width);
     double worst = 0;
     for (std::size_t i = 0; i < wanted.strokes.size(); ++i)
         worst = std::max({worst, glm::distance(wanted.strokes[i].from, found.strokes.at(i).from),

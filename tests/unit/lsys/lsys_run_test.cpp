@@ -28,16 +28,16 @@ std::size_t run_items(const Graph& graph) {
     return count;
 }
 
-struct Case {
+struct RunCase {
     const char* name;
     const char* statements;
     unsigned steps;
 };
 
-class LsysRun : public ::testing::TestWithParam<Case> {};
+class LsysRun : public ::testing::TestWithParam<RunCase> {};
 
 TEST_P(LsysRun, DrawsWhatTheWordDraws) {
-    const Case& model = GetParam();
+    const RunCase& model = GetParam();
     const CompiledLsys shared = compiled(model.statements, model.steps, never);
     const CompiledLsys in_run = compiled(model.statements, model.steps, always);
     EXPECT_EQ(run_items(shared.graph), 0u);
@@ -62,45 +62,49 @@ TEST_P(LsysRun, DrawsWhatTheWordDraws) {
 INSTANTIATE_TEST_SUITE_P(
     Models, LsysRun,
     ::testing::Values(
-        Case{"NothingRepeats",
-             "axiom A(1, 1)\nA(l, k) -> F(l)[+(30 + k*0.001)A(l*0.9, 2*k)][-(25 + k*0.001)A(l*0.8, 2*k + 1)]",
-             8},
-        Case{"Conditions",
-             "width 0.1\naxiom A(1)\nA(x) : x < 4 -> F(x)A(x + 1)[+A(x + 2)]\nA(x) : x >= 4 -> F(0.5)", 9},
-        Case{"Probabilities",
-             "angle 30\nwidth 0.2\naxiom F\nF -> F[+F]F[-F]F : 0.33\nF -> F[+F]F : 0.33\nF -> F[-F]F : 0.34",
-             5},
-        Case{"Chance",
-             "width 0.02\nseed 5\naxiom A(1)\n"
-             "A(l) -> F(l)!(0.02*l)/(random(0, 360))[&(random(20, 70))A(l*random(0.6, 0.8))][+(normal(0, "
-             "9))A(l*0.7)]",
-             6},
-        Case{"ChanceOfEitherKind",
-             "width 0.02\naxiom A(1)B(2)\nA(l) -> F(l)[+(random(0, 90))A(l*0.7)]B(l) : 0.6\nA(l) -> "
-             "F(l)A(l*0.9) : 0.4\n"
-             "B(x) -> [-F(x)]B(x*0.5)",
-             7},
-        Case{"AgesOfModules",
-             "width 0.1\naxiom A\nmodules A B\nA -> F(1 + age)[+B]A\nB : age < 2 -> F(0.3)B\nB : age >= 2 -> "
-             "F(step)",
-             7},
-        Case{"Interpretation",
-             "width 0.1\nmodules A I\naxiom A(1)\nA(x) -> I(x)[+A(x*0.8)][-(17*x)A(x*0.7)]\n"
-             "interpret I(x) -> F(x)[^(40)J(x)]\ninterpret J(x) : x > 0.5 -> F(x)J(x*0.6)\nmodules J",
-             6},
-        Case{"TurtleState",
-             "tropism 0, -1, 0\naxiom !(0.2)T(0.1)A(1)\nA(l) -> "
-             "F(l)!;[+(20*l)$A(l*0.9)],@O(0.1)@o(0.3)[/(50)&(30)A(l*0.8)]f(l)",
-             6},
-        Case{"OpenWidth", "axiom A(20)\nA(l) -> F(l)![+(l)A(l*1.2)][-(10)A(l*1.1)]@O", 9},
-        Case{"Polygons", "width 0.1\naxiom A(1)\nA(l) -> F(l)[{.f(l)+f(l)+f(l).}][+A(l*0.9)][-(31)A(l*0.77)]",
-             5},
-        Case{"GeneralisedCylinders",
-             "axiom !(1)@Gs A(1)\nmodules A\nA(l) -> f(l)!(l*0.5)@Gc[+(23*l)f(1)@Ge][^(10)A(l*0.8)]A(l*0.9)",
-             5},
-        Case{"Contexts", "width 0.1\nmodules a b\naxiom baaaa[+aaa]aaa\nb < a -> b[-(33)F]F\nb -> F", 5},
-        Case{"Decompositions",
-             "width 0.1\naxiom A(1)\nA(l) -> B(l)[+A(l*0.9)][-A(l*0.8)]\ndecompose B(l) -> F(l)F(l)", 5}),
+        RunCase{
+            "NothingRepeats",
+            "axiom A(1, 1)\nA(l, k) -> F(l)[+(30 + k*0.001)A(l*0.9, 2*k)][-(25 + k*0.001)A(l*0.8, 2*k + 1)]",
+            8},
+        RunCase{"Conditions",
+                "width 0.1\naxiom A(1)\nA(x) : x < 4 -> F(x)A(x + 1)[+A(x + 2)]\nA(x) : x >= 4 -> F(0.5)", 9},
+        RunCase{
+            "Probabilities",
+            "angle 30\nwidth 0.2\naxiom F\nF -> F[+F]F[-F]F : 0.33\nF -> F[+F]F : 0.33\nF -> F[-F]F : 0.34",
+            5},
+        RunCase{"Chance",
+                "width 0.02\nseed 5\naxiom A(1)\n"
+                "A(l) -> F(l)!(0.02*l)/(random(0, 360))[&(random(20, 70))A(l*random(0.6, 0.8))][+(normal(0, "
+                "9))A(l*0.7)]",
+                6},
+        RunCase{"ChanceOfEitherKind",
+                "width 0.02\naxiom A(1)B(2)\nA(l) -> F(l)[+(random(0, 90))A(l*0.7)]B(l) : 0.6\nA(l) -> "
+                "F(l)A(l*0.9) : 0.4\n"
+                "B(x) -> [-F(x)]B(x*0.5)",
+                7},
+        RunCase{
+            "AgesOfModules",
+            "width 0.1\naxiom A\nmodules A B\nA -> F(1 + age)[+B]A\nB : age < 2 -> F(0.3)B\nB : age >= 2 -> "
+            "F(step)",
+            7},
+        RunCase{"Interpretation",
+                "width 0.1\nmodules A I\naxiom A(1)\nA(x) -> I(x)[+A(x*0.8)][-(17*x)A(x*0.7)]\n"
+                "interpret I(x) -> F(x)[^(40)J(x)]\ninterpret J(x) : x > 0.5 -> F(x)J(x*0.6)\nmodules J",
+                6},
+        RunCase{"TurtleState",
+                "tropism 0, -1, 0\naxiom !(0.2)T(0.1)A(1)\nA(l) -> "
+                "F(l)!;[+(20*l)$A(l*0.9)],@O(0.1)@o(0.3)[/(50)&(30)A(l*0.8)]f(l)",
+                6},
+        RunCase{"OpenWidth", "axiom A(20)\nA(l) -> F(l)![+(l)A(l*1.2)][-(10)A(l*1.1)]@O", 9},
+        RunCase{"Polygons",
+                "width 0.1\naxiom A(1)\nA(l) -> F(l)[{.f(l)+f(l)+f(l).}][+A(l*0.9)][-(31)A(l*0.77)]", 5},
+        RunCase{
+            "GeneralisedCylinders",
+            "axiom !(1)@Gs A(1)\nmodules A\nA(l) -> f(l)!(l*0.5)@Gc[+(23*l)f(1)@Ge][^(10)A(l*0.8)]A(l*0.9)",
+            5},
+        RunCase{"Contexts", "width 0.1\nmodules a b\naxiom baaaa[+aaa]aaa\nb < a -> b[-(33)F]F\nb -> F", 5},
+        RunCase{"Decompositions",
+                "width 0.1\naxiom A(1)\nA(l) -> B(l)[+A(l*0.9)][-A(l*0.8)]\ndecompose B(l) -> F(l)F(l)", 5}),
     [](const auto& tested) { return std::string(tested.param.name); });
 
 TEST(LsysRuns, RoundingDecidesNothing) {

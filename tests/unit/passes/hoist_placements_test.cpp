@@ -13,14 +13,14 @@ namespace {
 const Affine half = Affine::scale(Vec3(0.5));
 const Affine aside = Affine::translate({2, 0, 0});
 
-Instance instance_of(ObjectId master, const Affine& map = {}) {
+Instance edge_to(ObjectId master, const Affine& map = {}) {
     Instance instance;
     instance.master = master;
     instance.parent_from_child = map;
     return instance;
 }
 
-ObjectId add_union(Graph& graph, const std::string& name, std::vector<Instance> instances) {
+ObjectId add_of(Graph& graph, const std::string& name, std::vector<Instance> instances) {
     Object object;
     object.name = name;
     object.instances = std::move(instances);
@@ -31,8 +31,8 @@ TEST(HoistPlacements, MovesASharedMapToTheUsers) {
     Graph graph;
     const ObjectId sphere = graph.primitive(PrimitiveKind::sphere),
                    cube = graph.primitive(PrimitiveKind::cube);
-    const ObjectId pair = add_union(graph, "pair", {instance_of(sphere, half), instance_of(cube, half)});
-    graph.root = add_union(graph, "root", {instance_of(pair, aside), instance_of(pair)});
+    const ObjectId pair = add_of(graph, "pair", {edge_to(sphere, half), edge_to(cube, half)});
+    graph.root = add_of(graph, "root", {edge_to(pair, aside), edge_to(pair)});
     const auto [after, renumbering] = hoist_placements(graph);
     EXPECT_EQ(after.objects[pair].instances[0].parent_from_child, Affine());
     EXPECT_EQ(after.objects[graph.root].instances[0].parent_from_child, aside * half);
@@ -51,9 +51,9 @@ TEST(HoistPlacements, MovesASharedMapToTheUsers) {
 TEST(HoistPlacements, LeavesNothingOfAnEndingObjectOfOneInstance) {
     Graph graph;
     const ObjectId sphere = graph.primitive(PrimitiveKind::sphere);
-    const ObjectId inner = add_union(graph, "inner", {instance_of(sphere, half)});
-    const ObjectId outer = add_union(graph, "outer", {instance_of(inner, aside)});
-    graph.root = add_union(graph, "root", {instance_of(outer), instance_of(sphere)});
+    const ObjectId inner = add_of(graph, "inner", {edge_to(sphere, half)});
+    const ObjectId outer = add_of(graph, "outer", {edge_to(inner, aside)});
+    graph.root = add_of(graph, "root", {edge_to(outer), edge_to(sphere)});
     const auto [after, renumbering] = hoist_placements(graph);
     EXPECT_EQ(after.objects[graph.root].instances[0].master, sphere);
     EXPECT_EQ(after.objects[graph.root].instances[0].parent_from_child, aside * half);
@@ -64,10 +64,10 @@ TEST(HoistPlacements, LeavesNothingOfAnEndingObjectOfOneInstance) {
 TEST(HoistPlacements, TheTerminalStaysWhereItIs) {
     Graph graph;
     const ObjectId sphere = graph.primitive(PrimitiveKind::sphere);
-    const ObjectId self = add_union(graph, "self", {});
-    graph.objects[self].instances = {instance_of(self, half), instance_of(self, half)};
-    graph.objects[self].terminal = instance_of(sphere, aside);
-    graph.root = add_union(graph, "root", {instance_of(self)});
+    const ObjectId self = add_of(graph, "self", {});
+    graph.objects[self].instances = {edge_to(self, half), edge_to(self, half)};
+    graph.objects[self].terminal = edge_to(sphere, aside);
+    graph.root = add_of(graph, "root", {edge_to(self)});
     const auto [after, renumbering] = hoist_placements(graph);
     const Affine& root_from_self = after.objects[graph.root].instances[0].parent_from_child;
     EXPECT_EQ(root_from_self, half);
@@ -78,10 +78,9 @@ TEST(HoistPlacements, KeepsWhatIsNotSharedOrFlat) {
     Graph graph;
     const ObjectId sphere = graph.primitive(PrimitiveKind::sphere);
     const Affine flat = Affine::scale({1, 0, 1});
-    const ObjectId two = add_union(graph, "two", {instance_of(sphere, half), instance_of(sphere, aside)});
-    const ObjectId crushed =
-        add_union(graph, "crushed", {instance_of(sphere, flat), instance_of(sphere, flat)});
-    graph.root = add_union(graph, "root", {instance_of(two), instance_of(crushed)});
+    const ObjectId two = add_of(graph, "two", {edge_to(sphere, half), edge_to(sphere, aside)});
+    const ObjectId crushed = add_of(graph, "crushed", {edge_to(sphere, flat), edge_to(sphere, flat)});
+    graph.root = add_of(graph, "root", {edge_to(two), edge_to(crushed)});
     const auto [after, renumbering] = hoist_placements(graph);
     EXPECT_TRUE(equal(after, graph));
     EXPECT_TRUE(renumbering.united.empty());

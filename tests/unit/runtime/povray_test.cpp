@@ -17,7 +17,7 @@ namespace {
 using testing::HasSubstr;
 
 /// Writes and commits.
-template<typename... Arguments> Status save_palette(const std::string& path, const Arguments&... arguments) {
+template<typename... Arguments> Status palette_saved(const std::string& path, const Arguments&... arguments) {
     PendingFile pending(path);
     const Status status = write_palette(pending, arguments...);
     return status.ok() ? pending.commit() : status;
@@ -83,7 +83,7 @@ TEST_F(Povray, LinearPictureHoldsTheColourAsItIs) {
 }
 
 TEST_F(Povray, PaletteIsReadAsLinear) {
-    ASSERT_TRUE(save_palette(path("palette.png"), 2, 1, std::vector(2, Rgb(0.1, 0.2, 0.3))).ok());
+    ASSERT_TRUE(palette_saved(path("palette.png"), 2, 1, std::vector(2, Rgb(0.1, 0.2, 0.3))).ok());
     scene("box { <-9,-9,0>, <9,9,1> pigment { image_map { png \"palette.png\" gamma 1.0 } }"
           " finish { emission 1 ambient 0 diffuse 0 } }\n");
     job_.linear16 = true;

@@ -9,7 +9,7 @@
 namespace graftal {
 namespace {
 
-double reach(const std::vector<Vec3>& points, Vec3 direction) {
+double farthest(const std::vector<Vec3>& points, Vec3 direction) {
     double most = -1e300;
     for (const Vec3& point : points)
         most = std::max(most, glm::dot(point, direction));
@@ -36,8 +36,8 @@ TEST(Extremes, FewPointsStandForMany) {
     const std::vector<Vec3> few = extremes.points();
     EXPECT_LE(few.size(), 1000u);
     for (const Vec3& direction : random_points(random, 500, Vec3(0.0))) {
-        EXPECT_LE(reach(few, direction), reach(all, direction));
-        EXPECT_GE(reach(few, direction), reach(all, direction) - 0.003 * 4);
+        EXPECT_LE(farthest(few, direction), farthest(all, direction));
+        EXPECT_GE(farthest(few, direction), farthest(all, direction) - 0.003 * 4);
     }
 }
 
@@ -54,7 +54,7 @@ TEST(Extremes, RevolvedPointsHoldTheirCircles) {
     const std::vector<Vec3> ring = revolved({{8, 1, 2}}, axis); // radius 5
     for (int degrees = 0; degrees < 360; ++degrees) {
         const Vec3 direction(std::sin(degrees), 0, std::cos(degrees));
-        const double reached = reach(ring, direction) - glm::dot(axis, direction);
+        const double reached = farthest(ring, direction) - glm::dot(axis, direction);
         EXPECT_GE(reached, 5 - 1e-9);
         EXPECT_LE(reached, 5.01);
     }

@@ -11,7 +11,7 @@
 namespace graftal {
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr double no_end = std::numeric_limits<double>::infinity();
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr auto triangle = PrimitiveKind::triangle, sphere = PrimitiveKind::sphere, cube = PrimitiveKind::cube,
                plane = PrimitiveKind::plane, cylinder = PrimitiveKind::cylinder, cone = PrimitiveKind::cone,
@@ -110,16 +110,16 @@ TEST(Intersect, FindsTheExitFromInside) {
 
 TEST(Intersect, TakesTheFirstCrossingWithinTheRange) {
     const Case cases[] = {
-        {sphere, {0, 0, 3}, {0, 0, -1}, 4, {0, 0, -1}, {2, infinity}}, // open: 2 itself does not count
+        {sphere, {0, 0, 3}, {0, 0, -1}, 4, {0, 0, -1}, {2, no_end}}, // open: 2 itself does not count
         {sphere, {0, 0, 3}, {0, 0, 1}, -4, {0, 0, -1}, {-10, 0}},
         {cube, {0, 0, 3}, {0, 0, -1}, 4, {0, 0, -1}, {2, 4.5}},
-        {cylinder, {0, 3, 0}, {0, -1, 0}, 3, {0, -1, 0}, {2, infinity}},
-        {cone, {0.25, 3, 0}, {0, -1, 0}, 3, {0, -1, 0}, {2.5, infinity}},
-        {frustum, {0, 3, 0}, {0, -1, 0}, 3, {0, -1, 0}, {2.5, infinity}},
-        {torus, {3, 0, 0}, {-1, 0, 0}, 2.25, {-1, 0, 0}, {2, infinity}},
+        {cylinder, {0, 3, 0}, {0, -1, 0}, 3, {0, -1, 0}, {2, no_end}},
+        {cone, {0.25, 3, 0}, {0, -1, 0}, 3, {0, -1, 0}, {2.5, no_end}},
+        {frustum, {0, 3, 0}, {0, -1, 0}, 3, {0, -1, 0}, {2.5, no_end}},
+        {torus, {3, 0, 0}, {-1, 0, 0}, 2.25, {-1, 0, 0}, {2, no_end}},
         {torus, {3, 0, 0}, {-1, 0, 0}, 3.75, {1, 0, 0}, {2.5, 4}},
-        {torus, {3, 0, 0}, {-1, 0, 0}, 4.25, {-1, 0, 0}, {4, infinity}},
-        {plane, {0, -3, 0}, {0, -1, 0}, -3, {0, 1, 0}, {-infinity, infinity}},
+        {torus, {3, 0, 0}, {-1, 0, 0}, 4.25, {-1, 0, 0}, {4, no_end}},
+        {plane, {0, -3, 0}, {0, -1, 0}, -3, {0, 1, 0}, {-no_end, no_end}},
     };
     for (int i = 0; const Case& c : cases)
         expect(c, i++);
@@ -261,15 +261,15 @@ TEST(Intersect, StartsOnTheSurface) {
     }
     for (const PrimitiveKind kind : {sphere, cube, cylinder, cone, frustum, plane, triangle}) {
         const double top = kind == triangle || kind == plane ? 0 : 1;
-        EXPECT_FALSE(meet(kind, {0, top, 0}, {0, 1, 1}, {1e-12, infinity})) << name_of(kind);
+        EXPECT_FALSE(meet(kind, {0, top, 0}, {0, 1, 1}, {1e-12, no_end})) << name_of(kind);
     }
-    EXPECT_FALSE(meet(torus, {1.25, 0, 0}, {1, 0.5, 0}, {1e-12, infinity}));
+    EXPECT_FALSE(meet(torus, {1.25, 0, 0}, {1, 0.5, 0}, {1e-12, no_end}));
 }
 
 TEST(Intersect, TurnsDownWhatIsNotFinite) {
     for (int kind = 0; kind < primitive_kind_count; ++kind)
         for (int i = 0; i < 3; ++i)
-            for (const double bad : {nan, infinity, -infinity, 1e300}) {
+            for (const double bad : {nan, no_end, -no_end, 1e300}) {
                 Ray ray{{0.1, 0.2, 3}, {0, 0, -1}};
                 ray.origin[i] = bad;
                 EXPECT_FALSE(meet(kind_at(kind), ray.origin, ray.direction));
@@ -283,9 +283,9 @@ TEST(Intersect, TurnsDownWhatIsNotFinite) {
 }
 
 TEST(Intersect, NeverGivesNonsense) {
-    const double odd[] = {0,         -0.0,   5e-324, -1e-310, 1e-300, 1e300, -1e300,    infinity,
-                          -infinity, nan,    1,      -1,      0.5,    0.25,  1e-17,     -1e-17,
-                          1e-160,    -1e160, 1e12,   -1e9,    0.75,   1.25,  1 + 1e-15, 1e-9};
+    const double odd[] = {0,       -0.0,   5e-324, -1e-310, 1e-300, 1e300, -1e300,    no_end,
+                          -no_end, nan,    1,      -1,      0.5,    0.25,  1e-17,     -1e-17,
+                          1e-160,  -1e160, 1e12,   -1e9,    0.75,   1.25,  1 + 1e-15, 1e-9};
     std::mt19937_64 random(11);
     std::uniform_real_distribution<double> plain(-1.5, 1.5);
     const auto number = [&](unsigned weird) {
@@ -296,7 +296,7 @@ TEST(Intersect, NeverGivesNonsense) {
         const unsigned weird = i % 5;
         const Ray ray{{number(weird), number(weird), number(weird)},
                       {number(weird), number(weird), number(weird)}};
-        const RayRange range{i % 3 ? 0 : number(weird), i % 3 ? infinity : number(weird)};
+        const RayRange range{i % 3 ? 0 : number(weird), i % 3 ? no_end : number(weird)};
         PrimitiveHit hit;
         // Half of them frusta would be too many.
         const PrimitiveKind kind = kind_at(i % 2 ? i / 2 % 8 : i / 2);

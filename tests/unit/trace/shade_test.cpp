@@ -12,7 +12,7 @@ namespace graftal {
 namespace {
 
 constexpr double inf = std::numeric_limits<double>::infinity();
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 
 struct Ball {
     Vec3 centre;
@@ -324,7 +324,7 @@ class Oracle : public Surfaces {
 
 TEST(Shader, GivesNumbersForDegenerateInput) {
     const Material shiny{.specular = 1, .reflection = 1};
-    const Vec3 vectors[] = {Vec3(0.0), {0, 0, -1},  {0, 0, 1},   Vec3(nan),
+    const Vec3 vectors[] = {Vec3(0.0), {0, 0, -1},  {0, 0, 1},   Vec3(not_a_number),
                             Vec3(inf), Vec3(1e200), Vec3(1e-200)};
     View view = black_view();
     view.ground = Ground{0, shiny};
@@ -333,7 +333,7 @@ TEST(Shader, GivesNumbersForDegenerateInput) {
     Scene nothing;
     for (const Vec3& a : vectors)
         for (const Vec3& b : vectors)
-            for (const double t : {0.0, 10.0, 1e300, inf, nan})
+            for (const double t : {0.0, 10.0, 1e300, inf, not_a_number})
                 for (const bool orthographic : {false, true}) {
                     oracle.answer = {t, a, Rgb(1.0), &shiny};
                     view.camera.orthographic = orthographic;

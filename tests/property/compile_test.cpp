@@ -16,13 +16,13 @@
 namespace graftal {
 namespace {
 
-using testing::HasSubstr;
-using testing::StartsWith;
+using ::testing::HasSubstr;
+using ::testing::StartsWith;
 
-class Compile : public testing::Test {
+class Compile : public ::testing::Test {
   protected:
     void SetUp() override {
-        const auto* test = testing::UnitTest::GetInstance()->current_test_info();
+        const auto* test = ::testing::UnitTest::GetInstance()->current_test_info();
         folder_ = std::filesystem::temp_directory_path() /
                   ("graftal_compile_" + std::string(test->name()) + std::to_string(::getpid()));
         std::filesystem::create_directories(folder_);

@@ -78,7 +78,7 @@ struct TurnCase {
     unsigned steps;
 };
 
-class Turntable : public testing::TestWithParam<TurnCase> {};
+class Turntable : public ::testing::TestWithParam<TurnCase> {};
 
 TEST_P(Turntable, KeepsTheModelInThePictureAtOneDistance) {
     StageOptions options;
@@ -107,10 +107,11 @@ TEST_P(Turntable, KeepsTheModelInThePictureAtOneDistance) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Scenes, Turntable,
-                         testing::Values(TurnCase{"hart/pound_sign.rifs", 4},
-                                         TurnCase{"hart/sierpinski.inst", 6},
-                                         TurnCase{"abop/fig1_25.lsys", 4}, TurnCase{"abop/fig1_24f.lsys", 4},
-                                         TurnCase{"ifs/menger_sponge.rifs", 3}));
+                         ::testing::Values(TurnCase{"hart/pound_sign.rifs", 4},
+                                           TurnCase{"hart/sierpinski.inst", 6},
+                                           TurnCase{"abop/fig1_25.lsys", 4},
+                                           TurnCase{"abop/fig1_24f.lsys", 4},
+                                           TurnCase{"ifs/menger_sponge.rifs", 3}));
 
 TEST(SharedFraming, GrowthHappensInThePicture) {
     std::vector<Shown> models;

@@ -8,7 +8,7 @@
 namespace graftal {
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 TEST(AliasTables, ChooseByWeight) {
     AliasTables tables;

@@ -36,7 +36,7 @@ Graph graph_of(const std::string& text) {
 }
 
 /// The messages, each as `line:column: message`, warnings with a `w` in front.
-std::string complaints(const std::string& text, const LowerOptions& options = {}) {
+std::string messages_of(const std::string& text, const LowerOptions& options = {}) {
     Lowered lowered;
     lowered.graph = lower_text("m.rifs", text, options, lowered.sources, lowered.diagnostics);
     std::string out;
@@ -236,12 +236,13 @@ TEST(LowerRifs, deadMapsAreDroppedWithAWarning) {
     const auto with = [&](const std::string& more) {
         return std::string(text).replace(text.find('%'), 1, more);
     };
-    EXPECT_EQ(complaints(with("")), "w 2:7: map 'a' draws nothing: no map leads to it\n"
-                                    "w 3:7: map 'b' draws nothing: only maps that draw nothing lead to it\n"
-                                    "w 4:7: map 'c' draws nothing: only maps that draw nothing lead to it\n");
+    EXPECT_EQ(messages_of(with("")),
+              "w 2:7: map 'a' draws nothing: no map leads to it\n"
+              "w 3:7: map 'b' draws nothing: only maps that draw nothing lead to it\n"
+              "w 4:7: map 'c' draws nothing: only maps that draw nothing lead to it\n");
     EXPECT_EQ(masters(*lower(with("")).graph, "r"), "d");
     EXPECT_NE(
-        complaints(with("start a, b")).find("1:6: 'rifs r' is empty: no sequence of its maps is endless"),
+        messages_of(with("start a, b")).find("1:6: 'rifs r' is empty: no sequence of its maps is endless"),
         std::string::npos);
     const Graph condensed = graph_of(with("condense sphere"));
     EXPECT_EQ(masters(condensed, "a"), "sphere");
@@ -250,11 +251,11 @@ TEST(LowerRifs, deadMapsAreDroppedWithAWarning) {
 
 TEST(LowerRifs, emptyBlocksEmptyThoseThatTakeThem) {
     EXPECT_EQ(
-        complaints("rifs x { map a from y { scale 1/2 } }\nrifs y { map b from x { scale 1/2 } "
-                   "map c { scale 1/2 } follow c -> c start b }\nrifs z { map d from x { scale 1 } }\n"),
+        messages_of("rifs x { map a from y { scale 1/2 } }\nrifs y { map b from x { scale 1/2 } "
+                    "map c { scale 1/2 } follow c -> c start b }\nrifs z { map d from x { scale 1 } }\n"),
         ""); // a takes b, and b takes a: a cycle
-    EXPECT_EQ(complaints("rifs x { map a { scale 1/2 } map b { scale 1/2 } follow a -> b }\n"
-                         "rifs y { map c from x { scale 1 } map d { scale 1/2 } }\n"),
+    EXPECT_EQ(messages_of("rifs x { map a { scale 1/2 } map b { scale 1/2 } follow a -> b }\n"
+                          "rifs y { map c from x { scale 1 } map d { scale 1/2 } }\n"),
               "w 1:14: map 'a' draws nothing: no map leads to it\n"
               "w 1:34: map 'b' draws nothing: only maps that draw nothing lead to it\n"
               "w 2:14: map 'c' draws nothing: only maps that draw nothing lead to it\n");
@@ -265,11 +266,11 @@ TEST(LowerRifs, namesThatAreNotThere) {
                                                           "    follow a -> bb\n"
                                                           "                ^~\n"
                                                           "    hint: did you mean 'b'? known here: a, b\n");
-    EXPECT_EQ(complaints(two_maps("start q\nterminal cbue\ncondense leaf")),
+    EXPECT_EQ(messages_of(two_maps("start q\nterminal cbue\ncondense leaf")),
               "5:10: 'cbue' is neither a primitive nor a used model\n"
               "6:10: 'leaf' is neither a primitive nor a used model\n"
               "4:7: 'rifs r' has no map 'q'\n");
-    EXPECT_EQ(complaints("rifs r { map a from s { scale 1/2 } map b { scale 1/2 material wood } }"),
+    EXPECT_EQ(messages_of("rifs r { map a from s { scale 1/2 } map b { scale 1/2 material wood } }"),
               "1:64: unknown material 'wood'\n"
               "1:21: unknown rifs 's'\n");
 }
@@ -296,40 +297,40 @@ TEST(LowerRifs, duplicatesPointAtTheFirst) {
               "m.rifs:4:13: note: first given here\n"
               "    follow a -> a, b, a\n"
               "                ^\n");
-    EXPECT_EQ(complaints("main rifs r { map a { scale 1/2 } }\nmain rifs s { map a { scale 1/2 } }\n"),
+    EXPECT_EQ(messages_of("main rifs r { map a { scale 1/2 } }\nmain rifs s { map a { scale 1/2 } }\n"),
               "2:11: a second 'main' block\n");
     // w2 is the second map's name, if it has no label.
-    EXPECT_EQ(complaints("rifs r { codes 2d {\n w2: .5 0 0 .5 0 0\n .5 0 0 .5 1 0\n } }"),
+    EXPECT_EQ(messages_of("rifs r { codes 2d {\n w2: .5 0 0 .5 0 0\n .5 0 0 .5 1 0\n } }"),
               "3:2: duplicate map 'w2'\n");
 }
 
 TEST(LowerRifs, namesThatCannotBe) {
-    EXPECT_EQ(complaints("rifs sphere { map cube { scale 1/2 } map a.b { scale 1/2 } }"),
+    EXPECT_EQ(messages_of("rifs sphere { map cube { scale 1/2 } map a.b { scale 1/2 } }"),
               "1:6: 'sphere' is a primitive and cannot name a block\n"
               "1:19: 'cube' is a primitive and cannot name a map\n"
               "1:42: the name 'a.b' of a map must not have a '.'\n");
 }
 
 TEST(LowerRifs, matricesOfTheWrongShapeOrRange) {
-    EXPECT_EQ(complaints(two_maps("follow matrix {\n0 1\n}")),
+    EXPECT_EQ(messages_of(two_maps("follow matrix {\n0 1\n}")),
               "4:1: the matrix has 1 row, but 'rifs r' has 2 maps\n");
-    EXPECT_EQ(complaints(two_maps("follow matrix {\n0 1\n1\n}")),
+    EXPECT_EQ(messages_of(two_maps("follow matrix {\n0 1\n1\n}")),
               "6:1: row 2 of the matrix has 1 entry, but 'rifs r' has 2 maps\n");
-    EXPECT_EQ(complaints(two_maps("follow matrix {\n0 -1\n1 2\n}")),
+    EXPECT_EQ(messages_of(two_maps("follow matrix {\n0 -1\n1 2\n}")),
               "5:3: an entry must lie between 0 and 1, not -1\n"
               "6:3: an entry must lie between 0 and 1, not 2\n");
-    EXPECT_EQ(complaints(two_maps("follow matrix {\n0 1\n.5 .4\n}")),
+    EXPECT_EQ(messages_of(two_maps("follow matrix {\n0 1\n.5 .4\n}")),
               "w 6:1: the probabilities of row 2 do not add up to 1\n");
 }
 
 TEST(LowerRifs, mapsThatCannotBe) {
-    EXPECT_EQ(complaints("rifs r { codes 2d {\n 0 0 0 0 1 2\n 1e200*1e200 0 0 1 0 0\n 1/0 0 0 1 0 0\n} }"),
+    EXPECT_EQ(messages_of("rifs r { codes 2d {\n 0 0 0 0 1 2\n 1e200*1e200 0 0 1 0 0\n 1/0 0 0 1 0 0\n} }"),
               "2:2: this row maps everything to one point\n"
               "3:2: 1e+200 * 1e+200 is not a finite number\n"
               "4:2: division by zero\n");
-    EXPECT_EQ(complaints("rifs r { map a { scale <1/2, 0> } }"),
+    EXPECT_EQ(messages_of("rifs r { map a { scale <1/2, 0> } }"),
               "1:18: this scale is singular: it flattens what it maps\n");
-    EXPECT_EQ(complaints("rifs r { map a { scale 1/2 probability -.1 } codes 2d { 1 0 0 1 0 0 1.5 } }"),
+    EXPECT_EQ(messages_of("rifs r { map a { scale 1/2 probability -.1 } codes 2d { 1 0 0 1 0 0 1.5 } }"),
               "1:40: a probability must lie between 0 and 1, not -0.1\n"
               "1:69: a probability must lie between 0 and 1, not 1.5\n");
     const auto hint = [](const std::string& text) {
@@ -341,17 +342,17 @@ TEST(LowerRifs, mapsThatCannotBe) {
     EXPECT_EQ(
         hint("rifs r { codes 2d {\n.5 0 0 .5 0 0 1\n.5 0 0 .5 1 0 -.2\n} }"),
         "it is the last number of row 2: remove the last number from all rows to choose maps by their size");
-    EXPECT_EQ(complaints("rifs r { codes 2d {\n.5 0 0 .5 0 0 .3\n.5 0 0 .5 1 0 .3\n} }"),
+    EXPECT_EQ(messages_of("rifs r { codes 2d {\n.5 0 0 .5 0 0 .3\n.5 0 0 .5 1 0 .3\n} }"),
               "w 1:6: the probabilities of 'rifs r' add up to 0.6, not 1\n");
-    EXPECT_EQ(complaints("rifs r { codes 2d {\n 0 0 0 .5 0 0\n .5 0 0 .5 0 1\n }\n"
-                         " terminal cylinder projection 1, 0, 0, 0,  0, 0, 0, 0,  0, 0, 0, 0 }"),
+    EXPECT_EQ(messages_of("rifs r { codes 2d {\n 0 0 0 .5 0 0\n .5 0 0 .5 0 1\n }\n"
+                          " terminal cylinder projection 1, 0, 0, 0,  0, 0, 0, 0,  0, 0, 0, 0 }"),
               "5:2: under map 'w1' this vanishes\n");
 }
 
 TEST(LowerRifs, blocksThatCannotBe) {
-    EXPECT_EQ(complaints("rifs r { terminal cube }"), "1:6: 'rifs r' has no maps\n");
-    EXPECT_EQ(complaints("let a = 1"), "1:1: this file has no 'rifs' block\n");
-    EXPECT_EQ(complaints(""), "1:1: this file has no 'rifs' block\n");
+    EXPECT_EQ(messages_of("rifs r { terminal cube }"), "1:6: 'rifs r' has no maps\n");
+    EXPECT_EQ(messages_of("let a = 1"), "1:1: this file has no 'rifs' block\n");
+    EXPECT_EQ(messages_of(""), "1:1: this file has no 'rifs' block\n");
     EXPECT_EQ(
         lower("rifs x {\n map a { scale 1/2 }\n map b from x { scale 1/2 }\n follow a -> b\n}").messages,
         "m.rifs:4:14: error: 'b' takes 'rifs x', so no map of its own block leads to it\n"
@@ -360,13 +361,13 @@ TEST(LowerRifs, blocksThatCannotBe) {
         "m.rifs:3:13: note: given here\n"
         "     map b from x { scale 1/2 }\n"
         "                ^\n");
-    EXPECT_EQ(complaints(two_maps("condense plane")), "2:7: 'a' contains itself and a plane\n");
+    EXPECT_EQ(messages_of(two_maps("condense plane")), "2:7: 'a' contains itself and a plane\n");
 }
 
 TEST(LowerRifs, allErrorsOfAFileAreReportedInOneRun) {
     EXPECT_EQ(
-        complaints("camera { angle: 200 }\nrifs r {\n  map a { scle 1 }\n  map b { scale nope }\n"
-                   "  follow a -> c\n  terminal x\n}\n"),
+        messages_of("camera { angle: 200 }\nrifs r {\n  map a { scle 1 }\n  map b { scale nope }\n"
+                    "  follow a -> c\n  terminal x\n}\n"),
         "3:11: expected a transform, 'tint', 'material', 'probability', 'terminal' or '}', found 'scle'\n"
         "1:17: 'angle' must lie between 0 and 180 degrees, not 200\n"
         "4:17: unknown name 'nope'\n"
@@ -378,7 +379,7 @@ TEST(LowerRifs, tooManyInstancesAreRefusedBeforeTheyAreMade) {
     std::string text = "rifs r { codes 2d {\n";
     for (int row = 0; row < 100'000; ++row)
         text += ".5 0 0 .5 0 0\n";
-    const std::string said = complaints(text + "} }");
+    const std::string said = messages_of(text + "} }");
     EXPECT_EQ(said.substr(0, 5), "1:6: ") << said;
     EXPECT_EQ(std::count(said.begin(), said.end(), '\n'), 1) << said;
 
@@ -388,13 +389,13 @@ TEST(LowerRifs, tooManyInstancesAreRefusedBeforeTheyAreMade) {
     text += "} follow w1 -> w1\n";
     for (int part = 0; part < 1000; ++part)
         text += "condense cube\n";
-    EXPECT_EQ(complaints(text + "}"), "1:6: the model has more than 4000000 instances\n");
+    EXPECT_EQ(messages_of(text + "}"), "1:6: the model has more than 4000000 instances\n");
 
     LowerOptions small;
     small.max_objects = 3;
-    EXPECT_EQ(complaints(two_maps(""), small), "");
+    EXPECT_EQ(messages_of(two_maps(""), small), "");
     small.max_objects = 2;
-    EXPECT_EQ(complaints(two_maps(""), small), "1:6: the model has more than 2 objects\n");
+    EXPECT_EQ(messages_of(two_maps(""), small), "1:6: the model has more than 2 objects\n");
 }
 
 // Chances are made shares of one sum: one at the end of the range would leave it.

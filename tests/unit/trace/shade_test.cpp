@@ -14,7 +14,7 @@ namespace {
 constexpr double inf = std::numeric_limits<double>::infinity();
 constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 
-struct Ball {
+struct LitBall {
     Vec3 centre;
     double radius;
     Rgb rgb;
@@ -31,7 +31,7 @@ struct Wall {
 
 class Scene : public Surfaces {
   public:
-    std::vector<Ball> balls;
+    std::vector<LitBall> balls;
     std::vector<Wall> walls;
     int shadow_rays = 0;
 
@@ -42,7 +42,7 @@ class Scene : public Surfaces {
             rest.most = t;
             hit = {t, normal, rgb, &material};
         };
-        for (const Ball& ball : balls) {
+        for (const LitBall& ball : balls) {
             const Vec3 way = ray.origin - ball.centre;
             const double b = glm::dot(way, ray.direction);
             const double root = std::sqrt(b * b - glm::dot(way, way) + ball.radius * ball.radius);

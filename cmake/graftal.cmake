@@ -3,6 +3,8 @@
 add_library(graftal_flags INTERFACE)
 # Designated initialisers name what differs from the defaults; g++ warns about every member they leave out.
 target_compile_options(graftal_flags INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wno-missing-field-initializers)
+# Tables by kind are switches without default: a kind without a row does not compile.
+target_compile_options(graftal_flags INTERFACE -Werror=switch)
 # g++ 12 warns falsely about "text" + string (GCC bug 105329).
 target_compile_options(graftal_flags INTERFACE
                        $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict;-Wno-stringop-overflow;-Wno-array-bounds>)

@@ -9,11 +9,11 @@
 #include "compiler/analysis/cycle_graph.h"
 #include "compiler/analysis/invariant.h"
 #include "compiler/analysis/outer.h"
-#include "compiler/analysis/primitive_shape.h"
 #include "compiler/analysis/run_bounds.h"
 #include "compiler/analysis/support_query.h"
 #include "compiler/analysis/tight_ball.h"
 #include "compiler/graph/planes.h"
+#include "compiler/primitives/primitive.h"
 #include "compiler/support/check.h"
 
 namespace graftal {
@@ -111,19 +111,20 @@ class Bounder {
         find_ball(id);
     }
 
-    void bound_primitive(ObjectId id, PrimitiveKind kind) {
-        const ObjectBounds bounds = primitive_bounds(kind);
+    void bound_primitive(ObjectId id, const Primitive& primitive) {
+        const ObjectBounds bounds = primitive_bounds(primitive);
         if (bounds.unbounded) return;
         Outer& outer = outers_[id];
         outer.box = bounds.box;
         outer.set_ball(bounds.ball);
         outer.empty = false;
+        const auto support_point = traits_of(primitive).support_point;
         for (int i = 0; i < 3; ++i) {
             Vec3 axis(0.0);
             axis[i] = 1;
-            outer.points[static_cast<std::size_t>(outer.point_count++)] = primitive_support_point(kind, axis);
-            outer.points[static_cast<std::size_t>(outer.point_count++)] =
-                primitive_support_point(kind, -axis);
+            for (const Vec3 direction : {axis, -axis})
+                outer.points[static_cast<std::size_t>(outer.point_count++)] =
+                    support_point(primitive, direction);
         }
     }
 
@@ -204,6 +205,11 @@ class Bounder {
 };
 
 } // namespace
+
+ObjectBounds primitive_bounds(const Primitive& primitive) {
+    const PrimitiveTraits& traits = traits_of(primitive);
+    return {traits.box(primitive), traits.ball(primitive), !traits.bounded, nullptr};
+}
 
 std::vector<ObjectBounds> bound_objects(const Graph& graph, const Components& components,
                                         const Contraction& contraction, std::uint64_t* pieces) {

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <memory>
 #include <vector>
@@ -22,14 +21,8 @@ struct ObjectBounds {
     std::shared_ptr<const RunBounds> run; ///< of an object that has one: of its ranges (run_bounds.h)
 };
 
-/// The box of a canonical primitive (exact), and its smallest ball. A plane has neither.
-ObjectBounds primitive_bounds(PrimitiveKind kind);
-
-/// The corners of the canonical triangle: equilateral, on the unit circle about z, its apex up.
-std::array<Vec3, 3> triangle_corners();
-
-/// The exact support function of a canonical primitive: max of <direction, x> over it. Not for planes.
-double primitive_support(PrimitiveKind kind, Vec3 direction);
+/// The box of a primitive (exact), and its smallest ball. A plane has neither.
+ObjectBounds primitive_bounds(const Primitive& primitive);
 
 /// Bounds by object, masters before their users: ending objects from exact support functions of what they
 /// hold; unending ones by best-first support functions over balls that are first made invariant in the

@@ -8,7 +8,6 @@
 #include <glm/geometric.hpp>
 
 #include "compiler/analysis/smallest_ball.h"
-#include "compiler/graph/graph.h"
 
 namespace graftal {
 
@@ -19,7 +18,7 @@ constexpr double rounding = 4e-15;
 
 /// The radius at the far end.
 double far_radius(const RunItem& item) {
-    return item.ball ? item.radius : top_radius(item.kind) * item.radius;
+    return item.ball ? item.radius : item.shape.top_radius() * item.radius;
 }
 
 Vec3 far_end(const RunItem& item) {
@@ -37,7 +36,7 @@ Vec3 rim_point(Vec3 centre, double radius, Vec3 y, Vec3 direction) {
 Vec3 support_point_of(const RunItem& item, Vec3 direction) {
     const double length = glm::length(direction);
     const Vec3 ahead = length > 0 ? direction / length : Vec3(0, 1, 0);
-    if (item.kind == PrimitiveKind::sphere) return item.base + item.radius * ahead;
+    if (item.shape.is_sphere()) return item.base + item.radius * ahead;
     const double axis_length = glm::length(item.axis);
     const Vec3 y = axis_length > 0 ? item.axis / axis_length : Vec3(0, 1, 0);
     const Vec3 near_point = rim_point(item.base, item.radius, y, direction);
@@ -48,7 +47,7 @@ Vec3 support_point_of(const RunItem& item, Vec3 direction) {
 
 /// The same for the distance from `centre`.
 Vec3 farthest_point_of(const RunItem& item, Vec3 centre) {
-    if (item.kind == PrimitiveKind::sphere) return support_point_of(item, item.base - centre);
+    if (item.shape.is_sphere()) return support_point_of(item, item.base - centre);
     const double axis_length = glm::length(item.axis);
     const Vec3 y = axis_length > 0 ? item.axis / axis_length : Vec3(0, 1, 0);
     const Vec3 end = far_end(item), from_end = end - centre;
@@ -75,13 +74,13 @@ double farthest_of(const Box& box, Vec3 centre) {
 Box box_of(const RunItem& item) {
     Vec3 near_reach(item.radius), far_reach(0.0);
     Vec3 end = item.base;
-    if (item.kind != PrimitiveKind::sphere) {
+    if (!item.shape.is_sphere()) {
         const double square = glm::dot(item.axis, item.axis);
         const Vec3 y = square > 0 ? item.axis / std::sqrt(square) : Vec3(0, 1, 0);
         for (int i = 0; i < 3; ++i)
             near_reach[i] = item.radius * std::sqrt(std::max(0.0, 1 - y[i] * y[i]));
         end = far_end(item);
-        far_reach = item.ball ? Vec3(item.radius) : top_radius(item.kind) * near_reach;
+        far_reach = item.ball ? Vec3(item.radius) : item.shape.top_radius() * near_reach;
     } else {
         far_reach = near_reach;
     }

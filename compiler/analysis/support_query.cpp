@@ -9,8 +9,8 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
-#include "compiler/analysis/primitive_shape.h"
 #include "compiler/analysis/run_bounds.h"
+#include "compiler/primitives/primitive.h"
 
 namespace graftal {
 
@@ -75,8 +75,8 @@ void SupportSearch::expand(std::uint32_t parent) {
         piece.offset = from.offset + (shift.x + shift.y + shift.z);
         magnitude_ = std::max(magnitude_, std::abs(from.offset) + std::abs(shift.x) + std::abs(shift.y) +
                                               std::abs(shift.z));
-        const std::optional<PrimitiveKind> primitive = graph_.objects[instance.master].primitive;
-        const Vec3 point = primitive   ? primitive_support_point(*primitive, piece.direction)
+        const std::optional<Primitive>& primitive = graph_.objects[instance.master].primitive;
+        const Vec3 point = primitive   ? traits_of(*primitive).support_point(*primitive, piece.direction)
                            : outer.run ? outer.run->support_point(piece.direction)
                                        : outer.farthest_point(piece.direction);
         const double reached = piece.offset + glm::dot(piece.direction, point);

@@ -9,7 +9,7 @@
 
 #include "compiler/analysis/bounding.h"
 #include "compiler/analysis/smallest_ball.h"
-#include "compiler/support/check.h"
+#include "compiler/primitives/primitive.h"
 
 namespace graftal {
 
@@ -81,10 +81,13 @@ class Pieces {
     void add_point(Vec3 at) { add({at, 0}, {}); }
 
     /// The ball about a disc, which sticks out of its plane.
-    void add_disc(const Affine& place) {
+    void add_disc(const Affine& place, double thickness) {
         Mat3 flat = place.linear;
         flat[1] = Vec3(0.0);
-        add({place.translation, norm(flat)}, {Origin::Kind::disc, 0, place});
+        if (thickness > 0)
+            add({place.translation, norm(flat) + thickness}, {});
+        else
+            add({place.translation, norm(flat)}, {Origin::Kind::disc, 0, place});
     }
 
     void split(const Origin& origin) {
@@ -107,43 +110,15 @@ class Pieces {
     }
 
     /// Into things whose hull holds it.
-    void split_primitive(const Affine& place, PrimitiveKind kind) {
-        switch (family_of(kind)) {
-        case PrimitiveKind::triangle:
-            for (const Vec3& corner : triangle_corners())
-                add_point(place(corner));
-            return;
-        case PrimitiveKind::sphere:
-            add({place.translation, norm(place.linear)}, {});
-            return;
-        case PrimitiveKind::cube:
-            for (const double x : {-1, 1})
-                for (const double y : {-1, 1})
-                    for (const double z : {-1, 1})
-                        add_point(place(Vec3(x, y, z)));
-            return;
-        case PrimitiveKind::cylinder:
-            add_disc(place);
-            add_disc(place * Affine::translate({0, 1, 0}));
-            return;
-        case PrimitiveKind::frustum:
-            add_disc(place);
-            add_disc(place * Affine::translate({0, 1, 0}) * Affine::scale(Vec3(top_radius(kind))));
-            return;
-        case PrimitiveKind::cone:
-            add_disc(place);
-            add_point(place(Vec3(0, 1, 0)));
-            return;
-        case PrimitiveKind::torus: {
-            Mat3 flat = place.linear;
-            flat[1] = Vec3(0.0);
-            add({place.translation, norm(flat) + 0.25 * norm(place.linear)}, {});
-            return;
+    void split_primitive(const Affine& place, const Primitive& primitive) {
+        for (const HullPiece& piece : traits_of(primitive).hull(primitive)) {
+            const Affine inner = place * piece.place;
+            const double thickness = piece.thickness > 0 ? piece.thickness * norm(place.linear) : 0;
+            if (piece.kind == HullPiece::Kind::disc)
+                add_disc(inner, thickness);
+            else
+                add({inner.translation, thickness}, {});
         }
-        case PrimitiveKind::plane:
-            break;
-        }
-        GRAFTAL_CHECK(kind != PrimitiveKind::plane, "a plane has no ball");
     }
 
     const Graph& graph_;

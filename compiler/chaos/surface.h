@@ -21,11 +21,11 @@ class RandomStream {
     std::uint64_t count_ = 0;
 };
 
-/// The image of a canonical primitive under an affine map, as a set to take random points of: evenly over its
+/// The image of a primitive under an affine map, as a set to take random points of: evenly over its
 /// surface, however the map stretches it. Requires a primitive that is bounded: no plane.
 class PlacedSurface {
   public:
-    PlacedSurface(PrimitiveKind kind, const Affine& world_from_primitive);
+    PlacedSurface(const Primitive& primitive, const Affine& world_from_primitive);
 
     /// The area of the image, to some per cent where the map bends a curved surface out of shape, else exact.
     double area() const { return area_; }
@@ -33,7 +33,7 @@ class PlacedSurface {
     Vec3 point(RandomStream& random) const;
 
   private:
-    PrimitiveKind kind_;
+    Primitive primitive_;
     Affine map_;
     Mat3 cofactors_;     ///< turn a normal into the image's, as long as area grows there
     double most_growth_; ///< of area, anywhere on the surface

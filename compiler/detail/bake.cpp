@@ -17,10 +17,11 @@
 #include "compiler/detail/least_width.h"
 #include "compiler/detail/mesh_builder.h"
 #include "compiler/detail/placed_set.h"
+#include "compiler/detail/primitive_numbers.h"
 #include "compiler/detail/shell.h"
 #include "compiler/detail/slot_table.h"
-#include "compiler/detail/tessellate.h"
-#include "compiler/detail/texture_space.h"
+#include "compiler/primitives/tessellate.h"
+#include "compiler/primitives/texture_space.h"
 #include "compiler/support/check.h"
 #include "compiler/support/stretch.h"
 
@@ -37,7 +38,7 @@ constexpr std::size_t fewest_leaves_for_a_thread = 10'000;
 
 struct KeptLeaf {
     Affine place;
-    PrimitiveKind kind = PrimitiveKind::sphere;
+    std::uint32_t primitive = 0; ///< by Baker::primitives_
     NormalField normals;
     double turns = 1;
 };
@@ -144,17 +145,18 @@ class Baker {
             }
             Affine mark;
             const Affine place = drawn(leaf, mark);
-            if (!seen.insert(static_cast<std::uint32_t>(leaf.kind), mark)) continue;
+            const std::uint32_t primitive = primitives_.of(leaf.primitive);
+            if (!seen.insert(primitive, mark)) continue;
             const auto [place_of_part, added] = part_of_.emplace(key_of(leaf), parts_.size());
             if (added) add_part(leaf);
             BakedPart& part = parts_[place_of_part->second];
-            const TessellatedPrimitive& coarsest = tessellated(leaf.kind, 0);
+            const TessellatedPrimitive& coarsest = tessellated(leaf.primitive, 0);
             part.smooth = part.smooth || part.textured || !coarsest.normals.empty();
-            part.leaves.push_back({place, leaf.kind, leaf.normals, leaf.turns});
+            part.leaves.push_back({place, primitive, leaf.normals, leaf.turns});
             numbers_.push_back(number);
             baked_.culled_detail = std::max(baked_.culled_detail, leaf.culled_detail);
-            // Of a cube no face may be left where others touch it; it counts when the mesh is built.
-            triangles += leaf.kind == PrimitiveKind::cube ? 1 : coarsest.triangles.size();
+            // Of a solid no face may be left where others touch it; it counts when the mesh is built.
+            triangles += traits_of(leaf.primitive).solid ? 1 : coarsest.triangles.size();
             if (triangles > max_triangles_) {
                 baked_.complete = false;
                 return;
@@ -171,7 +173,7 @@ class Baker {
         ++widened_;
         const Affine seen_from_unit{culls ? request_.half_widths_from_unit : Mat3(1.0), Vec3(0.0)};
         const Affine seen = seen_from_unit * place;
-        const auto [wide, half_width] = drawn_leaf(leaf.kind, seen, leaf.faint, culls ? 1 : 0);
+        const auto [wide, half_width] = drawn_leaf(leaf.primitive, seen, leaf.faint, culls ? 1 : 0);
         if (!(half_width > 0)) return mark = place;
         const Affine unit_from_seen = inverse(seen_from_unit);
         // What a singular map crushes onto a line or a sheet piles up there, and specks do: one leaf a cell
@@ -229,17 +231,18 @@ class Baker {
         const Affine body_from_representative = inverse(baked_.representative_from_body);
         for (std::uint32_t number = 0; number < part.leaves.size(); ++number) {
             const KeptLeaf& leaf = part.leaves[number];
-            const int level = fineness(leaf);
+            const Primitive& primitive = primitives_[leaf.primitive];
+            const int level = fineness(primitive, leaf);
             Affine place = body_from_representative * leaf.place;
             if (part.textured) {
                 const double around = cut_.materials[*part.material].around;
-                builder.add_textured(leaf.kind, level, place, texture_space(leaf.kind, around, leaf.turns),
+                builder.add_textured(primitive, level, place, texture_space(primitive, around, leaf.turns),
                                      number);
                 if (too_many(builder)) return;
                 continue;
             }
-            if (leaf.kind == PrimitiveKind::sphere && level == 0) place = place * spread_turn(number);
-            builder.add(leaf.kind, level, place, number,
+            if (primitive == PrimitiveKind::sphere && level == 0) place = place * spread_turn(number);
+            builder.add(primitive, level, place, number,
                         leaf.normals.seen_from(baked_.representative_from_body.linear[0][0],
                                                baked_.representative_from_body.translation));
             if (too_many(builder)) return;
@@ -273,12 +276,12 @@ class Baker {
         baked_.parts.push_back({part.material, std::move(part.mesh), part.slots.take_palettes(), false, {}});
     }
 
-    int fineness(const KeptLeaf& leaf) {
-        if (max_fineness(leaf.kind) == 0) return 0;
+    int fineness(const Primitive& primitive, const KeptLeaf& leaf) {
+        if (max_fineness(primitive) == 0) return 0;
         const double px = norm(leaf.place.linear) * request_.pixels_per_unit;
         const double error_px = request_.pixels_per_unit / request_.detail_per_unit;
-        const int level = fineness_for(leaf.kind, tessellation_tolerance(error_px) / std::max(px, 1e-300));
-        baked_.tessellation_px = std::max(baked_.tessellation_px, px * tessellation_error(leaf.kind, level));
+        const int level = fineness_for(primitive, tessellation_tolerance(error_px) / std::max(px, 1e-300));
+        baked_.tessellation_px = std::max(baked_.tessellation_px, px * tessellation_error(primitive, level));
         return level;
     }
 
@@ -287,6 +290,7 @@ class Baker {
     const BakeRequest& request_;
     std::size_t max_triangles_;
     std::uint64_t widened_ = 0; ///< leaves
+    PrimitiveNumbers primitives_;
     Baked baked_;
     std::vector<BakedPart> parts_;
     std::map<PartKey, std::size_t> part_of_;

@@ -99,26 +99,26 @@ class Builder {
         auto source = std::make_shared<RunSource>();
         source->run = object.run;
         source->materials = object.run_materials;
-        std::array<bool, primitive_kind_count> met{};
+        std::array<bool, RunShape::count> met{};
         for (std::size_t i = 0; i < object.run->size(); ++i) {
             const RunItem& item = (*object.run)[i];
-            for (const PrimitiveKind kind : {item.kind, item.ball ? PrimitiveKind::sphere : item.kind}) {
-                if (std::exchange(met[static_cast<std::size_t>(kind)], true)) continue;
-                source->child[static_cast<std::size_t>(kind)] = primitive_node(kind);
+            for (const RunShape shape : {item.shape, item.ball ? PrimitiveKind::sphere : item.shape}) {
+                if (std::exchange(met[shape.index()], true)) continue;
+                source->child[shape.index()] = primitive_node(shape.primitive());
             }
         }
         add_run_nodes(cut_, node, source, bounds);
     }
 
-    NodeId primitive_node(PrimitiveKind kind) {
+    NodeId primitive_node(const Primitive& primitive) {
         for (ObjectId id = 0; id < graph_.objects.size(); ++id)
-            if (graph_.objects[id].primitive == kind) return id;
+            if (graph_.objects[id].primitive == primitive) return id;
         for (auto id = static_cast<NodeId>(graph_.objects.size()); id < cut_.nodes.size(); ++id)
-            if (cut_.nodes[id].primitive == kind) return id;
-        const ObjectBounds bounds = primitive_bounds(kind);
+            if (cut_.nodes[id].primitive == primitive) return id;
+        const ObjectBounds bounds = primitive_bounds(primitive);
         CutNode node;
-        node.name = name_of(kind);
-        node.primitive = kind;
+        node.name = name_of(primitive);
+        node.primitive = primitive;
         node.cullable = false;
         node.ball = bounds.ball;
         node.node_from_proxy = ellipsoid_in(bounds.box);

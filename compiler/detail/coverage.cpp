@@ -113,7 +113,7 @@ class Measurer {
 
   private:
     struct Body {
-        PrimitiveKind kind = PrimitiveKind::sphere;
+        Primitive primitive = PrimitiveKind::sphere;
         Affine place;
         Vec3 centre{0.0};
     };
@@ -161,9 +161,9 @@ class Measurer {
         bodies_.clear();
         for (const Part& part : parts_) {
             const CutNode& node = cut_.nodes[part.node];
-            const PrimitiveKind kind = node.primitive.value_or(PrimitiveKind::sphere);
+            const Primitive primitive = node.primitive.value_or(PrimitiveKind::sphere);
             bodies_.push_back(
-                {kind,
+                {primitive,
                  node.primitive ? part.place * solid_part(node, part) : part.place * node.node_from_proxy,
                  part.place(node.primitive ? node.ball.centre : node.node_from_proxy.translation)});
         }
@@ -187,8 +187,8 @@ class Measurer {
         std::sort(order_.begin(), order_.end());
         double area = 0, samples = 0, uncovered = 0;
         for (const auto& [depth, i] : order_) {
-            if (bodies_[i].kind == PrimitiveKind::plane) continue;
-            const Shadow::Cover cover = shadow.draw(bodies_[i].kind, bodies_[i].place);
+            if (bodies_[i].primitive == PrimitiveKind::plane) continue;
+            const Shadow::Cover cover = shadow.draw(bodies_[i].primitive, bodies_[i].place);
             area += cover.area;
             samples += cover.samples;
             uncovered += cover.uncovered;

@@ -39,7 +39,7 @@ struct RunCell;
 /// An object as the cut sees it.
 struct CutNode {
     std::string name;
-    std::optional<PrimitiveKind> primitive;
+    std::optional<Primitive> primitive;
     std::vector<CutEdge> edges;
     std::vector<CutEdge> stop_edges; ///< drawn in place of the edges where the node is cut; if empty: proxy
     std::shared_ptr<const RunCell> cell; ///< in place of edges: see for_each_edge() (run_cells.h)

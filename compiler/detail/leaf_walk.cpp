@@ -5,7 +5,7 @@
 #include "compiler/detail/piece.h"
 #include "compiler/detail/piece_kind.h"
 #include "compiler/detail/run_cells.h"
-#include "compiler/detail/texture_space.h"
+#include "compiler/primitives/texture_space.h"
 
 namespace graftal {
 
@@ -44,7 +44,7 @@ bool LeafWalk::next(WalkedLeaf& leaf) {
         leaf.tint = paints_.front().tint;
         leaf.turns = visit_.turns;
         if (shape.primitive) {
-            leaf.kind = *shape.primitive;
+            leaf.primitive = *shape.primitive;
             leaf.representative_from_leaf = visit_.representative_from_node;
             for (const Paint& paint : paints_)
                 leaf.colours.push_back(paint.tint.over(paint.inherited));
@@ -53,7 +53,7 @@ bool LeafWalk::next(WalkedLeaf& leaf) {
         const double detail = 2 * shape.ball.radius * visit_.scale * detail_per_unit_;
         const bool cut = is_cut(shape, visit_.steps, detail, error_px_);
         if (followed_edges(shape, cut).empty() && (cut || !shape.cell)) {
-            leaf.kind = PrimitiveKind::sphere;
+            leaf.primitive = PrimitiveKind::sphere;
             leaf.representative_from_leaf = visit_.representative_from_node * shape.node_from_proxy;
             for (const Paint& paint : paints_)
                 leaf.colours.push_back(paint.tint.over(colours_of(paint).mean.over(paint.inherited)));

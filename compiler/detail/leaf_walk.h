@@ -14,7 +14,7 @@ namespace graftal {
 
 /// One leaf met by a LeafWalk.
 struct WalkedLeaf {
-    PrimitiveKind kind = PrimitiveKind::sphere;
+    Primitive primitive = PrimitiveKind::sphere;
     Affine representative_from_leaf;
     std::vector<Rgb> colours;           ///< by painter; opaque, all tints of the walk in front
     std::optional<MaterialId> material; ///< by the first painter

@@ -10,28 +10,15 @@
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 
-#include "compiler/analysis/bounding.h"
+#include "compiler/primitives/primitive.h"
 #include "compiler/support/stretch.h"
 
 namespace graftal {
 
 namespace {
 
-const Ball& ball_of(PrimitiveKind kind) {
-    static const std::array<Ball, primitive_kind_count> balls = [] {
-        std::array<Ball, primitive_kind_count> all;
-        for (std::size_t i = 0; i < all.size(); ++i)
-            all[i] = primitive_bounds(static_cast<PrimitiveKind>(i)).ball;
-        return all;
-    }();
-    return balls[static_cast<std::size_t>(kind)];
-}
-
-/// Of the largest ball or disc in a primitive, or nearly.
-double inner_radius(PrimitiveKind kind) {
-    const bool small =
-        kind != PrimitiveKind::sphere && kind != PrimitiveKind::cube && kind != PrimitiveKind::torus;
-    return small ? 0.5 : 1;
+double inner_radius(const Primitive& primitive) {
+    return traits_of(primitive).inner_radius(primitive);
 }
 
 bool has_right_angles(const Mat3& m) {
@@ -125,12 +112,12 @@ double half_width_needed(const Affine& place, bool faint, double half_width, Fla
     return line ? half_width : std::min(half_width, thickest_share * sigma.x);
 }
 
-Affine widened(PrimitiveKind kind, const Affine& place, double radius, FlatOnce& flat_once) {
+Affine widened(const Primitive& primitive, const Affine& place, double radius, FlatOnce& flat_once) {
     if (!(radius > 0)) return place;
-    const double half_width = radius / inner_radius(kind);
+    const double half_width = radius / inner_radius(primitive);
     // A ball is one whichever way it is turned. What is culled is smaller, so that this is most of what is
     // widened.
-    if (kind == PrimitiveKind::sphere && squared_entries(place.linear) <= half_width * half_width)
+    if (primitive == PrimitiveKind::sphere && squared_entries(place.linear) <= half_width * half_width)
         return {Mat3(half_width), place.translation};
     Affine result = place;
     if (has_right_angles(place.linear)) // the columns are the half axes
@@ -138,7 +125,7 @@ Affine widened(PrimitiveKind kind, const Affine& place, double radius, FlatOnce&
             result.linear[i] *= std::max(1.0, half_width / glm::length(place.linear[i]));
     else
         result.linear = widened(place.linear, half_width, flat_once);
-    const Vec3 middle = ball_of(kind).centre;
+    const Vec3 middle = traits_of(primitive).ball(primitive).centre;
     result.translation = place(middle) - result.linear * middle;
     return result;
 }
@@ -150,25 +137,25 @@ double half_width_needed(const Affine& place, bool faint, double half_width) {
     return half_width_needed(place, faint, half_width, flat);
 }
 
-Affine widened(PrimitiveKind kind, const Affine& place, double radius) {
+Affine widened(const Primitive& primitive, const Affine& place, double radius) {
     FlatOnce flat(place.linear);
-    return widened(kind, place, radius, flat);
+    return widened(primitive, place, radius, flat);
 }
 
-DrawnLeaf drawn_leaf(PrimitiveKind kind, const Affine& place, bool faint, double half_width) {
+DrawnLeaf drawn_leaf(const Primitive& primitive, const Affine& place, bool faint, double half_width) {
     FlatOnce flat(place.linear);
     const double needed = half_width_needed(place, faint, half_width, flat);
-    return {widened(kind, place, needed, flat), needed};
+    return {widened(primitive, place, needed, flat), needed};
 }
 
-Ball widened_ball(PrimitiveKind kind, const Affine& place, double radius) {
-    const Ball& ball = ball_of(kind);
+Ball widened_ball(const Primitive& primitive, const Affine& place, double radius) {
+    const Ball ball = traits_of(primitive).ball(primitive);
     const double stretch = most_stretch(place.linear);
-    return {place(ball.centre), ball.radius * std::max(stretch, radius / inner_radius(kind))};
+    return {place(ball.centre), ball.radius * std::max(stretch, radius / inner_radius(primitive))};
 }
 
-double widened_reach(PrimitiveKind kind) {
-    return ball_of(kind).radius / inner_radius(kind);
+double widened_reach(const Primitive& primitive) {
+    return traits_of(primitive).ball(primitive).radius / inner_radius(primitive);
 }
 
 Affine speck_mark(const Affine& place, double half_width) {

@@ -1,6 +1,7 @@
 #pragma once
 
-#include "compiler/graph/graph.h"
+#include "compiler/graph/primitive.h"
+#include "compiler/support/affine.h"
 #include "compiler/support/bounds.h"
 
 namespace graftal {
@@ -25,14 +26,14 @@ double half_width_needed(const Affine& place, bool faint, double half_width);
 
 /// The image of a primitive about the same middle, longer along its half axes where it would not hold a ball
 /// of this radius. Requires another kind than plane.
-Affine widened(PrimitiveKind kind, const Affine& place, double radius);
+Affine widened(const Primitive& primitive, const Affine& place, double radius);
 
 /// Holds the primitive as widened() places it, for a half width that was needed.
-Ball widened_ball(PrimitiveKind kind, const Affine& place, double radius);
+Ball widened_ball(const Primitive& primitive, const Affine& place, double radius);
 
 /// How many half widths a part may reach from its middle that is widened in all directions: a ball one, the
 /// corners of others more.
-double widened_reach(PrimitiveKind kind);
+double widened_reach(const Primitive& primitive);
 
 /// The same for all widened leaves of which one will do: in one cell of half a half width, of one size to a
 /// factor of 2.
@@ -45,6 +46,6 @@ struct DrawnLeaf {
 };
 
 /// The same as asking these two, and what both must know of the map is found out once.
-DrawnLeaf drawn_leaf(PrimitiveKind kind, const Affine& place, bool faint, double half_width);
+DrawnLeaf drawn_leaf(const Primitive& primitive, const Affine& place, bool faint, double half_width);
 
 } // namespace graftal

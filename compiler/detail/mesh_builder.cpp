@@ -6,38 +6,29 @@
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 
-#include "compiler/detail/tessellate.h"
+#include "compiler/primitives/primitive_cache.h"
+#include "compiler/primitives/tessellate.h"
 #include "compiler/support/check.h"
 
 namespace graftal {
 
 namespace {
 
-/// The cube's.
-constexpr std::size_t most_flat_vertices = 8;
 /// So many facets are compared with each other before they are compared with all.
 constexpr std::size_t most_latest_facets = 16384;
 
-using FacetCorners = std::array<std::uint32_t, 4>; ///< a triangle's last is Facet::no_corner
+/// The facets of a flat primitive, and the same seen in a mirror.
+using FacetSides = std::array<std::vector<FacetCorners>, 2>;
 
-/// The facets of a flat primitive, counter-clockwise seen from outside, over the corners that tessellated()
-/// has; four-cornered ones are cut from the first to the third corner, as there.
-std::vector<FacetCorners> facets_of(PrimitiveKind kind) {
-    if (kind == PrimitiveKind::triangle) return {{0, 1, 2, Facet::no_corner}};
-    std::vector<FacetCorners> quads;
-    for (std::uint32_t axis = 0; axis < 3; ++axis) {
-        const std::uint32_t u = 1u << (axis + 1) % 3, v = 1u << (axis + 2) % 3, w = 1u << axis;
-        quads.push_back({w, w | u, w | u | v, w | v});
-        quads.push_back({0, v, u | v, u});
-    }
-    return quads;
-}
-
-/// The same, seen in a mirror.
-std::vector<FacetCorners> turned_over(std::vector<FacetCorners> facets) {
-    for (FacetCorners& c : facets)
-        std::swap(c[1], c[c[3] == Facet::no_corner ? 2 : 3]);
-    return facets;
+const FacetSides& facet_sides(const Primitive& primitive) {
+    static PrimitiveCache<FacetSides> sides;
+    return sides.get(primitive, [&] {
+        FacetSides both;
+        both[0] = both[1] = traits_of(primitive).facets(primitive);
+        for (FacetCorners& c : both[1])
+            std::swap(c[1], c[c[3] == no_facet_corner ? 2 : 3]);
+        return both;
+    });
 }
 
 /// Of unit length, where the sum has a direction.
@@ -59,22 +50,22 @@ Mat3 normals_by(const Mat3& linear) {
 
 } // namespace
 
-void MeshBuilder::add(PrimitiveKind kind, int fineness, const Affine& body_from_leaf, std::uint32_t leaf,
-                      const NormalField& normals) {
+void MeshBuilder::add(const Primitive& primitive, int fineness, const Affine& body_from_leaf,
+                      std::uint32_t leaf, const NormalField& normals) {
     const bool mirrored = glm::determinant(body_from_leaf.linear) < 0;
-    const bool curved = !tessellated(kind, fineness).normals.empty();
+    const bool curved = !tessellated(primitive, fineness).normals.empty();
     GRAFTAL_CHECK(smooth_ || !curved, "curved primitive in a flat mesh");
     if (curved)
-        add_smooth(kind, fineness, body_from_leaf, leaf, normals);
+        add_smooth(primitive, fineness, body_from_leaf, leaf, normals);
     else if (smooth_)
-        add_facets(kind, body_from_leaf, mirrored, leaf);
+        add_facets(primitive, body_from_leaf, mirrored, leaf);
     else
-        add_flat(kind, body_from_leaf, mirrored, leaf);
+        add_flat(primitive, body_from_leaf, mirrored, leaf);
 }
 
-void MeshBuilder::add_smooth(PrimitiveKind kind, int fineness, const Affine& body_from_leaf,
+void MeshBuilder::add_smooth(const Primitive& primitive, int fineness, const Affine& body_from_leaf,
                              std::uint32_t leaf, const NormalField& normals) {
-    const TessellatedPrimitive& shape = tessellated(kind, fineness);
+    const TessellatedPrimitive& shape = tessellated(primitive, fineness);
     const Mat3 normal_map = normals_by(body_from_leaf.linear);
     const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
     for (std::size_t i = 0; i < shape.vertices.size(); ++i) {
@@ -86,16 +77,16 @@ void MeshBuilder::add_smooth(PrimitiveKind kind, int fineness, const Affine& bod
         push({first + t[0], first + t[1], first + t[2]}, leaf);
 }
 
-void MeshBuilder::add_textured(PrimitiveKind kind, int fineness, const Affine& body_from_leaf,
+void MeshBuilder::add_textured(const Primitive& primitive, int fineness, const Affine& body_from_leaf,
                                const TextureSpace& space, std::uint32_t leaf) {
     GRAFTAL_CHECK(smooth_, "texture in a flat mesh");
-    const TessellatedPrimitive& shape = tessellated(kind, fineness);
+    const TessellatedPrimitive& shape = tessellated(primitive, fineness);
     const Mat3 normal_map = normals_by(body_from_leaf.linear);
     for (const auto& triangle : shape.triangles) {
         std::array<Vec3, 3> corner;
         for (std::size_t k = 0; k < 3; ++k)
             corner[k] = shape.vertices[triangle[k]];
-        for (const auto& uv : texture_coordinates(kind, space, corner))
+        for (const auto& uv : texture_coordinates(primitive, space, corner))
             mesh.uv.push_back(uv);
         const Vec3 facet = glm::cross(corner[1] - corner[0], corner[2] - corner[0]);
         const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
@@ -108,9 +99,9 @@ void MeshBuilder::add_textured(PrimitiveKind kind, int fineness, const Affine& b
     }
 }
 
-void MeshBuilder::add_facets(PrimitiveKind kind, const Affine& body_from_leaf, bool mirrored,
+void MeshBuilder::add_facets(const Primitive& primitive, const Affine& body_from_leaf, bool mirrored,
                              std::uint32_t leaf) {
-    const TessellatedPrimitive& shape = tessellated(kind, 0);
+    const TessellatedPrimitive& shape = tessellated(primitive, 0);
     for (const auto& triangle : shape.triangles) {
         std::array<Vec3, 3> corner;
         for (int k = 0; k < 3; ++k)
@@ -127,23 +118,17 @@ void MeshBuilder::add_facets(PrimitiveKind kind, const Affine& body_from_leaf, b
     }
 }
 
-void MeshBuilder::add_flat(PrimitiveKind kind, const Affine& body_from_leaf, bool mirrored,
+void MeshBuilder::add_flat(const Primitive& primitive, const Affine& body_from_leaf, bool mirrored,
                            std::uint32_t leaf) {
-    static const std::array triangle_facets = {facets_of(PrimitiveKind::triangle),
-                                               turned_over(facets_of(PrimitiveKind::triangle))};
-    static const std::array cube_facets = {facets_of(PrimitiveKind::cube),
-                                           turned_over(facets_of(PrimitiveKind::cube))};
-    const bool solid = kind == PrimitiveKind::cube;
-    const TessellatedPrimitive& shape = tessellated(kind, 0);
-    std::array<std::uint32_t, most_flat_vertices> index;
-    GRAFTAL_CHECK(shape.vertices.size() <= index.size(), name_of(kind));
-    for (std::size_t i = 0; i < shape.vertices.size(); ++i)
-        index[i] = latest_.vertex(body_from_leaf(shape.vertices[i]));
-    for (const FacetCorners& c : (solid ? cube_facets : triangle_facets)[mirrored])
-        latest_.add({.corners = {index[c[0]], index[c[1]], index[c[2]],
-                                 c[3] == Facet::no_corner ? Facet::no_corner : index[c[3]]},
+    const TessellatedPrimitive& shape = tessellated(primitive, 0);
+    index_.clear();
+    for (const Vec3& vertex : shape.vertices)
+        index_.push_back(latest_.vertex(body_from_leaf(vertex)));
+    for (const FacetCorners& c : facet_sides(primitive)[mirrored])
+        latest_.add({.corners = {index_[c[0]], index_[c[1]], index_[c[2]],
+                                 c[3] == no_facet_corner ? Facet::no_corner : index_[c[3]]},
                      .leaf = leaf,
-                     .solid = solid});
+                     .solid = traits_of(primitive).solid});
     if (latest_.facets().size() > most_latest_facets) latest_.move_to(all_);
 }
 

@@ -8,7 +8,7 @@
 #include "compiler/detail/facet_set.h"
 #include "compiler/detail/limit_normal.h"
 #include "compiler/detail/mesh.h"
-#include "compiler/detail/texture_space.h"
+#include "compiler/primitives/texture_space.h"
 
 namespace graftal {
 
@@ -22,11 +22,11 @@ class MeshBuilder {
 
     /// Adds a primitive, meshed at the fineness, placed by a regular map. `leaf` is the caller's number.
     /// What is curved has its own normals, with the field's added to them.
-    void add(PrimitiveKind kind, int fineness, const Affine& body_from_leaf, std::uint32_t leaf,
+    void add(const Primitive& primitive, int fineness, const Affine& body_from_leaf, std::uint32_t leaf,
              const NormalField& normals = {});
 
     /// The same in a smooth mesh, with texture coordinates; each triangle has corners of its own.
-    void add_textured(PrimitiveKind kind, int fineness, const Affine& body_from_leaf,
+    void add_textured(const Primitive& primitive, int fineness, const Affine& body_from_leaf,
                       const TextureSpace& space, std::uint32_t leaf);
 
     /// Makes the triangles of the faces that are seen. Call once, after the last add().
@@ -39,10 +39,12 @@ class MeshBuilder {
     std::vector<std::uint32_t> leaf_of_triangle;
 
   private:
-    void add_smooth(PrimitiveKind kind, int fineness, const Affine& body_from_leaf, std::uint32_t leaf,
-                    const NormalField& normals);
-    void add_facets(PrimitiveKind kind, const Affine& body_from_leaf, bool mirrored, std::uint32_t leaf);
-    void add_flat(PrimitiveKind kind, const Affine& body_from_leaf, bool mirrored, std::uint32_t leaf);
+    void add_smooth(const Primitive& primitive, int fineness, const Affine& body_from_leaf,
+                    std::uint32_t leaf, const NormalField& normals);
+    void add_facets(const Primitive& primitive, const Affine& body_from_leaf, bool mirrored,
+                    std::uint32_t leaf);
+    void add_flat(const Primitive& primitive, const Affine& body_from_leaf, bool mirrored,
+                  std::uint32_t leaf);
     void push(const std::array<std::uint32_t, 3>& corners, std::uint32_t leaf);
     std::uint32_t used(std::uint32_t vertex);
 
@@ -52,6 +54,7 @@ class MeshBuilder {
     FacetSet latest_;
     FacetSet all_;
     std::vector<std::uint32_t> used_;
+    std::vector<std::uint32_t> index_; ///< of a primitive's vertices; kept for its memory
 };
 
 } // namespace graftal

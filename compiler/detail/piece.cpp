@@ -3,8 +3,8 @@
 #include <limits>
 
 #include "compiler/detail/run_cells.h"
-#include "compiler/detail/texture_space.h"
 #include "compiler/graph/walk.h"
+#include "compiler/primitives/texture_space.h"
 
 namespace graftal {
 

@@ -9,8 +9,8 @@
 #include <glm/geometric.hpp>
 
 #include "compiler/detail/run_cells.h"
-#include "compiler/detail/surface_samples.h"
 #include "compiler/graph/walk.h"
+#include "compiler/primitives/surface_samples.h"
 
 namespace graftal {
 
@@ -232,11 +232,11 @@ PointPaint PointSystem::paint_through(const PointPaint& paint, const CutEdge& ed
     return paint.through(edge, parent.cut && node.terminal ? &node : nullptr, cut_.materials);
 }
 
-bool PointSystem::sample(std::uint32_t number, PrimitiveKind kind, const Affine& node_from_primitive,
+bool PointSystem::sample(std::uint32_t number, const Primitive& primitive, const Affine& node_from_primitive,
                          const PointPaint& paint) {
     const State& state = states_[number];
     const Affine place = Affine::translate(-state.middle) * node_from_primitive;
-    return sample_surface(kind, place, sample_spacing * state.cell,
+    return sample_surface(primitive, place, sample_spacing * state.cell,
                           [&](Vec3 p) { return ++work_ <= most_work_ && add(number, point_of(p), paint); });
 }
 

@@ -96,7 +96,7 @@ class PointSystem {
 
     PointPaint paint_through(const PointPaint& paint, const CutEdge& edge, const State& parent) const;
 
-    bool sample(std::uint32_t number, PrimitiveKind kind, const Affine& node_from_primitive,
+    bool sample(std::uint32_t number, const Primitive& primitive, const Affine& node_from_primitive,
                 const PointPaint& paint);
 
     static Point point_of(Vec3 p);

@@ -17,10 +17,10 @@ using std::numbers::pi;
 constexpr std::size_t uncullable_leaves_of_run = 16;
 constexpr double thinnest_proxy_of_run = 0.02;
 
-CutEdge edge_to(const RunSource& source, const RunItem& item, PrimitiveKind kind, const Affine& place,
+CutEdge edge_to(const RunSource& source, const RunItem& item, RunShape shape, const Affine& place,
                 double length) {
     CutEdge edge;
-    edge.child = source.child[static_cast<std::size_t>(kind)];
+    edge.child = source.child[shape.index()];
     edge.node_from_child = place;
     edge.material = source.materials[item.colour];
     edge.stretch = std::max(item.radius, length);
@@ -41,8 +41,8 @@ double mean_shadow(Vec3 half) {
 /// Of a convex body too: of a cylinder, half of whose balls are seen.
 double mean_shadow(const RunItem& item) {
     const double r = item.radius;
-    if (item.kind == PrimitiveKind::sphere) return pi * r * r;
-    const double middle = 0.5 * r * (1 + (item.ball ? 1 : top_radius(item.kind)));
+    if (item.shape.is_sphere()) return pi * r * r;
+    const double middle = 0.5 * r * (1 + (item.ball ? 1 : item.shape.top_radius()));
     return (2 * pi * middle * glm::length(item.axis) + (item.ball ? 4 : 2) * pi * middle * middle) / 4;
 }
 
@@ -103,7 +103,7 @@ class RunCellBuilder {
             shadow += area;
             leaves += item.ball ? 2 : 1;
             const double length = glm::length(item.axis);
-            note(*cell, item.kind, std::max(item.radius, length));
+            note(*cell, item.shape, std::max(item.radius, length));
             cell->flattest = std::min(cell->flattest, std::min(item.radius / length, length / item.radius));
             if (item.ball) note(*cell, PrimitiveKind::sphere, item.radius);
             if (const std::optional<MaterialId>& material = source_->materials[item.colour])
@@ -122,15 +122,15 @@ class RunCellBuilder {
         node.cell = std::move(cell);
     }
 
-    static void note(RunCell& cell, PrimitiveKind kind, double stretch) {
+    static void note(RunCell& cell, RunShape shape, double stretch) {
         const double square = stretch * stretch;
         const std::int32_t quarter_octave = std::ilogb(square * square);
         for (RunCell::Alike& alike : cell.alike)
-            if (alike.kind == kind && alike.quarter_octave == quarter_octave) {
+            if (alike.shape == shape && alike.quarter_octave == quarter_octave) {
                 ++alike.count;
                 return;
             }
-        cell.alike.push_back({kind, quarter_octave, 1});
+        cell.alike.push_back({shape, quarter_octave, 1});
     }
 
     static Vec3 half_of(const Box& box) {
@@ -147,7 +147,7 @@ class RunCellBuilder {
 } // namespace
 
 CutEdge edge_to_body(const RunSource& source, const RunItem& item) {
-    return edge_to(source, item, item.kind, run_from_body(item), glm::length(item.axis));
+    return edge_to(source, item, item.shape, run_from_body(item), glm::length(item.axis));
 }
 
 CutEdge edge_to_ball(const RunSource& source, const RunItem& item) {

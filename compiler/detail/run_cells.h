@@ -19,7 +19,7 @@ namespace graftal {
 struct RunSource {
     std::shared_ptr<const Run> run;
     std::vector<std::optional<MaterialId>> materials; ///< by colour
-    std::array<NodeId, primitive_kind_count> child{}; ///< by kind of primitive
+    std::array<NodeId, RunShape::count> child{};      ///< by RunShape::index()
 };
 
 /// A range of a run.
@@ -27,9 +27,9 @@ struct RunCell {
     std::shared_ptr<const RunSource> source;
     std::size_t first = 0, count = 0;
     Box box;
-    /// Its parts by what they weigh: of one kind, and of one size within a quarter of an octave.
+    /// Its parts by what they weigh: of one shape, and of one size within a quarter of an octave.
     struct Alike {
-        PrimitiveKind kind{};
+        RunShape shape;
         std::int32_t quarter_octave = 0; ///< of the stretch of their edges
         std::uint32_t count = 0;
     };

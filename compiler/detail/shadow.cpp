@@ -4,12 +4,11 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <mutex>
 #include <numbers>
 
 #include <glm/geometric.hpp>
 
-#include "compiler/detail/tessellate.h"
+#include "compiler/primitives/primitive_cache.h"
 #include "compiler/support/check.h"
 
 namespace graftal {
@@ -19,8 +18,6 @@ namespace {
 using std::numbers::pi;
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
-constexpr int torus_parts = 12;
-constexpr int shadow_prism_sides = 8;
 
 /// The least integer that is not below a number within the range of int; what std::ceil gives, which is a
 /// call of the library.
@@ -37,54 +34,9 @@ int count_ones(std::uint64_t word) {
     return static_cast<int>(word * 0x0101010101010101 >> 56);
 }
 
-/// A convex body, given by its corners.
-struct ConvexPart {
-    std::vector<Vec3> corners;
-    /// If not 0: the corners are those of two convex rings of so many, one after the other, and the edges of
-    /// one have the directions of the other's, or are points.
-    std::size_t ring = 0;
-};
-
-/// A prism or pyramid in place of what is round about the y axis, as long around: the shadows of slender
-/// ones, which are what there are most of, are as wide.
-ConvexPart round_part(double top) {
-    const double radius = pi / (shadow_prism_sides * std::sin(pi / shadow_prism_sides));
-    ConvexPart part{{}, shadow_prism_sides};
-    for (const Affine& ring : {Affine(), Affine{Mat3(top), Vec3(0, 1, 0)}})
-        for (int i = 0; i < shadow_prism_sides; ++i) {
-            const double angle = 2 * pi * i / shadow_prism_sides;
-            part.corners.push_back(ring(Vec3(radius * std::cos(angle), 0, radius * std::sin(angle))));
-        }
-    return part;
-}
-
-ConvexPart cube_part() {
-    ConvexPart part{{}, 4};
-    for (const double z : {-1.0, 1.0})
-        part.corners.insert(part.corners.end(), {{-1, -1, z}, {1, -1, z}, {1, 1, z}, {-1, 1, z}});
-    return part;
-}
-
-/// Convex bodies whose union is the primitive.
-std::vector<ConvexPart> make_convex_parts(PrimitiveKind kind) {
-    if (kind == PrimitiveKind::cube) return {cube_part()};
-    if (kind == PrimitiveKind::triangle) return {{tessellated(kind, 0).vertices, 0}};
-    if (kind != PrimitiveKind::torus) return {round_part(top_radius(kind))};
-    const std::vector<Vec3>& ring = tessellated(kind, 1).vertices;
-    const std::size_t around = ring.size() / torus_parts;
-    std::vector<ConvexPart> parts(torus_parts);
-    for (std::size_t part = 0; part < torus_parts; ++part)
-        for (std::size_t i = 0; i < 2 * around; ++i)
-            parts[part].corners.push_back(ring[(part * around + i) % ring.size()]);
-    return parts;
-}
-
-const std::vector<ConvexPart>& convex_parts(PrimitiveKind kind) {
-    static std::array<std::once_flag, primitive_kind_count> made;
-    static std::array<std::vector<ConvexPart>, primitive_kind_count> parts;
-    const auto index = static_cast<std::size_t>(kind);
-    std::call_once(made[index], [&] { parts[index] = make_convex_parts(kind); });
-    return parts[index];
+const std::vector<ConvexPart>& convex_parts(const Primitive& primitive) {
+    static PrimitiveCache<std::vector<ConvexPart>> parts;
+    return parts.get(primitive, [&] { return traits_of(primitive).convex_parts(primitive); });
 }
 
 } // namespace
@@ -178,10 +130,10 @@ Shadow::Cover Shadow::draw_sphere(const Affine& place) {
     return cover;
 }
 
-Shadow::Cover Shadow::draw(PrimitiveKind kind, const Affine& place) {
-    if (kind == PrimitiveKind::sphere) return draw_sphere(place);
+Shadow::Cover Shadow::draw(const Primitive& primitive, const Affine& place) {
+    if (primitive == PrimitiveKind::sphere) return draw_sphere(place);
     Cover sum;
-    for (const ConvexPart& part : convex_parts(kind)) {
+    for (const ConvexPart& part : convex_parts(primitive)) {
         const Cover cover = draw_hull(part.corners, part.ring, place);
         sum.area += cover.area;
         sum.samples += cover.samples;
@@ -190,8 +142,8 @@ Shadow::Cover Shadow::draw(PrimitiveKind kind, const Affine& place) {
     return sum;
 }
 
-std::size_t Shadow::bodies_of(PrimitiveKind kind) {
-    return convex_parts(kind).size();
+std::size_t Shadow::bodies_of(const Primitive& primitive) {
+    return convex_parts(primitive).size();
 }
 
 Shadow::Cover Shadow::draw_hull(std::span<const Vec3> corners, std::size_t ring, const Affine& place) {

@@ -4,7 +4,8 @@
 #include <span>
 #include <vector>
 
-#include "compiler/graph/graph.h"
+#include "compiler/graph/primitive.h"
+#include "compiler/support/affine.h"
 #include "compiler/support/bounds.h"
 
 namespace graftal {
@@ -32,13 +33,13 @@ class Shadow {
     /// Draws the image of the unit sphere.
     Cover draw_sphere(const Affine& place);
     /// Draws the image of a primitive. Not for planes.
-    Cover draw(PrimitiveKind kind, const Affine& place);
+    Cover draw(const Primitive& primitive, const Affine& place);
 
     /// How near to the eye a point is: those with a smaller depth hide others.
     double depth(Vec3 point) const;
 
     /// How many bodies a primitive is drawn as; 1 for most.
-    static std::size_t bodies_of(PrimitiveKind kind);
+    static std::size_t bodies_of(const Primitive& primitive);
 
     /// What drawing has cost so far.
     std::uint64_t bodies_drawn() const { return bodies_drawn_; }

@@ -19,7 +19,7 @@ class CutShape {
     explicit CutShape(const CutGraph& cut) : cut_(cut) {}
 
     std::size_t size() const { return cut_.nodes.size(); }
-    std::optional<PrimitiveKind> primitive(NodeId id) const { return cut_.nodes[id].primitive; }
+    const std::optional<Primitive>& primitive(NodeId id) const { return cut_.nodes[id].primitive; }
     const std::vector<CutEdge>& edges(NodeId id) const { return cut_.nodes[id].edges; }
     const std::vector<CutEdge>& stop_edges(NodeId id) const { return cut_.nodes[id].stop_edges; }
 
@@ -70,6 +70,10 @@ class Finder {
   private:
     bool out_of_checks() const { return checks_ >= max_checks || pairs_.out_of_comparisons(); }
 
+    static std::size_t number_of(const Primitive& primitive) {
+        return static_cast<std::size_t>(primitive.kind()) * frustum_steps + primitive.steps();
+    }
+
     /// Equal for congruent nodes. Balls are not: the search for them is no more symmetric than it must be.
     std::tuple<std::size_t, long long, long long> signature(NodeId id) const {
         const CutNode& node = cut_.nodes[id];
@@ -83,7 +87,7 @@ class Finder {
         // If points coincide up to rounding, their spread is noise.
         if (spread < 1e-6 * node.ball.radius) spread = 0;
         const std::size_t kind = node.cell        ? 2'000'000 + std::size_t{id} // like no other
-                                 : node.primitive ? 1'000'000 + static_cast<std::size_t>(*node.primitive)
+                                 : node.primitive ? 1'000'000 + number_of(*node.primitive)
                                                   : 0;
         return {kind + node.edges.size(), rounded(stretch), rounded(spread)};
     }

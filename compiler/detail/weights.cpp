@@ -8,7 +8,7 @@
 #include "compiler/detail/coverage.h"
 #include "compiler/detail/point_set.h"
 #include "compiler/detail/run_cells.h"
-#include "compiler/detail/tessellate.h"
+#include "compiler/primitives/tessellate.h"
 
 namespace graftal {
 
@@ -101,13 +101,14 @@ PieceKind Weights::child_kind(const PieceKind& parent, const CutEdge& edge) cons
 }
 
 Weights::Weight Weights::of_primitive(const PieceKind& asked) const {
-    const PrimitiveKind kind = *cut_.nodes[asked.node].primitive;
-    if (kind == PrimitiveKind::cube) return {options_.cube_triangles, 1, 0, price(kind)};
+    const Primitive& primitive = *cut_.nodes[asked.node].primitive;
+    if (primitive == PrimitiveKind::cube) return {options_.cube_triangles, 1, 0, price(primitive)};
     const double unit = static_cast<double>(asked.unit_step) / PieceKind::steps_an_octave;
     const double px = asked.unit_step == PieceKind::endless_detail ? 0 : options_.px * std::exp2(unit);
-    const int level = px > 0 ? fineness_for(kind, tessellation_tolerance(options_.px) / px) : 0;
-    const TessellatedPrimitive& mesh = tessellated(kind, level);
-    return {static_cast<double>(mesh.triangles.size()), 1, mesh.normals.empty() ? 0.0 : 1.0, price(kind)};
+    const int level = px > 0 ? fineness_for(primitive, tessellation_tolerance(options_.px) / px) : 0;
+    const TessellatedPrimitive& mesh = tessellated(primitive, level);
+    return {static_cast<double>(mesh.triangles.size()), 1, mesh.normals.empty() ? 0.0 : 1.0,
+            price(primitive)};
 }
 
 /// Of a cell that is not cut. Cells are many, and hardly any is met twice: they are sooner weighed than
@@ -116,7 +117,7 @@ Weights::Weight Weights::of_cell(const PieceKind& kind, const RunCell& cell) {
     Weight sum;
     for (const RunCell::Alike& alike : cell.alike) {
         CutEdge edge;
-        edge.child = cell.source->child[static_cast<std::size_t>(alike.kind)];
+        edge.child = cell.source->child[alike.shape.index()];
         edge.stretch = edge.volume_stretch = std::exp2(0.25 * (alike.quarter_octave + 0.5));
         sum += alike.count * of_primitive(child_kind(kind, edge));
     }

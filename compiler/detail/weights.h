@@ -13,7 +13,7 @@
 namespace graftal {
 
 /// Bytes of an engine's memory that a leaf takes as a placement of its own.
-using LeafPrice = double (*)(PrimitiveKind kind);
+using LeafPrice = double (*)(const Primitive& primitive);
 
 struct WeightOptions {
     LeafPrice leaf_price = nullptr; ///< none: nobody asks for it
@@ -103,7 +103,9 @@ class Weights {
     void crowd(const PieceKind& kind, Weight& weight) const;
     void squeeze(const PieceKind& kind, Weight& weight) const;
 
-    double price(PrimitiveKind kind) const { return options_.leaf_price ? options_.leaf_price(kind) : 0; }
+    double price(const Primitive& primitive) const {
+        return options_.leaf_price ? options_.leaf_price(primitive) : 0;
+    }
 
     const CutGraph& cut_;
     WeightOptions options_;

@@ -1,28 +1,13 @@
 #include "compiler/graph/graph.h"
 
 #include <algorithm>
-#include <array>
-#include <cmath>
 #include <unordered_map>
 
 #include "compiler/graph/run.h"
-#include "compiler/support/number.h"
 
 namespace graftal {
 
 namespace {
-
-const std::array<std::string, primitive_kind_count>& primitive_names() {
-    static const std::array<std::string, primitive_kind_count> names = [] {
-        std::array<std::string, primitive_kind_count> list = {"triangle", "sphere", "cube", "plane",
-                                                              "cylinder", "cone",   "torus"};
-        for (int i = 1; i < frustum_steps; ++i)
-            list[static_cast<std::size_t>(PrimitiveKind::frustum) + static_cast<std::size_t>(i) - 1] =
-                "frustum(" + shortest(static_cast<double>(i) / frustum_steps) + ")";
-        return list;
-    }();
-    return names;
-}
 
 using ObjectsByName = std::unordered_map<std::string_view, const Object*>;
 
@@ -65,7 +50,7 @@ class Parts {
         const bool ball = at_ball_;
         at_ball_ = item.ball && !ball;
         if (!at_ball_) ++next_;
-        return {name_of(ball ? PrimitiveKind::sphere : item.kind),
+        return {name_of(ball ? Primitive(PrimitiveKind::sphere) : item.shape.primitive()),
                 ball ? run_from_ball(item) : run_from_body(item), Tint(),
                 material(object_.run_materials[item.colour])};
     }
@@ -108,35 +93,6 @@ std::size_t union_count(const Graph& graph) {
 
 } // namespace
 
-const char* name_of(PrimitiveKind kind) {
-    return primitive_names()[static_cast<std::size_t>(kind)].c_str();
-}
-
-std::optional<PrimitiveKind> primitive_named(std::string_view name) {
-    static const std::unordered_map<std::string_view, PrimitiveKind> kinds = [] {
-        std::unordered_map<std::string_view, PrimitiveKind> map;
-        for (std::size_t i = 0; i < primitive_names().size(); ++i)
-            map.emplace(primitive_names()[i], static_cast<PrimitiveKind>(i));
-        return map;
-    }();
-    const auto found = kinds.find(name);
-    if (found == kinds.end()) return std::nullopt;
-    return found->second;
-}
-
-PrimitiveKind tapered(double top_radius) {
-    const long step = std::lround(top_radius * frustum_steps);
-    if (step <= 0) return PrimitiveKind::cone;
-    if (step >= frustum_steps) return PrimitiveKind::cylinder;
-    return static_cast<PrimitiveKind>(static_cast<long>(PrimitiveKind::frustum) + step - 1);
-}
-
-double top_radius(PrimitiveKind kind) {
-    if (kind < PrimitiveKind::frustum) return kind == PrimitiveKind::cylinder ? 1 : 0;
-    return static_cast<double>(static_cast<int>(kind) - static_cast<int>(PrimitiveKind::frustum) + 1) /
-           frustum_steps;
-}
-
 bool Material::operator==(const Material& other) const {
     return name == other.name && rgb == other.rgb && ambient == other.ambient && diffuse == other.diffuse &&
            specular == other.specular && roughness == other.roughness && reflection == other.reflection &&
@@ -148,12 +104,12 @@ ObjectId Graph::add(Object object) {
     return static_cast<ObjectId>(objects.size() - 1);
 }
 
-ObjectId Graph::primitive(PrimitiveKind kind) {
+ObjectId Graph::primitive(const Primitive& primitive) {
     for (ObjectId id = 0; id < objects.size(); ++id)
-        if (objects[id].primitive == kind) return id;
+        if (objects[id].primitive == primitive) return id;
     Object object;
-    object.name = name_of(kind);
-    object.primitive = kind;
+    object.name = name_of(primitive);
+    object.primitive = primitive;
     return add(std::move(object));
 }
 

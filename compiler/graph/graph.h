@@ -35,37 +35,13 @@
 #include <string_view>
 #include <vector>
 
+#include "compiler/graph/primitive.h"
 #include "compiler/graph/settings.h"
 #include "compiler/support/affine.h"
 #include "compiler/support/source.h"
 #include "compiler/support/tint.h"
 
 namespace graftal {
-
-/// Canonical primitives (Hart 1992, section 2; sizes that the paper leaves open are ours):
-///   triangle  corners (0,1,0), (-sqrt(3)/2,-1/2,0), (sqrt(3)/2,-1/2,0): the gasket's hull, in the plane z =
-///   0 sphere    radius 1 about the origin cube      [-1,1]^3 plane     y = 0, unbounded cylinder  radius 1
-///   about the y axis, 0 <= y <= 1, capped cone      base radius 1 at y = 0, apex at y = 1, capped torus
-///   about the y axis, radii 1 and 1/4 frustum   what lies between a cylinder and a cone: radius 1 at y = 0,
-///   a smaller one at y = 1, capped. Not
-///             affine images of each other, frusta are kinds of their own, one for each k/128 of the base.
-enum class PrimitiveKind : std::uint8_t { triangle, sphere, cube, plane, cylinder, cone, torus, frustum };
-inline constexpr int frustum_steps = 128;
-/// The frusta follow each other from PrimitiveKind::frustum, the most pointed, on.
-inline constexpr int primitive_kind_count = static_cast<int>(PrimitiveKind::frustum) + frustum_steps - 1;
-
-/// The kind whose radius at y = 1 is nearest, of cone, frusta and cylinder. Requires 0 <= top_radius <= 1.
-PrimitiveKind tapered(double top_radius);
-/// The radius at y = 1 of a cone, frustum or cylinder.
-double top_radius(PrimitiveKind kind);
-/// The kind itself, but PrimitiveKind::frustum for all frusta: for switches.
-inline PrimitiveKind family_of(PrimitiveKind kind) {
-    return kind > PrimitiveKind::frustum ? PrimitiveKind::frustum : kind;
-}
-
-/// The name that `.inst` uses, `frustum(0.5)` for one; static storage.
-const char* name_of(PrimitiveKind kind);
-std::optional<PrimitiveKind> primitive_named(std::string_view name);
 
 class Run;
 
@@ -88,11 +64,11 @@ struct Instance {
 };
 
 struct Object {
-    std::string name;                       ///< unique, an `.inst` name such as `up`, `leaf.llr` or `tip(3)`
-    std::optional<PrimitiveKind> primitive; ///< then there are no instances and no terminal
-    std::vector<Instance> instances;        ///< the union, in the order of the text
-    std::optional<Instance> terminal;       ///< drawn in place of the object where recursion is cut; its
-                                            ///< master must be ending
+    std::string name;                   ///< unique, an `.inst` name such as `up`, `leaf.llr` or `tip(3)`
+    std::optional<Primitive> primitive; ///< then there are no instances and no terminal
+    std::vector<Instance> instances;    ///< the union, in the order of the text
+    std::optional<Instance> terminal;   ///< drawn in place of the object where recursion is cut; its
+                                        ///< master must be ending
     /// In place of instances: a union of round primitives, too many to be instances (run.h). Means what
     /// instances of them would, in this order; graphs share it, for nobody changes it.
     std::shared_ptr<const Run> run;
@@ -112,7 +88,7 @@ struct Graph {
     /// Adds an object and returns its id.
     ObjectId add(Object object);
     /// The object for a primitive, made on first use; named after the primitive.
-    ObjectId primitive(PrimitiveKind kind);
+    ObjectId primitive(const Primitive& primitive);
 };
 
 /// The edges of the graph, runs aside.

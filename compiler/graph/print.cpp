@@ -137,14 +137,15 @@ class Printer {
         for (std::size_t i = 0; i < object.run->size(); ++i) {
             const RunItem& item = (*object.run)[i];
             const std::optional<MaterialId>& material = object.run_materials[item.colour];
-            print_part(item.kind, run_from_body(item), material);
+            print_part(item.shape.primitive(), run_from_body(item), material);
             if (item.ball) print_part(PrimitiveKind::sphere, run_from_ball(item), material);
         }
     }
 
-    void print_part(PrimitiveKind kind, const Affine& place, const std::optional<MaterialId>& material) {
+    void print_part(const Primitive& primitive, const Affine& place,
+                    const std::optional<MaterialId>& material) {
         out_ += "  instance: ";
-        out_ += name_of(kind);
+        out_ += name_of(primitive);
         out_ += '\n';
         print_attributes({0, place, Tint(), material, Span()});
     }

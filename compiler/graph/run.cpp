@@ -6,8 +6,6 @@
 
 #include <glm/geometric.hpp>
 
-#include "compiler/graph/graph.h"
-
 namespace graftal {
 
 namespace {
@@ -29,6 +27,10 @@ Vec3 unit_aside(const RunItem& item, Vec3 y) {
 
 } // namespace
 
+RunShape::RunShape(const Primitive& primitive)
+    : top_steps_(primitive == PrimitiveKind::frustum ? primitive.steps()
+                                                     : RunShape(primitive.kind()).top_steps_) {}
+
 Vec3 across(Vec3 unit) {
     const double sign = std::copysign(1.0, unit.z);
     const double a = -1 / (sign + unit.z);
@@ -44,11 +46,8 @@ std::uint32_t turn_of(Vec3 axis, Vec3 x) {
 }
 
 bool is_sound(const RunItem& item) {
-    const PrimitiveKind family = family_of(item.kind);
-    const bool round = family == PrimitiveKind::cylinder || family == PrimitiveKind::cone ||
-                       family == PrimitiveKind::frustum || family == PrimitiveKind::sphere;
     const double sum = item.base.x + item.base.y + item.base.z + item.axis.x + item.axis.y + item.axis.z;
-    return round && std::isfinite(sum) && std::isfinite(item.radius) && item.radius > 0 &&
+    return item.shape.is_sound() && std::isfinite(sum) && std::isfinite(item.radius) && item.radius > 0 &&
            item.axis != Vec3(0.0);
 }
 

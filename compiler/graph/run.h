@@ -8,11 +8,49 @@
 #include <memory>
 #include <vector>
 
+#include "compiler/graph/primitive.h"
 #include "compiler/support/affine.h"
 
 namespace graftal {
 
-enum class PrimitiveKind : std::uint8_t;
+/// What an item of a run is: a sphere, or a cylinder, cone or frustum. One byte.
+class RunShape {
+  public:
+    static constexpr std::size_t count = frustum_steps + 2;
+
+    constexpr RunShape() = default;
+    /// Requires one of these kinds; for frusta see below.
+    constexpr RunShape(PrimitiveKind kind) // NOLINT: a kind is a shape
+        : top_steps_(kind == PrimitiveKind::sphere     ? sphere
+                     : kind == PrimitiveKind::cylinder ? frustum_steps
+                     : kind == PrimitiveKind::cone     ? 0
+                                                       : unsound) {}
+    /// Of another kind it is unsound.
+    RunShape(const Primitive& primitive); // NOLINT: likewise
+
+    constexpr bool is_sphere() const { return top_steps_ == sphere; }
+    constexpr bool is_sound() const { return top_steps_ <= sphere; }
+    /// At the far end, as a share of the radius at the base. Not of a sphere.
+    constexpr double top_radius() const { return static_cast<double>(top_steps_) / frustum_steps; }
+    Primitive primitive() const {
+        if (is_sphere()) return PrimitiveKind::sphere;
+        if (top_steps_ == 0) return PrimitiveKind::cone;
+        if (top_steps_ == frustum_steps) return PrimitiveKind::cylinder;
+        return {PrimitiveKind::frustum, top_steps_};
+    }
+    /// A number below `count`, another for each shape: spheres, cylinders, cones, frusta.
+    constexpr std::size_t index() const {
+        if (is_sphere()) return 0;
+        return top_steps_ == frustum_steps ? 1 : 2u + top_steps_;
+    }
+
+    friend constexpr bool operator==(RunShape, RunShape) = default;
+
+  private:
+    static constexpr std::uint8_t sphere = frustum_steps + 1, unsound = sphere + 1;
+
+    std::uint8_t top_steps_ = unsound; ///< the radius at the far end
+};
 
 /// A round primitive at its place: a cylinder, a cone, a frustum or a sphere; of a segment the ball at its
 /// far end too. The numbers are those of the turtle, to the last bit.
@@ -23,10 +61,11 @@ struct RunItem {
     /// About the axis, in units of 2^-32 of a full turn, from where across() is. Only pictures on a surface
     /// show it; it is rounded to 7e-10 of the radius.
     std::uint32_t turn = 0;
-    PrimitiveKind kind{};
+    RunShape shape;
     bool ball = false;        ///< another part: a sphere of this radius at the far end
     std::uint16_t colour = 0; ///< one of Object::run_materials
 };
+static_assert(sizeof(RunItem) == 64);
 
 /// A unit vector at right angles to one, the same on every machine (T. Duff et al., "Building an Orthonormal
 /// Basis, Revisited", JCGT 2017).

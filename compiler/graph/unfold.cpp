@@ -78,8 +78,9 @@ class Unfolding {
                 if (own) leaf.material = own;
                 return leaf;
             };
-            if (!draw_leaf(part(run_from_body(item)), item.kind)) return false;
-            if (item.ball && !draw_leaf(part(run_from_ball(item)), PrimitiveKind::sphere)) return false;
+            if (!draw_leaf(part(run_from_body(item)), item.shape.primitive())) return false;
+            if (item.ball && !draw_leaf(part(run_from_ball(item)), Primitive(PrimitiveKind::sphere)))
+                return false;
         }
         return true;
     }
@@ -89,7 +90,7 @@ class Unfolding {
                            [&](const Instance& instance) { return !components_.unending[instance.master]; });
     }
 
-    bool draw_leaf(const PathState& place, std::optional<PrimitiveKind> primitive) {
+    bool draw_leaf(const PathState& place, const std::optional<Primitive>& primitive) {
         if (leaves_left_ == 0) return false;
         --leaves_left_;
         return visit_({primitive, place.object, place.world_from_object, place.tint, place.material});

@@ -11,10 +11,10 @@ namespace graftal {
 
 /// One drawn thing of an unfolded graph.
 struct UnfoldedLeaf {
-    std::optional<PrimitiveKind> primitive; ///< nothing: the fitted proxy of `object`
-    ObjectId object = 0;                    ///< the primitive's own, or the one whose proxy it is
-    Affine world_from_object;               ///< of the primitive, or of the object whose proxy it is
-    PathTint tint;                          ///< of the whole path
+    std::optional<Primitive> primitive; ///< nothing: the fitted proxy of `object`
+    ObjectId object = 0;                ///< the primitive's own, or the one whose proxy it is
+    Affine world_from_object;           ///< of the primitive, or of the object whose proxy it is
+    PathTint tint;                      ///< of the whole path
     std::optional<MaterialId> material;
 };
 

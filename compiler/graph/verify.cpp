@@ -36,8 +36,12 @@ bool is_plain_name(std::string_view name) {
     return true;
 }
 
-/// A plain name, or one with the numbers of a parametric object: `tip(3)`, `branch(2, 0.5)`.
+/// A plain name, or one with the numbers of a parametric object: `tip(3)`, `branch(2, 0.5)`; or a mesh with
+/// its file.
 bool is_object_name(std::string_view name) {
+    constexpr std::string_view mesh_begins = "mesh(\"", mesh_ends = "\")";
+    if (name.starts_with(mesh_begins) && name.ends_with(mesh_ends))
+        return name.find('"', mesh_begins.size()) == name.size() - mesh_ends.size();
     const std::size_t parenthesis = name.find('(');
     if (parenthesis == std::string_view::npos) return is_plain_name(name);
     if (!is_plain_name(name.substr(0, parenthesis)) || name.back() != ')') return false;
@@ -104,7 +108,7 @@ class Verifier {
             if (!is_new) flaw(id, "the name is that of object {} too", other->second);
             if (object.primitive && object.name != name_of(*object.primitive))
                 flaw(id, "a primitive '{}' under another name", name_of(*object.primitive));
-            if (!object.primitive && primitive_named(object.name))
+            if (!object.primitive && primitive_kind_named(object.name.substr(0, object.name.find('('))))
                 flaw(id, "a union with a primitive's name");
             if (!is_object_name(object.name)) flaw(id, "the name cannot be written in .inst");
         }

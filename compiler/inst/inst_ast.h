@@ -18,6 +18,8 @@ namespace graftal {
 struct InstReference {
     std::string name;
     std::vector<Expression> arguments;
+    std::string path; ///< of a file, in place of arguments: `mesh "leaf.obj"`
+    Span path_span;
     Span span;
 };
 

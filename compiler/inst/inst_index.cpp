@@ -75,7 +75,7 @@ InstIndex::InstIndex(const InstModule& module, Diagnostics& diagnostics) {
 }
 
 void InstIndex::add(const InstDefinition& definition, Diagnostics& diagnostics) {
-    if (primitive_named(definition.name) || definition.name == "frustum") {
+    if (primitive_kind_named(definition.name)) {
         diagnostics
             .error(definition.span, fmt::format("'{}' is a primitive and cannot be defined", definition.name))
             .with_hint("choose another name");

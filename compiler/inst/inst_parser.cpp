@@ -194,11 +194,23 @@ class BodyParser {
             InstReference reference;
             const Token name = stream_.next();
             reference.name = name.text;
-            if (stream_.accept("(") && !parse_arguments(stream_, reference.arguments)) return false;
+            if (!parse_arguments_of(reference)) return false;
             reference.span = stream_.span_from(name.span);
             group.masters.push_back(std::move(reference));
         } while (goes_on() && stream_.accept(","));
         return true;
+    }
+
+    /// Numbers in parentheses, or the name of a file in quotes, with or without them; or nothing.
+    bool parse_arguments_of(InstReference& reference) {
+        const bool open = stream_.at("(");
+        if (stream_.peek(open ? 1 : 0).kind != TokenKind::string)
+            return !stream_.accept("(") || parse_arguments(stream_, reference.arguments);
+        stream_.accept("(");
+        const Token path = stream_.next();
+        reference.path = path.text;
+        reference.path_span = path.span;
+        return !open || stream_.expect(")", path.text);
     }
 
     /// A comma may also end a line.

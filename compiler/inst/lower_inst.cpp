@@ -96,7 +96,7 @@ class InstLowerer {
                 .with_note(first->second, "first defined here");
             return;
         }
-        if (primitive_named(use.name) || use.name.find('.') != std::string::npos) {
+        if (primitive_kind_named(use.name) || use.name.find('.') != std::string::npos) {
             diagnostics_.error(use.name_span, fmt::format("'{}' cannot name a model", use.name))
                 .with_hint("use a name without dots that is not a primitive's");
             return;
@@ -167,8 +167,12 @@ class InstLowerer {
             wrong_count(reference, definition->parameters.size()).with_note(definition->span, "defined here");
             return false;
         }
-        if (reference.name == frustum_name && arity == 1) return true;
-        if (reference.name == frustum_name) return wrong_count(reference, 1), false;
+        if (!reference.path.empty() || reference.name == name_of(PrimitiveKind::mesh))
+            return check_mesh(reference);
+        if (const std::optional<PrimitiveKind> kind = kind_of_numbers(reference.name)) {
+            if (!takes_count(*kind, arity)) wrong_count(reference, counts_taken(*kind));
+            return takes_count(*kind, arity);
+        }
         const bool whole = primitive_named(reference.name) || uses_.contains(reference.name);
         if (whole && arity > inner_count(reference.name)) {
             wrong_count(reference, inner_count(reference.name));
@@ -180,9 +184,28 @@ class InstLowerer {
         return false;
     }
 
+    /// `mesh "leaf.obj"`: read here, once for each file.
+    bool check_mesh(const InstReference& reference) {
+        if (reference.path.empty() || reference.name != name_of(PrimitiveKind::mesh)) {
+            diagnostics_
+                .error(reference.span, reference.path.empty()
+                                           ? "'mesh' takes the name of a file"
+                                           : fmt::format("'{}' takes no name of a file", reference.name))
+                .with_hint("a mesh is written 'mesh \"leaf.obj\"'");
+            return false;
+        }
+        const std::optional<Primitive> mesh = load_mesh(reference.path_span, reference.path, lowering_);
+        if (mesh) meshes_.emplace(&reference, *mesh);
+        return mesh.has_value();
+    }
+
     Diagnostic& wrong_count(const InstReference& reference, std::size_t arity) {
-        const std::string takes =
-            arity == 0 ? "no arguments" : fmt::format("{} argument{}", arity, arity == 1 ? "" : "s");
+        return wrong_count(reference, arity == 0
+                                          ? std::string("no arguments")
+                                          : fmt::format("{} argument{}", arity, arity == 1 ? "" : "s"));
+    }
+
+    Diagnostic& wrong_count(const InstReference& reference, const std::string& takes) {
         return diagnostics_.error(reference.span, fmt::format("'{}' takes {}, not {}", reference.name, takes,
                                                               reference.arguments.size()));
     }
@@ -192,11 +215,10 @@ class InstLowerer {
         suggestion_work_ += module_.definitions.size() + by_name_.size();
         if (suggestion_work_ > max_suggestion_work) return;
         std::vector<std::string> known = index_.names();
-        for (int i = 0; i < static_cast<int>(PrimitiveKind::frustum); ++i)
-            known.emplace_back(name_of(static_cast<PrimitiveKind>(i)));
-        known.emplace_back(frustum_name);
-        const std::vector<std::string> primitives(known.end() - static_cast<int>(PrimitiveKind::frustum) - 1,
-                                                  known.end());
+        std::vector<std::string> primitives;
+        for (const PrimitiveKind kind : all_primitive_kinds)
+            primitives.emplace_back(name_of(kind));
+        known.insert(known.end(), primitives.begin(), primitives.end());
         for (const auto& [use, place] : uses_)
             known.push_back(use);
         for (const auto& [object, id] : by_name_)
@@ -377,6 +399,8 @@ class InstLowerer {
 
     std::optional<ObjectId> resolve(const InstReference& reference, std::size_t parent) {
         if (unknown_.contains(&reference)) return std::nullopt;
+        if (const auto mesh = meshes_.find(&reference); mesh != meshes_.end())
+            return graph_.primitive(mesh->second);
         std::vector<double> arguments;
         for (const Expression& expression : reference.arguments)
             if (const std::optional<double> value = evaluate(expression, environment_, scratch_))
@@ -384,11 +408,13 @@ class InstLowerer {
         if (arguments.size() < reference.arguments.size()) return std::nullopt;
         const std::string name = inst_object_name(reference.name, arguments);
         if (const auto found = by_name_.find(name); found != by_name_.end()) return found->second;
-        if (const std::optional<PrimitiveKind> kind = primitive_named(name))
-            return by_name_[name] = graph_.primitive(*kind);
-        if (reference.name == frustum_name) {
-            const std::optional<PrimitiveKind> kind = lower_frustum(arguments[0], reference.span, scratch_);
-            return kind ? std::optional(graph_.primitive(*kind)) : std::nullopt;
+        if (const std::optional<Primitive> primitive = primitive_named(name))
+            return by_name_[name] = graph_.primitive(*primitive);
+        if (const std::optional<PrimitiveKind> kind = kind_of_numbers(reference.name)) {
+            if (const auto known = shapes_.find(name); known != shapes_.end()) return known->second;
+            const std::optional<Primitive> made = lower_primitive(*kind, arguments, reference.span, scratch_);
+            if (!made) return std::nullopt;
+            return shapes_[name] = graph_.primitive(*made);
         }
         if (const auto family = families_.find(reference.name); family != families_.end())
             return family->second.exact(arguments, reference.span, scratch_);
@@ -461,6 +487,8 @@ class InstLowerer {
     Environment environment_; ///< of the object being lowered
     Diagnostics scratch_;     ///< its errors
     std::set<const InstReference*> unknown_;
+    std::unordered_map<const InstReference*, Primitive> meshes_;
+    std::unordered_map<std::string, ObjectId> shapes_; ///< primitives of numbers, by their references
     std::set<const InstDefinition*> failed_;
     std::unordered_map<const InstDefinition*, std::size_t> tuples_;
     std::size_t instance_count_ = 0;

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "compiler/lower/lowering.h"
+#include "compiler/primitives/mesh_file.h"
 #include "compiler/support/check.h"
 #include "compiler/support/file.h"
 
@@ -191,6 +192,27 @@ std::optional<std::string> find_beside(Span name_span, std::string_view path, Lo
     const Status regular = check_regular(found, lowering.options.root);
     if (regular.ok()) return found;
     add_chain(lowering.diagnostics.error(name_span, regular.message()), lowering);
+    return std::nullopt;
+}
+
+std::optional<Primitive> load_mesh(Span name_span, std::string_view path, Lowering& lowering) {
+    const std::optional<std::string> found = find_beside(name_span, path, lowering);
+    if (!found) return std::nullopt;
+    const auto [known, added] = lowering.meshes.try_emplace(*found);
+    if (!added) {
+        if (!known->second) ++lowering.known_failures;
+        return known->second;
+    }
+    std::string bytes, fault;
+    if (const Status read = read_text(*found, bytes); !read.ok()) {
+        add_chain(lowering.diagnostics.error(name_span, read.message()), lowering);
+        return std::nullopt;
+    }
+    std::optional<MeshData> data = read_mesh(bytes, fault);
+    if (data) return known->second = mesh_primitive(*found, std::move(*data));
+    add_chain(lowering.diagnostics.error(name_span, fmt::format("cannot read '{}': {}", *found, fault))
+                  .with_hint("a mesh is an OBJ or a PLY file"),
+              lowering);
     return std::nullopt;
 }
 

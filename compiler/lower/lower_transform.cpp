@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <string>
 #include <utility>
 
 #include <fmt/format.h>
 
+#include "compiler/primitives/primitive.h"
 #include "compiler/support/number.h"
 #include "compiler/support/number_range.h"
 
@@ -183,11 +185,28 @@ std::optional<Affine> lower_transform(const TransformLine& line, const Environme
     return map;
 }
 
-std::optional<PrimitiveKind> lower_frustum(double top_radius, Span place, Diagnostics& diagnostics) {
-    if (top_radius >= 0 && top_radius <= 1) return tapered(top_radius);
-    diagnostics.error(place, fmt::format("the upper radius of a frustum lies between 0 and 1, not at {}",
-                                         shortest(top_radius)));
-    return std::nullopt;
+std::optional<PrimitiveKind> kind_of_numbers(std::string_view name) {
+    const std::optional<PrimitiveKind> kind = primitive_kind_named(name);
+    return kind && traits_of(*kind).make ? kind : std::nullopt;
+}
+
+bool takes_count(PrimitiveKind kind, std::size_t count) {
+    const PrimitiveArguments& arguments = traits_of(kind).arguments;
+    return count >= arguments.least && count <= arguments.most;
+}
+
+std::string counts_taken(PrimitiveKind kind) {
+    const auto [least, most] = traits_of(kind).arguments;
+    const std::string range = least == most ? fmt::format("{}", most) : fmt::format("{} to {}", least, most);
+    return fmt::format("{} argument{}", range, most == 1 ? "" : "s");
+}
+
+std::optional<Primitive> lower_primitive(PrimitiveKind kind, std::span<const double> numbers, Span place,
+                                         Diagnostics& diagnostics) {
+    std::string fault;
+    std::optional<Primitive> primitive = traits_of(kind).make(numbers, fault);
+    if (!primitive) diagnostics.error(place, std::move(fault));
+    return primitive;
 }
 
 std::optional<double> lower_size_px(const Expression& size_px, const Environment& environment,

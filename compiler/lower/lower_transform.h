@@ -1,6 +1,8 @@
 #pragma once
 
 #include <optional>
+#include <span>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -33,10 +35,17 @@ std::optional<Tint> lower_tint(const std::vector<Expression>& values, const Envi
 std::optional<double> lower_size_px(const Expression& size_px, const Environment& environment,
                                     Diagnostics& diagnostics);
 
-/// What `frustum(r)` names: of those that there are the one whose upper radius is nearest. Error: not in [0,
-/// 1].
-inline constexpr std::string_view frustum_name = "frustum";
-std::optional<PrimitiveKind> lower_frustum(double top_radius, Span place, Diagnostics& diagnostics);
+/// The primitive that so many numbers make of its kind; nothing, after an error, where they make none.
+/// Requires takes_count(kind, numbers.size()).
+std::optional<Primitive> lower_primitive(PrimitiveKind kind, std::span<const double> numbers, Span place,
+                                         Diagnostics& diagnostics);
+
+/// The kind of a primitive whose name takes numbers in parentheses: `frustum`.
+std::optional<PrimitiveKind> kind_of_numbers(std::string_view name);
+/// Whether so many numbers may make one of a kind of numbers.
+bool takes_count(PrimitiveKind kind, std::size_t count);
+/// How many that are: "1 argument".
+std::string counts_taken(PrimitiveKind kind);
 
 /// The map of one line. Errors: singular maps (but not of `projection`, which must only not vanish), zero
 /// axes, numbers that are not finite. `matrix` and `projection` are taken to the last bit.

@@ -37,8 +37,9 @@ struct Lowering {
     /// Models already lowered, by path and inner parameters; null after errors. A model used twice is read
     /// and reported once.
     std::map<std::pair<std::string, Environment>, std::shared_ptr<const Graph>> lowered = {};
-    std::map<std::string, FileId> files = {};  ///< used files that were read, by path
-    std::size_t use_count = 0;                 ///< `use` statements so far, in all files
+    std::map<std::string, FileId> files = {};                    ///< used files that were read, by path
+    std::map<std::string, std::optional<Primitive>> meshes = {}; ///< by path; nothing after an error
+    std::size_t use_count = 0;                                   ///< `use` statements so far, in all files
     std::size_t known_failures = 0;            ///< models that were asked for and had failed before
     std::optional<Derivation> derivation = {}; ///< of the root model
 
@@ -52,6 +53,9 @@ struct Lowering {
 /// The file that a model names, looked up beside the model's own; nothing after an error, if there is none,
 /// or it is no regular file: others (pipes, devices) could keep a compilation waiting for ever.
 std::optional<std::string> find_beside(Span name_span, std::string_view path, Lowering& lowering);
+
+/// The mesh in a file that a model names (find_beside), read once. Nothing after an error.
+std::optional<Primitive> load_mesh(Span name_span, std::string_view path, Lowering& lowering);
 
 /// Where a model file is used.
 struct ModelUse {

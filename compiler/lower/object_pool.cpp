@@ -98,8 +98,8 @@ std::string object_name(std::string_view symbol) {
 }
 
 ObjectPool::ObjectPool(Graph& graph) : graph_(graph) {
-    for (int kind = 0; kind < primitive_kind_count; ++kind)
-        names_[name_of(static_cast<PrimitiveKind>(kind))] = 1;
+    for (const PrimitiveKind kind : all_primitive_kinds)
+        names_[std::string(name_of(kind))] = 1;
 }
 
 bool ObjectPool::worth_an_object(const std::vector<Instance>& instances) const {

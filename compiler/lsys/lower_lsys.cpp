@@ -171,7 +171,7 @@ class LsysLowering {
                 .error(block.name.span,
                        fmt::format("'{}' is already the name of a used model", block.name.text))
                 .with_note(use->second.span, "first defined here");
-        else if (primitive_named(block.name.text))
+        else if (primitive_kind_named(block.name.text))
             diagnostics_.error(block.name.span,
                                fmt::format("'{}' is a primitive and cannot name a block", block.name.text));
     }
@@ -241,7 +241,7 @@ class LsysLowering {
     }
 
     Model model_named(std::string_view name, Span span) {
-        if (const auto kind = primitive_named(name)) return {graph_.primitive(*kind)};
+        if (const auto primitive = primitive_named(name)) return {graph_.primitive(*primitive)};
         if (const auto use = uses_.find(name); use != uses_.end())
             return {use->second.root, use->second.family ? &*use->second.family : nullptr};
         for (Block& block : blocks_) {
@@ -260,8 +260,8 @@ class LsysLowering {
             known.emplace_back(used);
         for (const auto& [block, place] : names_)
             known.emplace_back(block);
-        for (int kind = 0; kind < primitive_kind_count; ++kind)
-            known.emplace_back(name_of(static_cast<PrimitiveKind>(kind)));
+        for (const PrimitiveKind kind : all_primitive_kinds)
+            if (form_of(kind) == PrimitiveForm::plain) known.emplace_back(name_of(kind));
         const std::string hint = did_you_mean(name, known);
         diagnostics_.error(span, fmt::format("'~{}' names no used model and no block of this file", name))
             .with_hint(
@@ -361,8 +361,8 @@ class LsysLowering {
         return std::ranges::any_of(models, [&](const auto& entry) {
             const Model& model = entry.second;
             if (!model.root) return true;
-            const auto kind = graph_.objects[*model.root].primitive;
-            return !kind || *kind == PrimitiveKind::plane;
+            const std::optional<Primitive>& primitive = graph_.objects[*model.root].primitive;
+            return !primitive || *primitive == PrimitiveKind::plane;
         });
     }
 

@@ -51,18 +51,18 @@ MaterialId TurtleBodies::material(int colour) {
     return *ids_[index];
 }
 
-Instance TurtleBodies::body(PrimitiveKind kind, const Affine& place, int colour, Span span) {
-    auto& primitive = primitives_[static_cast<std::size_t>(kind)];
-    if (!primitive) primitive = graph_.primitive(kind);
-    return {*primitive, place, Tint(), material(colour), span};
+Instance TurtleBodies::body(const Primitive& primitive, const Affine& place, int colour, Span span) {
+    const auto [known, added] = primitives_.try_emplace(primitive);
+    if (added) known->second = graph_.primitive(primitive);
+    return {known->second, place, Tint(), material(colour), span};
 }
 
 /// `x`: of unit length, where the body's x axis points.
-void TurtleBodies::add_item(PrimitiveKind kind, Vec3 base, Vec3 axis, double radius, Vec3 x, bool ball,
+void TurtleBodies::add_item(RunShape shape, Vec3 base, Vec3 axis, double radius, Vec3 x, bool ball,
                             int colour, const BodySink& sink) {
     const auto index = static_cast<std::size_t>(colour);
     material(colour);
-    RunItem item{base, axis, std::abs(radius), 0, kind, ball, static_cast<std::uint16_t>(index)};
+    RunItem item{base, axis, std::abs(radius), 0, shape, ball, static_cast<std::uint16_t>(index)};
     if (!is_sound(item)) return; // too small for numbers
     if (!palette_[index].texture.empty()) item.turn = turn_of(axis, x);
     if (sink.open_width) item.colour |= open_width;

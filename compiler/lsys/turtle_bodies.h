@@ -1,9 +1,9 @@
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -44,7 +44,7 @@ class TurtleBodies {
     void add_segment(const Affine& start_from_turtle, double length, double width, int colour, Span span,
                      BodySink sink);
     /// A round piece from a point, of this width, to the turtle, of that, with a ball at the turtle. Its
-    /// taper is rounded to 1/128 (graph.h).
+    /// taper is rounded to 1/128 (primitive.h).
     void add_taper(const Affine& start_from_turtle, Vec3 from, double from_width, double width, int colour,
                    Span span, BodySink sink);
     /// What stands for a line from the start to `end` where it is too small to see: as thick as it is long,
@@ -63,17 +63,17 @@ class TurtleBodies {
 
   private:
     MaterialId material(int colour);
-    void add_item(PrimitiveKind kind, Vec3 base, Vec3 axis, double radius, Vec3 x, bool ball, int colour,
+    void add_item(RunShape shape, Vec3 base, Vec3 axis, double radius, Vec3 x, bool ball, int colour,
                   const BodySink& sink);
-    Instance body(PrimitiveKind kind, const Affine& place, int colour, Span span);
-    void add(PrimitiveKind kind, const Affine& place, int colour, Span span, const BodySink& sink) {
-        sink.instances.push_back(body(kind, place, colour, span));
+    Instance body(const Primitive& primitive, const Affine& place, int colour, Span span);
+    void add(const Primitive& primitive, const Affine& place, int colour, Span span, const BodySink& sink) {
+        sink.instances.push_back(body(primitive, place, colour, span));
     }
 
     Graph& graph_;
-    std::vector<Material> palette_;              ///< not empty
-    std::vector<std::optional<MaterialId>> ids_; ///< of the palette's materials used so far
-    std::array<std::optional<ObjectId>, primitive_kind_count> primitives_; ///< those used so far
+    std::vector<Material> palette_;                      ///< not empty
+    std::vector<std::optional<MaterialId>> ids_;         ///< of the palette's materials used so far
+    std::unordered_map<Primitive, ObjectId> primitives_; ///< those used so far
 };
 
 } // namespace graftal

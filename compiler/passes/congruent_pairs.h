@@ -19,6 +19,7 @@
 #include <glm/matrix.hpp>
 
 #include "compiler/graph/graph.h"
+#include "compiler/primitives/primitive.h"
 
 namespace graftal {
 
@@ -38,21 +39,15 @@ struct NodePair {
 /// The 48 signed permutations of the axes, the identity first.
 const std::vector<Mat3>& cube_symmetries();
 
-/// Whether the map takes the canonical primitive onto itself.
-bool preserves(PrimitiveKind kind, const Affine& map);
-
 /// Whether it is orthogonal, as nearly as congruence asks for.
 bool is_isometry(const Mat3& linear);
 
 /// Whether the map takes one ellipsoid, the image of the unit ball, to the other.
 bool takes_ellipsoid(const Affine& map, const Affine& from, const Affine& to);
 
-/// A point that every isometry of the canonical primitive keeps.
-Vec3 centre_of(PrimitiveKind kind);
-
 /// `Shape` is what the check knows of a graph, its nodes numbered from 0:
 ///   size()                     how many nodes there are
-///   primitive(node)            an optional PrimitiveKind
+///   primitive(node)            an optional Primitive
 ///   edges(node), stop_edges(node)   what can be asked for its size() and, by index, for an edge, which has
 ///                              `child`, `node_from_child`, `levels`, `material`, and its norm as `stretch`
 ///   alike(a, b)                whether nothing that is not in the edges tells the two apart
@@ -115,7 +110,8 @@ template<typename Shape> class CongruentPairs {
         std::vector<Vec3> centre(shape_.size(), Vec3(0.0));
         std::uint64_t edges = 1;
         for (std::uint32_t id = 0; id < shape_.size(); ++id) {
-            if (const auto kind = shape_.primitive(id)) centre[id] = centre_of(*kind);
+            if (const auto& primitive = shape_.primitive(id))
+                centre[id] = traits_of(*primitive).fixed_point(*primitive);
             edges += shape_.edges(id).size();
         }
         const std::vector<std::uint32_t> order = masters_first();
@@ -215,7 +211,8 @@ template<typename Shape> class CongruentPairs {
         if (!shape_.alike(pair.a, pair.b)) return false;
         if (is_identity(pair)) return match_itself(index);
         if (shape_.fixed(pair.a)) return false;
-        if (const auto kind = shape_.primitive(pair.a)) return preserves(*kind, pair.b_from_a);
+        if (const auto& primitive = shape_.primitive(pair.a))
+            return traits_of(*primitive).keeps(*primitive, pair.b_from_a);
         // Proxies must be congruent too where they are drawn. The other node may draw none.
         const Affine *proxy = shape_.proxy(pair.a), *other = shape_.proxy(pair.b);
         if (proxy && (!other || !takes_ellipsoid(pair.b_from_a, *proxy, *other))) return false;
@@ -276,8 +273,8 @@ template<typename Shape> class CongruentPairs {
     }
 
     bool plausible(std::uint32_t a, std::uint32_t b, const Affine& b_from_a) const {
-        if (const auto kind = shape_.primitive(b))
-            return shape_.primitive(a) == kind && preserves(*kind, b_from_a);
+        if (const auto& primitive = shape_.primitive(b))
+            return shape_.primitive(a) == primitive && traits_of(*primitive).keeps(*primitive, b_from_a);
         return !shape_.primitive(a) && is_isometry(b_from_a.linear) &&
                glm::distance(b_from_a(centres_[a]), centres_[b]) <= 1e-7 * shape_.radius(b);
     }

@@ -67,7 +67,7 @@ class GraphShape {
     }
 
     std::size_t size() const { return graph_.objects.size(); }
-    std::optional<PrimitiveKind> primitive(ObjectId id) const { return graph_.objects[id].primitive; }
+    const std::optional<Primitive>& primitive(ObjectId id) const { return graph_.objects[id].primitive; }
     Edges edges(ObjectId id) const {
         return {graph_.objects[id].instances, stretches_.data() + first_[id], components_};
     }

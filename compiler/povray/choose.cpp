@@ -12,8 +12,8 @@
 #include <glm/geometric.hpp>
 
 #include "compiler/detail/run_cells.h"
-#include "compiler/detail/texture_space.h"
 #include "compiler/povray/povray_costs.h"
+#include "compiler/primitives/texture_space.h"
 #include "compiler/support/stretch.h"
 
 namespace graftal {

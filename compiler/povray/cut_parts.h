@@ -17,7 +17,7 @@ namespace graftal {
 /// A single exact primitive, or a baked mesh.
 struct Body {
     std::string name; ///< of the object it draws, for the reader of the scene; not unique
-    std::variant<PrimitiveKind, Mesh> shape;
+    std::variant<Primitive, Mesh> shape;
 };
 
 struct Placement {
@@ -38,9 +38,9 @@ struct PlacementGroup {
 
 /// Calls `visit` on a Placement for each part.
 template<typename Visit> void for_each_placement(const RunPlacements& parts, const Visit& visit) {
-    for_each_part(parts, [&](PrimitiveKind kind, const RunItem& item, bool ball) {
+    for_each_part(parts, [&](RunShape shape, const RunItem& item, bool ball) {
         const Affine run_from_part = ball ? run_from_round_ball(item) : run_from_round_body(item);
-        visit(Placement{parts.body[static_cast<std::size_t>(kind)], parts.world_from_run * run_from_part});
+        visit(Placement{parts.body[shape.index()], parts.world_from_run * run_from_part});
     });
 }
 

@@ -1,5 +1,9 @@
 #include "compiler/povray/grouping.h"
 
+#include <array>
+#include <string>
+#include <utility>
+
 #include <algorithm>
 #include <bit>
 #include <functional>
@@ -14,6 +18,11 @@ namespace graftal {
 
 namespace {
 
+/// The numbers of a shape are too many for a name.
+std::string body_name(const Primitive& primitive) {
+    return primitive.shape() ? std::string(name_of(primitive.kind())) : name_of(primitive);
+}
+
 /// What no picture shows makes no textures of its own.
 constexpr double tint_grain = 1.0 / (1 << 24);
 
@@ -25,7 +34,7 @@ bool share_finish(const Material& a, const Material& b) {
 } // namespace
 
 Grouping::Grouping(const CutGraph& cut, const PlacedPieces& pieces, std::vector<Baked>& baked)
-    : cut_(cut), baked_(baked) {
+    : cut_(cut), baked_(baked), primitives_(pieces.primitives) {
     for (const TexturedPrimitive& shape : pieces.textured)
         add_textured_body(shape);
     for (std::size_t r = 0; r < baked.size(); ++r) {
@@ -65,12 +74,13 @@ void Grouping::add(const PlacedRuns::Range& range) {
     RunPlacements parts{range.source->run,           range.first, range.count,   0,
                         range.piece.world_from_node, {},          range.left_out};
     std::vector<bool> colours(range.source->materials.size());
+    std::array<bool, RunShape::count> known{}; // of parts.body
     for (std::size_t i = range.first; i < range.first + range.count; ++i) {
         const RunItem& item = run[i];
         colours[item.colour] = true;
-        parts.body[static_cast<std::size_t>(item.kind)] = body_of(item.kind);
-        if (item.ball)
-            parts.body[static_cast<std::size_t>(PrimitiveKind::sphere)] = body_of(PrimitiveKind::sphere);
+        for (const RunShape shape : {item.shape, item.ball ? PrimitiveKind::sphere : item.shape})
+            if (!std::exchange(known[shape.index()], true))
+                parts.body[shape.index()] = body_of(shape.primitive());
         include(transformed(range.piece.world_from_node, box_of(item)));
     }
     for (std::size_t colour_number = 0; colour_number < colours.size(); ++colour_number) {
@@ -97,11 +107,11 @@ void Grouping::include(const Box& box) {
 
 void Grouping::add_textured_body(const TexturedPrimitive& shape) {
     MeshBuilder builder(true);
-    builder.add_textured(shape.kind, shape.fineness, {}, {shape.around, shape.along}, 0);
+    builder.add_textured(shape.primitive, shape.fineness, {}, {shape.around, shape.along}, 0);
     builder.finish();
     result_.triangle_count += builder.mesh.triangles.size();
     box_.push_back(box_of(builder.mesh));
-    result_.bodies.push_back({name_of(shape.kind), std::move(builder.mesh)});
+    result_.bodies.push_back({body_name(shape.primitive), std::move(builder.mesh)});
 }
 
 void Grouping::add_textured(const Placed& thing) {
@@ -117,19 +127,19 @@ void Grouping::place_picture(std::uint32_t body, const Affine& world_from_body, 
 }
 
 void Grouping::add_primitive(const Placed& thing) {
-    const std::uint32_t body = body_of(thing.kind);
+    const std::uint32_t body = body_of(primitives_[thing.primitive]);
     place(body, thing.world_from_thing, colour(thing.rgb), {}, thing.material);
     include(transformed(thing.world_from_thing, box_[body]));
 }
 
-std::uint32_t Grouping::body_of(PrimitiveKind primitive) {
-    const auto kind = static_cast<std::size_t>(primitive);
-    if (primitive_body_[kind] == no_palette) {
-        primitive_body_[kind] = static_cast<std::uint32_t>(result_.bodies.size());
-        box_.push_back(primitive == PrimitiveKind::plane ? Box() : primitive_bounds(primitive).box);
-        result_.bodies.push_back({name_of(primitive), primitive});
+std::uint32_t Grouping::body_of(const Primitive& primitive) {
+    const auto [place, added] =
+        primitive_body_.emplace(primitive, static_cast<std::uint32_t>(result_.bodies.size()));
+    if (added) {
+        box_.push_back(primitive_bounds(primitive).box);
+        result_.bodies.push_back({body_name(primitive), primitive});
     }
-    return primitive_body_[kind];
+    return place->second;
 }
 
 void Grouping::place(std::uint32_t body, const Affine& world_from_body, std::uint32_t palette,

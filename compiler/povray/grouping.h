@@ -34,7 +34,7 @@ class Grouping {
     void place_picture(std::uint32_t body, const Affine& world_from_body, const PathTint& tint,
                        MaterialId material);
     void add_primitive(const Placed& thing);
-    std::uint32_t body_of(PrimitiveKind primitive);
+    std::uint32_t body_of(const Primitive& primitive);
     void place(std::uint32_t body, const Affine& world_from_body, std::uint32_t palette,
                const PathTint& exact_tint, const std::optional<MaterialId>& material);
     PlacementGroup& group_of(std::uint32_t palette, const PathTint& exact_tint,
@@ -45,16 +45,13 @@ class Grouping {
 
     const CutGraph& cut_;
     std::vector<Baked>& baked_;
+    const PrimitiveNumbers& primitives_;
     Cut result_;
     std::vector<Box> box_;                                         ///< by body
     std::vector<std::uint32_t> first_body_;                        ///< by request
     std::vector<std::vector<std::vector<std::uint32_t>>> palette_; ///< by request, part, painter
     std::vector<Palette> palettes_;
-    std::array<std::uint32_t, primitive_kind_count> primitive_body_ = [] {
-        std::array<std::uint32_t, primitive_kind_count> none;
-        none.fill(no_palette);
-        return none;
-    }();
+    std::unordered_map<Primitive, std::uint32_t> primitive_body_;
     struct ArrayHash {
         std::size_t operator()(const std::array<double, 3>& numbers) const {
             std::uint64_t h = 0;

@@ -16,7 +16,7 @@ namespace {
 /// In the body's own frame.
 Box box_of(const Body& body) {
     const auto* const mesh = std::get_if<Mesh>(&body.shape);
-    return mesh ? box_of(*mesh) : primitive_bounds(std::get<PrimitiveKind>(body.shape)).box;
+    return mesh ? box_of(*mesh) : primitive_bounds(std::get<Primitive>(body.shape)).box;
 }
 
 } // namespace

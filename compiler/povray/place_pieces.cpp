@@ -15,10 +15,10 @@
 #include "compiler/detail/least_width.h"
 #include "compiler/detail/placed_set.h"
 #include "compiler/detail/run_cells.h"
-#include "compiler/detail/tessellate.h"
-#include "compiler/detail/texture_space.h"
 #include "compiler/detail/work.h"
 #include "compiler/graph/walk.h"
+#include "compiler/primitives/tessellate.h"
+#include "compiler/primitives/texture_space.h"
 #include "compiler/support/stretch.h"
 
 namespace graftal {
@@ -142,50 +142,51 @@ class Placing {
                         node.mean.over(piece.inherited));
     }
 
-    void place_primitive(PrimitiveKind kind, const Affine& world_from_primitive, const Piece& piece,
+    void place_primitive(const Primitive& primitive, const Affine& world_from_primitive, const Piece& piece,
                          Rgb base) {
         Placed thing;
-        thing.kind = kind;
+        thing.primitive = out_.primitives.of(primitive);
         const Ball ball = world_ball(cut_, piece);
-        if (kind == PrimitiveKind::plane && is_singular(world_from_primitive, flattest_plane)) {
+        if (primitive == PrimitiveKind::plane && is_singular(world_from_primitive, flattest_plane)) {
             const std::optional<Affine> place = place_of_plane(world_from_primitive);
             if (!place) return;
             thing.world_from_thing = *place;
         } else {
-            thing.world_from_thing = drawn(kind, world_from_primitive, piece);
+            thing.world_from_thing = drawn(primitive, world_from_primitive, piece);
         }
         if (thing.world_from_thing != world_from_primitive) more_work_ += work_of_widening;
         const double half_width = projection_.least_half_width(ball);
         const bool speck =
             piece.faint && !choice_.spelt_out && largest_stretch(world_from_primitive.linear) <= half_width;
         const Affine mark = speck ? speck_mark(thing.world_from_thing, half_width) : thing.world_from_thing;
-        if (!seen_.insert(static_cast<std::uint32_t>(kind), mark)) return;
+        if (!seen_.insert(2 * thing.primitive, mark)) return;
         note_finest(ball);
         thing.rgb = piece.tint.over(base);
         thing.material = piece.material;
         keep(thing);
     }
 
-    Affine drawn(PrimitiveKind kind, const Affine& world_from_primitive, const Piece& piece) const {
-        if (kind == PrimitiveKind::plane) return world_from_primitive;
-        return drawn_leaf(kind, world_from_primitive, piece.faint,
+    Affine drawn(const Primitive& primitive, const Affine& world_from_primitive, const Piece& piece) const {
+        if (primitive == PrimitiveKind::plane) return world_from_primitive;
+        return drawn_leaf(primitive, world_from_primitive, piece.faint,
                           projection_.least_half_width(world_ball(cut_, piece)))
             .place;
     }
 
-    void place_textured(PrimitiveKind kind, const Piece& piece) {
+    void place_textured(const Primitive& primitive, const Piece& piece) {
         const Ball ball = world_ball(cut_, piece);
         Placed thing;
-        thing.world_from_thing = drawn(kind, piece.world_from_node, piece);
+        thing.world_from_thing = drawn(primitive, piece.world_from_node, piece);
         const double px = norm(thing.world_from_thing.linear) * projection_.pixels_that_matter(ball);
-        const TextureSpace space = texture_space(kind, cut_.materials[*piece.material].around, piece.turns);
-        const TexturedPrimitive shape{kind,
-                                      fineness_for(kind, tessellation_tolerance_px / std::max(px, 1e-300)),
-                                      space.around, space.along};
+        const TextureSpace space =
+            texture_space(primitive, cut_.materials[*piece.material].around, piece.turns);
+        const TexturedPrimitive shape{
+            primitive, fineness_for(primitive, tessellation_tolerance_px / std::max(px, 1e-300)),
+            space.around, space.along};
         const auto [place, added] =
             textured_of_.emplace(shape, static_cast<std::uint32_t>(out_.textured.size()));
         if (added) out_.textured.push_back(shape);
-        if (!seen_.insert(static_cast<std::uint32_t>(kind), thing.world_from_thing)) return;
+        if (!seen_.insert(2 * out_.primitives.of(primitive), thing.world_from_thing)) return;
         note_finest(ball);
         thing.textured = place->second;
         thing.tint = piece.tint;
@@ -255,7 +256,7 @@ class Placing {
         thing.world_from_thing = piece.world_from_node;
         if (!shell)
             thing.world_from_thing = thing.world_from_thing * symmetry_.node_from_representative[piece.node];
-        if (!seen_.insert(thing.request + primitive_kind_count, thing.world_from_thing)) return true;
+        if (!seen_.insert(2 * thing.request + 1, thing.world_from_thing)) return true;
         note_finest(ball);
         thing.painter = painter(request, shell ? 0 : symmetry_.pair[piece.node], piece.inherited);
         thing.tint = piece.tint;

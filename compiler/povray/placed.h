@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "compiler/detail/baked.h"
+#include "compiler/detail/primitive_numbers.h"
 #include "compiler/graph/graph.h"
 #include "compiler/povray/placed_runs.h"
 #include "compiler/support/tint.h"
@@ -24,24 +25,25 @@ struct Placed {
 
     std::uint32_t request = no_request; ///< which mesh; none: a primitive
     std::uint32_t painter = 0;
-    PrimitiveKind kind = PrimitiveKind::sphere;
-    Affine world_from_thing; ///< the request's representative, or the primitive
-    PathTint tint;           ///< of a mesh
-    Rgb rgb{0.8};            ///< of a primitive, tints in front
+    std::uint32_t primitive = 0; ///< by PlacedPieces::primitives
+    Affine world_from_thing;     ///< the request's representative, or the primitive
+    PathTint tint;               ///< of a mesh
+    Rgb rgb{0.8};                ///< of a primitive, tints in front
     std::optional<MaterialId> material;
     std::optional<std::uint32_t> textured; ///< one of the primitives with pictures
 };
 
 /// A primitive as a mesh with a picture round it.
 struct TexturedPrimitive {
-    PrimitiveKind kind = PrimitiveKind::sphere;
+    Primitive primitive = PrimitiveKind::sphere;
     int fineness = 0;
     double around = 1, along = 1;
     auto operator<=>(const TexturedPrimitive&) const = default;
 };
 
 struct PlacedPieces {
-    std::deque<Placed> things; ///< no room for twice as many while it grows
+    PrimitiveNumbers primitives; ///< of what is placed
+    std::deque<Placed> things;   ///< no room for twice as many while it grows
     PlacedRuns runs;
     std::vector<BakeRequest> requests;
     std::vector<TexturedPrimitive> textured;

@@ -15,10 +15,10 @@ bool shows_alike(const Piece& a, const Piece& b) {
            a.material == b.material;
 }
 
-/// Calls `visit(index of the part, kind, whether it is the ball)` on the parts of an item.
+/// Calls `visit(index of the part, shape, whether it is the ball)` on the parts of an item.
 template<typename Visit> void visit_item(std::size_t i, const RunItem& item, const Visit& visit) {
-    visit(2 * i, item.kind, false);
-    if (item.ball) visit(2 * i + 1, PrimitiveKind::sphere, true);
+    visit(2 * i, item.shape, false);
+    if (item.ball) visit(2 * i + 1, RunShape(PrimitiveKind::sphere), true);
 }
 
 /// Tells where parts lie, to 1e-9 of the model's size, in one number.
@@ -26,10 +26,10 @@ class Digests {
   public:
     explicit Digests(double size) : unit_(1e-9 * std::max(size, 1e-280)) {}
 
-    std::uint64_t of(const Piece& piece, const RunItem& item, PrimitiveKind kind, bool ball) const {
+    std::uint64_t of(const Piece& piece, const RunItem& item, RunShape shape, bool ball) const {
         const Affine& world = piece.world_from_node;
-        std::uint64_t hash = mixed(0x243F6A8885A308D3ull, static_cast<std::uint64_t>(kind));
-        const bool round = kind == PrimitiveKind::sphere;
+        std::uint64_t hash = mixed(0x243F6A8885A308D3ull, std::uint64_t{shape.index()});
+        const bool round = shape.is_sphere();
         add(world(ball ? item.base + item.axis : item.base), hash);
         if (!round) add(world.linear * item.axis, hash);
         // Two radii at right angles, and a third aside, tell how a map stretches what is round.
@@ -77,16 +77,15 @@ double PlacedRuns::sift(const CutGraph& cut, const Projection& projection) {
     const auto for_each = [&](Range& range, const auto& visit) {
         for (std::size_t i = 0; i < range.count; ++i) {
             const RunItem& item = (*range.source->run)[range.first + i];
-            visit_item(i, item, [&](std::size_t part, PrimitiveKind kind, bool ball) {
-                visit(part, item, kind, ball);
-            });
+            visit_item(i, item,
+                       [&](std::size_t part, RunShape shape, bool ball) { visit(part, item, shape, ball); });
         }
     };
     std::vector<std::uint64_t> all;
     all.reserve(parts_);
     for (Range& range : ranges_)
-        for_each(range, [&](std::size_t, const RunItem& item, PrimitiveKind kind, bool ball) {
-            all.push_back(digests.of(range.piece, item, kind, ball));
+        for_each(range, [&](std::size_t, const RunItem& item, RunShape shape, bool ball) {
+            all.push_back(digests.of(range.piece, item, shape, ball));
         });
     std::ranges::sort(all);
     std::unordered_set<std::uint64_t> repeated, met;
@@ -99,14 +98,14 @@ double PlacedRuns::sift(const CutGraph& cut, const Projection& projection) {
     for (Range& range : ranges_) {
         auto left_out = std::make_shared<std::vector<bool>>(2 * range.count);
         bool any = false;
-        for_each(range, [&](std::size_t part, const RunItem& item, PrimitiveKind kind, bool ball) {
+        for_each(range, [&](std::size_t part, const RunItem& item, RunShape shape, bool ball) {
             const CutEdge edge = ball ? edge_to_ball(*range.source, item) : edge_to_body(*range.source, item);
             const Ball& unit_ball = cut.nodes[edge.child].ball;
             const Ball about{range.piece.world_from_node(edge.node_from_child(unit_ball.centre)),
                              range.piece.scale * edge.stretch * unit_ball.radius};
             bool out = projection.drops(about);
             if (!out && !repeated.empty()) {
-                const std::uint64_t digest = digests.of(range.piece, item, kind, ball);
+                const std::uint64_t digest = digests.of(range.piece, item, shape, ball);
                 out = repeated.contains(digest) && !met.insert(digest).second;
             }
             if (out)

@@ -2,41 +2,25 @@
 
 #include <variant>
 
-#include "compiler/povray/literal_form.h"
+#include "compiler/povray/povray_primitives.h"
 
 namespace graftal {
 
 namespace {
 
 double placement_bytes(const Body& body, const Affine& world_from_body) {
-    const auto* const kind = std::get_if<PrimitiveKind>(&body.shape);
-    if (!kind) return PovrayCosts::placement;
-    return PovrayCosts::primitive(*kind) +
-           (needs_no_matrix(*kind, world_from_body.linear) ? 0 : PovrayCosts::matrix);
+    const auto* const primitive = std::get_if<Primitive>(&body.shape);
+    if (!primitive) return PovrayCosts::placement;
+    const PovrayPrimitive& row = povray_primitive(primitive->kind());
+    const bool stays = row.stays_of_its_kind && row.stays_of_its_kind(world_from_body.linear);
+    return row.bytes(*primitive) + (stays ? 0 : PovrayCosts::matrix);
 }
 
 } // namespace
 
-double PovrayCosts::primitive(PrimitiveKind kind) {
-    switch (family_of(kind)) {
-    case PrimitiveKind::triangle:
-        return 400;
-    case PrimitiveKind::cylinder:
-    case PrimitiveKind::cone:
-    case PrimitiveKind::frustum:
-        return 640;
-    case PrimitiveKind::sphere:
-    case PrimitiveKind::cube:
-    case PrimitiveKind::plane:
-    case PrimitiveKind::torus:
-        return 336;
-    }
-    return 336;
-}
-
-double povray_leaf_bytes(PrimitiveKind kind) {
-    const bool needs_matrix = kind == PrimitiveKind::sphere || kind == PrimitiveKind::cube;
-    return PovrayCosts::primitive(kind) + (needs_matrix ? PovrayCosts::matrix : 0);
+double povray_leaf_bytes(const Primitive& primitive) {
+    const PovrayPrimitive& row = povray_primitive(primitive.kind());
+    return row.bytes(primitive) + (row.mostly_needs_matrix ? PovrayCosts::matrix : 0);
 }
 
 double povray_bytes(const Cut& cut) {
@@ -56,6 +40,9 @@ double povray_bytes(const Cut& cut) {
                      PovrayCosts::vertex * static_cast<double>(mesh->vertices.size()) +
                      PovrayCosts::normal * static_cast<double>(mesh->normals.size()) +
                      PovrayCosts::uv * static_cast<double>(mesh->uv.size());
+        else if (const Primitive& primitive = std::get<Primitive>(body.shape);
+                 povray_primitive(primitive.kind()).declared_bytes)
+            bytes += povray_primitive(primitive.kind()).declared_bytes(primitive);
     return bytes;
 }
 

@@ -22,8 +22,6 @@ struct PovrayCosts {
 
     static constexpr double least_placement = 336;
     static constexpr double matrix = 545; ///< of a primitive that cannot be written without one
-    /// A primitive without a matrix.
-    static double primitive(PrimitiveKind kind);
 };
 
 /// Bytes of SDL, which take most of the time to write and to parse: measured on the tetrahedron of
@@ -38,7 +36,7 @@ struct SdlLengths {
 
 /// About, of a leaf that nobody has placed yet: balls and cubes become ellipsoids and slabs more often than
 /// not, which need a matrix.
-double povray_leaf_bytes(PrimitiveKind kind);
+double povray_leaf_bytes(const Primitive& primitive);
 
 /// POV-Ray's peak for this scene, the picture aside.
 double povray_bytes(const Cut& cut);

@@ -4,7 +4,7 @@ namespace graftal {
 
 std::uint64_t part_count(const RunPlacements& parts) {
     std::uint64_t count = 0;
-    for_each_part(parts, [&](PrimitiveKind, const RunItem&, bool) { ++count; });
+    for_each_part(parts, [&](RunShape, const RunItem&, bool) { ++count; });
     return count;
 }
 

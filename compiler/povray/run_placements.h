@@ -20,20 +20,20 @@ struct RunPlacements {
     std::size_t first = 0, count = 0; ///< items
     std::uint16_t colour = 0;
     Affine world_from_run;
-    std::array<std::uint32_t, primitive_kind_count> body{}; ///< by kind of primitive
+    std::array<std::uint32_t, RunShape::count> body{}; ///< by RunShape::index()
     /// Of the range's items the bodies and the balls, in turn: what is drawn elsewhere, or not in sight. Null
     /// if nothing is.
     std::shared_ptr<const std::vector<bool>> left_out;
 };
 
-/// Calls `visit(kind, item, ball)` on each part, bodies before their balls.
+/// Calls `visit(shape, item, ball)` on each part, bodies before their balls.
 template<typename Visit> void for_each_part(const RunPlacements& parts, const Visit& visit) {
     const auto left_out = [&](std::size_t i) { return parts.left_out && (*parts.left_out)[i]; };
     for (std::size_t i = 0; i < parts.count; ++i) {
         const RunItem& item = (*parts.run)[parts.first + i];
         if (item.colour != parts.colour) continue;
-        if (!left_out(2 * i)) visit(item.kind, item, false);
-        if (item.ball && !left_out(2 * i + 1)) visit(PrimitiveKind::sphere, item, true);
+        if (!left_out(2 * i)) visit(item.shape, item, false);
+        if (item.ball && !left_out(2 * i + 1)) visit(RunShape(PrimitiveKind::sphere), item, true);
     }
 }
 

@@ -15,6 +15,7 @@
 #include "compiler/lower/lower_transform.h"
 #include "compiler/lower/lowering.h"
 #include "compiler/lower/model_family.h"
+#include "compiler/primitives/primitive.h"
 #include "compiler/rifs/lower_orbit.h"
 #include "compiler/rifs/rifs_chances.h"
 #include "compiler/rifs/rifs_parser.h"
@@ -92,7 +93,7 @@ class RifsLowering {
             if (!fresh) {
                 diagnostics_.error(use.name.span, fmt::format("duplicate use '{}'", use.name.text))
                     .with_note(first->second.span, "first defined here");
-            } else if (primitive_named(use.name.text)) {
+            } else if (primitive_kind_named(use.name.text)) {
                 diagnostics_.error(
                     use.name.span,
                     fmt::format("'{}' is a primitive and cannot name a used model", use.name.text));
@@ -167,29 +168,33 @@ class RifsLowering {
 
     std::optional<ObjectId> find_master(const RifsPart& part) {
         const std::string_view name = part.master.text;
-        const std::optional<PrimitiveKind> primitive = primitive_named(name);
+        const std::optional<Primitive> primitive = primitive_named(name);
         const auto use = uses_.find(name);
         ModelFamily* const family = use != uses_.end() && use->second.family ? &*use->second.family : nullptr;
-        const bool is_frustum = name == frustum_name;
-        if (!primitive && !is_frustum && use == uses_.end()) return unknown_master(part.master);
+        const std::optional<PrimitiveKind> kind = kind_of_numbers(name);
+        if (!primitive && !kind && use == uses_.end()) return unknown_master(part.master);
         std::vector<double> arguments;
         for (const Expression& expression : part.arguments)
             if (const auto value = evaluate(expression, lets_, diagnostics_)) arguments.push_back(*value);
         if (arguments.size() < part.arguments.size()) return std::nullopt;
-        const std::size_t most = is_frustum ? 1 : family ? family->parameters().size() : 0;
-        if (arguments.size() > most || (is_frustum && arguments.empty())) return wrong_count(part, most);
+        if (kind && !takes_count(*kind, arguments.size())) return wrong_count(part, counts_taken(*kind));
+        const std::size_t most = family ? family->parameters().size() : 0;
+        if (!kind && arguments.size() > most)
+            return wrong_count(part, fmt::format("{} argument{}", most, most == 1 ? "" : "s"));
         if (primitive) return graph_.primitive(*primitive);
         if (family && !arguments.empty()) return family->exact(arguments, part.master.span, diagnostics_);
-        if (!is_frustum) return use->second.root;
-        const std::optional<PrimitiveKind> frustum =
-            lower_frustum(arguments[0], part.master.span, diagnostics_);
-        return frustum ? std::optional(graph_.primitive(*frustum)) : std::nullopt;
+        if (!kind) return use->second.root;
+        const std::optional<Primitive> made =
+            lower_primitive(*kind, arguments, part.master.span, diagnostics_);
+        return made ? std::optional(graph_.primitive(*made)) : std::nullopt;
     }
 
     std::nullopt_t unknown_master(const RifsName& name) {
-        std::vector<std::string> known = {std::string(frustum_name)};
-        for (int kind = 0; kind < static_cast<int>(PrimitiveKind::frustum); ++kind)
-            known.emplace_back(name_of(static_cast<PrimitiveKind>(kind)));
+        std::vector<std::string> known;
+        for (const bool plain : {false, true})
+            for (const PrimitiveKind kind : all_primitive_kinds)
+                if (plain ? form_of(kind) == PrimitiveForm::plain : traits_of(kind).make != nullptr)
+                    known.emplace_back(name_of(kind));
         for (const auto& [used, use] : uses_)
             known.emplace_back(used);
         diagnostics_.error(name.span, fmt::format("'{}' is neither a primitive nor a used model", name.text))
@@ -197,9 +202,9 @@ class RifsLowering {
         return std::nullopt;
     }
 
-    std::nullopt_t wrong_count(const RifsPart& part, std::size_t most) {
-        diagnostics_.error(part.master.span, fmt::format("'{}' takes {} argument{}, not {}", part.master.text,
-                                                         most, most == 1 ? "" : "s", part.arguments.size()));
+    std::nullopt_t wrong_count(const RifsPart& part, const std::string& takes) {
+        diagnostics_.error(part.master.span, fmt::format("'{}' takes {}, not {}", part.master.text, takes,
+                                                         part.arguments.size()));
         return std::nullopt;
     }
 

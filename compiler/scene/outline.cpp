@@ -7,6 +7,7 @@
 #include <glm/geometric.hpp>
 
 #include "compiler/analysis/run_bounds.h"
+#include "compiler/primitives/primitive.h"
 
 namespace graftal {
 
@@ -137,12 +138,20 @@ class Outline {
 } // namespace
 
 std::vector<Vec3> hull_points(const Object& object, const Box& box) {
-    if (object.primitive == PrimitiveKind::triangle) {
-        const auto corners = triangle_corners();
-        return {corners.begin(), corners.end()};
-    }
     if (box.empty()) return {};
     const auto corners = box.corners();
+    if (object.primitive) {
+        const std::vector<HullPiece> hull = traits_of(*object.primitive).hull(*object.primitive);
+        const bool is_point = std::ranges::all_of(hull, [](const HullPiece& piece) {
+            return piece.kind == HullPiece::Kind::point && piece.thickness == 0;
+        });
+        if (is_point && hull.size() < corners.size()) {
+            std::vector<Vec3> points;
+            for (const HullPiece& piece : hull)
+                points.push_back(piece.place.translation);
+            return points;
+        }
+    }
     return {corners.begin(), corners.end()};
 }
 

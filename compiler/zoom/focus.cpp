@@ -8,8 +8,8 @@
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 
-#include "compiler/analysis/primitive_shape.h"
 #include "compiler/graph/run.h"
+#include "compiler/primitives/primitive.h"
 
 namespace graftal {
 
@@ -59,7 +59,7 @@ Vec3 surface_of_run(const Run& run, Vec3 point, Vec3 to_eye) {
     double nearest = std::numeric_limits<double>::infinity();
     for (std::size_t i = 0; i < run.size(); ++i) {
         const RunItem& item = run[i];
-        const bool round = item.kind == PrimitiveKind::sphere;
+        const bool round = item.shape.is_sphere();
         const double square = glm::dot(item.axis, item.axis);
         const double share = round || !(square > 0)
                                  ? 0
@@ -70,7 +70,7 @@ Vec3 surface_of_run(const Run& run, Vec3 point, Vec3 to_eye) {
         nearest = distance;
         const Vec3 out =
             round || !(square > 0) ? to_eye : to_eye - glm::dot(to_eye, item.axis) / square * item.axis;
-        const double length = glm::length(out), narrowing = item.ball ? 0 : 1 - top_radius(item.kind);
+        const double length = glm::length(out), narrowing = item.ball ? 0 : 1 - item.shape.top_radius();
         seen =
             length > 0 ? inside + item.radius * (round ? 1 : 1 - share * narrowing) / length * out : inside;
     }
@@ -242,7 +242,7 @@ Focus focus_near_point(const Graph& graph, const std::vector<ObjectBounds>& boun
     focus.path = std::move(path);
     const Vec3 direction = pulled_down(graph, focus.path, to_eye);
     const Vec3 seen = last.run ? surface_of_run(*last.run, nearest, direction)
-                               : primitive_support_point(*last.primitive, direction);
+                               : traits_of(*last.primitive).support_point(*last.primitive, direction);
     pull_up(graph, focus, seen, focus.path.steps.size());
     return focus;
 }

@@ -66,7 +66,7 @@ std::uint64_t finite_objects(const Cut& cut) {
     std::uint64_t count = 0;
     for (const PlacementGroup& group : cut.groups)
         for (const Placement& placement : group.placements) {
-            const auto* primitive = std::get_if<PrimitiveKind>(&cut.bodies[placement.body].shape);
+            const auto* primitive = std::get_if<Primitive>(&cut.bodies[placement.body].shape);
             count += !primitive || *primitive != PrimitiveKind::plane;
         }
     for (const PlacementGroup& group : cut.groups)

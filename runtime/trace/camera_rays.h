@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "compiler/scene/scene.h"
-#include "runtime/trace/ray.h"
+#include "compiler/support/ray.h"
 
 namespace graftal {
 

@@ -8,6 +8,7 @@
 #include "compiler/analysis/contraction.h"
 #include "compiler/detail/run_cells.h"
 #include "compiler/graph/components.h"
+#include "compiler/primitives/primitive.h"
 
 namespace graftal {
 
@@ -153,12 +154,12 @@ bool keeps_axes(const Mat3& m) {
     return true;
 }
 
-Box box_of_image(PrimitiveKind kind, const Affine& place) {
+Box box_of_image(const Primitive& primitive, const Affine& place) {
     const Mat3 rows = glm::transpose(place.linear);
     Box box;
     for (int axis = 0; axis < 3; ++axis) {
-        box.min[axis] = place.translation[axis] - primitive_support(kind, -rows[axis]);
-        box.max[axis] = place.translation[axis] + primitive_support(kind, rows[axis]);
+        box.min[axis] = place.translation[axis] - primitive_support(primitive, -rows[axis]);
+        box.max[axis] = place.translation[axis] + primitive_support(primitive, rows[axis]);
     }
     return box;
 }

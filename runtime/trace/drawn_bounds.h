@@ -20,7 +20,7 @@ struct DrawnBounds {
 bool keeps_axes(const Mat3& m);
 
 /// The box of an image of a primitive, exact. Not for planes.
-Box box_of_image(PrimitiveKind kind, const Affine& place);
+Box box_of_image(const Primitive& primitive, const Affine& place);
 
 /// Requires a graph whose cycles contract. O(graph).
 DrawnBounds drawn_bounds(const CutGraph& cut);

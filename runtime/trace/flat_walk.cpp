@@ -7,7 +7,7 @@
 #include <glm/geometric.hpp>
 
 #include "compiler/detail/least_width.h"
-#include "compiler/detail/texture_space.h"
+#include "compiler/primitives/texture_space.h"
 #include "compiler/support/stretch.h"
 #include "runtime/trace/traversal.h"
 
@@ -116,18 +116,18 @@ bool Traversal::may_meet(const FlatPart& part, const RayRange& range) const {
     return inside.least <= inside.most;
 }
 
-bool Traversal::meet_leaf(PrimitiveKind kind, const Affine& world_from_leaf, bool faint, const Ball& ball,
-                          const RayRange& range) {
+bool Traversal::meet_leaf(const Primitive& primitive, const Affine& world_from_leaf, bool faint,
+                          const Ball& ball, const RayRange& range) {
     const double half_width = model_.projection.least_half_width(ball);
     // Most are missed: a ball tells sooner than the leaf itself.
     const RayRange near =
-        both({range.least, best_.t}, in_ball(ray_, widened_ball(kind, world_from_leaf, half_width)));
+        both({range.least, best_.t}, in_ball(ray_, widened_ball(primitive, world_from_leaf, half_width)));
     if (!(near.least <= near.most)) return false;
     more_work_ += RayWork::widened;
-    return meet_drawn(kind, drawn_leaf(kind, world_from_leaf, faint, half_width).place, range);
+    return meet_drawn(primitive, drawn_leaf(primitive, world_from_leaf, faint, half_width).place, range);
 }
 
-bool Traversal::meet_drawn(PrimitiveKind kind, const Affine& drawn, const RayRange& range) {
+bool Traversal::meet_drawn(const Primitive& primitive, const Affine& drawn, const RayRange& range) {
     const Affine leaf_from_world = inverse(drawn);
     const Vec3 direction = leaf_from_world.linear * ray_.direction;
     const double speed = largest_entry(direction);
@@ -136,7 +136,7 @@ bool Traversal::meet_drawn(PrimitiveKind kind, const Affine& drawn, const RayRan
     const double at =
         glm::dot(drawn.translation - ray_.origin, ray_.direction) / glm::dot(ray_.direction, ray_.direction);
     PrimitiveHit hit;
-    if (!intersect(kind, {leaf_from_world(ray_(at)), direction / speed},
+    if (!intersect(primitive, {leaf_from_world(ray_(at)), direction / speed},
                    {(range.least - at) * speed, (best_.t - at) * speed}, hit))
         return false;
     best_.t = at + hit.t / speed;
@@ -292,16 +292,16 @@ void Traversal::meet_flat_items(const FlatPart& part, const Ball& ball, const Ra
     const TraceRun& run = model_.runs[model_.nodes[number].run];
     const RunCell& cell = *model_.source(number).cell;
     const Affine world_from_run = part.world_from_node.affine() * inverse(model_.graph_from_frame[number]);
-    const auto meet = [&](PrimitiveKind kind, const Affine& run_from_body, std::uint16_t colour) {
+    const auto meet = [&](RunShape shape, const Affine& run_from_body, std::uint16_t colour) {
         ++visits_;
-        if (!meet_leaf(kind, world_from_run * run_from_body, part.faint, ball, range)) return;
+        if (!meet_leaf(shape.primitive(), world_from_run * run_from_body, part.faint, ball, range)) return;
         keep_flat_way(frame_number);
-        way_.push_back(run.edge_of(kind, colour));
+        way_.push_back(run.edge_of(shape, colour));
         best_.turns = length_in_turns(run_from_body.linear);
     };
     for (std::size_t i = cell.first; i < cell.first + cell.count; ++i) {
         const RunItem& item = (*run.run)[i];
-        meet(item.kind, run_from_body(item), item.colour);
+        meet(item.shape, run_from_body(item), item.colour);
         if (item.ball) meet(PrimitiveKind::sphere, run_from_ball(item), item.colour);
     }
 }

@@ -64,9 +64,10 @@ class Layering {
         std::shared_ptr<const RunSource>& source = sources_[cell->source.get()];
         if (!source) {
             RunSource copy = *cell->source;
-            for (std::size_t kind = 0; kind < primitive_kind_count; ++kind)
-                if (cut_.nodes[copy.child[kind]].primitive == static_cast<PrimitiveKind>(kind))
-                    copy.child[kind] = copy_of(copy.child[kind], 0);
+            for (std::size_t shape = 0; shape < copy.child.size(); ++shape)
+                if (const auto& primitive = cut_.nodes[copy.child[shape]].primitive;
+                    primitive && RunShape(*primitive).index() == shape)
+                    copy.child[shape] = copy_of(copy.child[shape], 0);
             source = std::make_shared<const RunSource>(std::move(copy));
         }
         RunCell copy = *cell;

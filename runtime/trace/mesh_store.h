@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "compiler/detail/prepare.h"
+#include "compiler/primitives/intersect.h"
 #include "runtime/trace/box_tree.h"
-#include "runtime/trace/intersect.h"
 
 namespace graftal {
 

@@ -11,8 +11,9 @@
 
 namespace graftal {
 
-/// A ray crosses no primitive's surface more often: the torus.
-inline constexpr int most_crossings = 4;
+/// Through so many clear places of one primitive's picture a ray goes on. A torus is crossed four times, a
+/// mesh any number of times.
+inline constexpr int most_crossings = 256;
 /// Allows for the rounding of what is a little more than enough.
 inline constexpr double surely_more = 1 - 1e-6;
 

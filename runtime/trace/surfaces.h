@@ -1,8 +1,8 @@
 #pragma once
 
 #include "compiler/graph/settings.h"
+#include "compiler/support/ray.h"
 #include "compiler/support/tint.h"
-#include "runtime/trace/ray.h"
 
 namespace graftal {
 

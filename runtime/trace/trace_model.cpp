@@ -11,8 +11,8 @@
 #include <glm/geometric.hpp>
 
 #include "compiler/detail/piece.h"
-#include "compiler/detail/texture_space.h"
 #include "compiler/detail/work.h"
+#include "compiler/primitives/texture_space.h"
 #include "runtime/trace/drawn_bounds.h"
 #include "runtime/trace/unroll.h"
 
@@ -135,7 +135,7 @@ class ModelBuilder {
         reserve_boxes(run.run->size());
         for (std::size_t i = 0; i < source.run->size(); ++i) {
             const RunItem& item = (*source.run)[i];
-            add_look(source, item.kind, item.colour, run);
+            add_look(source, item.shape, item.colour, run);
             if (item.ball) add_look(source, PrimitiveKind::sphere, item.colour, run);
         }
         return place->second;
@@ -150,12 +150,12 @@ class ModelBuilder {
         model_.boxes.reserve(model_.boxes.size() + items / items_a_node + 8 * cut_.nodes.size());
     }
 
-    void add_look(const RunSource& source, PrimitiveKind kind, std::uint16_t colour, TraceRun& run) {
-        if (run.edge_of(kind, colour) != no_edge) return;
+    void add_look(const RunSource& source, RunShape shape, std::uint16_t colour, TraceRun& run) {
+        if (run.edge_of(shape, colour) != no_edge) return;
         TraceEdge edge;
-        edge.child = source.child[static_cast<std::size_t>(kind)];
+        edge.child = source.child[shape.index()];
         edge.material = source.materials[colour];
-        run.looks.push_back({kind, colour, static_cast<std::uint32_t>(model_.edges.size())});
+        run.looks.push_back({shape, colour, static_cast<std::uint32_t>(model_.edges.size())});
         model_.edges.push_back(edge);
     }
 
@@ -326,9 +326,9 @@ std::uint64_t most_shell_work(const DetailOptions& options) {
 
 } // namespace
 
-std::uint32_t TraceRun::edge_of(PrimitiveKind kind, std::uint16_t colour) const {
+std::uint32_t TraceRun::edge_of(RunShape shape, std::uint16_t colour) const {
     for (const Look& look : looks)
-        if (look.kind == kind && look.colour == colour) return look.edge;
+        if (look.shape == shape && look.colour == colour) return look.edge;
     return no_edge;
 }
 

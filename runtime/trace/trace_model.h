@@ -13,12 +13,12 @@
 #include "compiler/detail/run_cells.h"
 #include "compiler/detail/shell_sizes.h"
 #include "compiler/scene/scene.h"
+#include "compiler/support/ray.h"
 #include "runtime/image/texture.h"
 #include "runtime/trace/box_tree.h"
 #include "runtime/trace/lanes.h"
 #include "runtime/trace/layers.h"
 #include "runtime/trace/mesh_store.h"
-#include "runtime/trace/ray.h"
 
 namespace graftal {
 
@@ -77,7 +77,7 @@ struct TraceNode {
     };
 
     Kind kind = Kind::parts;
-    PrimitiveKind primitive = PrimitiveKind::sphere;
+    Primitive primitive = PrimitiveKind::sphere;
     bool unending = false;
     bool cullable = true;
     ShellSizes shell;
@@ -105,7 +105,7 @@ struct TraceNode {
 /// run.
 struct TraceRun {
     struct Look {
-        PrimitiveKind kind;
+        RunShape shape;
         std::uint16_t colour;
         std::uint32_t edge;
     };
@@ -115,7 +115,7 @@ struct TraceRun {
     bool pictured =
         false; ///< some part of it has a texture, so that it matters how it is turned about its axis
 
-    std::uint32_t edge_of(PrimitiveKind kind, std::uint16_t colour) const;
+    std::uint32_t edge_of(RunShape shape, std::uint16_t colour) const;
 };
 
 /// A prepared graph made ready for rays, for one view. It is read by many threads.

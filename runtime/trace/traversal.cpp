@@ -2,7 +2,7 @@
 
 #include <array>
 
-#include "compiler/detail/texture_space.h"
+#include "compiler/primitives/texture_space.h"
 #include "runtime/trace/surface_normal.h"
 #include "runtime/trace/traversal_kernel.h"
 #include "runtime/trace/traversal_runs.h"
@@ -121,9 +121,9 @@ std::optional<MaterialId> Traversal::material_of(std::uint32_t edge) const {
 const Texture::Texel& Traversal::texel(MaterialId material, std::uint32_t edge, double turns,
                                        Vec3 point) const {
     const TraceEdge& way = model_.edges[edge & ~from_cut];
-    const PrimitiveKind kind = model_.nodes[way.child].primitive;
+    const Primitive& primitive = model_.nodes[way.child].primitive;
     const double around = model_.prepared.cut.materials[material].around;
-    const auto [u, v] = texture_coordinates(kind, texture_space(kind, around, turns), point);
+    const auto [u, v] = texture_coordinates(primitive, texture_space(primitive, around, turns), point);
     return model_.textures[material]->at(u, v);
 }
 

@@ -7,7 +7,7 @@
 
 #include "compiler/detail/alike_set.h"
 #include "compiler/detail/work.h"
-#include "runtime/trace/intersect.h"
+#include "compiler/primitives/intersect.h"
 #include "runtime/trace/surfaces.h"
 #include "runtime/trace/trace_model.h"
 
@@ -144,10 +144,10 @@ class Traversal final : public Surfaces {
     bool is_new(const FlatPart& part, double width);
     /// Meets a proxy or primitive in the world, as it is drawn (least_width.h); true if it is the nearest so
     /// far, and its way is to be kept. `ball`: of the node that it is or stands for, in the world.
-    bool meet_leaf(PrimitiveKind kind, const Affine& world_from_leaf, bool faint, const Ball& ball,
+    bool meet_leaf(const Primitive& primitive, const Affine& world_from_leaf, bool faint, const Ball& ball,
                    const RayRange& range);
     /// The same for what is drawn at this place, which is regular.
-    bool meet_drawn(PrimitiveKind kind, const Affine& drawn, const RayRange& range);
+    bool meet_drawn(const Primitive& primitive, const Affine& drawn, const RayRange& range);
     /// The edges to a frame's node.
     void keep_way(std::uint32_t frame_number);
     bool run(const Ray& ray, const RayRange& range, bool any);

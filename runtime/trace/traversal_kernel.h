@@ -416,18 +416,18 @@ template<Instructions instructions> struct Traversal::Kernel {
     }
 
     /// Meets a child whose ray is in `frame`.
-    GRAFTAL_INLINE void meet_primitive(PrimitiveKind kind, const Frame& parent, const Frame& frame,
+    GRAFTAL_INLINE void meet_primitive(const Primitive& primitive, const Frame& parent, const Frame& frame,
                                        const Entry& entry) {
         const Ray ray{vec3_of(frame.origin), vec3_of(frame.direction)};
         RayRange near = range_from(frame.base, frame.speed);
         PrimitiveHit hit;
-        if (!intersect(kind, ray, near, hit)) return;
+        if (!intersect(primitive, ray, near, hit)) return;
         for (int crossing = 0;
              model.clear_texels &&
              self.is_clear(entry.entry, entry.frame, model.edges[entry.entry].turns, ray(hit.t));
              ++crossing) {
             near.least = hit.t;
-            if (crossing == most_crossings || !intersect(kind, ray, near, hit)) return;
+            if (crossing == most_crossings || !intersect(primitive, ray, near, hit)) return;
         }
         if (!set_best(frame.base + hit.t * frame.unit)) return;
         self.best_.normal = hit.normal;
@@ -443,7 +443,7 @@ template<Instructions instructions> struct Traversal::Kernel {
     /// Meets an item of the frame's run (traversal_runs.h).
     void meet_item(const Entry& entry);
     /// `ray`: from where the entry begins, in units of the frame's.
-    void meet_body(PrimitiveKind kind, const Affine& run_from_body, const TraceRun& run, const RunItem& item,
+    void meet_body(RunShape shape, const Affine& run_from_body, const TraceRun& run, const RunItem& item,
                    const Ray& ray, const Entry& entry);
 
     /// A primitive of what stands for a set without area.

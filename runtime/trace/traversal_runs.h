@@ -2,7 +2,7 @@
 
 // How the traversal meets the items of runs; only traversal.cpp includes it.
 
-#include "compiler/detail/texture_space.h"
+#include "compiler/primitives/texture_space.h"
 #include "runtime/trace/traversal_kernel.h"
 
 namespace graftal {
@@ -16,8 +16,8 @@ template<Instructions instructions> void Traversal::Kernel<instructions>::meet_i
     const Ray ray{run_from_frame(vec3_of(frame.origin + splat(entry.at) * frame.direction)),
                   run_from_frame.linear * vec3_of(frame.direction)};
     const Vec3 from_base = ray.origin - item.base;
-    if (item.kind == PrimitiveKind::sphere || !passes_line(ray.direction, from_base, item.axis, item.radius))
-        meet_body(item.kind, run.pictured ? run_from_body(item) : run_from_round_body(item), run, item, ray,
+    if (item.shape.is_sphere() || !passes_line(ray.direction, from_base, item.axis, item.radius))
+        meet_body(item.shape, run.pictured ? run_from_body(item) : run_from_round_body(item), run, item, ray,
                   entry);
     if (item.ball && !passes_point(ray.direction, from_base - item.axis, item.radius))
         meet_body(PrimitiveKind::sphere, run.pictured ? run_from_ball(item) : run_from_round_ball(item), run,
@@ -25,7 +25,7 @@ template<Instructions instructions> void Traversal::Kernel<instructions>::meet_i
 }
 
 template<Instructions instructions>
-void Traversal::Kernel<instructions>::meet_body(PrimitiveKind kind, const Affine& run_from_body,
+void Traversal::Kernel<instructions>::meet_body(RunShape shape, const Affine& run_from_body,
                                                 const TraceRun& run, const RunItem& item, const Ray& ray,
                                                 const Entry& entry) {
     const Frame& frame = self.frames_[entry.frame];
@@ -41,20 +41,21 @@ void Traversal::Kernel<instructions>::meet_body(PrimitiveKind kind, const Affine
     const double base = t_of(entry), speed = frame.speed * largest;
     RayRange near = range_from(base, speed);
     PrimitiveHit hit;
-    if (!intersect(kind, inner, near, hit)) return;
+    const Primitive primitive = shape.primitive();
+    if (!intersect(primitive, inner, near, hit)) return;
     std::uint32_t look = no_edge;
     double turns = 1;
     if (model.clear_texels) {
-        look = run.edge_of(kind, item.colour);
+        look = run.edge_of(shape, item.colour);
         turns = length_in_turns(m);
         for (int crossing = 0; self.is_clear(look, entry.frame, turns, inner(hit.t)); ++crossing) {
             near.least = hit.t;
-            if (crossing == most_crossings || !intersect(kind, inner, near, hit)) return;
+            if (crossing == most_crossings || !intersect(primitive, inner, near, hit)) return;
         }
     }
     if (!set_best(base + hit.t / speed)) return;
     if (look == no_edge) {
-        look = run.edge_of(kind, item.colour);
+        look = run.edge_of(shape, item.colour);
         turns = length_in_turns(m);
     }
     self.best_.normal = hit.normal;

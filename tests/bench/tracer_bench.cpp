@@ -15,7 +15,7 @@
 #include <embree3/rtcore.h>
 
 #include "compiler/detail/piece.h"
-#include "compiler/detail/tessellate.h"
+#include "compiler/primitives/tessellate.h"
 #include "compiler/session/session.h"
 #include "compiler/session/stages.h"
 #include "runtime/trace/camera_rays.h"
@@ -104,7 +104,7 @@ Flat flatten(const TraceModel& model) {
     root.node = cut.root;
     root.steps = model.prepared.root_steps;
     std::vector<Piece> stack = {root};
-    const auto add = [&](PrimitiveKind kind, const Affine& place) {
+    const auto add = [&](const Primitive& kind, const Affine& place) {
         const TessellatedPrimitive& mesh = tessellated(kind, 0);
         const auto first = static_cast<unsigned>(flat.vertices.size() / 3);
         for (const Vec3& vertex : mesh.vertices)

@@ -52,7 +52,7 @@ void cross_triangle(const Ray& ray, std::vector<Crossing>& crossings) {
     if (p.y >= -0.5 && std::sqrt(3.0) * std::abs(p.x) + p.y <= 1) crossings.push_back({t, {0, 0, 1}});
 }
 
-std::vector<Crossing> crossings_of(PrimitiveKind kind, const Ray& ray) {
+std::vector<Crossing> crossings_of(const Primitive& kind, const Ray& ray) {
     std::vector<Crossing> crossings;
     if (kind == PrimitiveKind::sphere) cross_sphere(ray, crossings);
     if (kind == PrimitiveKind::cube) cross_cube(ray, crossings);
@@ -61,7 +61,7 @@ std::vector<Crossing> crossings_of(PrimitiveKind kind, const Ray& ray) {
     return crossings;
 }
 
-bool known(PrimitiveKind kind) {
+bool known(const Primitive& kind) {
     return kind == PrimitiveKind::sphere || kind == PrimitiveKind::cube || kind == PrimitiveKind::plane ||
            kind == PrimitiveKind::triangle;
 }
@@ -71,7 +71,7 @@ bool known(PrimitiveKind kind) {
 BruteForce::BruteForce(const Cut& cut) {
     for (const PlacementGroup& group : cut.groups)
         for (const Placement& placement : group.placements) {
-            const auto* kind = std::get_if<PrimitiveKind>(&cut.bodies[placement.body].shape);
+            const auto* kind = std::get_if<Primitive>(&cut.bodies[placement.body].shape);
             EXPECT_TRUE(kind && known(*kind)) << "not for such bodies";
             const Palette& palette = cut.palettes[group.palette];
             EXPECT_EQ(palette.size(), 1u);

@@ -19,7 +19,7 @@ class BruteForce : public Surfaces {
 
   private:
     struct Part {
-        PrimitiveKind kind;
+        Primitive kind = PrimitiveKind::sphere;
         Affine part_from_world;
         Rgb rgb;
         const Material* material;

@@ -6,14 +6,14 @@
 #include <glm/geometric.hpp>
 
 #include "compiler/analysis/bounding.h"
-#include "runtime/trace/intersect.h"
+#include "compiler/primitives/intersect.h"
 
 namespace graftal {
 
 Coincidence::Coincidence(const Cut& cut) {
     for (const PlacementGroup& group : cut.groups)
         for (const Placement& placement : group.placements) {
-            const auto* kind = std::get_if<PrimitiveKind>(&cut.bodies[placement.body].shape);
+            const auto* kind = std::get_if<Primitive>(&cut.bodies[placement.body].shape);
             const Affine& place = placement.world_from_body;
             if (!kind || *kind == PrimitiveKind::plane || is_singular(place, 1e-12)) continue;
             constexpr double reach = 2; // of every primitive

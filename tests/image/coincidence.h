@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "compiler/povray/cut.h"
-#include "runtime/trace/ray.h"
+#include "compiler/support/ray.h"
 
 namespace graftal {
 
@@ -18,7 +18,7 @@ class Coincidence {
 
   private:
     struct Part {
-        PrimitiveKind kind;
+        Primitive kind = PrimitiveKind::sphere;
         Affine part_from_world;
         Vec3 centre;
         double radius;

@@ -93,6 +93,23 @@ const std::string stopped = R"(
     object plant { branch }
 )";
 
+/// What numbers make, stretched too, with a mirror, and holes that show what is behind them.
+const std::string shapes = R"(
+    material gloss { color: 0.5, 0.2, 0.1 ambient: 0.1 diffuse: 0.6 specular: 0.7 roughness: 0.02 }
+    material mirror { ambient: 0.02 diffuse: 0.2 specular: 0.4 roughness: 0.01 reflection: 0.7 }
+    object things {
+        superellipsoid(0.3, 0.3) scale: 0.8, 1, 0.6 rotate: y, 30 translate: -2, 1, 0 material: gloss
+        superellipsoid(1, 0.5) rotate: x, 25 translate: 0.3, 1.2, -0.5 tint: 0.3, 0.8, 0.2, 0.4
+        superellipsoid(1.6, 1.2) scale: 0.9 translate: 2.4, 0.9, 0.5 material: mirror
+        polygon(-1, -1, 1, -1, 1, 1, -1, 1, -1, -1, -0.6, -0.6, 0.6, -0.6, 0, 0.6, -0.6, -0.6)
+            rotate: y, -20 translate: 0.5, 1, 1.6 tint: 0.9, 0.1, 0.7, 1
+    }
+    camera { location: 2, 4, 9 look_at: 0.4, 1, 0 angle: 45 }
+    light { sun: -1, 2, 1.5 color: 0.8, 0.7, 0.6 }
+    light { location: 3, 5, 4 color: 0.3, 0.4, 0.6 }
+    ground { height: 0 }
+)";
+
 const CameraSetting parallel_from_above{.location = Vec3(2.1, 3.3, 1.7),
                                         .look_at = Vec3(0.0),
                                         .up = Vec3(0.2, 0, -1),
@@ -143,6 +160,8 @@ const Question questions[] = {
     {"DeepZoom", "scenes/hart/pound_sign.rifs", zoomed("(urf.llf)*", "4^40", 6)},
     {"AddressAlone", "scenes/hart/sierpinski.inst", zoomed("left.up", "", 1)},
     {"EveryPrimitive", "still_life.inst", plain(), 0.1, still_life},
+    {"ShapesOfNumbers", "shapes.inst", plain(), 0.1, shapes},
+    {"MeshAndShapes", "scenes/shapes/shapes.inst", plain(), 0.1},
     {"SpecksOfACurve", "scenes/ifs/koch_curve.rifs", plain(), 0.01},
     {"TrianglesAPixelWide", "scenes/hart/sierpinski.inst", plain()},
     {"CrushedOntoLines", "crushed.rifs",

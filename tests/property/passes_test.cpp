@@ -149,7 +149,10 @@ std::size_t class_count(const Graph& graph) {
         std::map<Signature, std::size_t> classes;
         std::vector<std::size_t> next;
         for (const Object& object : graph.objects) {
-            Signature signature{object.primitive ? 1 + static_cast<int>(*object.primitive) : 0, {}};
+            Signature signature{object.primitive ? 1 + static_cast<int>(object.primitive->kind()) * 256 +
+                                                       object.primitive->steps()
+                                                 : 0,
+                                {}};
             for (const Instance& instance : object.instances)
                 signature.second.emplace_back(instance.tint.alpha, class_of[instance.master]);
             std::sort(signature.second.begin(), signature.second.end());

@@ -13,6 +13,7 @@
 
 #include "compiler/graph/components.h"
 #include "compiler/graph/run.h"
+#include "tests/unit/primitives/all_primitives.h"
 
 namespace graftal::testing {
 
@@ -146,17 +147,18 @@ class Generator {
         return instance;
     }
 
-    PrimitiveKind primitive_kind() {
-        const auto kind = static_cast<PrimitiveKind>(choices_.below(primitive_kind_count));
-        const bool allowed = kind != PrimitiveKind::plane || !options_.cycles; // no plane within a cycle
-        return allowed ? kind : PrimitiveKind::sphere;
+    Primitive primitive() {
+        static const std::vector<Primitive> all = test::all_primitives();
+        const Primitive& chosen = all[choices_.below(static_cast<std::uint32_t>(all.size()))];
+        const bool allowed = !(chosen == PrimitiveKind::plane) || !options_.cycles; // no plane within a cycle
+        return allowed ? chosen : PrimitiveKind::sphere;
     }
 
     /// Without cycles, object i leads to later objects only.
     ObjectId master_for(std::uint32_t i) {
         const auto union_count = static_cast<std::uint32_t>(unions_.size());
         const std::uint32_t first = options_.cycles && choices_.one_in(3) ? 0 : i + 1;
-        if (first >= union_count || choices_.one_in(3)) return graph_.primitive(primitive_kind());
+        if (first >= union_count || choices_.one_in(3)) return graph_.primitive(primitive());
         return unions_[first + choices_.below(union_count - first)];
     }
 
@@ -174,9 +176,9 @@ class Generator {
             item.axis = {unit(), unit(), 0.25};
             item.radius = 0.01 + 0.3 * unit();
             item.turn = choices_.below(3) * 0x40000001u;
-            item.kind = choices_.one_in(4) ? PrimitiveKind::sphere : tapered(tapers[choices_.below(4)]);
-            if (item.kind == PrimitiveKind::sphere) item.axis *= item.radius / glm::length(item.axis);
-            item.ball = item.kind == PrimitiveKind::cylinder && choices_.one_in(2);
+            item.shape = choices_.one_in(4) ? PrimitiveKind::sphere : tapered(tapers[choices_.below(4)]);
+            if (item.shape.is_sphere()) item.axis *= item.radius / glm::length(item.axis);
+            item.ball = item.shape == PrimitiveKind::cylinder && choices_.one_in(2);
             item.colour = static_cast<std::uint16_t>(
                 choices_.below(static_cast<std::uint32_t>(object.run_materials.size())));
             run->add(item);

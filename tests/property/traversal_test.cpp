@@ -22,7 +22,7 @@ namespace graftal {
 namespace {
 
 struct Leaf {
-    PrimitiveKind kind;
+    Primitive kind = PrimitiveKind::sphere;
     Affine leaf_from_world;
     Rgb rgb;
 };
@@ -42,7 +42,7 @@ std::optional<std::vector<Leaf>> plain_unfolding(const TraceModel& model, std::s
         if (node.sealed || leaves.size() + stack.size() > most) return std::nullopt;
         const bool is_cut = graftal::is_cut(node, piece.steps, detail_of(cut, model.projection, piece),
                                             model.projection.error_px());
-        const auto add = [&](PrimitiveKind kind, const Affine& place, const Rgb& base) {
+        const auto add = [&](const Primitive& kind, const Affine& place, const Rgb& base) {
             if (is_singular(place, 1e-4) || norm(place.linear) < 1e-6) return false;
             leaves.push_back({kind, inverse(place), piece.tint.over(base)});
             return true;

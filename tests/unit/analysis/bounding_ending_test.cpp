@@ -9,6 +9,7 @@
 #include "tests/unit/analysis/bounds_checks.h"
 #include "tests/unit/analysis/sampling.h"
 #include "tests/unit/analysis/systems.h"
+#include "tests/unit/primitives/all_primitives.h"
 
 namespace graftal {
 namespace {
@@ -18,8 +19,7 @@ using namespace test;
 TEST(Bounding, PrimitivesAreExact) {
     std::mt19937 random(1);
     std::normal_distribution<double> normal;
-    for (int k = 0; k < primitive_kind_count; ++k) {
-        const auto kind = static_cast<PrimitiveKind>(k);
+    for (const Primitive& kind : all_primitives()) {
         const ObjectBounds found = primitive_bounds(kind);
         EXPECT_EQ(found.unbounded, kind == PrimitiveKind::plane);
         if (kind == PrimitiveKind::plane) continue;
@@ -68,8 +68,8 @@ TEST(Bounding, EndingObjectsAreExact) {
     std::mt19937 random(3);
     for (int round = 0; round < 40; ++round) {
         Graph graph;
-        for (int k = 0; k < primitive_kind_count; ++k)
-            if (k != static_cast<int>(PrimitiveKind::plane)) graph.primitive(static_cast<PrimitiveKind>(k));
+        for (const Primitive& primitive : all_primitives())
+            if (primitive != PrimitiveKind::plane) graph.primitive(primitive);
         for (int i = 0; i < 6; ++i) {
             Object object = named(numbered("o", static_cast<std::size_t>(i)));
             for (int j = 0; j < 3; ++j)

@@ -9,6 +9,7 @@
 
 #include "compiler/analysis/bounding.h"
 #include "compiler/graph/graph.h"
+#include "compiler/primitives/primitive.h"
 
 namespace graftal {
 namespace {
@@ -23,9 +24,9 @@ std::shared_ptr<const Run> random_run(std::size_t count, std::uint64_t seed) {
         item.base = at;
         item.axis = {unit(random), unit(random), unit(random)};
         item.radius = 0.3 + 0.2 * unit(random);
-        item.kind = run->size() % 5 == 0 ? PrimitiveKind::sphere : tapered(0.5 + 0.5 * unit(random));
-        item.ball = run->size() % 3 == 0 && item.kind == PrimitiveKind::cylinder;
-        if (item.kind != PrimitiveKind::sphere) at += item.axis;
+        item.shape = run->size() % 5 == 0 ? PrimitiveKind::sphere : tapered(0.5 + 0.5 * unit(random));
+        item.ball = run->size() % 3 == 0 && item.shape == PrimitiveKind::cylinder;
+        if (!item.shape.is_sphere()) at += item.axis;
         run->add(item);
     }
     return run;
@@ -34,14 +35,14 @@ std::shared_ptr<const Run> random_run(std::size_t count, std::uint64_t seed) {
 /// The support function of all parts, each as the primitive that it is.
 double plain_support(const Run& run, Vec3 direction) {
     double most = -1e300;
-    const auto add = [&](PrimitiveKind kind, const Affine& place) {
+    const auto add = [&](const Primitive& kind, const Affine& place) {
         most = std::max(most, glm::dot(direction, place.translation) +
                                   primitive_support(kind, glm::transpose(place.linear) * direction));
     };
     for (std::size_t i = 0; i < run.size(); ++i) {
         Affine body = run_from_body(run[i]);
-        if (run[i].kind == PrimitiveKind::sphere) body.linear = Mat3(run[i].radius);
-        add(run[i].kind, body);
+        if (run[i].shape.is_sphere()) body.linear = Mat3(run[i].radius);
+        add(run[i].shape.primitive(), body);
         if (run[i].ball) add(PrimitiveKind::sphere, run_from_ball(run[i]));
     }
     return most;

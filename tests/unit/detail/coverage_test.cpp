@@ -12,7 +12,7 @@
 #include <gtest/gtest.h>
 
 #include "compiler/detail/shadow.h"
-#include "compiler/detail/tessellate.h"
+#include "compiler/primitives/tessellate.h"
 #include "tests/unit/detail/models.h"
 
 namespace graftal {
@@ -57,7 +57,7 @@ Fitted fitted(const Graph& graph) {
 }
 
 /// The union of images of a primitive.
-Graph union_of(PrimitiveKind kind, const std::vector<Affine>& places) {
+Graph union_of(const Primitive& kind, const std::vector<Affine>& places) {
     Graph graph;
     const ObjectId master = graph.primitive(kind);
     Object all{"all", {}, {}, {}, {}};
@@ -99,8 +99,9 @@ TEST(Shadow, AreasAreThoseOfTheSamplesAndOfTheBodies) {
     const Ball ball{Vec3(0.2, -0.1, 0.3), 2.5};
     const Affine place = Affine::rotate({1, 2, 3}, 40) * Affine::scale({0.9, 1.1, 0.7});
     const double square = std::pow(2 * ball.radius / 256, 2);
-    for (const PrimitiveKind kind : {PrimitiveKind::sphere, PrimitiveKind::cube, PrimitiveKind::triangle,
-                                     PrimitiveKind::cylinder, PrimitiveKind::cone, tapered(0.5)}) {
+    for (const Primitive& kind :
+         std::initializer_list<Primitive>{PrimitiveKind::sphere, PrimitiveKind::cube, PrimitiveKind::triangle,
+                                          PrimitiveKind::cylinder, PrimitiveKind::cone, tapered(0.5)}) {
         for (const Vec3& direction : all_around(7)) {
             shadow.start(direction, ball);
             const Shadow::Cover cover = shadow.draw(kind, place);

@@ -1,4 +1,4 @@
-#include "compiler/detail/texture_space.h"
+#include "compiler/primitives/texture_space.h"
 
 #include <cmath>
 #include <numbers>
@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "compiler/detail/mesh_builder.h"
-#include "compiler/detail/tessellate.h"
+#include "compiler/primitives/tessellate.h"
 
 namespace graftal {
 namespace {
@@ -36,7 +36,7 @@ TEST(TextureSpace, RunsRoundAndUpwards) {
     const auto near = [](std::array<double, 2> found, double u, double v) {
         return std::abs(found[0] - u) + std::abs(found[1] - v) < 1e-12;
     };
-    const auto at = [&](PrimitiveKind kind, Vec3 point) { return texture_coordinates(kind, once, point); };
+    const auto at = [&](const Primitive& kind, Vec3 point) { return texture_coordinates(kind, once, point); };
     EXPECT_TRUE(near(at(PrimitiveKind::cylinder, {0, 0.25, 1}), 0, 0.25));
     EXPECT_TRUE(near(at(PrimitiveKind::cylinder, {1, 0.25, 0}), 0.25, 0.25));
     EXPECT_TRUE(near(at(PrimitiveKind::cone, {-0.5, 0.5, 0}), -0.25, 0.5));
@@ -52,8 +52,9 @@ TEST(TextureSpace, RunsRoundAndUpwards) {
 /// Between the corners of a mesh's triangles the picture lies where it lies on the primitive.
 TEST(TextureSpace, IsThatOfTheMeshes) {
     const TextureSpace space{2, 3};
-    for (const PrimitiveKind kind : {PrimitiveKind::cylinder, tapered(0.5), PrimitiveKind::sphere,
-                                     PrimitiveKind::torus, PrimitiveKind::cube, PrimitiveKind::triangle}) {
+    for (const Primitive& kind : std::initializer_list<Primitive>{
+             PrimitiveKind::cylinder, tapered(0.5), PrimitiveKind::sphere, PrimitiveKind::torus,
+             PrimitiveKind::cube, PrimitiveKind::triangle}) {
         MeshBuilder builder(true);
         builder.add_textured(kind, max_fineness(kind), {}, space, 0);
         builder.finish();

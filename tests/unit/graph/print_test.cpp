@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/unit/primitives/all_primitives.h"
+
 namespace graftal {
 namespace {
 
@@ -203,10 +205,9 @@ TEST(Primitive, IsMadeOnceAndNamesGoBothWays) {
     const ObjectId first = graph.primitive(PrimitiveKind::torus);
     EXPECT_EQ(graph.primitive(PrimitiveKind::torus), first);
     EXPECT_NE(graph.primitive(PrimitiveKind::cone), first);
-    for (int i = 0; i < primitive_kind_count; ++i) {
-        const auto kind = static_cast<PrimitiveKind>(i);
-        EXPECT_EQ(primitive_named(name_of(kind)), kind);
-    }
+    for (const Primitive& primitive : test::all_primitives())
+        EXPECT_EQ(primitive_named(name_of(primitive)), primitive);
+    EXPECT_EQ(primitive_named("frustum"), std::nullopt);
     EXPECT_EQ(primitive_named("Sphere"), std::nullopt);
     EXPECT_EQ(primitive_named(""), std::nullopt);
 }

@@ -16,7 +16,7 @@ RunItem segment(Vec3 base, Vec3 axis, double radius) {
     item.base = base;
     item.axis = axis;
     item.radius = radius;
-    item.kind = PrimitiveKind::cylinder;
+    item.shape = PrimitiveKind::cylinder;
     item.ball = true;
     return item;
 }
@@ -79,7 +79,7 @@ TEST(Run, EqualsTheInstancesThatItMeans) {
     graftal::Run run;
     run.add(segment({0, 0, 0}, {0, 1, 0}, 0.1));
     RunItem cone = segment({0, 1, 0}, {0, 0.5, 0.25}, 0.2);
-    cone.kind = PrimitiveKind::cone;
+    cone.shape = PrimitiveKind::cone;
     cone.ball = false;
     run.add(cone);
     const Graph with_run = of_run(run);
@@ -90,7 +90,7 @@ TEST(Run, EqualsTheInstancesThatItMeans) {
     Object object;
     object.name = "m";
     spelt.root = spelt.add(std::move(object));
-    const auto add = [&](PrimitiveKind kind, const Affine& place) {
+    const auto add = [&](const Primitive& kind, const Affine& place) {
         const ObjectId master = spelt.primitive(kind);
         spelt.objects[spelt.root].instances.push_back({master, place, {}, {}, {}});
     };
@@ -117,7 +117,7 @@ TEST(Run, KnowsWhatIsSound) {
     item.base.y = std::nan("");
     EXPECT_FALSE(is_sound(item));
     item = good;
-    item.kind = PrimitiveKind::cube;
+    item.shape = PrimitiveKind::cube;
     EXPECT_FALSE(is_sound(item));
 }
 

@@ -219,7 +219,7 @@ TEST(LsysComposer, sharesWhatIsAlikeUpToItsSize) {
 
 /// Kind and place of all bodies, in order.
 void list_bodies(const Graph& graph, ObjectId id, const Affine& place,
-                 std::vector<std::pair<PrimitiveKind, Affine>>& out) {
+                 std::vector<std::pair<Primitive, Affine>>& out) {
     const Object& object = graph.objects[id];
     if (object.primitive) out.emplace_back(*object.primitive, place);
     for (const Instance& instance : object.instances)
@@ -228,7 +228,7 @@ void list_bodies(const Graph& graph, ObjectId id, const Affine& place,
 
 TEST(LsysComposer, generalisedCylindersTaper) {
     const CompiledLsys whole("axiom !(1)@GsF!(0.5)@Gc+(90)F(2)!(0.75)@Ge-(90)F", 0);
-    std::vector<std::pair<PrimitiveKind, Affine>> bodies;
+    std::vector<std::pair<Primitive, Affine>> bodies;
     list_bodies(whole.graph, whole.graph.root, {}, bodies);
     ASSERT_EQ(bodies.size(), 6u); // two frusta, a cylinder, a ball each
     EXPECT_EQ(bodies[0].first, tapered(0.5));
@@ -247,7 +247,7 @@ TEST(LsysComposer, generalisedCylindersTaper) {
         "modules A\naxiom !(1)@GsF!(0.5)&(10)F@Gc[+(30)F@Ge]F!(0.25)&(10)F@Gc[+(30)F@Ge]F!(0.125)"
         "B(0.125)[+(30)F@Ge]A(0.125)\nmodules B",
         0);
-    std::vector<std::pair<PrimitiveKind, Affine>> a, b;
+    std::vector<std::pair<Primitive, Affine>> a, b;
     list_bodies(parts.graph, parts.graph.root, {}, a);
     list_bodies(word.graph, word.graph.root, {}, b);
     ASSERT_EQ(a.size(), b.size());

@@ -194,7 +194,7 @@ class Unfolding {
             const RunItem& item = (*object.run)[i];
             const auto& own = object.run_materials[item.colour];
             const int colour = own ? static_cast<int>(*own) : material;
-            add(item.kind, place * run_from_body(item), colour);
+            add(item.shape.primitive(), place * run_from_body(item), colour);
             if (item.ball) add(PrimitiveKind::sphere, place * run_from_ball(item), colour);
         }
         for (const Instance& instance : object.instances)
@@ -202,7 +202,7 @@ class Unfolding {
                    instance.material ? static_cast<int>(*instance.material) : material);
     }
 
-    void add(PrimitiveKind kind, const Affine& place, int material) {
+    void add(const Primitive& kind, const Affine& place, int material) {
         const double half = std::sqrt(3.0) / 2;
         if (kind == PrimitiveKind::cylinder)
             strokes.push_back(

@@ -50,7 +50,7 @@ std::map<DrawnTriangle, int> all_drawn(const Cut& cut) {
         const Palette& palette = cut.palettes[group.palette];
         for (const Placement& placement : group.placements) {
             const Body& body = cut.bodies[placement.body];
-            if (std::holds_alternative<PrimitiveKind>(body.shape)) {
+            if (std::holds_alternative<Primitive>(body.shape)) {
                 ++result[drawn(placement.world_from_body.translation, group.tint.over(palette[0]))];
                 continue;
             }

@@ -10,7 +10,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "compiler/detail/tessellate.h"
+#include "compiler/primitives/tessellate.h"
 #include "tests/unit/broken_invariant.h"
 #include "tests/unit/povray/scene_by_hand.h"
 
@@ -34,7 +34,7 @@ TEST(EmitPovray, IsTheSameEveryTime) {
 
 TEST(EmitPovray, PrimitivesThatNeedNoMatrixHaveNone) {
     struct Case {
-        PrimitiveKind kind;
+        Primitive kind = PrimitiveKind::sphere;
         Affine a;
         const char* text;
     };

@@ -30,8 +30,8 @@ std::shared_ptr<const Run> branch(std::size_t count) {
         item.base = at;
         item.axis = 0.1 * Vec3(unit(random), 0.3 + unit(random), unit(random));
         item.radius = 0.02;
-        item.kind = i % 7 == 0 ? tapered(0.5) : PrimitiveKind::cylinder;
-        item.ball = item.kind == PrimitiveKind::cylinder;
+        item.shape = i % 7 == 0 ? tapered(0.5) : PrimitiveKind::cylinder;
+        item.ball = item.shape == PrimitiveKind::cylinder;
         item.colour = static_cast<std::uint16_t>(i % 2);
         at += item.axis;
         run->add(item);
@@ -57,12 +57,12 @@ Graph two_branches(std::size_t count, bool spelt, int more = 0) {
     Object object;
     object.name = "branch";
     if (spelt) {
-        const auto add = [&](PrimitiveKind kind, const Affine& place, MaterialId material) {
+        const auto add = [&](const Primitive& kind, const Affine& place, MaterialId material) {
             object.instances.push_back({graph.primitive(kind), place, {}, material, {}});
         };
         for (std::size_t i = 0; i < count; ++i) {
             const RunItem& item = (*run)[i];
-            add(item.kind, run_from_body(item), item.colour);
+            add(item.shape.primitive(), run_from_body(item), item.colour);
             if (item.ball) add(PrimitiveKind::sphere, run_from_ball(item), item.colour);
         }
     } else {
@@ -121,11 +121,11 @@ std::vector<Drawn> drawn(const Cut& cut) {
     for (const PlacementGroup& group : cut.groups)
         for_each_placement(group, [&](const Placement& placement) {
             const Affine& place = placement.world_from_body;
-            const auto* kind = std::get_if<PrimitiveKind>(&cut.bodies[placement.body].shape);
-            all.push_back({kind ? static_cast<long long>(*kind) : -1, digits(place.translation.x),
-                           digits(place.translation.y), digits(place.translation.z),
-                           digits(glm::length(place.linear[0])), digits(glm::length(place.linear[1])),
-                           digits(cut.palettes[group.palette][0].r)});
+            const auto* kind = std::get_if<Primitive>(&cut.bodies[placement.body].shape);
+            all.push_back({kind ? static_cast<long long>(kind->kind()) * 256 + kind->steps() : -1,
+                           digits(place.translation.x), digits(place.translation.y),
+                           digits(place.translation.z), digits(glm::length(place.linear[0])),
+                           digits(glm::length(place.linear[1])), digits(cut.palettes[group.palette][0].r)});
         });
     std::ranges::sort(all);
     return all;
@@ -167,7 +167,7 @@ TEST(RunCut, PartsThatCoincideArePlacedOnce) {
         item.axis = {0.5, 0.25, 1};
         item.radius = 0.1;
         item.turn = static_cast<std::uint32_t>(i); // nobody sees how what is round is turned
-        item.kind = PrimitiveKind::cylinder;
+        item.shape = PrimitiveKind::cylinder;
         item.ball = i % 2 == 0;
         run->add(item);
     }
@@ -239,7 +239,7 @@ TEST(RunCut, ProxiesAreAsDarkAsWhatTheyStandFor) {
             item.base = {std::sin(3.7 * i), std::sin(5.1 * i), std::sin(7.3 * i)};
             item.axis = {0.2 * std::cos(i), 0.2 * std::sin(i), 0.1};
             item.radius = radius;
-            item.kind = PrimitiveKind::cylinder;
+            item.shape = PrimitiveKind::cylinder;
             run->add(item);
         }
         Graph graph;

@@ -29,7 +29,7 @@ struct Scene {
         graph.root = graph.primitive(PrimitiveKind::sphere);
     }
 
-    std::uint32_t body(PrimitiveKind kind) {
+    std::uint32_t body(const Primitive& kind) {
         cut.bodies.push_back({name_of(kind), kind});
         return static_cast<std::uint32_t>(cut.bodies.size() - 1);
     }

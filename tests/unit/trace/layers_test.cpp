@@ -18,7 +18,7 @@ TEST(Layers, PartsOfRunsAreCopiesOfTheirPrimitivesToo) {
         item.base = Vec3(i, 0, 0);
         item.axis = Vec3(0, 1, 0);
         item.radius = 0.1;
-        item.kind = i == 0 ? PrimitiveKind::cone : PrimitiveKind::cylinder;
+        item.shape = i == 0 ? PrimitiveKind::cone : PrimitiveKind::cylinder;
         run->add(item);
     }
     Object twigs{"twigs", {}, {}, {}, {}};

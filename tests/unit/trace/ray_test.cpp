@@ -1,4 +1,4 @@
-#include "runtime/trace/ray.h"
+#include "compiler/support/ray.h"
 
 #include <gtest/gtest.h>
 

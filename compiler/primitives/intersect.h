@@ -1,0 +1,13 @@
+#pragma once
+
+#include "compiler/primitives/primitive.h"
+
+namespace graftal {
+
+/// The first crossing of the primitive's surface within the range, exact to rounding; solids are met from
+/// inside too. False if there is none, and where the ray's numbers are not finite. Requires of the ray that
+/// its origin is within some thousand units of the primitive and that the largest component of its
+/// direction has an absolute value of about 1: rays are brought near before they are intersected.
+bool intersect(const Primitive& primitive, const Ray& ray, const RayRange& range, PrimitiveHit& hit);
+
+} // namespace graftal

@@ -1,0 +1,24 @@
+#pragma once
+
+// What the meshes of round primitives share.
+
+#include <cstdint>
+
+#include "compiler/primitives/primitive.h"
+
+namespace graftal {
+
+/// A regular n-gon whose corners are this far out strays from the unit circle by the same length at its
+/// corners (outside) and at the middles of its sides (inside).
+double balanced_radius(int sides);
+/// That length.
+double balanced_error(int sides);
+
+/// The unit direction i/n of a turn about the y axis, running from +z to +x: counter-clockwise seen from
+/// above.
+Vec3 spoke(int i, int n);
+
+/// Returns the number of the vertex.
+std::uint32_t add_vertex(TessellatedPrimitive& mesh, Vec3 position, Vec3 normal);
+
+} // namespace graftal

@@ -1,0 +1,176 @@
+#include <cmath>
+#include <cstring>
+#include <string>
+
+#include <glm/geometric.hpp>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "compiler/primitives/intersect.h"
+#include "compiler/primitives/polygon_rings.h"
+#include "compiler/primitives/texture_space.h"
+#include "tests/unit/primitives/sample_shapes.h"
+
+namespace graftal {
+namespace {
+
+using test::made_of;
+using testing::HasSubstr;
+
+std::string fault_of(PrimitiveKind kind, const std::vector<double>& numbers) {
+    std::string fault;
+    EXPECT_FALSE(traits_of(kind).make(numbers, fault));
+    return fault;
+}
+
+TEST(Superellipsoid, IsASphereOctahedronOrCylinderAtItsEnds) {
+    const auto reach = [](double e, double n, Vec3 direction) {
+        return primitive_support(made_of(PrimitiveKind::superellipsoid, {e, n}), direction);
+    };
+    EXPECT_NEAR(reach(1, 1, {1, 2, 2}), 3, 1e-12);   // a sphere
+    EXPECT_NEAR(reach(2, 2, {0.5, 2, 1}), 2, 1e-12); // an octahedron
+    EXPECT_NEAR(reach(1, 0.1, {3, 1, 4}), 6, 0.2);   // nearly a cylinder: 5 + 1
+    EXPECT_NEAR(reach(1, 2, {3, 1, 4}), 5, 1e-12);   // a double cone
+    EXPECT_NEAR(traits_of(PrimitiveKind::superellipsoid).area(made_of(PrimitiveKind::superellipsoid, {1, 1})),
+                4 * 3.14159265, 0.02);
+}
+
+TEST(Superellipsoid, RefusesOtherExponents) {
+    EXPECT_THAT(fault_of(PrimitiveKind::superellipsoid, {0.05, 1}), HasSubstr("between 0.1 and 2"));
+    EXPECT_THAT(fault_of(PrimitiveKind::superellipsoid, {1, 2.5}), HasSubstr("not at 2.5"));
+}
+
+TEST(Superellipsoid, IsNamedByItsNumbers) {
+    const Primitive shape = made_of(PrimitiveKind::superellipsoid, {0.25, 1});
+    EXPECT_EQ(name_of(shape), "superellipsoid(0.25, 1)");
+    EXPECT_EQ(shape, made_of(PrimitiveKind::superellipsoid, {0.25, 1}));
+    EXPECT_NE(shape, made_of(PrimitiveKind::superellipsoid, {1, 0.25}));
+}
+
+TEST(Polygon, LeavesHolesAndFillsIslands) {
+    const Primitive frame = made_of(PrimitiveKind::polygon, test::framed_square());
+    EXPECT_NEAR(traits_of(frame).area(frame), 4 - 1 + 0.08, 1e-12);
+    PrimitiveHit hit;
+    EXPECT_TRUE(intersect(frame, {{0.7, 0.7, 1}, {0, 0, -1}}, {}, hit));
+    EXPECT_FALSE(intersect(frame, {{0.4, -0.4, 1}, {0, 0, -1}}, {}, hit));
+    EXPECT_TRUE(intersect(frame, {{0.1, -0.1, 1}, {0, 0, -1}}, {}, hit));
+    EXPECT_FALSE(intersect(frame, {{1.1, 0, 1}, {0, 0, -1}}, {}, hit));
+}
+
+TEST(Polygon, TrianglesFillTheOutlineWhateverItsForm) {
+    // Combs with many teeth, which have few ears, with a hole in their backs.
+    for (int teeth = 1; teeth < 40; teeth += 7) {
+        std::vector<double> numbers = {0, -2};
+        for (int i = 0; i < teeth; ++i)
+            numbers.insert(numbers.end(), {2.0 * i, 0.0, 2.0 * i + 0.5, 3.0});
+        numbers.insert(numbers.end(), {2.0 * teeth, 0.0, 2.0 * teeth, -2.0, 0, -2});
+        numbers.insert(numbers.end(), {0.5, -1.5, 0.6, -0.5, 0.7, -1.5});
+        const Primitive comb = made_of(PrimitiveKind::polygon, numbers);
+        double area = 2.0 * 2.0 * teeth - 0.1;
+        for (int i = 0; i < teeth; ++i)
+            area += 0.5 * 2.0 * 3.0;
+        EXPECT_NEAR(traits_of(comb).area(comb), area, 1e-9) << teeth;
+    }
+}
+
+TEST(Polygon, RefusesOutlinesThatAreNone) {
+    EXPECT_THAT(fault_of(PrimitiveKind::polygon, {0, 0, 2, 2, 2, 0, 0, 1}), HasSubstr("meets itself"));
+    EXPECT_THAT(fault_of(PrimitiveKind::polygon, {0, 0, 1, 0, 0, 0, 0, 1}), HasSubstr("three corners"));
+    EXPECT_THAT(fault_of(PrimitiveKind::polygon, {0, 0, 1, 1, 2, 2}), HasSubstr("no area"));
+    EXPECT_THAT(fault_of(PrimitiveKind::polygon, {0, 0, 1, 0, 1, 0, 0, 1}), HasSubstr("one point"));
+    EXPECT_THAT(fault_of(PrimitiveKind::polygon, {0, 0, 1, 0, 0, 1, 2}), HasSubstr("two coordinates"));
+    EXPECT_THAT(fault_of(PrimitiveKind::polygon, {0, 0, 5000, 0, 0, 1}), HasSubstr("between"));
+}
+
+MeshData read(std::string_view bytes) {
+    std::string fault;
+    const std::optional<MeshData> data = read_mesh(bytes, fault);
+    EXPECT_TRUE(data) << fault;
+    return data.value_or(MeshData());
+}
+
+std::string fault_of_mesh(std::string_view bytes) {
+    std::string fault;
+    EXPECT_FALSE(read_mesh(bytes, fault));
+    return fault;
+}
+
+TEST(MeshFile, ReadsObj) {
+    const MeshData data = read("# a leaf\nv 0 0 0\nv 1 0 0\r\nv 1 1 0\nv 0 1 0 1.0\n"
+                               "vt 0 0\nvt 1 0\nvt 1 1\nvn 0 0 1\no leaf\nusemtl green\n"
+                               "f 1/1/1 2/2/1 3/3/1 4/1/1\nf -4//1 -3//1 -2//1\n");
+    EXPECT_EQ(data.vertices.size(), 4u);
+    ASSERT_EQ(data.triangles.size(), 3u);
+    EXPECT_EQ(data.triangles[1], (std::array<std::uint32_t, 3>{0, 2, 3}));
+    ASSERT_EQ(data.uv.size(), 3u);
+    EXPECT_EQ(data.uv[0][2], (std::array<double, 2>{1, 1}));
+    EXPECT_TRUE(read("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3").uv.empty());
+}
+
+TEST(MeshFile, RefusesDamagedObj) {
+    EXPECT_THAT(fault_of_mesh("v 0 0\n"), HasSubstr("line 1: a vertex has three numbers"));
+    EXPECT_THAT(fault_of_mesh("v 0 0 0\nf 1 2 3\n"), HasSubstr("line 2: '2' names no vertex"));
+    EXPECT_THAT(fault_of_mesh("v 0 0 0\nv 1 0 0\nf 1 2\n"), HasSubstr("three corners"));
+    EXPECT_THAT(fault_of_mesh("v 0 0 nan\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"), HasSubstr("a coordinate is"));
+    EXPECT_THAT(fault_of_mesh("v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n"), HasSubstr("no triangle"));
+    EXPECT_THAT(fault_of_mesh(""), HasSubstr("no triangle"));
+}
+
+constexpr const char* ply_header = "ply\nformat {} 1.0\ncomment none\nelement vertex 3\nproperty float x\n"
+                                   "property float y\nproperty float z\nproperty float s\n"
+                                   "property float t\nelement face 1\n"
+                                   "property list uchar int vertex_indices\nend_header\n";
+
+std::string header(const std::string& format) {
+    std::string text = ply_header;
+    return text.replace(text.find("{}"), 2, format);
+}
+
+TEST(MeshFile, ReadsPlyAsTextAndBinary) {
+    const MeshData text = read(header("ascii") + "0 0 0 0 0\n1 0 0 1 0\n0 1 0 0 1\n3 0 1 2\n");
+    for (const bool swapped : {false, true}) {
+        std::string bytes = header(swapped ? "binary_big_endian" : "binary_little_endian");
+        const auto add = [&](auto number) {
+            char raw[sizeof(number)];
+            std::memcpy(raw, &number, sizeof(number));
+            if (swapped) std::reverse(std::begin(raw), std::end(raw));
+            bytes.append(raw, sizeof(number));
+        };
+        for (const float number : {0.f, 0.f, 0.f, 0.f, 0.f, 1.f, 0.f, 0.f, 1.f, 0.f, 0.f, 1.f, 0.f, 0.f, 1.f})
+            add(number);
+        add(std::uint8_t{3});
+        for (const std::int32_t corner : {0, 1, 2})
+            add(corner);
+        const MeshData binary = read(bytes);
+        EXPECT_EQ(binary.vertices, text.vertices);
+        EXPECT_EQ(binary.triangles, text.triangles);
+        EXPECT_EQ(binary.uv, text.uv);
+        EXPECT_THAT(fault_of_mesh(bytes.substr(0, bytes.size() - 2)), HasSubstr("too early"));
+    }
+    EXPECT_EQ(text.uv[0][1], (std::array<double, 2>{1, 0}));
+}
+
+TEST(MeshFile, RefusesDamagedPly) {
+    std::string endless = header("ascii");
+    endless.replace(endless.find("vertex 3"), 8, "vertex 99999999999");
+    EXPECT_THAT(fault_of_mesh(endless + "0 0 0"), HasSubstr("shorter than its header says"));
+    EXPECT_THAT(fault_of_mesh(header("ascii") + "0 0 0 0 0 1 0 0 1 0 0 1 0 0 1 3 0 1 7"),
+                HasSubstr("names vertex 7"));
+    EXPECT_THAT(fault_of_mesh(header("ascii") + "0 0 0 0 0 1 0 0 1 0 0 1 0 0 1 900000 0 1 2"),
+                HasSubstr("longer than the file"));
+    EXPECT_THAT(fault_of_mesh(header("cuneiform")), HasSubstr("no format"));
+    EXPECT_THAT(fault_of_mesh("ply\nelement vertex x\n"), HasSubstr("no number of elements"));
+    EXPECT_THAT(fault_of_mesh("ply\n"), HasSubstr("does not end"));
+}
+
+TEST(Mesh, KeepsTheFilesPictures) {
+    const Primitive mesh = mesh_primitive("tetrahedron.obj", test::tetrahedron());
+    EXPECT_EQ(name_of(mesh), "mesh(\"tetrahedron.obj\")");
+    const auto uv =
+        texture_coordinates(mesh, TextureSpace(), std::array{Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(0, 0, 1)});
+    EXPECT_NEAR(uv[1][0], 1, 1e-12);
+    EXPECT_NEAR(uv[2][1], 1, 1e-12);
+}
+
+} // namespace
+} // namespace graftal

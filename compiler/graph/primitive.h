@@ -29,8 +29,8 @@ namespace graftal {
 //   frustum   between a cylinder and a cone: radius 1 at y = 0, a smaller one at y = 1, capped. Frusta are
 //             not affine images of each other. Their upper radius is a multiple of 1/128
 //   superellipsoid  (e, n): (|x|^(2/e) + |z|^(2/e))^(e/n) + |y|^(2/n) <= 1, in [-1,1]^3
-//   polygon   (x1, y1, x2, y2, ...): outlines in the plane z = 0; what lies in an odd number of them is
-//   filled mesh      ("file"): triangles, where the file has them
+//   polygon   (x1, y1, x2, y2, ...): outlines in the plane z = 0; points in an odd number of them are filled
+//   mesh      ("file"): triangles, where the file has them
 // Each has a form, which says what makes a primitive of it.
 #define GRAFTAL_PRIMITIVE_KINDS(KIND)                                                                        \
     KIND(triangle, plain)                                                                                    \

@@ -163,6 +163,11 @@ std::string mesh_text(const Primitive& primitive) {
     std::string text = "mesh2 { vertex_vectors { " + std::to_string(mesh.vertices.size());
     for (const Vec3& v : mesh.vertices)
         text += ", <" + shortest(v.x) + "," + shortest(v.y) + "," + shortest(v.z) + ">";
+    if (!mesh.normals.empty()) {
+        text += " } normal_vectors { " + std::to_string(mesh.normals.size());
+        for (const Vec3& n : mesh.normals)
+            text += ", <" + shortest(n.x) + "," + shortest(n.y) + "," + shortest(n.z) + ">";
+    }
     text += " } face_indices { " + std::to_string(mesh.triangles.size());
     for (const auto& [a, b, c] : mesh.triangles)
         text += ", <" + std::to_string(a) + "," + std::to_string(b) + "," + std::to_string(c) + ">";
@@ -172,7 +177,8 @@ std::string mesh_text(const Primitive& primitive) {
 double mesh_bytes(const Primitive& primitive) {
     const TessellatedPrimitive& mesh = tessellated(primitive, 0);
     return PovrayCosts::triangle * static_cast<double>(mesh.triangles.size()) +
-           PovrayCosts::vertex * static_cast<double>(mesh.vertices.size());
+           PovrayCosts::vertex * static_cast<double>(mesh.vertices.size()) +
+           PovrayCosts::normal * static_cast<double>(mesh.normals.size());
 }
 
 /// The table. The compiler warns of a kind without a row, and that is an error.
@@ -214,6 +220,8 @@ constexpr PovrayPrimitive row_of(PrimitiveKind kind) {
         return {superellipsoid_text, nullptr, nullptr, costs<352>, nullptr, true};
     case PrimitiveKind::polygon:
         return {polygon_text, nullptr, nullptr, costs<320>, polygon_bytes, true};
+    case PrimitiveKind::patch:
+    case PrimitiveKind::sphere_sweep:
     case PrimitiveKind::mesh:
         return {mesh_text, nullptr, nullptr, costs<323>, mesh_bytes, true};
     }

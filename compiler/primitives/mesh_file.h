@@ -16,6 +16,8 @@ namespace graftal {
 /// Triangles of a file.
 struct MeshData {
     std::vector<Vec3> vertices;
+    /// One a vertex; empty where the facets are flat. A vertex may be there twice, with two normals.
+    std::vector<Vec3> normals;
     std::vector<std::array<std::uint32_t, 3>> triangles;
     /// u and v of each corner of each triangle; empty where the file has none.
     std::vector<std::array<std::array<double, 2>, 3>> uv;
@@ -26,10 +28,10 @@ inline constexpr std::size_t most_mesh_vertices = 1'000'000;
 /// No coordinate is larger.
 inline constexpr double most_mesh_coordinate = 1e6;
 
-/// Reads a mesh: OBJ (vertices, texture coordinates, faces of any number of corners, cut into fans) or PLY
-/// (ascii or binary; its header says which). Triangles without an area are left out. Nothing, and what is at
-/// fault, for what is neither, is damaged, or has too much or nothing in it: a PLY's counts are held against
-/// the limits and the length of the file before anything is made room for.
+/// Reads a mesh: OBJ (vertices, normals, texture coordinates, faces of any number of corners, cut into fans)
+/// or PLY (ascii or binary; its header says which). Triangles without an area are left out. Nothing, and what
+/// is at fault, for what is neither, is damaged, or has too much or nothing in it: a PLY's counts are held
+/// against the limits and the length of the file before anything is made room for.
 std::optional<MeshData> read_mesh(std::string_view bytes, std::string& fault);
 
 /// The parts of read_mesh().

@@ -54,6 +54,7 @@ class PlyReader {
             for (std::uint64_t i = 0; i < element.count; ++i)
                 if (!read_element(element)) return std::nullopt;
         if (!textured_) data_.uv.clear();
+        if (!smooth_) data_.normals.clear();
         return std::move(data_);
     }
 
@@ -178,7 +179,7 @@ class PlyReader {
 
     bool read_element(const Element& element) {
         const bool vertex = element.name == "vertex", face = element.name == "face";
-        Vec3 point(0.0);
+        Vec3 point(0.0), normal(0.0);
         std::array<double, 2> uv{};
         bool has_uv = false;
         for (const Property& property : element.properties) {
@@ -191,6 +192,9 @@ class PlyReader {
             if (!read_number(property.type, number)) return false;
             const std::string& name = property.name;
             if (name == "x" || name == "y" || name == "z") point[name[0] - 'x'] = number;
+            const bool along = name == "nx" || name == "ny" || name == "nz";
+            if (along) normal[name[1] - 'x'] = number;
+            smooth_ = smooth_ || (vertex && along);
             const bool u = name == "u" || name == "s" || name == "texture_u",
                        v = name == "v" || name == "t" || name == "texture_v";
             if (u || v) uv[v ? 1 : 0] = number;
@@ -198,6 +202,7 @@ class PlyReader {
         }
         if (!vertex) return true;
         data_.vertices.push_back(point);
+        data_.normals.push_back(normal);
         uv_.push_back(uv);
         textured_ = textured_ || has_uv;
         return true;
@@ -235,7 +240,7 @@ class PlyReader {
 
     std::string_view rest_;
     std::string& fault_;
-    bool has_format_ = false, text_ = false, swapped_ = false, textured_ = false;
+    bool has_format_ = false, text_ = false, swapped_ = false, textured_ = false, smooth_ = false;
     std::vector<Element> elements_;
     MeshData data_;
     std::vector<std::array<double, 2>> uv_; ///< by vertex

@@ -38,6 +38,18 @@ inline MeshData tetrahedron() {
     return data;
 }
 
+/// A sail: control points over a square that bulge, with one edge shrunk to a point if asked.
+inline std::vector<double> sail(bool pointed) {
+    std::vector<double> numbers;
+    for (int row = 0; row < 4; ++row)
+        for (int column = 0; column < 4; ++column) {
+            const bool inner = row % 3 != 0 && column % 3 != 0;
+            const double x = pointed && row == 3 ? 1 : column / 1.5;
+            numbers.insert(numbers.end(), {x, row / 1.5, inner ? 1.0 : 0.1 * column});
+        }
+    return numbers;
+}
+
 /// Some of every kind.
 inline std::vector<Primitive> sample_primitives() {
     std::vector<Primitive> samples = some_primitives();
@@ -46,6 +58,10 @@ inline std::vector<Primitive> sample_primitives() {
             samples.push_back(made_of(PrimitiveKind::superellipsoid, {e, n}));
     samples.push_back(made_of(PrimitiveKind::polygon, {0, 0, 2, 0, 1, 1, 2, 2, 0, 2}));
     samples.push_back(made_of(PrimitiveKind::polygon, framed_square()));
+    samples.push_back(made_of(PrimitiveKind::patch, sail(false)));
+    samples.push_back(made_of(PrimitiveKind::patch, sail(true)));
+    samples.push_back(made_of(PrimitiveKind::sphere_sweep, {0, 0, 0, 0.5, 0, 2, 0, 0.5}));
+    samples.push_back(made_of(PrimitiveKind::sphere_sweep, {0, 0, 0, 0.3, 0, 1, 0, 0.2, 1, 1.5, 0.5, 0.05}));
     samples.push_back(mesh_primitive("tetrahedron.obj", tetrahedron()));
     return samples;
 }

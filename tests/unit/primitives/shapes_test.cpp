@@ -82,6 +82,100 @@ TEST(Polygon, RefusesOutlinesThatAreNone) {
     EXPECT_THAT(fault_of(PrimitiveKind::polygon, {0, 0, 5000, 0, 0, 1}), HasSubstr("between"));
 }
 
+TEST(Patch, PassesThroughItsCornersAndAlongItsEdges) {
+    const Primitive patch = made_of(PrimitiveKind::patch, test::sail(false));
+    const TessellatedPrimitive mesh = traits_of(patch).mesh(patch, 0);
+    EXPECT_EQ(mesh.vertices.size(), 33u * 33u);
+    EXPECT_NEAR(glm::distance(mesh.vertices.front(), Vec3(0, 0, 0)), 0, 1e-15);
+    EXPECT_NEAR(glm::distance(mesh.vertices.back(), Vec3(2, 2, 0.3)), 0, 1e-15);
+    // In the middle each polynomial is 1/8 or 3/8: four inner points at 1, and the edges' rise of 0.15.
+    const double middle = 4 * 9 / 64.0 + 0.15 * (16 - 4 * 9 / 4.0) / 64 * 4;
+    PrimitiveHit hit;
+    ASSERT_TRUE(intersect(patch, {{1, 1, 5}, {0, 0, -1}}, {}, hit));
+    EXPECT_NEAR(5 - hit.t, mesh.vertices[16 * 33 + 16].z, 1e-12);
+    EXPECT_NEAR(mesh.vertices[16 * 33 + 16].z, middle, 0.02);
+    EXPECT_GT(hit.normal.z, 0.9);
+}
+
+TEST(Patch, OfPointsInAPlaneIsFlat) {
+    std::vector<double> numbers;
+    for (int i = 0; i < 16; ++i)
+        numbers.insert(numbers.end(), {double(i % 4), double(i / 4), 2.0});
+    const Primitive patch = made_of(PrimitiveKind::patch, numbers);
+    EXPECT_NEAR(traits_of(patch).area(patch), 9, 1e-12);
+    const Box box = traits_of(patch).box(patch);
+    EXPECT_NEAR(box.min.z, 2, 1e-12);
+    EXPECT_NEAR(box.max.z, 2, 1e-12);
+}
+
+TEST(Patch, HasNormalsWhereAnEdgeIsAPoint) {
+    const Primitive patch = made_of(PrimitiveKind::patch, test::sail(true));
+    for (const Vec3& normal : traits_of(patch).mesh(patch, 0).normals) {
+        EXPECT_NEAR(glm::length(normal), 1, 1e-12);
+        EXPECT_GT(normal.z, 0);
+    }
+}
+
+TEST(Patch, RefusesPointsOnALineAndNumbersOutOfRange) {
+    std::vector<double> line;
+    for (int i = 0; i < 16; ++i)
+        line.insert(line.end(), {double(i), 2.0 * i, 0.0});
+    EXPECT_THAT(fault_of(PrimitiveKind::patch, line), HasSubstr("no area"));
+    line[5] = 1e9;
+    EXPECT_THAT(fault_of(PrimitiveKind::patch, line), HasSubstr("between -1000 and 1000, not 1e+09"));
+}
+
+/// The surface that a ball sweeps along a line while its radius goes from one to another (I. Quilez's "round
+/// cone"): how far a point lies outside of it.
+double outside_round_cone(Vec3 p, double length, double r1, double r2) {
+    const double b = (r1 - r2) / length, a = std::sqrt(1 - b * b);
+    const double x = std::hypot(p.x, p.z), k = a * p.y - b * x;
+    if (k < 0) return std::hypot(x, p.y) - r1;
+    if (k > a * length) return std::hypot(x, p.y - length) - r2;
+    return a * x + b * p.y - r1;
+}
+
+TEST(SphereSweep, OfTwoBallsIsTheirRoundCone) {
+    for (const double top : {0.5, 0.2, 0.0, 0.9}) {
+        const Primitive sweep = made_of(PrimitiveKind::sphere_sweep, {0, 0, 0, 0.5, 0, 1.5, 0, top});
+        for (const Vec3& vertex : traits_of(sweep).mesh(sweep, 0).vertices)
+            EXPECT_NEAR(outside_round_cone(vertex, 1.5, 0.5, top), 0, 1e-12) << top;
+        const double support = primitive_support(sweep, {0, 1, 0});
+        EXPECT_NEAR(support, 1.5 + top, 1e-12);
+        EXPECT_NEAR(primitive_support(sweep, {0, -1, 0}), 0.5, 1e-12);
+    }
+}
+
+TEST(SphereSweep, RunsThroughItsPointsWithoutATwist) {
+    const std::vector<Vec3> points = {{0, 0, 0}, {0, 2, 0}, {2, 2, 1}, {1, 0, 2}};
+    std::vector<double> numbers;
+    for (const Vec3& point : points)
+        numbers.insert(numbers.end(), {point.x, point.y, point.z, 0.1});
+    const Primitive sweep = made_of(PrimitiveKind::sphere_sweep, numbers);
+    // A ray through each point meets the tube about it.
+    for (const Vec3& point : points)
+        for (const Vec3 way : {Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(0, 0, 1)}) {
+            PrimitiveHit hit;
+            EXPECT_TRUE(intersect(sweep, {point, way}, {0, 3}, hit));
+        }
+    // No triangle spans more than its share of the curve: rings that were turned would be wrung out.
+    const TessellatedPrimitive mesh = traits_of(sweep).mesh(sweep, 0);
+    for (const auto& [a, b, c] : mesh.triangles) {
+        const Vec3 normal =
+            glm::cross(mesh.vertices[b] - mesh.vertices[a], mesh.vertices[c] - mesh.vertices[a]);
+        EXPECT_GT(glm::dot(normal, mesh.normals[a] + mesh.normals[b] + mesh.normals[c]), 0);
+    }
+}
+
+TEST(SphereSweep, RefusesWhatIsNoSweep) {
+    const PrimitiveKind kind = PrimitiveKind::sphere_sweep;
+    EXPECT_THAT(fault_of(kind, {0, 0, 0, 1, 0, 1, 0, 1, 3}), HasSubstr("four numbers for each point"));
+    EXPECT_THAT(fault_of(kind, {0, 0, 0, 1, 0, 0, 0, 2}), HasSubstr("are the same"));
+    EXPECT_THAT(fault_of(kind, {0, 0, 0, 0, 0, 1, 0, 0}), HasSubstr("all its radii are 0"));
+    EXPECT_THAT(fault_of(kind, {0, 0, 0, -1, 0, 1, 0, 1}), HasSubstr("between 0 and 1000, not -1"));
+    EXPECT_THAT(fault_of(kind, {0, 0, 1e300, 1, 0, 1, 0, 1}), HasSubstr("not 1e+300"));
+}
+
 MeshData read(std::string_view bytes) {
     std::string fault;
     const std::optional<MeshData> data = read_mesh(bytes, fault);
@@ -105,6 +199,43 @@ TEST(MeshFile, ReadsObj) {
     ASSERT_EQ(data.uv.size(), 3u);
     EXPECT_EQ(data.uv[0][2], (std::array<double, 2>{1, 1}));
     EXPECT_TRUE(read("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3").uv.empty());
+}
+
+TEST(MeshFile, ReadsNormals) {
+    const std::string square = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
+    const MeshData smooth = read(square + "vn 0 0 2\nvn 0 3 4\nf 1//1 2//1 3//2\nf 1//1 3//1 4//1\n");
+    ASSERT_EQ(smooth.vertices.size(), 5u); // the third corner has two normals
+    ASSERT_EQ(smooth.normals.size(), 5u);
+    EXPECT_NEAR(glm::distance(smooth.normals[smooth.triangles[0][2]], Vec3(0, 0.6, 0.8)), 0, 1e-15);
+    EXPECT_NEAR(glm::distance(smooth.normals[smooth.triangles[1][1]], Vec3(0, 0, 1)), 0, 1e-15);
+    // A corner without a normal, or with one that has no direction, has that of its facet.
+    for (const char* const face : {"vn 1 0 0\nf 1//1 2//1 3\n", "vn 1 0 0\nvn 0 0 0\nf 1//1 2//1 3//2\n",
+                                   "vn 1 0 0\nvn nan 0 0\nf 1//1 2//1 3//2\n"}) {
+        const MeshData partly = read(square + face);
+        EXPECT_NEAR(glm::distance(partly.normals[partly.triangles[0][0]], Vec3(1, 0, 0)), 0, 1e-15);
+        EXPECT_NEAR(glm::distance(partly.normals[partly.triangles[0][2]], Vec3(0, 0, 1)), 0, 1e-15);
+    }
+    EXPECT_TRUE(read(square + "vn 0 0 1\nf 1 2 3\n").normals.empty());
+    EXPECT_THAT(fault_of_mesh(square + "vn 0 0\n"), HasSubstr("a normal has three numbers"));
+    EXPECT_THAT(fault_of_mesh(square + "f 1//1 2//1 3//1\n"), HasSubstr("names no vertex"));
+    const MeshData ply = read("ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
+                              "property float z\nproperty float nx\nproperty float ny\nproperty float nz\n"
+                              "element face 1\nproperty list uchar int vertex_indices\nend_header\n"
+                              "0 0 0 0 0 1\n1 0 0 0 3 4\n0 1 0 0 0 0\n3 0 1 2\n");
+    ASSERT_EQ(ply.normals.size(), 3u);
+    EXPECT_NEAR(glm::distance(ply.normals[1], Vec3(0, 0.6, 0.8)), 0, 1e-15);
+    EXPECT_NEAR(glm::distance(ply.normals[2], Vec3(0, 0, 1)), 0, 1e-15);
+}
+
+TEST(Mesh, NormalsRunEvenlyOverItsTriangles) {
+    MeshData roof;
+    roof.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+    roof.normals = {{0, 0, 1}, {0.6, 0, 0.8}, {0, 0, 1}};
+    roof.triangles = {{0, 1, 2}};
+    const Primitive mesh = mesh_primitive("roof.obj", roof);
+    PrimitiveHit hit;
+    ASSERT_TRUE(intersect(mesh, {{0.5, 0.25, 3}, {0, 0, -1}}, {}, hit));
+    EXPECT_NEAR(glm::distance(hit.normal, glm::normalize(Vec3(0.3, 0, 0.9))), 0, 1e-12);
 }
 
 TEST(MeshFile, RefusesDamagedObj) {

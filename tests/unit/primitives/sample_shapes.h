@@ -44,8 +44,10 @@ inline std::vector<double> sail(bool pointed) {
     for (int row = 0; row < 4; ++row)
         for (int column = 0; column < 4; ++column) {
             const bool inner = row % 3 != 0 && column % 3 != 0;
-            const double x = pointed && row == 3 ? 1 : column / 1.5;
-            numbers.insert(numbers.end(), {x, row / 1.5, inner ? 1.0 : 0.1 * column});
+            if (pointed && row == 3)
+                numbers.insert(numbers.end(), {1.0, 2.0, 0.0});
+            else
+                numbers.insert(numbers.end(), {column / 1.5, row / 1.5, inner ? 1.0 : 0.1 * column});
         }
     return numbers;
 }

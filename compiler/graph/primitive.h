@@ -30,7 +30,7 @@ namespace graftal {
 //             not affine images of each other. Their upper radius is a multiple of 1/128
 //   superellipsoid  (e, n): (|x|^(2/e) + |z|^(2/e))^(e/n) + |y|^(2/n) <= 1, in [-1,1]^3
 //   polygon   (x1, y1, x2, y2, ...): outlines in the plane z = 0; points in an odd number of them are filled
-//   patch     (x, y, z of 16 points): the bicubic Bezier surface of four rows of control points
+//   bicubic_patch  (x, y, z of 16 points): the bicubic Bezier surface of four rows of control points
 //   sphere_sweep  (x, y, z, r, ...): what a ball of varying radius sweeps along a smooth curve
 //   mesh      ("file"): triangles, where the file has them
 // Each has a form, which says what makes a primitive of it.
@@ -45,7 +45,7 @@ namespace graftal {
     KIND(frustum, stepped)                                                                                   \
     KIND(superellipsoid, shaped)                                                                             \
     KIND(polygon, shaped)                                                                                    \
-    KIND(patch, shaped)                                                                                      \
+    KIND(bicubic_patch, shaped)                                                                              \
     KIND(sphere_sweep, shaped)                                                                               \
     KIND(mesh, shaped)
 

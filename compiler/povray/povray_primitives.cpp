@@ -220,7 +220,7 @@ constexpr PovrayPrimitive row_of(PrimitiveKind kind) {
         return {superellipsoid_text, nullptr, nullptr, costs<352>, nullptr, true};
     case PrimitiveKind::polygon:
         return {polygon_text, nullptr, nullptr, costs<320>, polygon_bytes, true};
-    case PrimitiveKind::patch:
+    case PrimitiveKind::bicubic_patch:
     case PrimitiveKind::sphere_sweep:
     case PrimitiveKind::mesh:
         return {mesh_text, nullptr, nullptr, costs<323>, mesh_bytes, true};

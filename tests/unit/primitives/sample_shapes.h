@@ -60,8 +60,8 @@ inline std::vector<Primitive> sample_primitives() {
             samples.push_back(made_of(PrimitiveKind::superellipsoid, {e, n}));
     samples.push_back(made_of(PrimitiveKind::polygon, {0, 0, 2, 0, 1, 1, 2, 2, 0, 2}));
     samples.push_back(made_of(PrimitiveKind::polygon, framed_square()));
-    samples.push_back(made_of(PrimitiveKind::patch, sail(false)));
-    samples.push_back(made_of(PrimitiveKind::patch, sail(true)));
+    samples.push_back(made_of(PrimitiveKind::bicubic_patch, sail(false)));
+    samples.push_back(made_of(PrimitiveKind::bicubic_patch, sail(true)));
     samples.push_back(made_of(PrimitiveKind::sphere_sweep, {0, 0, 0, 0.5, 0, 2, 0, 0.5}));
     samples.push_back(made_of(PrimitiveKind::sphere_sweep, {0, 0, 0, 0.3, 0, 1, 0, 0.2, 1, 1.5, 0.5, 0.05}));
     samples.push_back(mesh_primitive("tetrahedron.obj", tetrahedron()));

@@ -83,7 +83,7 @@ TEST(Polygon, RefusesOutlinesThatAreNone) {
 }
 
 TEST(Patch, PassesThroughItsCornersAndAlongItsEdges) {
-    const Primitive patch = made_of(PrimitiveKind::patch, test::sail(false));
+    const Primitive patch = made_of(PrimitiveKind::bicubic_patch, test::sail(false));
     const TessellatedPrimitive mesh = traits_of(patch).mesh(patch, 0);
     EXPECT_EQ(mesh.vertices.size(), 33u * 33u);
     EXPECT_NEAR(glm::distance(mesh.vertices.front(), Vec3(0, 0, 0)), 0, 1e-15);
@@ -101,7 +101,7 @@ TEST(Patch, OfPointsInAPlaneIsFlat) {
     std::vector<double> numbers;
     for (int i = 0; i < 16; ++i)
         numbers.insert(numbers.end(), {double(i % 4), double(i / 4), 2.0});
-    const Primitive patch = made_of(PrimitiveKind::patch, numbers);
+    const Primitive patch = made_of(PrimitiveKind::bicubic_patch, numbers);
     EXPECT_NEAR(traits_of(patch).area(patch), 9, 1e-12);
     const Box box = traits_of(patch).box(patch);
     EXPECT_NEAR(box.min.z, 2, 1e-12);
@@ -109,7 +109,7 @@ TEST(Patch, OfPointsInAPlaneIsFlat) {
 }
 
 TEST(Patch, HasNormalsWhereAnEdgeIsAPoint) {
-    const Primitive patch = made_of(PrimitiveKind::patch, test::sail(true));
+    const Primitive patch = made_of(PrimitiveKind::bicubic_patch, test::sail(true));
     for (const Vec3& normal : traits_of(patch).mesh(patch, 0).normals) {
         EXPECT_NEAR(glm::length(normal), 1, 1e-12);
         EXPECT_GT(normal.z, 0);
@@ -120,9 +120,9 @@ TEST(Patch, RefusesPointsOnALineAndNumbersOutOfRange) {
     std::vector<double> line;
     for (int i = 0; i < 16; ++i)
         line.insert(line.end(), {double(i), 2.0 * i, 0.0});
-    EXPECT_THAT(fault_of(PrimitiveKind::patch, line), HasSubstr("no area"));
+    EXPECT_THAT(fault_of(PrimitiveKind::bicubic_patch, line), HasSubstr("no area"));
     line[5] = 1e9;
-    EXPECT_THAT(fault_of(PrimitiveKind::patch, line), HasSubstr("between -1000 and 1000, not 1e+09"));
+    EXPECT_THAT(fault_of(PrimitiveKind::bicubic_patch, line), HasSubstr("between -1000 and 1000, not 1e+09"));
 }
 
 /// The surface that a ball sweeps along a line while its radius goes from one to another (I. Quilez's "round

@@ -12,9 +12,9 @@
 #include "compiler/primitives/triangle_mesh.h"
 #include "compiler/support/number.h"
 
-// patch(x, y, z of 16 points): the bicubic Bezier surface over four rows of four control points (G. Farin,
-// "Curves and Surfaces for CAGD", chapter 14), as a smooth mesh. Every patch has as many cells, so that
-// patches with a common edge have the same points on it.
+// bicubic_patch(x, y, z of 16 points): the bicubic Bezier surface over four rows of four control points (G.
+// Farin, "Curves and Surfaces for CAGD", chapter 14), as a smooth mesh. Every patch has as many cells, so
+// that patches with a common edge have the same points on it.
 
 namespace graftal {
 namespace {
@@ -100,12 +100,13 @@ std::optional<Primitive> make(std::span<const double> numbers, std::string& faul
         fault = "the patch has no area: its points lie on a line";
         return std::nullopt;
     }
-    return Primitive(PrimitiveKind::patch, std::make_shared<const TriangleMesh>(
-                                               shape_name(PrimitiveKind::patch, numbers), std::move(mesh)));
+    return Primitive(PrimitiveKind::bicubic_patch,
+                     std::make_shared<const TriangleMesh>(shape_name(PrimitiveKind::bicubic_patch, numbers),
+                                                          std::move(mesh)));
 }
 
 } // namespace
 
-constinit const PrimitiveTraits patch_traits = triangle_mesh::traits({48, 48}, make);
+constinit const PrimitiveTraits bicubic_patch_traits = triangle_mesh::traits({48, 48}, make);
 
 } // namespace graftal

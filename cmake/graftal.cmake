@@ -23,6 +23,8 @@ target_compile_options(graftal_flags INTERFACE -fmacro-prefix-map=${PROJECT_SOUR
 if(GRAFTAL_SANITIZE)
   add_compile_options(-fsanitize=${GRAFTAL_SANITIZE} -fno-omit-frame-pointer)
   add_link_options(-fsanitize=${GRAFTAL_SANITIZE})
+  # The address sanitizer calls dlopen for the program, whose RUNPATH does not count then; its RPATH does.
+  add_link_options(-Wl,--disable-new-dtags)
 endif()
 
 # Headers that most sources include, compiled once for the layers and once, with GoogleTest's, for the tests. It is a

@@ -108,7 +108,9 @@ class Verifier {
             if (!is_new) flaw(id, "the name is that of object {} too", other->second);
             if (object.primitive && object.name != name_of(*object.primitive))
                 flaw(id, "a primitive '{}' under another name", name_of(*object.primitive));
-            if (!object.primitive && primitive_kind_named(object.name.substr(0, object.name.find('('))))
+            // Objects may have the names of kinds with shapes; no two objects have the same name in any case.
+            const auto kind = primitive_kind_named(object.name.substr(0, object.name.find('(')));
+            if (!object.primitive && kind && form_of(*kind) != PrimitiveForm::shaped)
                 flaw(id, "a union with a primitive's name");
             if (!is_object_name(object.name)) flaw(id, "the name cannot be written in .inst");
         }

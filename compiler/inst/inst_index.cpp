@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "compiler/graph/graph.h"
+#include "compiler/lower/lower_transform.h"
 #include "compiler/support/number.h"
 
 namespace graftal {
@@ -75,7 +76,7 @@ InstIndex::InstIndex(const InstModule& module, Diagnostics& diagnostics) {
 }
 
 void InstIndex::add(const InstDefinition& definition, Diagnostics& diagnostics) {
-    if (primitive_kind_named(definition.name)) {
+    if (is_reserved_name(definition.name)) {
         diagnostics
             .error(definition.span, fmt::format("'{}' is a primitive and cannot be defined", definition.name))
             .with_hint("choose another name");

@@ -96,7 +96,7 @@ class InstLowerer {
                 .with_note(first->second, "first defined here");
             return;
         }
-        if (primitive_kind_named(use.name) || use.name.find('.') != std::string::npos) {
+        if (is_reserved_name(use.name) || use.name.find('.') != std::string::npos) {
             diagnostics_.error(use.name_span, fmt::format("'{}' cannot name a model", use.name))
                 .with_hint("use a name without dots that is not a primitive's");
             return;
@@ -162,17 +162,20 @@ class InstLowerer {
     bool check_reference(const InstReference& reference) {
         const std::size_t arity = reference.arguments.size();
         const InstDefinition* definition = index_.any(reference.name);
+        if (!reference.path.empty()) return check_mesh(reference);
         if (index_.defined(reference.name, arity)) return true;
+        const std::optional<PrimitiveKind> kind = kind_of(reference);
+        if (kind && takes_count(*kind, arity)) return true;
         if (definition) {
             wrong_count(reference, definition->parameters.size()).with_note(definition->span, "defined here");
             return false;
         }
-        if (!reference.path.empty() || reference.name == name_of(PrimitiveKind::mesh))
-            return check_mesh(reference);
-        if (const std::optional<PrimitiveKind> kind = kind_of_numbers(reference.name)) {
-            if (!takes_count(*kind, arity)) wrong_count(reference, counts_taken(*kind));
-            return takes_count(*kind, arity);
+        if (kind) {
+            wrong_count(reference, counts_taken(*kind));
+            return false;
         }
+        if (reference.name == name_of(PrimitiveKind::mesh) && !uses_.contains(reference.name))
+            return check_mesh(reference);
         const bool whole = primitive_named(reference.name) || uses_.contains(reference.name);
         if (whole && arity > inner_count(reference.name)) {
             wrong_count(reference, inner_count(reference.name));
@@ -182,6 +185,14 @@ class InstLowerer {
         if (whole || use_of(reference.name)) return true;
         if (module_.complete) unknown_object(reference.span, reference.name);
         return false;
+    }
+
+    /// The kind of a primitive that numbers make. The model's own objects of as many arguments hide it, and
+    /// used models do.
+    std::optional<PrimitiveKind> kind_of(const InstReference& reference) const {
+        const bool hidden =
+            uses_.contains(reference.name) || index_.defined(reference.name, reference.arguments.size());
+        return hidden ? std::nullopt : kind_of_numbers(reference.name);
     }
 
     /// `mesh "leaf.obj"`: read here, once for each file.
@@ -410,7 +421,7 @@ class InstLowerer {
         if (const auto found = by_name_.find(name); found != by_name_.end()) return found->second;
         if (const std::optional<Primitive> primitive = primitive_named(name))
             return by_name_[name] = graph_.primitive(*primitive);
-        if (const std::optional<PrimitiveKind> kind = kind_of_numbers(reference.name)) {
+        if (const std::optional<PrimitiveKind> kind = kind_of(reference)) {
             if (const auto known = shapes_.find(name); known != shapes_.end()) return known->second;
             const std::optional<Primitive> made = lower_primitive(*kind, arguments, reference.span, scratch_);
             if (!made) return std::nullopt;

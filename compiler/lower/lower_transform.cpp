@@ -190,6 +190,11 @@ std::optional<PrimitiveKind> kind_of_numbers(std::string_view name) {
     return kind && traits_of(*kind).make ? kind : std::nullopt;
 }
 
+bool is_reserved_name(std::string_view name) {
+    const std::optional<PrimitiveKind> kind = primitive_kind_named(name);
+    return kind && form_of(*kind) != PrimitiveForm::shaped;
+}
+
 bool takes_count(PrimitiveKind kind, std::size_t count) {
     const PrimitiveArguments& arguments = traits_of(kind).arguments;
     return count >= arguments.least && count <= arguments.most;

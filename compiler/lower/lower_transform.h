@@ -42,6 +42,9 @@ std::optional<Primitive> lower_primitive(PrimitiveKind kind, std::span<const dou
 
 /// The kind of a primitive whose name takes numbers in parentheses: `frustum`.
 std::optional<PrimitiveKind> kind_of_numbers(std::string_view name);
+/// Whether models may not give this name to what they define: it is a primitive's, of the first eight kinds.
+/// A model's own name hides that of a kind with shapes, so that a new kind breaks no model.
+bool is_reserved_name(std::string_view name);
 /// Whether so many numbers may make one of a kind of numbers.
 bool takes_count(PrimitiveKind kind, std::size_t count);
 /// How many that are: "1 argument".

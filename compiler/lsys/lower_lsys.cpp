@@ -11,6 +11,7 @@
 
 #include "compiler/lower/inner_parameters.h"
 #include "compiler/lower/lower_settings.h"
+#include "compiler/lower/lower_transform.h"
 #include "compiler/lower/lowering.h"
 #include "compiler/lower/model_family.h"
 #include "compiler/lsys/lsys_drawing.h"
@@ -171,7 +172,7 @@ class LsysLowering {
                 .error(block.name.span,
                        fmt::format("'{}' is already the name of a used model", block.name.text))
                 .with_note(use->second.span, "first defined here");
-        else if (primitive_kind_named(block.name.text))
+        else if (is_reserved_name(block.name.text))
             diagnostics_.error(block.name.span,
                                fmt::format("'{}' is a primitive and cannot name a block", block.name.text));
     }

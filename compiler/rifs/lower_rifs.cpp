@@ -93,7 +93,7 @@ class RifsLowering {
             if (!fresh) {
                 diagnostics_.error(use.name.span, fmt::format("duplicate use '{}'", use.name.text))
                     .with_note(first->second.span, "first defined here");
-            } else if (primitive_kind_named(use.name.text)) {
+            } else if (is_reserved_name(use.name.text)) {
                 diagnostics_.error(
                     use.name.span,
                     fmt::format("'{}' is a primitive and cannot name a used model", use.name.text));
@@ -172,18 +172,20 @@ class RifsLowering {
         const auto use = uses_.find(name);
         ModelFamily* const family = use != uses_.end() && use->second.family ? &*use->second.family : nullptr;
         const std::optional<PrimitiveKind> kind = kind_of_numbers(name);
-        if (!primitive && !kind && use == uses_.end()) return unknown_master(part.master);
+        const bool of_numbers = kind && use == uses_.end(); // else the used model hides it
+        if (!primitive && !of_numbers && use == uses_.end()) return unknown_master(part.master);
         std::vector<double> arguments;
         for (const Expression& expression : part.arguments)
             if (const auto value = evaluate(expression, lets_, diagnostics_)) arguments.push_back(*value);
         if (arguments.size() < part.arguments.size()) return std::nullopt;
-        if (kind && !takes_count(*kind, arguments.size())) return wrong_count(part, counts_taken(*kind));
+        if (of_numbers && !takes_count(*kind, arguments.size()))
+            return wrong_count(part, counts_taken(*kind));
         const std::size_t most = family ? family->parameters().size() : 0;
-        if (!kind && arguments.size() > most)
+        if (!of_numbers && arguments.size() > most)
             return wrong_count(part, fmt::format("{} argument{}", most, most == 1 ? "" : "s"));
         if (primitive) return graph_.primitive(*primitive);
         if (family && !arguments.empty()) return family->exact(arguments, part.master.span, diagnostics_);
-        if (!kind) return use->second.root;
+        if (!of_numbers) return use->second.root;
         const std::optional<Primitive> made =
             lower_primitive(*kind, arguments, part.master.span, diagnostics_);
         return made ? std::optional(graph_.primitive(*made)) : std::nullopt;

@@ -80,8 +80,6 @@ TEST(InstShapes, FaultsAreToldAtTheirPlace) {
                 HasSubstr("takes 6 to 2000 arguments, not 2"));
     EXPECT_THAT(Lowered("object a { polygon(0, 0, 2, 2, 2, 0, 0, 1) }\n").errors(),
                 HasSubstr("meets itself"));
-    EXPECT_THAT(Lowered("canonical object polygon { sphere }\nobject a { polygon }\n").errors(),
-                HasSubstr("'polygon' is a primitive and cannot be defined"));
     EXPECT_THAT(Lowered("object a { mesh }\n").errors(), HasSubstr("'mesh' takes the name of a file"));
     EXPECT_THAT(Lowered("object a { sphere \"leaf.obj\" }\n").errors(), HasSubstr("takes no name of a file"));
 }
@@ -116,6 +114,30 @@ TEST(InstShapes, OnlySoundRegularFilesWithinTheRootAreRead) {
     LowerOptions options;
     options.root = folder.path() + "/inner";
     EXPECT_THAT(errors("leaf.obj", options), HasSubstr("leads out of --root"));
+}
+
+TEST(InstShapes, AModelsOwnNamesHideThoseOfKindsWithShapes) {
+    const Folder folder;
+    folder.write("leaf.obj", triangle_obj);
+    folder.write("stick.inst", "object stick { cylinder }");
+    const Lowered own("use sphere_sweep = \"stick.inst\"\n"
+                      "canonical object polygon(n) { sphere  scale: n }\n"
+                      "canonical object mesh { cube }\n"
+                      "object all { union: polygon(2), polygon(0, 0, 1, 0, 0, 1), mesh, sphere_sweep\n"
+                      "             mesh \"leaf.obj\" }",
+                      folder.path());
+    ASSERT_TRUE(own.graph) << own.errors();
+    std::vector<std::string> masters;
+    for (const Object& object : own.graph->objects)
+        if (object.primitive) masters.push_back(object.name);
+    EXPECT_THAT(masters,
+                ::testing::UnorderedElementsAre("sphere", "cube", "cylinder", "polygon(0, 0, 1, 0, 0, 1)",
+                                                "mesh(\"" + folder.path() + "/leaf.obj\")"));
+    expect_reads_back(*own.graph);
+    EXPECT_THAT(Lowered("canonical object polygon(n) { sphere }\nobject a { polygon(1, 2) }").errors(),
+                HasSubstr("'polygon' takes 1 argument, not 2"));
+    EXPECT_THAT(Lowered("canonical object cone(n) { sphere }\nobject a { cone(1) }").errors(),
+                HasSubstr("'cone' is a primitive and cannot be defined"));
 }
 
 } // namespace

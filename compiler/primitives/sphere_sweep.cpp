@@ -100,7 +100,7 @@ std::vector<Ring> rings_of(const std::vector<SweptBall>& balls) {
             const double t = double(k) / steps;
             const Vec3 speed = speed_on_curve(p, t);
             const double length = glm::length(speed);
-            // A radius runs evenly from one point to the next, with its slope smooth at neither.
+            // The radius changes evenly from one point to the next.
             const double change = balls[i + 1].radius - balls[i].radius;
             Ring ring{on_curve(p, t), balls[i].radius + t * change, glm::normalize(b - a), 0, Vec3(0.0)};
             if (length > 0) ring.along = speed / length;

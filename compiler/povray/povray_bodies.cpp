@@ -10,11 +10,6 @@
 
 namespace graftal {
 
-void ProgressMarks::mark() {
-    out_ << "\n#debug \"@@" << std::min<std::uint64_t>(done_ * 100 / parts_, 100) << "\\n\"\n";
-    next_ = done_ * 100 / parts_ + 1;
-}
-
 PovrayBodies::PovrayBodies(const Cut& cut, const std::string& prefix) : cut_(cut), uses_(cut.bodies.size()) {
     std::vector<bool> placed(cut.bodies.size());
     for (const PlacementGroup& group : cut.groups) {

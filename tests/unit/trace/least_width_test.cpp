@@ -18,7 +18,7 @@ using test::empty_graph;
 using test::place;
 using test::traced;
 
-DetailOptions culled() {
+DetailOptions culled_at_half_a_pixel() {
     DetailOptions options;
     options.error_px = 0.5;
     return options;
@@ -110,7 +110,7 @@ TEST(LeastWidth, CurvesAreSeenInOnePiece) {
                                           flat_map(1. / 3, 0, 0.1, 0.6, 2. / 3, -0.1)};
     for (const auto& [name, maps] :
          {std::pair{"koch", koch}, {"levy", levy}, {"gasket", gasket}, {"function", function}}) {
-        const auto model = traced(limit_of(maps), culled());
+        const auto model = traced(limit_of(maps), culled_at_half_a_pixel());
         const std::vector<int> pieces = pieces_of(mask_of(*model));
         EXPECT_EQ(pieces.size(), 1u) << name;
     }
@@ -123,7 +123,7 @@ TEST(LeastWidth, TerminalsOfSetsWithoutAreaAreWidenedToo) {
                             Affine::translate({std::sqrt(3.0) / 4, -0.25, 0}) * Affine::scale(Vec3(0.5))});
     graph.objects[graph.objects[graph.root].instances[0].master].terminal =
         Instance{graph.primitive(PrimitiveKind::triangle), {}, {}, {}, {}};
-    EXPECT_EQ(pieces_of(mask_of(*traced(graph, culled()))).size(), 1u);
+    EXPECT_EQ(pieces_of(mask_of(*traced(graph, culled_at_half_a_pixel()))).size(), 1u);
 }
 
 TEST(LeastWidth, EveryGrainOfDustIsSeenAndIsNoBlob) {
@@ -132,7 +132,7 @@ TEST(LeastWidth, EveryGrainOfDustIsSeenAndIsNoBlob) {
     for (const Vec3& at :
          {Vec3(0, 0, 0), Vec3(1, 0.1, 0), Vec3(0.4, 0.7, 0), Vec3(0.8, 0.9, 0), Vec3(0.1, 0.5, 0)})
         maps.push_back(Affine::translate(at) * Affine::scale({s, 0.5 * s, 0.1 * s}));
-    const auto model = traced(limit_of(maps), culled());
+    const auto model = traced(limit_of(maps), culled_at_half_a_pixel());
     const Mask mask = mask_of(*model);
     const std::vector<int> pieces = pieces_of(mask);
     EXPECT_GE(pieces.size(), 5u);
@@ -149,7 +149,7 @@ TEST(LeastWidth, WhatIsCrushedOntoALineIsAPixelThick) {
     for (const double thickness : {0.0, 1e-9, 1e-5}) {
         Graph graph = limit_of({flat_map(0.7, 0, 0, thickness, -3, 5), flat_map(0.5, 0, 0, 0.5, 0, 0),
                                 flat_map(0.5, 0, 0, 0.5, 1, 0), flat_map(0.5, 0, 0, 0.5, 0, 1)});
-        const auto model = traced(graph, culled());
+        const auto model = traced(graph, culled_at_half_a_pixel());
         Traversal traversal(*model);
         const double px = 1 / unit_px(*model);
         int hits = 0;

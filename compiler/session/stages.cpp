@@ -140,9 +140,11 @@ std::optional<Source> read_source(const std::string& path, const std::string& ro
 }
 
 std::optional<LoweredModel> lower_source(const Source& source, const LowerOptions& options, bool accept_orbit,
-                                         SourceMap& sources, Diagnostics& diagnostics) {
+                                         const LookAtTexture& look_at_texture, SourceMap& sources,
+                                         Diagnostics& diagnostics) {
     LoweredModel model{source.path, {}, {}, {}};
     LowerOptions own = options;
+    own.look_at_texture = look_at_texture;
     own.orbit = accept_orbit ? &model.orbit : nullptr;
     model.graph = lower_text(source.path, source.text, own, sources, diagnostics, &model.derivation);
     const bool draws_nothing = model.derivation && options.may_draw_nothing && !diagnostics.has_errors();
@@ -162,7 +164,7 @@ bool check_pass(const std::string& name, Diagnostics& diagnostics) {
 
 std::optional<AnalysedModel> analyse(LoweredModel lowered, const std::optional<Address>& at,
                                      const PipelineOptions& options, Diagnostics& diagnostics,
-                                     std::vector<StageTime>& times) {
+                                     std::vector<StageTime>& times, const Control& control) {
     AnalysedModel model;
     model.path = std::move(lowered.path);
     model.derivation = std::move(lowered.derivation);
@@ -181,8 +183,8 @@ std::optional<AnalysedModel> analyse(LoweredModel lowered, const std::optional<A
     model.contraction =
         clock.run("contraction", [&] { return decide_contraction(model.graph, model.components); });
     if (!converges(model.contraction)) return model;
-    model.bounds = clock.run("bounding",
-                             [&] { return bound_objects(model.graph, model.components, model.contraction); });
+    model.bounds = clock.run(
+        "bounding", [&] { return bound_objects(model.graph, model.components, model.contraction, control); });
     if (!check_range(model.graph, model.components, model.bounds, diagnostics)) return std::nullopt;
     return model;
 }

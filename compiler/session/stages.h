@@ -2,6 +2,7 @@
 
 // The stages of the compiler as functions of values (README.md). A Session calls them; nothing is kept here.
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -9,6 +10,7 @@
 
 #include "compiler/session/stage_options.h"
 #include "compiler/session/values.h"
+#include "compiler/support/control.h"
 
 namespace graftal {
 
@@ -17,9 +19,14 @@ namespace graftal {
 std::optional<Source> read_source(const std::string& path, const std::string& root, Diagnostics& diagnostics,
                                   Status& status);
 
-/// Text -> graph. Nothing after an error. `sources` gets the texts of all files that the model reads.
+/// Looks at the picture that a material names.
+using LookAtTexture = std::function<Status(const std::string& path, TextureFacts& facts)>;
+
+/// Text -> graph. Nothing after an error. `sources` gets the texts of all files that the model reads. Without
+/// `look_at_texture`, textures are taken on trust.
 std::optional<LoweredModel> lower_source(const Source& source, const LowerOptions& options, bool accept_orbit,
-                                         SourceMap& sources, Diagnostics& diagnostics);
+                                         const LookAtTexture& look_at_texture, SourceMap& sources,
+                                         Diagnostics& diagnostics);
 
 /// Whether `name` is "" or names a pass; else an error says so.
 bool check_pass(const std::string& name, Diagnostics& diagnostics);
@@ -29,7 +36,7 @@ bool check_pass(const std::string& name, Diagnostics& diagnostics);
 /// parts. Requires that the model is no orbit, and check_pass().
 std::optional<AnalysedModel> analyse(LoweredModel lowered, const std::optional<Address>& at,
                                      const PipelineOptions& options, Diagnostics& diagnostics,
-                                     std::vector<StageTime>& times);
+                                     std::vector<StageTime>& times, const Control& control = no_control());
 
 /// True, after an error, for a model that is not proved to converge.
 bool refuse_divergent(const AnalysedModel& model, Diagnostics& diagnostics);

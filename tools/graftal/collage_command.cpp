@@ -2,6 +2,7 @@
 #include <nlohmann/json.hpp>
 
 #include "runtime/points/collage.h"
+#include "runtime/render/picture_session.h"
 #include "tools/graftal/commands.h"
 #include "tools/graftal/report.h"
 
@@ -66,7 +67,7 @@ int run_collage(const Options& options) {
     collage_options.threshold = options.points.threshold;
     collage_options.light = options.points.light;
     Compilation compilation;
-    Session session(options.operands.front(), Keep::nothing);
+    PictureSession session(options.operands.front(), Keep::nothing);
     const std::optional<Collage> collage = measure_collage(session, collage_options, compilation);
     const int status = conclude(options, compilation);
     if (!collage || status != exit_done) return status;

@@ -2,6 +2,8 @@
 
 #include "compiler/detail/coarser.h"
 #include "runtime/points/draw_points.h"
+#include "runtime/render/picture_session.h"
+#include "runtime/system/interruption.h"
 #include "tools/graftal/commands.h"
 #include "tools/graftal/progress_bar.h"
 #include "tools/graftal/report.h"
@@ -51,10 +53,12 @@ int run_points(const Options& options) {
     if (!options.quiet) say_what_points_take(points);
     Compilation compilation;
     bar.show("compiling...");
-    Session session(options.operands.front(), Keep::nothing);
+    PictureSession session(options.operands.front(), Keep::nothing);
+    const Interruption interruption;
+    session.set_control({interruption.flag(), {}});
     const std::optional<PointsReport> report = draw_points(session, points, compilation);
     bar.clear();
-    const int status = conclude(options, compilation);
+    const int status = conclude(options, compilation, interruption.signal());
     if (report && !options.quiet) say(done_text(options, *report));
     return status;
 }

@@ -18,8 +18,8 @@ void say(const std::string& text);
 void complain(std::string_view text);
 
 /// Prints the diagnostics, the failed status if there is one, and the times if they were asked for; returns
-/// the exit status that follows.
-int conclude(const Options& options, const Compilation& compilation);
+/// the exit status that follows. `signal`: that interrupted the command, or 0.
+int conclude(const Options& options, const Compilation& compilation, int signal = 0);
 
 /// Says that the memory did not suffice, and for what, without taking any; returns the exit status that
 /// follows.

@@ -1,6 +1,6 @@
-#include "compiler/session/session.h"
 #include "compiler/session/stages.h"
 #include "compiler/session/stats.h"
+#include "runtime/render/picture_session.h"
 #include "tools/graftal/commands.h"
 #include "tools/graftal/report.h"
 
@@ -10,7 +10,7 @@ int run_stats(const Options& options) {
     Compilation compilation;
     StageOptions compile = compile_options(options);
     compile.lower.may_draw_nothing = true;
-    Session session(options.operands.front(), Keep::nothing);
+    PictureSession session(options.operands.front(), Keep::nothing);
     const std::shared_ptr<const AnalysedModel> model = session.analysed(compile, compilation, true);
     const int status = conclude(options, compilation);
     if (!model || status != exit_done) return status;

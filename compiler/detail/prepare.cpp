@@ -11,7 +11,7 @@ namespace graftal {
 
 namespace {
 
-/// Comparisons and bodies after which the control is asked: some milliseconds.
+/// Objects, comparisons and bodies after which the control is asked: some milliseconds.
 constexpr std::uint64_t prepared_a_look = 20'000;
 
 /// Where levels do not end, objects are cut for their size alone: a proxy then stands for all that is left
@@ -52,8 +52,8 @@ PreparedCut prepare_cut(const Graph& graph, const Components& components,
                         const Control& control, const PassObserver& after_each) {
     WorkMeter meter(control, "prepare", prepared_a_look);
     PreparedCut prepared;
-    BoundedGraph passed =
-        run_passes(detail_passes(), {graph, bounds}, {.stop_after = {}, .after_each = after_each});
+    BoundedGraph passed = run_passes(detail_passes(), {graph, bounds},
+                                     {.stop_after = {}, .after_each = after_each}, nullptr, &meter);
     CutGraph& cut = prepared.cut = build_cut_graph(std::move(passed.graph), passed.bounds);
     if (!options.steps) drop_endings(cut);
     prepared.symmetry = find_symmetry(cut);

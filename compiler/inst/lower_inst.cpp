@@ -290,6 +290,7 @@ class InstLowerer {
     void lower_object(std::size_t index) {
         const InstDefinition& definition = *reached_[index].definition;
         if (failed_.contains(&definition)) return;
+        lowering_.meter.add(definition.size);
         work_ += definition.size + index_.patterns(definition.name, definition.parameters.size()).size();
         if (work_ > max_work) {
             stop(reached_[index].use, definition, reached_[index].parent,
@@ -342,7 +343,7 @@ class InstLowerer {
         const std::optional<Placement> placement = lower_placement(group);
         const std::size_t most = lowering_.options.max_objects * max_instances_per_object;
         const ScatterContext context{environment_, graph_.settings, scatter_seed(),
-                                     most - std::min(most, instance_count_)};
+                                     most - std::min(most, instance_count_), &lowering_.meter};
         const double chance = lower_chance(group);
         const bool good = placement && std::ranges::count(masters, std::optional<ObjectId>()) == 0;
         bool lost = false;

@@ -16,10 +16,18 @@ namespace graftal {
 
 namespace {
 
+/// Modules, parts and objects after which the control is asked: some milliseconds.
+constexpr std::uint64_t lowered_a_look = 10'000;
+
 std::optional<Graph> lower_root(FileId file, const LowerOptions& options, SourceMap& sources,
-                                Diagnostics& diagnostics, std::optional<Derivation>* derivation) {
-    Lowering lowering{
-        .sources = sources, .diagnostics = diagnostics, .options = options, .languages = languages()};
+                                Diagnostics& diagnostics, LowerNotes* notes, const LowerHelp& help) {
+    WorkMeter meter(help.control, "lower", lowered_a_look);
+    Lowering lowering{.sources = sources,
+                      .diagnostics = diagnostics,
+                      .options = options,
+                      .look_at_texture = help.look_at_texture,
+                      .meter = meter,
+                      .languages = languages()};
     const Language* const language = language_of(file, sources, languages());
     if (options.time && !options.steps && !(language && language->has_time)) {
         diagnostics
@@ -33,7 +41,7 @@ std::optional<Graph> lower_root(FileId file, const LowerOptions& options, Source
     std::optional<Graph> graph = lower_file(file, Span{file, 0, 0}, lowering);
     if (diagnostics.has_errors() || (graph && !check_graph(*graph, diagnostics))) return std::nullopt;
     if (graph) check_verified(*graph, "lower");
-    if (derivation) *derivation = std::move(lowering.derivation);
+    if (notes) *notes = std::move(lowering.notes);
     return graph;
 }
 
@@ -47,8 +55,8 @@ std::string model_language(FileId file, const SourceMap& sources) {
 }
 
 std::optional<Graph> lower_model(const std::string& path, const LowerOptions& options, SourceMap& sources,
-                                 Diagnostics& diagnostics, Status& status,
-                                 std::optional<Derivation>* derivation) {
+                                 Diagnostics& diagnostics, Status& status, LowerNotes* notes,
+                                 const LowerHelp& help) {
     std::string text;
     if (path != "-" && !options.root.empty() && !lies_in(path, options.root)) {
         diagnostics.error(Span(), fmt::format("'{}' leads out of --root '{}'", path, options.root));
@@ -56,14 +64,14 @@ std::optional<Graph> lower_model(const std::string& path, const LowerOptions& op
     }
     status = read_text(path, text);
     if (!status.ok()) return std::nullopt;
-    return lower_text(path, std::move(text), options, sources, diagnostics, derivation);
+    return lower_text(path, std::move(text), options, sources, diagnostics, notes, help);
 }
 
 std::optional<Graph> lower_text(const std::string& name, std::string text, const LowerOptions& options,
-                                SourceMap& sources, Diagnostics& diagnostics,
-                                std::optional<Derivation>* derivation) {
+                                SourceMap& sources, Diagnostics& diagnostics, LowerNotes* notes,
+                                const LowerHelp& help) {
     const FileId file = sources.add(name == "-" ? std::string(standard_input) : name, std::move(text));
-    return lower_root(file, options, sources, diagnostics, derivation);
+    return lower_root(file, options, sources, diagnostics, notes, help);
 }
 
 } // namespace graftal

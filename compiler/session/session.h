@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -54,14 +55,15 @@ class Session {
     /// The model's own text is this from now on, whatever its file says.
     void edit(std::string text);
     /// Looks whether files have changed, those that the model names too; a text that was given stays.
-    /// `textures_changed`: some
-    /// picture that was looked at is another one now.
+    /// `textures_changed`: some picture that was looked at is another one now.
     void reload(bool textures_changed = false);
 
     /// Without this, textures are taken on trust.
     void look_at_textures(LookAtTexture look) { look_at_texture_ = std::move(look); }
+    /// Sees the graph after each pass, for models and for detail.
+    void after_each_pass(PassObserver observer) { after_pass_ = std::move(observer); }
 
-    /// The model before passes; one that is an orbit has no graph (StageOptions::accept_orbit).
+    /// The model before passes; one that is an orbit has no graph (LowerOptions::accept_orbit).
     std::shared_ptr<const LoweredModel> lowered(const StageOptions& options, Compilation& compilation);
     /// One that does not converge is an error, unless it is wanted `for_report`: then the verdict is part of
     /// the result. Null without an error for an orbit that is accepted.
@@ -98,7 +100,6 @@ class Session {
         std::uint64_t source = 0;
         std::uint64_t files = 0; ///< how often those that it names were found to have changed
         LowerOptions options;
-        bool accept_orbit = false;
     };
     struct AnalyseKey {
         std::uint64_t lowered = 0;
@@ -152,6 +153,7 @@ class Session {
     std::uint64_t edits_ = 0;
     std::uint64_t file_changes_ = 0;
     LookAtTexture look_at_texture_;
+    PassObserver after_pass_;
     Keep keep_;
     Control control_;
     StageRuns runs_;
@@ -159,7 +161,8 @@ class Session {
 
     Slot<SourceKey, Source> source_;
     Slot<LowerKey, LoweredModel> lowered_;
-    SourceMap sources_;       ///< of the last lowering
+    SourceMap sources_;                       ///< of the last lowering
+    std::map<std::string, FileStamp> meshes_; ///< that it read, too
     bool reads_steps_ = true; ///< the last lowering: what it gives depends on steps and on the time
     bool reads_time_ = true;
     Slot<AnalyseKey, AnalysedModel> analysed_;

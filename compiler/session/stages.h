@@ -2,12 +2,12 @@
 
 // The stages of the compiler as functions of values (README.md). A Session calls them; nothing is kept here.
 
-#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "compiler/passes/pipeline.h"
 #include "compiler/session/stage_options.h"
 #include "compiler/session/values.h"
 #include "compiler/support/control.h"
@@ -19,14 +19,9 @@ namespace graftal {
 std::optional<Source> read_source(const std::string& path, const std::string& root, Diagnostics& diagnostics,
                                   Status& status);
 
-/// Looks at the picture that a material names.
-using LookAtTexture = std::function<Status(const std::string& path, TextureFacts& facts)>;
-
-/// Text -> graph. Nothing after an error. `sources` gets the texts of all files that the model reads. Without
-/// `look_at_texture`, textures are taken on trust.
-std::optional<LoweredModel> lower_source(const Source& source, const LowerOptions& options, bool accept_orbit,
-                                         const LookAtTexture& look_at_texture, SourceMap& sources,
-                                         Diagnostics& diagnostics);
+/// Text -> graph. Nothing after an error. `sources` gets the texts of all files that the model reads.
+std::optional<LoweredModel> lower_source(const Source& source, const LowerOptions& options,
+                                         const LowerHelp& help, SourceMap& sources, Diagnostics& diagnostics);
 
 /// Whether `name` is "" or names a pass; else an error says so.
 bool check_pass(const std::string& name, Diagnostics& diagnostics);

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <utility>
 
+#include <fmt/format.h>
+
 #include "compiler/analysis/counts.h"
 #include "compiler/session/stages.h"
 #include "compiler/session/stats.h"
@@ -68,6 +70,18 @@ Picture picture_of(const Image& linear) {
 }
 
 } // namespace
+
+std::string text_of(const std::vector<Message>& messages) {
+    static constexpr const char* names[] = {"error", "warning", "note"};
+    std::string text;
+    for (const Message& message : messages) {
+        if (!message.file.empty())
+            text += fmt::format("{}:{}:{}: ", message.file, message.line, message.column);
+        text += fmt::format("{}: {}\n", names[static_cast<std::size_t>(message.severity)], message.text);
+        if (!message.hint.empty()) text += fmt::format("  {}\n", message.hint);
+    }
+    return text;
+}
 
 struct Model::Parts {
     explicit Parts(std::string path) : session(std::move(path)) {

@@ -38,12 +38,16 @@ struct Message {
     std::string hint; ///< what to write instead; may be empty
 };
 
+/// One a line, "crystal.rifs:3:5: error: ..."; hints have lines of their own.
+std::string text_of(const std::vector<Message>& messages);
+
 /// What a function gives, or why it gives nothing. With a value there may be warnings and notes.
 template<typename Value> struct Result {
     std::optional<Value> value;
     std::vector<Message> messages;
     bool cancelled = false; ///< the reason why there is no value
 
+    std::string text() const { return text_of(messages); }
     explicit operator bool() const { return value.has_value(); }
     const Value& operator*() const { return *value; }
     const Value* operator->() const { return &*value; }

@@ -155,7 +155,7 @@ Status read_texture(const std::string& path, std::uint64_t most_texels, Texture&
 std::shared_ptr<const Texture> TextureStore::load(const std::string& path, Status& status) {
     const std::lock_guard lock(mutex_);
     if (const auto known = known_.find(path); known != known_.end()) return known->second.texture;
-    const Stamp stamp = stamp_of(path);
+    const FileStamp stamp = stamp_of(path);
     const std::uint64_t room = most_texels_of_all - std::min(texels_of_all_, most_texels_of_all);
     Texture read;
     status = read_texture(path, std::clamp(room, least_texels, most_texels), read);
@@ -176,14 +176,6 @@ Status TextureStore::look_at(const std::string& path, TextureFacts& facts) {
                  .width = texture->width,
                  .height = texture->height};
     return status;
-}
-
-TextureStore::Stamp TextureStore::stamp_of(const std::string& path) {
-    std::error_code error;
-    const auto time = std::filesystem::last_write_time(path, error);
-    if (error) return {};
-    const std::uintmax_t bytes = std::filesystem::file_size(path, error);
-    return error ? Stamp() : Stamp{time.time_since_epoch().count(), bytes};
 }
 
 bool TextureStore::forget_changed() {

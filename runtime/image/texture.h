@@ -55,18 +55,10 @@ class TextureStore {
     bool forget_changed();
 
   private:
-    /// What tells whether a file was written since; of none, zeros.
-    struct Stamp {
-        std::int64_t time = 0;
-        std::uint64_t bytes = 0;
-        bool operator==(const Stamp&) const = default;
-    };
     struct Entry {
         std::shared_ptr<const Texture> texture;
-        Stamp stamp;
+        FileStamp stamp; ///< of the file, when it was read
     };
-
-    static Stamp stamp_of(const std::string& path);
 
     std::mutex mutex_;
     std::map<std::string, Entry> known_;

@@ -235,10 +235,10 @@ std::optional<PointsReport> draw_points(PictureSession& session, const PointsOpt
                                         Compilation& compilation) {
     const CancelFlag& cancel = session.control().cancel;
     StageOptions compile = options.compile;
-    compile.accept_orbit = true;
+    compile.lower.accept_orbit = true;
     std::shared_ptr<const OrbitModel> orbit;
     if (const auto lowered = session.lowered(compile, compilation))
-        orbit = lowered->orbit;
+        orbit = lowered->notes.orbit;
     else
         return std::nullopt;
     if (orbit) return draw_orbit(*orbit, options, cancel, compilation);

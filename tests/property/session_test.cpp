@@ -303,6 +303,14 @@ TEST(Session, ReloadingSeesWhatHasChanged) {
     EXPECT_NEAR(most_x(), 1, 1e-9) << "nobody has asked for the files";
     session.reload();
     EXPECT_NEAR(most_x(), 3, 1e-9);
+    const std::string mesh = directory.path() + "/c.obj";
+    written(mesh, "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    written(part, "object b { instance: mesh \"c.obj\" }\n");
+    session.reload();
+    EXPECT_NEAR(most_x(), 1, 1e-9);
+    written(mesh, "v 0 0 0\nv 12 0 0\nv 0 1 0\nf 1 2 3\n");
+    session.reload();
+    EXPECT_NEAR(most_x(), 12, 1e-9);
 }
 
 /// Wherever it is cancelled a session ends at the next time that it asks, and goes on as if nothing had been.
@@ -324,7 +332,7 @@ TEST(Session, EndsWhereItIsCancelled) {
         expected = sdl_of(*whole);
         most = asked;
     }
-    EXPECT_EQ(stages, (std::set<std::string>{"bounding", "prepare", "cut"}));
+    EXPECT_EQ(stages, (std::set<std::string>{"lower", "passes", "bounding", "prepare", "cut"}));
     for (std::uint64_t last = 0; last < most; last += 1 + most / 40) {
         Session session("tower.inst", text);
         asked = 0;

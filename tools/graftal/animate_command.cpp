@@ -6,7 +6,6 @@
 
 #include "runtime/render/frame_clock.h"
 #include "runtime/render/frame_store.h"
-#include "runtime/render/picture_session.h"
 #include "runtime/system/interruption.h"
 #include "tools/graftal/commands.h"
 #include "tools/graftal/progress_bar.h"
@@ -50,7 +49,7 @@ class Warnings {
 
 AnimateOptions animate_options(const Options& options) {
     AnimateOptions animate;
-    animate.render.compile = compile_options(options);
+    animate.render.compile = options.compile;
     animate.render.metadata = {"graftal " GRAFTAL_VERSION, options.description, {}};
     animate.render.antialias = options.antialias;
     animate.render.threads = options.threads;
@@ -99,7 +98,7 @@ int run_animate(const Options& options) {
     animate.on_progress = [&](const AnimationProgress& progress) { bar.show(progress_text(progress)); };
     animate.on_compiled = [&](const Compilation& compilation) { warnings.say_new(compilation); };
 
-    PictureSession session(options.operands.front(), Keep::for_views);
+    CommandSession session(options, options.operands.front(), Keep::for_views);
     const Interruption interruption;
     session.set_control({interruption.flag(), {}});
     const AnimationOutcome outcome = animate_model(session, animate);

@@ -2,7 +2,6 @@
 #include <nlohmann/json.hpp>
 
 #include "runtime/points/collage.h"
-#include "runtime/render/picture_session.h"
 #include "tools/graftal/commands.h"
 #include "tools/graftal/report.h"
 
@@ -62,12 +61,12 @@ std::string collage_text(const Options& options, const Collage& collage) {
 
 int run_collage(const Options& options) {
     CollageOptions collage_options;
-    collage_options.compile = compile_options(options);
+    collage_options.compile = options.compile;
     collage_options.target = options.points.target;
     collage_options.threshold = options.points.threshold;
     collage_options.light = options.points.light;
     Compilation compilation;
-    PictureSession session(options.operands.front(), Keep::nothing);
+    CommandSession session(options, options.operands.front());
     const std::optional<Collage> collage = measure_collage(session, collage_options, compilation);
     const int status = conclude(options, compilation);
     if (!collage || status != exit_done) return status;

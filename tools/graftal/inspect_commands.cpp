@@ -6,7 +6,6 @@
 #include "compiler/graph/print.h"
 #include "compiler/rifs/orbit_model.h"
 #include "compiler/support/file.h"
-#include "runtime/render/picture_session.h"
 #include "runtime/system/interruption.h"
 #include "runtime/system/process.h"
 #include "runtime/system/temporary_directory.h"
@@ -25,11 +24,11 @@ std::string verdict_text(const Contraction& contraction) {
 
 int check_one(const Options& options, const std::string& path) {
     Compilation compilation;
-    StageOptions compile = compile_options(options);
-    compile.accept_orbit = true;
-    PictureSession session(path, Keep::nothing);
+    StageOptions compile = options.compile;
+    compile.lower.accept_orbit = true;
+    CommandSession session(options, path);
     std::shared_ptr<const OrbitModel> orbit;
-    if (const auto lowered = session.lowered(compile, compilation)) orbit = lowered->orbit;
+    if (const auto lowered = session.lowered(compile, compilation)) orbit = lowered->notes.orbit;
     std::shared_ptr<const AnalysedModel> model;
     if (!orbit && compilation.status.ok()) model = session.analysed(compile, compilation);
     const int status = conclude(options, compilation);
@@ -79,18 +78,16 @@ int run_check(const Options& options) {
 
 int run_print(const Options& options) {
     Compilation compilation;
-    PictureSession session(options.operands.front(), Keep::nothing);
-    const std::shared_ptr<const AnalysedModel> model =
-        session.analysed(compile_options(options), compilation, true);
+    CommandSession session(options, options.operands.front());
+    const std::shared_ptr<const AnalysedModel> model = session.analysed(options.compile, compilation, true);
     const int status = conclude(options, compilation);
     return model && status == exit_done ? print_output(print(model->graph)) : status;
 }
 
 int run_graph(const Options& options) {
     Compilation compilation;
-    PictureSession session(options.operands.front(), Keep::nothing);
-    const std::shared_ptr<const AnalysedModel> model =
-        session.analysed(compile_options(options), compilation, true);
+    CommandSession session(options, options.operands.front());
+    const std::shared_ptr<const AnalysedModel> model = session.analysed(options.compile, compilation, true);
     const Interruption interruption;
     if (model) {
         const std::string dot = emit_dot(model->graph, model->components);

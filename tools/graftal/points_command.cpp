@@ -2,7 +2,6 @@
 
 #include "compiler/detail/coarser.h"
 #include "runtime/points/draw_points.h"
-#include "runtime/render/picture_session.h"
 #include "runtime/system/interruption.h"
 #include "tools/graftal/commands.h"
 #include "tools/graftal/progress_bar.h"
@@ -14,7 +13,7 @@ namespace {
 
 PointsOptions points_options(const Options& options) {
     PointsOptions points;
-    points.compile = compile_options(options);
+    points.compile = options.compile;
     points.output = options.output;
     points.metadata = {"graftal " GRAFTAL_VERSION, options.description, {}};
     points.points = options.points.points;
@@ -53,7 +52,7 @@ int run_points(const Options& options) {
     if (!options.quiet) say_what_points_take(points);
     Compilation compilation;
     bar.show("compiling...");
-    PictureSession session(options.operands.front(), Keep::nothing);
+    CommandSession session(options, options.operands.front());
     const Interruption interruption;
     session.set_control({interruption.flag(), {}});
     const std::optional<PointsReport> report = draw_points(session, points, compilation);

@@ -4,7 +4,6 @@
 
 #include "compiler/detail/coarser.h"
 #include "runtime/render/native.h"
-#include "runtime/render/picture_session.h"
 #include "runtime/render/render.h"
 #include "runtime/render/scene_files.h"
 #include "runtime/system/interruption.h"
@@ -34,7 +33,7 @@ std::string cut_text(double leaves, std::uint64_t placements, std::uint64_t tria
 
 RenderOptions render_options(const Options& options) {
     RenderOptions render;
-    render.compile = compile_options(options);
+    render.compile = options.compile;
     render.output = options.output;
     render.metadata = {"graftal " GRAFTAL_VERSION, options.description};
     render.format = options.format;
@@ -75,7 +74,7 @@ int render_by_tracer(const Options& options) {
     };
     Compilation compilation;
     bar.show("compiling...");
-    PictureSession session(options.operands.front(), Keep::nothing);
+    CommandSession session(options, options.operands.front());
     const bool viewed = session.viewed(native.render.compile, compilation) != nullptr;
     const Interruption interruption; // from here on something may be half written
     session.set_control({interruption.flag(), {}});
@@ -105,7 +104,7 @@ int run_render(const Options& options) {
 
     Compilation compilation;
     bar.show("compiling...");
-    PictureSession session(options.operands.front(), Keep::nothing);
+    CommandSession session(options, options.operands.front());
     const bool compiled = session.compiled(render.compile, compilation) != nullptr;
     const Interruption interruption; // from here on something may be half written
     session.set_control({interruption.flag(), {}});
@@ -123,9 +122,8 @@ int run_render(const Options& options) {
 
 int run_compile(const Options& options) {
     Compilation compilation;
-    PictureSession session(options.operands.front(), Keep::nothing);
-    const std::shared_ptr<const CompiledModel> model =
-        session.compiled(compile_options(options), compilation);
+    CommandSession session(options, options.operands.front());
+    const std::shared_ptr<const CompiledModel> model = session.compiled(options.compile, compilation);
     const Interruption interruption;
     if (model) {
         const bool include = options.output.ends_with(".inc");

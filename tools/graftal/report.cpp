@@ -72,14 +72,13 @@ std::string rays_text(const TraceStatistics& rays, double seconds) {
     return text;
 }
 
-StageOptions compile_options(const Options& options) {
-    StageOptions compile = options.compile;
-    if (options.dump_after.empty()) return compile;
-    compile.pipeline.after_each = [wanted = options.dump_after](const Pass& pass, const Graph& graph) {
+CommandSession::CommandSession(const Options& options, const std::string& path, Keep keep)
+    : PictureSession(path, keep) {
+    if (options.dump_after.empty()) return;
+    after_each_pass([wanted = options.dump_after](const Pass& pass, const Graph& graph) {
         if (wanted == "all" || wanted == pass.name)
             say(fmt::format("// after {}\n{}", pass.name, print(graph)));
-    };
-    return compile;
+    });
 }
 
 } // namespace graftal

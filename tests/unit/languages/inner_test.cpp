@@ -30,8 +30,9 @@ class Inner : public ::testing::Test {
     void lower(const std::string& name, const LowerOptions& options = {}) {
         sources_ = SourceMap();
         diagnostics_ = Diagnostics();
-        graph_ =
-            lower_model((folder_ / name).string(), options, sources_, diagnostics_, status_, &derivation_);
+        LowerNotes notes;
+        graph_ = lower_model((folder_ / name).string(), options, sources_, diagnostics_, status_, &notes);
+        derivation_ = std::move(notes.derivation);
     }
     std::string report() const { return diagnostics_.render(sources_); }
 

@@ -90,10 +90,10 @@ TEST(LsysLimits, sizesBeyondTheRange) {
 std::size_t parts_of(const std::string& statements) {
     SourceMap sources;
     Diagnostics diagnostics;
-    std::optional<Derivation> derivation;
-    lower_text("m.lsys", block(statements), {}, sources, diagnostics, &derivation);
-    EXPECT_TRUE(derivation) << diagnostics.render(sources);
-    return derivation ? derivation->parts : 0;
+    LowerNotes notes;
+    lower_text("m.lsys", block(statements), {}, sources, diagnostics, &notes);
+    EXPECT_TRUE(notes.derivation) << diagnostics.render(sources);
+    return notes.derivation ? notes.derivation->parts : 0;
 }
 
 TEST(LsysLimits, stateOfTheTurtleThatGoesOnForEver) {

@@ -220,8 +220,10 @@ struct CompiledLsys {
     CompiledLsys(const std::string& statements, unsigned steps, LowerOptions options = {}) {
         options.steps = steps;
         const std::string text = "lsys m {\n" + statements + "\n}\n";
-        std::optional<Graph> lowered = lower_text("m.lsys", text, options, sources, diagnostics, &derivation);
+        LowerNotes notes;
+        std::optional<Graph> lowered = lower_text("m.lsys", text, options, sources, diagnostics, &notes);
         if (!lowered) throw std::runtime_error(diagnostics.render(sources));
+        derivation = std::move(notes.derivation);
         graph = std::move(*lowered);
     }
 

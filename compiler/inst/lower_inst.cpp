@@ -408,10 +408,23 @@ class InstLowerer {
         return placement;
     }
 
+    /// The graph's object of a primitive. By a map: a model may have 100,000 shapes, and Graph::primitive()
+    /// looks at every object.
+    ObjectId primitive(const Primitive& primitive) {
+        for (; indexed_ < graph_.objects.size(); ++indexed_)
+            if (const std::optional<Primitive>& known = graph_.objects[indexed_].primitive)
+                primitives_.emplace(*known, static_cast<ObjectId>(indexed_));
+        const auto [found, is_new] = primitives_.try_emplace(primitive, 0);
+        if (!is_new) return found->second;
+        Object object;
+        object.name = name_of(primitive);
+        object.primitive = primitive;
+        return found->second = graph_.add(std::move(object));
+    }
+
     std::optional<ObjectId> resolve(const InstReference& reference, std::size_t parent) {
         if (unknown_.contains(&reference)) return std::nullopt;
-        if (const auto mesh = meshes_.find(&reference); mesh != meshes_.end())
-            return graph_.primitive(mesh->second);
+        if (const auto mesh = meshes_.find(&reference); mesh != meshes_.end()) return primitive(mesh->second);
         std::vector<double> arguments;
         for (const Expression& expression : reference.arguments)
             if (const std::optional<double> value = evaluate(expression, environment_, scratch_))
@@ -419,13 +432,13 @@ class InstLowerer {
         if (arguments.size() < reference.arguments.size()) return std::nullopt;
         const std::string name = inst_object_name(reference.name, arguments);
         if (const auto found = by_name_.find(name); found != by_name_.end()) return found->second;
-        if (const std::optional<Primitive> primitive = primitive_named(name))
-            return by_name_[name] = graph_.primitive(*primitive);
+        if (const std::optional<Primitive> plain = primitive_named(name))
+            return by_name_[name] = primitive(*plain);
         if (const std::optional<PrimitiveKind> kind = kind_of(reference)) {
             if (const auto known = shapes_.find(name); known != shapes_.end()) return known->second;
             const std::optional<Primitive> made = lower_primitive(*kind, arguments, reference.span, scratch_);
             if (!made) return std::nullopt;
-            return shapes_[name] = graph_.primitive(*made);
+            return shapes_[name] = primitive(*made);
         }
         if (const auto family = families_.find(reference.name); family != families_.end())
             return family->second.exact(arguments, reference.span, scratch_);
@@ -499,7 +512,9 @@ class InstLowerer {
     Diagnostics scratch_;     ///< its errors
     std::set<const InstReference*> unknown_;
     std::unordered_map<const InstReference*, Primitive> meshes_;
-    std::unordered_map<std::string, ObjectId> shapes_; ///< primitives of numbers, by their references
+    std::unordered_map<std::string, ObjectId> shapes_;   ///< primitives of numbers, by their references
+    std::unordered_map<Primitive, ObjectId> primitives_; ///< the first objects' of the graph
+    std::size_t indexed_ = 0;                            ///< so many objects primitives_ knows of
     std::set<const InstDefinition*> failed_;
     std::unordered_map<const InstDefinition*, std::size_t> tuples_;
     std::size_t instance_count_ = 0;

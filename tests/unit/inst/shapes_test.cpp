@@ -140,5 +140,13 @@ TEST(InstShapes, AModelsOwnNamesHideThoseOfKindsWithShapes) {
                 HasSubstr("'cone' is a primitive and cannot be defined"));
 }
 
+TEST(InstShapes, ManyShapesAreOneObjectEach) {
+    const Lowered many("canonical object f(0) { sphere }\n"
+                       "canonical object f(n) { union: superellipsoid(1, 0.5 + n / 100000), f(n - 1) }\n"
+                       "object all { f(30000) }");
+    ASSERT_TRUE(many.graph) << many.errors();
+    EXPECT_EQ(many.graph->objects.size(), 30000u + 30001u + 2u);
+}
+
 } // namespace
 } // namespace graftal

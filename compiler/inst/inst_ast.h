@@ -7,8 +7,9 @@
 #include <string>
 #include <vector>
 
+#include "compiler/inst/scatter.h"
 #include "compiler/syntax/expression.h"
-#include "compiler/syntax/scatter.h"
+#include "compiler/syntax/names.h"
 #include "compiler/syntax/scene_statements.h"
 #include "compiler/syntax/transform.h"
 
@@ -66,17 +67,9 @@ struct InstDefinition {
     Span span;            ///< of the name with its parameters
 };
 
-/// `use NAME = "path"`.
-struct InstUse {
-    std::string name;
-    std::string path;
-    Span span; ///< of the path
-    Span name_span;
-};
-
 /// A whole `.inst` file.
 struct InstModule {
-    std::vector<InstUse> uses;
+    std::vector<UseStatement> uses;
     std::vector<InstDefinition> definitions;
     std::vector<SceneStatement> scene;
     Span end;             ///< the place after the last token

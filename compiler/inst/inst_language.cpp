@@ -1,5 +1,7 @@
 #include "compiler/inst/inst_language.h"
 
+#include <utility>
+
 #include "compiler/inst/inst_parser.h"
 #include "compiler/inst/lower_inst.h"
 
@@ -7,19 +9,26 @@ namespace graftal {
 
 namespace {
 
-InnerStatements inner_statements(FileId file, const SourceMap& sources) {
-    Diagnostics quiet;
-    return {parse_inst(sources, file, quiet).scene, {}};
+class InstTree final : public ModelTree {
+  public:
+    explicit InstTree(InstModule file) : file_(std::move(file)) {}
+
+    InnerStatements inner_statements() const override { return {file_.scene, {}}; }
+    std::optional<Graph> lower(Lowering& lowering) const override { return lower_inst(file_, lowering); }
+
+  private:
+    InstModule file_;
+};
+
+std::unique_ptr<const ModelTree> parse(const SourceMap& sources, FileId file, const ForeignWords& foreign,
+                                       Diagnostics& diagnostics) {
+    return std::make_unique<InstTree>(parse_inst(sources, file, diagnostics, foreign));
 }
 
 } // namespace
 
 Language inst_language() {
-    return {.extension = "inst",
-            .keywords = {"object", "canonical", "use"},
-            .inner_keywords = {},
-            .inner_statements = inner_statements,
-            .lower = lower_inst};
+    return {.extension = "inst", .keywords = inst_keywords, .inner_keywords = {}, .parse = parse};
 }
 
 } // namespace graftal

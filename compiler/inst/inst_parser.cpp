@@ -29,8 +29,18 @@ const std::vector<std::string>& body_keywords() {
     return keywords;
 }
 
+/// The words that begin lines, apart from those that all languages share.
+std::span<const std::string_view> line_words() {
+    static const std::vector<std::string_view> words = [] {
+        std::vector<std::string_view> own = {"union", "instance", "terminal", "scatter", "below", "object"};
+        own.insert(own.end(), scatter_keywords().begin(), scatter_keywords().end());
+        return own;
+    }();
+    return words;
+}
+
 std::vector<std::string> file_keywords() {
-    std::vector<std::string> words = {"object", "canonical", "use"};
+    std::vector<std::string> words(inst_keywords.begin(), inst_keywords.end());
     words.insert(words.end(), scene_keywords().begin(), scene_keywords().end());
     return words;
 }
@@ -365,14 +375,18 @@ class BodyParser {
 
 class FileParser {
   public:
-    explicit FileParser(TokenStream& stream) : stream_(stream), diagnostics_(stream.diagnostics()) {}
+    FileParser(TokenStream& stream, const ForeignWords& foreign)
+        : stream_(stream), diagnostics_(stream.diagnostics()), foreign_(foreign) {}
 
     InstModule parse() {
         while (!stream_.at_end() && !diagnostics_.full()) {
             if (stream_.at("object") || stream_.at("canonical")) {
                 if (!parse_definition()) skip_to_statement();
             } else if (stream_.at("use")) {
-                if (!parse_use()) skip_to_statement();
+                if (const auto use = parse_use(stream_))
+                    module_.uses.push_back(*use);
+                else
+                    skip_to_statement();
             } else if (at_scene_statement(stream_)) {
                 parse_scene_statement(stream_, module_.scene);
             } else {
@@ -446,16 +460,6 @@ class FileParser {
         definition.parameters.push_back(std::move(parameter));
     }
 
-    bool parse_use() {
-        stream_.next();
-        const std::optional<Token> name = stream_.expect_name("a name after 'use'");
-        if (!name || !stream_.expect("=", name->text)) return false;
-        const std::optional<Token> path = stream_.expect_string("a file name in quotes");
-        if (!path) return false;
-        module_.uses.push_back({std::string(name->text), std::string(path->text), path->span, name->span});
-        return true;
-    }
-
     void report_stray() {
         const Token token = stream_.peek();
         if (token.is("}")) {
@@ -465,13 +469,12 @@ class FileParser {
                 diagnostics_.error(token.span, "this '}' closes nothing");
             return;
         }
-        const bool other_language = token.is("rifs") || token.is("lsys");
+        const std::string foreign = foreign_word_hint(foreign_, token.text);
         const bool assigns = token.kind == TokenKind::name && stream_.peek(1).is("=");
         stream_.expected("an object or a scene statement")
-            .with_hint(other_language
-                           ? fmt::format("name the file of such a model with the extension .{}", token.text)
-                       : assigns ? fmt::format("'let {} = ...' names a number", token.text)
-                                 : choices(token.text, file_keywords()));
+            .with_hint(!foreign.empty() ? foreign
+                       : assigns        ? fmt::format("'let {} = ...' names a number", token.text)
+                                        : choices(token.text, file_keywords()));
     }
 
     /// Skips to a token that begins a line and a statement, outside of braces.
@@ -489,6 +492,7 @@ class FileParser {
 
     TokenStream& stream_;
     Diagnostics& diagnostics_;
+    const ForeignWords& foreign_;
     InstModule module_;
     std::size_t scatters_ = 0;
     std::size_t open_objects_ = 0; ///< whose '}' was missed
@@ -496,11 +500,13 @@ class FileParser {
 
 } // namespace
 
-InstModule parse_inst(const SourceMap& sources, FileId file, Diagnostics& diagnostics) {
+InstModule parse_inst(const SourceMap& sources, FileId file, Diagnostics& diagnostics,
+                      const ForeignWords& foreign) {
     TokenStream stream(lex(sources, file, diagnostics), diagnostics);
+    stream.set_words(inst_keywords, line_words());
     stream.drop_semicolons();
     const bool nested_too_deep = stream.at_end() && diagnostics.has_errors();
-    InstModule module = FileParser(stream).parse();
+    InstModule module = FileParser(stream, foreign).parse();
     if (nested_too_deep) module.complete = false;
     return module;
 }

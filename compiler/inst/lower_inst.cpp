@@ -10,7 +10,6 @@
 #include <fmt/format.h>
 
 #include "compiler/inst/inst_index.h"
-#include "compiler/inst/inst_parser.h"
 #include "compiler/inst/lower_scatter.h"
 #include "compiler/lower/inner_parameters.h"
 #include "compiler/lower/lower_settings.h"
@@ -63,10 +62,9 @@ std::string abridged_chain(const std::vector<std::string_view>& names) {
 
 class InstLowerer {
   public:
-    InstLowerer(FileId file, Lowering& lowering)
-        : failures_before_(lowering.failures()),
-          module_(parse_inst(lowering.sources, file, lowering.diagnostics)), lowering_(lowering),
-          diagnostics_(lowering.diagnostics), index_(module_, diagnostics_) {}
+    InstLowerer(const InstModule& module, Lowering& lowering)
+        : module_(module), lowering_(lowering), diagnostics_(lowering.diagnostics),
+          index_(module_, diagnostics_) {}
 
     std::optional<Graph> run() && {
         lets_ = lower_lets(module_.scene, lowering_);
@@ -74,7 +72,7 @@ class InstLowerer {
         lower_settings(module_.scene, lets_, graph_, lowering_);
         for (MaterialId id = 0; id < graph_.materials.size(); ++id)
             materials_.emplace(graph_.materials[id].name, id);
-        for (const InstUse& use : module_.uses)
+        for (const UseStatement& use : module_.uses)
             import_used(use);
         for (const InstDefinition& definition : module_.definitions)
             if (!diagnostics_.full()) check_names(definition);
@@ -85,48 +83,48 @@ class InstLowerer {
     }
 
   private:
-    bool failed() const { return lowering_.failures() > failures_before_; }
+    bool failed() const { return lowering_.file_failed(); }
 
     // Names
 
-    void import_used(const InstUse& use) {
-        const auto [first, fresh] = uses_.emplace(use.name, use.name_span);
+    void import_used(const UseStatement& use) {
+        const auto [first, fresh] = uses_.emplace(use.name.text, use.name.span);
         if (!fresh) {
-            diagnostics_.error(use.name_span, fmt::format("duplicate object '{}'", use.name))
+            diagnostics_.error(use.name.span, fmt::format("duplicate object '{}'", use.name.text))
                 .with_note(first->second, "first defined here");
             return;
         }
-        if (is_reserved_name(use.name) || use.name.find('.') != std::string::npos) {
-            diagnostics_.error(use.name_span, fmt::format("'{}' cannot name a model", use.name))
+        if (is_reserved_name(use.name.text) || use.name.text.find('.') != std::string::npos) {
+            diagnostics_.error(use.name.span, fmt::format("'{}' cannot name a model", use.name.text))
                 .with_hint("use a name without dots that is not a primitive's");
             return;
         }
         const std::size_t known = graph_.objects.size();
-        const ModelUse model{use.name, use.path, use.span};
-        const std::optional<FileId> file = read_model(model, lowering_);
+        const std::optional<FileId> file = read_model(use, lowering_);
         if (!file) return;
-        const std::optional<ObjectId> root = import_model(graph_, model, lowering_);
+        const std::optional<ObjectId> root = import_model(graph_, use, lowering_);
         if (!root) return;
         add_family(use, *file);
-        by_name_[use.name] = *root;
+        by_name_[std::string(use.name.text)] = *root;
         for (std::size_t id = known; id < graph_.objects.size(); ++id) {
             by_name_[graph_.objects[id].name] = static_cast<ObjectId>(id);
             instance_count_ += graph_.objects[id].instances.size();
         }
     }
 
-    void add_family(const InstUse& use, FileId file) {
+    void add_family(const UseStatement& use, FileId file) {
         std::vector<InnerParameter> parameters = inner_parameters_of(file, lowering_);
         if (parameters.empty()) return;
         const auto make = [this, &use, parameters](const std::vector<double>& values) {
             const std::size_t known = graph_.objects.size();
-            const std::optional<ObjectId> root = import_member(graph_, {use.name, use.path, use.span},
-                                                               named_values(parameters, values), lowering_);
+            const std::optional<ObjectId> root =
+                import_member(graph_, use, named_values(parameters, values), lowering_);
             for (std::size_t id = known; id < graph_.objects.size(); ++id)
                 instance_count_ += graph_.objects[id].instances.size();
             return root;
         };
-        families_.emplace(use.name, ModelFamily(use.name, std::move(parameters), make));
+        const std::string name(use.name.text);
+        families_.emplace(name, ModelFamily(name, std::move(parameters), make));
     }
 
     /// How many arguments a used model takes at most.
@@ -495,8 +493,7 @@ class InstLowerer {
         graph_.root = graph_.add(std::move(scene));
     }
 
-    std::size_t failures_before_;
-    InstModule module_;
+    const InstModule& module_;
     Lowering& lowering_;
     Diagnostics& diagnostics_;
     InstIndex index_;
@@ -525,8 +522,8 @@ class InstLowerer {
 
 } // namespace
 
-std::optional<Graph> lower_inst(FileId file, Lowering& lowering) {
-    return InstLowerer(file, lowering).run();
+std::optional<Graph> lower_inst(const InstModule& module, Lowering& lowering) {
+    return InstLowerer(module, lowering).run();
 }
 
 } // namespace graftal

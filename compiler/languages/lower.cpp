@@ -16,8 +16,8 @@ namespace graftal {
 
 namespace {
 
-std::optional<Graph> lower_root(FileId file, const LowerOptions& options, SourceMap& sources,
-                                Diagnostics& diagnostics, std::optional<Derivation>* derivation) {
+LoweredText lower_root(FileId file, const LowerOptions& options, SourceMap& sources,
+                       Diagnostics& diagnostics) {
     Lowering lowering{
         .sources = sources, .diagnostics = diagnostics, .options = options, .languages = languages()};
     const Language* const language = language_of(file, sources, languages());
@@ -26,15 +26,15 @@ std::optional<Graph> lower_root(FileId file, const LowerOptions& options, Source
             .error(Span{file, 0, 0}, fmt::format("--steps {}: only L-systems have times between two steps",
                                                  shortest(*options.time)))
             .with_hint("give a whole number");
-        return std::nullopt;
+        return {};
     }
     const std::filesystem::path path(sources.name(file));
     lowering.loading.push_back({path.lexically_normal().string(), Span()});
-    std::optional<Graph> graph = lower_file(file, Span{file, 0, 0}, lowering);
-    if (diagnostics.has_errors() || (graph && !check_graph(*graph, diagnostics))) return std::nullopt;
-    if (graph) check_verified(*graph, "lower");
-    if (derivation) *derivation = std::move(lowering.derivation);
-    return graph;
+    LoweredText model{lower_file(file, Span{file, 0, 0}, lowering), std::move(lowering.derivation),
+                      std::move(lowering.orbit)};
+    if (diagnostics.has_errors() || (model.graph && !check_graph(*model.graph, diagnostics))) return {};
+    if (model.graph) check_verified(*model.graph, "lower");
+    return model;
 }
 
 } // namespace
@@ -46,24 +46,22 @@ std::string model_language(FileId file, const SourceMap& sources) {
     return extension.empty() ? "" : extension.substr(1);
 }
 
-std::optional<Graph> lower_model(const std::string& path, const LowerOptions& options, SourceMap& sources,
-                                 Diagnostics& diagnostics, Status& status,
-                                 std::optional<Derivation>* derivation) {
+LoweredText lower_model(const std::string& path, const LowerOptions& options, SourceMap& sources,
+                        Diagnostics& diagnostics, Status& status) {
     std::string text;
     if (path != "-" && !options.root.empty() && !lies_in(path, options.root)) {
         diagnostics.error(Span(), fmt::format("'{}' leads out of --root '{}'", path, options.root));
-        return std::nullopt;
+        return {};
     }
     status = read_text(path, text);
-    if (!status.ok()) return std::nullopt;
-    return lower_text(path, std::move(text), options, sources, diagnostics, derivation);
+    if (!status.ok()) return {};
+    return lower_text(path, std::move(text), options, sources, diagnostics);
 }
 
-std::optional<Graph> lower_text(const std::string& name, std::string text, const LowerOptions& options,
-                                SourceMap& sources, Diagnostics& diagnostics,
-                                std::optional<Derivation>* derivation) {
+LoweredText lower_text(const std::string& name, std::string text, const LowerOptions& options,
+                       SourceMap& sources, Diagnostics& diagnostics) {
     const FileId file = sources.add(name == "-" ? std::string(standard_input) : name, std::move(text));
-    return lower_root(file, options, sources, diagnostics, derivation);
+    return lower_root(file, options, sources, diagnostics);
 }
 
 } // namespace graftal

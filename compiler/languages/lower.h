@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 
@@ -12,23 +13,30 @@
 
 namespace graftal {
 
-/// Reads a model, and all that it uses, and lowers it to a verified graph. The language follows the file
-/// name (`.inst`, `.rifs`, `.lsys`), for "-" (standard input) the first word of the text. Bad input is
-/// reported to `diagnostics` and gives nothing; a root file that cannot be read gives nothing and a failed
-/// `status`. `derivation` is filled where the model is an L-system. Used files are looked up beside the file
-/// that names them.
-std::optional<Graph> lower_model(const std::string& path, const LowerOptions& options, SourceMap& sources,
-                                 Diagnostics& diagnostics, Status& status,
-                                 std::optional<Derivation>* derivation = nullptr);
+struct OrbitModel;
 
-/// "inst", "rifs" or "lsys", by the name of the file, for standard input by its text; else whatever follows
-/// the dot of the name. The file of the model itself is the first in `sources`.
-std::string model_language(FileId file, const SourceMap& sources);
+/// What a model is.
+struct LoweredText {
+    /// Verified. Nothing after errors, of an orbit, and where LowerOptions::may_draw_nothing applies.
+    std::optional<Graph> graph;
+    std::optional<Derivation> derivation;    ///< of an L-system
+    std::shared_ptr<const OrbitModel> orbit; ///< in place of a graph (rifs/orbit_model.h)
+};
+
+/// Reads a model, and all that it uses, and lowers it. The language follows the file name (languages.h), for
+/// "-" (standard input) the text. Bad input is reported to `diagnostics` and gives nothing; a root file that
+/// cannot be read gives nothing and a failed `status`. Used files are looked up beside the file that names
+/// them.
+LoweredText lower_model(const std::string& path, const LowerOptions& options, SourceMap& sources,
+                        Diagnostics& diagnostics, Status& status);
 
 /// The same as lower_model for a text already at hand, as the model `name` (which decides the language and
 /// where used files are looked up).
-std::optional<Graph> lower_text(const std::string& name, std::string text, const LowerOptions& options,
-                                SourceMap& sources, Diagnostics& diagnostics,
-                                std::optional<Derivation>* derivation = nullptr);
+LoweredText lower_text(const std::string& name, std::string text, const LowerOptions& options,
+                       SourceMap& sources, Diagnostics& diagnostics);
+
+/// The extension of a language of the table, by the name of the file, for standard input by its text; else
+/// whatever follows the dot of the name. The file of the model itself is the first in `sources`.
+std::string model_language(FileId file, const SourceMap& sources);
 
 } // namespace graftal

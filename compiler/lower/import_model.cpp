@@ -95,9 +95,9 @@ std::shared_ptr<const Graph> lower_used(FileId file, const LoadingFile& loading,
     return result;
 }
 
-std::shared_ptr<const Graph> load(const ModelUse& use, const Environment& inner, Lowering& lowering) {
-    const std::string path = path_beside(use.span, use.path, lowering.sources);
-    if (!check_chain(use.span, path, lowering)) return nullptr;
+std::shared_ptr<const Graph> load(const UseStatement& use, const Environment& inner, Lowering& lowering) {
+    const std::string path = path_beside(use.path_span, use.path, lowering.sources);
+    if (!check_chain(use.path_span, path, lowering)) return nullptr;
     const auto key = std::pair(path, inner);
     const auto known = lowering.lowered.find(key);
     if (known != lowering.lowered.end()) {
@@ -105,8 +105,8 @@ std::shared_ptr<const Graph> load(const ModelUse& use, const Environment& inner,
         return known->second;
     }
     std::shared_ptr<const Graph> result;
-    if (const std::optional<FileId> file = read_used(use.span, path, lowering))
-        result = lower_used(*file, {path, use.span, inner}, lowering);
+    if (const std::optional<FileId> file = read_used(use.path_span, path, lowering))
+        result = lower_used(*file, {path, use.path_span, inner}, lowering);
     lowering.lowered[key] = result;
     return result;
 }
@@ -226,27 +226,27 @@ bool within_limits(std::size_t objects, std::size_t instances, Span span, Loweri
     return false;
 }
 
-std::optional<FileId> read_model(const ModelUse& use, Lowering& lowering) {
-    if (!check_path(use.span, use.path, lowering)) return std::nullopt;
+std::optional<FileId> read_model(const UseStatement& use, Lowering& lowering) {
+    if (!check_path(use.path_span, use.path, lowering)) return std::nullopt;
     if (++lowering.use_count > max_uses) {
-        lowering.diagnostics.error(use.span, fmt::format("the model has more than {} uses", max_uses));
+        lowering.diagnostics.error(use.path_span, fmt::format("the model has more than {} uses", max_uses));
         return std::nullopt;
     }
-    return read_used(use.span, path_beside(use.span, use.path, lowering.sources), lowering);
+    return read_used(use.path_span, path_beside(use.path_span, use.path, lowering.sources), lowering);
 }
 
-std::optional<ObjectId> import_model(Graph& into, const ModelUse& use, Lowering& lowering) {
+std::optional<ObjectId> import_model(Graph& into, const UseStatement& use, Lowering& lowering) {
     const std::shared_ptr<const Graph> model = load(use, {}, lowering);
-    if (!model || !has_room(into, *model, use.span, lowering)) return std::nullopt;
-    return append_objects(into, *model, use.name, append_materials(into, *model, use.name, false));
+    if (!model || !has_room(into, *model, use.path_span, lowering)) return std::nullopt;
+    return append_objects(into, *model, use.name.text, append_materials(into, *model, use.name.text, false));
 }
 
-std::optional<ObjectId> import_member(Graph& into, const ModelUse& use, const Environment& inner,
+std::optional<ObjectId> import_member(Graph& into, const UseStatement& use, const Environment& inner,
                                       Lowering& lowering) {
     const std::shared_ptr<const Graph> model = load(use, inner, lowering);
-    if (!model || !has_room(into, *model, use.span, lowering)) return std::nullopt;
-    return append_objects(into, *model, free_prefix(into, use.name),
-                          append_materials(into, *model, use.name, true));
+    if (!model || !has_room(into, *model, use.path_span, lowering)) return std::nullopt;
+    return append_objects(into, *model, free_prefix(into, use.name.text),
+                          append_materials(into, *model, use.name.text, true));
 }
 
 } // namespace graftal

@@ -88,7 +88,8 @@ std::vector<InnerParameter> inner_parameters_of(FileId file, Lowering& lowering)
                    .loading = std::vector<LoadingFile>(2)};
     const Language* const language = language_of(file, lowering.sources, lowering.languages);
     if (!language) return {};
-    const InnerStatements statements = language->inner_statements(file, lowering.sources);
+    const InnerStatements statements =
+        parse_model(*language, file, lowering.sources, lowering.languages, quiet)->inner_statements();
     const Environment of_file = evaluate_lets(statements.file, {}, aside);
     const Environment of_block = evaluate_lets(statements.block, of_file, aside);
     std::vector<SceneStatement> all = statements.file;

@@ -13,7 +13,7 @@ namespace graftal {
 
 namespace {
 
-bool contains(const std::vector<std::string_view>& words, std::string_view word) {
+bool contains(std::span<const std::string_view> words, std::string_view word) {
     return std::ranges::find(words, word) != words.end();
 }
 
@@ -93,6 +93,15 @@ const Language* language_of(FileId file, const SourceMap& sources, std::span<con
     return found == languages.end() ? nullptr : &*found;
 }
 
+std::unique_ptr<const ModelTree> parse_model(const Language& language, FileId file, const SourceMap& sources,
+                                             std::span<const Language> languages, Diagnostics& diagnostics) {
+    ForeignWords foreign;
+    for (const Language& other : languages)
+        for (const std::string_view word : other.keywords)
+            if (&other != &language && language_with(word, languages)) foreign.emplace(word, other.extension);
+    return language.parse(sources, file, foreign, diagnostics);
+}
+
 std::string extensions(std::span<const Language> languages) {
     std::string text;
     for (std::size_t i = 0; i < languages.size(); ++i)
@@ -124,7 +133,9 @@ std::optional<Graph> lower_file(FileId file, Span asked_for, Lowering& lowering)
             .with_hint(choices("", first_words(*language)));
         return std::nullopt;
     }
-    return language->lower(file, lowering);
+    lowering.loading.back().failures_before = lowering.failures();
+    return parse_model(*language, file, lowering.sources, lowering.languages, lowering.diagnostics)
+        ->lower(lowering);
 }
 
 } // namespace graftal

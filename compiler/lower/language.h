@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -7,7 +8,9 @@
 #include <vector>
 
 #include "compiler/graph/graph.h"
+#include "compiler/support/diagnostics.h"
 #include "compiler/support/source.h"
+#include "compiler/syntax/foreign_words.h"
 #include "compiler/syntax/scene_statements.h"
 
 namespace graftal {
@@ -20,20 +23,34 @@ struct InnerStatements {
     std::vector<SceneStatement> block; ///< statements of its main block, where the language has blocks
 };
 
+/// A model file after parsing, in its own language. Its texts are views of the source.
+class ModelTree {
+  public:
+    virtual ~ModelTree() = default;
+
+    virtual InnerStatements inner_statements() const = 0;
+    /// Nothing if it has added to Lowering::failures(), or if the model is an orbit (Lowering::orbit); else a
+    /// graph that verify() accepts. Requires that the file is the last of Lowering::loading.
+    virtual std::optional<Graph> lower(Lowering& lowering) const = 0;
+};
+
 /// One language: a row of the table in languages/languages.h.
 struct Language {
     std::string_view extension; ///< of the names of its files, without the dot
     /// The words that begin its statements at the top of a file, apart from those of scene statements.
-    std::vector<std::string_view> keywords;
+    std::span<const std::string_view> keywords;
     /// The words that begin statements inside its blocks. A file that begins with one of them is a model with
     /// a fault.
     std::vector<std::string_view> inner_keywords;
     bool has_time = false; ///< a model can be drawn between two of its steps
-    /// The statements of a file that may hold inner parameters. Errors of the text are left to `lower`.
-    InnerStatements (*inner_statements)(FileId file, const SourceMap& sources);
-    /// Nothing if it has added to Lowering::failures(), else a graph that verify() accepts.
-    std::optional<Graph> (*lower)(FileId file, Lowering& lowering);
+    /// Reports what is wrong with the text; the tree then holds what could be read.
+    std::unique_ptr<const ModelTree> (*parse)(const SourceMap& sources, FileId file,
+                                              const ForeignWords& foreign, Diagnostics& diagnostics);
 };
+
+/// A file in a language: its parse() with the words of the others.
+std::unique_ptr<const ModelTree> parse_model(const Language& language, FileId file, const SourceMap& sources,
+                                             std::span<const Language> languages, Diagnostics& diagnostics);
 
 /// The language of a file: by its name, for standard input by the first word outside of braces that only one
 /// language begins a statement with, else the last of the table. Null where the name has none of their

@@ -4,7 +4,6 @@
 #include <cstdint>
 #include <functional>
 #include <map>
-#include <memory>
 #include <optional>
 #include <string>
 
@@ -12,8 +11,6 @@
 #include "compiler/support/texture_facts.h"
 
 namespace graftal {
-
-struct OrbitModel;
 
 struct LowerOptions {
     std::map<std::string, double, std::less<>> set; ///< `--set NAME=VALUE`: replaces the value of a `let`
@@ -36,9 +33,8 @@ struct LowerOptions {
     /// A model that draws nothing is an error; with this the root model may, with a note, and gives its
     /// `derivation` but no graph.
     bool may_draw_nothing = false;
-    /// Where the root model goes if it is an orbit (orbit_model.h), which has no graph: then nothing comes
-    /// back, but without an error. Null: an orbit is an error.
-    std::shared_ptr<const OrbitModel>* orbit = nullptr;
+    /// The root model may be an orbit (rifs/orbit_model.h), which has no graph; else an orbit is an error.
+    bool may_be_orbit = false;
 };
 
 } // namespace graftal

@@ -17,14 +17,18 @@
 #include "compiler/support/diagnostics.h"
 #include "compiler/support/source.h"
 #include "compiler/syntax/expression.h"
+#include "compiler/syntax/names.h"
 
 namespace graftal {
 
+struct OrbitModel;
+
 /// A file that is being lowered: the root model, or one on the chain of `use` statements below it.
 struct LoadingFile {
-    std::string path;       ///< normalised, so that a cycle is noticed
-    Span use_span;          ///< of the `use` that asked for it; unknown for the root
-    Environment inner = {}; ///< values of its inner parameters, where they are given
+    std::string path;                ///< normalised, so that a cycle is noticed
+    Span use_span;                   ///< of the `use` that asked for it; unknown for the root
+    Environment inner = {};          ///< values of its inner parameters, where they are given
+    std::size_t failures_before = 0; ///< Lowering::failures() before it was parsed
 };
 
 /// What lowering one model shares between its files and front-ends.
@@ -40,14 +44,16 @@ struct Lowering {
     std::map<std::string, FileId> files = {};                    ///< used files that were read, by path
     std::map<std::string, std::optional<Primitive>> meshes = {}; ///< by path; nothing after an error
     std::size_t use_count = 0;                                   ///< `use` statements so far, in all files
-    std::size_t known_failures = 0;            ///< models that were asked for and had failed before
-    std::optional<Derivation> derivation = {}; ///< of the root model
+    std::size_t known_failures = 0;               ///< models that were asked for and had failed before
+    std::optional<Derivation> derivation = {};    ///< of the root model
+    std::shared_ptr<const OrbitModel> orbit = {}; ///< the root model, if it is one; then it has no graph
 
     /// `--set` speaks to the root model only.
     bool at_root_model() const { return loading.size() <= 1; }
-    /// Grows whenever a part of a model fails, also where nothing is said since it was said before. A
-    /// front-end fails if this has grown since it began: errors alone are those of other files too.
+    /// Grows whenever a part of a model fails, also where nothing is said since it was said before.
     std::size_t failures() const { return diagnostics.error_count() + known_failures; }
+    /// Whether the file that is being lowered is at fault: errors alone are those of other files too.
+    bool file_failed() const { return failures() > loading.back().failures_before; }
 };
 
 /// The file that a model names, looked up beside the model's own; nothing after an error, if there is none,
@@ -57,28 +63,21 @@ std::optional<std::string> find_beside(Span name_span, std::string_view path, Lo
 /// The mesh in a file that a model names (find_beside), read once. Nothing after an error.
 std::optional<Primitive> load_mesh(Span name_span, std::string_view path, Lowering& lowering);
 
-/// Where a model file is used.
-struct ModelUse {
-    std::string_view name; ///< that it has there
-    std::string_view path; ///< as the text has it
-    Span span;             ///< of the path
-};
-
 /// The file of a `use`, looked up beside the file that holds the span, and read if it is not known yet; once
 /// for each `use`, of which there may be a thousand. Nothing after an error.
-std::optional<FileId> read_model(const ModelUse& use, Lowering& lowering);
+std::optional<FileId> read_model(const UseStatement& use, Lowering& lowering);
 
 /// Loads `use NAME = "path"`: looked up beside the file that holds `use_span`, lowered, and appended to
 /// `into`: objects as `NAME.object`, primitives shared, materials shared where equal, else renamed to
 /// `NAME.material`; its scene settings do not count. Gives the id of its root, or nothing after an error.
 /// Requires that read_model() has read it, that `into` has its own materials already, and no object yet whose
 /// name begins with `NAME.`.
-std::optional<ObjectId> import_model(Graph& into, const ModelUse& use, Lowering& lowering);
+std::optional<ObjectId> import_model(Graph& into, const UseStatement& use, Lowering& lowering);
 
 /// The same for one of a family: its inner parameters have these values; its objects are named
 /// `NAME.k1.object`, with another number for each member, and its materials `NAME.material` unless one that
 /// is equal is there already. For `into` that may have objects by any names.
-std::optional<ObjectId> import_member(Graph& into, const ModelUse& use, const Environment& inner,
+std::optional<ObjectId> import_member(Graph& into, const UseStatement& use, const Environment& inner,
                                       Lowering& lowering);
 
 /// The most instances that one model may have, as a multiple of LowerOptions::max_objects.

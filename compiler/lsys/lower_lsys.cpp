@@ -16,7 +16,6 @@
 #include "compiler/lower/model_family.h"
 #include "compiler/lsys/lsys_drawing.h"
 #include "compiler/lsys/lsys_grammar.h"
-#include "compiler/lsys/lsys_parser.h"
 #include "compiler/lsys/model_placer.h"
 
 namespace graftal {
@@ -28,15 +27,13 @@ constexpr unsigned max_block_nesting = 256;
 
 class LsysLowering {
   public:
-    LsysLowering(FileId file, Lowering& lowering)
-        : file_(file), failures_before_(lowering.failures()), lowering_(lowering),
-          diagnostics_(lowering.diagnostics), tree_(parse_lsys(lowering.sources, file, lowering.diagnostics)),
-          pool_(graph_) {}
+    LsysLowering(const LsysFile& tree, Lowering& lowering)
+        : tree_(tree), lowering_(lowering), diagnostics_(lowering.diagnostics), pool_(graph_) {}
 
     /// All checks run, whatever has failed before, so that one run reports all of a file's errors.
     std::optional<Graph> run() && {
         if (tree_.blocks.empty() && !failed())
-            diagnostics_.error({file_, 0, 0}, "this file has no 'lsys' block")
+            diagnostics_.error({tree_.file, 0, 0}, "this file has no 'lsys' block")
                 .with_hint("write lsys NAME { axiom F  F -> F[+F]F }, with each statement on its own line");
         lets_ = evaluate_lets(tree_.statements, {}, lowering_, given_inner());
         inner_parameters(tree_.statements, lets_, diagnostics_); // for its checks
@@ -44,7 +41,7 @@ class LsysLowering {
         import_models();
         build_grammars();
         if (failed()) return std::nullopt;
-        const std::optional<ObjectId> root = root_of(main_block(), Span());
+        const std::optional<ObjectId> root = root_of(*main_block_, Span());
         if (!root || failed()) return std::nullopt;
         graph_.root = *root;
         graph_.settings.steps.reset(); // spent on the derivation
@@ -75,10 +72,10 @@ class LsysLowering {
     /// The values that who uses this file gives its inner parameters.
     const Environment& given_inner() const { return lowering_.loading.back().inner; }
 
-    bool failed() const { return lowering_.failures() > failures_before_; }
+    bool failed() const { return lowering_.file_failed(); }
 
     void import_models() {
-        for (const LsysUse& use : tree_.uses) {
+        for (const UseStatement& use : tree_.uses) {
             if (diagnostics_.full()) return;
             const auto [first, fresh] = uses_.try_emplace(use.name.text, Use{use.name.span, {}, {}});
             if (!fresh)
@@ -94,17 +91,16 @@ class LsysLowering {
     }
 
     /// A model with inner parameters is imported when it is known which of its family are placed.
-    void import_used(const LsysUse& source, Use& use) {
-        const ModelUse model{source.name.text, source.path, source.path_span};
-        const std::optional<FileId> file = read_model(model, lowering_);
+    void import_used(const UseStatement& source, Use& use) {
+        const std::optional<FileId> file = read_model(source, lowering_);
         if (!file) return;
         std::vector<InnerParameter> parameters = inner_parameters_of(*file, lowering_);
         if (parameters.empty()) {
-            use.root = import_model(graph_, model, lowering_);
+            use.root = import_model(graph_, source, lowering_);
             return;
         }
-        const auto make = [this, model, parameters](const std::vector<double>& values) {
-            return import_member(graph_, model, named_values(parameters, values), lowering_);
+        const auto make = [this, &source, parameters](const std::vector<double>& values) {
+            return import_member(graph_, source, named_values(parameters, values), lowering_);
         };
         use.family.emplace(std::string(source.name.text), std::move(parameters), make);
     }
@@ -113,8 +109,8 @@ class LsysLowering {
     void build_grammars() {
         Environment all_lets = lets_;
         const LsysBlock* main = nullptr;
-        const LsysBlock* const chosen = main_source();
-        for (LsysBlock& block : tree_.blocks) {
+        const LsysBlock* const chosen = graftal::main_block(tree_);
+        for (const LsysBlock& block : tree_.blocks) {
             if (diagnostics_.full()) return;
             if (main && block.is_main)
                 diagnostics_.error(block.name.span, "a second 'main' block")
@@ -124,20 +120,23 @@ class LsysLowering {
             added.source = &block;
             check_name(block);
             const bool is_main = &block == chosen;
-            if (is_main) main_block_ = &added;
             Environment lets =
                 evaluate_lets(block.lets, lets_, lowering_, is_main ? given_inner() : Environment());
-            if (is_main) apply_settings(block, lets);
+            if (is_main) {
+                main_block_ = &added;
+                set_main_ = with_settings(block, lets);
+                added.source = &*set_main_;
+            }
             all_lets.insert(lets.begin(), lets.end());
             add_family(added, lets);
-            added.grammar = build_grammar(block, std::move(lets), diagnostics_);
+            added.grammar = build_grammar(*added.source, std::move(lets), diagnostics_);
         }
         if (lowering_.at_root_model())
             check_set_names(all_lets, {"angle", "step", "width", "steps", "seed"}, lowering_);
     }
 
     /// `--set angle=40` speaks to the block that is the model.
-    void apply_settings(LsysBlock& block, const Environment& lets) {
+    LsysBlock with_settings(LsysBlock block, const Environment& lets) {
         const std::pair<const char*, std::optional<LsysValue>*> settings[] = {
             {"angle", &block.angle}, {"step", &block.step}, {"width", &block.width}, {"seed", &block.seed}};
         const auto literal = [](double value) {
@@ -150,6 +149,7 @@ class LsysLowering {
                 *setting = LsysValue{literal(*value), Span()};
         if (const auto steps = set_value("steps", lets, lowering_))
             block.steps = LsysSteps{literal(*steps), Span()};
+        return block;
     }
 
     void add_family(Block& block, const Environment& lets) {
@@ -176,15 +176,6 @@ class LsysLowering {
             diagnostics_.error(block.name.span,
                                fmt::format("'{}' is a primitive and cannot name a block", block.name.text));
     }
-
-    /// The block that is the model; null without blocks.
-    const LsysBlock* main_source() const {
-        if (tree_.blocks.empty()) return nullptr;
-        const auto main = std::ranges::find_if(tree_.blocks, [](const LsysBlock& b) { return b.is_main; });
-        return main == tree_.blocks.end() ? &tree_.blocks.back() : &*main;
-    }
-
-    Block& main_block() { return *main_block_; }
 
     /// Composes a block on first use. `use`: of `~NAME`; unknown for the main block.
     std::optional<ObjectId> root_of(Block& block, Span use) {
@@ -285,7 +276,7 @@ class LsysLowering {
         };
     }
 
-    bool is_root(const Block& block) { return lowering_.at_root_model() && &block == &main_block(); }
+    bool is_root(const Block& block) { return lowering_.at_root_model() && &block == main_block_; }
 
     bool is_timed(const LsysGrammar& grammar) const { return grammar.time(RuleKind::interpret) != 0; }
 
@@ -368,7 +359,7 @@ class LsysLowering {
     }
 
     void report_nothing(const Block& block, std::optional<unsigned> steps) {
-        const LsysName& name = block.source->name;
+        const Name& name = block.source->name;
         std::string message = fmt::format("'lsys {}' draws nothing", name.text);
         if (steps) message += fmt::format(" after {} step{}", *steps, *steps == 1 ? "" : "s");
         if (is_root(block) && lowering_.options.may_draw_nothing)
@@ -408,11 +399,10 @@ class LsysLowering {
         return id;
     }
 
-    FileId file_;
-    std::size_t failures_before_;
+    const LsysFile& tree_;
+    std::optional<LsysBlock> set_main_; ///< the main block with what `--set` says
     Lowering& lowering_;
     Diagnostics& diagnostics_;
-    LsysFile tree_;
     Environment lets_; ///< of the file
     Graph graph_;
     ObjectPool pool_;
@@ -425,8 +415,8 @@ class LsysLowering {
 
 } // namespace
 
-std::optional<Graph> lower_lsys(FileId file, Lowering& lowering) {
-    return LsysLowering(file, lowering).run();
+std::optional<Graph> lower_lsys(const LsysFile& tree, Lowering& lowering) {
+    return LsysLowering(tree, lowering).run();
 }
 
 } // namespace graftal

@@ -3,7 +3,7 @@
 #include <optional>
 
 #include "compiler/graph/graph.h"
-#include "compiler/support/source.h"
+#include "compiler/lsys/lsys_ast.h"
 
 namespace graftal {
 
@@ -12,6 +12,6 @@ struct Lowering;
 /// Lowers an `.lsys` file (docs/language.md, ".lsys"): the block that is marked `main`, else the last, after
 /// its steps or those of the options, composed part by part (lsys_composer.h). What is wrong goes to the
 /// lowering's diagnostics and gives nothing.
-std::optional<Graph> lower_lsys(FileId file, Lowering& lowering);
+std::optional<Graph> lower_lsys(const LsysFile& tree, Lowering& lowering);
 
 } // namespace graftal

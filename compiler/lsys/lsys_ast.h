@@ -8,6 +8,7 @@
 
 #include "compiler/support/source.h"
 #include "compiler/syntax/expression.h"
+#include "compiler/syntax/names.h"
 #include "compiler/syntax/scene_statements.h"
 
 // The tree of a `.lsys` file (docs/language.md). Texts are views of the source, which outlives the tree.
@@ -25,11 +26,6 @@ inline constexpr std::size_t max_lsys_nesting = 256;
 inline constexpr std::size_t max_lsys_parameters = 256;
 /// Declared names of modules have at most this many characters.
 inline constexpr std::size_t max_lsys_symbol = 64;
-
-struct LsysName {
-    std::string_view text;
-    Span span;
-};
 
 /// A module as axioms and successors write it: one character, a declared name, a directive `@x`, or `~` with
 /// the name of a model. Brackets and braces are modules too.
@@ -49,13 +45,13 @@ struct LsysString {
 /// A module as predecessors and contexts write it: its parameters are names.
 struct LsysFormal {
     std::string_view symbol;
-    std::vector<LsysName> parameters;
+    std::vector<Name> parameters;
     Span span;
 };
 
 /// `label : left < predecessor > right : condition -> successor : probability`.
 struct LsysProduction {
-    LsysName label;                ///< an empty text if there is none
+    Name label;                    ///< an empty text if there is none
     std::vector<LsysFormal> left;  ///< has no brackets
     LsysFormal predecessor;        ///< neither a bracket nor a brace
     std::vector<LsysFormal> right; ///< brackets are balanced
@@ -79,8 +75,8 @@ struct LsysSteps {
 /// `ignore` or `consider`: which symbols contexts look past, or at.
 struct LsysContextFilter {
     bool consider = false;
-    std::vector<LsysName> symbols; ///< each once
-    Span span;                     ///< of the keyword
+    std::vector<Name> symbols; ///< each once
+    Span span;                 ///< of the keyword
 };
 
 /// `tropism x, y, z`
@@ -90,7 +86,7 @@ struct LsysTropism {
 };
 
 struct LsysBlock {
-    LsysName name;
+    Name name;
     bool is_main = false;
     std::vector<SceneStatement> lets; ///< in the order of the text; all of kind `let` or `inner`
     std::optional<LsysValue> angle;
@@ -100,8 +96,8 @@ struct LsysBlock {
     std::optional<LsysSteps> steps;
     std::optional<LsysContextFilter> filter;
     std::optional<LsysTropism> tropism;
-    std::vector<LsysName> colors;  ///< materials of the colour indices 0, 1, 2, ...
-    std::vector<LsysName> modules; ///< declared names, each once
+    std::vector<Name> colors;  ///< materials of the colour indices 0, 1, 2, ...
+    std::vector<Name> modules; ///< declared names, each once
     std::optional<LsysString> axiom;
     std::vector<LsysProduction> productions;
     std::vector<LsysProduction> interpret; ///< without contexts, as are those of `decompose`
@@ -109,17 +105,15 @@ struct LsysBlock {
     bool broken = false; ///< an error lost a part of it
 };
 
-/// `use NAME = "path"`.
-struct LsysUse {
-    LsysName name;
-    std::string_view path;
-    Span path_span;
-};
-
+/// A whole `.lsys` file.
 struct LsysFile {
-    std::vector<LsysUse> uses;
+    FileId file = 0;
+    std::vector<UseStatement> uses;
     std::vector<SceneStatement> statements;
     std::vector<LsysBlock> blocks;
 };
+
+/// The block that is the model: the one that is marked `main`, else the last; null without blocks.
+const LsysBlock* main_block(const LsysFile& tree);
 
 } // namespace graftal

@@ -230,7 +230,7 @@ class BlockParser {
 
     void parse_colors(const LsysStatement& statement) {
         TokenStream stream = values(statement);
-        std::vector<LsysName> names;
+        std::vector<Name> names;
         do {
             const bool number = stream.peek().kind == TokenKind::number;
             if (number) {
@@ -267,7 +267,7 @@ class BlockParser {
         return token.kind == TokenKind::number && token.text.size() == 1;
     }
 
-    void declare(LsysName name) {
+    void declare(Name name) {
         if (is_lsys_keyword(name.text) || name.text == "lsys" || name.text == "main") {
             diagnostics_.error(
                 name.span, fmt::format("'{}' is a word of the language and cannot name a module", name.text));
@@ -278,7 +278,7 @@ class BlockParser {
                                fmt::format("names of modules have at most {} characters", max_lsys_symbol));
         } else if (!text_.symbols.add(name.text)) {
             const auto first = std::find_if(block_.modules.begin(), block_.modules.end(),
-                                            [&](const LsysName& other) { return other.text == name.text; });
+                                            [&](const Name& other) { return other.text == name.text; });
             diagnostics_.error(name.span, fmt::format("duplicate module '{}'", name.text))
                 .with_note(first->span, "first declared here");
         } else {
@@ -368,10 +368,8 @@ class BlockParser {
             .error(stream.peek().span,
                    fmt::format("'{}' must be outside the braces of 'lsys {}'", word, block_.name.text))
             .with_hint("close the block with '}' before it");
-        if (word == "use")
-            parse_lsys_use(stream, file_);
-        else
-            parse_scene_statement(stream, file_.statements);
+        if (word != "use") return parse_scene_statement(stream, file_.statements);
+        if (const auto use = parse_use(stream)) file_.uses.push_back(*use);
     }
 
     LsysText& text_;

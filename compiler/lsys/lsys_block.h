@@ -9,7 +9,4 @@ namespace graftal {
 /// the block by mistake are reported, and read.
 std::size_t parse_lsys_block(const LsysHeader& header, LsysText& text, LsysFile& file);
 
-/// `use NAME = "path"`.
-bool parse_lsys_use(TokenStream& stream, LsysFile& file);
-
 } // namespace graftal

@@ -441,7 +441,7 @@ class Drawer {
 
     /// The materials that the block names, else ours.
     bool choose_palette(const Graph& graph) {
-        for (const LsysName& name : grammar_.source->colors) {
+        for (const Name& name : grammar_.source->colors) {
             const std::optional<MaterialId> id = material_named(name.text, name.span, graph, diagnostics_);
             if (!id) return false;
             palette_.push_back(graph.materials[*id]);

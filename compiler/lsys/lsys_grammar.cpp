@@ -156,7 +156,7 @@ class GrammarBuilder {
     }
 
     LsysPattern pattern(const LsysFormal& formal, LsysRule& rule) {
-        for (const LsysName& name : formal.parameters) {
+        for (const Name& name : formal.parameters) {
             rule.variables.push_back(name.text); // the parser has seen to it that they differ
         }
         return {symbol(formal.symbol, formal.span), static_cast<std::uint16_t>(formal.parameters.size())};
@@ -248,7 +248,7 @@ class GrammarBuilder {
     void add_filter() {
         std::set<SymbolId> named;
         if (block_.filter)
-            for (const LsysName& name : block_.filter->symbols)
+            for (const Name& name : block_.filter->symbols)
                 named.insert(symbol(name.text, name.span));
         const auto is_model = [&](SymbolId id) { return grammar_.symbols[id].starts_with('~'); };
         const auto is_named = [&](SymbolId id) {
@@ -323,7 +323,7 @@ class GrammarBuilder {
                 for (const LsysPattern& pattern : *context)
                     seen_by_contexts.insert(pattern.symbol);
         std::set<std::string_view> declared;
-        for (const LsysName& module : block_.modules)
+        for (const Name& module : block_.modules)
             declared.insert(module.text);
         std::set<std::pair<SymbolId, std::size_t>> checked;
         Word word;
@@ -387,7 +387,7 @@ class GrammarBuilder {
             return;
         }
         std::vector<std::string> declared;
-        for (const LsysName& module : block_.modules)
+        for (const Name& module : block_.modules)
             declared.emplace_back(module.text);
         const std::string meant = did_you_mean(word.text, declared);
         diagnostics_.warning(span, fmt::format("{} have no production and draw nothing", quoted))

@@ -1,6 +1,5 @@
 #include "compiler/lsys/lsys_language.h"
 
-#include <algorithm>
 #include <utility>
 
 #include "compiler/lsys/lower_lsys.h"
@@ -11,29 +10,33 @@ namespace graftal {
 
 namespace {
 
-const LsysBlock* main_block(const LsysFile& tree) {
-    if (tree.blocks.empty()) return nullptr;
-    const auto main = std::ranges::find_if(tree.blocks, [](const LsysBlock& block) { return block.is_main; });
-    return main == tree.blocks.end() ? &tree.blocks.back() : &*main;
-}
+class LsysTree final : public ModelTree {
+  public:
+    explicit LsysTree(LsysFile file) : file_(std::move(file)) {}
 
-InnerStatements inner_statements(FileId file, const SourceMap& sources) {
-    Diagnostics quiet;
-    LsysFile tree = parse_lsys(sources, file, quiet);
-    InnerStatements statements{std::move(tree.statements), {}};
-    if (const LsysBlock* main = main_block(tree)) statements.block = main->lets;
-    return statements;
+    InnerStatements inner_statements() const override {
+        const LsysBlock* const main = main_block(file_);
+        return {file_.statements, main ? main->lets : std::vector<SceneStatement>()};
+    }
+    std::optional<Graph> lower(Lowering& lowering) const override { return lower_lsys(file_, lowering); }
+
+  private:
+    LsysFile file_;
+};
+
+std::unique_ptr<const ModelTree> parse(const SourceMap& sources, FileId file, const ForeignWords& foreign,
+                                       Diagnostics& diagnostics) {
+    return std::make_unique<LsysTree>(parse_lsys(sources, file, diagnostics, foreign));
 }
 
 } // namespace
 
 Language lsys_language() {
     return {.extension = "lsys",
-            .keywords = {"lsys", "main", "use"},
+            .keywords = lsys_file_keywords,
             .inner_keywords = {lsys_keywords().begin(), lsys_keywords().end()},
             .has_time = true,
-            .inner_statements = inner_statements,
-            .lower = lower_lsys};
+            .parse = parse};
 }
 
 } // namespace graftal

@@ -171,7 +171,7 @@ class ProductionParser {
     }
 
     bool check_parameters() {
-        std::vector<const LsysName*> names;
+        std::vector<const Name*> names;
         for (const Formals* part : {&production_.left, &production_.right})
             for (const LsysFormal& module : *part)
                 add(module, names);
@@ -182,21 +182,20 @@ class ProductionParser {
                 fmt::format("a production and its contexts have at most {} parameters", max_lsys_parameters));
             return false;
         }
-        std::stable_sort(names.begin(), names.end(), [](const LsysName* a, const LsysName* b) {
+        std::stable_sort(names.begin(), names.end(), [](const Name* a, const Name* b) {
             return std::pair(a->text, a->span.begin) < std::pair(b->text, b->span.begin);
         });
-        const auto twin =
-            std::adjacent_find(names.begin(), names.end(),
-                               [](const LsysName* a, const LsysName* b) { return a->text == b->text; });
+        const auto twin = std::adjacent_find(names.begin(), names.end(),
+                                             [](const Name* a, const Name* b) { return a->text == b->text; });
         if (twin == names.end()) return true;
-        const LsysName& second = **(twin + 1);
+        const Name& second = **(twin + 1);
         diagnostics_.error(second.span, fmt::format("duplicate parameter '{}'", second.text))
             .with_note((*twin)->span, "first named here");
         return false;
     }
 
-    static void add(const LsysFormal& module, std::vector<const LsysName*>& names) {
-        for (const LsysName& name : module.parameters)
+    static void add(const LsysFormal& module, std::vector<const Name*>& names) {
+        for (const Name& name : module.parameters)
             names.push_back(&name);
     }
 

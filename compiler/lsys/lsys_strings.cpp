@@ -245,7 +245,7 @@ bool LsysStringReader::read_formals(std::vector<LsysFormal>& modules) {
     });
 }
 
-bool LsysStringReader::read_symbols(std::vector<LsysName>& symbols) {
+bool LsysStringReader::read_symbols(std::vector<Name>& symbols) {
     bool good = true;
     std::map<std::string_view, Span> listed;
     while (more() && !text_.diagnostics.full()) {
@@ -303,7 +303,7 @@ bool LsysStringReader::read_parameters(const Raw& raw, std::vector<Expression>& 
     return false;
 }
 
-bool LsysStringReader::read_names(const Raw& raw, std::vector<LsysName>& names) {
+bool LsysStringReader::read_names(const Raw& raw, std::vector<Name>& names) {
     TokenStream stream = text_.tokens(raw.parameters->begin, raw.parameters->end, lsys_line_end);
     if (stream.at_end()) return false;
     stream.next();

@@ -64,7 +64,7 @@ class LsysStringReader {
     /// The same with names for parameters.
     bool read_formals(std::vector<LsysFormal>& modules);
     /// The same without parameters, for `ignore` and `consider`.
-    bool read_symbols(std::vector<LsysName>& symbols);
+    bool read_symbols(std::vector<Name>& symbols);
     /// An expression that goes on to `end`.
     std::optional<Expression> read_expression(std::size_t end, std::string_view end_name);
 
@@ -95,7 +95,7 @@ class LsysStringReader {
     void warn_of_comment();
     template<class Take> bool read(Take take_module);
     bool read_parameters(const Raw& raw, std::vector<Expression>& parameters);
-    bool read_names(const Raw& raw, std::vector<LsysName>& names);
+    bool read_names(const Raw& raw, std::vector<Name>& names);
     bool refuse_empty(TokenStream& stream, const Raw& raw);
     std::string_view rest() const { return scanner_.text().substr(at_, end_ - at_); }
 

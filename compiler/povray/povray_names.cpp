@@ -38,8 +38,7 @@ bool is_model_identifier(std::string_view text) {
 }
 
 std::string model_identifier(std::string_view name) {
-    for (const std::string_view ending : {".rifs", ".lsys", ".inst"})
-        if (name.ends_with(ending)) name.remove_suffix(ending.size());
+    name = name.substr(0, name.rfind('.'));
     std::string safe = identifier_part(name);
     if (safe.empty() || !is_letter(safe[0])) return "Model_" + safe;
     if (safe[0] >= 'a') safe[0] = static_cast<char>(safe[0] - 'a' + 'A');

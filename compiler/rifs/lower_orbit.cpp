@@ -223,7 +223,7 @@ bool may_stand_there(const RifsFile& tree, Lowering& lowering) {
         error.with_note(other, "this statement is beside it");
         return false;
     }
-    if (lowering.at_root_model() && lowering.options.orbit) return true;
+    if (lowering.at_root_model() && lowering.options.may_be_orbit) return true;
     diagnostics
         .error(orbit.span,
                fmt::format("'orbit {}' consists of formulas, not of instances: it has no graph, only points",
@@ -244,7 +244,7 @@ void lower_orbit_file(const RifsFile& tree, Lowering& lowering) {
     if (!may_stand_there(tree, lowering)) return;
     OrbitModel model = OrbitLowering(tree, tree.orbits.front(), lowering).lower();
     if (lowering.diagnostics.has_errors()) return;
-    *lowering.options.orbit = std::make_shared<const OrbitModel>(std::move(model));
+    lowering.orbit = std::make_shared<const OrbitModel>(std::move(model));
 }
 
 std::optional<Vec3> apply(const OrbitFormulas& map, Vec3 point, std::vector<double>& slots) {

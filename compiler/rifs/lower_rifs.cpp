@@ -18,7 +18,6 @@
 #include "compiler/primitives/primitive.h"
 #include "compiler/rifs/lower_orbit.h"
 #include "compiler/rifs/rifs_chances.h"
-#include "compiler/rifs/rifs_parser.h"
 #include "compiler/rifs/rifs_system.h"
 #include "compiler/support/number_range.h"
 
@@ -47,10 +46,8 @@ Tint composed(const Tint& parent, const Tint& child) {
 
 class RifsLowering {
   public:
-    RifsLowering(FileId file, Lowering& lowering)
-        : file_(file), failures_before_(lowering.failures()), lowering_(lowering),
-          diagnostics_(lowering.diagnostics),
-          tree_(parse_rifs(lowering.sources, file, lowering.diagnostics)) {}
+    RifsLowering(const RifsFile& tree, Lowering& lowering)
+        : tree_(tree), lowering_(lowering), diagnostics_(lowering.diagnostics) {}
 
     /// All checks run, whatever has failed before, so that one run reports all of a file's errors.
     std::optional<Graph> run() && {
@@ -59,7 +56,7 @@ class RifsLowering {
             return std::nullopt;
         }
         if (tree_.blocks.empty() && !failed())
-            diagnostics_.error({file_, 0, 0}, "this file has no 'rifs' block")
+            diagnostics_.error({tree_.file, 0, 0}, "this file has no 'rifs' block")
                 .with_hint("rifs NAME { map NAME { scale 1/2 } ... }");
         lets_ = lower_lets(tree_.statements, lowering_);
         inner_parameters(tree_.statements, lets_, diagnostics_); // for its checks
@@ -83,10 +80,10 @@ class RifsLowering {
         std::optional<ModelFamily> family; ///< if it has inner parameters
     };
 
-    bool failed() const { return lowering_.failures() > failures_before_; }
+    bool failed() const { return lowering_.file_failed(); }
 
     void import_models() {
-        for (const RifsUse& use : tree_.uses) {
+        for (const UseStatement& use : tree_.uses) {
             if (diagnostics_.full()) return;
             const auto [first, fresh] =
                 uses_.try_emplace(use.name.text, Use{use.name.span, std::nullopt, std::nullopt});
@@ -102,22 +99,21 @@ class RifsLowering {
                     use.name.span,
                     fmt::format("the name '{}' of a used model must not have a '.'", use.name.text));
             } else {
-                const ModelUse model{use.name.text, use.path, use.path_span};
-                const std::optional<FileId> file = read_model(model, lowering_);
+                const std::optional<FileId> file = read_model(use, lowering_);
                 if (!file) continue;
-                first->second.root = import_model(graph_, model, lowering_);
-                if (first->second.root) add_family(first->second, model, *file);
+                first->second.root = import_model(graph_, use, lowering_);
+                if (first->second.root) add_family(first->second, use, *file);
             }
         }
     }
 
-    void add_family(Use& use, const ModelUse& model, FileId file) {
+    void add_family(Use& use, const UseStatement& source, FileId file) {
         std::vector<InnerParameter> parameters = inner_parameters_of(file, lowering_);
         if (parameters.empty()) return;
-        const auto make = [this, model, parameters](const std::vector<double>& values) {
-            return import_member(graph_, model, named_values(parameters, values), lowering_);
+        const auto make = [this, &source, parameters](const std::vector<double>& values) {
+            return import_member(graph_, source, named_values(parameters, values), lowering_);
         };
-        use.family.emplace(std::string(model.name), std::move(parameters), make);
+        use.family.emplace(std::string(source.name.text), std::move(parameters), make);
     }
 
     /// Objects of blocks and of used models are told apart by these names.
@@ -191,7 +187,7 @@ class RifsLowering {
         return made ? std::optional(graph_.primitive(*made)) : std::nullopt;
     }
 
-    std::nullopt_t unknown_master(const RifsName& name) {
+    std::nullopt_t unknown_master(const Name& name) {
         std::vector<std::string> known;
         for (const bool plain : {false, true})
             for (const PrimitiveKind kind : all_primitive_kinds)
@@ -320,11 +316,9 @@ class RifsLowering {
                 part.material ? part.material : node->material, part.span};
     }
 
-    FileId file_;
-    std::size_t failures_before_;
+    const RifsFile& tree_;
     Lowering& lowering_;
     Diagnostics& diagnostics_;
-    RifsFile tree_;
     Environment lets_;
     Graph graph_;
     RifsSystem system_;
@@ -335,8 +329,8 @@ class RifsLowering {
 
 } // namespace
 
-std::optional<Graph> lower_rifs(FileId file, Lowering& lowering) {
-    return RifsLowering(file, lowering).run();
+std::optional<Graph> lower_rifs(const RifsFile& tree, Lowering& lowering) {
+    return RifsLowering(tree, lowering).run();
 }
 
 } // namespace graftal

@@ -3,7 +3,7 @@
 #include <optional>
 
 #include "compiler/graph/graph.h"
-#include "compiler/support/source.h"
+#include "compiler/rifs/rifs_ast.h"
 
 namespace graftal {
 
@@ -14,6 +14,6 @@ struct Lowering;
 /// digraph lets w_j be applied after w_i, so object j instances the objects i (eq. (2)). What is wrong goes
 /// to the lowering's diagnostics and gives nothing. O(maps + edges), within the limits of the options: note
 /// that `follow all` of n maps makes n * n instances.
-std::optional<Graph> lower_rifs(FileId file, Lowering& lowering);
+std::optional<Graph> lower_rifs(const RifsFile& tree, Lowering& lowering);
 
 } // namespace graftal

@@ -15,19 +15,19 @@ namespace graftal {
 
 /// `NAME(a, b) = number`.
 struct OrbitFunction {
-    RifsName name;
-    std::vector<RifsName> parameters;
+    Name name;
+    std::vector<Name> parameters;
     Expression body;
 };
 
 /// A name that stands for a number, in a block or in a map.
 struct OrbitLet {
-    RifsName name;
+    Name name;
     Expression value;
 };
 
 struct OrbitMap {
-    RifsName name;                            ///< of a map without one: an empty text, at the map
+    Name name;                                ///< of a map without one: an empty text, at the map
     std::vector<OrbitLet> lets;               ///< of x, y, z and those above
     std::optional<Expression> coordinates[3]; ///< the new x, y, z
     std::optional<Expression> probability;
@@ -36,7 +36,7 @@ struct OrbitMap {
 };
 
 struct OrbitBlock {
-    RifsName name;
+    Name name;
     std::vector<OrbitLet> lets;
     std::vector<OrbitFunction> functions;
     std::vector<OrbitMap> maps;

@@ -10,6 +10,7 @@
 #include "compiler/rifs/rifs_look.h"
 #include "compiler/support/source.h"
 #include "compiler/syntax/expression.h"
+#include "compiler/syntax/names.h"
 #include "compiler/syntax/scene_statements.h"
 #include "compiler/syntax/transform.h"
 
@@ -24,7 +25,7 @@ inline constexpr std::size_t max_rifs_edges = 4'000'000;
 
 /// `condense` and `terminal`: a primitive or used model, placed.
 struct RifsPart {
-    RifsName master;
+    Name master;
     std::vector<Expression> arguments; ///< `frustum(0.5)`, or the inner parameters of a model
     std::vector<TransformLine> transforms;
     RifsLook look;
@@ -37,13 +38,13 @@ struct RifsPart {
 enum class RifsForm : std::uint8_t { transforms, codes_2d, codes_polar, codes_3d };
 
 struct RifsMap {
-    RifsName name; ///< of a row without a label: an empty text, at the row
+    Name name; ///< of a row without a label: an empty text, at the row
     RifsForm form = RifsForm::transforms;
     std::vector<TransformLine> transforms;
     std::vector<Expression> codes; ///< without the probability: as many as the form has
     std::optional<Expression> probability;
     RifsLook look;
-    std::optional<RifsName> from; ///< the block whose attractor this map takes
+    std::optional<Name> from; ///< the block whose attractor this map takes
     std::optional<RifsPart> terminal;
     bool broken = false; ///< reported while parsing: there is nothing to evaluate
     Span span;
@@ -51,8 +52,8 @@ struct RifsMap {
 
 /// w_to may be applied after w_from.
 struct RifsEdge {
-    RifsName from;
-    RifsName to;
+    Name from;
+    Name to;
 };
 
 /// An entry of a control matrix; literal zeros are not kept. A matrix may have millions: plain numbers stand
@@ -85,25 +86,20 @@ struct RifsFollow {
 };
 
 struct RifsBlock {
-    RifsName name;
+    Name name;
     bool is_main = false;
     std::vector<RifsMap> maps;
     std::optional<RifsFollow> follow;
-    std::vector<RifsName> start; ///< empty: all maps
+    std::vector<Name> start; ///< empty: all maps
     std::vector<RifsPart> condense;
     std::optional<RifsPart> terminal;
     bool broken = false; ///< an error lost a part of it
 };
 
-/// `use NAME = "path"`.
-struct RifsUse {
-    RifsName name;
-    std::string_view path;
-    Span path_span;
-};
-
+/// A whole `.rifs` file.
 struct RifsFile {
-    std::vector<RifsUse> uses;
+    FileId file = 0;
+    std::vector<UseStatement> uses;
     std::vector<SceneStatement> statements;
     std::vector<RifsBlock> blocks;
     std::vector<OrbitBlock> orbits;

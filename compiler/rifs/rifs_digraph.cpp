@@ -59,7 +59,7 @@ class DigraphResolver {
     }
 
     void resolve_from(RifsNode& node) {
-        const std::optional<RifsName>& from = node.source->from;
+        const std::optional<Name>& from = node.source->from;
         if (!from) return;
         const auto found = block_ids_.find(from->text);
         if (found != block_ids_.end()) {
@@ -76,7 +76,7 @@ class DigraphResolver {
 
     void resolve_start() {
         std::vector<Edge> named; // the node in `to`, so that duplicates are found alike
-        for (const RifsName& name : block_->source->start)
+        for (const Name& name : block_->source->start)
             if (const auto id = node_named(name)) named.push_back({0, *id, name.span});
         sort_unique(named, [&](const Edge& again, const Edge& first) {
             diagnostics_.warning(again.span, fmt::format("'{}' starts twice", system_.nodes[again.to].name))
@@ -89,7 +89,7 @@ class DigraphResolver {
             block_->start.push_back(i);
     }
 
-    std::optional<std::uint32_t> node_named(const RifsName& name) {
+    std::optional<std::uint32_t> node_named(const Name& name) {
         const auto found = node_ids_.find(name.text);
         if (found != node_ids_.end()) return found->second;
         if (diagnostics_.full()) return std::nullopt;

@@ -1,5 +1,7 @@
 #include "compiler/rifs/rifs_language.h"
 
+#include <utility>
+
 #include "compiler/rifs/lower_rifs.h"
 #include "compiler/rifs/rifs_parser.h"
 
@@ -7,19 +9,27 @@ namespace graftal {
 
 namespace {
 
-InnerStatements inner_statements(FileId file, const SourceMap& sources) {
-    Diagnostics quiet;
-    return {parse_rifs(sources, file, quiet).statements, {}};
+class RifsTree final : public ModelTree {
+  public:
+    explicit RifsTree(RifsFile file) : file_(std::move(file)) {}
+
+    InnerStatements inner_statements() const override { return {file_.statements, {}}; }
+    std::optional<Graph> lower(Lowering& lowering) const override { return lower_rifs(file_, lowering); }
+
+  private:
+    RifsFile file_;
+};
+
+std::unique_ptr<const ModelTree> parse(const SourceMap& sources, FileId file, const ForeignWords& foreign,
+                                       Diagnostics& diagnostics) {
+    return std::make_unique<RifsTree>(parse_rifs(sources, file, diagnostics, foreign));
 }
 
 } // namespace
 
 Language rifs_language() {
-    return {.extension = "rifs",
-            .keywords = {"rifs", "main", "orbit", "use"},
-            .inner_keywords = {"map", "codes"},
-            .inner_statements = inner_statements,
-            .lower = lower_rifs};
+    return {
+        .extension = "rifs", .keywords = rifs_keywords, .inner_keywords = {"map", "codes"}, .parse = parse};
 }
 
 } // namespace graftal

@@ -15,10 +15,14 @@ namespace graftal {
 
 namespace {
 
+/// The words that begin lines, apart from those that all languages share.
+constexpr std::array<std::string_view, 8> line_words = {"terminal", "below",  "probability", "map",
+                                                        "codes",    "follow", "start",       "condense"};
+
 class RifsParser {
   public:
-    RifsParser(TokenStream& stream, RifsFile& file)
-        : stream_(stream), diagnostics_(stream.diagnostics()), file_(file) {}
+    RifsParser(TokenStream& stream, const ForeignWords& foreign, RifsFile& file)
+        : stream_(stream), diagnostics_(stream.diagnostics()), foreign_(foreign), file_(file) {}
 
     void parse() {
         while (!stream_.at_end() && !diagnostics_.full())
@@ -37,16 +41,22 @@ class RifsParser {
     bool parse_definition() {
         if (at_block() || stream_.at("use") || stream_.at("orbit")) lost_ = false;
         if (at_block()) return parse_block();
-        if (stream_.at("use")) return parse_use();
+        if (stream_.at("use")) return add_use();
         if (stream_.at("orbit")) return parse_orbit(stream_, file_.orbits);
         return unknown_statement();
+    }
+
+    bool add_use() {
+        const std::optional<UseStatement> use = parse_use(stream_);
+        if (use) file_.uses.push_back(*use);
+        return use.has_value();
     }
 
     bool at_block() const { return stream_.at("rifs") || (stream_.at("main") && stream_.peek(1).is("rifs")); }
 
     bool unknown_statement() {
         std::vector<std::string> words = scene_keywords();
-        words.insert(words.end(), {"rifs", "main", "use", "orbit"});
+        words.insert(words.end(), rifs_keywords.begin(), rifs_keywords.end());
         const Token& word = stream_.peek();
         const bool item = at_rifs_item(stream_);
         if (!lost_ || (word.kind == TokenKind::name && !item))
@@ -57,23 +67,11 @@ class RifsParser {
     }
 
     std::string hint_outside(const Token& word, const std::vector<std::string>& words) const {
-        if (word.is("lsys") || word.is("object") || word.is("canonical"))
-            return fmt::format("name the file of such a model with the extension .{}",
-                               word.is("lsys") ? "lsys" : "inst");
+        if (std::string hint = foreign_word_hint(foreign_, word.text); !hint.empty()) return hint;
         if (at_rifs_item(stream_))
             return fmt::format("write '{}' in a block: rifs NAME {{ ... }}", word.text);
         if (stream_.peek(1).is("=")) return fmt::format("'let {} = ...' names a number", word.text);
         return choices(word.kind == TokenKind::name ? word.text : "", words);
-    }
-
-    bool parse_use() {
-        stream_.next();
-        const std::optional<RifsName> name = parse_rifs_name(stream_, "a name after 'use'");
-        if (!name || !stream_.expect("=", name->text)) return false;
-        const std::optional<Token> path = stream_.expect_string("the file name in quotes");
-        if (!path) return false;
-        file_.uses.push_back({*name, path->text, path->span});
-        return true;
     }
 
     bool parse_block() {
@@ -82,8 +80,8 @@ class RifsParser {
         stream_.next();
         const Token keyword = stream_.previous();
         const std::size_t errors = diagnostics_.error_count();
-        const std::optional<RifsName> name = parse_rifs_name(stream_, "a name after 'rifs'");
-        block.name = name.value_or(RifsName{keyword.text, keyword.span}); // its maps are read all the same
+        const std::optional<Name> name = parse_name(stream_, "a name after 'rifs'");
+        block.name = name.value_or(Name{keyword.text, keyword.span}); // its maps are read all the same
         const Token open = stream_.peek();
         if (!stream_.accept("{")) {
             if (name) stream_.expect("{", name->text);
@@ -137,7 +135,7 @@ class RifsParser {
                 .error(word.span, fmt::format("'{}' must be outside the braces of 'rifs {}'", word.text,
                                               block.name.text))
                 .with_hint("close the block with '}' before it");
-            if (word.is("use")) return parse_use();
+            if (word.is("use")) return add_use();
             parse_scene_statement(stream_, file_.statements);
             return true;
         }
@@ -159,13 +157,13 @@ class RifsParser {
     /// `map NAME [from BLOCK] { ... }`.
     bool parse_map(RifsBlock& block) {
         const Token keyword = stream_.next();
-        const std::optional<RifsName> name = parse_rifs_name(stream_, "a name after 'map'");
+        const std::optional<Name> name = parse_name(stream_, "a name after 'map'");
         if (!name) return false;
         if (!take_rifs_map(stream_, map_room_)) return false;
         RifsMap map;
         map.name = *name;
         if (stream_.accept("from")) {
-            map.from = parse_rifs_name(stream_, "the name of a 'rifs' block after 'from'");
+            map.from = parse_name(stream_, "the name of a 'rifs' block after 'from'");
             map.broken = !map.from;
         }
         const Token open = stream_.peek();
@@ -251,7 +249,7 @@ class RifsParser {
         stream_.accept(":");
         if (!block.start.empty()) return duplicate(keyword, block.start.front().span);
         do {
-            const std::optional<RifsName> name = parse_rifs_name(stream_, "the name of a map");
+            const std::optional<Name> name = parse_name(stream_, "the name of a map");
             if (!name) return false;
             block.start.push_back(*name);
         } while (stream_.accept(","));
@@ -266,6 +264,7 @@ class RifsParser {
 
     TokenStream& stream_;
     Diagnostics& diagnostics_;
+    const ForeignWords& foreign_;
     RifsFile& file_;
     std::size_t map_room_ = max_rifs_maps;
     bool lost_ = false; ///< what is no statement here has been reported, and goes on
@@ -273,11 +272,14 @@ class RifsParser {
 
 } // namespace
 
-RifsFile parse_rifs(const SourceMap& sources, FileId file, Diagnostics& diagnostics) {
+RifsFile parse_rifs(const SourceMap& sources, FileId file, Diagnostics& diagnostics,
+                    const ForeignWords& foreign) {
     TokenStream stream(lex(sources, file, diagnostics), diagnostics);
+    stream.set_words(rifs_keywords, line_words);
     stream.drop_semicolons();
     RifsFile tree;
-    RifsParser(stream, tree).parse();
+    tree.file = file;
+    RifsParser(stream, foreign, tree).parse();
     return tree;
 }
 

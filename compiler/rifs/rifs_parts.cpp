@@ -41,17 +41,6 @@ bool take_rifs_map(TokenStream& stream, std::size_t& map_room) {
     return false;
 }
 
-std::optional<RifsName> parse_rifs_name(TokenStream& stream, std::string_view what) {
-    // A name may stand on the next line, but not where that line begins another item.
-    if (stream.peek().first_on_line && at_rifs_item(stream) && !stream.peek(1).is("->")) {
-        stream.expected(what);
-        return std::nullopt;
-    }
-    const std::optional<Token> name = stream.expect_name(what);
-    if (!name) return std::nullopt;
-    return RifsName{name->text, name->span};
-}
-
 bool at_rifs_look(const TokenStream& stream) {
     return stream.at("tint") || stream.at("material");
 }
@@ -67,7 +56,7 @@ bool parse_rifs_look(TokenStream& stream, RifsLook& look) {
         return false;
     }
     if (!is_tint) {
-        look.material = parse_rifs_name(stream, "a name after 'material'");
+        look.material = parse_name(stream, "a name after 'material'");
         return look.material.has_value();
     }
     std::optional<std::vector<Expression>> tint = parse_tint(stream, "'tint'");
@@ -78,8 +67,8 @@ bool parse_rifs_look(TokenStream& stream, RifsLook& look) {
 std::optional<RifsPart> parse_rifs_part(TokenStream& stream) {
     const Token keyword = stream.next();
     stream.accept(":");
-    const std::optional<RifsName> master =
-        parse_rifs_name(stream, fmt::format("a primitive or a used model after '{}'", keyword.text));
+    const std::optional<Name> master =
+        parse_name(stream, fmt::format("a primitive or a used model after '{}'", keyword.text));
     if (!master) return std::nullopt;
     RifsPart part;
     part.master = *master;

@@ -2,7 +2,6 @@
 
 #include <cstddef>
 #include <optional>
-#include <string_view>
 
 #include "compiler/rifs/rifs_ast.h"
 #include "compiler/syntax/token_stream.h"
@@ -14,9 +13,6 @@ namespace graftal {
 
 /// True at a word that begins an item of a `rifs` block, or another block.
 bool at_rifs_item(const TokenStream& stream);
-
-/// Takes a name, or reports "expected WHAT, found ...".
-std::optional<RifsName> parse_rifs_name(TokenStream& stream, std::string_view what);
 
 /// True at `tint` or `material`.
 bool at_rifs_look(const TokenStream& stream);

@@ -81,7 +81,7 @@ class SystemBuilder {
 
     using Names = std::unordered_map<std::string, Span>;
 
-    void check_name(const RifsName& name, std::string_view what, Names& names) {
+    void check_name(const Name& name, std::string_view what, Names& names) {
         if (is_reserved_name(name.text))
             diagnostics_.error(name.span,
                                fmt::format("'{}' is a primitive and cannot name {}", name.text, what));

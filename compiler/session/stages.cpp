@@ -141,10 +141,11 @@ std::optional<Source> read_source(const std::string& path, const std::string& ro
 
 std::optional<LoweredModel> lower_source(const Source& source, const LowerOptions& options, bool accept_orbit,
                                          SourceMap& sources, Diagnostics& diagnostics) {
-    LoweredModel model{source.path, {}, {}, {}};
     LowerOptions own = options;
-    own.orbit = accept_orbit ? &model.orbit : nullptr;
-    model.graph = lower_text(source.path, source.text, own, sources, diagnostics, &model.derivation);
+    own.may_be_orbit = accept_orbit;
+    LoweredText lowered = lower_text(source.path, source.text, own, sources, diagnostics);
+    LoweredModel model{source.path, std::move(lowered.graph), std::move(lowered.derivation),
+                       std::move(lowered.orbit)};
     const bool draws_nothing = model.derivation && options.may_draw_nothing && !diagnostics.has_errors();
     if (!model.graph && !model.orbit && !draws_nothing) return std::nullopt;
     return model;

@@ -23,6 +23,8 @@
 
 namespace graftal {
 
+struct OrbitModel;
+
 struct StageTime {
     std::string stage;
     double seconds = 0;

@@ -235,17 +235,14 @@ bool begins_number(const Token& token, const Token& after) {
     return token.is("(") || token.is("-") || token.is("+") || token.is("!");
 }
 
-/// Words that begin something else where numbers stand without commas.
-bool is_keyword(const Token& token) {
-    static constexpr std::array<std::string_view, 52> words = {
-        "scale",      "rotate",   "translate", "shear",    "matrix",   "projection",   "union",
-        "instance",   "terminal", "scatter",   "tint",     "material", "below",        "probability",
-        "count",      "over",     "except",    "by",       "apart",    "seed",         "turn",
-        "lean",       "size",     "weights",   "location", "look_at",  "up",           "angle",
-        "width",      "sun",      "color",     "zenith",   "horizon",  "height",       "area",
-        "ambient",    "diffuse",  "specular",  "texture",  "around",   "orthographic", "shadowless",
-        "reflection", "map",      "codes",     "follow",   "start",    "condense",     "object",
-        "roughness",  "members",  "rgb"};
+/// Words that begin something else where numbers stand without commas: those that all languages share.
+bool is_shared_keyword(const Token& token) {
+    static constexpr std::array<std::string_view, 30> words = {
+        "scale",        "rotate",     "translate",  "shear",     "matrix",  "projection",
+        "tint",         "material",   "location",   "look_at",   "up",      "angle",
+        "width",        "sun",        "color",      "zenith",    "horizon", "height",
+        "area",         "ambient",    "diffuse",    "specular",  "texture", "around",
+        "orthographic", "shadowless", "reflection", "roughness", "members", "rgb"};
     return token.kind == TokenKind::name && std::find(words.begin(), words.end(), token.text) != words.end();
 }
 
@@ -291,6 +288,10 @@ class NumberList {
         return max_ > 1 && goes_on && count() <= max_ && stream_.accept(",");
     }
 
+    bool is_keyword(const Token& token) const {
+        return is_shared_keyword(token) || stream_.is_line_word(token);
+    }
+
     /// Without a comma; in a list with commas only where one is missed.
     bool number_follows() const {
         const Token& token = stream_.peek();
@@ -331,7 +332,8 @@ bool refuse_named_colour(TokenStream& stream) {
     const Token& after = stream.peek(1);
     const std::string_view numbers = token.kind == TokenKind::name ? named_colour(token.text) : "";
     const bool list = after.is(",") || after.kind == TokenKind::number ||
-                      (after.kind == TokenKind::name && !after.first_on_line && !is_keyword(after));
+                      (after.kind == TokenKind::name && !after.first_on_line && !is_shared_keyword(after) &&
+                       !stream.is_line_word(after));
     if (numbers.empty() || list) return false;
     stream.diagnostics()
         .error(token.span, fmt::format("'{}' is not a number, and colours have no names here", token.text))

@@ -6,8 +6,8 @@
 
 #include <fmt/format.h>
 
+#include "compiler/syntax/area.h"
 #include "compiler/syntax/expression_parser.h"
-#include "compiler/syntax/scatter.h"
 
 namespace graftal {
 
@@ -171,7 +171,7 @@ class StatementParser {
     /// `ground { material: stone` goes on, `ground {` and then `material stone {` does not.
     bool begins_other_statement() const {
         const Token& word = stream_.peek();
-        if (word.is("object") || word.is("canonical") || word.is("rifs") || word.is("lsys")) return true;
+        if (stream_.is_statement_word(word)) return true;
         return at_scene_statement(stream_) && !is_field(word.text);
     }
 

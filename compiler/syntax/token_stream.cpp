@@ -50,6 +50,15 @@ void TokenStream::check_nesting() {
     }
 }
 
+bool TokenStream::is_statement_word(const Token& token) const {
+    return token.kind == TokenKind::name &&
+           std::ranges::find(statement_words_, token.text) != statement_words_.end();
+}
+
+bool TokenStream::is_line_word(const Token& token) const {
+    return token.kind == TokenKind::name && std::ranges::find(line_words_, token.text) != line_words_.end();
+}
+
 void TokenStream::drop_semicolons() {
     bool reported = false, first_on_line = false;
     std::size_t kept = 0;

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -22,6 +23,16 @@ class TokenStream {
     /// `tokens` as lex() or lex_range() gives them; `end_name` is what messages call their end.
     TokenStream(std::vector<Token> tokens, Diagnostics& diagnostics,
                 std::string_view end_name = "the end of the file");
+
+    /// The words of the language that is read, of static storage, beside those that all languages share. What
+    /// is read by rules that all share ends where one of them begins something else: a block of a scene
+    /// statement at one of `statements`, a row of numbers without commas at one of `lines`.
+    void set_words(std::span<const std::string_view> statements, std::span<const std::string_view> lines) {
+        statement_words_ = statements;
+        line_words_ = lines;
+    }
+    bool is_statement_word(const Token& token) const;
+    bool is_line_word(const Token& token) const;
 
     /// Takes every ';' away, and reports the first: for languages that have none.
     void drop_semicolons();
@@ -70,6 +81,7 @@ class TokenStream {
     std::vector<Token> tokens_;
     Diagnostics& diagnostics_;
     std::string_view end_name_;
+    std::span<const std::string_view> statement_words_, line_words_;
     std::size_t at_ = 0;
 };
 

@@ -123,7 +123,8 @@ bool is_model(const std::string& language, const std::string& text) {
     LowerOptions options;
     options.max_objects = 200;
     options.max_modules = 20'000;
-    return lower_text("no_such_folder/model." + language, text, options, sources, diagnostics).has_value();
+    return lower_text("no_such_folder/model." + language, text, options, sources, diagnostics)
+        .graph.has_value();
 }
 
 // A mutator that only makes rubbish tries nothing but the parsers' complaints.

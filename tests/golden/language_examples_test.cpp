@@ -50,7 +50,8 @@ void compile_examples(const std::string& language, std::size_t at_least) {
             options.exact = exact;
             // Beside the models that examples use.
             const std::string name = (root / "scenes/ifs/example.").string() + language;
-            const std::optional<Graph> graph = lower_text(name, example.text, options, sources, diagnostics);
+            const std::optional<Graph> graph =
+                lower_text(name, example.text, options, sources, diagnostics).graph;
             EXPECT_TRUE(graph) << "docs/language.md:" << example.line;
             EXPECT_EQ(diagnostics.render(sources), "") << "docs/language.md:" << example.line;
         }

@@ -42,7 +42,7 @@ void gather(const AnalysedModel& model, ObjectId id, const Affine& place, double
 LimitSet limit_set(const std::string& name, const std::string& text) {
     SourceMap sources;
     Diagnostics diagnostics;
-    std::optional<Graph> graph = lower_text(name, text, {}, sources, diagnostics);
+    std::optional<Graph> graph = lower_text(name, text, {}, sources, diagnostics).graph;
     if (!graph) {
         ADD_FAILURE() << diagnostics.render(sources);
         return {};

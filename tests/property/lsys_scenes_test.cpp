@@ -44,8 +44,7 @@ std::optional<Lowered> lower(const std::string& path, unsigned steps, bool exact
     options.run_from = run_from;
     SourceMap sources;
     Diagnostics diagnostics;
-    std::optional<Derivation> derivation;
-    std::optional<Graph> graph = lower_text(path, text, options, sources, diagnostics, &derivation);
+    auto [graph, derivation, orbit] = lower_text(path, text, options, sources, diagnostics);
     if (!graph) {
         // Some draw nothing in their first steps.
         EXPECT_NE(diagnostics.render(sources).find("draws nothing"), std::string::npos)

@@ -19,7 +19,7 @@ namespace {
 std::optional<Graph> read(const std::string& text, std::string& messages) {
     SourceMap sources;
     Diagnostics diagnostics;
-    std::optional<Graph> graph = lower_text("printed.inst", text, {}, sources, diagnostics);
+    std::optional<Graph> graph = lower_text("printed.inst", text, {}, sources, diagnostics).graph;
     messages = diagnostics.render(sources);
     return graph;
 }

@@ -16,7 +16,8 @@ std::uint64_t leaves(const std::string& scene, unsigned steps) {
     Diagnostics diagnostics;
     Status status;
     const auto graph = lower_model(std::string(GRAFTAL_SOURCE_DIR) + "/scenes/" + scene + ".rifs", {},
-                                   sources, diagnostics, status);
+                                   sources, diagnostics, status)
+                           .graph;
     EXPECT_TRUE(graph) << status.message() << diagnostics.render(sources);
     if (!graph) return 0;
     std::uint64_t count = 0;

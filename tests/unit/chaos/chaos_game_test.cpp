@@ -267,7 +267,7 @@ TEST_P(ScenePoints, StayInTheBoundsAndFillThem) {
     SourceMap sources;
     Diagnostics diagnostics;
     Status status;
-    std::optional<Graph> graph = lower_model(GetParam(), {}, sources, diagnostics, status);
+    std::optional<Graph> graph = lower_model(GetParam(), {}, sources, diagnostics, status).graph;
     ASSERT_TRUE(graph) << diagnostics.render(sources);
     const Played model = analysed(std::move(*graph));
     ASSERT_TRUE(model.contraction.verdict == Verdict::proved ||

@@ -37,7 +37,7 @@ inline Played analysed(Graph graph) {
 inline Played played(const std::string& name, const std::string& text) {
     SourceMap sources;
     Diagnostics diagnostics;
-    std::optional<Graph> graph = lower_text(name, text, {}, sources, diagnostics);
+    std::optional<Graph> graph = lower_text(name, text, {}, sources, diagnostics).graph;
     EXPECT_TRUE(graph) << diagnostics.render(sources);
     return analysed(graph ? std::move(*graph) : Graph());
 }

@@ -18,7 +18,7 @@ struct Model {
     std::optional<Graph> graph;
 
     explicit Model(std::string text, const LowerOptions& options = {}) {
-        graph = lower_text("m.inst", std::move(text), options, sources, diagnostics);
+        graph = lower_text("m.inst", std::move(text), options, sources, diagnostics).graph;
     }
     std::string errors() const { return diagnostics.render(sources); }
     const Object& object(std::string_view name) const {

@@ -19,14 +19,14 @@ using ::testing::HasSubstr;
 std::string errors_of(const std::string& text) {
     SourceMap sources;
     Diagnostics diagnostics;
-    EXPECT_FALSE(lower_text("m.inst", text, {}, sources, diagnostics)) << text;
+    EXPECT_FALSE(lower_text("m.inst", text, {}, sources, diagnostics).graph) << text;
     return diagnostics.render(sources);
 }
 
 Graph graph_of(const std::string& text, const LowerOptions& options = {}) {
     SourceMap sources;
     Diagnostics diagnostics;
-    const std::optional<Graph> graph = lower_text("m.inst", text, options, sources, diagnostics);
+    const std::optional<Graph> graph = lower_text("m.inst", text, options, sources, diagnostics).graph;
     EXPECT_TRUE(graph) << diagnostics.render(sources);
     return graph.value_or(Graph());
 }

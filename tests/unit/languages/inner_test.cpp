@@ -30,8 +30,9 @@ class Inner : public ::testing::Test {
     void lower(const std::string& name, const LowerOptions& options = {}) {
         sources_ = SourceMap();
         diagnostics_ = Diagnostics();
-        graph_ =
-            lower_model((folder_ / name).string(), options, sources_, diagnostics_, status_, &derivation_);
+        LoweredText model = lower_model((folder_ / name).string(), options, sources_, diagnostics_, status_);
+        graph_ = std::move(model.graph);
+        derivation_ = std::move(model.derivation);
     }
     std::string report() const { return diagnostics_.render(sources_); }
 

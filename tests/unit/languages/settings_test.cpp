@@ -17,7 +17,8 @@ struct Model {
 
     explicit Model(const std::string& statements, const LowerOptions& options = {}) {
         graph = lower_text("m.inst", statements + "\nobject top { sphere scale: 2 }\n", options, sources,
-                           diagnostics);
+                           diagnostics)
+                    .graph;
     }
     std::string errors() const { return diagnostics.render(sources); }
     const SceneSettings& settings() const { return graph->settings; }

@@ -27,7 +27,7 @@ class Use : public ::testing::Test {
     void lower(const std::string& name, const LowerOptions& options = {}) {
         sources_ = SourceMap();
         diagnostics_ = Diagnostics();
-        graph_ = lower_model((folder_ / name).string(), options, sources_, diagnostics_, status_);
+        graph_ = lower_model((folder_ / name).string(), options, sources_, diagnostics_, status_).graph;
     }
     std::string errors() const { return diagnostics_.render(sources_); }
     const Object& object(std::string_view name) const {
@@ -165,20 +165,21 @@ TEST_F(Use, a_root_model_that_is_not_there_is_a_failed_status) {
 TEST(Language, follows_the_name_of_the_file) {
     SourceMap sources;
     Diagnostics diagnostics;
-    EXPECT_FALSE(lower_text("tree.lsys", "lsys tree { }", {}, sources, diagnostics));
+    EXPECT_FALSE(lower_text("tree.lsys", "lsys tree { }", {}, sources, diagnostics).graph);
     EXPECT_THAT(diagnostics.render(sources), HasSubstr("tree.lsys:1:6: error: 'lsys tree' has no axiom"));
     Diagnostics unknown;
-    EXPECT_FALSE(lower_text("tree.txt", "", {}, sources, unknown));
+    EXPECT_FALSE(lower_text("tree.txt", "", {}, sources, unknown).graph);
     EXPECT_THAT(unknown.render(sources), HasSubstr("hint: the names of models end in .lsys, .rifs or .inst"));
 }
 
 TEST(Language, of_standard_input_follows_its_first_word) {
     SourceMap sources;
     Diagnostics diagnostics;
-    EXPECT_TRUE(lower_text("-", "# rifs\nlet a = 1\nobject rifs { sphere }", {}, sources, diagnostics));
-    EXPECT_TRUE(lower_text("-", "let a = 2\nrifs r {\n map m { scale 1/a }\n}", {}, sources, diagnostics))
+    EXPECT_TRUE(lower_text("-", "# rifs\nlet a = 1\nobject rifs { sphere }", {}, sources, diagnostics).graph);
+    EXPECT_TRUE(
+        lower_text("-", "let a = 2\nrifs r {\n map m { scale 1/a }\n}", {}, sources, diagnostics).graph)
         << diagnostics.render(sources);
-    EXPECT_FALSE(lower_text("-", "let a = 1\nlsys tree { }", {}, sources, diagnostics));
+    EXPECT_FALSE(lower_text("-", "let a = 1\nlsys tree { }", {}, sources, diagnostics).graph);
     EXPECT_THAT(diagnostics.render(sources), HasSubstr("<stdin>:2:6: error: 'lsys tree' has no axiom"));
 }
 

@@ -18,7 +18,7 @@ using ::testing::HasSubstr;
 std::string said(const std::string& text, const LowerOptions& options = {}) {
     SourceMap sources;
     Diagnostics diagnostics;
-    const std::optional<Graph> graph = lower_text("m.lsys", text, options, sources, diagnostics);
+    const std::optional<Graph> graph = lower_text("m.lsys", text, options, sources, diagnostics).graph;
     EXPECT_EQ(graph.has_value(), !diagnostics.has_errors());
     return diagnostics.render(sources);
 }
@@ -90,8 +90,8 @@ TEST(LsysLimits, sizesBeyondTheRange) {
 std::size_t parts_of(const std::string& statements) {
     SourceMap sources;
     Diagnostics diagnostics;
-    std::optional<Derivation> derivation;
-    lower_text("m.lsys", block(statements), {}, sources, diagnostics, &derivation);
+    const std::optional<Derivation> derivation =
+        lower_text("m.lsys", block(statements), {}, sources, diagnostics).derivation;
     EXPECT_TRUE(derivation) << diagnostics.render(sources);
     return derivation ? derivation->parts : 0;
 }

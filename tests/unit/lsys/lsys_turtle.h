@@ -220,9 +220,10 @@ struct CompiledLsys {
     CompiledLsys(const std::string& statements, unsigned steps, LowerOptions options = {}) {
         options.steps = steps;
         const std::string text = "lsys m {\n" + statements + "\n}\n";
-        std::optional<Graph> lowered = lower_text("m.lsys", text, options, sources, diagnostics, &derivation);
-        if (!lowered) throw std::runtime_error(diagnostics.render(sources));
-        graph = std::move(*lowered);
+        LoweredText lowered = lower_text("m.lsys", text, options, sources, diagnostics);
+        if (!lowered.graph) throw std::runtime_error(diagnostics.render(sources));
+        graph = std::move(*lowered.graph);
+        derivation = std::move(lowered.derivation);
     }
 
     SourceMap sources;

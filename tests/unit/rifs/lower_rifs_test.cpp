@@ -22,7 +22,7 @@ struct Lowered {
 
 Lowered lower(const std::string& text, const LowerOptions& options = {}) {
     Lowered result;
-    result.graph = lower_text("m.rifs", text, options, result.sources, result.diagnostics);
+    result.graph = lower_text("m.rifs", text, options, result.sources, result.diagnostics).graph;
     result.messages = result.diagnostics.render(result.sources);
     return result;
 }
@@ -38,7 +38,7 @@ Graph graph_of(const std::string& text) {
 /// The messages, each as `line:column: message`, warnings with a `w` in front.
 std::string messages_of(const std::string& text, const LowerOptions& options = {}) {
     Lowered lowered;
-    lowered.graph = lower_text("m.rifs", text, options, lowered.sources, lowered.diagnostics);
+    lowered.graph = lower_text("m.rifs", text, options, lowered.sources, lowered.diagnostics).graph;
     std::string out;
     for (const Diagnostic& d : lowered.diagnostics.all()) {
         const Position at = lowered.sources.position(d.span.file, d.span.begin);
@@ -404,7 +404,7 @@ TEST(LowerRifs, aChanceThatIsTooSmallIsNone) {
         graph_of("rifs r { codes 2d {\n.5 0 0 .5 0 0 1e-100\n.5 0 0 .5 1 0 1\n} terminal cube }");
     Diagnostics diagnostics;
     SourceMap sources;
-    const auto again = lower_text("m.inst", print(graph), {}, sources, diagnostics);
+    const auto again = lower_text("m.inst", print(graph), {}, sources, diagnostics).graph;
     ASSERT_TRUE(again) << diagnostics.render(sources);
     EXPECT_TRUE(equal(graph, *again));
 }

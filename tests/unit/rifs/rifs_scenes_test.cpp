@@ -213,7 +213,8 @@ TEST_P(RifsScenes, setIsTheOneOfTheLiterature) {
     Diagnostics diagnostics;
     Status status;
     const auto graph = lower_model(std::string(GRAFTAL_SOURCE_DIR) + "/scenes/" + known.file + ".rifs", {},
-                                   sources, diagnostics, status);
+                                   sources, diagnostics, status)
+                           .graph;
     ASSERT_TRUE(graph) << status.message() << diagnostics.render(sources);
     EXPECT_EQ(diagnostics.render(sources), "");
 

@@ -5,6 +5,7 @@
 #include <string_view>
 #include <vector>
 
+#include "compiler/syntax/area.h"
 #include "compiler/syntax/expression.h"
 #include "compiler/syntax/token_stream.h"
 
@@ -14,15 +15,6 @@ namespace graftal {
 struct InstRange {
     Expression from;
     std::optional<Expression> to;
-    Span span;
-};
-
-/// `x0, z0, x1, z1`, `disc r`, `disc r, x, z` or `ground`.
-struct AreaText {
-    enum class Kind : std::uint8_t { rectangle, disc, ground };
-
-    Kind kind = Kind::rectangle;
-    std::vector<Expression> numbers; ///< 4 of a rectangle, 1 or 3 of a disc
     Span span;
 };
 
@@ -55,8 +47,5 @@ bool at_scatter_line(const TokenStream& stream);
 
 /// Requires at_scatter_line(). Takes one line; false after an error.
 bool parse_scatter_line(TokenStream& stream, InstScatter& scatter);
-
-/// An area of numbers: `what` names the place in messages. `ground` is taken if `may_be_ground`.
-std::optional<AreaText> parse_area(TokenStream& stream, std::string_view what, bool may_be_ground);
 
 } // namespace graftal

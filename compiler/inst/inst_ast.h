@@ -30,6 +30,17 @@ struct InstTint {
     Span span;
 };
 
+/// `repeat n { ... }` or `n * { ... }` makes n copies of the groups that follow it. Each copy applies the
+/// lines of the block once more than the copy before; the first copy does not apply them.
+struct InstRepeat {
+    Expression count;
+    std::vector<TransformLine> transforms;
+    std::vector<InstTint> tints;
+    std::optional<Expression> hue;
+    std::uint32_t size = 0; ///< tokens
+    Span span;
+};
+
 /// `union:`, `instance:`, a bare name, `terminal:` or `scatter:`, and the lines after it, which hold for each
 /// of its masters, the first line applied first.
 struct InstGroup {
@@ -42,7 +53,10 @@ struct InstGroup {
     std::vector<InstTint> tints;
     std::optional<std::string> material;
     Span material_span;
+    std::uint32_t size = 0;           ///< tokens without those of its repeats: the cost of evaluating it once
     std::optional<Expression> chance; ///< of each of the masters
+    std::unique_ptr<Expression> hue;  ///< degrees by which the group turns the hues of its masters
+    std::vector<std::shared_ptr<const InstRepeat>> repeats; ///< that contain the group, the outermost first
     Span span;
 };
 
@@ -62,6 +76,7 @@ struct InstDefinition {
     std::string name;
     bool rendered = false;
     std::vector<InstParameter> parameters;
+    std::optional<Expression> weight; ///< among the definitions of the same name and parameters
     std::vector<InstGroup> groups;
     std::size_t size = 0; ///< tokens: what enumerating it once costs
     Span span;            ///< of the name with its parameters

@@ -84,11 +84,7 @@ void InstIndex::add(const InstDefinition& definition, Diagnostics& diagnostics) 
     }
     const std::string text = pattern_text(definition);
     const auto [other, fresh] = by_pattern_.emplace(text, &definition);
-    if (!fresh) {
-        diagnostics.error(definition.span, fmt::format("duplicate object '{}'", signature(definition)))
-            .with_note(other->second->span, "first defined here");
-        return;
-    }
+    if (!fresh) return add_alternative(*other->second, definition, diagnostics);
     first_.emplace(definition.name, &definition);
     std::vector<const InstDefinition*>& named = patterns_[{definition.name, definition.parameters.size()}];
     if (!has_names(definition)) return;
@@ -98,6 +94,32 @@ void InstIndex::add(const InstDefinition& definition, Diagnostics& diagnostics) 
             .error(definition.span,
                    fmt::format("the object '{}' is drawn, but has a parameter", definition.name))
             .with_hint("make it a 'canonical object', and add an object without parameters that contains it");
+}
+
+void InstIndex::add_alternative(const InstDefinition& first, const InstDefinition& definition,
+                                Diagnostics& diagnostics) {
+    if (!first.weight || !definition.weight) {
+        Diagnostic& error =
+            diagnostics.error(definition.span, fmt::format("duplicate object '{}'", signature(definition)));
+        if (first.weight || definition.weight)
+            error.with_hint("give each of these definitions a weight, or keep only one of them");
+        error.with_note(first.span, "first defined here");
+        return;
+    }
+    if (first.rendered != definition.rendered)
+        diagnostics
+            .error(definition.span,
+                   fmt::format("the weighted definitions of '{}' must all be canonical, or none of them",
+                               signature(definition)))
+            .with_note(first.span, "the first is here");
+    others_[&first].push_back(&definition);
+}
+
+std::vector<const InstDefinition*> InstIndex::alternatives(const InstDefinition& definition) const {
+    std::vector<const InstDefinition*> all = {&definition};
+    if (const auto others = others_.find(&definition); others != others_.end())
+        all.insert(all.end(), others->second.begin(), others->second.end());
+    return all;
 }
 
 const InstDefinition* InstIndex::match(std::string_view name, const std::vector<double>& arguments,

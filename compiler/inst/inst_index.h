@@ -24,6 +24,10 @@ class InstIndex {
     const InstDefinition* match(std::string_view name, const std::vector<double>& arguments,
                                 std::string_view object_name) const;
 
+    /// The definitions from which chance chooses where this one matches: all of the same pattern, each with
+    /// its weight, or this one alone if it has no weight. Requires that match() gives it.
+    std::vector<const InstDefinition*> alternatives(const InstDefinition& definition) const;
+
     /// All parameters are numbers, and no pattern with names competes: the object of a printed graph. Other
     /// objects with parameters exist as far as they are reached.
     bool always_exists(const InstDefinition& definition) const;
@@ -42,8 +46,12 @@ class InstIndex {
     using NameAndArity = std::pair<std::string, std::size_t>;
 
     void add(const InstDefinition& definition, Diagnostics& diagnostics);
+    void add_alternative(const InstDefinition& first, const InstDefinition& definition,
+                         Diagnostics& diagnostics);
 
     std::unordered_map<std::string, const InstDefinition*> by_pattern_; ///< names of parameters as `_`
+    std::unordered_map<const InstDefinition*, std::vector<const InstDefinition*>>
+        others_; ///< of a pattern's first
     std::map<NameAndArity, std::vector<const InstDefinition*>> patterns_;
     std::map<std::string, const InstDefinition*, std::less<>> first_;
 };

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "compiler/primitives/primitive.h"
+#include "compiler/support/hue.h"
 #include "compiler/support/number.h"
 #include "compiler/support/number_range.h"
 
@@ -19,13 +20,13 @@ namespace {
 using LineKind = TransformLine::Kind;
 
 template<std::size_t count>
-std::optional<std::array<double, count>> evaluate_all(const std::vector<Expression>& values,
-                                                      const Environment& environment,
-                                                      Diagnostics& diagnostics) {
+std::optional<std::array<double, count>>
+evaluate_all(const std::vector<Expression>& values, const Environment& environment, Diagnostics& diagnostics,
+             const ChanceDraws& draws = {}) {
     std::array<double, count> numbers{};
     bool good = values.size() <= count;
     for (std::size_t i = 0; i < values.size() && i < count; ++i) {
-        const std::optional<double> number = evaluate(values[i], environment, diagnostics);
+        const std::optional<double> number = evaluate(values[i], environment, diagnostics, draws);
         if (number)
             numbers[i] = *number;
         else
@@ -52,6 +53,29 @@ bool in_unit_range(const std::array<double, count>& numbers, const std::vector<E
             error.with_hint("colours are linear light: 1 is all of it, where pictures have 255");
     }
     return good;
+}
+
+/// `hsv(h, s, v)` in place of three components (syntax/expression_parser.h).
+bool is_hsv(const Expression& value) {
+    return value.kind == Expression::Kind::call && value.text == "hsv";
+}
+
+/// `most`: what the value may be.
+std::optional<Rgb> lower_hsv(const Expression& call, double most, const Environment& environment,
+                             Diagnostics& diagnostics, const ChanceDraws& draws = {}) {
+    const auto n = evaluate_all<3>(call.operands, environment, diagnostics, draws);
+    if (!n) return std::nullopt;
+    const auto [hue_deg, saturation, value] = *n;
+    const auto check = [&](std::size_t i, const char* what, double limit) {
+        if ((*n)[i] >= 0 && (*n)[i] <= limit) return true;
+        diagnostics
+            .error(call.operands[i].span, fmt::format("{} must lie between 0 and {}, not {}", what,
+                                                      shortest(limit), shortest((*n)[i])))
+            .with_hint("write hsv(hue, saturation, value), with the hue in degrees");
+        return false;
+    };
+    if (!check(1, "a saturation", 1) || !check(2, "the value of a colour", most)) return std::nullopt;
+    return rgb_from_hsv(hue_deg, saturation, value);
 }
 
 int axis_index(char axis) {
@@ -129,6 +153,7 @@ std::optional<Vec3> lower_vector(const std::vector<Expression>& values, const En
 
 std::optional<Rgb> lower_color(const std::vector<Expression>& values, const Environment& environment,
                                Diagnostics& diagnostics) {
+    if (is_hsv(values[0])) return lower_hsv(values[0], 1, environment, diagnostics);
     const auto n = evaluate_all<3>(values, environment, diagnostics);
     if (!n || !in_unit_range(*n, values, diagnostics)) return std::nullopt;
     return Rgb((*n)[0], (*n)[1], (*n)[2]);
@@ -136,6 +161,7 @@ std::optional<Rgb> lower_color(const std::vector<Expression>& values, const Envi
 
 std::optional<Rgb> lower_light_color(const std::vector<Expression>& values, const Environment& environment,
                                      Diagnostics& diagnostics) {
+    if (is_hsv(values[0])) return lower_hsv(values[0], brightest_light, environment, diagnostics);
     const auto n = evaluate_all<3>(values, environment, diagnostics);
     if (!n) return std::nullopt;
     for (std::size_t i = 0; i < 3; ++i) {
@@ -149,15 +175,24 @@ std::optional<Rgb> lower_light_color(const std::vector<Expression>& values, cons
 }
 
 std::optional<Tint> lower_tint(const std::vector<Expression>& values, const Environment& environment,
-                               Diagnostics& diagnostics) {
-    const auto n = evaluate_all<4>(values, environment, diagnostics);
+                               Diagnostics& diagnostics, const ChanceDraws& draws) {
+    if (is_hsv(values[0])) {
+        const std::optional<Rgb> rgb = lower_hsv(values[0], 1, environment, diagnostics, draws);
+        const std::optional<double> alpha = evaluate(values[1], environment, diagnostics, draws);
+        if (!rgb || !alpha) return std::nullopt;
+        if (*alpha >= 0 && *alpha <= 1) return Tint{*rgb, *alpha};
+        diagnostics.error(values[1].span,
+                          fmt::format("alpha must lie between 0 and 1, not {}", shortest(*alpha)));
+        return std::nullopt;
+    }
+    const auto n = evaluate_all<4>(values, environment, diagnostics, draws);
     if (!n || !in_unit_range(*n, values, diagnostics)) return std::nullopt;
     return Tint{Rgb((*n)[0], (*n)[1], (*n)[2]), (*n)[3]};
 }
 
 std::optional<Affine> lower_transform(const TransformLine& line, const Environment& environment,
-                                      Diagnostics& diagnostics) {
-    const auto n = evaluate_all<12>(line.numbers, environment, diagnostics);
+                                      Diagnostics& diagnostics, const ChanceDraws& draws) {
+    const auto n = evaluate_all<12>(line.numbers, environment, diagnostics, draws);
     if (!n) return std::nullopt;
     std::optional<Affine> map;
     switch (line.kind) {
@@ -225,12 +260,13 @@ std::optional<double> lower_size_px(const Expression& size_px, const Environment
 }
 
 std::optional<Affine> lower_transforms(const std::vector<TransformLine>& lines,
-                                       const Environment& environment, Diagnostics& diagnostics) {
+                                       const Environment& environment, Diagnostics& diagnostics,
+                                       const ChanceDraws& draws) {
     std::optional<Affine> product;
     bool good = true;
     bool projection = false;
     for (const TransformLine& line : lines) {
-        const std::optional<Affine> map = lower_transform(line, environment, diagnostics);
+        const std::optional<Affine> map = lower_transform(line, environment, diagnostics, draws);
         good = good && map;
         projection |= line.kind == LineKind::projection;
         if (good) product = product ? *map * *product : *map;

@@ -18,7 +18,7 @@ namespace graftal {
 std::optional<Vec3> lower_vector(const std::vector<Expression>& values, const Environment& environment,
                                  Diagnostics& diagnostics);
 
-/// Evaluates three expressions as linear RGB; components outside [0,1] are errors.
+/// Evaluates a colour (syntax/expression_parser.h) as linear RGB; components outside [0,1] are errors.
 std::optional<Rgb> lower_color(const std::vector<Expression>& values, const Environment& environment,
                                Diagnostics& diagnostics);
 
@@ -27,9 +27,9 @@ inline constexpr double brightest_light = 1e6;
 std::optional<Rgb> lower_light_color(const std::vector<Expression>& values, const Environment& environment,
                                      Diagnostics& diagnostics);
 
-/// Evaluates four expressions, colour and alpha; values outside [0,1] are errors.
+/// Evaluates colour and alpha; values outside [0,1] are errors. `draws`: for `random` and `normal`.
 std::optional<Tint> lower_tint(const std::vector<Expression>& values, const Environment& environment,
-                               Diagnostics& diagnostics);
+                               Diagnostics& diagnostics, const ChanceDraws& draws = {});
 
 /// The size in pixels that `below:` gives; nothing, after an error, unless it lies between 0 and 10^6.
 std::optional<double> lower_size_px(const Expression& size_px, const Environment& environment,
@@ -56,12 +56,13 @@ std::string counts_taken(PrimitiveKind kind);
 /// Two factors of a scale are those of x and y; z gets their geometric mean, so that flat figures keep a
 /// regular map that is a similarity where the flat one was.
 std::optional<Affine> lower_transform(const TransformLine& line, const Environment& environment,
-                                      Diagnostics& diagnostics);
+                                      Diagnostics& diagnostics, const ChanceDraws& draws = {});
 
 /// The product of the lines, the first applied first; identity for none. A single line is taken to the last
 /// bit. Besides the errors of the lines: products that are singular (unless a `projection` takes part),
 /// vanish or overflow.
 std::optional<Affine> lower_transforms(const std::vector<TransformLine>& lines,
-                                       const Environment& environment, Diagnostics& diagnostics);
+                                       const Environment& environment, Diagnostics& diagnostics,
+                                       const ChanceDraws& draws = {});
 
 } // namespace graftal

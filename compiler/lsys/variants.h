@@ -26,8 +26,6 @@ class Variants {
                              ModuleId module, std::uint32_t stage) const;
 
   private:
-    std::uint32_t permuted(std::uint32_t variant, std::uint64_t key) const;
-
     std::uint64_t seed_;
     std::uint32_t mask_;
 };

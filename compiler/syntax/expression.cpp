@@ -90,9 +90,10 @@ class Evaluator {
         if (e.operands.size() != chance_arguments) return wrong_count(e, chance_arguments);
         const auto draw = draws_.find(&e);
         if (draw == draws_.end()) {
-            diagnostics_.error(e.span, fmt::format("'{}' draws random numbers, which only the successors of "
-                                                   "an L-system's productions may use",
-                                                   e.text));
+            diagnostics_.error(e.span,
+                               fmt::format("'{}' draws random numbers, which only the lines of an object "
+                                           "(.inst) and the successors of productions (.lsys) may use",
+                                           e.text));
             return std::nullopt;
         }
         const std::optional<double> first = value(e.operands[0]), second = value(e.operands[1]);

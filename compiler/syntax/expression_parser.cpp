@@ -341,6 +341,32 @@ bool refuse_named_colour(TokenStream& stream) {
     return true;
 }
 
+/// `hsv(h, s, v)`, and `nothing` after an error.
+std::optional<Expression> parse_hsv(TokenStream& stream) {
+    Expression call{.kind = Expression::Kind::call, .text = "hsv"};
+    const Token name = stream.next();
+    stream.next(); // the '('
+    if (!parse_arguments(stream, call.operands)) return std::nullopt;
+    call.span = stream.span_from(name.span);
+    if (call.operands.size() == 3) return call;
+    stream.diagnostics()
+        .error(call.span, fmt::format("'hsv' takes 3 arguments, not {}", call.operands.size()))
+        .with_hint("write hsv(hue, saturation, value), with the hue in degrees");
+    return std::nullopt;
+}
+
+bool at_hsv(const TokenStream& stream) {
+    return stream.at("hsv") && stream.peek(1).is("(");
+}
+
+/// The alpha after a colour, with or without a comma.
+std::optional<Expression> parse_alpha(TokenStream& stream) {
+    stream.accept(",");
+    if (begins_number(stream.peek(), stream.peek(1))) return parse_row_expression(stream);
+    stream.expected("an alpha").with_hint(std::string(tint_hint));
+    return std::nullopt;
+}
+
 } // namespace
 
 std::optional<Expression> parse_expression(TokenStream& stream) {
@@ -389,23 +415,27 @@ std::optional<std::vector<Expression>> parse_vector(TokenStream& stream, std::st
 }
 
 std::optional<std::vector<Expression>> parse_color(TokenStream& stream, std::string_view what) {
+    std::vector<Expression> colour;
+    if (at_hsv(stream)) {
+        std::optional<Expression> call = parse_hsv(stream);
+        if (!call) return std::nullopt;
+        colour.push_back(std::move(*call));
+        return colour;
+    }
     stream.accept("rgb");
     if (refuse_named_colour(stream)) return std::nullopt;
     return parse_numbers(stream, 3, 3, what, colour_hint);
 }
 
 std::optional<std::vector<Expression>> parse_tint(TokenStream& stream, std::string_view what) {
-    stream.accept("rgb");
-    if (refuse_named_colour(stream)) return std::nullopt;
-    if (!stream.at("<")) return parse_numbers(stream, 4, 4, what, tint_hint);
-    std::optional<std::vector<Expression>> tint = parse_numbers(stream, 3, 3, what, colour_hint);
+    const bool hsv = at_hsv(stream);
+    if (!hsv) stream.accept("rgb");
+    if (!hsv && refuse_named_colour(stream)) return std::nullopt;
+    if (!hsv && !stream.at("<")) return parse_numbers(stream, 4, 4, what, tint_hint);
+    std::optional<std::vector<Expression>> tint =
+        hsv ? parse_color(stream, what) : parse_numbers(stream, 3, 3, what, colour_hint);
     if (!tint) return std::nullopt;
-    stream.accept(",");
-    if (!begins_number(stream.peek(), stream.peek(1))) {
-        stream.expected("an alpha").with_hint(std::string(tint_hint));
-        return std::nullopt;
-    }
-    std::optional<Expression> alpha = parse_row_expression(stream);
+    std::optional<Expression> alpha = parse_alpha(stream);
     if (!alpha) return std::nullopt;
     tint->push_back(std::move(*alpha));
     return tint;

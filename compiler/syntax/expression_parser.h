@@ -34,10 +34,11 @@ bool parse_arguments(TokenStream& stream, std::vector<Expression>& arguments);
 /// Three numbers, as parse_numbers() reads them.
 std::optional<std::vector<Expression>> parse_vector(TokenStream& stream, std::string_view what);
 
-/// A colour: a vector that `rgb` may precede.
+/// A colour: a vector that `rgb` may precede, three expressions; or `hsv(h, s, v)`, one call of that name
+/// with three operands, which lower/lower_transform.h understands.
 std::optional<std::vector<Expression>> parse_color(TokenStream& stream, std::string_view what);
 
-/// A tint: colour and alpha, four numbers, or `rgb <r, g, b> a`: four expressions.
+/// A tint: colour and alpha, four numbers, or `rgb <r, g, b> a`: four expressions; or `hsv(h, s, v) a`: two.
 std::optional<std::vector<Expression>> parse_tint(TokenStream& stream, std::string_view what);
 
 } // namespace graftal

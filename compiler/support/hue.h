@@ -1,0 +1,19 @@
+#pragma once
+
+#include "compiler/support/tint.h"
+
+namespace graftal {
+
+/// Hue in degrees, saturation and value as linear components (A. R. Smith 1978, "Color gamut transform
+/// pairs"): the largest component is `value`, the smallest value * (1 - saturation), and the hues 0, 120 and
+/// 240 are red, green and blue. Requires a finite hue, and a saturation in [0, 1].
+Rgb rgb_from_hsv(double hue_deg, double saturation, double value);
+
+/// The colour with its hue turned by a share of a whole turn; saturation and value stay. Greys stay as they
+/// are, to the last bit.
+Rgb hue_turned(Rgb rgb, double turns);
+
+/// Without a hue: equal components.
+bool is_grey(Rgb rgb);
+
+} // namespace graftal

@@ -44,7 +44,7 @@ struct Lowered {
 
     explicit Lowered(const std::string& text, const std::string& folder = ".",
                      const LowerOptions& options = {}) {
-        graph = lower_text(folder + "/m.inst", text, options, sources, diagnostics);
+        graph = lower_text(folder + "/m.inst", text, options, sources, diagnostics).graph;
     }
     std::string errors() const { return diagnostics.render(sources); }
 };

@@ -88,7 +88,10 @@ class BodyParser {
     /// The keywords of lines that any object may have.
     static std::vector<std::string> body_lines() {
         const std::vector<std::string>& all = body_keywords();
-        return {all.begin(), all.end() - static_cast<std::ptrdiff_t>(scatter_keywords().size())};
+        std::vector<std::string> lines(all.begin(),
+                                       all.end() - static_cast<std::ptrdiff_t>(scatter_keywords().size()));
+        lines.emplace_back("repeat");
+        return lines;
     }
 
     /// `scatter: tree` or `scatter tree`, and not an object of that name.
@@ -115,6 +118,12 @@ class BodyParser {
     bool parse_repeat() {
         std::optional<InstRepeat> repeat = parse_inst_repeat(stream_);
         if (!repeat) return false;
+        if (repeats_.size() == TokenStream::max_nesting) {
+            diagnostics_
+                .error(repeat->span, fmt::format("repeats nest more than {} deep", TokenStream::max_nesting))
+                .with_hint("define an object that contains the inner repeats, and repeat that object");
+            return false;
+        }
         repeats_.push_back(std::make_shared<const InstRepeat>(std::move(*repeat)));
         const bool good = parse_repeated();
         repeats_.pop_back();

@@ -36,7 +36,8 @@ Calls calls_of(const InstGroup& group) {
     Calls calls;
     for (const InstReference& reference : group.masters)
         collect(reference.arguments, calls);
-    collect(group.transforms, group.scatter ? std::vector<InstTint>() : group.tints, calls);
+    static const std::vector<InstTint> none;
+    collect(group.transforms, group.scatter ? none : group.tints, calls);
     for (const std::optional<Expression>* number : {&group.below, &group.chance})
         if (*number) collect(**number, calls);
     if (group.hue) collect(*group.hue, calls);

@@ -18,6 +18,10 @@ namespace {
 
 constexpr std::uint32_t variant_mask = inst_variants - 1;
 
+bool same_parameters(const InstDefinition& a, const InstDefinition& b) {
+    return std::ranges::equal(a.parameters, b.parameters, {}, &InstParameter::name, &InstParameter::name);
+}
+
 } // namespace
 
 void InstLowerer::lower_group(const InstGroup& group, Lowered& object) {
@@ -39,10 +43,7 @@ void InstLowerer::lower_copies(const InstGroup& group, std::size_t depth, const 
         Lowered part;
         lower_copies(group, depth + 1, Placement(), part);
         if (stopped_ || part.object.instances.empty()) return;
-        const std::string stem = fmt::format("{}.repeat", reached_[current_].definition->name);
-        part.object.name = stem;
-        for (int i = 2; by_name_.contains(part.object.name) || index_.any(part.object.name); ++i)
-            part.object.name = fmt::format("{}{}", stem, i);
+        part.object.name = free_repeat_name();
         part.object.span = repeat.span;
         shared = by_name_[part.object.name] = graph_.add(part.object);
         keep_hues(*shared, std::move(part.hues));
@@ -117,15 +118,34 @@ bool InstLowerer::shares_copies(const InstGroup& group) const {
     });
 }
 
+std::string InstLowerer::free_repeat_name() {
+    const std::string& owner = reached_[current_].definition->name;
+    unsigned& number = repeat_numbers_[owner];
+    std::string name;
+    do {
+        ++number;
+        name = number == 1 ? fmt::format("{}.repeat", owner) : fmt::format("{}.repeat{}", owner, number);
+    } while (by_name_.contains(name) || index_.any(name));
+    return name;
+}
+
+bool InstLowerer::copy_work(const InstGroup& group) {
+    std::size_t words = group.size;
+    for (const auto& repeat : group.repeats)
+        words += repeat->size;
+    work_ += words;
+    if (work_ <= max_inst_work) return true;
+    if (!stopped_)
+        diagnostics_.error(group.repeats.front()->span, "the repeats of the model make too many copies")
+            .with_hint("use smaller counts, or repeat an object that contains some of the copies");
+    stopped_ = true;
+    return false;
+}
+
 // Instances
 
 void InstLowerer::lower_instances(const InstGroup& group, const Placement& around, Lowered& object) {
-    if (!group.repeats.empty()) {
-        std::size_t words = group.size;
-        for (const auto& repeat : group.repeats)
-            words += repeat->size;
-        if (!work(words)) return;
-    }
+    if (!group.repeats.empty() && !copy_work(group)) return;
     const std::optional<Placement> own = lower_placement(group);
     const std::optional<Placement> placement =
         own && !group.repeats.empty() ? composed(around, *own, group.span) : own;
@@ -134,7 +154,7 @@ void InstLowerer::lower_instances(const InstGroup& group, const Placement& aroun
         stopped_ = true;
     const double chance = lower_chance(group);
     if (group.below)
-        object.object.terminal_px = lower_size_px(*group.below, environment_, scratch_).value_or(0);
+        object.object.terminal_px = lower_size_px(*group.below, environment_, scratch_, draws_).value_or(0);
     for (const InstReference& reference : group.masters) {
         const std::optional<ObjectId> master = resolve(reference);
         if (stopped_) return;
@@ -252,8 +272,7 @@ std::optional<Tint> InstLowerer::lower_tints(const std::vector<InstTint>& tints)
 
 std::optional<ObjectId> InstLowerer::resolve(const InstReference& reference) {
     if (unknown_.contains(&reference)) return std::nullopt;
-    if (const auto mesh = meshes_.find(&reference); mesh != meshes_.end())
-        return graph_.primitive(mesh->second);
+    if (const auto mesh = meshes_.find(&reference); mesh != meshes_.end()) return primitive(mesh->second);
     std::vector<double> arguments;
     for (const Expression& expression : reference.arguments)
         if (const std::optional<double> value = evaluate(expression, environment_, scratch_, draws_))
@@ -264,13 +283,13 @@ std::optional<ObjectId> InstLowerer::resolve(const InstReference& reference) {
     if (definition && chance_.is_random(reference.name))
         return variant_of(*definition, std::move(arguments), name, reference.span);
     if (const auto found = by_name_.find(name); found != by_name_.end()) return found->second;
-    if (const std::optional<Primitive> primitive = primitive_named(name))
-        return by_name_[name] = graph_.primitive(*primitive);
+    if (const std::optional<Primitive> plain = primitive_named(name))
+        return by_name_[name] = primitive(*plain);
     if (const std::optional<PrimitiveKind> kind = kind_of_numbers(reference.name)) {
         if (const auto known = shapes_.find(name); known != shapes_.end()) return known->second;
         const std::optional<Primitive> made = lower_primitive(*kind, arguments, reference.span, scratch_);
         if (!made) return std::nullopt;
-        return shapes_[name] = graph_.primitive(*made);
+        return shapes_[name] = primitive(*made);
     }
     if (const auto family = families_.find(reference.name); family != families_.end())
         return family->second.exact(arguments, reference.span, scratch_);
@@ -282,6 +301,18 @@ std::optional<ObjectId> InstLowerer::resolve(const InstReference& reference) {
     else if (by_name_.contains(use_of(reference.name)->first))
         unknown_object(reference.span, name);
     return std::nullopt;
+}
+
+ObjectId InstLowerer::primitive(const Primitive& primitive) {
+    for (; indexed_ < graph_.objects.size(); ++indexed_)
+        if (const std::optional<Primitive>& known = graph_.objects[indexed_].primitive)
+            primitives_.emplace(*known, static_cast<ObjectId>(indexed_));
+    const auto [found, fresh] = primitives_.try_emplace(primitive, 0);
+    if (!fresh) return found->second;
+    Object object;
+    object.name = name_of(primitive);
+    object.primitive = primitive;
+    return found->second = graph_.add(std::move(object));
 }
 
 // Chance
@@ -330,13 +361,21 @@ std::optional<ObjectId> InstLowerer::variant_of(const InstDefinition& definition
 const InstDefinition* InstLowerer::choose(const InstDefinition& definition,
                                           const std::vector<double>& arguments, std::uint64_t key,
                                           std::uint32_t variant) {
+    if (!definition.weight) return &definition;
     const std::vector<const InstDefinition*> all = index_.alternatives(definition);
-    if (all.size() == 1) return all.front();
     std::vector<double> sums;
     double sum = 0;
+    Environment environment;
+    const InstDefinition* names = nullptr; // whose parameters the environment has
     for (const InstDefinition* const one : all) {
-        const std::optional<double> weight =
-            evaluate(*one->weight, environment_of(*one, arguments), scratch_);
+        std::size_t words = 1 + one->weight->span.end - one->weight->span.begin;
+        if (!names || !same_parameters(*names, *one)) {
+            words += names ? lets_.size() : 0;
+            environment = environment_of(*one, arguments);
+            names = one;
+        }
+        if (!reached_.empty() && !work(words)) return nullptr;
+        const std::optional<double> weight = evaluate(*one->weight, environment, scratch_);
         if (!weight) return nullptr;
         if (*weight < 0 || *weight > largest_size) {
             scratch_

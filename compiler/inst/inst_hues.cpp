@@ -17,7 +17,7 @@ namespace graftal {
 namespace {
 
 constexpr std::int64_t finest_turn = 3600;
-constexpr std::int64_t largest_denominator = 1'000'000;
+constexpr std::int64_t largest_denominator = 100'000;
 /// A share of a turn to rounding, as degrees are computed.
 constexpr double slack = 1e-12;
 

@@ -25,7 +25,7 @@ std::optional<HueTurn> exact_turn(double degrees);
 /// The nearest whole degree.
 HueTurn whole_degrees(double degrees);
 
-/// Nothing if the denominator would exceed a million.
+/// Nothing if the denominator would exceed 100,000: a recursion has as many states.
 std::optional<HueTurn> sum(HueTurn a, HueTurn b);
 
 /// How far each instance of an object turns the colours of its master.

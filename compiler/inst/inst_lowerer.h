@@ -18,6 +18,10 @@
 
 namespace graftal {
 
+/// The most words of definitions that are evaluated over all enumerated objects and copies: some seconds of
+/// work.
+inline constexpr std::size_t max_inst_work = 30'000'000;
+
 /// Lowers one `.inst` file. lower_inst.cpp enumerates the objects, inst_names.cpp looks up names, and
 /// inst_groups.cpp makes instances of the groups of one object.
 class InstLowerer {
@@ -83,8 +87,10 @@ class InstLowerer {
     std::nullopt_t stop(Span use, const InstDefinition& definition, std::size_t parent, std::string_view name,
                         std::string message);
     void lower_object(std::size_t index);
-    /// Counts evaluated words; false if they are too many.
+    /// Counts evaluated words; false if they are too many, after an error that names the chain of objects.
     bool work(std::size_t words);
+    /// The same for a copy that the repeats of a group make, which the error then names.
+    bool copy_work(const InstGroup& group);
     Environment environment_of(const InstDefinition& definition, const std::vector<double>& arguments) const;
     /// Hands on the errors of one object. Its definition is then left alone: for other arguments the same
     /// errors would follow.
@@ -105,6 +111,8 @@ class InstLowerer {
     /// Whether an object of its own contains the copies of the inner repeats. It does not where it would
     /// count as a level of recursion, or where all copies differ.
     bool shares_copies(const InstGroup& group) const;
+    /// `town.repeat`, `town.repeat2` and so on, for such an object of the one being lowered.
+    std::string free_repeat_name();
     void lower_instances(const InstGroup& group, const Placement& around, Lowered& object);
     void lower_scattered(const InstGroup& group, Lowered& object);
     /// 0 where none is stated.
@@ -114,6 +122,8 @@ class InstLowerer {
     std::optional<Placement> lower_placement(const InstGroup& group);
     std::optional<Tint> lower_tints(const std::vector<InstTint>& tints);
     std::optional<ObjectId> resolve(const InstReference& reference);
+    /// The object of a primitive, as Graph::primitive() gives it, without a search.
+    ObjectId primitive(const Primitive& primitive);
     std::optional<ObjectId> variant_of(const InstDefinition& definition, std::vector<double> arguments,
                                        const std::string& name, Span use);
 
@@ -152,7 +162,10 @@ class InstLowerer {
     Diagnostics scratch_;     ///< its errors
     std::set<const InstReference*> unknown_;
     std::unordered_map<const InstReference*, Primitive> meshes_;
-    std::unordered_map<std::string, ObjectId> shapes_; ///< primitives of numbers, by their references
+    std::unordered_map<std::string, ObjectId> shapes_;   ///< primitives of numbers, by their references
+    std::unordered_map<Primitive, ObjectId> primitives_; ///< of the first `indexed_` objects
+    std::size_t indexed_ = 0;
+    std::unordered_map<std::string, unsigned> repeat_numbers_; ///< so far, by the names of objects
     std::set<const InstDefinition*> failed_;
     std::set<const Expression*> rounded_; ///< hues that have a note
     std::unordered_map<const InstDefinition*, std::size_t> tuples_;

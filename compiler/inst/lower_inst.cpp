@@ -12,9 +12,6 @@ namespace graftal {
 
 namespace {
 
-/// Words of definitions that are evaluated over all enumerated objects: some seconds of work.
-constexpr std::size_t max_work = 30'000'000;
-
 /// `f(0) -> f(1) -> f(2) -> ... -> f(99999) -> f(100000)`
 std::string abridged_chain(const std::vector<std::string_view>& names) {
     constexpr std::size_t head = 4, tail = 2;
@@ -137,7 +134,7 @@ void InstLowerer::lower_object(std::size_t index) {
 
 bool InstLowerer::work(std::size_t words) {
     work_ += words;
-    if (work_ <= max_work) return true;
+    if (work_ <= max_inst_work) return true;
     const Reached& reached = reached_[current_];
     if (!stopped_)
         stop(reached.use, *reached.definition, reached.parent, graph_.objects[reached.id].name,

@@ -250,9 +250,9 @@ std::optional<Primitive> lower_primitive(PrimitiveKind kind, std::span<const dou
 }
 
 std::optional<double> lower_size_px(const Expression& size_px, const Environment& environment,
-                                    Diagnostics& diagnostics) {
+                                    Diagnostics& diagnostics, const ChanceDraws& draws) {
     constexpr double most = 1e6;
-    const std::optional<double> value = evaluate(size_px, environment, diagnostics);
+    const std::optional<double> value = evaluate(size_px, environment, diagnostics, draws);
     if (!value || (*value >= 0 && *value <= most)) return value;
     diagnostics.error(size_px.span, fmt::format("a size in pixels lies between 0 and {}, not at {}", most,
                                                 shortest(*value)));

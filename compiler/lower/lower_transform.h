@@ -33,7 +33,7 @@ std::optional<Tint> lower_tint(const std::vector<Expression>& values, const Envi
 
 /// The size in pixels that `below:` gives; nothing, after an error, unless it lies between 0 and 10^6.
 std::optional<double> lower_size_px(const Expression& size_px, const Environment& environment,
-                                    Diagnostics& diagnostics);
+                                    Diagnostics& diagnostics, const ChanceDraws& draws = {});
 
 /// The primitive that so many numbers make of its kind; nothing, after an error, where they make none.
 /// Requires takes_count(kind, numbers.size()).

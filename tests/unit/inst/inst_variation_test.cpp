@@ -158,6 +158,40 @@ TEST(Repeat, no_copies_are_made_beyond_the_limits) {
     EXPECT_THAT(model.said(), HasSubstr("the model has more than 4000 instances"));
 }
 
+TEST(Repeat, nests_to_a_limit) {
+    const auto nested = [](std::size_t depth) {
+        std::string text = "object a {";
+        for (std::size_t i = 0; i < depth; ++i)
+            text += " 1 * { rotate: y, 1 }";
+        return text + " sphere }";
+    };
+    EXPECT_TRUE(VariedModel(nested(256)).graph);
+    for (const std::size_t depth : {257u, 100'000u}) {
+        const VariedModel model(nested(depth));
+        EXPECT_FALSE(model.graph);
+        EXPECT_THAT(model.said(), HasSubstr("repeats nest more than 256 deep"));
+    }
+}
+
+TEST(Repeat, too_many_copies_are_refused) {
+    for (const char* text :
+         {"object a { 4000000 * { translate: 1, 0, 0 } sphere }",
+          "object a { 4000000 * { translate: 1, 0, 0 } 4000000 * { translate: 0, 1, 0 } sphere }",
+          "object a { 2000 * { translate: 1, 0, random(0, 1) } 2000 * { translate: 0, 1, 0 } sphere }"}) {
+        const VariedModel model(text);
+        EXPECT_FALSE(model.graph) << text;
+        EXPECT_THAT(model.said(), HasSubstr("1:12: error: the repeats of the model make too many copies"));
+    }
+}
+
+TEST(Repeat, each_of_50000_shared_parts_has_its_name_at_once) {
+    const VariedModel model("canonical object f(0) { sphere }\ncanonical object f(n) {\n"
+                            " 2 * { translate: 1, 0, 0 } 2 * { translate: 0, 1, 0 } sphere\n f(n - 1) }\n"
+                            "object a { f(50000) }");
+    ASSERT_TRUE(model.graph) << model.said();
+    EXPECT_EQ(model.object("f.repeat50000").instances.size(), 2u);
+}
+
 TEST(Repeat, objects_may_have_the_names_of_the_new_words) {
     const VariedModel model(
         "canonical object repeat { sphere }\ncanonical object hue { cube }\n"
@@ -231,6 +265,11 @@ TEST(Alternatives, mistakes_end_in_messages) {
         {"object a weight 0 { sphere }\nobject a weight 0 { cube }", "the weights of 'a' are all 0"},
         {"object a weight 0-1 { sphere }\nobject a weight 1 { cube }", "a weight lies between 0 and 1e+100"},
         {"object a weight x { sphere }\nobject a weight 1 { cube }", "unknown name 'x'"},
+        {"object a weight 1/0 { sphere }\nobject a weight 1 { cube }", "division by zero"},
+        {"object a weight 1e308 { sphere }\nobject a weight 1 { cube }", "not at 1e+308"},
+        {"object a weight 1e308 * 10 { sphere }\nobject a weight 1 { cube }", "is not a finite number"},
+        {"object a weight x { sphere }", "unknown name 'x'"},
+        {"object a weight 0 { sphere }", "the weights of 'a' are all 0"},
         {"let x = random(0, 1)\nobject a { sphere }", "only the lines of an object"},
     };
     for (const auto& [text, message] : cases) {
@@ -238,6 +277,25 @@ TEST(Alternatives, mistakes_end_in_messages) {
         EXPECT_FALSE(model.graph) << text;
         EXPECT_THAT(model.said(), HasSubstr(message)) << text;
     }
+}
+
+TEST(Alternatives, that_are_too_many_to_weigh_are_refused) {
+    std::string text = "canonical object f(0) { sphere }\nobject a { f(10000) }\n";
+    for (int i = 0; i < 2000; ++i)
+        text += "canonical object f(n) weight n { f(n - 1) }\n";
+    const VariedModel model(text);
+    EXPECT_FALSE(model.graph);
+    EXPECT_THAT(model.said(), HasSubstr("the model takes too much work to list all its objects"));
+}
+
+TEST(RandomNumbers, make_a_hundred_thousand_primitives_at_once) {
+    const VariedModel model(
+        "object a { 100000 * { translate: 1, 0, 0 } superellipsoid(random(0.1, 2), random(0.1, 2)) }");
+    ASSERT_TRUE(model.graph) << model.said();
+    EXPECT_GT(model.graph->objects.size(), 99'000u);
+    const VariedModel one("object a { 5 * { translate: 1, 0, 0 } superellipsoid(0.5, random(0.5, 0.5)) }");
+    ASSERT_TRUE(one.graph) << one.said();
+    EXPECT_EQ(one.graph->objects.size(), 2u);
 }
 
 TEST(RandomNumbers, are_spread_over_the_variants) {
@@ -255,6 +313,20 @@ TEST(RandomNumbers, are_spread_over_the_variants) {
     }
     EXPECT_EQ(variants, 64);
     EXPECT_NEAR(sum / variants, 1.5, 0.01) << "stratified";
+}
+
+TEST(RandomNumbers, may_stand_in_every_line) {
+    const VariedModel model(
+        "canonical object f(n) { sphere scale: n }\n"
+        "object a {\n"
+        " repeat random(3, 4) { translate: 1, random(0, 1), 0 hue: random(0, 9) tint: 1, 0, 0, random(0, 1) "
+        "}\n"
+        " sphere tint: hsv(random(80, 120), 0.8, 0.4), 1\n"
+        " f(random(1, 2)) tint: random(0, 1), 0, 0, 1 hue: normal(0, 20) chance: random(1, 2)\n"
+        " terminal: sphere below: random(2, 3) scale: random(1, 2)\n}");
+    ASSERT_TRUE(model.graph) << model.said();
+    EXPECT_EQ(model.root().instances.size(), 4u);
+    expect_printed_graph_reads_back(model);
 }
 
 TEST(RandomNumbers, differ_between_the_copies_of_a_repeat) {
@@ -320,6 +392,7 @@ TEST(Hue, turns_are_exact_fractions) {
     EXPECT_EQ(sum(HueTurn{1, 6}, HueTurn{1, 2}), (HueTurn{2, 3}));
     EXPECT_EQ(sum(HueTurn{5, 6}, HueTurn{1, 6}), (HueTurn{0, 1}));
     EXPECT_FALSE(sum(HueTurn{1, 3599}, HueTurn{1, 3581}));
+    EXPECT_FALSE(sum(HueTurn{1, 3599}, HueTurn{1, 277})) << "a million states";
 }
 
 TEST(Hue, goes_round_with_a_recursion) {

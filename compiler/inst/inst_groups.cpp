@@ -285,7 +285,7 @@ std::optional<ObjectId> InstLowerer::resolve(const InstReference& reference) {
     if (const auto found = by_name_.find(name); found != by_name_.end()) return found->second;
     if (const std::optional<Primitive> plain = primitive_named(name))
         return by_name_[name] = primitive(*plain);
-    if (const std::optional<PrimitiveKind> kind = kind_of_numbers(reference.name)) {
+    if (const std::optional<PrimitiveKind> kind = kind_of(reference)) {
         if (const auto known = shapes_.find(name); known != shapes_.end()) return known->second;
         const std::optional<Primitive> made = lower_primitive(*kind, arguments, reference.span, scratch_);
         if (!made) return std::nullopt;

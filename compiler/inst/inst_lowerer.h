@@ -70,6 +70,9 @@ class InstLowerer {
     void check_names(const InstDefinition& definition);
     /// Reports and gives false if nothing of this name, or not with as many arguments, can exist.
     bool check_reference(const InstReference& reference);
+    /// The kind of a primitive that numbers make. The model's own objects of as many arguments hide it, and
+    /// used models do.
+    std::optional<PrimitiveKind> kind_of(const InstReference& reference) const;
     /// `mesh "leaf.obj"`: read here, once for each file.
     bool check_mesh(const InstReference& reference);
     Diagnostic& wrong_count(const InstReference& reference, std::size_t arity);

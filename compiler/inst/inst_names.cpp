@@ -25,7 +25,7 @@ void InstLowerer::import_used(const UseStatement& use) {
             .with_note(first->second, "first defined here");
         return;
     }
-    if (primitive_kind_named(use.name.text) || use.name.text.find('.') != std::string::npos) {
+    if (is_reserved_name(use.name.text) || use.name.text.find('.') != std::string::npos) {
         diagnostics_.error(use.name.span, fmt::format("'{}' cannot name a model", use.name.text))
             .with_hint("use a name without dots that is not a primitive's");
         return;
@@ -88,17 +88,20 @@ void InstLowerer::check_names(const InstDefinition& definition) {
 bool InstLowerer::check_reference(const InstReference& reference) {
     const std::size_t arity = reference.arguments.size();
     const InstDefinition* definition = index_.any(reference.name);
+    if (!reference.path.empty()) return check_mesh(reference);
     if (index_.defined(reference.name, arity)) return true;
+    const std::optional<PrimitiveKind> kind = kind_of(reference);
+    if (kind && takes_count(*kind, arity)) return true;
     if (definition) {
         wrong_count(reference, definition->parameters.size()).with_note(definition->span, "defined here");
         return false;
     }
-    if (!reference.path.empty() || reference.name == name_of(PrimitiveKind::mesh))
-        return check_mesh(reference);
-    if (const std::optional<PrimitiveKind> kind = kind_of_numbers(reference.name)) {
-        if (!takes_count(*kind, arity)) wrong_count(reference, counts_taken(*kind));
-        return takes_count(*kind, arity);
+    if (kind) {
+        wrong_count(reference, counts_taken(*kind));
+        return false;
     }
+    if (reference.name == name_of(PrimitiveKind::mesh) && !uses_.contains(reference.name))
+        return check_mesh(reference);
     const bool whole = primitive_named(reference.name) || uses_.contains(reference.name);
     if (whole && arity > inner_count(reference.name)) {
         wrong_count(reference, inner_count(reference.name));
@@ -108,6 +111,12 @@ bool InstLowerer::check_reference(const InstReference& reference) {
     if (whole || use_of(reference.name)) return true;
     if (module_.complete) unknown_object(reference.span, reference.name);
     return false;
+}
+
+std::optional<PrimitiveKind> InstLowerer::kind_of(const InstReference& reference) const {
+    const bool hidden =
+        uses_.contains(reference.name) || index_.defined(reference.name, reference.arguments.size());
+    return hidden ? std::nullopt : kind_of_numbers(reference.name);
 }
 
 bool InstLowerer::check_mesh(const InstReference& reference) {

@@ -24,7 +24,7 @@ class OrbitParser {
 
     bool parse() {
         const Token keyword = stream_.next();
-        const std::optional<Name> name = parse_name(stream_, "a name after 'orbit'");
+        const std::optional<Name> name = parse_rifs_name(stream_, "a name after 'orbit'");
         if (!name) return false;
         block_.name = *name;
         block_.span = stream_.span_from(keyword.span);
@@ -91,7 +91,7 @@ class OrbitParser {
     bool parse_lets(std::vector<OrbitLet>& lets) {
         stream_.next();
         do {
-            const std::optional<Name> name = parse_name(stream_, "a name after 'let'");
+            const std::optional<Name> name = parse_rifs_name(stream_, "a name after 'let'");
             if (!name || !stream_.expect("=", name->text)) return false;
             std::optional<Expression> value = parse_expression(stream_);
             if (!value) return false;
@@ -121,7 +121,7 @@ class OrbitParser {
         function.name = {name.text, name.span};
         stream_.next();
         do {
-            const std::optional<Name> parameter = parse_name(stream_, "the name of a parameter");
+            const std::optional<Name> parameter = parse_rifs_name(stream_, "the name of a parameter");
             if (!parameter) return false;
             function.parameters.push_back(*parameter);
         } while (stream_.accept(","));
@@ -170,7 +170,7 @@ class OrbitParser {
         OrbitMap map;
         map.name = {"", keyword.span};
         if (!stream_.at("{")) {
-            const std::optional<Name> name = parse_name(stream_, "a name or '{' after 'map'");
+            const std::optional<Name> name = parse_rifs_name(stream_, "a name or '{' after 'map'");
             if (!name) return false;
             map.name = *name;
         }

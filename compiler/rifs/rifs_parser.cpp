@@ -80,7 +80,7 @@ class RifsParser {
         stream_.next();
         const Token keyword = stream_.previous();
         const std::size_t errors = diagnostics_.error_count();
-        const std::optional<Name> name = parse_name(stream_, "a name after 'rifs'");
+        const std::optional<Name> name = parse_rifs_name(stream_, "a name after 'rifs'");
         block.name = name.value_or(Name{keyword.text, keyword.span}); // its maps are read all the same
         const Token open = stream_.peek();
         if (!stream_.accept("{")) {
@@ -157,13 +157,13 @@ class RifsParser {
     /// `map NAME [from BLOCK] { ... }`.
     bool parse_map(RifsBlock& block) {
         const Token keyword = stream_.next();
-        const std::optional<Name> name = parse_name(stream_, "a name after 'map'");
+        const std::optional<Name> name = parse_rifs_name(stream_, "a name after 'map'");
         if (!name) return false;
         if (!take_rifs_map(stream_, map_room_)) return false;
         RifsMap map;
         map.name = *name;
         if (stream_.accept("from")) {
-            map.from = parse_name(stream_, "the name of a 'rifs' block after 'from'");
+            map.from = parse_rifs_name(stream_, "the name of a 'rifs' block after 'from'");
             map.broken = !map.from;
         }
         const Token open = stream_.peek();
@@ -249,7 +249,7 @@ class RifsParser {
         stream_.accept(":");
         if (!block.start.empty()) return duplicate(keyword, block.start.front().span);
         do {
-            const std::optional<Name> name = parse_name(stream_, "the name of a map");
+            const std::optional<Name> name = parse_rifs_name(stream_, "the name of a map");
             if (!name) return false;
             block.start.push_back(*name);
         } while (stream_.accept(","));

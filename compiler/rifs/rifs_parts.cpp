@@ -41,6 +41,14 @@ bool take_rifs_map(TokenStream& stream, std::size_t& map_room) {
     return false;
 }
 
+std::optional<Name> parse_rifs_name(TokenStream& stream, std::string_view what) {
+    if (stream.peek().first_on_line && at_rifs_item(stream) && !stream.peek(1).is("->")) {
+        stream.expected(what);
+        return std::nullopt;
+    }
+    return parse_name(stream, what);
+}
+
 bool at_rifs_look(const TokenStream& stream) {
     return stream.at("tint") || stream.at("material");
 }
@@ -56,7 +64,7 @@ bool parse_rifs_look(TokenStream& stream, RifsLook& look) {
         return false;
     }
     if (!is_tint) {
-        look.material = parse_name(stream, "a name after 'material'");
+        look.material = parse_rifs_name(stream, "a name after 'material'");
         return look.material.has_value();
     }
     std::optional<std::vector<Expression>> tint = parse_tint(stream, "'tint'");
@@ -68,7 +76,7 @@ std::optional<RifsPart> parse_rifs_part(TokenStream& stream) {
     const Token keyword = stream.next();
     stream.accept(":");
     const std::optional<Name> master =
-        parse_name(stream, fmt::format("a primitive or a used model after '{}'", keyword.text));
+        parse_rifs_name(stream, fmt::format("a primitive or a used model after '{}'", keyword.text));
     if (!master) return std::nullopt;
     RifsPart part;
     part.master = *master;

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <optional>
+#include <string_view>
 
 #include "compiler/rifs/rifs_ast.h"
 #include "compiler/syntax/token_stream.h"
@@ -13,6 +14,10 @@ namespace graftal {
 
 /// True at a word that begins an item of a `rifs` block, or another block.
 bool at_rifs_item(const TokenStream& stream);
+
+/// Takes a name, or reports "expected WHAT, found ...". A name may stand on the next line, but not where that
+/// line begins another item.
+std::optional<Name> parse_rifs_name(TokenStream& stream, std::string_view what);
 
 /// True at `tint` or `material`.
 bool at_rifs_look(const TokenStream& stream);

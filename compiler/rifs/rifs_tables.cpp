@@ -109,7 +109,7 @@ RifsMap parse_code_row(TokenStream& stream, const CodeColumns& columns, bool lab
 
 /// `a -> b, c`; a name after a comma that an arrow follows begins the next edges.
 bool parse_edges_from(TokenStream& stream, RifsFollow& follow) {
-    const std::optional<Name> from = parse_name(stream, "the name of a map");
+    const std::optional<Name> from = parse_rifs_name(stream, "the name of a map");
     if (!from) return false;
     if (!stream.accept("->")) {
         stream.expected(fmt::format("'->' after '{}'", from->text))
@@ -117,7 +117,7 @@ bool parse_edges_from(TokenStream& stream, RifsFollow& follow) {
         return false;
     }
     do {
-        const std::optional<Name> to = parse_name(stream, "the name of a map after '->'");
+        const std::optional<Name> to = parse_rifs_name(stream, "the name of a map after '->'");
         if (!to) return false;
         if (follow.edges.size() == max_rifs_edges) {
             stream.diagnostics().error(to->span, fmt::format("more than {} edges", max_rifs_edges));

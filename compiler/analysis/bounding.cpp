@@ -25,6 +25,8 @@ namespace {
 constexpr double exact = 1e-12;
 constexpr std::array<double, 7> passes_of_cycle = {0.3, 0.1, 0.03, 0.01, 0.003, 0.001, exact};
 constexpr std::uint64_t faces = 6;
+/// After so many the control is asked: some milliseconds.
+constexpr std::uint64_t pieces_a_look = 10'000;
 
 /// Pieces to spend on support functions, dealt out so that all objects get some and what one leaves over
 /// the next may use.
@@ -58,10 +60,11 @@ std::uint64_t queries(const Graph& graph, const Components& components) {
 
 class Bounder {
   public:
-    Bounder(const Graph& graph, const Components& components, const Contraction& contraction)
+    Bounder(const Graph& graph, const Components& components, const Contraction& contraction,
+            const Control& control)
         : graph_(graph), components_(components), contraction_(contraction), outers_(graph.objects.size()),
           unbounded_(plane_holders(graph, components)), search_(graph, outers_),
-          effort_(queries(graph, components)),
+          effort_(queries(graph, components)), meter_(control, "bounding", pieces_a_look),
           pieces_of_ball_(std::clamp<std::size_t>(400'000 / graph.objects.size(), 4, 400)) {}
 
     std::vector<ObjectBounds> run() {
@@ -156,6 +159,7 @@ class Bounder {
             direction[axis] = i % 2 == 0 ? 1 : -1;
             const Support found = search_.run(id, direction, tolerance, effort_.allowance());
             effort_.spend(search_.pieces());
+            meter_.add(search_.pieces() + 1);
             const double face = within_range(found.upper + 4e-12 * size + 4e-15 * position);
             if (i % 2 == 0)
                 box.max[axis] = std::min(box.max[axis], face);
@@ -201,6 +205,7 @@ class Bounder {
     const std::vector<bool> unbounded_;
     SupportSearch search_;
     Effort effort_;
+    WorkMeter meter_;
     std::size_t pieces_of_ball_;
 };
 
@@ -212,10 +217,11 @@ ObjectBounds primitive_bounds(const Primitive& primitive) {
 }
 
 std::vector<ObjectBounds> bound_objects(const Graph& graph, const Components& components,
-                                        const Contraction& contraction, std::uint64_t* pieces) {
+                                        const Contraction& contraction, const Control& control,
+                                        std::uint64_t* pieces) {
     GRAFTAL_CHECK(contraction.verdict == Verdict::proved || contraction.verdict == Verdict::acyclic,
                   "bound_objects: needs a contraction that is proved or acyclic");
-    Bounder bounder(graph, components, contraction);
+    Bounder bounder(graph, components, contraction, control);
     std::vector<ObjectBounds> bounds = bounder.run();
     if (pieces != nullptr) *pieces = bounder.pieces();
     return bounds;

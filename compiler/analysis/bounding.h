@@ -8,6 +8,7 @@
 #include "compiler/graph/components.h"
 #include "compiler/graph/graph.h"
 #include "compiler/support/bounds.h"
+#include "compiler/support/control.h"
 
 namespace graftal {
 
@@ -27,8 +28,10 @@ ObjectBounds primitive_bounds(const Primitive& primitive);
 /// Bounds by object, masters before their users: ending objects from exact support functions of what they
 /// hold; unending ones by best-first support functions over balls that are first made invariant in the
 /// certificate's metric. Terminals do not count: the bounds are those of the limit set. Requires a
-/// contraction that is proved or acyclic. `pieces`: how many the search for box faces has looked at.
+/// contraction that is proved or acyclic. `pieces`: how many the search for box faces has looked at, which
+/// the control follows; it is asked after each face.
 std::vector<ObjectBounds> bound_objects(const Graph& graph, const Components& components,
-                                        const Contraction& contraction, std::uint64_t* pieces = nullptr);
+                                        const Contraction& contraction, const Control& control = no_control(),
+                                        std::uint64_t* pieces = nullptr);
 
 } // namespace graftal

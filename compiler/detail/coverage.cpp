@@ -210,9 +210,10 @@ class Measurer {
 /// Fits the groups of congruent nodes, masters first.
 class Fitter {
   public:
-    Fitter(CutGraph& cut, const Symmetry& symmetry)
+    Fitter(CutGraph& cut, const Symmetry& symmetry, WorkMeter* meter)
         : cut_(cut), symmetry_(symmetry), congruence_(find_congruence(cut, symmetry)),
-          members_(cut.nodes.size()), seen_(cut.nodes.size()), shadowless_(cut.nodes.size(), false) {
+          members_(cut.nodes.size()), seen_(cut.nodes.size()), shadowless_(cut.nodes.size(), false),
+          meter_(meter) {
         for (NodeId id = 0; id < cut.nodes.size(); ++id) {
             members_[congruence_.root[id]].push_back(id);
             box_half_.emplace_back();
@@ -294,12 +295,19 @@ class Fitter {
         return components;
     }
 
+    Measured measure(NodeId root, const Effort& effort) {
+        const std::uint64_t before = measurer_->draws();
+        Measured measured = measurer_->measure(root, effort);
+        if (meter_) meter_->add(measurer_->draws() - before);
+        return measured;
+    }
+
     void fit_single(NodeId root) {
         if (cut_.nodes[root].unending && !reaches_area(root)) {
             shadowless_[root] = true;
             return;
         }
-        take(root, measurer_->measure(root, effort_), 1);
+        take(root, measure(root, effort_), 1);
     }
 
     /// Whether something it holds, cycles aside, has a shadow.
@@ -338,7 +346,7 @@ class Fitter {
         for (int round = 0; round < most_rounds; ++round) {
             double change = 0;
             for (std::size_t i = 0; i < roots_.size(); ++i) {
-                const Measured measured = measurer_->measure(roots_[i], effort_);
+                const Measured measured = measure(roots_[i], effort_);
                 take(roots_[i], measured, 1);
                 change =
                     std::max(change, std::abs(measured.mean - mean[i]) / std::max(measured.mean, 1e-300));
@@ -362,7 +370,7 @@ class Fitter {
         double limit = 0;
         std::vector<Measured> measured;
         for (const NodeId root : roots_)
-            measured.push_back(measurer_->measure(root, fine));
+            measured.push_back(measure(root, fine));
         for (const Measured& m : measured)
             limit += m.mean;
         const auto together = [&](double scale) {
@@ -370,7 +378,7 @@ class Fitter {
                 take(roots_[i], measured[i], scale);
             double sum = 0;
             for (const NodeId root : roots_)
-                sum += measurer_->measure(root, {effort_.pieces, fine_grid}).mean;
+                sum += measure(root, {effort_.pieces, fine_grid}).mean;
             return sum;
         };
         double low = 0.5, high = 1.5;
@@ -472,12 +480,13 @@ class Fitter {
     std::vector<NodeId> roots_; ///< of the component under way
     Measurer* measurer_ = nullptr;
     const EllipsoidFit* fit_ = nullptr;
+    WorkMeter* meter_ = nullptr;
 };
 
 } // namespace
 
-std::uint64_t fit_proxies(CutGraph& cut, const Symmetry& symmetry) {
-    Fitter fitter(cut, symmetry);
+std::uint64_t fit_proxies(CutGraph& cut, const Symmetry& symmetry, WorkMeter* meter) {
+    Fitter fitter(cut, symmetry, meter);
     fitter.run();
     set_mean_colours(cut);
     return fitter.draws();

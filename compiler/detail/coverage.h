@@ -4,6 +4,7 @@
 
 #include "compiler/detail/cut_graph.h"
 #include "compiler/detail/symmetry.h"
+#include "compiler/support/control.h"
 
 namespace graftal {
 
@@ -19,8 +20,8 @@ namespace graftal {
 /// `shadowless`) keep the ellipsoid in their box: a part that is culled is drawn as large as the error, and
 /// lines stay visible.
 ///
-/// Returns how many bodies it drew, which is what it costs.
-std::uint64_t fit_proxies(CutGraph& cut, const Symmetry& symmetry);
+/// Returns how many bodies it drew, which is what it costs, and what the meter counts; null: nobody does.
+std::uint64_t fit_proxies(CutGraph& cut, const Symmetry& symmetry, WorkMeter* meter = nullptr);
 
 /// Whether the box of a shadowless node is a sheet or a line. Requires fit_proxies().
 bool is_flat(const CutNode& node);

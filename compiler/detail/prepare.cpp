@@ -11,6 +11,9 @@ namespace graftal {
 
 namespace {
 
+/// Objects, comparisons and bodies after which the control is asked: some milliseconds.
+constexpr std::uint64_t prepared_a_look = 20'000;
+
 /// Where levels do not end, objects are cut for their size alone: a proxy then stands for all that is left
 /// out, and what an object would be drawn by at its last level, a trunk without its twigs, would be too
 /// little.
@@ -46,15 +49,17 @@ void mark_wide(CutGraph& cut) {
 
 PreparedCut prepare_cut(const Graph& graph, const Components& components,
                         const std::vector<ObjectBounds>& bounds, const PrepareOptions& options,
-                        const PassObserver& after_each) {
+                        const Control& control, const PassObserver& after_each) {
+    WorkMeter meter(control, "prepare", prepared_a_look);
     PreparedCut prepared;
-    BoundedGraph passed =
-        run_passes(detail_passes(), {graph, bounds}, {.stop_after = {}, .after_each = after_each});
+    BoundedGraph passed = run_passes(detail_passes(), {graph, bounds},
+                                     {.stop_after = {}, .after_each = after_each}, nullptr, &meter);
     CutGraph& cut = prepared.cut = build_cut_graph(std::move(passed.graph), passed.bounds);
     if (!options.steps) drop_endings(cut);
     prepared.symmetry = find_symmetry(cut);
+    meter.add(prepared.symmetry.comparisons);
     if (options.culls || (components.unending[graph.root] && options.steps))
-        fit_proxies(cut, prepared.symmetry);
+        fit_proxies(cut, prepared.symmetry, &meter);
     mark_wide(cut);
     mark_solid(cut);
     prepared.bounds = bounds[graph.root].box;

@@ -10,6 +10,7 @@
 #include "compiler/detail/symmetry.h"
 #include "compiler/graph/components.h"
 #include "compiler/passes/pipeline.h"
+#include "compiler/support/control.h"
 #include "compiler/support/diagnostics.h"
 
 namespace graftal {
@@ -28,7 +29,7 @@ struct PreparedCut {
 /// Runs the passes for detail, which `after_each` sees. Requires what cut_graph() requires. O(graph).
 PreparedCut prepare_cut(const Graph& graph, const Components& components,
                         const std::vector<ObjectBounds>& bounds, const PrepareOptions& options,
-                        const PassObserver& after_each = {});
+                        const Control& control = no_control(), const PassObserver& after_each = {});
 
 /// True, after an error, if nothing says how deep the graph is to be unfolded.
 bool refuse_endless(const Graph& graph, const Components& components, const DetailOptions& options,

@@ -184,7 +184,7 @@ void InstLowerer::lower_scattered(const InstGroup& group, Lowered& object) {
     const std::optional<Placement> placement = lower_placement(group);
     const std::size_t most = lowering_.options.max_objects * max_instances_per_object;
     const ScatterContext context{environment_, graph_.settings, asked_seed(),
-                                 most - std::min(most, instance_count_)};
+                                 most - std::min(most, instance_count_), &lowering_.meter};
     const double chance = lower_chance(group);
     const bool good = placement && std::ranges::count(masters, std::optional<ObjectId>()) == 0;
     bool lost = false;

@@ -134,6 +134,7 @@ void InstLowerer::lower_object(std::size_t index) {
 
 bool InstLowerer::work(std::size_t words) {
     work_ += words;
+    lowering_.meter.add(words);
     if (work_ <= max_inst_work) return true;
     const Reached& reached = reached_[current_];
     if (!stopped_)

@@ -82,8 +82,10 @@ class ScatterLowerer {
         const std::optional<std::vector<Vec2>> points = choose_points(*area);
         if (!points) return;
         taker.begin(points->size());
-        for (std::size_t i = 0; i < points->size(); ++i)
+        for (std::size_t i = 0; i < points->size(); ++i) {
+            if (context_.meter) context_.meter->add();
             taker.take(place(i, (*points)[i]));
+        }
     }
 
   private:
@@ -252,15 +254,15 @@ class ScatterLowerer {
     std::vector<Vec2> points_by_order(const ScatterArea& area, std::size_t count, double apart) const {
         switch (order()) {
         case ScatterOrder::uniform:
-            return uniform_points(area, count, random_.sequence(places));
+            return uniform_points(area, count, random_.sequence(places), context_.meter);
         case ScatterOrder::jitter:
-            return jittered_points(area, count, random_.sequence(places));
+            return jittered_points(area, count, random_.sequence(places), context_.meter);
         case ScatterOrder::spiral:
             return spiral_points(area, count);
         case ScatterOrder::poisson:
             break;
         }
-        return poisson_points(area, count, apart, random_.sequence(places));
+        return poisson_points(area, count, apart, random_.sequence(places), context_.meter);
     }
 
     std::nullopt_t refuse_places(std::size_t placed, double apart) {

@@ -8,6 +8,7 @@
 #include "compiler/graph/settings.h"
 #include "compiler/inst/inst_ast.h"
 #include "compiler/support/affine.h"
+#include "compiler/support/control.h"
 
 namespace graftal {
 
@@ -17,6 +18,7 @@ struct ScatterContext {
     const SceneSettings& settings;     ///< for what `ground` is
     std::optional<std::uint64_t> seed; ///< `--seed`, which gives every scatter other numbers
     std::size_t most = 0;              ///< places that the graph has room for
+    WorkMeter* meter = nullptr;        ///< counts random numbers and places; null: nobody does
 };
 
 /// One instance that a scatter makes, before the transforms and the material of its group.

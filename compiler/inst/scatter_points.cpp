@@ -22,9 +22,12 @@ constexpr int samples_a_side = 256;
 /// Draws one after the other.
 class Draws {
   public:
-    explicit Draws(CounterRandom random) : random_(random) {}
+    Draws(CounterRandom random, WorkMeter* meter) : random_(random), meter_(meter) {}
 
-    double unit() { return CounterRandom::unit(random_(next_++)); }
+    double unit() {
+        if (meter_) meter_->add();
+        return CounterRandom::unit(random_(next_++));
+    }
     Vec2 in_square() {
         const double x = unit();
         return {x, unit()};
@@ -33,6 +36,7 @@ class Draws {
 
   private:
     CounterRandom random_;
+    WorkMeter* meter_;
     std::uint64_t next_ = 0;
 };
 
@@ -117,9 +121,8 @@ void fill_gaps(const ScatterArea& area, std::size_t count, double apart, Draws& 
 }
 
 /// Takes `count` of the points, in their order, all with the same chance.
-std::vector<Vec2> thinned(const std::vector<Vec2>& points, std::size_t count, CounterRandom random) {
+std::vector<Vec2> thinned(const std::vector<Vec2>& points, std::size_t count, Draws draws) {
     std::vector<Vec2> kept;
-    Draws draws(random);
     for (std::size_t i = 0; i < points.size(); ++i)
         if (draws.unit() * static_cast<double>(points.size() - i) < static_cast<double>(count - kept.size()))
             kept.push_back(points[i]);
@@ -127,14 +130,13 @@ std::vector<Vec2> thinned(const std::vector<Vec2>& points, std::size_t count, Co
 }
 
 /// A lattice of about `cells` cells over the bounds, and what of its jittered places lies in the area.
-std::vector<Vec2> jittered_lattice(const ScatterArea& area, double cells, CounterRandom random) {
+std::vector<Vec2> jittered_lattice(const ScatterArea& area, double cells, Draws draws) {
     const Vec2 extent = area.within.high - area.within.low;
     const double columns =
         std::clamp(std::round(std::sqrt(cells * (extent.x / extent.y))), 1.0, std::ceil(cells));
     const double rows = std::ceil(cells / columns);
     const Vec2 cell = extent / Vec2(columns, rows);
     std::vector<Vec2> points;
-    Draws draws(random);
     for (double y = 0; y < rows; ++y)
         for (double x = 0; x < columns; ++x) {
             const Vec2 p = area.within.low + (Vec2(x, y) + draws.in_square()) * cell;
@@ -190,16 +192,17 @@ double loose_distance(double area_size, std::size_t count) {
 }
 
 std::vector<Vec2> poisson_points(const ScatterArea& area, std::size_t count, double apart,
-                                 CounterRandom random) {
-    Draws draws(random);
+                                 CounterRandom random, WorkMeter* meter) {
+    Draws draws(random, meter);
     NearGrid grid(area.within, apart, count);
     throw_darts(area, count, draws, grid);
     if (grid.points().size() < count) fill_gaps(area, count, apart, draws, grid);
     return grid.points();
 }
 
-std::vector<Vec2> uniform_points(const ScatterArea& area, std::size_t count, CounterRandom random) {
-    Draws draws(random);
+std::vector<Vec2> uniform_points(const ScatterArea& area, std::size_t count, CounterRandom random,
+                                 WorkMeter* meter) {
+    Draws draws(random, meter);
     std::vector<Vec2> points;
     const double share = area.size() / area.within.size();
     const double most_tries = 100 + 10 * static_cast<double>(count) / share;
@@ -210,12 +213,15 @@ std::vector<Vec2> uniform_points(const ScatterArea& area, std::size_t count, Cou
     return points;
 }
 
-std::vector<Vec2> jittered_points(const ScatterArea& area, std::size_t count, CounterRandom random) {
+std::vector<Vec2> jittered_points(const ScatterArea& area, std::size_t count, CounterRandom random,
+                                  WorkMeter* meter) {
     const Vec2 extent = area.within.high - area.within.low;
     double cells = static_cast<double>(count) * extent.x * extent.y / area.size();
     for (std::uint64_t attempt = 0; attempt < most_attempts; ++attempt, cells *= 1.02) {
-        const std::vector<Vec2> points = jittered_lattice(area, cells, random.sequence(2 * attempt));
-        if (points.size() >= count) return thinned(points, count, random.sequence(2 * attempt + 1));
+        const std::vector<Vec2> points =
+            jittered_lattice(area, cells, Draws(random.sequence(2 * attempt), meter));
+        if (points.size() >= count)
+            return thinned(points, count, Draws(random.sequence(2 * attempt + 1), meter));
     }
     return {};
 }

@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include "compiler/support/control.h"
 #include "compiler/support/counter_random.h"
 #include "compiler/support/flat_area.h"
 
@@ -21,19 +22,21 @@ struct ScatterArea {
 
 // Each gives as many places as it can, at most `count`, all inside `area`. Requires size() to be more than
 // some hundredth of the whole, for the others are drawn in vain.
-// They depend on the arguments alone, and are made by additions, multiplications and roots, which all
-// machines round alike.
+// They depend on these arguments alone (a meter counts the random numbers; null: nobody does), and are made
+// by additions, multiplications and roots, which all machines round alike.
 
 /// None nearer to another than `apart` (> 0): darts, thrown until most of them miss, then candidates around
 /// every place (Bridson 2007, "Fast Poisson disk sampling in arbitrary dimensions"), until the area is full.
 std::vector<Vec2> poisson_points(const ScatterArea& area, std::size_t count, double apart,
-                                 CounterRandom random);
+                                 CounterRandom random, WorkMeter* meter = nullptr);
 
 /// Each by itself: they gather in clumps.
-std::vector<Vec2> uniform_points(const ScatterArea& area, std::size_t count, CounterRandom random);
+std::vector<Vec2> uniform_points(const ScatterArea& area, std::size_t count, CounterRandom random,
+                                 WorkMeter* meter = nullptr);
 
 /// One somewhere in each cell of a lattice: even, with neither clumps nor a least distance.
-std::vector<Vec2> jittered_points(const ScatterArea& area, std::size_t count, CounterRandom random);
+std::vector<Vec2> jittered_points(const ScatterArea& area, std::size_t count, CounterRandom random,
+                                  WorkMeter* meter = nullptr);
 
 /// As the seeds of a sunflower (Vogel 1979), about the centre of the area.
 std::vector<Vec2> spiral_points(const ScatterArea& area, std::size_t count);

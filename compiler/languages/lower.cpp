@@ -16,10 +16,18 @@ namespace graftal {
 
 namespace {
 
-LoweredText lower_root(FileId file, const LowerOptions& options, SourceMap& sources,
-                       Diagnostics& diagnostics) {
-    Lowering lowering{
-        .sources = sources, .diagnostics = diagnostics, .options = options, .languages = languages()};
+/// Modules, parts and objects after which the control is asked: some milliseconds.
+constexpr std::uint64_t lowered_a_look = 10'000;
+
+LoweredText lower_root(FileId file, const LowerOptions& options, SourceMap& sources, Diagnostics& diagnostics,
+                       const LowerHelp& help) {
+    WorkMeter meter(help.control, "lower", lowered_a_look);
+    Lowering lowering{.sources = sources,
+                      .diagnostics = diagnostics,
+                      .options = options,
+                      .look_at_texture = help.look_at_texture,
+                      .meter = meter,
+                      .languages = languages()};
     const Language* const language = language_of(file, sources, languages());
     if (options.time && !options.steps && !(language && language->has_time)) {
         diagnostics
@@ -30,8 +38,7 @@ LoweredText lower_root(FileId file, const LowerOptions& options, SourceMap& sour
     }
     const std::filesystem::path path(sources.name(file));
     lowering.loading.push_back({path.lexically_normal().string(), Span()});
-    LoweredText model{lower_file(file, Span{file, 0, 0}, lowering), std::move(lowering.derivation),
-                      std::move(lowering.orbit)};
+    LoweredText model{lower_file(file, Span{file, 0, 0}, lowering), std::move(lowering.notes)};
     if (diagnostics.has_errors() || (model.graph && !check_graph(*model.graph, diagnostics))) return {};
     if (model.graph) check_verified(*model.graph, "lower");
     return model;
@@ -47,7 +54,7 @@ std::string model_language(FileId file, const SourceMap& sources) {
 }
 
 LoweredText lower_model(const std::string& path, const LowerOptions& options, SourceMap& sources,
-                        Diagnostics& diagnostics, Status& status) {
+                        Diagnostics& diagnostics, Status& status, const LowerHelp& help) {
     std::string text;
     if (path != "-" && !options.root.empty() && !lies_in(path, options.root)) {
         diagnostics.error(Span(), fmt::format("'{}' leads out of --root '{}'", path, options.root));
@@ -55,13 +62,13 @@ LoweredText lower_model(const std::string& path, const LowerOptions& options, So
     }
     status = read_text(path, text);
     if (!status.ok()) return {};
-    return lower_text(path, std::move(text), options, sources, diagnostics);
+    return lower_text(path, std::move(text), options, sources, diagnostics, help);
 }
 
 LoweredText lower_text(const std::string& name, std::string text, const LowerOptions& options,
-                       SourceMap& sources, Diagnostics& diagnostics) {
+                       SourceMap& sources, Diagnostics& diagnostics, const LowerHelp& help) {
     const FileId file = sources.add(name == "-" ? std::string(standard_input) : name, std::move(text));
-    return lower_root(file, options, sources, diagnostics);
+    return lower_root(file, options, sources, diagnostics, help);
 }
 
 } // namespace graftal

@@ -5,7 +5,6 @@
 #include <string>
 
 #include "compiler/graph/graph.h"
-#include "compiler/lower/derivation.h"
 #include "compiler/lower/lower_options.h"
 #include "compiler/support/diagnostics.h"
 #include "compiler/support/source.h"
@@ -13,27 +12,24 @@
 
 namespace graftal {
 
-struct OrbitModel;
-
 /// What a model is.
 struct LoweredText {
     /// Verified. Nothing after errors, of an orbit, and where LowerOptions::may_draw_nothing applies.
     std::optional<Graph> graph;
-    std::optional<Derivation> derivation;    ///< of an L-system
-    std::shared_ptr<const OrbitModel> orbit; ///< in place of a graph (rifs/orbit_model.h)
+    LowerNotes notes;
 };
 
 /// Reads a model, and all that it uses, and lowers it. The language follows the file name (languages.h), for
 /// "-" (standard input) the text. Bad input is reported to `diagnostics` and gives nothing; a root file that
 /// cannot be read gives nothing and a failed `status`. Used files are looked up beside the file that names
-/// them.
+/// them. The flag of `help` ends it by Cancelled.
 LoweredText lower_model(const std::string& path, const LowerOptions& options, SourceMap& sources,
-                        Diagnostics& diagnostics, Status& status);
+                        Diagnostics& diagnostics, Status& status, const LowerHelp& help = {});
 
 /// The same as lower_model for a text already at hand, as the model `name` (which decides the language and
 /// where used files are looked up).
 LoweredText lower_text(const std::string& name, std::string text, const LowerOptions& options,
-                       SourceMap& sources, Diagnostics& diagnostics);
+                       SourceMap& sources, Diagnostics& diagnostics, const LowerHelp& help = {});
 
 /// The extension of a language of the table, by the name of the file, for standard input by its text; else
 /// whatever follows the dot of the name. The file of the model itself is the first in `sources`.

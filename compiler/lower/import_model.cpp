@@ -203,6 +203,7 @@ std::optional<Primitive> load_mesh(Span name_span, std::string_view path, Loweri
         if (!known->second) ++lowering.known_failures;
         return known->second;
     }
+    lowering.notes.meshes[*found] = stamp_of(*found);
     std::string bytes, fault;
     if (const Status read = read_text(*found, bytes); !read.ok()) {
         add_chain(lowering.diagnostics.error(name_span, read.message()), lowering);
@@ -238,6 +239,7 @@ std::optional<FileId> read_model(const UseStatement& use, Lowering& lowering) {
 std::optional<ObjectId> import_model(Graph& into, const UseStatement& use, Lowering& lowering) {
     const std::shared_ptr<const Graph> model = load(use, {}, lowering);
     if (!model || !has_room(into, *model, use.path_span, lowering)) return std::nullopt;
+    lowering.meter.add(model->objects.size());
     return append_objects(into, *model, use.name.text, append_materials(into, *model, use.name.text, false));
 }
 
@@ -245,6 +247,7 @@ std::optional<ObjectId> import_member(Graph& into, const UseStatement& use, cons
                                       Lowering& lowering) {
     const std::shared_ptr<const Graph> model = load(use, inner, lowering);
     if (!model || !has_room(into, *model, use.path_span, lowering)) return std::nullopt;
+    lowering.meter.add(model->objects.size());
     return append_objects(into, *model, free_prefix(into, use.name.text),
                           append_materials(into, *model, use.name.text, true));
 }

@@ -84,6 +84,8 @@ std::vector<InnerParameter> inner_parameters_of(FileId file, Lowering& lowering)
     Lowering aside{.sources = lowering.sources,
                    .diagnostics = quiet,
                    .options = lowering.options,
+                   .look_at_texture = lowering.look_at_texture,
+                   .meter = lowering.meter,
                    .languages = lowering.languages,
                    .loading = std::vector<LoadingFile>(2)};
     const Language* const language = language_of(file, lowering.sources, lowering.languages);

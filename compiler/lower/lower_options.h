@@ -7,6 +7,9 @@
 #include <optional>
 #include <string>
 
+#include "compiler/lower/derivation.h"
+#include "compiler/support/control.h"
+#include "compiler/support/file.h"
 #include "compiler/support/status.h"
 #include "compiler/support/texture_facts.h"
 
@@ -15,8 +18,6 @@ namespace graftal {
 struct LowerOptions {
     std::map<std::string, double, std::less<>> set; ///< `--set NAME=VALUE`: replaces the value of a `let`
     std::optional<unsigned> steps; ///< derivation steps of an L-system, in place of what the model says
-    /// Looks at the picture that a material names. Without this, textures are taken on trust.
-    std::function<Status(const std::string& path, TextureFacts& facts)> look_at_texture;
     /// The same between steps: L-systems whose drawing reads the time are drawn as old as this, after as many
     /// steps as are done by then; others after `steps`, or if these are not given, too. Other languages have
     /// no time: without `steps` it is an error.
@@ -35,6 +36,22 @@ struct LowerOptions {
     bool may_draw_nothing = false;
     /// The root model may be an orbit (rifs/orbit_model.h), which has no graph; else an orbit is an error.
     bool may_be_orbit = false;
+};
+
+/// Looks at the picture that a material names.
+using LookAtTexture = std::function<Status(const std::string& path, TextureFacts& facts)>;
+
+/// Whom lowering asks on its way.
+struct LowerHelp {
+    LookAtTexture look_at_texture; ///< without this, textures are taken on trust
+    Control control;               ///< follows modules, parts and objects
+};
+
+/// What lowering learns beside the graph.
+struct LowerNotes {
+    std::optional<Derivation> derivation;         ///< of an L-system
+    std::shared_ptr<const OrbitModel> orbit;      ///< or null; what is one has no graph
+    std::map<std::string, FileStamp> meshes = {}; ///< by path: the files of meshes, as they were when read
 };
 
 } // namespace graftal

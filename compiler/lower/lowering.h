@@ -11,7 +11,6 @@
 #include <vector>
 
 #include "compiler/graph/graph.h"
-#include "compiler/lower/derivation.h"
 #include "compiler/lower/language.h"
 #include "compiler/lower/lower_options.h"
 #include "compiler/support/diagnostics.h"
@@ -36,6 +35,8 @@ struct Lowering {
     SourceMap& sources;
     Diagnostics& diagnostics;
     const LowerOptions& options;
+    const LookAtTexture& look_at_texture;
+    WorkMeter& meter;                      ///< of modules, parts and objects
     std::span<const Language> languages;   ///< that models may be written in
     std::vector<LoadingFile> loading = {}; ///< from the root model to the file being lowered
     /// Models already lowered, by path and inner parameters; null after errors. A model used twice is read
@@ -44,9 +45,8 @@ struct Lowering {
     std::map<std::string, FileId> files = {};                    ///< used files that were read, by path
     std::map<std::string, std::optional<Primitive>> meshes = {}; ///< by path; nothing after an error
     std::size_t use_count = 0;                                   ///< `use` statements so far, in all files
-    std::size_t known_failures = 0;               ///< models that were asked for and had failed before
-    std::optional<Derivation> derivation = {};    ///< of the root model
-    std::shared_ptr<const OrbitModel> orbit = {}; ///< the root model, if it is one; then it has no graph
+    std::size_t known_failures = 0; ///< models that were asked for and had failed before
+    LowerNotes notes = {};          ///< of the root model, apart from meshes
 
     /// `--set` speaks to the root model only.
     bool at_root_model() const { return loading.size() <= 1; }

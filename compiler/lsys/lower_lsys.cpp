@@ -327,12 +327,13 @@ class LsysLowering {
                                                         .inner = inner_counts(models),
                                                         .has_other_models = has_other_models(models),
                                                         .max_parts = options.max_objects,
-                                                        .run_from = options.run_from},
+                                                        .run_from = options.run_from,
+                                                        .meter = &lowering_.meter},
                                                        graph_, pool_, diagnostics_);
         if (!drawing) return std::nullopt;
         if (is_root(block)) {
-            lowering_.derivation = std::move(drawing->derivation);
-            lowering_.derivation->families = families();
+            lowering_.notes.derivation = std::move(drawing->derivation);
+            lowering_.notes.derivation->families = families();
         }
         if (drawing->instances.empty() && !drawing->run) {
             report_nothing(block, steps);

@@ -204,6 +204,7 @@ bool LsysComposer::unfold(ModuleId module, Stage stage, std::uint32_t birth, std
 bool LsysComposer::advance(Task& task) {
     for (; task.at < task.string.size() && !task.turtle.finished(); ++task.at) {
         const ModuleId module = task.string[task.at];
+        rewriter_.work();
         if (FoldedWord::is_piece(module)) {
             if (!draw_piece(task, module)) return true;
             continue;

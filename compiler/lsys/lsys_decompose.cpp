@@ -18,6 +18,7 @@ Moment LsysDecomposer::moment(ModuleId module) const {
 bool LsysDecomposer::run(std::span<const ModuleId> word, const CounterRandom& random, ModuleString& out) {
     applied_ = 0;
     for (std::size_t i = 0; i < word.size(); ++i) {
+        rewriter_.work();
         if (!rewriter_.is_rewritten(RuleKind::decompose, word[i], moment(word[i])))
             out.push_back(word[i]);
         else if (!run(word[i], random.sequence(i), out))
@@ -32,6 +33,7 @@ bool LsysDecomposer::run(ModuleId module, const CounterRandom& random, ModuleStr
     while (!pending_.empty()) {
         const auto [next, depth] = pending_.back();
         pending_.pop_back();
+        rewriter_.work();
         const std::vector<Alternative>* alternatives =
             rewriter_.alternatives(RuleKind::decompose, next, moment(next));
         if (!alternatives) return false;

@@ -84,6 +84,7 @@ bool LsysDeriver::step() {
 /// How long the next word is going to be; without chance and contexts.
 std::optional<std::uint64_t> LsysDeriver::count() {
     std::uint64_t length = 0;
+    rewriter_.work(word_.size());
     for (const ModuleId module : word_) {
         const LsysSuccessors::Entry run = successors_.entry(module);
         if (run == LsysSuccessors::unknown) return std::nullopt;
@@ -100,6 +101,7 @@ std::optional<std::uint64_t> LsysDeriver::choose() {
     chosen_.reserve(word_.size());
     std::uint64_t length = 0;
     for (std::uint32_t i = 0; i < word_.size(); ++i) {
+        rewriter_.work();
         const LsysSuccessors::Entry entry = successors_.entry(word_[i]);
         if (entry == LsysSuccessors::unknown) return std::nullopt;
         std::optional<RunId> run = entry;

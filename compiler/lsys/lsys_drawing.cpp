@@ -96,7 +96,7 @@ class Drawer {
     Drawer(const LsysGrammar& grammar, const ModelPlacer& models, const LsysDrawOptions& options,
            Diagnostics& diagnostics)
         : grammar_(grammar), models_(models), options_(options), diagnostics_(diagnostics),
-          rewriter_(grammar, diagnostics, options.seed), sizes_(grammar, options.inner),
+          rewriter_(grammar, diagnostics, options.seed, options.meter), sizes_(grammar, options.inner),
           width_(stated_width(grammar)), width_is_open_(has_open_width(grammar)) {
         add_roundings();
     }

@@ -11,6 +11,7 @@
 #include "compiler/lower/object_pool.h"
 #include "compiler/lsys/lsys_grammar.h"
 #include "compiler/lsys/model_placer.h"
+#include "compiler/support/control.h"
 
 namespace graftal {
 
@@ -25,6 +26,7 @@ struct LsysDrawOptions {
     bool has_other_models = false; ///< than primitives of finite size
     std::size_t max_parts = 1'000'000;
     std::uint64_t run_from = 4096; ///< words of so many modules are drawn into a run, if they repeat little
+    WorkMeter* meter = nullptr;    ///< counts modules, each time that one is looked at; null: nobody does
 };
 
 struct LsysDrawing {

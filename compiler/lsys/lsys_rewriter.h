@@ -10,6 +10,7 @@
 
 #include "compiler/lsys/lsys_grammar.h"
 #include "compiler/lsys/module_table.h"
+#include "compiler/support/control.h"
 #include "compiler/support/id_table.h"
 
 namespace graftal {
@@ -56,14 +57,20 @@ inline constexpr std::size_t max_distinct_modules = 20'000'000;
 /// Applies the productions of a grammar to single modules; each module is rewritten once and then known.
 class LsysRewriter {
   public:
-    /// All must outlive this.
-    LsysRewriter(const LsysGrammar& grammar, Diagnostics& diagnostics, std::uint64_t seed = 0)
-        : grammar_(grammar), diagnostics_(diagnostics), seed_(seed),
+    /// All must outlive this. The meter counts what work() is told; null: nobody does.
+    LsysRewriter(const LsysGrammar& grammar, Diagnostics& diagnostics, std::uint64_t seed = 0,
+                 WorkMeter* meter = nullptr)
+        : grammar_(grammar), diagnostics_(diagnostics), seed_(seed), meter_(meter),
           has_ages_(std::ranges::find(grammar.ages, true) != grammar.ages.end()) {}
 
     const LsysGrammar& grammar() const { return grammar_; }
     ModuleTable& modules() { return modules_; }
     const ModuleTable& modules() const { return modules_; }
+
+    /// Who derives or draws by this has looked at so many modules.
+    void work(std::uint64_t modules = 1) const {
+        if (meter_) meter_->add(modules);
+    }
 
     /// The modules of the axiom; nothing after an error.
     std::optional<ModuleString> axiom();
@@ -147,6 +154,7 @@ class LsysRewriter {
     const LsysGrammar& grammar_;
     Diagnostics& diagnostics_;
     std::uint64_t seed_;
+    WorkMeter* meter_;
     bool has_ages_;
     std::uint32_t birth_ = ModuleTable::no_birth;
     ModuleTable modules_;

@@ -50,6 +50,7 @@ bool LsysStream::run() {
             frames_.pop_back();
             continue;
         }
+        rewriter_.work();
         Module module;
         if (!read_module(frame, module)) return false;
         // The frame may move now.
@@ -253,6 +254,7 @@ bool LsysStream::draw(const FoldedWord& word, std::span<const ModuleId> string) 
         const Module module{modules.symbol(id), static_cast<std::uint32_t>(known.size()), birth,
                             grammar_.source->axiom->span};
         ++modules_;
+        rewriter_.work();
         if (!emit(module, 0) || !run()) return false;
         values_.clear();
     }

@@ -61,11 +61,12 @@ std::span<const Pass> detail_passes() {
 }
 
 BoundedGraph run_passes(std::span<const Pass> passes, BoundedGraph graph, const PipelineOptions& options,
-                        std::vector<PassTime>* times) {
+                        std::vector<PassTime>* times, WorkMeter* meter) {
     const bool known = std::any_of(passes.begin(), passes.end(),
                                    [&](const Pass& pass) { return options.stop_after == pass.name; });
     GRAFTAL_CHECK(known || options.stop_after.empty(), fmt::format("no pass '{}'", options.stop_after));
     for (const Pass& pass : passes) {
+        if (meter) meter->add(graph.graph.objects.size());
         const auto begin = std::chrono::steady_clock::now();
         const std::map<ObjectId, Object> before = objects_on(graph.path, graph.graph);
         Rewritten after = pass.run(std::move(graph.graph), graph.bounds);

@@ -9,6 +9,7 @@
 #include "compiler/analysis/contraction.h"
 #include "compiler/graph/graph.h"
 #include "compiler/passes/renumbering.h"
+#include "compiler/support/control.h"
 
 namespace graftal {
 
@@ -49,8 +50,9 @@ struct BoundedGraph {
 };
 
 /// Runs the passes in order, carries over what is known, and verifies the graph after each; throws, naming
-/// the pass, if one broke it. Requires that `stop_after` is empty or names a pass of these.
+/// the pass, if one broke it. Requires that `stop_after` is empty or names a pass of these. The meter counts
+/// objects before each pass; null: nobody does.
 BoundedGraph run_passes(std::span<const Pass> passes, BoundedGraph graph, const PipelineOptions& options = {},
-                        std::vector<PassTime>* times = nullptr);
+                        std::vector<PassTime>* times = nullptr, WorkMeter* meter = nullptr);
 
 } // namespace graftal

@@ -38,6 +38,7 @@ std::optional<Cut> assemble_within(AssemblyLimits& limits, const CutGraph& cut, 
         request.most_visits = static_cast<std::uint64_t>(std::min(limits.work_seconds, 1e6) *
                                                          WorkRates::visits / limits.slowness);
         baked.push_back(bake(cut, symmetry, request, most_triangles));
+        if (limits.meter) limits.meter->add(baked.back().visits);
         triangles += baked.back().triangles;
         limits.work_seconds -=
             limits.slowness * static_cast<double>(baked.back().visits) / WorkRates::visits +

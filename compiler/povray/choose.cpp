@@ -39,11 +39,11 @@ struct MeshKind {
 class Chooser {
   public:
     Chooser(const CutGraph& cut, const Symmetry& symmetry, const Projection& projection, Weights& weights,
-            double most_bytes)
+            double most_bytes, WorkMeter* meter)
         : cut_(cut), symmetry_(symmetry), projection_(projection), weights_(weights), most_bytes_(most_bytes),
           placement_bytes_(PovrayCosts::placement +
                            (cut.tinted ? PovrayCosts::own_texture + PovrayCosts::own_layer : 0)),
-          placement_text_(SdlLengths::placement + (cut.tinted ? SdlLengths::own_texture : 0)) {
+          placement_text_(SdlLengths::placement + (cut.tinted ? SdlLengths::own_texture : 0)), meter_(meter) {
         const bool crowded = std::ranges::any_of(
             cut.nodes, [](const CutNode& node) { return node.edges.size() > many_edges; });
         if (crowded) grain_ = PieceKind::steps_an_octave / coarse_steps_an_octave;
@@ -171,6 +171,12 @@ class Chooser {
     }
 
     void split(const PieceKind& kind) {
+        const double before = pieces_;
+        split_pieces(kind);
+        if (meter_) meter_->add(static_cast<std::uint64_t>(pieces_ - before));
+    }
+
+    void split_pieces(const PieceKind& kind) {
         auto node = buckets_.extract(kind);
         if (node.empty()) return;
         const Bucket& bucket = node.mapped();
@@ -226,13 +232,14 @@ class Chooser {
     };
     std::map<MeshKind, LiveMesh> live_meshes_;
     std::priority_queue<Entry> queue_;
+    WorkMeter* meter_;
 };
 
 } // namespace
 
 Choice choose_cut(const CutGraph& cut, const Symmetry& symmetry, const Projection& projection,
-                  const Piece& root, Weights& weights, double most_bytes) {
-    return Chooser(cut, symmetry, projection, weights, most_bytes).choose(root);
+                  const Piece& root, Weights& weights, double most_bytes, WorkMeter* meter) {
+    return Chooser(cut, symmetry, projection, weights, most_bytes, meter).choose(root);
 }
 
 } // namespace graftal

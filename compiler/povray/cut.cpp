@@ -27,6 +27,9 @@ constexpr double estimate_slack = 1.25;
 /// Of the memory there is, what may be spent on what makes POV-Ray faster.
 constexpr double share_of_memory = 0.6;
 
+/// After so many pieces the control is asked: some milliseconds.
+constexpr std::uint64_t pieces_a_look = 10'000;
+
 /// Of the work allowed, what graftal itself may take: the rest is for the rays.
 constexpr double share_of_work = 0.75;
 
@@ -41,9 +44,10 @@ std::string readable_count(double count) {
 class Cutter {
   public:
     Cutter(const Graph& graph, const PreparedCut& prepared, const View& view, const DetailOptions& options,
-           const CutOptions& cut_options, Diagnostics& diagnostics)
+           const CutOptions& cut_options, Diagnostics& diagnostics, const Control& control)
         : graph_(graph), view_(view), options_(options), cut_options_(cut_options), diagnostics_(diagnostics),
-          prepared_(prepared), cut_(prepared_.cut), symmetry_(prepared_.symmetry) {}
+          prepared_(prepared), cut_(prepared_.cut), symmetry_(prepared_.symmetry),
+          meter_(control, "cut", pieces_a_look) {}
 
     std::optional<Cut> run() {
         // Of what is not to be culled nobody knows a coarser picture.
@@ -143,7 +147,7 @@ class Cutter {
             std::optional<Cut> cut = assembled(root, projection, weights, memory);
             if (cut || cut_options_.flatten) return cut;
         }
-        choice_ = choose_cut(cut_, symmetry_, projection, root, weights, share_of_memory * memory);
+        choice_ = choose_cut(cut_, symmetry_, projection, root, weights, share_of_memory * memory, &meter_);
         spend(seconds_of_kinds(weights.visits() - weighed) + choice_.pieces / WorkRates::pieces);
         return assembled(root, projection, weights, memory);
     }
@@ -162,7 +166,7 @@ class Cutter {
         AssemblyLimits limits{static_cast<std::size_t>(std::max(0.0, memory) / PovrayCosts::least_placement) +
                                   1,
                               static_cast<std::size_t>(std::max(0.0, memory) / PovrayCosts::triangle) + 1,
-                              work_seconds, slowness_of_graph(prepared_.instances)};
+                              work_seconds, slowness_of_graph(prepared_.instances), &meter_};
         std::optional<Cut> cut =
             assemble(cut_, symmetry_, projection, root, choice_, weights,
                      options_.limit_normals && !cut_options_.flatten, *prepared_.shells, limits);
@@ -289,6 +293,7 @@ class Cutter {
     double cube_triangles_ = 0; ///< visible_cube_triangles(), whatever the error
     int grain_ = 1;             ///< of the last weights
     double work_seconds_left_ = 0;
+    WorkMeter meter_;             ///< of pieces that are chosen and unfolded, in all tries
     bool failed_by_work_ = false; ///< the last try that failed ended for its work
     Choice choice_;
 };
@@ -306,8 +311,8 @@ std::optional<Cut> cut_graph(const Graph& graph, const Components& components,
 
 std::optional<Cut> cut_prepared(const Graph& graph, const PreparedCut& prepared, const View& view,
                                 const DetailOptions& detail, Diagnostics& diagnostics,
-                                const CutOptions& options) {
-    return Cutter(graph, prepared, view, detail, options, diagnostics).run();
+                                const CutOptions& options, const Control& control) {
+    return Cutter(graph, prepared, view, detail, options, diagnostics, control).run();
 }
 
 } // namespace graftal

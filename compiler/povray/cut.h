@@ -13,6 +13,7 @@
 #include "compiler/graph/components.h"
 #include "compiler/povray/cut_parts.h"
 #include "compiler/scene/scene.h"
+#include "compiler/support/control.h"
 #include "compiler/support/diagnostics.h"
 
 namespace graftal {
@@ -33,9 +34,10 @@ std::optional<Cut> cut_graph(const Graph& graph, const Components& components,
                              const CutOptions& options = {});
 
 /// The same, of a graph that is prepared already. Requires that it was by detail.preparing(), and that
-/// refuse_endless() lets it pass.
+/// refuse_endless() lets it pass. The control follows the pieces that are chosen, unfolded and baked, in all
+/// tries.
 std::optional<Cut> cut_prepared(const Graph& graph, const PreparedCut& prepared, const View& view,
                                 const DetailOptions& detail, Diagnostics& diagnostics,
-                                const CutOptions& options = {});
+                                const CutOptions& options = {}, const Control& control = no_control());
 
 } // namespace graftal

@@ -55,6 +55,7 @@ class Placing {
         for (Piece piece; walk_.next(piece);) {
             limits.work_seconds -= (1 + more_work_) / WorkRates::leaves;
             more_work_ = 0;
+            if (limits.meter) limits.meter->add();
             if (out_.things.size() + out_.runs.part_count() > limits.max_placements ||
                 limits.work_seconds < 0)
                 return false;

@@ -244,7 +244,7 @@ void lower_orbit_file(const RifsFile& tree, Lowering& lowering) {
     if (!may_stand_there(tree, lowering)) return;
     OrbitModel model = OrbitLowering(tree, tree.orbits.front(), lowering).lower();
     if (lowering.diagnostics.has_errors()) return;
-    lowering.orbit = std::make_shared<const OrbitModel>(std::move(model));
+    lowering.notes.orbit = std::make_shared<const OrbitModel>(std::move(model));
 }
 
 std::optional<Vec3> apply(const OrbitFormulas& map, Vec3 point, std::vector<double>& slots) {

@@ -223,6 +223,7 @@ class RifsLowering {
         for (std::uint32_t i = 0; i < system_.nodes.size(); ++i)
             if (!system_.nodes[i].empty) ids[i] = next++;
         for (const RifsNode& node : system_.nodes) {
+            lowering_.meter.add();
             if (node.empty) continue;
             const std::string_view block = system_.blocks[node.block].source->name.text;
             add_node(node, qualified ? fmt::format("{}.{}", block, node.name) : node.name, ids);

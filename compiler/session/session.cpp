@@ -1,7 +1,7 @@
 #include "compiler/session/session.h"
 
 #include "compiler/session/stage_clock.h"
-#include "compiler/session/stages.h"
+#include "compiler/support/file.h"
 
 namespace graftal {
 
@@ -11,7 +11,7 @@ namespace {
 bool same_options(const LowerOptions& a, const LowerOptions& b) {
     return a.set == b.set && a.seed == b.seed && a.root == b.root && a.exact == b.exact &&
            a.max_modules == b.max_modules && a.run_from == b.run_from && a.max_objects == b.max_objects &&
-           a.may_draw_nothing == b.may_draw_nothing;
+           a.may_draw_nothing == b.may_draw_nothing && a.may_be_orbit == b.may_be_orbit;
 }
 
 /// The depth as the stages after lowering read it: that of an L-system is spent.
@@ -31,36 +31,62 @@ void Session::edit(std::string text) {
     ++edits_;
 }
 
-void Session::reload() {
-    text_.reset();
+void Session::reload(bool textures_changed) {
     ++edits_;
+    // A file that could not be used before may be there now.
+    bool changed = textures_changed || lowered_.failed;
+    for (FileId file = 1; file < sources_.size() && !changed; ++file) {
+        std::string text;
+        const Status status = read_text(std::string(sources_.name(file)), text);
+        changed = !status.ok() || text != sources_.text(file);
+    }
+    for (const auto& [path, stamp] : meshes_)
+        changed = changed || stamp_of(path) != stamp;
+    if (changed) ++file_changes_;
+}
+
+template<typename Value, typename Work>
+std::shared_ptr<const Value> Session::unless_cancelled(Compilation& compilation, const Work& work) {
+    try {
+        return work();
+    } catch (const Cancelled&) {
+        compilation.status = Status::failure("interrupted");
+        return nullptr;
+    }
 }
 
 std::shared_ptr<const LoweredModel> Session::lowered(const StageOptions& options, Compilation& compilation) {
-    if (!need_lowered(options, true, compilation)) return nullptr;
-    return lowered_.value;
+    return unless_cancelled<LoweredModel>(
+        compilation, [&] { return need_lowered(options, true, compilation) ? lowered_.value : nullptr; });
 }
 
 std::shared_ptr<const AnalysedModel> Session::analysed(const StageOptions& options, Compilation& compilation,
                                                        bool for_report) {
-    if (!need_analysed(options, true, compilation)) return nullptr;
-    if (!for_report && refuse_divergent(*analysed_.value, compilation.diagnostics)) return nullptr;
-    return analysed_.value;
+    return unless_cancelled<AnalysedModel>(compilation, [&]() -> std::shared_ptr<const AnalysedModel> {
+        if (!need_analysed(options, true, compilation)) return nullptr;
+        if (!for_report && refuse_divergent(*analysed_.value, compilation.diagnostics)) return nullptr;
+        return analysed_.value;
+    });
 }
 
 std::shared_ptr<const ViewedModel> Session::viewed(const StageOptions& options, Compilation& compilation) {
-    return need_viewed(options, compilation) ? viewed_.value : nullptr;
+    return unless_cancelled<ViewedModel>(
+        compilation, [&] { return need_viewed(options, compilation) ? viewed_.value : nullptr; });
 }
 
 std::shared_ptr<const PreparedCut> Session::prepared(const StageOptions& options, Compilation& compilation) {
-    return need_viewed(options, compilation) && need_prepared(options, compilation) ? prepared_.value
-                                                                                    : nullptr;
+    return unless_cancelled<PreparedCut>(compilation, [&] {
+        const bool there = need_viewed(options, compilation) && need_prepared(options, compilation);
+        return there ? prepared_.value : nullptr;
+    });
 }
 
 std::shared_ptr<const CompiledModel> Session::compiled(const StageOptions& options,
                                                        Compilation& compilation) {
-    return need_viewed(options, compilation) && need_compiled(options, compilation) ? compiled_.value
-                                                                                    : nullptr;
+    return unless_cancelled<CompiledModel>(compilation, [&] {
+        const bool there = need_viewed(options, compilation) && need_compiled(options, compilation);
+        return there ? compiled_.value : nullptr;
+    });
 }
 
 void Session::yield_memory() {
@@ -74,7 +100,7 @@ void Session::yield_memory() {
 }
 
 bool Session::same_inputs(const LowerKey& before, const LowerKey& now) const {
-    if (before.source != now.source || before.accept_orbit != now.accept_orbit ||
+    if (before.source != now.source || before.files != now.files ||
         !same_options(before.options, now.options))
         return false;
     const LowerOptions &a = before.options, &b = now.options;
@@ -120,22 +146,25 @@ bool Session::need_source(const StageOptions& options, Compilation& compilation)
 bool Session::need_lowered(const StageOptions& options, bool wanted, Compilation& compilation) {
     const auto up_to_date = [&] {
         if (!source_.key || *source_.key != SourceKey{options.lower.root, edits_}) return false;
-        const LowerKey key{source_.serial, options.lower, options.accept_orbit};
+        const LowerKey key{source_.serial, file_changes_, options.lower};
         return lowered_.key && same_inputs(*lowered_.key, key) &&
                (lowered_.value || lowered_.failed || !wanted);
     };
     const auto lower = [&] {
         if (!need_source(options, compilation)) return false;
         if (up_to_date()) return true;
-        LowerKey key{source_.serial, options.lower, options.accept_orbit};
+        LowerKey key{source_.serial, file_changes_, options.lower};
         restart(lowered_, lowered_.key && same_inputs(*lowered_.key, key));
         sources_ = SourceMap();
         Diagnostics findings;
         ++runs_.lowered;
         std::optional<LoweredModel> model =
-            lower_source(*source_.value, options.lower, options.accept_orbit, sources_, findings);
-        reads_steps_ = !model || model->derivation;
-        reads_time_ = !model || (model->derivation && model->derivation->timed);
+            lower_source(*source_.value, options.lower, {look_at_texture_, control_}, sources_, findings);
+        const Derivation* const derivation =
+            model && model->notes.derivation ? &*model->notes.derivation : nullptr;
+        reads_steps_ = !model || derivation;
+        reads_time_ = !model || (derivation && derivation->timed);
+        if (model) meshes_ = model->notes.meshes;
         finish(lowered_, std::move(key), std::move(model), std::move(findings));
         return true;
     };
@@ -147,16 +176,16 @@ bool Session::need_lowered(const StageOptions& options, bool wanted, Compilation
 
 bool Session::need_analysed(const StageOptions& options, bool wanted, Compilation& compilation) {
     Diagnostics findings;
-    if (!check_pass(options.pipeline.stop_after, findings)) {
+    if (!check_pass(options.stop_after, findings)) {
         compilation.diagnostics = std::move(findings);
         return false;
     }
     if (!need_lowered(options, false, compilation)) return false;
-    AnalyseKey key{lowered_.serial, options.pipeline.stop_after, options.view.zoom.at};
+    AnalyseKey key{lowered_.serial, options.stop_after, options.view.zoom.at};
     const bool same = analysed_.key == key;
     if (!same || (wanted && !analysed_.value && !analysed_.failed)) {
         if (!need_lowered(options, true, compilation)) return false;
-        if (lowered_.value->orbit) return false;
+        if (lowered_.value->notes.orbit) return false;
         restart(analysed_, same);
         LoweredModel lowered;
         if (keep_ == Keep::everything || lowered_.value.use_count() > 1) {
@@ -168,7 +197,8 @@ bool Session::need_analysed(const StageOptions& options, bool wanted, Compilatio
         findings = lowered_.findings;
         ++runs_.analysed;
         std::optional<AnalysedModel> model =
-            analyse(std::move(lowered), options.view.zoom.at, options.pipeline, findings, compilation.times);
+            analyse(std::move(lowered), options.view.zoom.at, {options.stop_after, after_pass_}, findings,
+                    compilation.times, control_);
         finish(analysed_, std::move(key), std::move(model), std::move(findings));
     }
     compilation.diagnostics = analysed_.findings;
@@ -214,7 +244,7 @@ bool Session::need_prepared(const StageOptions& options, Compilation& compilatio
     ++runs_.prepared;
     finish(prepared_, std::move(key),
            std::optional(prepare_cut(model.graph, model.components, model.bounds, detail.preparing(),
-                                     options.pipeline.after_each)),
+                                     control_, after_pass_)),
            {});
     return true;
 }
@@ -233,7 +263,7 @@ bool Session::need_compiled(const StageOptions& options, Compilation& compilatio
             Diagnostics findings = viewed_.findings;
             ++runs_.compiled;
             std::optional<Cut> made = cut_prepared(viewed.model->graph, *prepared_.value, viewed.view, detail,
-                                                   findings, options.cut);
+                                                   findings, options.cut, control_);
             if (keep_ == Keep::nothing) prepared_.value.reset();
             std::optional<CompiledModel> model;
             if (made) model = CompiledModel{viewed.model, viewed.steps, viewed.view, std::move(*made)};

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -9,7 +10,9 @@
 
 #include "compiler/detail/prepare.h"
 #include "compiler/session/stage_options.h"
+#include "compiler/session/stages.h"
 #include "compiler/session/values.h"
+#include "compiler/support/control.h"
 
 namespace graftal {
 
@@ -44,12 +47,23 @@ class Session {
     /// A model that is a text already. `name` decides the language, and where used files are looked up.
     Session(std::string name, std::string text, Keep keep = Keep::everything);
 
+    /// Long stages are ended and followed by this from now on. A stage that is cancelled gives null, and a
+    /// failed status: "interrupted".
+    void set_control(Control control) { control_ = std::move(control); }
+    const Control& control() const { return control_; }
+
     /// The model's own text is this from now on, whatever its file says.
     void edit(std::string text);
-    /// Files are read again where they are needed next.
-    void reload();
+    /// Looks whether files have changed, those that the model names too; a text that was given stays.
+    /// `textures_changed`: some picture that was looked at is another one now.
+    void reload(bool textures_changed = false);
 
-    /// The model before passes; one that is an orbit has no graph (StageOptions::accept_orbit).
+    /// Without this, textures are taken on trust.
+    void look_at_textures(LookAtTexture look) { look_at_texture_ = std::move(look); }
+    /// Sees the graph after each pass, for models and for detail.
+    void after_each_pass(PassObserver observer) { after_pass_ = std::move(observer); }
+
+    /// The model before passes; one that is an orbit has no graph (LowerOptions::may_be_orbit).
     std::shared_ptr<const LoweredModel> lowered(const StageOptions& options, Compilation& compilation);
     /// One that does not converge is an error, unless it is wanted `for_report`: then the verdict is part of
     /// the result. Null without an error for an orbit that is accepted.
@@ -84,8 +98,8 @@ class Session {
     };
     struct LowerKey {
         std::uint64_t source = 0;
+        std::uint64_t files = 0; ///< how often those that it names were found to have changed
         LowerOptions options;
-        bool accept_orbit = false;
     };
     struct AnalyseKey {
         std::uint64_t lowered = 0;
@@ -113,6 +127,9 @@ class Session {
         bool operator==(const CompileKey&) const = default;
     };
 
+    /// What the work gives; null, with a failed status, if it was cancelled.
+    template<typename Value, typename Work>
+    std::shared_ptr<const Value> unless_cancelled(Compilation& compilation, const Work& work);
     /// What lowering gives does not depend on the steps and times that it does not read.
     bool same_inputs(const LowerKey& before, const LowerKey& now) const;
     PrepareKey prepare_key(const StageOptions& options) const;
@@ -134,13 +151,18 @@ class Session {
     std::string path_;
     std::optional<std::string> text_; ///< in place of the file's
     std::uint64_t edits_ = 0;
+    std::uint64_t file_changes_ = 0;
+    LookAtTexture look_at_texture_;
+    PassObserver after_pass_;
     Keep keep_;
+    Control control_;
     StageRuns runs_;
     std::uint64_t serials_ = 0;
 
     Slot<SourceKey, Source> source_;
     Slot<LowerKey, LoweredModel> lowered_;
-    SourceMap sources_;       ///< of the last lowering
+    SourceMap sources_;                       ///< of the last lowering
+    std::map<std::string, FileStamp> meshes_; ///< that it read, too
     bool reads_steps_ = true; ///< the last lowering: what it gives depends on steps and on the time
     bool reads_time_ = true;
     Slot<AnalyseKey, AnalysedModel> analysed_;

@@ -1,10 +1,10 @@
 #pragma once
 
 #include <memory>
+#include <string>
 
 #include "compiler/detail/detail_options.h"
 #include "compiler/lower/lower_options.h"
-#include "compiler/passes/pipeline.h"
 #include "compiler/povray/cut.h"
 #include "compiler/scene/scene.h"
 #include "compiler/zoom/reroot.h"
@@ -26,10 +26,10 @@ struct ViewOptions {
 
 /// The options of all stages of a session, those of each stage by themselves.
 struct StageOptions {
-    LowerOptions lower; ///< its steps are those of the command line, for all languages
-    /// An orbit (orbit_model.h) is no error: it has no graph, and ends at the stage of lowering.
-    bool accept_orbit = false;
-    PipelineOptions pipeline;
+    /// Its steps are those of the command line, for all languages. An orbit that it accepts has no graph, and
+    /// ends at the stage of lowering.
+    LowerOptions lower;
+    std::string stop_after; ///< the last pass for models; "": all run
     ViewOptions view;
     DetailOptions detail; ///< its steps are filled in: see resolved()
     CutOptions cut;

@@ -23,14 +23,15 @@ namespace {
 
 /// Runs the passes. The path that an address led to follows the objects that it leads through.
 Graph optimise(Graph graph, std::optional<GraphPath>& at, const PipelineOptions& options,
-               std::vector<StageTime>& times) {
+               std::vector<StageTime>& times, const Control& control) {
+    WorkMeter meter(control, "passes", 1);
     std::vector<PassTime> pass_times;
     BoundedGraph before{std::move(graph), {}};
     if (at) {
         before.path = at->steps;
         before.path.insert(before.path.end(), at->cycle.begin(), at->cycle.end());
     }
-    BoundedGraph after = run_passes(model_passes(), std::move(before), options, &pass_times);
+    BoundedGraph after = run_passes(model_passes(), std::move(before), options, &pass_times, &meter);
     if (at) {
         const auto end = after.path.begin() + static_cast<std::ptrdiff_t>(at->steps.size());
         at = GraphPath{{after.path.begin(), end}, {end, after.path.end()}};
@@ -139,15 +140,13 @@ std::optional<Source> read_source(const std::string& path, const std::string& ro
     return source;
 }
 
-std::optional<LoweredModel> lower_source(const Source& source, const LowerOptions& options, bool accept_orbit,
-                                         SourceMap& sources, Diagnostics& diagnostics) {
-    LowerOptions own = options;
-    own.may_be_orbit = accept_orbit;
-    LoweredText lowered = lower_text(source.path, source.text, own, sources, diagnostics);
-    LoweredModel model{source.path, std::move(lowered.graph), std::move(lowered.derivation),
-                       std::move(lowered.orbit)};
-    const bool draws_nothing = model.derivation && options.may_draw_nothing && !diagnostics.has_errors();
-    if (!model.graph && !model.orbit && !draws_nothing) return std::nullopt;
+std::optional<LoweredModel> lower_source(const Source& source, const LowerOptions& options,
+                                         const LowerHelp& help, SourceMap& sources,
+                                         Diagnostics& diagnostics) {
+    LoweredText lowered = lower_text(source.path, source.text, options, sources, diagnostics, help);
+    LoweredModel model{source.path, std::move(lowered.graph), std::move(lowered.notes)};
+    const bool draws_nothing = model.notes.derivation && options.may_draw_nothing && !diagnostics.has_errors();
+    if (!model.graph && !model.notes.orbit && !draws_nothing) return std::nullopt;
     return model;
 }
 
@@ -163,10 +162,10 @@ bool check_pass(const std::string& name, Diagnostics& diagnostics) {
 
 std::optional<AnalysedModel> analyse(LoweredModel lowered, const std::optional<Address>& at,
                                      const PipelineOptions& options, Diagnostics& diagnostics,
-                                     std::vector<StageTime>& times) {
+                                     std::vector<StageTime>& times, const Control& control) {
     AnalysedModel model;
     model.path = std::move(lowered.path);
-    model.derivation = std::move(lowered.derivation);
+    model.derivation = std::move(lowered.notes.derivation);
     if (!lowered.graph) return model;
     check_verified(*lowered.graph, "after lowering");
     model.written = {lowered.graph->objects.size(),
@@ -176,14 +175,14 @@ std::optional<AnalysedModel> analyse(LoweredModel lowered, const std::optional<A
         model.at = find_path(*lowered.graph, *at, diagnostics);
         if (!model.at) return std::nullopt;
     }
-    model.graph = optimise(std::move(*lowered.graph), model.at, options, times);
+    model.graph = optimise(std::move(*lowered.graph), model.at, options, times, control);
     StageClock clock(times);
     model.components = clock.run("components", [&] { return strong_components(model.graph); });
     model.contraction =
         clock.run("contraction", [&] { return decide_contraction(model.graph, model.components); });
     if (!converges(model.contraction)) return model;
-    model.bounds = clock.run("bounding",
-                             [&] { return bound_objects(model.graph, model.components, model.contraction); });
+    model.bounds = clock.run(
+        "bounding", [&] { return bound_objects(model.graph, model.components, model.contraction, control); });
     if (!check_range(model.graph, model.components, model.bounds, diagnostics)) return std::nullopt;
     return model;
 }

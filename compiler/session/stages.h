@@ -7,8 +7,10 @@
 #include <string>
 #include <vector>
 
+#include "compiler/passes/pipeline.h"
 #include "compiler/session/stage_options.h"
 #include "compiler/session/values.h"
+#include "compiler/support/control.h"
 
 namespace graftal {
 
@@ -18,8 +20,8 @@ std::optional<Source> read_source(const std::string& path, const std::string& ro
                                   Status& status);
 
 /// Text -> graph. Nothing after an error. `sources` gets the texts of all files that the model reads.
-std::optional<LoweredModel> lower_source(const Source& source, const LowerOptions& options, bool accept_orbit,
-                                         SourceMap& sources, Diagnostics& diagnostics);
+std::optional<LoweredModel> lower_source(const Source& source, const LowerOptions& options,
+                                         const LowerHelp& help, SourceMap& sources, Diagnostics& diagnostics);
 
 /// Whether `name` is "" or names a pass; else an error says so.
 bool check_pass(const std::string& name, Diagnostics& diagnostics);
@@ -29,7 +31,7 @@ bool check_pass(const std::string& name, Diagnostics& diagnostics);
 /// parts. Requires that the model is no orbit, and check_pass().
 std::optional<AnalysedModel> analyse(LoweredModel lowered, const std::optional<Address>& at,
                                      const PipelineOptions& options, Diagnostics& diagnostics,
-                                     std::vector<StageTime>& times);
+                                     std::vector<StageTime>& times, const Control& control = no_control());
 
 /// True, after an error, for a model that is not proved to converge.
 bool refuse_divergent(const AnalysedModel& model, Diagnostics& diagnostics);

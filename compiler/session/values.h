@@ -47,9 +47,8 @@ struct Source {
 /// A model as its texts say it.
 struct LoweredModel {
     std::string path;
-    std::optional<Graph> graph;              ///< nothing of an orbit, and where nothing is drawn
-    std::optional<Derivation> derivation;    ///< of an L-system
-    std::shared_ptr<const OrbitModel> orbit; ///< or null
+    std::optional<Graph> graph; ///< nothing of an orbit, and where nothing is drawn
+    LowerNotes notes;
 };
 
 /// Of a graph: its objects, and its instances, which are its edges.

@@ -4,6 +4,8 @@
 
 #include <fmt/format.h>
 
+#include "compiler/support/control.h"
+
 namespace graftal {
 
 OutOfMemory::OutOfMemory(std::string_view stage) noexcept {
@@ -20,6 +22,8 @@ void rethrow_in_stage(std::string_view stage) {
     try {
         throw;
     } catch (const BrokenInvariant&) {
+        throw;
+    } catch (const Cancelled&) {
         throw;
     } catch (const OutOfMemory&) {
         throw;

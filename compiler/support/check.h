@@ -30,7 +30,7 @@ class OutOfMemory : public std::bad_alloc {
                                    std::string_view context);
 
 /// To be called where an exception is being handled: throws it again as one that names the stage. Exceptions
-/// of libraries become broken invariants; one that has a stage keeps it.
+/// of libraries become broken invariants; one that has a stage keeps it, and so does Cancelled.
 [[noreturn]] void rethrow_in_stage(std::string_view stage);
 
 } // namespace graftal

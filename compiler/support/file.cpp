@@ -219,6 +219,14 @@ Status write_text(const std::string& path, std::string_view text) {
     return status.ok() ? pending.commit() : status;
 }
 
+FileStamp stamp_of(const std::string& path) {
+    std::error_code error;
+    const auto time = std::filesystem::last_write_time(path, error);
+    if (error) return {};
+    const std::uintmax_t bytes = std::filesystem::file_size(path, error);
+    return error ? FileStamp() : FileStamp{time.time_since_epoch().count(), bytes};
+}
+
 Status write_text(const PendingFile& pending, std::string_view text) {
     OpenFile file(std::fopen(pending.temporary_path().c_str(), "wb"));
     if (!file) return system_failure("write", pending.path());

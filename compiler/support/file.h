@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <span>
 #include <string>
 #include <string_view>
@@ -67,6 +68,15 @@ void remove_pending_files() noexcept;
 /// Takes a lock on the file or folder at `path`, which ends with this process: its descriptor, or -1 where
 /// another has it, or nothing can be locked there.
 int lock_path(const std::string& path);
+
+/// What tells whether a file was written since: where there is none, zeros.
+struct FileStamp {
+    std::int64_t time = 0;
+    std::uint64_t bytes = 0;
+    bool operator==(const FileStamp&) const = default;
+};
+
+FileStamp stamp_of(const std::string& path);
 
 /// Writes `text` to a PendingFile, and does not commit it.
 Status write_text(const PendingFile& pending, std::string_view text);

@@ -2,8 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
-#include <mutex>
+#include <filesystem>
 #include <utility>
 
 #include <fmt/format.h>
@@ -153,25 +152,23 @@ Status read_texture(const std::string& path, std::uint64_t most_texels, Texture&
     return status;
 }
 
-std::shared_ptr<const Texture> load_texture(const std::string& path, Status& status) {
-    static std::mutex mutex;
-    static std::map<std::string, std::shared_ptr<const Texture>> known;
-    static std::uint64_t texels_of_all = 0;
-    const std::lock_guard lock(mutex);
-    std::shared_ptr<const Texture>& texture = known[path];
-    if (texture) return texture;
-    const std::uint64_t room = most_texels_of_all - std::min(texels_of_all, most_texels_of_all);
+std::shared_ptr<const Texture> TextureStore::load(const std::string& path, Status& status) {
+    const std::lock_guard lock(mutex_);
+    if (const auto known = known_.find(path); known != known_.end()) return known->second.texture;
+    const FileStamp stamp = stamp_of(path);
+    const std::uint64_t room = most_texels_of_all - std::min(texels_of_all_, most_texels_of_all);
     Texture read;
     status = read_texture(path, std::clamp(room, least_texels, most_texels), read);
-    if (!status.ok()) return texture;
-    texture = std::make_shared<const Texture>(std::move(read));
-    texels_of_all += texture->texels.size();
+    if (!status.ok()) return nullptr;
+    auto texture = std::make_shared<const Texture>(std::move(read));
+    texels_of_all_ += texture->texels.size();
+    known_[path] = {texture, stamp};
     return texture;
 }
 
-Status look_at_texture(const std::string& path, TextureFacts& facts) {
+Status TextureStore::look_at(const std::string& path, TextureFacts& facts) {
     Status status;
-    if (const auto texture = load_texture(path, status))
+    if (const auto texture = load(path, status))
         facts = {.mean = texture->mean,
                  .coverage = texture->coverage,
                  .file_width = texture->file_width,
@@ -179,6 +176,16 @@ Status look_at_texture(const std::string& path, TextureFacts& facts) {
                  .width = texture->width,
                  .height = texture->height};
     return status;
+}
+
+bool TextureStore::forget_changed() {
+    const std::lock_guard lock(mutex_);
+    const std::size_t forgotten = std::erase_if(known_, [this](const auto& entry) {
+        if (stamp_of(entry.first) == entry.second.stamp) return false;
+        texels_of_all_ -= entry.second.texture->texels.size();
+        return true;
+    });
+    return forgotten > 0;
 }
 
 Status write_texture(const PendingFile& pending, const Texture& texture) {

@@ -2,7 +2,9 @@
 
 #include <array>
 #include <cstdint>
+#include <map>
 #include <memory>
+#include <mutex>
 #include <string>
 #include <vector>
 
@@ -38,13 +40,30 @@ double srgb_decoded(std::uint8_t level);
 /// The picture in a file, reduced to at most so many texels while it is read. Requires most_texels > 0.
 Status read_texture(const std::string& path, std::uint64_t most_texels, Texture& texture);
 
-/// The same, read once in the life of the process; null after a failure. Samples of EXR files
-/// are linear, all others sRGB. One picture has at most 2^25 texels, and all together 2^27 (512 MiB): larger
-/// ones are reduced while they are read, but not below 2^12 texels.
-std::shared_ptr<const Texture> load_texture(const std::string& path, Status& status);
+/// The pictures that models name, each read once in the life of the store. Threads may ask at once.
+class TextureStore {
+  public:
+    /// Null after a failure. Samples of EXR files are linear, all others sRGB. One picture has at most 2^25
+    /// texels, and all together 2^27 (512 MiB): larger ones are reduced while they are read, but not below
+    /// 2^12 texels.
+    std::shared_ptr<const Texture> load(const std::string& path, Status& status);
 
-/// What a compiler asks of it (LowerOptions).
-Status look_at_texture(const std::string& path, TextureFacts& facts);
+    /// What a compiler asks of it (LowerOptions).
+    Status look_at(const std::string& path, TextureFacts& facts);
+
+    /// Forgets those whose files are not as they were when they were read. Whether there are any.
+    bool forget_changed();
+
+  private:
+    struct Entry {
+        std::shared_ptr<const Texture> texture;
+        FileStamp stamp; ///< of the file, when it was read
+    };
+
+    std::mutex mutex_;
+    std::map<std::string, Entry> known_;
+    std::uint64_t texels_of_all_ = 0;
+};
 
 /// Writes it as POV-Ray is to read it: PNG, 8 bit, sRGB, alpha 0 or 1. Does not commit.
 Status write_texture(const PendingFile& pending, const Texture& texture);

@@ -20,7 +20,6 @@
 #include "runtime/points/projection.h"
 #include "runtime/render/scene_files.h"
 #include "runtime/render/stopwatch.h"
-#include "runtime/system/interruption.h"
 
 namespace graftal {
 
@@ -132,9 +131,9 @@ class Canvas {
     std::vector<Rgb> map_colours_;
 };
 
-PointWork work_for(const PointsOptions& options) {
+PointWork work_for(const PointsOptions& options, const CancelFlag& cancel) {
     return {point_count(options), options.threads, options.on_progress,
-            [] { return Interruption::signal() != 0; }};
+            [&cancel] { return cancel.raised(); }};
 }
 
 /// `card`: appears with the picture, or neither does.
@@ -175,11 +174,10 @@ std::uint64_t point_count(const PointsOptions& options) {
 }
 
 Status place_points(const PointSource& source, const View& view, const PointsOptions& options,
-                    PendingFile* card, PointsReport& report) {
-    const Interruption interruption;
+                    PendingFile* card, const CancelFlag& cancel, PointsReport& report) {
     Status status = check_writable(options.output);
     if (!status.ok()) return status;
-    const PointWork work = work_for(options);
+    const PointWork work = work_for(options, cancel);
     Canvas canvas(view, options, report.maps);
     report.points = work.points;
     const Stopwatch watch;
@@ -199,19 +197,18 @@ Status place_points(const PointSource& source, const View& view, const PointsOpt
 namespace {
 
 Status place_card(const PointSource& source, const Box& box, const std::vector<Material>& materials,
-                  const PointsOptions& options, PointsReport& report) {
+                  const PointsOptions& options, const CancelFlag& cancel, PointsReport& report) {
     const ImageSize size = options.compile.view.size;
     const std::string picture = std::filesystem::path(options.output).filename().string();
-    const Interruption interruption;
     PendingFile card(options.card);
     if (!card.status().ok()) return card.status();
     if (Status status = write_text(card, card_text(picture, box, size, materials)); !status.ok())
         return status;
-    return place_points(source, card_view(box, size), options, &card, report);
+    return place_points(source, card_view(box, size), options, &card, cancel, report);
 }
 
 std::optional<PointsReport> draw_orbit(const OrbitModel& model, const PointsOptions& options,
-                                       Compilation& compilation) {
+                                       const CancelFlag& cancel, Compilation& compilation) {
     constexpr std::uint64_t most_surveyed = 1u << 20;
     if (options.compile.view.zoom.active()) {
         compilation.diagnostics.error(model.span, "an orbit has no parts for '--at' and '--zoom'")
@@ -224,8 +221,8 @@ std::optional<PointsReport> draw_orbit(const OrbitModel& model, const PointsOpti
     PointsReport report;
     report.maps = static_cast<std::uint32_t>(model.maps.size());
     const View view = frame(model.scene, box, options.compile.view.size, options.compile.view.camera);
-    compilation.status = options.card.empty() ? place_points(source, view, options, nullptr, report)
-                                              : place_card(source, box, {}, options, report);
+    compilation.status = options.card.empty() ? place_points(source, view, options, nullptr, cancel, report)
+                                              : place_card(source, box, {}, options, cancel, report);
     if (source.report(compilation.diagnostics)) compilation.status = Status(); // which is why it was given up
     compilation.times.push_back({"points", report.seconds});
     if (!compilation.status.ok() || compilation.diagnostics.has_errors()) return std::nullopt;
@@ -234,16 +231,17 @@ std::optional<PointsReport> draw_orbit(const OrbitModel& model, const PointsOpti
 
 } // namespace
 
-std::optional<PointsReport> draw_points(Session& session, const PointsOptions& options,
+std::optional<PointsReport> draw_points(PictureSession& session, const PointsOptions& options,
                                         Compilation& compilation) {
+    const CancelFlag& cancel = session.control().cancel;
     StageOptions compile = options.compile;
-    compile.accept_orbit = true;
+    compile.lower.may_be_orbit = true;
     std::shared_ptr<const OrbitModel> orbit;
     if (const auto lowered = session.lowered(compile, compilation))
-        orbit = lowered->orbit;
+        orbit = lowered->notes.orbit;
     else
         return std::nullopt;
-    if (orbit) return draw_orbit(*orbit, options, compilation);
+    if (orbit) return draw_orbit(*orbit, options, cancel, compilation);
     const std::shared_ptr<const ViewedModel> viewed = session.viewed(compile, compilation);
     if (!viewed) return std::nullopt;
     const Stopwatch watch;
@@ -255,8 +253,9 @@ std::optional<PointsReport> draw_points(Session& session, const PointsOptions& o
     const ChaosSource source(*game, compile.lower.seed.value_or(0));
     const Graph& graph = viewed->model->graph;
     const Box& box = viewed->model->bounds[graph.root].box;
-    compilation.status = options.card.empty() ? place_points(source, viewed->view, options, nullptr, report)
-                                              : place_card(source, box, graph.materials, options, report);
+    compilation.status = options.card.empty()
+                             ? place_points(source, viewed->view, options, nullptr, cancel, report)
+                             : place_card(source, box, graph.materials, options, cancel, report);
     compilation.times.push_back({"points", report.seconds});
     if (!compilation.status.ok()) return std::nullopt;
     return report;

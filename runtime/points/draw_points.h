@@ -5,11 +5,11 @@
 #include <optional>
 #include <string>
 
-#include "compiler/session/session.h"
 #include "compiler/support/file.h"
 #include "runtime/image/image.h"
 #include "runtime/points/point_source.h"
 #include "runtime/points/tone.h"
+#include "runtime/render/picture_session.h"
 
 namespace graftal {
 
@@ -39,15 +39,15 @@ struct PointsReport {
 std::uint64_t point_count(const PointsOptions& options);
 
 /// Draws points of a source, or writes them: what draw_points() ends with. `card`: written, and to appear
-/// with the picture; null: none.
+/// with the picture; null: none. A raised flag ends it: "interrupted".
 Status place_points(const PointSource& source, const View& view, const PointsOptions& options,
-                    PendingFile* card, PointsReport& report);
+                    PendingFile* card, const CancelFlag& cancel, PointsReport& report);
 
 /// Model -> points, by random iteration on its graph (chaos/chaos_game.h) or by the formulas of an
 /// orbit. The file depends on model, options and seed, not on the number of threads. Nothing comes back, and
 /// no file, after errors in `compilation.diagnostics`, or with a failed `compilation.status`. Memory: that of
 /// the picture for each thread, or, where that is more than a gigabyte, once.
-std::optional<PointsReport> draw_points(Session& session, const PointsOptions& options,
+std::optional<PointsReport> draw_points(PictureSession& session, const PointsOptions& options,
                                         Compilation& compilation);
 
 } // namespace graftal

@@ -48,7 +48,7 @@ bool is_there(const std::string& path) {
 
 /// Why a run was no success, or "".
 std::string failure(const PovrayJob& job, const PovrayLog& log, const ProcessResult& process) {
-    if (process.interrupted) return "interrupted";
+    if (process.cancelled) return "interrupted";
     if (process.signal == SIGKILL)
         return "the system killed POV-Ray; it may have run out of memory (use a smaller --memory for a "
                "smaller scene)";
@@ -139,6 +139,7 @@ PovrayResult run_povray(const PovrayJob& job) {
 
     PovrayMessageReader reader(job.on_progress);
     ProcessOptions options;
+    options.cancel = job.cancel;
     options.arguments = povray_arguments(job);
     options.arguments.insert(options.arguments.begin(), job.program);
     options.directory = job.directory;

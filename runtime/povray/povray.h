@@ -28,6 +28,7 @@ struct PovrayJob {
     bool unconfined = false;
     std::optional<std::uint64_t> finite_objects; ///< that POV-Ray must find; nothing: not checked
     std::function<void(const PovrayProgress&)> on_progress;
+    CancelFlag cancel; ///< ends POV-Ray
 };
 
 struct PovrayResult {

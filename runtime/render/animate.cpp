@@ -16,7 +16,6 @@
 #include "runtime/render/native.h"
 #include "runtime/render/scene_files.h"
 #include "runtime/render/video.h"
-#include "runtime/system/interruption.h"
 
 namespace graftal {
 
@@ -43,12 +42,11 @@ void add_times(const std::vector<StageTime>& times, std::vector<StageTime>& sums
 
 class Animation {
   public:
-    Animation(Session& session, const AnimateOptions& options)
+    Animation(PictureSession& session, const AnimateOptions& options)
         : session_(session), options_(options), kind_(*animation_kind(options.output)),
           store_(frames_directory(options.output), options.frames) {}
 
     AnimationOutcome run() {
-        const Interruption interruption;
         const Clock::time_point begin = Clock::now();
         outcome_.done = measure() && prepare() && draw() && assemble();
         if (outcome_.done)
@@ -96,7 +94,7 @@ class Animation {
     bool measure() {
         auto framing = std::make_shared<SharedFraming>();
         for (std::size_t frame = 0; frame < options_.frames; ++frame) {
-            if (Interruption::signal()) return fail("", Status::failure("interrupted"));
+            if (cancelled()) return fail("", Status::failure("interrupted"));
             show({Stage::measuring, frame, options_.frames, {}, {}});
             if (!measure_model(moment(frame), *framing)) return false;
         }
@@ -160,7 +158,7 @@ class Animation {
     }
 
     bool draw_frame(std::size_t frame, std::optional<double> seconds_left) {
-        if (Interruption::signal()) return fail("", Status::failure("interrupted"));
+        if (cancelled()) return fail("", Status::failure("interrupted"));
         show({Stage::drawing, frame, options_.frames, seconds_left, {}});
         Moment now = moment(frame);
         now.compile.view.framing = framing_;
@@ -218,10 +216,10 @@ class Animation {
     }
 
     bool assemble() {
-        if (Interruption::signal()) return fail("", Status::failure("interrupted"));
+        if (cancelled()) return fail("", Status::failure("interrupted"));
         const OnFrame on_frame = [&](std::size_t frame) {
             show({Stage::assembling, frame, options_.frames, {}, {}});
-            return Interruption::signal() == 0;
+            return !cancelled();
         };
         Status status;
         if (kind_ == AnimationKind::animated_png)
@@ -230,7 +228,7 @@ class Animation {
             status = write_gif(options_.output, store_.paths(), options_.rate, on_frame);
         if (kind_ == AnimationKind::video) {
             on_frame(0);
-            status = write_video(options_.output, store_, options_.rate);
+            status = write_video(options_.output, store_, options_.rate, session_.control().cancel);
         }
         return status.ok() || fail("", status);
     }
@@ -242,6 +240,8 @@ class Animation {
         else
             store_.remove();
     }
+
+    bool cancelled() const { return session_.control().cancel.raised(); }
 
     void show(const AnimationProgress& progress) const {
         if (options_.on_progress) options_.on_progress(progress);
@@ -258,7 +258,7 @@ class Animation {
         return false;
     }
 
-    Session& session_;
+    PictureSession& session_;
     const AnimateOptions& options_;
     AnimationKind kind_;
     FrameStore store_;
@@ -291,7 +291,7 @@ std::string frames_directory(const std::string& output) {
     return path.has_filename() ? output : path.parent_path().string();
 }
 
-AnimationOutcome animate_model(Session& session, const AnimateOptions& options) {
+AnimationOutcome animate_model(PictureSession& session, const AnimateOptions& options) {
     return Animation(session, options).run();
 }
 

@@ -5,7 +5,6 @@
 #include <string>
 #include <vector>
 
-#include "compiler/session/session.h"
 #include "runtime/image/animation.h"
 #include "runtime/render/render.h"
 #include "runtime/render/sweep.h"
@@ -65,8 +64,8 @@ struct AnimationOutcome {
 /// Draws the frames that are not there yet and puts them together. All models that are shown are analysed
 /// first, and the frames of one model share its analysis and preparation: they are framed together, and a
 /// value that a model does not take is found before the first frame is drawn. However it ends, whole frames
-/// stay for the next run until the output is there, and the output is whole or not there. Interruptions as
+/// stay for the next run until the output is there, and the output is whole or not there. Cancelled as
 /// for render_model.
-AnimationOutcome animate_model(Session& session, const AnimateOptions& options);
+AnimationOutcome animate_model(PictureSession& session, const AnimateOptions& options);
 
 } // namespace graftal

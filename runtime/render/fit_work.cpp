@@ -40,9 +40,10 @@ constexpr int most_broken_looks = 2;
 class Fitting {
   public:
     Fitting(std::shared_ptr<const PreparedCut> prepared, const View& view, const DetailOptions& options,
-            double samples_a_pixel, const std::function<ShaderLimits(const TraceModel&)>& limits_of,
-            int threads, const std::function<bool()>& cancelled)
-        : prepared_(std::move(prepared)), view_(view), options_(options),
+            const ModelTextures& textures, double samples_a_pixel,
+            const std::function<ShaderLimits(const TraceModel&)>& limits_of, int threads,
+            const std::function<bool()>& cancelled)
+        : prepared_(std::move(prepared)), view_(view), options_(options), textures_(textures),
           samples_(samples_a_pixel * view.size.width * view.size.height), limits_of_(limits_of),
           threads_(threads), cancelled_(cancelled) {}
 
@@ -110,7 +111,8 @@ class Fitting {
         work_seconds_ = work_beside_graph(options_.work_seconds, instances);
         slowness_ = slowness_of_graph(instances);
         try {
-            fitted.model = std::make_unique<TraceModel>(prepared_, view_, options, std::move(shell_sizes));
+            fitted.model =
+                std::make_unique<TraceModel>(prepared_, view_, options, textures_, std::move(shell_sizes));
             tried_seconds_ += slowness_ * static_cast<double>(fitted.model->weighed) / WorkRates::kinds;
             fitted.error_px = options.error_px;
             fitted.seconds = seconds_for(*fitted.model);
@@ -205,6 +207,7 @@ class Fitting {
     const std::shared_ptr<const PreparedCut> prepared_;
     const View& view_;
     const DetailOptions& options_;
+    const ModelTextures& textures_;
     const double samples_;
     const std::function<ShaderLimits(const TraceModel&)>& limits_of_;
     const int threads_;
@@ -219,10 +222,12 @@ class Fitting {
 } // namespace
 
 FittedModel fit_work(std::shared_ptr<const PreparedCut> prepared, const View& view,
-                     const DetailOptions& options, double samples_a_pixel,
+                     const DetailOptions& options, const ModelTextures& textures, double samples_a_pixel,
                      const std::function<ShaderLimits(const TraceModel&)>& limits_of, int threads,
                      const std::function<bool()>& cancelled) {
-    return Fitting(std::move(prepared), view, options, samples_a_pixel, limits_of, threads, cancelled).run();
+    return Fitting(std::move(prepared), view, options, textures, samples_a_pixel, limits_of, threads,
+                   cancelled)
+        .run();
 }
 
 } // namespace graftal

@@ -30,7 +30,7 @@ struct FittedModel {
 /// counts decides, so the result is the same whatever the machine and its threads. `cancelled` is asked
 /// often; once it says true, any model comes back.
 FittedModel fit_work(std::shared_ptr<const PreparedCut> prepared, const View& view,
-                     const DetailOptions& options, double samples_a_pixel,
+                     const DetailOptions& options, const ModelTextures& textures, double samples_a_pixel,
                      const std::function<ShaderLimits(const TraceModel&)>& limits_of, int threads,
                      const std::function<bool()>& cancelled);
 

@@ -21,7 +21,7 @@ namespace {
 constexpr std::string_view prefix = "frame_", suffix = ".png";
 
 /// The stamp of a whole PNG, or nothing.
-std::optional<std::string> stamp_of(const std::string& path) {
+std::optional<std::string> frame_stamp(const std::string& path) {
     std::string text;
     if (!read_text(path, text, 1u << 30).ok()) return std::nullopt;
     const std::optional<std::vector<PngChunk>> chunks = png_chunks(text);
@@ -77,7 +77,7 @@ std::string FrameStore::name_pattern() const {
 }
 
 bool FrameStore::has(std::size_t frame, const std::string& stamp) const {
-    return stamp_of(path(frame)) == stamp;
+    return frame_stamp(path(frame)) == stamp;
 }
 
 bool FrameStore::is_frame_name(const std::string& name) const {
@@ -102,7 +102,7 @@ void FrameStore::remove() const {
         ::unlink(path.c_str());
     std::error_code ignored;
     for (const std::string& name : names_in(directory_))
-        if (is_frame_name(name) && stamp_of(directory_ + "/" + name))
+        if (is_frame_name(name) && frame_stamp(directory_ + "/" + name))
             fs::remove(directory_ + "/" + name, ignored);
     fs::remove(directory_, ignored); // fails if something else is in it
 }

@@ -13,7 +13,6 @@
 #include "runtime/render/samplings.h"
 #include "runtime/render/scene_files.h"
 #include "runtime/render/stopwatch.h"
-#include "runtime/system/interruption.h"
 #include "runtime/system/worker_threads.h"
 
 namespace graftal {
@@ -133,9 +132,10 @@ void report_shells(const TraceModel& model, const Asked& asked, Diagnostics& dia
 /// One picture, from the first sample to the last file.
 class Drawing {
   public:
-    Drawing(const TraceModel& model, std::vector<Sampling> samplings, const NativeOptions& options)
-        : options_(options), samplings_(std::move(samplings)), tracer_(model, limits_of(model)),
-          size_(model.view.size) {
+    Drawing(const TraceModel& model, std::vector<Sampling> samplings, const NativeOptions& options,
+            const PictureSink& sink, const CancelFlag& cancel)
+        : options_(options), sink_(sink), cancel_(cancel), samplings_(std::move(samplings)),
+          tracer_(model, limits_of(model)), size_(model.view.size) {
         picture_.width = size_.width;
         picture_.height = size_.height;
         picture_.channels = 3;
@@ -188,7 +188,7 @@ class Drawing {
         std::size_t traced = 0;
         TraceControl control;
         control.threads = options_.render.threads;
-        control.cancelled = [] { return Interruption::signal() != 0; };
+        control.cancelled = [this] { return cancel_.raised(); };
         control.on_tile = [&](const Tile& tile) {
             traced += static_cast<std::size_t>(tile.width) * static_cast<std::size_t>(tile.height);
             const double share = static_cast<double>(traced) / static_cast<double>(pixels());
@@ -209,7 +209,8 @@ class Drawing {
         const RenderOptions& render = options_.render;
         const bool linear = render.format == SampleFormat::linear16 || is_exr_name(render.output);
         Status status =
-            write_image(render.output, linear ? picture_ : encoded(), render.format, render.metadata);
+            sink_ ? sink_(picture_)
+                  : write_image(render.output, linear ? picture_ : encoded(), render.format, render.metadata);
         if (status.ok() && report_.pictures++ == 0) report_.first_picture_seconds = watch_.seconds();
         return status;
     }
@@ -227,6 +228,8 @@ class Drawing {
     }
 
     const NativeOptions& options_;
+    const PictureSink& sink_;
+    const CancelFlag& cancel_;
     const std::vector<Sampling> samplings_;
     PictureTracer tracer_;
     ImageSize size_;
@@ -238,31 +241,33 @@ class Drawing {
 
 } // namespace
 
-std::optional<NativeReport> render_natively(Session& session, const NativeOptions& options,
-                                            Compilation& compilation) {
+std::optional<NativeReport> render_natively(PictureSession& session, const NativeOptions& options,
+                                            Compilation& compilation, const PictureSink& sink) {
     const Stopwatch whole;
     const StageOptions& stages = options.render.compile;
     PreparedView model;
     model.viewed = session.viewed(stages, compilation);
     if (!model.viewed) return std::nullopt;
-    compilation.status = check_writable(options.render.output);
-    if (compilation.status.ok()) compilation.status = load_textures(model.viewed->model->graph.materials);
+    compilation.status = sink ? Status() : check_writable(options.render.output);
+    if (compilation.status.ok())
+        compilation.status = load_textures(model.viewed->model->graph.materials, model.viewed->view,
+                                           session.textures(), model.textures);
     if (!compilation.status.ok()) return std::nullopt;
 
     const Stopwatch preparing;
     const double before = whole.seconds();
-    const Interruption interruption; // from here on something may be half written
     model.detail = resolved(stages.detail, *model.viewed);
     model.prepared = session.prepared(stages, compilation);
     if (!model.prepared) return std::nullopt;
-    std::optional<NativeReport> report = trace_model(model, options, preparing, compilation);
+    std::optional<NativeReport> report =
+        trace_model(model, options, preparing, session.control().cancel, compilation, sink);
     if (report) report->first_picture_seconds += before;
     return report;
 }
 
 std::optional<NativeReport> trace_model(const PreparedView& prepared, const NativeOptions& options,
-                                        const Stopwatch& preparing, Compilation& compilation) {
-    const Interruption interruption;
+                                        const Stopwatch& preparing, const CancelFlag& cancel,
+                                        Compilation& compilation, const PictureSink& sink) {
     const Graph& graph = prepared.viewed->model->graph;
     const View& view = prepared.viewed->view;
     const DetailOptions& detail = prepared.detail;
@@ -272,8 +277,8 @@ std::optional<NativeReport> trace_model(const PreparedView& prepared, const Nati
                       ? with_fewer_samples(looks.wanted, view.size, most_for_samples * detail.work_seconds)
                       : looks.wanted;
     const double samples = samples_a_pixel(looks.tried);
-    const FittedModel fitted = fit_work(prepared.prepared, view, detail, samples, limits_of,
-                                        options.render.threads, [] { return Interruption::signal() != 0; });
+    const FittedModel fitted = fit_work(prepared.prepared, view, detail, prepared.textures, samples,
+                                        limits_of, options.render.threads, [&] { return cancel.raised(); });
     const TraceModel& model = *fitted.model;
     looks.affordable = looks.tried;
     if (fitted.rays_cut)
@@ -284,7 +289,7 @@ std::optional<NativeReport> trace_model(const PreparedView& prepared, const Nati
     compilation.times.push_back({"prepare", preparing.seconds()});
     if (detail.culls() && !detail.steps) note_shadowless(model.prepared.cut, graph, compilation.diagnostics);
     const Stopwatch drawing_watch;
-    Drawing drawing(model, std::move(looks.affordable), options);
+    Drawing drawing(model, std::move(looks.affordable), options, sink, cancel);
     compilation.status = drawing.run();
     compilation.times.push_back({"trace", drawing_watch.seconds()});
     report_shells(model, asked, compilation.diagnostics);

@@ -4,7 +4,6 @@
 #include <optional>
 #include <string>
 
-#include "compiler/session/session.h"
 #include "runtime/render/render.h"
 #include "runtime/render/stopwatch.h"
 #include "runtime/trace/picture_tracer.h"
@@ -35,22 +34,27 @@ struct NativeReport {
     int pictures = 0;                 ///< written
 };
 
+/// Takes a picture in linear light, not clamped, in place of a file.
+using PictureSink = std::function<Status(const Image& linear)>;
+
 /// Model -> picture file, by the traversal of the graph itself. As render_model(); but if it is
 /// progressive, an interruption leaves the best picture so far, and a report of it with the status
 /// "interrupted".
-std::optional<NativeReport> render_natively(Session& session, const NativeOptions& options,
-                                            Compilation& compilation);
+/// With a sink, the pictures go there.
+std::optional<NativeReport> render_natively(PictureSession& session, const NativeOptions& options,
+                                            Compilation& compilation, const PictureSink& sink = {});
 
 /// What rays go through: the detail is resolved() for the view, and the graph prepared for both.
 struct PreparedView {
     std::shared_ptr<const ViewedModel> viewed;
     DetailOptions detail;
     std::shared_ptr<const PreparedCut> prepared;
+    ModelTextures textures;
 };
 
-/// What follows the compiler in render_natively(). `preparing` runs since the preparation began. Pictures
-/// that the materials name are left out if they cannot be read.
+/// What follows the compiler in render_natively(). `preparing` runs since the preparation began.
 std::optional<NativeReport> trace_model(const PreparedView& model, const NativeOptions& options,
-                                        const Stopwatch& preparing, Compilation& compilation);
+                                        const Stopwatch& preparing, const CancelFlag& cancel,
+                                        Compilation& compilation, const PictureSink& sink = {});
 
 } // namespace graftal

@@ -14,7 +14,6 @@
 #include "compiler/povray/overlap.h"
 #include "runtime/render/scene_files.h"
 #include "runtime/render/stopwatch.h"
-#include "runtime/system/interruption.h"
 #include "runtime/system/temporary_directory.h"
 
 namespace graftal {
@@ -47,14 +46,14 @@ RenderReport report_of(const Cut& cut) {
 }
 
 /// The picture that POV-Ray left becomes the one that was asked for.
-Status finish_picture(const PovrayJob& job, const RenderOptions& options) {
+Status finish_picture(const PovrayJob& job, const RenderOptions& options, const CancelFlag& cancel) {
     const std::string raw = job.directory + "/" + job.picture;
     Image image;
     Status status = read_image(raw, image);
     std::error_code ignored;
     std::filesystem::remove(raw, ignored);
     if (!status.ok()) return status;
-    if (Interruption::signal()) return Status::failure("interrupted");
+    if (cancel.raised()) return Status::failure("interrupted");
     if (image.width != job.width || image.height != job.height)
         return Status::failure(fmt::format("POV-Ray wrote a picture of {} x {} pixels, not {} x {}",
                                            image.width, image.height, job.width, job.height));
@@ -97,12 +96,14 @@ void return_free_memory() {
 }
 
 /// Checks what would fail late, and writes the scene.
-Status prepare(const CompiledModel& model, const RenderOptions& options, TemporaryDirectory& temporary,
-               PovrayJob& job) {
+Status prepare(const CompiledModel& model, const RenderOptions& options, TextureStore& textures,
+               TemporaryDirectory& temporary, PovrayJob& job) {
     Status status = povray_available(job.program);
     if (status.ok()) status = check_writable(options.output);
     if (status.ok()) status = choose_directory(options.keep, temporary, job.directory);
-    if (status.ok()) status = write_scene(model, job.directory + "/" + job.scene, false, true);
+    if (status.ok())
+        status =
+            write_scene(model, job.directory + "/" + job.scene, {.progress = true}, textures, job.cancel);
     return status;
 }
 
@@ -157,13 +158,13 @@ bool worth_a_trial(const PovrayTime& guessed, double work_seconds) {
 
 } // namespace
 
-std::optional<RenderReport> render_model(Session& session, const RenderOptions& options,
+std::optional<RenderReport> render_model(PictureSession& session, const RenderOptions& options,
                                          Compilation& compilation) {
     std::shared_ptr<const CompiledModel> model = session.compiled(options.compile, compilation);
     if (!model) return std::nullopt;
-    const Interruption interruption;
     TemporaryDirectory temporary;
     PovrayJob job = job_for(options);
+    job.cancel = session.control().cancel;
     const auto run = [&](const char* stage, const auto& work) {
         const Stopwatch watch;
         compilation.status = work();
@@ -171,7 +172,8 @@ std::optional<RenderReport> render_model(Session& session, const RenderOptions& 
         return compilation.status.ok();
     };
 
-    if (!run("emit", [&] { return prepare(*model, options, temporary, job); })) return std::nullopt;
+    if (!run("emit", [&] { return prepare(*model, options, session.textures(), temporary, job); }))
+        return std::nullopt;
     RenderReport report = report_of(model->cut);
     const double overlap = mean_overlap(model->cut, model->view);
     job.finite_objects = finite_objects(model->cut);
@@ -187,7 +189,7 @@ std::optional<RenderReport> render_model(Session& session, const RenderOptions& 
     if (options.on_start) {
         if (worth_a_trial(time, options.compile.detail.work_seconds))
             time = tried_time(job, time).value_or(time);
-        if (!Interruption::signal()) options.on_start(time.seconds());
+        if (!job.cancel.raised()) options.on_start(time.seconds());
         set_limit();
     }
     const auto trace = [&] {
@@ -197,7 +199,7 @@ std::optional<RenderReport> render_model(Session& session, const RenderOptions& 
         return result.status;
     };
     if (!run("povray", trace)) return std::nullopt;
-    if (!run("picture", [&] { return finish_picture(job, options); })) return std::nullopt;
+    if (!run("picture", [&] { return finish_picture(job, options, job.cancel); })) return std::nullopt;
     return report;
 }
 

@@ -4,9 +4,9 @@
 #include <optional>
 #include <string>
 
-#include "compiler/session/session.h"
 #include "runtime/image/image.h"
 #include "runtime/povray/povray.h"
+#include "runtime/render/picture_session.h"
 
 namespace graftal {
 
@@ -42,9 +42,9 @@ struct RenderReport {
 
 /// Model -> picture file, by POV-Ray. What the session can give up goes before POV-Ray starts. Nothing comes
 /// back after errors in `compilation.diagnostics` (the model's fault), or with a failed `compilation.status`
-/// (the environment's); then no file appears at the output. SIGINT, SIGTERM and SIGHUP during the rendering
-/// clean up and give the status "interrupted"; see Interruption::signal().
-std::optional<RenderReport> render_model(Session& session, const RenderOptions& options,
+/// (the environment's); then no file appears at the output. A rendering that is cancelled
+/// (Session::control()) cleans up and gives the status "interrupted".
+std::optional<RenderReport> render_model(PictureSession& session, const RenderOptions& options,
                                          Compilation& compilation);
 
 } // namespace graftal

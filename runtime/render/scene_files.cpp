@@ -16,7 +16,6 @@
 #include "compiler/support/file.h"
 #include "runtime/image/image.h"
 #include "runtime/image/texture.h"
-#include "runtime/system/interruption.h"
 #include "runtime/system/temporary_directory.h"
 
 namespace graftal {
@@ -35,9 +34,12 @@ Status write_failure(const std::string& path, int reason) {
 /// The palettes of a scene, which appear with it or not at all.
 class PendingPalettes {
   public:
+    PendingPalettes(TextureStore& textures, const CancelFlag& cancel)
+        : textures_(textures), cancel_(cancel) {}
+
     Status write(const std::filesystem::path& folder, const std::vector<PaletteImage>& palettes) {
         for (const PaletteImage& palette : palettes) {
-            if (Interruption::signal()) return Status::failure("interrupted");
+            if (cancel_.raised()) return Status::failure("interrupted");
             const Status status = write(folder, palette);
             if (!status.ok()) return status;
         }
@@ -59,21 +61,23 @@ class PendingPalettes {
         if (palette.texture.empty())
             return write_palette(file, palette.width, palette.height, palette.pixels);
         Status status;
-        const std::shared_ptr<const Texture> texture = load_texture(palette.texture, status);
+        const std::shared_ptr<const Texture> texture = textures_.load(palette.texture, status);
         return texture ? write_texture(file, *texture) : status;
     }
 
+    TextureStore& textures_;
+    const CancelFlag& cancel_;
     std::deque<PendingFile> files_;
 };
 
 /// Emits to an open file. `name` is the file's, for messages; `on_text` is called before each piece is
 /// written.
 Status emit_to(std::FILE* file, const std::string& name, const CompiledModel& model,
-               const PovrayOptions& options, std::vector<PaletteImage>& palettes,
+               const PovrayOptions& options, std::vector<PaletteImage>& palettes, const CancelFlag& cancel,
                const std::function<void()>& on_text) {
     int reason = 0;
     const auto sink = [&](std::string_view text) {
-        if (Interruption::signal()) return false;
+        if (cancel.raised()) return false;
         on_text();
         errno = 0;
         if (std::fwrite(text.data(), 1, text.size(), file) == text.size()) return true;
@@ -81,7 +85,7 @@ Status emit_to(std::FILE* file, const std::string& name, const CompiledModel& mo
         return false;
     };
     const bool complete = emit_povray(model.cut, model.view, options, sink, palettes);
-    if (Interruption::signal()) return Status::failure("interrupted");
+    if (cancel.raised()) return Status::failure("interrupted");
     if (!complete) return write_failure(name, reason);
     return std::fflush(file) == 0 ? Status() : write_failure(name, errno);
 }
@@ -103,42 +107,44 @@ Status copy_to_standard_output(std::FILE* file) {
 
 } // namespace
 
-Status write_scene(const CompiledModel& model, const std::string& path, bool include, bool progress,
-                   const std::string& identifier) {
+Status write_scene(const CompiledModel& model, const std::string& path, const SceneForm& form,
+                   TextureStore& textures, const CancelFlag& cancel) {
     const PovrayOptions options{.scene_name = model_name(model),
-                                .include = include,
+                                .include = form.include,
                                 .file_name = std::filesystem::path(path).filename().string(),
-                                .progress = progress,
-                                .identifier = identifier};
+                                .progress = form.progress,
+                                .identifier = form.identifier};
     PendingFile pending(path);
     if (!pending.status().ok()) return pending.status();
     const OpenFile file(std::fopen(pending.temporary_path().c_str(), "wb"));
     if (!file) return write_failure(path, errno);
     const std::filesystem::path folder = std::filesystem::path(path).parent_path();
     std::vector<PaletteImage> palettes;
-    PendingPalettes pending_palettes;
+    PendingPalettes pending_palettes(textures, cancel);
     std::future<Status> written; // meanwhile
     const auto on_text = [&] {
         if (written.valid() || palettes.empty()) return;
         written = std::async(std::launch::async | std::launch::deferred,
                              [&] { return pending_palettes.write(folder, palettes); });
     };
-    Status status = emit_to(file.get(), path, model, options, palettes, on_text);
+    Status status = emit_to(file.get(), path, model, options, palettes, cancel, on_text);
     if (written.valid()) {
         const Status palettes_status = written.get();
         if (status.ok()) status = palettes_status;
     }
-    if (status.ok() && Interruption::signal()) status = Status::failure("interrupted");
+    if (status.ok() && cancel.raised()) status = Status::failure("interrupted");
     return status.ok() ? pending_palettes.commit_with(pending) : status;
 }
 
-Status print_scene(const CompiledModel& model, bool include, Diagnostics& diagnostics) {
+Status print_scene(const CompiledModel& model, bool include, Diagnostics& diagnostics,
+                   const CancelFlag& cancel) {
     // By way of a file, since only the end of the text tells whether palettes are needed.
     const OpenFile file(open_temporary_file());
     if (!file) return write_failure("a temporary file", errno);
     std::vector<PaletteImage> palettes;
-    const Status status = emit_to(file.get(), "a temporary file", model,
-                                  {.scene_name = model_name(model), .include = include}, palettes, [] {});
+    const Status status =
+        emit_to(file.get(), "a temporary file", model, {.scene_name = model_name(model), .include = include},
+                palettes, cancel, [] {});
     if (!status.ok()) return status;
     if (!palettes.empty()) {
         const Graph& graph = model.model->graph;

@@ -3,18 +3,26 @@
 #include <string>
 
 #include "compiler/session/values.h"
+#include "compiler/support/control.h"
 #include "compiler/support/status.h"
+#include "runtime/image/texture.h"
 
 namespace graftal {
 
-/// Writes the model as SDL to `path`, and the palettes that it refers to beside it, each whole or not at all.
-/// `include` gives the `.inc` form; `progress` adds the marks that the POV-Ray driver reads. An interruption
-/// (interruption.h) ends it early as a failure. `identifier`: PovrayOptions::identifier.
-Status write_scene(const CompiledModel& model, const std::string& path, bool include, bool progress,
-                   const std::string& identifier = {});
+struct SceneForm {
+    bool include = false;        ///< the `.inc` form
+    bool progress = false;       ///< with the marks that the POV-Ray driver reads
+    std::string identifier = {}; ///< PovrayOptions::identifier
+};
+
+/// Writes the model as SDL to `path`, and the palettes and pictures that it refers to beside it, each whole
+/// or not at all. A raised flag ends it early as a failure, "interrupted".
+Status write_scene(const CompiledModel& model, const std::string& path, const SceneForm& form,
+                   TextureStore& textures, const CancelFlag& cancel = {});
 
 /// The same to standard output. A model that needs palette files is an error: there is nowhere to put them.
-Status print_scene(const CompiledModel& model, bool include, Diagnostics& diagnostics);
+Status print_scene(const CompiledModel& model, bool include, Diagnostics& diagnostics,
+                   const CancelFlag& cancel = {});
 
 /// Fails if no file can be made at `path`: its folder is missing or closed, or it is a folder itself.
 Status check_writable(const std::string& path);

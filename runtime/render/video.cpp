@@ -48,11 +48,13 @@ Status video_available() {
         program));
 }
 
-Status write_video(const std::string& path, const FrameStore& frames, FrameRate rate) {
+Status write_video(const std::string& path, const FrameStore& frames, FrameRate rate,
+                   const CancelFlag& cancel) {
     PendingFile pending(path);
     if (!pending.status().ok()) return pending.status();
     std::string messages;
     ProcessOptions options;
+    options.cancel = cancel;
     options.arguments = arguments(frames, rate, std::filesystem::absolute(pending.temporary_path()).string());
     options.directory = frames.directory();
     options.on_error_text = [&](std::string_view text) {
@@ -61,7 +63,7 @@ Status write_video(const std::string& path, const FrameStore& frames, FrameRate 
     };
     const ProcessResult result = run_process(options);
     if (!result.status.ok()) return result.status;
-    if (result.interrupted) return Status::failure("interrupted");
+    if (result.cancelled) return Status::failure("interrupted");
     if (result.signal) return Status::failure(fmt::format("'{}' ended by signal {}", program, result.signal));
     if (result.exit_code != 0)
         return Status::failure(

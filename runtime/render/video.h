@@ -2,6 +2,7 @@
 
 #include <string>
 
+#include "compiler/support/control.h"
 #include "compiler/support/status.h"
 #include "runtime/image/animation.h"
 #include "runtime/render/frame_store.h"
@@ -12,7 +13,8 @@ namespace graftal {
 Status video_available();
 
 /// Frames -> `.mp4` (H.264) or `.webm` (VP9), whole or not at all, by the program ffmpeg. Requires frames of
-/// even width and height, which is what both formats have.
-Status write_video(const std::string& path, const FrameStore& frames, FrameRate rate);
+/// even width and height, which is what both formats have. A raised flag ends it: "interrupted".
+Status write_video(const std::string& path, const FrameStore& frames, FrameRate rate,
+                   const CancelFlag& cancel = {});
 
 } // namespace graftal

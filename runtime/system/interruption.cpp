@@ -63,12 +63,12 @@ Interruption::~Interruption() {
     wake_read = -1;
 }
 
-int Interruption::signal() {
+int Interruption::signal() const {
     return last_signal;
 }
 
-int Interruption::wake_descriptor() {
-    return wake_read;
+CancelFlag Interruption::flag() const {
+    return CancelFlag([] { return last_signal != 0; }, wake_read);
 }
 
 } // namespace graftal

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "compiler/support/control.h"
+
 namespace graftal {
 
 /// While one of these lives, SIGINT, SIGTERM and SIGHUP do not end the process but are remembered, so that
@@ -12,10 +14,10 @@ class Interruption {
     Interruption(const Interruption&) = delete;
     Interruption& operator=(const Interruption&) = delete;
 
-    /// The last signal caught since the outermost one began, or 0; still readable after it ended.
-    static int signal();
-    /// Becomes readable when a signal arrives; for poll(). -1 if there is no Interruption.
-    static int wake_descriptor();
+    /// The last signal caught since the outermost one began, or 0.
+    int signal() const;
+    /// Raised by such a signal. To be asked while this lives.
+    CancelFlag flag() const;
 };
 
 } // namespace graftal

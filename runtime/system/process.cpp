@@ -16,7 +16,6 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "runtime/system/interruption.h"
 #include "runtime/system/memory_limit.h"
 #include "runtime/system/process_memory.h"
 
@@ -117,7 +116,7 @@ bool open_pipe(Descriptor& read_end, Descriptor& write_end) {
     return true;
 }
 
-/// Passes the child's text on, and interruptions to the child, until it ends.
+/// Passes the child's text on, and ends it where it is cancelled.
 class Watch {
   public:
     Watch(pid_t child, int text, const ProcessOptions& options)
@@ -129,10 +128,10 @@ class Watch {
             // A child without standard error, or one that we are ending, is looked at every 20 ms; any other
             // now and then, for its memory.
             pollfd watched[2] = {{text_, POLLIN, 0},
-                                 {interrupted_ ? -1 : Interruption::wake_descriptor(), POLLIN, 0}};
-            const bool waiting_for_text = text_ >= 0 && !interrupted_;
+                                 {cancelled_ ? -1 : options_.cancel.wake_descriptor(), POLLIN, 0}};
+            const bool waiting_for_text = text_ >= 0 && !cancelled_;
             const int ready = ::poll(watched, 2, waiting_for_text ? next_look_ms() : 20);
-            heed_interruption();
+            heed_flag();
             note_memory();
             if (ready > 0 && watched[0].revents) pass_text();
             siginfo_t ended = {};
@@ -142,7 +141,7 @@ class Watch {
             if (ended.si_pid == child_) return take_leave(wait_status, usage);
         }
     }
-    int interrupted() const { return interrupted_; }
+    bool cancelled() const { return cancelled_; }
     /// The child's resident memory at its highest, as seen when it was last looked at.
     std::uint64_t peak_bytes() const { return peak_bytes_; }
 
@@ -169,13 +168,13 @@ class Watch {
         return false;
     }
 
-    void heed_interruption() {
-        if (!interrupted_ && Interruption::wake_descriptor() >= 0 && Interruption::signal()) {
-            interrupted_ = Interruption::signal();
-            interrupted_at_ = Clock::now();
+    void heed_flag() {
+        if (!cancelled_ && options_.cancel.raised()) {
+            cancelled_ = true;
+            cancelled_at_ = Clock::now();
             ::kill(-child_, SIGTERM);
         }
-        if (interrupted_ && !killed_ && seconds_since(interrupted_at_) > options_.grace_seconds) {
+        if (cancelled_ && !killed_ && seconds_since(cancelled_at_) > options_.grace_seconds) {
             killed_ = true;
             ::kill(-child_, SIGKILL);
         }
@@ -200,11 +199,11 @@ class Watch {
     pid_t child_;
     int text_;
     const ProcessOptions& options_;
-    int interrupted_ = 0;
+    bool cancelled_ = false;
     bool killed_ = false;
     int look_ms_ = 1;
     std::uint64_t peak_bytes_ = 0;
-    Clock::time_point interrupted_at_;
+    Clock::time_point cancelled_at_;
 };
 
 void record_end(int wait_status, const rusage& usage, ProcessResult& result) {
@@ -281,7 +280,7 @@ ProcessResult run_process(const ProcessOptions& options) {
         errno = start_error;
         return fail(system_failure("start '" + name + "'"));
     }
-    result.interrupted = watch.interrupted();
+    result.cancelled = watch.cancelled();
     result.wall_seconds = seconds_since(start);
     record_end(wait_status, usage, result);
     // The kernel's figure starts from what the child was before exec: a copy of us.

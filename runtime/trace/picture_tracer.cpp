@@ -36,8 +36,8 @@ int steps_of(const Sampling& sampling) {
 class Worker {
   public:
     Worker(const TraceModel& model, const ShaderLimits& limits, const std::function<bool()>& cancelled)
-        : rays_(model.view), traversal_(model), shader_(model.view, traversal_, limits),
-          cancelled_(cancelled) {}
+        : rays_(model.view), traversal_(model),
+          shader_(model.view, traversal_, limits, model.textures.of_ground), cancelled_(cancelled) {}
 
     /// False if it was cancelled before the last ray.
     bool trace(const Sampling& sampling, const Tile& tile, Image& picture) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include <glm/geometric.hpp>
 
@@ -48,18 +49,15 @@ struct Shader::Point {
     const Material* material;
 };
 
-Shader::Shader(const View& view, Surfaces& surfaces, const ShaderLimits& limits)
-    : view_(view), surfaces_(surfaces), limits_(limits) {
+Shader::Shader(const View& view, Surfaces& surfaces, const ShaderLimits& limits,
+               std::shared_ptr<const Texture> ground_texture)
+    : view_(view), surfaces_(surfaces), limits_(limits), ground_texture_(std::move(ground_texture)) {
     for (const Light& light : view.lights) {
         if (std::max({light.rgb.x, light.rgb.y, light.rgb.z}) < least_light) continue;
         const Vec3 at = light.sun ? glm::normalize(light.location) : light.location;
         if (is_finite(at)) lamps_.push_back({at, light.rgb, light.sun, light.shadowless});
     }
-    if (view.ground && !view.ground->material.texture.empty()) {
-        Status ignored;
-        ground_texture_ = load_texture(view.ground->material.texture, ignored);
-        picture_from_world_ = inverse(world_from_picture(*view.ground));
-    }
+    if (view.ground && ground_texture_) picture_from_world_ = inverse(world_from_picture(*view.ground));
     const Camera& camera = view.camera;
     const double width =
         camera.orthographic ? camera.width : 2 * std::tan(camera.angle_deg * std::numbers::pi / 360);

@@ -31,9 +31,10 @@ struct ShaderLimits {
 /// ComputeLightedTexture, ComputeOneDiffuseLight, ComputeSpecularColour, ComputeReflection, ComputeSky.)
 class Shader {
   public:
-    /// Keeps references to the view and the surfaces. A picture of the ground that cannot be read is left
-    /// out: see load_textures().
-    Shader(const View& view, Surfaces& surfaces, const ShaderLimits& limits = {});
+    /// Keeps references to the view and the surfaces. `ground_texture`: of the ground's material; null: the
+    /// ground shows its colour.
+    Shader(const View& view, Surfaces& surfaces, const ShaderLimits& limits = {},
+           std::shared_ptr<const Texture> ground_texture = nullptr);
 
     /// The light that comes along the ray, from the front; components may exceed 1, and are finite whatever
     /// is met. The direction is of unit length.

@@ -130,7 +130,7 @@ class ModelBuilder {
         TraceRun& run = model_.runs.emplace_back();
         run.run = source.run.get();
         run.pictured = std::ranges::any_of(source.materials, [&](const std::optional<MaterialId>& material) {
-            return material && model_.textures[*material];
+            return material && model_.textures.of_material[*material];
         });
         reserve_boxes(run.run->size());
         for (std::size_t i = 0; i < source.run->size(); ++i) {
@@ -333,22 +333,22 @@ std::uint32_t TraceRun::edge_of(RunShape shape, std::uint16_t colour) const {
 }
 
 TraceModel::TraceModel(std::shared_ptr<const PreparedCut> ready, const View& seen,
-                       const DetailOptions& cut_options, std::vector<ShellSizes> known_shell_sizes)
+                       const DetailOptions& cut_options, ModelTextures read_textures,
+                       std::vector<ShellSizes> known_shell_sizes)
     : shared(std::move(ready)), prepared(*shared), layers(layered(prepared.cut, prepared.root_steps)),
       view(seen), options(cut_options),
       projection(view, options, options.error_px, nearest_to_eye(prepared.cut)),
-      meshes(prepared, most_shell_work(options)), shell_sizes(std::move(known_shell_sizes)) {
+      meshes(prepared, most_shell_work(options)), textures(std::move(read_textures)),
+      shell_sizes(std::move(known_shell_sizes)) {
     least_detail_per_unit = least_detail(*this);
     const CutNode& root = prepared.cut.nodes[prepared.cut.root];
     for (const CutNode& node : prepared.cut.nodes)
         if (node.primitive && node.primitive != PrimitiveKind::plane)
             widest = std::max(widest, widened_reach(*node.primitive));
     if (root.widens) most_half_width = projection.most_half_width(root.ball);
-    for (const Material& material : prepared.cut.materials) {
-        Status ignored;
-        textures.push_back(material.texture.empty() ? nullptr : load_texture(material.texture, ignored));
-        clear_texels = clear_texels || (textures.back() && textures.back()->coverage < 1);
-    }
+    textures.of_material.resize(prepared.cut.materials.size());
+    for (const std::shared_ptr<const Texture>& texture : textures.of_material)
+        clear_texels = clear_texels || (texture && texture->coverage < 1);
     ModelBuilder(*this).build();
     terminal_reach = farthest_terminal(*this);
     find_shells(*this);
@@ -372,10 +372,15 @@ double TraceModel::near_enough(const Ray& ray, double share) const {
     return before_all;
 }
 
-Status load_textures(const std::vector<Material>& materials) {
+Status load_textures(const std::vector<Material>& materials, const View& view, TextureStore& store,
+                     ModelTextures& textures) {
     Status status;
+    const auto texture_of = [&](const Material& material) {
+        return material.texture.empty() || !status.ok() ? nullptr : store.load(material.texture, status);
+    };
     for (const Material& material : materials)
-        if (!material.texture.empty() && status.ok()) load_texture(material.texture, status);
+        textures.of_material.push_back(texture_of(material));
+    if (view.ground) textures.of_ground = texture_of(view.ground->material);
     return status;
 }
 

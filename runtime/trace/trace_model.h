@@ -118,6 +118,12 @@ struct TraceRun {
     std::uint32_t edge_of(RunShape shape, std::uint16_t colour) const;
 };
 
+/// The pictures that a model's materials name, read.
+struct ModelTextures {
+    std::vector<std::shared_ptr<const Texture>> of_material; ///< null where there is none; empty: nowhere
+    std::shared_ptr<const Texture> of_ground;                ///< or null
+};
+
 /// A prepared graph made ready for rays, for one view. It is read by many threads.
 struct TraceModel {
     std::shared_ptr<const PreparedCut> shared; ///< never null; may be that of other views too
@@ -137,9 +143,9 @@ struct TraceModel {
     std::vector<PackedNode> packed_boxes; ///< of runs
     std::vector<Unrolling> unrollings;
     std::vector<TraceRun> runs;
-    std::vector<Affine> graph_from_frame;                 ///< by node
-    mutable MeshStore meshes;                             ///< of shells
-    std::vector<std::shared_ptr<const Texture>> textures; ///< by material; null where there is none
+    std::vector<Affine> graph_from_frame; ///< by node
+    mutable MeshStore meshes;             ///< of shells
+    ModelTextures textures;               ///< of_material has all materials
     /// Nodes and primitives that one ray may go into. Sound models need some tens or hundreds; where
     /// thousands of parts coincide, a ray would not come to an end.
     std::uint64_t most_visits = 1 << 17;
@@ -160,10 +166,10 @@ struct TraceModel {
     /// The node as the cut has it.
     const CutNode& source(std::uint32_t node) const { return prepared.cut.nodes[layers.source[node]]; }
 
-    /// Textures that cannot be read are left out: see load_textures(). `known_shell_sizes`: of a model of the
-    /// same graph and view with another error, or empty.
+    /// Materials without a texture of theirs show their colour. `known_shell_sizes`: of a model of the same
+    /// graph and view with another error, or empty.
     TraceModel(std::shared_ptr<const PreparedCut> prepared, const View& view, const DetailOptions& options,
-               std::vector<ShellSizes> known_shell_sizes = {});
+               ModelTextures textures = {}, std::vector<ShellSizes> known_shell_sizes = {});
     TraceModel(const TraceModel&) = delete;
     TraceModel& operator=(const TraceModel&) = delete;
 };
@@ -180,7 +186,8 @@ inline bool is_cut(const TraceNode& node, std::uint32_t steps, double detail) {
     return ends_recursion(node, steps, detail <= node.cut_detail);
 }
 
-/// Reads the textures of the materials, as the model will; or says which cannot be read.
-Status load_textures(const std::vector<Material>& materials);
+/// Reads the textures of the materials and the ground, or says which cannot be read.
+Status load_textures(const std::vector<Material>& materials, const View& view, TextureStore& store,
+                     ModelTextures& textures);
 
 } // namespace graftal

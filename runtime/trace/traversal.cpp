@@ -124,14 +124,16 @@ const Texture::Texel& Traversal::texel(MaterialId material, std::uint32_t edge, 
     const Primitive& primitive = model_.nodes[way.child].primitive;
     const double around = model_.prepared.cut.materials[material].around;
     const auto [u, v] = texture_coordinates(primitive, texture_space(primitive, around, turns), point);
-    return model_.textures[material]->at(u, v);
+    return model_.textures.of_material[material]->at(u, v);
 }
 
 bool Traversal::is_clear(std::uint32_t edge, std::uint32_t frame, double turns, Vec3 point) const {
     std::optional<MaterialId> material = material_of(edge);
     for (std::uint32_t i = frame; i > 0 && !material; --i)
         material = material_of(frames_[i].edge);
-    if (!material || !model_.textures[*material] || model_.textures[*material]->coverage == 1) return false;
+    if (!material || !model_.textures.of_material[*material] ||
+        model_.textures.of_material[*material]->coverage == 1)
+        return false;
     return texel(*material, edge, turns, point).clear;
 }
 
@@ -167,7 +169,7 @@ void Traversal::surface_at_best(SurfaceHit& hit) const {
         if (best_.mesh_colour->material) hit.material = &materials[*best_.mesh_colour->material];
         if (model_.projection.culls())
             model_.meshes.note(best_.cell * model_.projection.detail_per_unit({ray_(best_.t), 0}));
-    } else if (best_.proxy_node == no_edge && material && model_.textures[*material])
+    } else if (best_.proxy_node == no_edge && material && model_.textures.of_material[*material])
         inherited = colour_of(texel(*material, path_.back(), best_.turns, best_.point));
     if (best_.proxy_node != no_edge) inherited = model_.source(best_.proxy_node).mean.over(inherited);
     hit.t = best_.t;

@@ -23,7 +23,7 @@ std::string lower_and_check(const std::string& text, bool exact) {
     options.exact = exact;
     options.max_objects = 2000;
     options.max_modules = 20'000;
-    auto [graph, derivation, orbit] =
+    auto [graph, notes] =
         lower_text("no_such_folder/fuzz.lsys", text, options, sources, diagnostics);
     GRAFTAL_CHECK(graph.has_value() != diagnostics.has_errors(), "lsys fuzzer: a graph or errors");
     diagnostics.render(sources);
@@ -35,6 +35,7 @@ std::string lower_and_check(const std::string& text, bool exact) {
     const Contraction contraction = decide_contraction(result, components);
     if (contraction.verdict == Verdict::acyclic || contraction.verdict == Verdict::proved)
         bound_objects(result, components, contraction);
+    const std::optional<Derivation>& derivation = notes.derivation;
     return derivation && derivation->variants == 1 ? derivation->modules : std::string();
 }
 

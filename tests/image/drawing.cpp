@@ -55,7 +55,8 @@ std::optional<CompiledModel> compile_file(const std::string& path, const StageOp
 Image draw(const CompiledModel& model, SampleFormat format, std::optional<int> antialias) {
     TemporaryDirectory directory;
     EXPECT_TRUE(directory.create().ok());
-    const Status status = write_scene(model, directory.path() + "/scene.pov", false, false);
+    TextureStore textures;
+    const Status status = write_scene(model, directory.path() + "/scene.pov", {}, textures);
     EXPECT_TRUE(status.ok()) << status.message();
     return picture_of(directory.path(), model.view.size, format, antialias);
 }
@@ -63,7 +64,8 @@ Image draw(const CompiledModel& model, SampleFormat format, std::optional<int> a
 Image draw_by_hand(const CompiledModel& model, const std::string& scene, SampleFormat format) {
     TemporaryDirectory directory;
     EXPECT_TRUE(directory.create().ok());
-    const Status status = write_scene(model, directory.path() + "/model.inc", true, false);
+    TextureStore textures;
+    const Status status = write_scene(model, directory.path() + "/model.inc", {.include = true}, textures);
     EXPECT_TRUE(status.ok()) << status.message();
     EXPECT_TRUE(write_text(directory.path() + "/scene.pov", scene).ok());
     return picture_of(directory.path(), model.view.size, format);

@@ -103,7 +103,8 @@ Status draw_by_povray(const std::string& directory, ImageSize size, int threads,
 Status draw_lit(const CompiledModel& model, int threads, Image& image) {
     TemporaryDirectory directory;
     Status status = directory.create();
-    if (status.ok()) status = write_scene(model, directory.path() + "/scene.pov", false, false);
+    TextureStore textures;
+    if (status.ok()) status = write_scene(model, directory.path() + "/scene.pov", {}, textures);
     return status.ok() ? draw_by_povray(directory.path(), model.view.size, threads, image) : status;
 }
 
@@ -216,7 +217,7 @@ Status draw_natively(const DetailedModel& ours, int threads, Image& image) {
     options.render.antialias = std::nullopt;
     options.render.threads = threads;
     Compilation compilation;
-    if (!trace_model({ours.viewed, ours.detail, prepared_of(ours)}, options, {}, compilation))
+    if (!trace_model({ours.viewed, ours.detail, prepared_of(ours), {}}, options, {}, {}, compilation))
         return compilation.status;
     return read_image(options.render.output, image);
 }

@@ -16,7 +16,7 @@ Image render_path(const std::string& path, RenderOptions options, const std::str
     options.output = folder + "/picture.exr";
     if (options.format == SampleFormat::srgb8) options.output = folder + "/picture.png";
     Compilation compilation;
-    Session session(path);
+    PictureSession session(path);
     const std::optional<RenderReport> rendered = render_model(session, options, compilation);
     Image image;
     EXPECT_TRUE(rendered.has_value())

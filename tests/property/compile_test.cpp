@@ -125,7 +125,7 @@ TEST_F(Compile, AModelBeyondNumbersIsAnErrorNotAHang) {
 }
 
 TEST_F(Compile, AnUnknownPassIsReportedWithTheKnownOnes) {
-    options_.pipeline.stop_after = "merge";
+    options_.stop_after = "merge";
     EXPECT_FALSE(analyse(gasket));
     EXPECT_EQ(messages(), "graftal: error: there is no pass 'merge'\n"
                           "    hint: the passes are drop_unreachable, merge_equivalent\n");

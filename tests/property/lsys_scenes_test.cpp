@@ -44,14 +44,14 @@ std::optional<Lowered> lower(const std::string& path, unsigned steps, bool exact
     options.run_from = run_from;
     SourceMap sources;
     Diagnostics diagnostics;
-    auto [graph, derivation, orbit] = lower_text(path, text, options, sources, diagnostics);
+    auto [graph, notes] = lower_text(path, text, options, sources, diagnostics);
     if (!graph) {
         // Some draw nothing in their first steps.
         EXPECT_NE(diagnostics.render(sources).find("draws nothing"), std::string::npos)
             << diagnostics.render(sources);
         return std::nullopt;
     }
-    return Lowered{std::move(*graph), *derivation};
+    return Lowered{std::move(*graph), std::move(*notes.derivation)};
 }
 
 /// Polygons that begin in one part and end in another come in another order: sorted along no axis of any

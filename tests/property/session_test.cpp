@@ -3,6 +3,7 @@
 
 #include "compiler/session/session.h"
 
+#include <set>
 #include <string>
 #include <vector>
 
@@ -13,6 +14,8 @@
 #include "compiler/session/shared_framing.h"
 #include "compiler/session/stages.h"
 #include "compiler/session/stats.h"
+#include "compiler/support/file.h"
+#include "runtime/system/temporary_directory.h"
 #include "runtime/trace/picture_tracer.h"
 #include "tests/property/random_graph.h"
 
@@ -270,6 +273,80 @@ TEST(Session, WhatWasGivenUpIsMadeAgain) {
         options.view.size.width = 32;
         EXPECT_TRUE(session.compiled(options, compilation));
         options.view.size.width = 24;
+    }
+}
+
+/// Files that the model names are inputs too.
+TEST(Session, ReloadingSeesWhatHasChanged) {
+    TemporaryDirectory directory;
+    ASSERT_TRUE(directory.create().ok());
+    const std::string model = directory.path() + "/a.inst", part = directory.path() + "/b.inst";
+    const auto written = [](const std::string& path, const std::string& text) {
+        EXPECT_TRUE(write_text(path, text).ok());
+    };
+    written(model, "use b = \"b.inst\"\nobject a { instance: b }\n");
+    Session session(model);
+    const auto most_x = [&] {
+        Compilation compilation;
+        const auto analysed = session.analysed({}, compilation);
+        return analysed ? analysed->bounds[analysed->graph.root].box.max.x : 0;
+    };
+    EXPECT_EQ(most_x(), 0) << "b.inst is not there";
+    written(part, "object b { instance: sphere }\n");
+    session.reload();
+    EXPECT_NEAR(most_x(), 1, 1e-9);
+    const StageRuns before = session.runs();
+    session.reload();
+    EXPECT_NEAR(most_x(), 1, 1e-9);
+    EXPECT_EQ(session.runs().lowered, before.lowered) << "nothing has changed";
+    written(part, "object b { instance: sphere scale: 3 }\n");
+    EXPECT_NEAR(most_x(), 1, 1e-9) << "nobody has asked for the files";
+    session.reload();
+    EXPECT_NEAR(most_x(), 3, 1e-9);
+    const std::string mesh = directory.path() + "/c.obj";
+    written(mesh, "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    written(part, "object b { instance: mesh \"c.obj\" }\n");
+    session.reload();
+    EXPECT_NEAR(most_x(), 1, 1e-9);
+    written(mesh, "v 0 0 0\nv 12 0 0\nv 0 1 0\nf 1 2 3\n");
+    session.reload();
+    EXPECT_NEAR(most_x(), 12, 1e-9);
+}
+
+/// Wherever it is cancelled a session ends at the next time that it asks, and goes on as if nothing had been.
+TEST(Session, EndsWhereItIsCancelled) {
+    const std::string text = fmt::format(fmt::runtime(templates[2].text), 40, "0.5");
+    StageOptions options;
+    options.view.size = {240, 160};
+    options.detail.error_px = 0.2;
+    std::string expected;
+    std::set<std::string> stages;
+    std::uint64_t asked = 0, most = 0;
+    {
+        Session session("tower.inst", text);
+        session.set_control({CancelFlag([&] { return ++asked, false; }),
+                             [&](const Progress& progress) { stages.emplace(progress.stage); }});
+        Compilation compilation;
+        const auto whole = session.compiled(options, compilation);
+        ASSERT_TRUE(whole);
+        expected = sdl_of(*whole);
+        most = asked;
+    }
+    EXPECT_EQ(stages, (std::set<std::string>{"lower", "passes", "bounding", "prepare", "cut"}));
+    for (std::uint64_t last = 0; last < most; last += 1 + most / 40) {
+        Session session("tower.inst", text);
+        asked = 0;
+        bool may_be_raised = true;
+        session.set_control({CancelFlag([&] { return ++asked > last && may_be_raised; }), {}});
+        Compilation compilation;
+        EXPECT_FALSE(session.compiled(options, compilation));
+        EXPECT_EQ(compilation.status.message(), "interrupted");
+        EXPECT_EQ(asked, last + 1) << "it went on";
+        may_be_raised = false;
+        Compilation again;
+        const auto whole = session.compiled(options, again);
+        ASSERT_TRUE(whole);
+        EXPECT_EQ(sdl_of(*whole), expected);
     }
 }
 

@@ -6,6 +6,7 @@
 
 #include "runtime/render/frame_clock.h"
 #include "runtime/render/frame_store.h"
+#include "runtime/system/interruption.h"
 #include "tools/graftal/commands.h"
 #include "tools/graftal/progress_bar.h"
 #include "tools/graftal/report.h"
@@ -48,7 +49,7 @@ class Warnings {
 
 AnimateOptions animate_options(const Options& options) {
     AnimateOptions animate;
-    animate.render.compile = compile_options(options);
+    animate.render.compile = options.compile;
     animate.render.metadata = {"graftal " GRAFTAL_VERSION, options.description, {}};
     animate.render.antialias = options.antialias;
     animate.render.threads = options.threads;
@@ -97,11 +98,13 @@ int run_animate(const Options& options) {
     animate.on_progress = [&](const AnimationProgress& progress) { bar.show(progress_text(progress)); };
     animate.on_compiled = [&](const Compilation& compilation) { warnings.say_new(compilation); };
 
-    Session session(options.operands.front(), Keep::for_views);
+    CommandSession session(options, options.operands.front(), Keep::for_views);
+    const Interruption interruption;
+    session.set_control({interruption.flag(), {}});
     const AnimationOutcome outcome = animate_model(session, animate);
     bar.clear();
     if (!outcome.done && !outcome.frame.empty()) complain("at " + outcome.frame + ":");
-    const int status = conclude(options, outcome.compilation);
+    const int status = conclude(options, outcome.compilation, interruption.signal());
     if (!outcome.done) say(rest_text(options, outcome));
     if (outcome.done && !options.quiet) say(done_text(options, outcome));
     return status;

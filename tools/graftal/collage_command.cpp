@@ -61,12 +61,12 @@ std::string collage_text(const Options& options, const Collage& collage) {
 
 int run_collage(const Options& options) {
     CollageOptions collage_options;
-    collage_options.compile = compile_options(options);
+    collage_options.compile = options.compile;
     collage_options.target = options.points.target;
     collage_options.threshold = options.points.threshold;
     collage_options.light = options.points.light;
     Compilation compilation;
-    Session session(options.operands.front(), Keep::nothing);
+    CommandSession session(options, options.operands.front());
     const std::optional<Collage> collage = measure_collage(session, collage_options, compilation);
     const int status = conclude(options, compilation);
     if (!collage || status != exit_done) return status;

@@ -5,7 +5,6 @@
 #include "compiler/graph/emit_dot.h"
 #include "compiler/graph/print.h"
 #include "compiler/rifs/orbit_model.h"
-#include "compiler/session/session.h"
 #include "compiler/support/file.h"
 #include "runtime/system/interruption.h"
 #include "runtime/system/process.h"
@@ -25,11 +24,11 @@ std::string verdict_text(const Contraction& contraction) {
 
 int check_one(const Options& options, const std::string& path) {
     Compilation compilation;
-    StageOptions compile = compile_options(options);
-    compile.accept_orbit = true;
-    Session session(path, Keep::nothing);
+    StageOptions compile = options.compile;
+    compile.lower.may_be_orbit = true;
+    CommandSession session(options, path);
     std::shared_ptr<const OrbitModel> orbit;
-    if (const auto lowered = session.lowered(compile, compilation)) orbit = lowered->orbit;
+    if (const auto lowered = session.lowered(compile, compilation)) orbit = lowered->notes.orbit;
     std::shared_ptr<const AnalysedModel> model;
     if (!orbit && compilation.status.ok()) model = session.analysed(compile, compilation);
     const int status = conclude(options, compilation);
@@ -41,10 +40,9 @@ int check_one(const Options& options, const std::string& path) {
 }
 
 /// DOT -> SVG by Graphviz's own program, which writes beside the output and is renamed.
-Status write_svg(const std::string& dot, const std::string& output) {
+Status write_svg(const std::string& dot, const std::string& output, const CancelFlag& cancel) {
     if (!find_program("dot"))
         return Status::failure("cannot find the program 'dot'; install it with 'apt-get install graphviz'");
-    const Interruption interruption;
     TemporaryDirectory directory;
     Status status = directory.create();
     const std::string source = directory.path() + "/graph.dot";
@@ -55,11 +53,12 @@ Status write_svg(const std::string& dot, const std::string& output) {
     if (!pending.status().ok()) return pending.status();
     std::string messages;
     ProcessOptions options;
+    options.cancel = cancel;
     options.arguments = {"dot", "-Tsvg", "-o", pending.temporary_path(), source};
     options.on_error_text = [&](std::string_view text) { messages += text; };
     const ProcessResult result = run_process(options);
     if (!result.status.ok()) return result.status;
-    if (result.interrupted) return Status::failure("interrupted");
+    if (result.cancelled) return Status::failure("interrupted");
     if (!result.succeeded())
         return Status::failure(fmt::format("'dot' failed with status {}: {}", result.exit_code, messages));
     return pending.commit();
@@ -79,24 +78,24 @@ int run_check(const Options& options) {
 
 int run_print(const Options& options) {
     Compilation compilation;
-    Session session(options.operands.front(), Keep::nothing);
-    const std::shared_ptr<const AnalysedModel> model =
-        session.analysed(compile_options(options), compilation, true);
+    CommandSession session(options, options.operands.front());
+    const std::shared_ptr<const AnalysedModel> model = session.analysed(options.compile, compilation, true);
     const int status = conclude(options, compilation);
     return model && status == exit_done ? print_output(print(model->graph)) : status;
 }
 
 int run_graph(const Options& options) {
     Compilation compilation;
-    Session session(options.operands.front(), Keep::nothing);
-    const std::shared_ptr<const AnalysedModel> model =
-        session.analysed(compile_options(options), compilation, true);
+    CommandSession session(options, options.operands.front());
+    const std::shared_ptr<const AnalysedModel> model = session.analysed(options.compile, compilation, true);
+    const Interruption interruption;
     if (model) {
         const std::string dot = emit_dot(model->graph, model->components);
-        compilation.status = options.output.ends_with(".svg") ? write_svg(dot, options.output)
-                                                              : write_text(options.output, dot);
+        compilation.status = options.output.ends_with(".svg")
+                                 ? write_svg(dot, options.output, interruption.flag())
+                                 : write_text(options.output, dot);
     }
-    return conclude(options, compilation);
+    return conclude(options, compilation, interruption.signal());
 }
 
 } // namespace graftal

@@ -139,7 +139,7 @@ void add_after(CLI::App& app, Options& options, const std::string& verb) {
     add_value(
         app, "--after", "PASS", verb + " the graph as it is after this pass (default: after all passes)",
         "a pass", [](const std::string& text) { return pass_named(text, false); },
-        [&](const std::string& pass) { options.compile.pipeline.stop_after = pass; });
+        [&](const std::string& pass) { options.compile.stop_after = pass; });
 }
 
 void add_print(CLI::App& app, Options& options) {

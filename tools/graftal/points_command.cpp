@@ -2,6 +2,7 @@
 
 #include "compiler/detail/coarser.h"
 #include "runtime/points/draw_points.h"
+#include "runtime/system/interruption.h"
 #include "tools/graftal/commands.h"
 #include "tools/graftal/progress_bar.h"
 #include "tools/graftal/report.h"
@@ -12,7 +13,7 @@ namespace {
 
 PointsOptions points_options(const Options& options) {
     PointsOptions points;
-    points.compile = compile_options(options);
+    points.compile = options.compile;
     points.output = options.output;
     points.metadata = {"graftal " GRAFTAL_VERSION, options.description, {}};
     points.points = options.points.points;
@@ -51,10 +52,12 @@ int run_points(const Options& options) {
     if (!options.quiet) say_what_points_take(points);
     Compilation compilation;
     bar.show("compiling...");
-    Session session(options.operands.front(), Keep::nothing);
+    CommandSession session(options, options.operands.front());
+    const Interruption interruption;
+    session.set_control({interruption.flag(), {}});
     const std::optional<PointsReport> report = draw_points(session, points, compilation);
     bar.clear();
-    const int status = conclude(options, compilation);
+    const int status = conclude(options, compilation, interruption.signal());
     if (report && !options.quiet) say(done_text(options, *report));
     return status;
 }

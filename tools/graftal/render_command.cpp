@@ -33,7 +33,7 @@ std::string cut_text(double leaves, std::uint64_t placements, std::uint64_t tria
 
 RenderOptions render_options(const Options& options) {
     RenderOptions render;
-    render.compile = compile_options(options);
+    render.compile = options.compile;
     render.output = options.output;
     render.metadata = {"graftal " GRAFTAL_VERSION, options.description};
     render.format = options.format;
@@ -74,10 +74,14 @@ int render_by_tracer(const Options& options) {
     };
     Compilation compilation;
     bar.show("compiling...");
-    Session session(options.operands.front(), Keep::nothing);
-    const std::optional<NativeReport> report = render_natively(session, native, compilation);
+    CommandSession session(options, options.operands.front());
+    const bool viewed = session.viewed(native.render.compile, compilation) != nullptr;
+    const Interruption interruption; // from here on something may be half written
+    session.set_control({interruption.flag(), {}});
+    std::optional<NativeReport> report;
+    if (viewed) report = render_natively(session, native, compilation);
     bar.clear();
-    const int status = conclude(options, compilation);
+    const int status = conclude(options, compilation, interruption.signal());
     if (report && !options.quiet) say(fmt::format("{}: {}\n", options.output, native_text(*report)));
     return status;
 }
@@ -100,10 +104,14 @@ int run_render(const Options& options) {
 
     Compilation compilation;
     bar.show("compiling...");
-    Session session(options.operands.front(), Keep::nothing);
-    const std::optional<RenderReport> report = render_model(session, render, compilation);
+    CommandSession session(options, options.operands.front());
+    const bool compiled = session.compiled(render.compile, compilation) != nullptr;
+    const Interruption interruption; // from here on something may be half written
+    session.set_control({interruption.flag(), {}});
+    std::optional<RenderReport> report;
+    if (compiled) report = render_model(session, render, compilation);
     bar.clear();
-    const int status = conclude(options, compilation);
+    const int status = conclude(options, compilation, interruption.signal());
     if (report && !options.quiet)
         say(fmt::format(
             "{}: {}; POV-Ray {:.1f} s, peak {}, estimated {}\n", options.output,
@@ -114,17 +122,18 @@ int run_render(const Options& options) {
 
 int run_compile(const Options& options) {
     Compilation compilation;
-    Session session(options.operands.front(), Keep::nothing);
-    const std::shared_ptr<const CompiledModel> model =
-        session.compiled(compile_options(options), compilation);
+    CommandSession session(options, options.operands.front());
+    const std::shared_ptr<const CompiledModel> model = session.compiled(options.compile, compilation);
+    const Interruption interruption;
     if (model) {
-        const Interruption interruption;
         const bool include = options.output.ends_with(".inc");
-        compilation.status = options.output == "-"
-                                 ? print_scene(*model, include, compilation.diagnostics)
-                                 : write_scene(*model, options.output, include, false, options.identifier);
+        compilation.status =
+            options.output == "-"
+                ? print_scene(*model, include, compilation.diagnostics, interruption.flag())
+                : write_scene(*model, options.output, {.include = include, .identifier = options.identifier},
+                              session.textures(), interruption.flag());
     }
-    const int status = conclude(options, compilation);
+    const int status = conclude(options, compilation, interruption.signal());
     if (status == exit_done && !options.quiet && options.output != "-")
         say(fmt::format("{}: {}\n", options.output,
                         cut_text(model->cut.leaf_count, model->cut.placement_count, model->cut.triangle_count,

@@ -10,8 +10,6 @@
 #include "compiler/support/check.h"
 #include "compiler/support/file.h"
 #include "compiler/support/printable.h"
-#include "runtime/image/texture.h"
-#include "runtime/system/interruption.h"
 #include "runtime/system/memory_limit.h"
 #include "tools/graftal/commands.h"
 
@@ -32,13 +30,13 @@ void complain(std::string_view text) {
     say(fmt::format("graftal: {}\n", escaped(text, longest_complaint)));
 }
 
-int conclude(const Options& options, const Compilation& compilation) {
+int conclude(const Options& options, const Compilation& compilation, int signal) {
     say(compilation.diagnostics.render(compilation.sources, options.quiet));
     if (!compilation.status.ok()) complain(compilation.status.message());
     if (options.time)
         for (const StageTime& time : compilation.times)
             say(fmt::format("{:>10.3f} s  {}\n", time.seconds, time.stage));
-    if (Interruption::signal()) return 128 + Interruption::signal();
+    if (signal) return 128 + signal;
     if (compilation.diagnostics.has_errors()) return exit_fault;
     return compilation.status.ok() ? exit_done : exit_environment;
 }
@@ -74,15 +72,13 @@ std::string rays_text(const TraceStatistics& rays, double seconds) {
     return text;
 }
 
-StageOptions compile_options(const Options& options) {
-    StageOptions compile = options.compile;
-    compile.lower.look_at_texture = look_at_texture;
-    if (options.dump_after.empty()) return compile;
-    compile.pipeline.after_each = [wanted = options.dump_after](const Pass& pass, const Graph& graph) {
+CommandSession::CommandSession(const Options& options, const std::string& path, Keep keep)
+    : PictureSession(path, keep) {
+    if (options.dump_after.empty()) return;
+    after_each_pass([wanted = options.dump_after](const Pass& pass, const Graph& graph) {
         if (wanted == "all" || wanted == pass.name)
             say(fmt::format("// after {}\n{}", pass.name, print(graph)));
-    };
-    return compile;
+    });
 }
 
 } // namespace graftal

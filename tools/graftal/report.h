@@ -4,8 +4,8 @@
 #include <string>
 #include <string_view>
 
-#include "compiler/session/stage_options.h"
 #include "compiler/session/values.h"
+#include "runtime/render/picture_session.h"
 #include "runtime/trace/picture_tracer.h"
 #include "tools/graftal/options.h"
 
@@ -18,8 +18,8 @@ void say(const std::string& text);
 void complain(std::string_view text);
 
 /// Prints the diagnostics, the failed status if there is one, and the times if they were asked for; returns
-/// the exit status that follows.
-int conclude(const Options& options, const Compilation& compilation);
+/// the exit status that follows. `signal`: that interrupted the command, or 0.
+int conclude(const Options& options, const Compilation& compilation, int signal = 0);
 
 /// Says that the memory did not suffice, and for what, without taking any; returns the exit status that
 /// follows.
@@ -31,7 +31,10 @@ int print_output(std::string_view text);
 /// "1.76 million rays a second", and what went wrong with some.
 std::string rays_text(const TraceStatistics& rays, double seconds);
 
-/// The options of the compiler with `--dump-after` connected.
-StageOptions compile_options(const Options& options);
+/// The session of a command, with `--dump-after` connected.
+class CommandSession : public PictureSession {
+  public:
+    CommandSession(const Options& options, const std::string& path, Keep keep = Keep::nothing);
+};
 
 } // namespace graftal

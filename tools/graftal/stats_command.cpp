@@ -1,4 +1,3 @@
-#include "compiler/session/session.h"
 #include "compiler/session/stages.h"
 #include "compiler/session/stats.h"
 #include "tools/graftal/commands.h"
@@ -8,9 +7,9 @@ namespace graftal {
 
 int run_stats(const Options& options) {
     Compilation compilation;
-    StageOptions compile = compile_options(options);
+    StageOptions compile = options.compile;
     compile.lower.may_draw_nothing = true;
-    Session session(options.operands.front(), Keep::nothing);
+    CommandSession session(options, options.operands.front());
     const std::shared_ptr<const AnalysedModel> model = session.analysed(compile, compilation, true);
     const int status = conclude(options, compilation);
     if (!model || status != exit_done) return status;

@@ -30,7 +30,7 @@ Graph each_after_all(const std::vector<Affine>& maps) {
 std::uint64_t pieces_looked_at(const Graph& graph) {
     const Components components = strong_components(graph);
     std::uint64_t pieces = 0;
-    bound_objects(graph, components, decide_contraction(graph, components), &pieces);
+    bound_objects(graph, components, decide_contraction(graph, components), no_control(), &pieces);
     return pieces;
 }
 

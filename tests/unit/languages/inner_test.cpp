@@ -32,7 +32,7 @@ class Inner : public ::testing::Test {
         diagnostics_ = Diagnostics();
         LoweredText model = lower_model((folder_ / name).string(), options, sources_, diagnostics_, status_);
         graph_ = std::move(model.graph);
-        derivation_ = std::move(model.derivation);
+        derivation_ = std::move(model.notes.derivation);
     }
     std::string report() const { return diagnostics_.render(sources_); }
 

@@ -91,7 +91,7 @@ std::size_t parts_of(const std::string& statements) {
     SourceMap sources;
     Diagnostics diagnostics;
     const std::optional<Derivation> derivation =
-        lower_text("m.lsys", block(statements), {}, sources, diagnostics).derivation;
+        lower_text("m.lsys", block(statements), {}, sources, diagnostics).notes.derivation;
     EXPECT_TRUE(derivation) << diagnostics.render(sources);
     return derivation ? derivation->parts : 0;
 }

@@ -223,7 +223,7 @@ struct CompiledLsys {
         LoweredText lowered = lower_text("m.lsys", text, options, sources, diagnostics);
         if (!lowered.graph) throw std::runtime_error(diagnostics.render(sources));
         graph = std::move(*lowered.graph);
-        derivation = std::move(lowered.derivation);
+        derivation = std::move(lowered.notes.derivation);
     }
 
     SourceMap sources;

@@ -69,7 +69,7 @@ class CollageTest : public ::testing::Test {
         options.points = 1'500'000;
         options.tone.transparent = true;
         Compilation compilation;
-        Session session(model);
+        PictureSession session(model);
         EXPECT_TRUE(draw_points(session, options, compilation))
             << compilation.diagnostics.render(compilation.sources);
         return options.output;
@@ -80,7 +80,7 @@ class CollageTest : public ::testing::Test {
         options.target = target;
         options.threshold = 0.001;
         Compilation compilation;
-        Session session(model);
+        PictureSession session(model);
         auto collage = measure_collage(session, options, compilation);
         message_ = compilation.diagnostics.render(compilation.sources) + compilation.status.message();
         return collage;

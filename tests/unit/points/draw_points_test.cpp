@@ -38,7 +38,7 @@ class Points : public ::testing::Test {
         options.threads = threads;
         options.colour = colour;
         Compilation compilation;
-        Session session(model);
+        PictureSession session(model);
         auto report = draw_points(session, options, compilation);
         message_ = compilation.diagnostics.render(compilation.sources) + compilation.status.message();
         return report;

@@ -36,7 +36,7 @@ class FitWork : public testing::Test {
             if (too_large(model.options.error_px)) throw std::bad_alloc();
             return ShaderLimits();
         };
-        return fit_work(prepared, view_, options, 1, limits, 1, [] { return false; });
+        return fit_work(prepared, view_, options, {}, 1, limits, 1, [] { return false; });
     }
 
     /// Cubes of all sizes that lie in each other.

@@ -23,11 +23,12 @@ struct Outcome {
     std::string text;
 };
 
-Outcome shell(const std::string& script, double grace_seconds = 10) {
+Outcome shell(const std::string& script, double grace_seconds = 10, const CancelFlag& cancel = {}) {
     Outcome outcome;
     ProcessOptions options;
     options.arguments = {"sh", "-c", script};
     options.grace_seconds = grace_seconds;
+    options.cancel = cancel;
     options.environment = {{"GRAFTAL_TEST", "a b'c"}};
     options.on_error_text = [&](std::string_view text) { outcome.text += text; };
     outcome.result = run_process(options);
@@ -35,9 +36,11 @@ Outcome shell(const std::string& script, double grace_seconds = 10) {
 }
 
 /// Sends a signal to ourselves once the child says that it is ready.
-Outcome interrupt_shell(const std::string& script, int number, double grace_seconds) {
+Outcome interrupt_shell(const std::string& script, int number, double grace_seconds,
+                        const CancelFlag& cancel) {
     Outcome outcome;
     ProcessOptions options;
+    options.cancel = cancel;
     options.arguments = {"sh", "-c", script};
     options.grace_seconds = grace_seconds;
     options.on_error_text = [&](std::string_view text) {
@@ -146,19 +149,32 @@ TEST(Process, MeasuresTheMemoryOfAChildSmallerThanUs) {
 
 TEST(Process, InterruptionIsPassedOnAndWaitedFor) {
     const Interruption interruption;
-    const Outcome outcome = interrupt_shell(
-        "trap 'echo cleaned >&2; exit 2' TERM; echo ready >&2; while :; do sleep 0.05; done", SIGINT, 10);
-    EXPECT_EQ(outcome.result.interrupted, SIGINT);
+    const Outcome outcome =
+        interrupt_shell("trap 'echo cleaned >&2; exit 2' TERM; echo ready >&2; while :; do sleep 0.05; done",
+                        SIGINT, 10, interruption.flag());
+    EXPECT_TRUE(outcome.result.cancelled);
     EXPECT_EQ(outcome.result.exit_code, 2);
     EXPECT_THAT(outcome.text, testing::HasSubstr("cleaned"));
-    EXPECT_EQ(Interruption::signal(), SIGINT);
+    EXPECT_EQ(interruption.signal(), SIGINT);
+}
+
+TEST(Process, AFlagWithoutADescriptorEndsTheChildToo) {
+    bool raised = false;
+    ProcessOptions options;
+    options.arguments = {"sh", "-c", "echo ready >&2; sleep 30"};
+    options.grace_seconds = 0.2;
+    options.cancel = CancelFlag([&] { return raised; });
+    options.on_error_text = [&](std::string_view) { raised = true; };
+    const ProcessResult result = run_process(options);
+    EXPECT_TRUE(result.cancelled);
+    EXPECT_EQ(result.signal, SIGTERM);
 }
 
 TEST(Process, ChildThatIgnoresTheInterruptionIsKilled) {
     const Interruption interruption;
-    const Outcome outcome =
-        interrupt_shell("trap '' TERM INT; echo ready >&2; while :; do sleep 0.05; done", SIGTERM, 0.2);
-    EXPECT_EQ(outcome.result.interrupted, SIGTERM);
+    const Outcome outcome = interrupt_shell("trap '' TERM INT; echo ready >&2; while :; do sleep 0.05; done",
+                                            SIGTERM, 0.2, interruption.flag());
+    EXPECT_TRUE(outcome.result.cancelled);
     EXPECT_EQ(outcome.result.signal, SIGKILL);
     EXPECT_LT(outcome.result.wall_seconds, 5);
 }
@@ -166,25 +182,27 @@ TEST(Process, ChildThatIgnoresTheInterruptionIsKilled) {
 TEST(Process, InterruptionBeforeTheStartEndsTheChildToo) {
     const Interruption interruption;
     ::raise(SIGHUP);
-    const ProcessResult result = shell("sleep 30", 0.5).result;
-    EXPECT_EQ(result.interrupted, SIGHUP);
+    const ProcessResult result = shell("sleep 30", 0.5, interruption.flag()).result;
+    EXPECT_TRUE(result.cancelled);
     EXPECT_LT(result.wall_seconds, 5);
 }
 
 TEST(Interruptions, ANewOneForgetsTheLast) {
     {
         const Interruption first;
+        EXPECT_FALSE(first.flag().raised());
         ::raise(SIGINT);
-        EXPECT_EQ(Interruption::signal(), SIGINT);
+        EXPECT_EQ(first.signal(), SIGINT);
+        EXPECT_TRUE(first.flag().raised());
     }
-    EXPECT_EQ(Interruption::signal(), SIGINT);
     const Interruption second;
-    EXPECT_EQ(Interruption::signal(), 0);
+    EXPECT_EQ(second.signal(), 0);
+    EXPECT_FALSE(second.flag().raised());
     {
         const Interruption nested;
         ::raise(SIGTERM);
     }
-    EXPECT_EQ(Interruption::signal(), SIGTERM);
+    EXPECT_EQ(second.signal(), SIGTERM);
 }
 
 TEST(TemporaryDirectories, HonourTmpdirAndDisappear) {

@@ -17,6 +17,7 @@ class TextureFiles : public testing::Test {
     std::string path(const std::string& name) const { return directory_.path() + "/" + name; }
 
     TemporaryDirectory directory_;
+    TextureStore textures_;
 };
 
 /// Writes and commits.
@@ -34,7 +35,7 @@ Image picture() {
 TEST_F(TextureFiles, AreReadAsTexelsFromTheBottomLeftOn) {
     ASSERT_TRUE(write_image(path("a.png"), picture(), SampleFormat::srgb8).ok());
     Status status;
-    const auto texture = load_texture(path("a.png"), status);
+    const auto texture = textures_.load(path("a.png"), status);
     ASSERT_TRUE(texture) << status.message();
     using Level = std::array<std::uint8_t, 3>;
     EXPECT_EQ(texture->at(0.1, 0.1).srgb, (Level{0, 255, 0}));
@@ -46,16 +47,16 @@ TEST_F(TextureFiles, AreReadAsTexelsFromTheBottomLeftOn) {
     EXPECT_EQ(&texture->at(-1e-300, 0), &texture->at(0.99, 0));
     EXPECT_EQ(texture->coverage, 0.75);
     EXPECT_NEAR(texture->mean.g, 1.0 / 3, 1e-12);
-    EXPECT_EQ(load_texture(path("a.png"), status), texture); // read once
+    EXPECT_EQ(textures_.load(path("a.png"), status), texture); // read once
 }
 
 TEST_F(TextureFiles, AreWrittenSoThatTheyReadTheSame) {
     ASSERT_TRUE(write_image(path("b.png"), picture(), SampleFormat::srgb8).ok());
     Status status;
-    const auto texture = load_texture(path("b.png"), status);
+    const auto texture = textures_.load(path("b.png"), status);
     ASSERT_TRUE(texture);
     ASSERT_TRUE(save_texture(path("c.png"), *texture).ok());
-    const auto again = load_texture(path("c.png"), status);
+    const auto again = textures_.load(path("c.png"), status);
     ASSERT_TRUE(again);
     for (std::size_t i = 0; i < 4; ++i) {
         EXPECT_EQ(again->texels[i].srgb, texture->texels[i].srgb);
@@ -66,10 +67,10 @@ TEST_F(TextureFiles, AreWrittenSoThatTheyReadTheSame) {
 TEST_F(TextureFiles, WhatIsNoneIsSaid) {
     ASSERT_TRUE(write_text(path("d.png"), "no picture").ok());
     Status status;
-    EXPECT_FALSE(load_texture(path("d.png"), status));
+    EXPECT_FALSE(textures_.load(path("d.png"), status));
     EXPECT_FALSE(status.ok());
     TextureFacts facts;
-    EXPECT_FALSE(look_at_texture(path("nowhere.png"), facts).ok());
+    EXPECT_FALSE(textures_.look_at(path("nowhere.png"), facts).ok());
 }
 
 /// White, the first column black.
@@ -81,7 +82,7 @@ TEST_F(TextureFiles, LargePicturesAreReducedAsTheyAreRead) {
         image.pixels[2u * static_cast<std::size_t>(y) * width] = 0;
     ASSERT_TRUE(write_image(path("large.png"), image, SampleFormat::srgb8).ok());
     Status status;
-    const auto texture = load_texture(path("large.png"), status);
+    const auto texture = textures_.load(path("large.png"), status);
     ASSERT_TRUE(texture) << status.message();
     EXPECT_EQ(texture->file_width, width);
     EXPECT_EQ(texture->width, 4097);
@@ -91,7 +92,7 @@ TEST_F(TextureFiles, LargePicturesAreReducedAsTheyAreRead) {
     EXPECT_EQ(texture->at(0.5, 0.5).srgb[0], 255);
     EXPECT_EQ(texture->coverage, 1);
     TextureFacts facts;
-    ASSERT_TRUE(look_at_texture(path("large.png"), facts).ok());
+    ASSERT_TRUE(textures_.look_at(path("large.png"), facts).ok());
     EXPECT_EQ(facts.file_height, height);
     EXPECT_EQ(facts.height, 4096);
 }
@@ -101,7 +102,7 @@ TEST_F(TextureFiles, APictureOfManyPixelsInFewBytesIsRefusedWhateverItsVersion) 
     for (const std::string stamp : {"GIF89a", "GIF87a", "GIF99x"}) {
         ASSERT_TRUE(write_text(path("bomb.gif"), stamp + "\xff\xff\xff\xff" + std::string(13, '\0')).ok());
         Status status;
-        EXPECT_FALSE(load_texture(path("bomb.gif"), status));
+        EXPECT_FALSE(textures_.load(path("bomb.gif"), status));
         EXPECT_THAT(status.message(), testing::HasSubstr("too large")) << stamp;
     }
 }
@@ -122,7 +123,7 @@ TEST_F(TextureFiles, AnAttributeLongerThanItsFileIsRefused) {
         for (const std::uint32_t bytes : {1u, 0x70000000u, 0xffffffffu}) {
             ASSERT_TRUE(write_text(path("bomb.exr"), exr_head(many_parts, bytes)).ok());
             Status status;
-            EXPECT_FALSE(load_texture(path("bomb.exr"), status));
+            EXPECT_FALSE(textures_.load(path("bomb.exr"), status));
             EXPECT_THAT(status.message(), testing::HasSubstr("its head is damaged")) << bytes;
         }
 }
@@ -132,7 +133,7 @@ TEST_F(TextureFiles, ALongAttributeOfATypeWithoutANameIsRefused) {
         exr_head(false, 0).substr(0, 8) + "note" + '\0' + '\0' + std::string("\0\0\0\x61", 4);
     ASSERT_TRUE(write_text(path("bomb.exr"), head + std::string(200, '\0')).ok());
     Status status;
-    EXPECT_FALSE(load_texture(path("bomb.exr"), status));
+    EXPECT_FALSE(textures_.load(path("bomb.exr"), status));
     EXPECT_THAT(status.message(), testing::HasSubstr("its head is damaged"));
 }
 
@@ -145,10 +146,10 @@ TEST_F(TextureFiles, TilesMuchLargerThanTheirPictureAreRefused) {
     ASSERT_NE(tiles, std::string::npos);
     ASSERT_TRUE(write_text(path("tiled.exr"), text).ok());
     Status status;
-    EXPECT_TRUE(load_texture(path("tiled.exr"), status)) << status.message();
+    EXPECT_TRUE(textures_.load(path("tiled.exr"), status)) << status.message();
     text.replace(tiles + 13, 4, std::string("\x10\x00\xb5\x00", 4));
     ASSERT_TRUE(write_text(path("bomb.exr"), text).ok());
-    EXPECT_FALSE(load_texture(path("bomb.exr"), status));
+    EXPECT_FALSE(textures_.load(path("bomb.exr"), status));
     EXPECT_THAT(status.message(), testing::HasSubstr("its tiles are too large"));
 }
 
@@ -159,7 +160,7 @@ TEST_F(TextureFiles, AnAttributeHiddenInAnotherIsRefused) {
     const std::string head = exr_head(false, 0).substr(0, 8) + "dataWindow" + '\0' + "box2i" + '\0';
     ASSERT_TRUE(write_text(path("bomb.exr"), head + length + box + bomb).ok());
     Status status;
-    EXPECT_FALSE(load_texture(path("bomb.exr"), status));
+    EXPECT_FALSE(textures_.load(path("bomb.exr"), status));
     EXPECT_THAT(status.message(), testing::HasSubstr("its head is damaged"));
 }
 
@@ -169,7 +170,7 @@ TEST_F(TextureFiles, ARareFormatIsRefused) {
     sgi.resize(512 + 2 * 2 * 3);
     ASSERT_TRUE(write_text(path("a.sgi"), sgi).ok());
     Status status;
-    EXPECT_FALSE(load_texture(path("a.sgi"), status));
+    EXPECT_FALSE(textures_.load(path("a.sgi"), status));
     EXPECT_THAT(status.message(), testing::HasSubstr("format 'sgi'"));
 }
 
@@ -177,7 +178,7 @@ TEST_F(TextureFiles, AreRegularFiles) {
     ASSERT_EQ(::mkfifo(path("pipe.png").c_str(), 0600), 0);
     for (const std::string& name : {path("pipe.png"), std::string("/dev/zero")}) {
         Status status;
-        EXPECT_FALSE(load_texture(name, status));
+        EXPECT_FALSE(textures_.load(name, status));
         EXPECT_THAT(status.message(), testing::HasSubstr("not a regular file"));
     }
 }

@@ -1,0 +1,73 @@
+#pragma once
+
+#include <cstdint>
+#include <exception>
+#include <functional>
+#include <string_view>
+#include <utility>
+
+namespace graftal {
+
+/// Whether somebody wants long work to end early. Copies ask the same; one made from nothing is never raised.
+class CancelFlag {
+  public:
+    CancelFlag() = default;
+    /// `asked` is called often, by many threads at once. `wake_descriptor`: a file descriptor that becomes
+    /// readable when the flag is raised, for who waits for a child process; -1: that one asks now and then.
+    explicit CancelFlag(std::function<bool()> asked, int wake_descriptor = -1)
+        : asked_(std::move(asked)), wake_descriptor_(wake_descriptor) {}
+
+    bool raised() const { return asked_ && asked_(); }
+    bool can_be_raised() const { return static_cast<bool>(asked_); }
+    int wake_descriptor() const { return wake_descriptor_; }
+
+  private:
+    std::function<bool()> asked_;
+    int wake_descriptor_ = -1;
+};
+
+/// How far a long stage is.
+struct Progress {
+    std::string_view stage;  ///< as `--time` names it
+    std::uint64_t done = 0;  ///< in units of the stage's own
+    std::uint64_t total = 0; ///< 0: nobody knows
+};
+
+/// How a caller ends a long stage early, and hears of it.
+struct Control {
+    CancelFlag cancel;
+    std::function<void(const Progress&)> on_progress; ///< by the thread that runs the stage
+};
+
+/// For callers that neither cancel nor listen.
+const Control& no_control();
+
+/// Thrown by a stage that was cancelled: it leaves nothing behind. Session catches it.
+class Cancelled : public std::exception {
+  public:
+    const char* what() const noexcept override { return "cancelled"; }
+};
+
+/// Counts the work of a stage. After every `interval` units it asks the flag, and throws Cancelled if that is
+/// raised; else it tells the progress. So a stage ends within one interval of being cancelled.
+class WorkMeter {
+  public:
+    /// Keeps a reference to the control, and the stage's name.
+    WorkMeter(const Control& control, std::string_view stage, std::uint64_t interval, std::uint64_t total = 0)
+        : control_(control), progress_{stage, 0, total}, interval_(interval) {}
+
+    void add(std::uint64_t units = 1) {
+        progress_.done += units;
+        if (progress_.done >= next_) look();
+    }
+
+  private:
+    void look();
+
+    const Control& control_;
+    Progress progress_;
+    std::uint64_t interval_;
+    std::uint64_t next_ = 0; ///< the first unit is looked at: what is cancelled already does not begin
+};
+
+} // namespace graftal

@@ -1,0 +1,283 @@
+#include "runtime/graftal/model.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "compiler/analysis/counts.h"
+#include "compiler/session/stages.h"
+#include "compiler/session/stats.h"
+#include "runtime/image/image.h"
+#include "runtime/render/native.h"
+#include "runtime/render/render.h"
+#include "runtime/render/scene_files.h"
+#include "runtime/render/stopwatch.h"
+
+namespace graftal::v1 {
+
+namespace {
+
+std::optional<Vec3> vec3_of(const std::optional<Vector>& v) {
+    return v ? std::optional(Vec3(v->x, v->y, v->z)) : std::nullopt;
+}
+
+Vector vector_of(Vec3 v) {
+    return {v.x, v.y, v.z};
+}
+
+Severity severity_of(graftal::Severity severity) {
+    switch (severity) {
+    case graftal::Severity::error:
+        return Severity::error;
+    case graftal::Severity::warning:
+        return Severity::warning;
+    case graftal::Severity::note:
+        break;
+    }
+    return Severity::note;
+}
+
+Message message_of(const Diagnostic& finding, const SourceMap& sources) {
+    Message message{severity_of(finding.severity), {}, 0, 0, finding.message, finding.hint};
+    if (!finding.span.known()) return message;
+    const Position at = sources.position(finding.span.file, finding.span.begin);
+    message.file = sources.name(finding.span.file);
+    message.line = at.line;
+    message.column = at.column;
+    return message;
+}
+
+std::vector<Message> messages_of(const Compilation& compilation) {
+    std::vector<Message> messages;
+    for (const Diagnostic& finding : compilation.diagnostics.all())
+        messages.push_back(message_of(finding, compilation.sources));
+    if (!compilation.status.ok())
+        messages.push_back({Severity::error, {}, 0, 0, compilation.status.message(), {}});
+    return messages;
+}
+
+Picture picture_of(const Image& linear) {
+    Picture picture{linear.width, linear.height, {}};
+    picture.rgb.reserve(linear.pixels.size());
+    for (const float sample : linear.pixels) {
+        const float encoded = std::clamp(srgb_encoded(sample), 0.0f, 1.0f);
+        picture.rgb.push_back(static_cast<std::uint8_t>(std::lround(255 * encoded)));
+    }
+    return picture;
+}
+
+} // namespace
+
+std::string text_of(const std::vector<Message>& messages) {
+    static constexpr const char* names[] = {"error", "warning", "note"};
+    std::string text;
+    for (const Message& message : messages) {
+        if (!message.file.empty())
+            text += fmt::format("{}:{}:{}: ", message.file, message.line, message.column);
+        text += fmt::format("{}: {}\n", names[static_cast<std::size_t>(message.severity)], message.text);
+        if (!message.hint.empty()) text += fmt::format("  {}\n", message.hint);
+    }
+    return text;
+}
+
+struct Model::Parts {
+    explicit Parts(std::string path) : session(std::move(path)) {
+        session.set_control(
+            {CancelFlag([this] { return cancelled.load(); }), [this](const Progress& progress) {
+                 const auto done = static_cast<double>(progress.done);
+                 const auto total = static_cast<double>(progress.total);
+                 tell(progress.stage, total > 0 ? std::optional(done / total) : std::nullopt);
+             }});
+    }
+
+    void tell(std::string_view stage, std::optional<double> share) const {
+        if (listener) listener(stage, share ? std::optional(std::clamp(*share, 0.0, 1.0)) : std::nullopt);
+    }
+
+    /// Calls a function that gives a value or nothing.
+    template<typename Value, typename Work> Result<Value> run(const Work& work) {
+        cancelled = false;
+        Compilation compilation;
+        std::optional<Value> value = work(compilation);
+        if (cancelled) return {std::nullopt, {}, true};
+        return {std::move(value), messages_of(compilation), false};
+    }
+
+    PictureSession session;
+    RenderOptions options;
+    OnProgress listener;
+    std::atomic<bool> cancelled = false;
+};
+
+Model::Model(std::unique_ptr<Parts> parts) : parts_(std::move(parts)) {}
+Model::Model(Model&&) noexcept = default;
+Model& Model::operator=(Model&&) noexcept = default;
+Model::~Model() = default;
+
+Model Model::from_file(std::string path) {
+    return Model(std::make_unique<Parts>(std::move(path)));
+}
+
+Model Model::from_text(std::string name, std::string text) {
+    Model model(std::make_unique<Parts>(std::move(name)));
+    model.edit(std::move(text));
+    return model;
+}
+
+void Model::edit(std::string text) {
+    parts_->session.edit(std::move(text));
+}
+
+void Model::reload() {
+    parts_->session.reload();
+}
+
+void Model::set(const std::string& name, double value) {
+    parts_->options.compile.lower.set[name] = value;
+}
+
+void Model::unset(const std::string& name) {
+    auto& set = parts_->options.compile.lower.set;
+    if (const auto known = set.find(name); known != set.end()) set.erase(known);
+}
+
+void Model::steps(std::optional<unsigned> steps) {
+    parts_->options.compile.lower.steps = steps;
+}
+
+void Model::seed(std::optional<std::uint64_t> seed) {
+    parts_->options.compile.lower.seed = seed;
+}
+
+void Model::camera(const Camera& camera) {
+    parts_->options.compile.view.camera = {vec3_of(camera.location), vec3_of(camera.look_at),
+                                           vec3_of(camera.up),       camera.angle_deg,
+                                           camera.orthographic,      camera.width};
+}
+
+void Model::size(int width, int height) {
+    parts_->options.compile.view.size = {std::max(width, 1), std::max(height, 1)};
+}
+
+void Model::zoom(std::optional<double> factor) {
+    parts_->options.compile.view.zoom.zoom =
+        factor ? std::optional(Magnification::of(*factor)) : std::nullopt;
+}
+
+void Model::error_px(double pixels) {
+    parts_->options.compile.detail.error_px = pixels;
+}
+
+void Model::memory(std::uint64_t bytes) {
+    parts_->options.compile.detail.memory_bytes = bytes;
+}
+
+void Model::work(double seconds) {
+    parts_->options.compile.detail.work_seconds = seconds;
+}
+
+void Model::threads(int count) {
+    parts_->options.threads = count;
+}
+
+void Model::antialias(std::optional<int> depth) {
+    parts_->options.antialias = depth;
+}
+
+void Model::root(std::string folder) {
+    parts_->options.compile.lower.root = std::move(folder);
+}
+
+void Model::on_progress(OnProgress listener) {
+    parts_->listener = std::move(listener);
+}
+
+void Model::cancel() {
+    parts_->cancelled = true;
+}
+
+Result<Stats> Model::stats() {
+    return parts_->run<Stats>([this](Compilation& compilation) -> std::optional<Stats> {
+        const StageOptions& stages = parts_->options.compile;
+        const auto model = parts_->session.analysed(stages, compilation, true);
+        if (!model) return std::nullopt;
+        const std::optional<unsigned> levels = levels_of(*model, stages.lower.steps);
+        Stats stats;
+        stats.objects = model->graph.objects.size();
+        stats.instances = instance_count(model->graph) + run_part_count(model->graph);
+        stats.steps = model->derivation ? model->derivation->steps : levels;
+        stats.leaves = count_leaves(model->graph, model->components, levels).value_or("");
+        if (!model->bounds.empty()) {
+            stats.dimension = similarity_dimension(model->graph, model->components);
+            const Box& box = model->bounds[model->graph.root].box;
+            if (!box.empty()) {
+                stats.least = vector_of(box.min);
+                stats.most = vector_of(box.max);
+            }
+        }
+        stats.json = stats_json(*model, levels, compilation.sources);
+        return stats;
+    });
+}
+
+Result<Picture> Model::render() {
+    return parts_->run<Picture>([this](Compilation& compilation) -> std::optional<Picture> {
+        std::optional<Picture> picture;
+        const PictureSink sink = [&](const Image& linear) {
+            picture = picture_of(linear);
+            return Status();
+        };
+        NativeOptions native{parts_->options, false, {}};
+        native.on_progress = [this](const NativeProgress& progress) {
+            parts_->tell("trace", progress.fraction);
+        };
+        if (!render_natively(parts_->session, native, compilation, sink)) return std::nullopt;
+        return picture;
+    });
+}
+
+Result<Drawn> Model::render_to(const std::string& path, Engine engine) {
+    return parts_->run<Drawn>([&](Compilation& compilation) -> std::optional<Drawn> {
+        if (!is_picture_name(path)) {
+            compilation.status = Status::failure("'" + path + "' ends neither in .png nor in .exr");
+            return std::nullopt;
+        }
+        const Stopwatch watch;
+        NativeOptions native{parts_->options, false, {}};
+        native.render.output = path;
+        if (engine == Engine::povray) {
+            native.render.on_progress = [this](const PovrayProgress& progress) {
+                parts_->tell("povray", progress.fraction);
+            };
+            if (!render_model(parts_->session, native.render, compilation)) return std::nullopt;
+            return Drawn{path, watch.seconds()};
+        }
+        native.on_progress = [this](const NativeProgress& progress) {
+            parts_->tell("trace", progress.fraction);
+        };
+        if (!render_natively(parts_->session, native, compilation)) return std::nullopt;
+        return Drawn{path, watch.seconds()};
+    });
+}
+
+Result<Drawn> Model::compile_to(const std::string& path) {
+    return parts_->run<Drawn>([&](Compilation& compilation) -> std::optional<Drawn> {
+        const bool include = path.ends_with(".inc");
+        if (!include && !path.ends_with(".pov")) {
+            compilation.status = Status::failure("'" + path + "' ends neither in .pov nor in .inc");
+            return std::nullopt;
+        }
+        const Stopwatch watch;
+        const auto model = parts_->session.compiled(parts_->options.compile, compilation);
+        if (!model) return std::nullopt;
+        compilation.status = write_scene(*model, path, {.include = include}, parts_->session.textures(),
+                                         parts_->session.control().cancel);
+        if (!compilation.status.ok()) return std::nullopt;
+        return Drawn{path, watch.seconds()};
+    });
+}
+
+} // namespace graftal::v1

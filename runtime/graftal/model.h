@@ -1,0 +1,142 @@
+#pragma once
+
+// graftal as a library: a model that is loaded, changed and drawn. This header names no type of the
+// compiler's own, so that those may change. docs/library.md has a whole program.
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace graftal::v1 {
+
+struct Vector {
+    double x = 0, y = 0, z = 0;
+};
+
+/// What is left open is as the model says, or else chosen so that the whole of it is in the picture.
+struct Camera {
+    std::optional<Vector> location;
+    std::optional<Vector> look_at;
+    std::optional<Vector> up;
+    std::optional<double> angle_deg; ///< horizontal angle of view, between 0 and 180
+    bool orthographic = false;
+    std::optional<double> width; ///< orthographic: of the view, in the model's units
+};
+
+enum class Severity { error, warning, note };
+
+/// One thing that is said about a model, or about the files and programs that it needs.
+struct Message {
+    Severity severity = Severity::error;
+    std::string file;              ///< empty where no text is at fault
+    unsigned line = 0, column = 0; ///< from 1; 0 without a file
+    std::string text;
+    std::string hint; ///< what to write instead; may be empty
+};
+
+/// One a line, "crystal.rifs:3:5: error: ..."; hints have lines of their own.
+std::string text_of(const std::vector<Message>& messages);
+
+/// What a function gives, or why it gives nothing. With a value there may be warnings and notes.
+template<typename Value> struct Result {
+    std::optional<Value> value;
+    std::vector<Message> messages;
+    bool cancelled = false; ///< the reason why there is no value
+
+    std::string text() const { return text_of(messages); }
+    explicit operator bool() const { return value.has_value(); }
+    const Value& operator*() const { return *value; }
+    const Value* operator->() const { return &*value; }
+};
+
+/// What `graftal stats` says.
+struct Stats {
+    std::size_t objects = 0;
+    std::size_t instances = 0;     ///< edges of the graph
+    std::optional<unsigned> steps; ///< nothing: without an end
+    std::string leaves;            ///< parts after unfolding, to the last digit; empty where they have no end
+    std::optional<double> dimension;
+    std::optional<Vector> least, most; ///< corners of the box that holds it
+    std::string json;                  ///< all of it, as `graftal stats --json` prints it
+};
+
+/// A picture as sRGB, 8 bits a sample, row by row, the top first.
+struct Picture {
+    int width = 0, height = 0;
+    std::vector<std::uint8_t> rgb; ///< 3 width height samples
+};
+
+struct Drawn {
+    std::string path;
+    double seconds = 0; ///< of drawing
+};
+
+enum class Engine {
+    native, ///< graftal's own ray tracer
+    povray, ///< a child process; needs the program `povray`
+};
+
+/// How far the work is: a stage, as `graftal --time` names it, and a share from 0 to 1, or nothing where
+/// nobody knows.
+using OnProgress = std::function<void(std::string_view stage, std::optional<double> share)>;
+
+/// A model and what is asked of it. Each function does again only what the changes since make necessary: a
+/// new camera does not read, analyse or prepare the model again. To be used by one thread at a time, except
+/// cancel(). Objects that were moved from may only be destroyed or assigned to.
+class Model {
+  public:
+    /// A file `.lsys`, `.rifs` or `.inst`. It is read when it is needed first.
+    static Model from_file(std::string path);
+    /// A text. The ending of the name says the language; files that the text names are looked up beside it.
+    static Model from_text(std::string name, std::string text);
+
+    Model(Model&&) noexcept;
+    Model& operator=(Model&&) noexcept;
+    ~Model();
+
+    // What is asked for. Nothing is run.
+
+    void edit(std::string text);                     ///< in place of the file's text
+    void reload();                                   ///< reads the file, and those that it names, again
+    void set(const std::string& name, double value); ///< a `let` of the model
+    void unset(const std::string& name);
+    void steps(std::optional<unsigned> steps); ///< nothing: as the model says
+    void seed(std::optional<std::uint64_t> seed);
+    void camera(const Camera& camera);
+    void size(int width, int height);         ///< in pixels, each at least 1; 1280 x 720 before
+    void zoom(std::optional<double> factor);  ///< about the point looked at. Requires a positive factor
+    void error_px(double pixels);             ///< what is smaller is left out; 0: nothing is; 0.5 before
+    void memory(std::uint64_t bytes);         ///< that drawing may take; 2 GiB before
+    void work(double seconds);                ///< of one processor that a picture may take
+    void threads(int count);                  ///< 0, as before: one a processor
+    void antialias(std::optional<int> depth); ///< up to 4^(depth - 1) samples a pixel; nothing: one
+    /// Files that the model names, and the model itself, must lie in this folder; "": anywhere.
+    void root(std::string folder);
+
+    // What comes of it.
+
+    Result<Stats> stats();
+    /// Draws into memory, by the native engine.
+    Result<Picture> render();
+    /// Draws into a file, `.png` or `.exr`, which appears whole or not at all.
+    Result<Drawn> render_to(const std::string& path, Engine engine = Engine::native);
+    /// Writes a POV-Ray scene: `.pov`, or `.inc` to be included, and the pictures that it needs.
+    Result<Drawn> compile_to(const std::string& path);
+
+    /// Called now and then by the functions above, from the thread that called them. Empty: nobody listens.
+    void on_progress(OnProgress listener);
+    /// Ends what another thread, or the listener, has under way, soon; does nothing if there is nothing.
+    void cancel();
+
+  private:
+    struct Parts;
+    explicit Model(std::unique_ptr<Parts> parts);
+
+    std::unique_ptr<Parts> parts_;
+};
+
+} // namespace graftal::v1

@@ -1,0 +1,98 @@
+// The public face of the library. It is the only header of graftal here, apart from a folder for the test.
+
+#include <graftal/model.h>
+
+#include <filesystem>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "runtime/system/temporary_directory.h"
+
+namespace graftal::v1 {
+namespace {
+
+const char* const crystal = "let share = 1/2\n"
+                            "rifs crystal {\n"
+                            "  map n { scale share  translate <0, 1/2, 0> }\n"
+                            "  map e { scale 1/2  translate <1/2, 0, 0> }\n"
+                            "  terminal sphere\n"
+                            "}\n";
+
+Model small_crystal() {
+    Model model = Model::from_text("crystal.rifs", crystal);
+    model.size(24, 16);
+    model.threads(1);
+    return model;
+}
+
+TEST(LibraryModel, AParameterChangesThePictureAndBackAgain) {
+    Model model = small_crystal();
+    const auto thin = model.render();
+    ASSERT_TRUE(thin) << thin.text();
+    EXPECT_EQ(thin->width, 24);
+    EXPECT_EQ(thin->rgb.size(), 3u * 24 * 16);
+    model.set("share", 0.7);
+    const auto thick = model.render();
+    ASSERT_TRUE(thick) << thick.text();
+    EXPECT_NE(thick->rgb, thin->rgb);
+    model.unset("share");
+    const auto again = model.render();
+    ASSERT_TRUE(again) << again.text();
+    EXPECT_EQ(again->rgb, thin->rgb);
+}
+
+TEST(LibraryModel, SaysWhatItKnowsOfAModel) {
+    Model model = small_crystal();
+    const auto stats = model.stats();
+    ASSERT_TRUE(stats) << stats.text();
+    EXPECT_EQ(stats->objects, 2u);
+    ASSERT_TRUE(stats->dimension);
+    EXPECT_NEAR(*stats->dimension, 1, 1e-9);
+    EXPECT_NE(stats->json.find("\"objects\""), std::string::npos);
+}
+
+TEST(LibraryModel, AMessageHasItsPlace) {
+    Model model = Model::from_text("m.inst", "object m { instance: sphre }\n");
+    const auto picture = model.render();
+    EXPECT_FALSE(picture);
+    EXPECT_FALSE(picture.cancelled);
+    ASSERT_EQ(picture.messages.size(), 1u);
+    const Message& message = picture.messages.front();
+    EXPECT_EQ(message.file, "m.inst");
+    EXPECT_EQ(message.line, 1u);
+    EXPECT_EQ(message.column, 22u);
+    EXPECT_EQ(picture.text().find("m.inst:1:22: error: unknown object 'sphre'\n"), 0u) << picture.text();
+    model.edit("object m { instance: sphere }\n");
+    EXPECT_TRUE(model.stats());
+}
+
+TEST(LibraryModel, WhatIsCancelledLeavesNoFileAndCanBeAskedAgain) {
+    TemporaryDirectory folder;
+    ASSERT_TRUE(folder.create().ok());
+    Model model = small_crystal();
+    bool cancels = true;
+    model.on_progress([&](std::string_view, std::optional<double>) {
+        if (cancels) model.cancel();
+    });
+    const std::string path = folder.path() + "/a.png";
+    const auto given_up = model.render_to(path);
+    EXPECT_FALSE(given_up);
+    EXPECT_TRUE(given_up.cancelled);
+    EXPECT_TRUE(given_up.messages.empty()) << given_up.text();
+    EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
+    cancels = false;
+    const auto drawn = model.render_to(path);
+    ASSERT_TRUE(drawn) << drawn.text();
+    EXPECT_TRUE(std::filesystem::exists(path));
+}
+
+TEST(LibraryModel, RefusesNamesOfNoPicture) {
+    Model model = small_crystal();
+    EXPECT_FALSE(model.render_to("a.bmp"));
+    EXPECT_FALSE(model.compile_to("a.scene"));
+    EXPECT_EQ(model.render_to("a.bmp").text(), "error: 'a.bmp' ends neither in .png nor in .exr\n");
+}
+
+} // namespace
+} // namespace graftal::v1

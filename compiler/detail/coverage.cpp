@@ -48,9 +48,8 @@ constexpr std::size_t bodies_a_piece = 4;
 std::vector<Vec3> directions(std::size_t count) {
     const double g = std::numbers::phi;
     std::vector<Vec3> axes;
-    for (const double s : {1.0, -1.0}) {
+    for (const double s : {1.0, -1.0})
         axes.insert(axes.end(), {{0, s, g}, {g, 0, s}, {s, g, 0}});
-    }
     for (const double s : {1.0, -1.0}) {
         axes.insert(axes.end(), {{s, 1, 1}, {-s, s, -1}});
         axes.insert(axes.end(), {{0, s / g, g}, {g, 0, s / g}, {s / g, g, 0}});

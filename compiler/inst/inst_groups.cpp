@@ -134,6 +134,7 @@ bool InstLowerer::copy_work(const InstGroup& group) {
     for (const auto& repeat : group.repeats)
         words += repeat->size;
     work_ += words;
+    lowering_.meter.add(words);
     if (work_ <= max_inst_work) return true;
     if (!stopped_)
         diagnostics_.error(group.repeats.front()->span, "the repeats of the model make too many copies")

@@ -20,8 +20,6 @@
 
 namespace graftal {
 
-struct OrbitModel;
-
 /// A file that is being lowered: the root model, or one on the chain of `use` statements below it.
 struct LoadingFile {
     std::string path;                ///< normalised, so that a cycle is noticed

@@ -145,7 +145,8 @@ std::optional<LoweredModel> lower_source(const Source& source, const LowerOption
                                          Diagnostics& diagnostics) {
     LoweredText lowered = lower_text(source.path, source.text, options, sources, diagnostics, help);
     LoweredModel model{source.path, std::move(lowered.graph), std::move(lowered.notes)};
-    const bool draws_nothing = model.notes.derivation && options.may_draw_nothing && !diagnostics.has_errors();
+    const bool draws_nothing =
+        model.notes.derivation && options.may_draw_nothing && !diagnostics.has_errors();
     if (!model.graph && !model.notes.orbit && !draws_nothing) return std::nullopt;
     return model;
 }

@@ -30,9 +30,9 @@ class ChaosStream : public PointStream {
 };
 
 /// Tells how far the work is, now and then, from whatever thread.
-class Progress {
+class PointProgress {
   public:
-    explicit Progress(const PointWork& work) : work_(work) {}
+    explicit PointProgress(const PointWork& work) : work_(work) {}
 
     void add(std::uint64_t points) {
         const std::uint64_t done = done_.fetch_add(points) + points;
@@ -96,7 +96,7 @@ std::uint64_t stream_count(const PointSource& source, const PointWork& work) {
 
 /// The points of stream `number`, in batches.
 template<typename Take>
-void play(const PointSource& source, const PointWork& work, std::uint64_t number, Progress& progress,
+void play(const PointSource& source, const PointWork& work, std::uint64_t number, PointProgress& progress,
           const Take& take) {
     const std::uint64_t first = number * points_of_stream;
     std::uint64_t left = source.single() ? work.points : std::min(points_of_stream, work.points - first);
@@ -125,7 +125,7 @@ int worker_count(int threads) {
 
 bool take_points(const PointSource& source, const PointWork& work,
                  const std::function<void(int worker, std::span<const ChaosPoint>)>& take) {
-    Progress progress(work);
+    PointProgress progress(work);
     WorkerThreads(work.threads).for_each(stream_count(source, work), [&](int worker, std::uint64_t number) {
         if (progress.stopped()) return;
         play(source, work, number, progress,
@@ -137,7 +137,7 @@ bool take_points(const PointSource& source, const PointWork& work,
 bool write_points(const PointSource& source, const PointWork& work,
                   const std::function<void(std::span<const ChaosPoint>, std::vector<char>&)>& make,
                   const std::function<bool(const std::vector<char>&)>& write) {
-    Progress progress(work);
+    PointProgress progress(work);
     const auto put = [&](const std::vector<char>& bytes) {
         if (!progress.stopped() && !bytes.empty() && !write(bytes)) progress.stop();
     };

@@ -23,8 +23,7 @@ std::string lower_and_check(const std::string& text, bool exact) {
     options.exact = exact;
     options.max_objects = 2000;
     options.max_modules = 20'000;
-    auto [graph, notes] =
-        lower_text("no_such_folder/fuzz.lsys", text, options, sources, diagnostics);
+    auto [graph, notes] = lower_text("no_such_folder/fuzz.lsys", text, options, sources, diagnostics);
     GRAFTAL_CHECK(graph.has_value() != diagnostics.has_errors(), "lsys fuzzer: a graph or errors");
     diagnostics.render(sources);
     if (!graph) return {};

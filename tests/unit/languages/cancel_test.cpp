@@ -38,8 +38,8 @@ class LoweringIsCancelled : public ::testing::TestWithParam<LongModel> {
         Diagnostics diagnostics;
         const LowerHelp help{{}, {CancelFlag([&] { return ++asked_ > most; }), {}}};
         try {
-            const auto graph =
-                lower_text(model.name, model.text, options, sources, diagnostics, nullptr, help);
+            const std::optional<Graph> graph =
+                lower_text(model.name, model.text, options, sources, diagnostics, help).graph;
             EXPECT_TRUE(graph) << diagnostics.render(sources);
             return true;
         } catch (const Cancelled&) {
@@ -92,9 +92,8 @@ TEST(ImportIsCancelled, BetweenMembers) {
     const LowerHelp help{{}, {CancelFlag([&] { return ++asked > 4; }), {}}};
     SourceMap sources;
     Diagnostics diagnostics;
-    EXPECT_THROW(
-        lower_text((folder / "m.inst").string(), text + "}\n", {}, sources, diagnostics, nullptr, help),
-        Cancelled)
+    EXPECT_THROW(lower_text((folder / "m.inst").string(), text + "}\n", {}, sources, diagnostics, help),
+                 Cancelled)
         << diagnostics.render(sources);
     EXPECT_EQ(asked, 5u);
     std::filesystem::remove_all(folder);

@@ -46,7 +46,7 @@ TEST(LibraryModel, SaysWhatItKnowsOfAModel) {
     Model model = small_crystal();
     const auto stats = model.stats();
     ASSERT_TRUE(stats) << stats.text();
-    EXPECT_EQ(stats->objects, 2u);
+    EXPECT_EQ(stats->objects, 4u); // n, e, crystal and the sphere
     ASSERT_TRUE(stats->dimension);
     EXPECT_NEAR(*stats->dimension, 1, 1e-9);
     EXPECT_NE(stats->json.find("\"objects\""), std::string::npos);

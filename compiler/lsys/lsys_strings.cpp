@@ -7,13 +7,13 @@
 
 #include <fmt/format.h>
 
+#include "compiler/lsys/turtle_command.h"
 #include "compiler/syntax/expression_parser.h"
 
 namespace graftal {
 
 namespace {
 
-constexpr std::string_view turtle_symbols = "+-&^\\/|!;,'.\"[]{}$%";
 constexpr std::string_view turtle_brackets = "[]{}";
 /// The directives of cpfg that have two letters; all others have one.
 constexpr std::array<std::string_view, 7> long_directives = {"@Gs", "@Gc", "@Ge", "@Gr", "@Gt", "@PS", "@PD"};
@@ -134,7 +134,7 @@ bool LsysStringReader::take_symbol(Raw& raw) {
         const bool two_letters = std::find(long_directives.begin(), long_directives.end(),
                                            text.substr(0, 3)) != long_directives.end();
         raw.symbol = text.substr(0, two_letters ? 3 : 2);
-    } else if (turtle_symbols.find(c) != std::string_view::npos) {
+    } else if (c == '"' || turtle_command(text.substr(0, 1)) != TurtleCommand::none) {
         if (c == '/') warn_of_comment();
         raw.symbol = text.substr(0, 1);
     } else {

@@ -7,35 +7,74 @@ namespace graftal {
 
 /// What a symbol tells the turtle (docs/language.md, "The turtle").
 enum class TurtleCommand : std::uint8_t {
-    none,            ///< a letter that the turtle passes over
-    draw,            ///< F
-    draw_unrecorded, ///< G: leaves no vertex in a polygon
-    move,            ///< f
-    move_unrecorded, ///< g
-    turn_left,       ///< +
-    turn_right,      ///< -
-    pitch_down,      ///< &
-    pitch_up,        ///< ^
-    roll_left,       ///< backslash
-    roll_right,      ///< /
-    turn_back,       ///< |
-    level,           ///< $
-    width,           ///< !
-    colour_up,       ///< ; and '
-    colour_down,     ///< ,
-    tropism,         ///< T
-    open_branch,     ///< [
-    close_branch,    ///< ]
-    cut,             ///< %
-    open_polygon,    ///< {
-    close_polygon,   ///< }
-    vertex,          ///< .
-    sphere,          ///< @O
-    disc,            ///< @o and @c
-    model,           ///< ~NAME
-    start_cylinder,  ///< @Gs
-    control_point,   ///< @Gc
-    end_cylinder,    ///< @Ge
+    none, ///< a letter that the turtle passes over
+    draw,
+    draw_unrecorded, ///< leaves no vertex in a polygon
+    move,
+    move_unrecorded,
+    turn_left,
+    turn_right,
+    pitch_down,
+    pitch_up,
+    roll_left,
+    roll_right,
+    turn_back,
+    level,
+    width,
+    colour_up,
+    colour_down,
+    tropism,
+    open_branch,
+    close_branch,
+    cut,
+    open_polygon,
+    close_polygon,
+    vertex,
+    sphere,
+    disc,
+    model, ///< ~NAME
+    start_cylinder,
+    control_point,
+    end_cylinder,
+};
+
+struct TurtleSymbol {
+    std::string_view text;
+    TurtleCommand command;
+};
+
+/// The symbols that have a meaning. A new one is a row here, and a case in turtle.cpp.
+inline constexpr TurtleSymbol turtle_symbols[] = {
+    {"F", TurtleCommand::draw},
+    {"G", TurtleCommand::draw_unrecorded},
+    {"f", TurtleCommand::move},
+    {"g", TurtleCommand::move_unrecorded},
+    {"+", TurtleCommand::turn_left},
+    {"-", TurtleCommand::turn_right},
+    {"&", TurtleCommand::pitch_down},
+    {"^", TurtleCommand::pitch_up},
+    {"\\", TurtleCommand::roll_left},
+    {"/", TurtleCommand::roll_right},
+    {"|", TurtleCommand::turn_back},
+    {"$", TurtleCommand::level},
+    {"!", TurtleCommand::width},
+    {";", TurtleCommand::colour_up},
+    {"'", TurtleCommand::colour_up},
+    {",", TurtleCommand::colour_down},
+    {"T", TurtleCommand::tropism},
+    {"[", TurtleCommand::open_branch},
+    {"]", TurtleCommand::close_branch},
+    {"%", TurtleCommand::cut},
+    {"{", TurtleCommand::open_polygon},
+    {"}", TurtleCommand::close_polygon},
+    {".", TurtleCommand::vertex},
+    {"@O", TurtleCommand::sphere},
+    {"@o", TurtleCommand::disc},
+    {"@c", TurtleCommand::disc},
+    {"~", TurtleCommand::model},
+    {"@Gs", TurtleCommand::start_cylinder},
+    {"@Gc", TurtleCommand::control_point},
+    {"@Ge", TurtleCommand::end_cylinder},
 };
 
 /// The command of a symbol as strings write it; `none` for what has no meaning.

@@ -130,9 +130,29 @@ class Parser {
     Steps cycle_;
 };
 
+/// `arm(2)` for `arm.v3.hue1(2)`: without the numbers that `.inst` gives to variants and turns of hue.
+std::string name_in_model(std::string_view master) {
+    const std::size_t arguments = std::min(master.find('('), master.size());
+    std::string_view head = master.substr(0, arguments);
+    for (std::size_t dot = head.rfind('.'); dot != std::string_view::npos; dot = head.rfind('.')) {
+        const std::string_view ending = head.substr(dot + 1);
+        const std::string_view digits =
+            ending.substr(std::min(ending.find_first_of("0123456789"), ending.size()));
+        const std::string_view word = ending.substr(0, ending.size() - digits.size());
+        const bool numbered =
+            !digits.empty() && digits.find_first_not_of("0123456789") == std::string_view::npos;
+        if (!numbered || (word != "v" && word != "hue")) break;
+        head = head.substr(0, dot);
+    }
+    return std::string(head).append(master.substr(arguments));
+}
+
 /// How well a master's name fits, 0 for not at all.
-int fit(std::string_view master, std::string_view name) {
-    if (name.empty() || master == name) return 3;
+int fit(std::string_view full_master, std::string_view name) {
+    if (name.empty() || full_master == name) return 4;
+    const std::string plain = name_in_model(full_master);
+    const std::string_view master = plain;
+    if (master == name) return 3;
     const std::string_view head = master.substr(0, master.find('('));
     if (const std::size_t dot = head.rfind('.');
         dot != std::string_view::npos && master.substr(dot + 1) == name)

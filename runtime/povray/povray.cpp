@@ -26,8 +26,15 @@ std::string describe(const PovrayJob& job, const PovrayMessage& message) {
     if (message.line > 0) text = fmt::format("{} line {}: ", message.file, message.line);
     text += message.text;
     if (message.line == 0 || message.file != job.scene) return text;
-    const std::string object = object_comment_before(in_directory(job, job.scene), message.line);
-    return object.empty() ? text : fmt::format("{} (in object {})", text, object);
+    const std::string body = body_at(in_directory(job, job.scene), message.line);
+    return body.empty() ? text : fmt::format("{} (in {})", text, body);
+}
+
+/// The first name in a line of a scene that a body has, or "".
+std::string body_named(const std::string& line) {
+    const std::size_t begin = line.find(" M_");
+    if (begin == std::string::npos) return "";
+    return line.substr(begin + 1, line.find(' ', begin + 1) - begin - 1);
 }
 
 /// What POV-Ray said about a failed run: its errors, else its last lines.
@@ -172,16 +179,16 @@ PovrayResult run_povray(const PovrayJob& job) {
     return result;
 }
 
-std::string object_comment_before(const std::string& path, int line) {
-    constexpr std::string_view mark = "// object ";
+std::string body_at(const std::string& path, int line) {
     std::ifstream file(path);
-    std::string text, found;
+    std::string text, declared;
     for (int number = 1; number <= line && std::getline(file, text); ++number) {
-        const std::size_t at = text.find_first_not_of(' ');
-        if (at != std::string::npos && text.compare(at, mark.size(), mark) == 0)
-            found = text.substr(at + mark.size());
+        const std::string named = body_named(text);
+        if (text.starts_with("#declare ")) declared = named;
+        if (number == line) return named.empty() ? declared : named;
+        if (text.starts_with('}')) declared.clear();
     }
-    return found;
+    return "";
 }
 
 } // namespace graftal

@@ -49,8 +49,8 @@ Status povray_available(const std::string& program = "povray");
 /// kernel can keep it to them (confinement.h). Requires that scene and picture are plain file names.
 PovrayResult run_povray(const PovrayJob& job);
 
-/// The nearest comment `// object TEXT` at or before a line of an SDL file: TEXT, or "" if there is none.
-/// Emitted scenes have one in front of what each object of the model became.
-std::string object_comment_before(const std::string& path, int line);
+/// The body that a line of an emitted scene declares or places, such as `M_leaf` for the model's object
+/// `leaf` (PovrayBodies); "" if there is none.
+std::string body_at(const std::string& path, int line);
 
 } // namespace graftal

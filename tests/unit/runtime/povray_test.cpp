@@ -206,13 +206,22 @@ TEST_F(Povray, ArgumentsSayWhatWasAsked) {
     EXPECT_THAT(povray_arguments(job_), testing::IsSupersetOf({"-A", "+FN16", "File_Gamma=1.0"}));
 }
 
-TEST_F(Povray, CommentsBeforeALine) {
-    scene("// object a\nx\n// about\n// object b (c)\ny\n");
-    EXPECT_EQ(object_comment_before(path("scene.pov"), 3), "");
-    EXPECT_EQ(object_comment_before(path("scene.pov"), 5), "a");
-    EXPECT_EQ(object_comment_before(path("scene.pov"), 8), "b (c)");
-    EXPECT_EQ(object_comment_before(path("scene.pov"), 800), "b (c)");
-    EXPECT_EQ(object_comment_before(path("none.pov"), 8), "");
+TEST_F(Povray, ALineBelongsToABody) {
+    scene("#declare M_a = mesh2 {\n  x\n}\ny\n#declare M_b_2 = sphere { }\nobject { M_a }\n");
+    const std::string file = path("scene.pov"); // its first three lines are the same for all tests
+    EXPECT_EQ(body_at(file, 3), "");
+    EXPECT_EQ(body_at(file, 4), "M_a");
+    EXPECT_EQ(body_at(file, 5), "M_a");
+    EXPECT_EQ(body_at(file, 7), "");
+    EXPECT_EQ(body_at(file, 8), "M_b_2");
+    EXPECT_EQ(body_at(file, 9), "M_a");
+    EXPECT_EQ(body_at(file, 800), "");
+    EXPECT_EQ(body_at(path("none.pov"), 8), "");
+}
+
+TEST_F(Povray, AnErrorNamesTheBody) {
+    scene("#declare M_leaf = mesh2 {\n  nonsense\n}\n");
+    EXPECT_THAT(run_povray(job_).status.message(), testing::HasSubstr("(in M_leaf)"));
 }
 
 } // namespace

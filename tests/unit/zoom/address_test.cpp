@@ -74,13 +74,14 @@ TEST(Address, SaysWhatIsWrong) {
     }
 }
 
-/// a { b c c }, b { a }, c { sphere }, deep { one } in front of an import's `leaf.vein` and `tip(2)`.
+/// a { b c c }, b { a }, c { sphere }, deep { one } in front of an import's `leaf.vein`, `tip(2)` and a
+/// variant.
 Graph model() {
     Graph graph;
     const ObjectId sphere = graph.primitive(PrimitiveKind::sphere);
     const auto add = [&](const char* name) { return graph.add({name, {}, {}, {}, {}}); };
     const ObjectId root = add("root"), a = add("a"), b = add("b"), c = add("c"), vein = add("leaf.vein"),
-                   tip = add("tip(2)");
+                   tip = add("tip(2)"), arm = add("arm.v12.hue3(4)");
     const auto place = [&](ObjectId parent, ObjectId master) {
         graph.objects[parent].instances.push_back({master, Affine::scale(Vec3(0.5)), {}, {}, {}});
     };
@@ -90,10 +91,12 @@ Graph model() {
     place(a, c);
     place(a, vein);
     place(a, tip);
+    place(a, arm);
     place(b, a);
     place(c, sphere);
     place(vein, sphere);
     place(tip, sphere);
+    place(arm, sphere);
     graph.root = root;
     return graph;
 }
@@ -129,6 +132,8 @@ TEST(Address, IsFoundInAGraph) {
     EXPECT_EQ(find("a.\"leaf.vein\"").path, "03");
     EXPECT_EQ(find("a.tip").path, "04") << "without its arguments";
     EXPECT_EQ(find("a.tip(2)").path, "04");
+    for (const char* const arm : {"a.arm", "a.arm(4)", "a.\"arm.v12.hue3(4)\""})
+        EXPECT_EQ(find(arm).path, "05") << arm;
     EXPECT_EQ(find("b").path, "00") << "through an object of one instance";
     EXPECT_EQ(find("c#1").path, "01");
     EXPECT_EQ(find("c#1.sphere").path, "010");
@@ -146,8 +151,8 @@ TEST(Address, RepeatsForEver) {
 TEST(Address, NotFoundSaysWhy) {
     EXPECT_EQ(find("a.c").error,
               "the address is ambiguous: 'a' has 2 instances of 'c'; say which: c#1 to c#2");
-    EXPECT_EQ(find("a.d").error,
-              "the address does not exist: 'a' has no part 'd'; its parts are b, c, leaf.vein, tip(2)");
+    EXPECT_EQ(find("a.d").error, "the address does not exist: 'a' has no part 'd'; its parts are b, c, "
+                                 "leaf.vein, tip(2), arm.v12.hue3(4)");
     EXPECT_EQ(find("a.c#3").error, "the address does not exist: 'a' has no part 'c#3'; it has 2 that fit");
     EXPECT_EQ(find("a.c#1.sphere.x").error,
               "the address does not exist: 'sphere' has no part 'x'; it is a primitive and has no parts");

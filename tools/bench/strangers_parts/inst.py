@@ -1,4 +1,5 @@
-"""Random texts of objects and instances: shared parts, cycles that contract, parameters, scatters."""
+"""Random texts of objects and instances: shared parts, cycles that contract, parameters, scatters, repeats,
+chance, hues."""
 import scene
 from draw import number, numbers
 
@@ -14,6 +15,8 @@ def write(draw, model, small):
     text = Text(draw, model, paints, count, cyclic, back, ahead)
     if draw.chance(0.25):
         text.parametric()
+    if draw.chance(0.25):
+        text.random()
     for index in range(count):
         text.object(index, draw.whole(1, group_count), small)
     text.top()
@@ -27,6 +30,8 @@ class Text:
         self.draw, self.model, self.paints = draw, model, paints
         self.names = [f'o{i}' for i in range(count)]
         self.cyclic, self.back, self.ahead = cyclic, back, ahead
+        # Turns that soon add up to a circle, and now and then any: the graph has an object for each sum.
+        self.hues = draw.weighted({(): 4, (15, 30, -45): 3, (360 / 7,): 1, (draw.uniform(-180, 180),): 1})
         self.calls = []          # objects with parameters, as they may be called
         self.parts = {}          # name of an object -> those that it has instances of
 
@@ -53,6 +58,8 @@ class Text:
             lines.append(scene.tint(draw))
         if self.paints and draw.chance(0.3):
             lines.append(f'material: {draw.pick(self.paints)}')
+        if self.hues and draw.chance(0.3):
+            lines.append(f'hue: {number(draw.pick(self.hues))}')
         return lines
 
     def leaf(self):
@@ -83,6 +90,8 @@ class Text:
                 masters, most = [self.leaf() for _ in range(draw.pick([1, 1, 2]))], 0.8
             lines = self.transforms(most) if kind != 'leaf' else scene.transforms(draw)
             self.parts.setdefault(self.names[index], []).extend(masters if kind != 'leaf' else [])
+            if kind == 'leaf' and draw.chance(0.15):
+                self.model.say(*('  ' + repeat for repeat in self.repeats()))
             self.model.say(f'  union: {", ".join(masters)}', *('    ' + line for line in lines + self.look()))
         if draw.chance(0.2):
             self.model.say(f'  terminal: {scene.primitive(draw)}', *('    ' + line for line in scene.transforms(draw)))
@@ -108,6 +117,31 @@ class Text:
             lines.append(f'    tint: {scene.colour(draw)}, 0.2 .. {scene.colour(draw)}, 0.6')
         lines.append(f'    scale: {number(draw.uniform(0.05, 0.8))}')
         self.model.say(*lines)
+
+    def repeats(self):
+        """One in another, now and then."""
+        draw = self.draw
+        for _ in range(draw.pick([1, 1, 2, 3])):
+            steps = [*self.transforms(draw.pick([1, 1, 0.9])), *(line for line in self.look() if "material" not in line)]
+            count = draw.log_whole(1, 40)
+            yield f'{draw.pick([f"repeat {count}", f"{count} *"])} {{ {"  ".join(steps)} }}'
+
+    def random(self):
+        """Objects that chance chooses among, or that have random numbers."""
+        draw = self.draw
+        for name in ('any', 'some')[:draw.whole(1, 2)]:
+            for _ in range(draw.pick([1, 2, 3])):
+                most = draw.uniform(0.2, 1)
+                self.model.say(f'canonical object {name} weight {draw.whole(1, 5)} {{', f'  union: {scene.primitive(draw)}',
+                               f'    scale: random({number(most / 2)}, {number(most)})')
+                if draw.chance(0.5):
+                    self.model.say(f'    rotate: {draw.pick("xyz")}, normal(0, {draw.whole(1, 60)})')
+                if draw.chance(0.5):
+                    self.model.say(f'    tint: hsv(random(0, 360), {number(draw.random())}, 0.8), 0.7')
+                if draw.chance(0.3):
+                    self.model.say(f'  union: {name}', *('    ' + line for line in self.transforms(0.8)))
+                self.model.say('}')
+            self.calls.append(lambda name=name: name)
 
     def parametric(self):
         """An object that counts down, or halves, until its base case."""

@@ -113,12 +113,11 @@ TEST_F(Povray, PictureDoesNotDependOnThreadsOrRuns) {
         EXPECT_EQ(compare_images(picture, pictures.front()).differing, 0u);
 }
 
-TEST_F(Povray, ParseErrorNamesTheObjectOfTheModel) {
-    scene("// object trunk (tree.inst:7)\nsphere { 0, 1 }\n  // object leaf (tree.inst:12)\nsphere { 0, "
-          "}\n// object later\n");
+TEST_F(Povray, ParseErrorNamesTheBody) {
+    scene("#declare M_trunk = sphere { 0, 1 }\n#declare M_leaf = mesh2 {\n\n  nonsense\n}\n");
     const PovrayResult result = run_povray(job_);
     EXPECT_THAT(result.status.message(), HasSubstr("scene.pov line 7: "));
-    EXPECT_THAT(result.status.message(), HasSubstr("(in object leaf (tree.inst:12))"));
+    EXPECT_THAT(result.status.message(), HasSubstr("(in M_leaf)"));
     EXPECT_EQ(result.process.exit_code, 1);
     EXPECT_FALSE(exists("picture.png"));
 }
@@ -217,11 +216,6 @@ TEST_F(Povray, ALineBelongsToABody) {
     EXPECT_EQ(body_at(file, 9), "M_a");
     EXPECT_EQ(body_at(file, 800), "");
     EXPECT_EQ(body_at(path("none.pov"), 8), "");
-}
-
-TEST_F(Povray, AnErrorNamesTheBody) {
-    scene("#declare M_leaf = mesh2 {\n  nonsense\n}\n");
-    EXPECT_THAT(run_povray(job_).status.message(), testing::HasSubstr("(in M_leaf)"));
 }
 
 } // namespace

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "compiler/graph/print.h"
-#include "compiler/languages/lower.h"
+#include "tests/unit/inst/inst_model.h"
 
 namespace graftal {
 namespace {
@@ -12,44 +12,13 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::UnorderedElementsAre;
 
-struct Model {
-    SourceMap sources;
-    Diagnostics diagnostics;
-    std::optional<Graph> graph;
-
-    explicit Model(std::string text, const LowerOptions& options = {}) {
-        graph = lower_text("m.inst", std::move(text), options, sources, diagnostics).graph;
-    }
-    std::string errors() const { return diagnostics.render(sources); }
-    const Object& object(std::string_view name) const {
-        for (const Object& object : graph->objects)
-            if (object.name == name) return object;
-        throw std::runtime_error("no object " + std::string(name));
-    }
-    std::vector<std::string> names() const {
-        std::vector<std::string> out;
-        for (const Object& object : graph->objects)
-            out.push_back(object.name);
-        return out;
-    }
-    std::vector<std::string> masters(std::string_view name) const {
-        std::vector<std::string> out;
-        for (const Instance& instance : object(name).instances)
-            out.push_back(graph->objects[instance.master].name);
-        return out;
-    }
-    Affine map(std::string_view name, std::size_t i = 0) const {
-        return object(name).instances[i].parent_from_child;
-    }
-};
-
 void expect_near(Vec3 a, Vec3 b) {
     for (int i = 0; i < 3; ++i)
         EXPECT_NEAR(a[i], b[i], 1e-14);
 }
 
 TEST(Inst, the_gasket_of_the_paper_is_cyclic) {
-    const Model model(R"(
+    const InstModel model(R"(
 canonical object up {
     union: up, left, right
     scale: 0.5, 0.5
@@ -69,7 +38,7 @@ object top {
     union: up, left, right
 }
 )");
-    ASSERT_TRUE(model.graph) << model.errors();
+    ASSERT_TRUE(model.graph) << model.said();
     EXPECT_THAT(model.names(), UnorderedElementsAre("top", "up", "left", "right"));
     EXPECT_EQ(model.graph->objects[model.graph->root].name, "top");
     EXPECT_THAT(model.masters("left"), ElementsAre("up", "left", "right"));
@@ -79,7 +48,7 @@ object top {
 }
 
 TEST(Inst, lines_apply_in_the_order_of_the_text) {
-    const Model model(R"(object a {
+    const InstModel model(R"(object a {
         sphere
         translate: 1, 0, 0
         rotate: z, 90
@@ -89,14 +58,14 @@ TEST(Inst, lines_apply_in_the_order_of_the_text) {
         rotate: z, 90
         translate: 1, 0, 0
     })");
-    ASSERT_TRUE(model.graph) << model.errors();
+    ASSERT_TRUE(model.graph) << model.said();
     expect_near(model.map("a", 0)({0, 0, 0}), {0, 3, 0});
     expect_near(model.map("a", 0)({1, 0, 1}), {0, 6, 4});
     expect_near(model.map("a", 1)({1, 0, 1}), {1, 2, 4});
 }
 
 TEST(Inst, each_kind_of_transform) {
-    const Model model(R"(object a {
+    const InstModel model(R"(object a {
         sphere scale: 3
         instance: sphere scale: 2, 0.5
         instance: sphere scale: -2, 8
@@ -110,7 +79,7 @@ TEST(Inst, each_kind_of_transform) {
         instance: sphere matrix: 1, 2, 3, 4,  0, 1, 5, 6,  0, 0, 1, 7
         instance: sphere projection: 1, 0, 0, 0,  0, 0, 0, 0,  0, 0, 0, 0
     })");
-    ASSERT_TRUE(model.graph) << model.errors();
+    ASSERT_TRUE(model.graph) << model.said();
     const auto at = [&](std::size_t i, Vec3 p) { return model.map("a", i)(p); };
     expect_near(at(0, {1, 1, 1}), {3, 3, 3});
     expect_near(at(1, {1, 1, 1}), {2, 0.5, 1});
@@ -127,11 +96,11 @@ TEST(Inst, each_kind_of_transform) {
 }
 
 TEST(Inst, a_line_for_a_group_holds_for_each_of_its_instances) {
-    const Model model(R"(
+    const InstModel model(R"(
         material m { color: 1, 0, 0 }
         object a { union: sphere, cube scale: 2 tint: 1, 0, 0, 0.5 material: m
                    instance: torus })");
-    ASSERT_TRUE(model.graph) << model.errors();
+    ASSERT_TRUE(model.graph) << model.said();
     const std::vector<Instance>& instances = model.object("a").instances;
     ASSERT_EQ(instances.size(), 3u);
     for (const std::size_t i : {0u, 1u}) {
@@ -145,7 +114,7 @@ TEST(Inst, a_line_for_a_group_holds_for_each_of_its_instances) {
 }
 
 TEST(Inst, tints_of_a_group_compose_with_later_lines_in_front) {
-    const Model model(R"(object a {
+    const InstModel model(R"(object a {
         sphere
         tint: 1, 0, 0, 0.5
         tint rgb <0, 0, 1> 0.5
@@ -155,7 +124,7 @@ TEST(Inst, tints_of_a_group_compose_with_later_lines_in_front) {
         tint: 0, 1, 0, 1
         tint: 1, 0, 0, 0
     })");
-    ASSERT_TRUE(model.graph) << model.errors();
+    ASSERT_TRUE(model.graph) << model.said();
     const std::vector<Instance>& instances = model.object("a").instances;
     const PathTint expected = PathTint({0, 0, 0.5}, 0.5) * PathTint({0.5, 0, 0}, 0.5);
     expect_near(PathTint(instances[0].tint).premultiplied, expected.premultiplied);
@@ -165,10 +134,10 @@ TEST(Inst, tints_of_a_group_compose_with_later_lines_in_front) {
 }
 
 TEST(Inst, a_terminal_is_a_group_of_its_own) {
-    const Model model(R"(
+    const InstModel model(R"(
         canonical object a { union: a, a scale: 0.5 terminal: triangle scale: 3 tint: 1, 1, 1, 0.25 below 4 * 3 }
         object top { a })");
-    ASSERT_TRUE(model.graph) << model.errors();
+    ASSERT_TRUE(model.graph) << model.said();
     const Object& a = model.object("a");
     EXPECT_EQ(a.instances.size(), 2u);
     ASSERT_TRUE(a.terminal);
@@ -179,7 +148,7 @@ TEST(Inst, a_terminal_is_a_group_of_its_own) {
 }
 
 TEST(Inst, parametric_objects_are_enumerated_as_far_as_they_are_reached) {
-    const Model model(R"(
+    const InstModel model(R"(
         let r = 0.64
         canonical object tip(0) { sphere }
         canonical object tip(n) { union: trunk(11 - n), tip(n - 1) rotate: x, 18.95 translate: 0, 1, 0 }
@@ -187,7 +156,7 @@ TEST(Inst, parametric_objects_are_enumerated_as_far_as_they_are_reached) {
         canonical object trunk(n) { instance: trunk(n - 1) scale: r, 1, r }
         canonical object never(n) { never(n + 1) }
         object tree { tip(3) })");
-    ASSERT_TRUE(model.graph) << model.errors();
+    ASSERT_TRUE(model.graph) << model.said();
     std::vector<std::string> expected = {"tree", "sphere", "cylinder"};
     for (int n = 0; n <= 3; ++n)
         expected.push_back("tip(" + std::to_string(n) + ")");
@@ -200,14 +169,14 @@ TEST(Inst, parametric_objects_are_enumerated_as_far_as_they_are_reached) {
 }
 
 TEST(Inst, numbers_in_patterns_win_from_left_to_right) {
-    const Model model(R"(
+    const InstModel model(R"(
         canonical object f(n, m) { sphere }
         canonical object f(n, 0) { cube }
         canonical object f(0, n) { cone }
         canonical object f(0, 0) { torus }
         canonical object f(-1.5, n) { cylinder }
         object top { union: f(1, 1), f(1, 0), f(0, 1), f(0, 0), f(1 - 2.5, 0), f(1 - 1, -0) })");
-    ASSERT_TRUE(model.graph) << model.errors();
+    ASSERT_TRUE(model.graph) << model.said();
     EXPECT_THAT(model.masters("top"),
                 ElementsAre("f(1, 1)", "f(1, 0)", "f(0, 1)", "f(0, 0)", "f(-1.5, 0)", "f(0, 0)"));
     EXPECT_THAT(model.masters("f(1, 1)"), ElementsAre("sphere"));
@@ -218,36 +187,36 @@ TEST(Inst, numbers_in_patterns_win_from_left_to_right) {
 }
 
 TEST(Inst, parameters_hide_lets_and_reach_every_line) {
-    const Model model(R"(
+    const InstModel model(R"(
         let n = 100, k = 2
         canonical object f(n) { sphere scale: n*k tint: n/4, 0, 0, 1 translate: n, 0 }
         object top { f(3) translate: n, 0 })");
-    ASSERT_TRUE(model.graph) << model.errors();
+    ASSERT_TRUE(model.graph) << model.said();
     EXPECT_EQ(model.map("f(3)"), (Affine{Mat3(6.0), {3, 0, 0}}));
     EXPECT_EQ(model.object("f(3)").instances[0].tint.rgb.r, 0.75);
     EXPECT_EQ(model.map("top").translation.x, 100);
 }
 
 TEST(Inst, parametric_cycles_are_legal) {
-    const Model model(R"(
+    const InstModel model(R"(
         canonical object f(n) { union: f(mod(n + 1, 3)), sphere scale: 0.5 }
         object top { f(0) })");
-    ASSERT_TRUE(model.graph) << model.errors();
+    ASSERT_TRUE(model.graph) << model.said();
     EXPECT_THAT(model.masters("f(2)"), ElementsAre("f(0)", "sphere"));
 }
 
 TEST(Inst, several_rendered_objects_are_united) {
-    const Model model(
+    const InstModel model(
         "object scene { sphere } object b { union: scene, cube } canonical object scene_2 { b }");
-    ASSERT_TRUE(model.graph) << model.errors();
+    ASSERT_TRUE(model.graph) << model.said();
     EXPECT_EQ(model.graph->objects[model.graph->root].name, "scene_3");
     EXPECT_THAT(model.masters("scene_3"), ElementsAre("scene", "b"));
 }
 
 TEST(Inst, every_object_and_instance_has_a_place) {
     const std::string text = "canonical object tip(n) {\n  union: sphere, cube\n}\nobject top { tip(2) }\n";
-    const Model model(text);
-    ASSERT_TRUE(model.graph) << model.errors();
+    const InstModel model(text);
+    ASSERT_TRUE(model.graph) << model.said();
     EXPECT_EQ(model.sources.text(model.object("tip(2)").span), "tip(n)");
     EXPECT_EQ(model.sources.text(model.object("top").span), "top");
     EXPECT_EQ(model.sources.text(model.object("tip(2)").instances[1].span), "cube");
@@ -255,25 +224,25 @@ TEST(Inst, every_object_and_instance_has_a_place) {
 }
 
 TEST(Inst, keywords_may_name_objects) {
-    const Model model(
+    const InstModel model(
         "canonical object scale { sphere } canonical object material { cube }\n"
         "object union {\n  instance: scale\n  scale: 2\n  union: scale, material,\n  scale: 3\n}");
-    ASSERT_TRUE(model.graph) << model.errors();
+    ASSERT_TRUE(model.graph) << model.said();
     EXPECT_THAT(model.masters("union"), ElementsAre("scale", "scale", "material"));
 }
 
 /// Prints a graph and reads it again.
-void expect_round_trip(const Model& model) {
-    ASSERT_TRUE(model.graph) << model.errors();
+void expect_round_trip(const InstModel& model) {
+    ASSERT_TRUE(model.graph) << model.said();
     const std::string text = print(*model.graph);
-    const Model again(text);
-    ASSERT_TRUE(again.graph) << again.errors() << text;
+    const InstModel again(text);
+    ASSERT_TRUE(again.graph) << again.said() << text;
     EXPECT_TRUE(equal(*model.graph, *again.graph)) << text;
     EXPECT_EQ(print(*again.graph), text);
 }
 
 TEST(Inst, a_printed_graph_reads_back_to_the_last_bit) {
-    expect_round_trip(Model(R"(
+    expect_round_trip(InstModel(R"(
         camera { location: 1/3, sqrt(2), 5 angle: 100/3 }
         light { sun: 1, 2, 3 color: 1/3, 0.1, 1 } background { zenith: 0, 0, 1/7 horizon: 1, 1, 1 }
         ground { height: -1/3 material: bark color: 1, 0, 0 } steps: 4
@@ -290,37 +259,37 @@ TEST(Inst, a_printed_graph_reads_back_to_the_last_bit) {
 }
 
 TEST(Inst, chances_hold_for_each_instance_of_their_group_and_read_back) {
-    const Model model("let half = 1/2\n"
-                      "object a { union: b, chance  scale: 0.5  chance: half/2\n"
-                      "           instance: b  chance 3  scale: 0.1\n"
-                      "           chance }\n" // a name, where no number follows
-                      "canonical object b { sphere }  canonical object chance { cube }\n");
-    ASSERT_TRUE(model.graph) << model.errors();
+    const InstModel model("let half = 1/2\n"
+                          "object a { union: b, chance  scale: 0.5  chance: half/2\n"
+                          "           instance: b  chance 3  scale: 0.1\n"
+                          "           chance }\n" // a name, where no number follows
+                          "canonical object b { sphere }  canonical object chance { cube }\n");
+    ASSERT_TRUE(model.graph) << model.said();
     std::vector<double> chances;
     for (const Instance& instance : model.object("a").instances)
         chances.push_back(instance.chance);
     EXPECT_THAT(chances, ElementsAre(0.25, 0.25, 3, 0));
     expect_round_trip(model);
-    EXPECT_THAT(Model("object a { sphere  chance: -1 }").errors(),
+    EXPECT_THAT(InstModel("object a { sphere  chance: -1 }").said(),
                 HasSubstr("m.inst:1:28: error: a chance must not be negative, but is -1\n"));
-    EXPECT_THAT(Model("object a { sphere  terminal: cube  chance: 1 }").errors(),
+    EXPECT_THAT(InstModel("object a { sphere  terminal: cube  chance: 1 }").said(),
                 HasSubstr("m.inst:1:36: error: a terminal has no chance\n"));
-    EXPECT_THAT(Model("object a { sphere  chance: 1  chance: 2 }").errors(),
+    EXPECT_THAT(InstModel("object a { sphere  chance: 1  chance: 2 }").said(),
                 HasSubstr("m.inst:1:31: error: duplicate 'chance'\n"));
 }
 
 TEST(Inst, a_root_that_is_instanced_itself_reads_back) {
     expect_round_trip(
-        Model("object top { union: part, top scale: 0.5 } canonical object part { union: top, cube "
-              "scale: 1/3 }"));
+        InstModel("object top { union: part, top scale: 0.5 } canonical object part { union: top, cube "
+                  "scale: 1/3 }"));
 }
 
 /// What is said of a model that has faults. Where a limit ends the work the message names that limit; where
 /// texts are long they are so long that time in their square would never end.
 std::string what_is_said_of(const std::string& text) {
-    const Model model(text);
+    const InstModel model(text);
     EXPECT_FALSE(model.graph);
-    return model.errors();
+    return model.said();
 }
 
 TEST(InstHostile, unbounded_recursion_ends_soon_and_names_the_chain) {
@@ -337,9 +306,9 @@ TEST(InstHostile, doubling_recursion_is_bounded_by_the_number_of_objects) {
     }
     LowerOptions options;
     options.max_objects = 50'000;
-    const Model model(text, options);
+    const InstModel model(text, options);
     EXPECT_FALSE(model.graph);
-    EXPECT_THAT(model.errors(), HasSubstr("the model has more than 50000 objects: top -> f0(0) -> f1("));
+    EXPECT_THAT(model.said(), HasSubstr("the model has more than 50000 objects: top -> f0(0) -> f1("));
 }
 
 TEST(InstHostile, wide_objects_are_bounded_by_the_number_of_instances) {
@@ -376,11 +345,11 @@ TEST(InstHostile, a_chain_of_100000_objects_is_legal) {
     for (int i = 1; i < 100'000; ++i)
         text += "canonical object o" + std::to_string(i) + " { o" + std::to_string(i + 1) + " scale: 0.9 }\n";
     text += "canonical object o100000 { sphere }\n";
-    const Model model(text);
-    ASSERT_TRUE(model.graph) << model.errors();
+    const InstModel model(text);
+    ASSERT_TRUE(model.graph) << model.said();
     EXPECT_EQ(model.graph->objects.size(), 100'002u);
     EXPECT_TRUE(
-        Model("canonical object f(0) { sphere } canonical object f(n) { f(n - 1) } object t { f(99999) }")
+        InstModel("canonical object f(0) { sphere } canonical object f(n) { f(n - 1) } object t { f(99999) }")
             .graph);
 }
 

@@ -10,31 +10,13 @@
 #include "compiler/graph/print.h"
 #include "compiler/graph/unfold.h"
 #include "compiler/inst/inst_hues.h"
-#include "compiler/languages/lower.h"
 #include "compiler/support/hue.h"
+#include "tests/unit/inst/inst_model.h"
 
 namespace graftal {
 namespace {
 
 using ::testing::HasSubstr;
-
-struct VariedModel {
-    SourceMap sources;
-    Diagnostics diagnostics;
-    std::optional<Graph> graph;
-
-    explicit VariedModel(std::string text, const LowerOptions& options = {}) {
-        graph = lower_text("m.inst", std::move(text), options, sources, diagnostics).graph;
-    }
-    std::string said() const { return diagnostics.render(sources); }
-    const Object& object(std::string_view name) const {
-        for (const Object& object : graph->objects)
-            if (object.name == name) return object;
-        throw std::runtime_error("no object " + std::string(name));
-    }
-    const Object& root() const { return graph->objects[graph->root]; }
-    const Object& master(const Instance& instance) const { return graph->objects[instance.master]; }
-};
 
 void expect_close(Vec3 a, Vec3 b, double tolerance = 1e-12) {
     for (int i = 0; i < 3; ++i)
@@ -47,9 +29,9 @@ LowerOptions seeded(std::uint64_t seed) {
     return options;
 }
 
-void expect_printed_graph_reads_back(const VariedModel& model) {
+void expect_printed_graph_reads_back(const InstModel& model) {
     ASSERT_TRUE(model.graph) << model.said();
-    const VariedModel again(print(*model.graph));
+    const InstModel again(print(*model.graph));
     ASSERT_TRUE(again.graph) << again.said();
     EXPECT_TRUE(equal(*model.graph, *again.graph)) << print(*model.graph);
 }
@@ -60,7 +42,7 @@ TEST(Repeat, each_copy_has_the_block_once_more_than_the_one_before) {
     for (const std::string head : {"repeat 4", "4 *", "(2 + n) *", "repeat 2*n", "repeat: "}) {
         const std::string text = "let n = 2\nobject a {\n" + head +
                                  " { rotate: y, 90  translate: 0, 1, 0 } sphere translate: 1, 0, 0 }";
-        const VariedModel model(text);
+        const InstModel model(text);
         if (head == "repeat: ") {
             EXPECT_FALSE(model.graph); // this is a keyword with a colon, and no count
             continue;
@@ -75,7 +57,7 @@ TEST(Repeat, each_copy_has_the_block_once_more_than_the_one_before) {
 }
 
 TEST(Repeat, tints_compose_with_those_of_outer_copies_in_front) {
-    const VariedModel model(
+    const InstModel model(
         "object a { 3 * { tint: 1, 0, 0, 0.5  translate: 1, 0, 0 } sphere tint: 0, 0, 1, 1 }");
     ASSERT_TRUE(model.graph) << model.said();
     const double reds[] = {0, 0.5, 0.75};
@@ -84,8 +66,8 @@ TEST(Repeat, tints_compose_with_those_of_outer_copies_in_front) {
 }
 
 TEST(Repeat, nested_repeats_make_the_product_and_the_graph_their_sum) {
-    const VariedModel model("object a { 10 * { translate: 1, 0, 0 } 10 * { translate: 0, 1, 0 } "
-                            "10 * { translate: 0, 0, 1 } sphere }");
+    const InstModel model("object a { 10 * { translate: 1, 0, 0 } 10 * { translate: 0, 1, 0 } "
+                          "10 * { translate: 0, 0, 1 } sphere }");
     ASSERT_TRUE(model.graph) << model.said();
     EXPECT_EQ(instance_count(*model.graph), 30u);
     std::set<std::tuple<long, long, long>> places;
@@ -105,15 +87,15 @@ TEST(Repeat, nested_repeats_make_the_product_and_the_graph_their_sum) {
 
 TEST(Repeat, a_recursion_keeps_its_levels) {
     // An object in between would count as a level of its own.
-    const VariedModel model(
+    const InstModel model(
         "object a { sphere\n 2 * { rotate: y, 180 } 2 * { rotate: z, 10 } a scale 0.3 translate 2, 0 }");
     ASSERT_TRUE(model.graph) << model.said();
     EXPECT_EQ(model.root().instances.size(), 5u);
 }
 
 TEST(Repeat, braces_hold_several_groups) {
-    const VariedModel model("object a { 3 * { translate: 0, 2, 0 } { sphere\n cube scale: 0.5\n"
-                            " 2 * { translate: 3, 0, 0 } cone }\n torus }");
+    const InstModel model("object a { 3 * { translate: 0, 2, 0 } { sphere\n cube scale: 0.5\n"
+                          " 2 * { translate: 3, 0, 0 } cone }\n torus }");
     ASSERT_TRUE(model.graph) << model.said();
     std::map<std::string, std::size_t> count;
     for (const Instance& instance : model.root().instances)
@@ -143,7 +125,7 @@ TEST(Repeat, mistakes_end_in_messages) {
          "a range of tints belongs to a scatter"},
     };
     for (const auto& [text, message] : cases) {
-        const VariedModel model(text);
+        const InstModel model(text);
         EXPECT_FALSE(model.graph) << text;
         EXPECT_THAT(model.said(), HasSubstr(message)) << text;
     }
@@ -152,7 +134,7 @@ TEST(Repeat, mistakes_end_in_messages) {
 TEST(Repeat, no_copies_are_made_beyond_the_limits) {
     LowerOptions options;
     options.max_objects = 1000;
-    const VariedModel model(
+    const InstModel model(
         "canonical object b { sphere }\nobject a { 2000 * { translate: 1, 0, 0 } { b\n b\n b } }", options);
     EXPECT_FALSE(model.graph);
     EXPECT_THAT(model.said(), HasSubstr("the model has more than 4000 instances"));
@@ -165,9 +147,9 @@ TEST(Repeat, nests_to_a_limit) {
             text += " 1 * { rotate: y, 1 }";
         return text + " sphere }";
     };
-    EXPECT_TRUE(VariedModel(nested(256)).graph);
+    EXPECT_TRUE(InstModel(nested(256)).graph);
     for (const std::size_t depth : {257u, 100'000u}) {
-        const VariedModel model(nested(depth));
+        const InstModel model(nested(depth));
         EXPECT_FALSE(model.graph);
         EXPECT_THAT(model.said(), HasSubstr("repeats nest more than 256 deep"));
     }
@@ -178,22 +160,22 @@ TEST(Repeat, too_many_copies_are_refused) {
          {"object a { 4000000 * { translate: 1, 0, 0 } sphere }",
           "object a { 4000000 * { translate: 1, 0, 0 } 4000000 * { translate: 0, 1, 0 } sphere }",
           "object a { 2000 * { translate: 1, 0, random(0, 1) } 2000 * { translate: 0, 1, 0 } sphere }"}) {
-        const VariedModel model(text);
+        const InstModel model(text);
         EXPECT_FALSE(model.graph) << text;
         EXPECT_THAT(model.said(), HasSubstr("1:12: error: the repeats of the model make too many copies"));
     }
 }
 
 TEST(Repeat, each_of_50000_shared_parts_has_its_name_at_once) {
-    const VariedModel model("canonical object f(0) { sphere }\ncanonical object f(n) {\n"
-                            " 2 * { translate: 1, 0, 0 } 2 * { translate: 0, 1, 0 } sphere\n f(n - 1) }\n"
-                            "object a { f(50000) }");
+    const InstModel model("canonical object f(0) { sphere }\ncanonical object f(n) {\n"
+                          " 2 * { translate: 1, 0, 0 } 2 * { translate: 0, 1, 0 } sphere\n f(n - 1) }\n"
+                          "object a { f(50000) }");
     ASSERT_TRUE(model.graph) << model.said();
     EXPECT_EQ(model.object("f.repeat50000").instances.size(), 2u);
 }
 
 TEST(Repeat, objects_may_have_the_names_of_the_new_words) {
-    const VariedModel model(
+    const InstModel model(
         "canonical object repeat { sphere }\ncanonical object hue { cube }\n"
         "canonical object weight { cone }\nobject a { repeat\n hue\n weight, repeat scale: 2\n}");
     ASSERT_TRUE(model.graph) << model.said();
@@ -203,7 +185,7 @@ TEST(Repeat, objects_may_have_the_names_of_the_new_words) {
 // Alternatives and random numbers
 
 TEST(Alternatives, are_chosen_by_their_weights) {
-    const VariedModel model(
+    const InstModel model(
         "canonical object leaf weight 3 { sphere }\ncanonical object leaf weight 1 { cube }\n"
         "object a { 400 * { translate: 1, 0, 0 } leaf }");
     ASSERT_TRUE(model.graph) << model.said();
@@ -227,8 +209,8 @@ TEST(Alternatives, depend_on_the_seed_and_on_nothing_else) {
         "canonical object t(n) weight n { t(n-1) rotate: z, random(-30, 30) translate: 0, 1, 0 }\n"
         "canonical object t(n) weight 2 { union: t(n-1), t(n-1) scale: 0.6 translate: 1, 1, 0 }\n";
     const std::string root = "object a { t(8) }\n";
-    const VariedModel model(text + root), again(text + root), other(text + root, seeded(7));
-    const VariedModel with_more("canonical object x { cube scale random(1, 2) }\n" + text + root);
+    const InstModel model(text + root), again(text + root), other(text + root, seeded(7));
+    const InstModel with_more("canonical object x { cube scale random(1, 2) }\n" + text + root);
     ASSERT_TRUE(model.graph && other.graph && with_more.graph) << model.said() << with_more.said();
     EXPECT_EQ(print(*model.graph), print(*again.graph));
     EXPECT_NE(print(*model.graph), print(*other.graph));
@@ -237,7 +219,7 @@ TEST(Alternatives, depend_on_the_seed_and_on_nothing_else) {
 }
 
 TEST(Alternatives, may_be_recursions_without_end) {
-    const VariedModel model(
+    const InstModel model(
         "canonical object r weight 2 { sphere\n r scale: 0.8 translate: 1, 0, 0 }\n"
         "canonical object r weight 1 { cube\n r scale: random(0.5, 0.7) rotate: y, 40 translate: 1, 0, 0 }\n"
         "object a { r }");
@@ -249,7 +231,7 @@ TEST(Alternatives, may_be_recursions_without_end) {
 TEST(Alternatives, of_a_drawn_object_are_one_of_them) {
     std::set<std::string> seen;
     for (std::uint64_t seed = 0; seed < 20; ++seed) {
-        const VariedModel model("object a weight 1 { sphere }\nobject a weight 1 { cube }", seeded(seed));
+        const InstModel model("object a weight 1 { sphere }\nobject a weight 1 { cube }", seeded(seed));
         ASSERT_TRUE(model.graph) << model.said();
         ASSERT_EQ(model.root().instances.size(), 1u);
         seen.insert(model.master(model.root().instances.front()).name);
@@ -273,7 +255,7 @@ TEST(Alternatives, mistakes_end_in_messages) {
         {"let x = random(0, 1)\nobject a { sphere }", "only the lines of an object"},
     };
     for (const auto& [text, message] : cases) {
-        const VariedModel model(text);
+        const InstModel model(text);
         EXPECT_FALSE(model.graph) << text;
         EXPECT_THAT(model.said(), HasSubstr(message)) << text;
     }
@@ -283,23 +265,23 @@ TEST(Alternatives, that_are_too_many_to_weigh_are_refused) {
     std::string text = "canonical object f(0) { sphere }\nobject a { f(10000) }\n";
     for (int i = 0; i < 2000; ++i)
         text += "canonical object f(n) weight n { f(n - 1) }\n";
-    const VariedModel model(text);
+    const InstModel model(text);
     EXPECT_FALSE(model.graph);
     EXPECT_THAT(model.said(), HasSubstr("the model takes too much work to list all its objects"));
 }
 
 TEST(RandomNumbers, make_a_hundred_thousand_primitives_at_once) {
-    const VariedModel model(
+    const InstModel model(
         "object a { 100000 * { translate: 1, 0, 0 } superellipsoid(random(0.1, 2), random(0.1, 2)) }");
     ASSERT_TRUE(model.graph) << model.said();
     EXPECT_GT(model.graph->objects.size(), 99'000u);
-    const VariedModel one("object a { 5 * { translate: 1, 0, 0 } superellipsoid(0.5, random(0.5, 0.5)) }");
+    const InstModel one("object a { 5 * { translate: 1, 0, 0 } superellipsoid(0.5, random(0.5, 0.5)) }");
     ASSERT_TRUE(one.graph) << one.said();
     EXPECT_EQ(one.graph->objects.size(), 2u);
 }
 
 TEST(RandomNumbers, are_spread_over_the_variants) {
-    const VariedModel model(
+    const InstModel model(
         "canonical object b { sphere scale: random(1, 2) }\nobject a { 500 * { translate: 1, 0, 0 } b }");
     ASSERT_TRUE(model.graph) << model.said();
     double sum = 0, variants = 0;
@@ -316,7 +298,7 @@ TEST(RandomNumbers, are_spread_over_the_variants) {
 }
 
 TEST(RandomNumbers, may_stand_in_every_line) {
-    const VariedModel model(
+    const InstModel model(
         "canonical object f(n) { sphere scale: n }\n"
         "object a {\n"
         " repeat random(3, 4) { translate: 1, random(0, 1), 0 hue: random(0, 9) tint: 1, 0, 0, random(0, 1) "
@@ -330,7 +312,7 @@ TEST(RandomNumbers, may_stand_in_every_line) {
 }
 
 TEST(RandomNumbers, differ_between_the_copies_of_a_repeat) {
-    const VariedModel model("object a { 50 * { translate: 1, 0, random(0, 1) } sphere scale: random(1, 2) }");
+    const InstModel model("object a { 50 * { translate: 1, 0, random(0, 1) } sphere scale: random(1, 2) }");
     ASSERT_TRUE(model.graph) << model.said();
     std::set<double> sizes, steps;
     double last = 0;
@@ -344,7 +326,7 @@ TEST(RandomNumbers, differ_between_the_copies_of_a_repeat) {
 }
 
 TEST(RandomNumbers, places_of_a_scatter_hold_different_variants) {
-    const VariedModel model(
+    const InstModel model(
         "canonical object b { sphere scale: random(0.1, 0.2) }\nobject a { scatter b 100 over disc 50 }");
     ASSERT_TRUE(model.graph) << model.said();
     std::set<ObjectId> masters;
@@ -357,8 +339,8 @@ TEST(RandomNumbers, places_of_a_scatter_hold_different_variants) {
 // Colours
 
 TEST(Hsv, is_a_colour_wherever_one_stands) {
-    const VariedModel model("material m { color: hsv(120, 1, 0.5) }\nbackground: hsv(240, 0.5, 1)\n"
-                            "object a { sphere tint: hsv(0, 1, 0.8), 0.5\n cube material: m }");
+    const InstModel model("material m { color: hsv(120, 1, 0.5) }\nbackground: hsv(240, 0.5, 1)\n"
+                          "object a { sphere tint: hsv(0, 1, 0.8), 0.5\n cube material: m }");
     ASSERT_TRUE(model.graph) << model.said();
     expect_close(model.root().instances[0].tint.rgb, {0.8, 0, 0});
     EXPECT_EQ(model.root().instances[0].tint.alpha, 0.5);
@@ -367,7 +349,7 @@ TEST(Hsv, is_a_colour_wherever_one_stands) {
     for (const char* text :
          {"object a { sphere tint: hsv(0, 1.2, 1), 1 }", "object a { sphere tint: hsv(0, 1), 1 }",
           "object a { sphere tint: hsv(0, 1, 2), 1 }", "object a { sphere tint: hsv(0, 1, 1) }"})
-        EXPECT_FALSE(VariedModel(text).graph) << text;
+        EXPECT_FALSE(InstModel(text).graph) << text;
 }
 
 TEST(Hue, turning_keeps_saturation_and_value) {
@@ -396,7 +378,7 @@ TEST(Hue, turns_are_exact_fractions) {
 }
 
 TEST(Hue, goes_round_with_a_recursion) {
-    const VariedModel model(
+    const InstModel model(
         "canonical object arm { sphere tint: 1, 0, 0, 1\n arm scale: 0.9 translate: 2, 0, 0 hue: 30 }\n"
         "object a { arm }");
     ASSERT_TRUE(model.graph) << model.said();
@@ -412,9 +394,9 @@ TEST(Hue, goes_round_with_a_recursion) {
 }
 
 TEST(Hue, turns_materials_and_used_objects_alike_in_a_repeat) {
-    const VariedModel model("material m { color: 0.5, 0.1, 0.1 }\nmaterial grey { color: 0.2, 0.2, 0.2 }\n"
-                            "canonical object b { sphere material: m\n cube material: grey\n cone }\n"
-                            "object a { 3 * { translate: 3, 0, 0 hue: 120 } b tint: 0, 0, 1, 0.5 }");
+    const InstModel model("material m { color: 0.5, 0.1, 0.1 }\nmaterial grey { color: 0.2, 0.2, 0.2 }\n"
+                          "canonical object b { sphere material: m\n cube material: grey\n cone }\n"
+                          "object a { 3 * { translate: 3, 0, 0 hue: 120 } b tint: 0, 0, 1, 0.5 }");
     ASSERT_TRUE(model.graph) << model.said();
     const Rgb materials[] = {{0.5, 0.1, 0.1}, {0.1, 0.5, 0.1}, {0.1, 0.1, 0.5}};
     const Rgb tints[] = {{0, 0, 1}, {1, 0, 0}, {0, 1, 0}};
@@ -430,22 +412,22 @@ TEST(Hue, turns_materials_and_used_objects_alike_in_a_repeat) {
 }
 
 TEST(Hue, what_cannot_be_exact_is_said) {
-    const VariedModel rounded(
+    const InstModel rounded(
         "canonical object arm { sphere tint: 1, 0, 0, 1\n arm scale: 0.9 translate: 2, 0, 0 hue: 7.123 }\n"
         "object a { arm }");
     ASSERT_TRUE(rounded.graph);
     EXPECT_THAT(rounded.said(), HasSubstr("note: the hue turns by 7 degrees, not by 7.123"));
     LowerOptions options;
     options.max_objects = 500;
-    const VariedModel many(
+    const InstModel many(
         "canonical object arm { sphere tint: 1, 0, 0, 1\n arm scale: 0.9 translate: 2, 0, 0 hue: 0.1 }\n"
         "object a { arm }",
         options);
     EXPECT_FALSE(many.graph);
     EXPECT_THAT(many.said(), HasSubstr("the turns of hues make more than 500 objects"));
-    const VariedModel twice("object a { sphere hue: 10 hue: 20 }");
+    const InstModel twice("object a { sphere hue: 10 hue: 20 }");
     EXPECT_THAT(twice.said(), HasSubstr("duplicate 'hue'"));
-    const VariedModel alone("object a { hue: 10 sphere }");
+    const InstModel alone("object a { hue: 10 sphere }");
     EXPECT_THAT(alone.said(), HasSubstr("'hue' has no object to apply to"));
 }
 

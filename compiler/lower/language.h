@@ -29,8 +29,8 @@ class ModelTree {
     virtual ~ModelTree() = default;
 
     virtual InnerStatements inner_statements() const = 0;
-    /// Nothing if it has added to Lowering::failures(), or if the model is an orbit (Lowering::orbit); else a
-    /// graph that verify() accepts. Requires that the file is the last of Lowering::loading.
+    /// Nothing if it has added to Lowering::failures(), or if the model is an orbit (LowerNotes::orbit); else
+    /// a graph that verify() accepts. Requires that the file is the last of Lowering::loading.
     virtual std::optional<Graph> lower(Lowering& lowering) const = 0;
 };
 

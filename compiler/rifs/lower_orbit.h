@@ -5,8 +5,8 @@
 
 namespace graftal {
 
-/// Lowers a `.rifs` file with an orbit to Lowering::orbit, or reports why not: it must be the root model and
-/// stand alone in its file, and the options must allow it (LowerOptions::may_be_orbit).
+/// Lowers a `.rifs` file with an orbit to LowerNotes::orbit, or reports why not: it must be the root model
+/// and stand alone in its file, and the options must allow it (LowerOptions::may_be_orbit).
 void lower_orbit_file(const RifsFile& tree, Lowering& lowering);
 
 } // namespace graftal

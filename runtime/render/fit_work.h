@@ -11,8 +11,8 @@ namespace graftal {
 /// A model that can be traced within the work allowed, and what that took.
 struct FittedModel {
     std::unique_ptr<TraceModel> model;
-    /// Of one processor that what the rays meet will take, about (cut/work.h); samples that meet nothing take
-    /// more.
+    /// Of one processor that what the rays meet will take, about (detail/work.h); samples that meet nothing
+    /// take more.
     double seconds = 0;
     double allowed_seconds = 0; ///< what trying has left of the work; the picture may take more even so
     double whole_seconds = 0;   ///< that it would have taken as it was asked for

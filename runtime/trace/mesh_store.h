@@ -51,8 +51,8 @@ struct TraceMesh {
 /// Trumbore, "Fast, Minimum Storage Ray/Triangle Intersection", 1997).
 bool intersect(const TraceMesh::Triangle& triangle, const Ray& ray, const RayRange& range, PrimitiveHit& hit);
 
-/// Bakes the shells (cut/shell.h) of what rays would not come through, where they come to it, once for each
-/// half octave of sizes. Used by many threads.
+/// Bakes the shells (detail/shell.h) of what rays would not come through, where they come to it, once for
+/// each half octave of sizes. Used by many threads.
 class MeshStore {
   public:
     /// Keeps a reference. `most_shell_work`: points moved for one shell; it gets coarser by that.

@@ -152,7 +152,7 @@ void Traversal::surface_at_best(SurfaceHit& hit) const {
     Rgb inherited = plain.rgb;
     std::optional<MaterialId> material;
     hit.material = &plain;
-    const CutNode* parent = nullptr; // as in descend() (cut/choose.h)
+    const CutNode* parent = nullptr; // as in descend() (detail/piece.h)
     for (const std::uint32_t step : path_) {
         const TraceEdge& edge = model_.edges[step & ~from_cut];
         if (parent && (step & from_cut) && parent->terminal) inherited = parent->mean.over(inherited);

@@ -25,23 +25,13 @@ class BodyParser {
 
     /// Requires that the '{' was just taken.
     void parse() {
-        const Token open = stream_.previous();
-        while (!diagnostics_.full() && !stream_.accept("}")) {
-            if (stream_.at_end() || begins_statement()) {
-                const bool material = stream_.at("material");
-                Diagnostic& error =
-                    stream_.expected(fmt::format("'}}' at the end of object '{}'", definition_.name));
-                if (material)
-                    error.with_hint("define materials outside of objects; inside, write the material's name: "
-                                    "'material: NAME'");
-                error.with_note(open.span, "to close this '{'");
-                closed_ = false;
-                return;
-            }
-            if (!stream_.accept(",") && !parse_line()) {
-                failed_ = true;
-                stream_.skip_line();
-            }
+        if (Diagnostic* const missing =
+                parse_lines(fmt::format("'}}' at the end of object '{}'", definition_.name))) {
+            if (stream_.at("material"))
+                missing->with_hint("define materials outside of objects; inside, write the material's name: "
+                                   "'material: NAME'");
+            closed_ = false;
+            return;
         }
         measure_group();
         check_not_empty();
@@ -63,6 +53,20 @@ class BodyParser {
         if (word.is("camera") || word.is("light") || word.is("ground")) return after.is("{");
         if (word.is("background")) return after.is("{") || after.is(":");
         return word.is("steps") && (after.is(":") || after.kind == TokenKind::number);
+    }
+
+    /// The lines of a block whose '{' was just taken, and its '}'. Gives the error if that is missing.
+    Diagnostic* parse_lines(std::string_view wanted_end) {
+        const Token open = stream_.previous();
+        while (!diagnostics_.full() && !stream_.accept("}")) {
+            if (stream_.at_end() || begins_statement())
+                return &stream_.expected(wanted_end).with_note(open.span, "to close this '{'");
+            if (!stream_.accept(",") && !parse_line()) {
+                failed_ = true;
+                stream_.skip_line();
+            }
+        }
+        return nullptr;
     }
 
     bool parse_line() {
@@ -143,19 +147,8 @@ class BodyParser {
                     .with_hint("write them after the braces: repeat 12 { rotate: y, 30 } leaf");
             return false;
         }
-        const Token open = stream_.previous();
         sealed_ = true;
-        while (!diagnostics_.full() && !stream_.accept("}")) {
-            if (stream_.at_end() || begins_statement()) {
-                stream_.expected("'}' at the end of the repeated objects")
-                    .with_note(open.span, "to close this '{'");
-                return false;
-            }
-            if (!stream_.accept(",") && !parse_line()) {
-                failed_ = true;
-                stream_.skip_line();
-            }
-        }
+        if (parse_lines("'}' at the end of the repeated objects")) return false;
         sealed_ = true;
         return true;
     }

@@ -43,9 +43,10 @@ void InstLowerer::lower_copies(const InstGroup& group, std::size_t depth, const 
         Lowered part;
         lower_copies(group, depth + 1, Placement(), part);
         if (stopped_ || part.object.instances.empty()) return;
-        part.object.name = free_repeat_name();
+        const std::string name = free_repeat_name();
+        part.object.name = name;
         part.object.span = repeat.span;
-        shared = by_name_[part.object.name] = graph_.add(part.object);
+        shared = by_name_[name] = graph_.add(std::move(part.object));
         keep_hues(*shared, std::move(part.hues));
     }
     Placement copy = around;
@@ -133,9 +134,7 @@ bool InstLowerer::copy_work(const InstGroup& group) {
     std::size_t words = group.size;
     for (const auto& repeat : group.repeats)
         words += repeat->size;
-    work_ += words;
-    lowering_.meter.add(words);
-    if (work_ <= max_inst_work) return true;
+    if (count_work(words)) return true;
     if (!stopped_)
         diagnostics_.error(group.repeats.front()->span, "the repeats of the model make too many copies")
             .with_hint("use smaller counts, or repeat an object that contains some of the copies");

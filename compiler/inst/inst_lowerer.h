@@ -90,7 +90,9 @@ class InstLowerer {
     std::nullopt_t stop(Span use, const InstDefinition& definition, std::size_t parent, std::string_view name,
                         std::string message);
     void lower_object(std::size_t index);
-    /// Counts evaluated words; false if they are too many, after an error that names the chain of objects.
+    /// Counts evaluated words; false if they are too many.
+    bool count_work(std::size_t words);
+    /// The same for an object; too many are an error that names the chain of objects.
     bool work(std::size_t words);
     /// The same for a copy that the repeats of a group make, which the error then names.
     bool copy_work(const InstGroup& group);

@@ -132,10 +132,14 @@ void InstLowerer::lower_object(std::size_t index) {
     keep_hues(reached_[index].id, std::move(lowered.hues));
 }
 
-bool InstLowerer::work(std::size_t words) {
+bool InstLowerer::count_work(std::size_t words) {
     work_ += words;
     lowering_.meter.add(words);
-    if (work_ <= max_inst_work) return true;
+    return work_ <= max_inst_work;
+}
+
+bool InstLowerer::work(std::size_t words) {
+    if (count_work(words)) return true;
     const Reached& reached = reached_[current_];
     if (!stopped_)
         stop(reached.use, *reached.definition, reached.parent, graph_.objects[reached.id].name,

@@ -36,6 +36,11 @@ evaluate_all(const std::vector<Expression>& values, const Environment& environme
     return numbers;
 }
 
+Diagnostic& outside_unit_range(const char* what, double number, Span span, Diagnostics& diagnostics) {
+    return diagnostics.error(span,
+                             fmt::format("{} must lie between 0 and 1, not {}", what, shortest(number)));
+}
+
 /// Checks that evaluated values lie in [0,1].
 template<std::size_t count>
 bool in_unit_range(const std::array<double, count>& numbers, const std::vector<Expression>& values,
@@ -47,8 +52,7 @@ bool in_unit_range(const std::array<double, count>& numbers, const std::vector<E
         // Who counts to 255 does so three times.
         if (i < 3 && numbers[i] > 1 && std::exchange(too_bright, true)) continue;
         const char* what = i == 3 ? "alpha" : "a colour component";
-        Diagnostic& error = diagnostics.error(
-            values[i].span, fmt::format("{} must lie between 0 and 1, not {}", what, shortest(numbers[i])));
+        Diagnostic& error = outside_unit_range(what, numbers[i], values[i].span, diagnostics);
         if (i < 3 && numbers[i] >= 2 && numbers[i] <= 255)
             error.with_hint("colours are linear light: 1 is all of it, where pictures have 255");
     }
@@ -181,8 +185,7 @@ std::optional<Tint> lower_tint(const std::vector<Expression>& values, const Envi
         const std::optional<double> alpha = evaluate(values[1], environment, diagnostics, draws);
         if (!rgb || !alpha) return std::nullopt;
         if (*alpha >= 0 && *alpha <= 1) return Tint{*rgb, *alpha};
-        diagnostics.error(values[1].span,
-                          fmt::format("alpha must lie between 0 and 1, not {}", shortest(*alpha)));
+        outside_unit_range("alpha", *alpha, values[1].span, diagnostics);
         return std::nullopt;
     }
     const auto n = evaluate_all<4>(values, environment, diagnostics, draws);

@@ -130,35 +130,32 @@ class Parser {
     Steps cycle_;
 };
 
-/// `arm(2)` for `arm.v3.hue1(2)`: without the numbers that `.inst` gives to variants and turns of hue.
-std::string name_in_model(std::string_view master) {
-    const std::size_t arguments = std::min(master.find('('), master.size());
-    std::string_view head = master.substr(0, arguments);
+/// `arm` for `arm.v3.hue1`: without the numbers that `.inst` gives to variants and turns of hue.
+std::string_view without_numbers(std::string_view head) {
+    constexpr std::string_view digits = "0123456789";
     for (std::size_t dot = head.rfind('.'); dot != std::string_view::npos; dot = head.rfind('.')) {
         const std::string_view ending = head.substr(dot + 1);
-        const std::string_view digits =
-            ending.substr(std::min(ending.find_first_of("0123456789"), ending.size()));
-        const std::string_view word = ending.substr(0, ending.size() - digits.size());
-        const bool numbered =
-            !digits.empty() && digits.find_first_not_of("0123456789") == std::string_view::npos;
-        if (!numbered || (word != "v" && word != "hue")) break;
+        const std::string_view word = ending.substr(0, ending.find_last_not_of(digits) + 1);
+        if (word == ending || (word != "v" && word != "hue")) break;
         head = head.substr(0, dot);
     }
-    return std::string(head).append(master.substr(arguments));
+    return head;
 }
 
 /// How well a master's name fits, 0 for not at all.
-int fit(std::string_view full_master, std::string_view name) {
-    if (name.empty() || full_master == name) return 4;
-    const std::string plain = name_in_model(full_master);
-    const std::string_view master = plain;
-    if (master == name) return 3;
-    const std::string_view head = master.substr(0, master.find('('));
-    if (const std::size_t dot = head.rfind('.');
-        dot != std::string_view::npos && master.substr(dot + 1) == name)
-        return 2;
-    const std::size_t dot = head.rfind('.');
-    return head == name || (dot != std::string_view::npos && head.substr(dot + 1) == name) ? 1 : 0;
+int fit(std::string_view master, std::string_view name) {
+    if (name.empty() || master == name) return 4;
+    const std::size_t end = std::min(master.find('('), master.size());
+    const std::string_view arguments = master.substr(end);
+    const std::string_view head = without_numbers(master.substr(0, end));
+    const std::string_view last = head.substr(head.rfind('.') + 1);
+    const auto with_arguments = [&](std::string_view begin) {
+        return name.size() == begin.size() + arguments.size() && name.starts_with(begin) &&
+               name.ends_with(arguments);
+    };
+    if (with_arguments(head)) return 3;
+    if (with_arguments(last)) return 2;
+    return head == name || last == name ? 1 : 0;
 }
 
 class Finder {

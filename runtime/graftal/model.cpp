@@ -97,6 +97,13 @@ struct Model::Parts {
         if (listener) listener(stage, share ? std::optional(std::clamp(*share, 0.0, 1.0)) : std::nullopt);
     }
 
+    /// Of graftal's own tracer, which tells the listener.
+    NativeOptions native_options() const {
+        NativeOptions native{options, false, {}};
+        native.on_progress = [this](const NativeProgress& progress) { tell("trace", progress.fraction); };
+        return native;
+    }
+
     /// Calls a function that gives a value or nothing.
     template<typename Value, typename Work> Result<Value> run(const Work& work) {
         cancelled = false;
@@ -230,11 +237,8 @@ Result<Picture> Model::render() {
             picture = picture_of(linear);
             return Status();
         };
-        NativeOptions native{parts_->options, false, {}};
-        native.on_progress = [this](const NativeProgress& progress) {
-            parts_->tell("trace", progress.fraction);
-        };
-        if (!render_natively(parts_->session, native, compilation, sink)) return std::nullopt;
+        if (!render_natively(parts_->session, parts_->native_options(), compilation, sink))
+            return std::nullopt;
         return picture;
     });
 }
@@ -246,7 +250,7 @@ Result<Drawn> Model::render_to(const std::string& path, Engine engine) {
             return std::nullopt;
         }
         const Stopwatch watch;
-        NativeOptions native{parts_->options, false, {}};
+        NativeOptions native = parts_->native_options();
         native.render.output = path;
         if (engine == Engine::povray) {
             native.render.on_progress = [this](const PovrayProgress& progress) {
@@ -255,9 +259,6 @@ Result<Drawn> Model::render_to(const std::string& path, Engine engine) {
             if (!render_model(parts_->session, native.render, compilation)) return std::nullopt;
             return Drawn{path, watch.seconds()};
         }
-        native.on_progress = [this](const NativeProgress& progress) {
-            parts_->tell("trace", progress.fraction);
-        };
         if (!render_natively(parts_->session, native, compilation)) return std::nullopt;
         return Drawn{path, watch.seconds()};
     });

@@ -11,7 +11,7 @@
 #include "compiler/session/stages.h"
 #include "compiler/session/stats.h"
 #include "runtime/image/image.h"
-#include "runtime/render/native.h"
+#include "runtime/render/native_engine.h"
 #include "runtime/render/render.h"
 #include "runtime/render/scene_files.h"
 #include "runtime/render/stopwatch.h"
@@ -97,11 +97,11 @@ struct Model::Parts {
         if (listener) listener(stage, share ? std::optional(std::clamp(*share, 0.0, 1.0)) : std::nullopt);
     }
 
-    /// Of graftal's own tracer, which tells the listener.
-    NativeOptions native_options() const {
-        NativeOptions native{options, false, {}};
-        native.on_progress = [this](const NativeProgress& progress) { tell("trace", progress.fraction); };
-        return native;
+    /// For an engine, which tells the listener.
+    RenderOptions told() const {
+        RenderOptions render = options;
+        render.on_progress = [this](const DrawProgress& progress) { tell("draw", progress.fraction); };
+        return render;
     }
 
     /// Calls a function that gives a value or nothing.
@@ -237,8 +237,7 @@ Result<Picture> Model::render() {
             picture = picture_of(linear);
             return Status();
         };
-        if (!render_natively(parts_->session, parts_->native_options(), compilation, sink))
-            return std::nullopt;
+        if (!render_natively(parts_->session, parts_->told(), compilation, sink)) return std::nullopt;
         return picture;
     });
 }
@@ -250,16 +249,10 @@ Result<Drawn> Model::render_to(const std::string& path, Engine engine) {
             return std::nullopt;
         }
         const Stopwatch watch;
-        NativeOptions native = parts_->native_options();
-        native.render.output = path;
-        if (engine == Engine::povray) {
-            native.render.on_progress = [this](const PovrayProgress& progress) {
-                parts_->tell("povray", progress.fraction);
-            };
-            if (!render_model(parts_->session, native.render, compilation)) return std::nullopt;
-            return Drawn{path, watch.seconds()};
-        }
-        if (!render_natively(parts_->session, native, compilation)) return std::nullopt;
+        RenderOptions render = parts_->told();
+        render.output = path;
+        const graftal::Engine* const drawing = find_engine(engine == Engine::povray ? "povray" : "native");
+        if (!drawing->draw(parts_->session, render, compilation)) return std::nullopt;
         return Drawn{path, watch.seconds()};
     });
 }

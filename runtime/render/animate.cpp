@@ -13,7 +13,6 @@
 #include "compiler/session/stages.h"
 #include "runtime/render/frame_clock.h"
 #include "runtime/render/frame_store.h"
-#include "runtime/render/native.h"
 #include "runtime/render/scene_files.h"
 #include "runtime/render/video.h"
 
@@ -124,7 +123,7 @@ class Animation {
 
     /// Checks what would fail late.
     bool prepare() {
-        Status status = options_.engine == Engine::povray ? povray_available() : Status();
+        Status status = options_.engine->available();
         if (status.ok() && kind_ == AnimationKind::video) status = video_available();
         if (status.ok() && kind_ != AnimationKind::frames) status = check_writable(options_.output);
         if (status.ok()) status = store_.create();
@@ -166,46 +165,24 @@ class Animation {
         render.compile = now.compile;
         render.output = store_.path(frame);
         render.metadata.stamp = stamp(frame);
-        const auto tell = [&](double fraction) {
-            show({Stage::drawing, frame, options_.frames, seconds_left, fraction});
+        render.on_progress = [&](const DrawProgress& progress) {
+            if (progress.fraction)
+                show({Stage::drawing, frame, options_.frames, seconds_left, progress.fraction});
         };
         Compilation compilation;
-        const bool drawn = options_.engine == Engine::native
-                               ? trace_frame(frame, render, tell, compilation)
-                               : draw_frame_by_povray(frame, render, tell, compilation);
-        if (!drawn) return fail(now.name, std::move(compilation));
+        if (!draw_picture(frame, render, compilation)) return fail(now.name, std::move(compilation));
+        if (options_.on_compiled) options_.on_compiled(compilation); // not before: drawing has warnings, too
         add_times(compilation.times, outcome_.compilation.times);
         return true;
     }
 
-    using Tell = std::function<void(double fraction)>;
-
-    bool draw_frame_by_povray(std::size_t frame, RenderOptions& render, const Tell& tell,
-                              Compilation& compilation) {
-        if (!session_.compiled(render.compile, compilation) || !unchanged(frame, compilation)) return false;
-        if (options_.on_compiled) options_.on_compiled(compilation);
-        render.on_progress = [&](const PovrayProgress& povray) {
-            if (povray.stage == PovrayProgress::Stage::rendering && povray.fraction) tell(*povray.fraction);
-        };
-        const std::optional<RenderReport> report = render_model(session_, render, compilation);
-        if (!report) return false;
-        outcome_.error_px = std::max(outcome_.error_px, report->error_px);
-        outcome_.peak_bytes = std::max(outcome_.peak_bytes, report->peak_bytes);
-        return true;
-    }
-
-    bool trace_frame(std::size_t frame, const RenderOptions& render, const Tell& tell,
-                     Compilation& compilation) {
-        if (!session_.viewed(render.compile, compilation) || !unchanged(frame, compilation)) return false;
-        NativeOptions native;
-        native.render = render;
-        native.on_progress = [&](const NativeProgress& progress) { tell(progress.fraction); };
-        const std::optional<NativeReport> report = render_natively(session_, native, compilation);
-        if (!report) return false;
-        if (options_.on_compiled) options_.on_compiled(compilation); // not before: drawing has warnings, too
-        outcome_.rays += report->rays;
-        outcome_.trace_seconds += report->seconds;
-        return true;
+    bool draw_picture(std::size_t frame, const RenderOptions& render, Compilation& compilation) {
+        const Engine& engine = *options_.engine;
+        if (!engine.compile(session_, render.compile, compilation) || !unchanged(frame, compilation))
+            return false;
+        const std::optional<DrawReport> report = engine.draw(session_, render, compilation);
+        if (report) outcome_.report += *report;
+        return report.has_value();
     }
 
     /// Between the compiler and what draws: the model is still the one that was measured.

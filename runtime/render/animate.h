@@ -8,7 +8,6 @@
 #include "runtime/image/animation.h"
 #include "runtime/render/render.h"
 #include "runtime/render/sweep.h"
-#include "runtime/trace/picture_tracer.h"
 
 namespace graftal {
 
@@ -32,7 +31,7 @@ struct AnimationProgress {
 
 struct AnimateOptions {
     RenderOptions render; ///< of every frame, except moving values, the output and the stamp
-    Engine engine = Engine::povray;
+    const Engine* engine = &engines().front();
     std::string output; ///< animation_kind(output) is known
     std::size_t frames = 60;
     FrameRate rate;
@@ -42,8 +41,8 @@ struct AnimateOptions {
     bool keep_frames = false; ///< after they have been assembled
     std::string identity;     ///< what the frames depend on besides the model: the program and its options
     std::function<void(const AnimationProgress&)> on_progress;
-    std::function<void(const Compilation&)>
-        on_compiled; ///< after each model that is without errors: warnings
+    /// After each model, and each frame, that is without errors: warnings.
+    std::function<void(const Compilation&)> on_compiled;
 };
 
 /// How an animation ended.
@@ -54,10 +53,7 @@ struct AnimationOutcome {
     std::size_t drawn = 0;     ///< frames
     std::size_t found = 0;     ///< frames that an earlier run had drawn
     std::size_t strangers = 0; ///< frames of other animations in a directory of frames
-    double error_px = 0;       ///< by POV-Ray: the largest of the frames drawn
-    std::uint64_t peak_bytes = 0;
-    TraceStatistics rays; ///< by the native engine: of all frames drawn
-    double trace_seconds = 0;
+    DrawReport report;         ///< of all frames drawn
     double seconds = 0;
 };
 
@@ -65,7 +61,7 @@ struct AnimationOutcome {
 /// first, and the frames of one model share its analysis and preparation: they are framed together, and a
 /// value that a model does not take is found before the first frame is drawn. However it ends, whole frames
 /// stay for the next run until the output is there, and the output is whole or not there. Cancelled as
-/// for render_model.
+/// for Engine::draw.
 AnimationOutcome animate_model(PictureSession& session, const AnimateOptions& options);
 
 } // namespace graftal

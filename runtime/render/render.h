@@ -2,49 +2,80 @@
 
 #include <functional>
 #include <optional>
+#include <span>
 #include <string>
+#include <string_view>
 
 #include "runtime/image/image.h"
-#include "runtime/povray/povray.h"
 #include "runtime/render/picture_session.h"
+#include "runtime/trace/picture_tracer.h"
 
 namespace graftal {
 
-/// What draws.
-enum class Engine { povray, native };
+/// How far a picture is.
+struct DrawProgress {
+    std::string_view stage;         ///< such as "tracing"
+    std::optional<double> fraction; ///< of the stage, in [0, 1], where it is known
+};
 
+/// A picture that is asked for, whatever engine draws it.
 struct RenderOptions {
     StageOptions compile;
     std::string output;                        ///< where the picture goes: is_picture_name(output)
     ImageMetadata metadata;                    ///< to be written into it
     SampleFormat format = SampleFormat::srgb8; ///< of a PNG; an EXR is linear anyhow
-    std::optional<int> antialias = 2;          ///< as PovrayJob has it
-    int threads = 0;                           ///< 0: as many as POV-Ray likes
+    std::optional<int> antialias = 2;          ///< up to 4^(N-1) samples a pixel; nothing: one
+    int threads = 0;                           ///< 0: as many as the engine likes
+    bool progressive = false;                  ///< write coarse pictures first, each in place of the last
     bool unconfined = false;                   ///< PovrayJob::unconfined
     std::string keep;                          ///< a directory for the scene, to stay; empty: a temporary one
-    std::function<void(const PovrayProgress&)> on_progress;
-    /// Called before POV-Ray starts, with the seconds of one processor that it will take: within a factor of
-    /// two or so where they are many, for those are tried on a picture of far fewer pixels.
+    std::function<void(const DrawProgress&)> on_progress;
+    /// Called by an engine that shows nothing for long, before it starts, with the seconds of one processor
+    /// that it will take: within a factor of two or so where they are many.
     std::function<void(double seconds)> on_start;
 };
 
-/// What came of a rendering, for the summary.
-struct RenderReport {
-    double leaf_count = 0;
-    std::uint64_t placement_count = 0;
-    std::uint64_t triangle_count = 0;
-    double error_px = 0;
-    double tessellation_px = 0;
-    std::uint64_t estimated_bytes = 0;
-    std::uint64_t peak_bytes = 0; ///< of POV-Ray
-    double povray_seconds = 0;
+/// What came of one picture, or of many.
+struct DrawReport {
+    std::string summary;            ///< of one picture, for people
+    std::optional<double> error_px; ///< the largest, by an engine that bounds it
+    std::uint64_t peak_bytes = 0;   ///< of a program outside
+    TraceStatistics rays;           ///< by an engine that counts them
+    double trace_seconds = 0;
+
+    /// Adds up what can be added; there is no summary then.
+    DrawReport& operator+=(const DrawReport& other);
 };
 
-/// Model -> picture file, by POV-Ray. What the session can give up goes before POV-Ray starts. Nothing comes
-/// back after errors in `compilation.diagnostics` (the model's fault), or with a failed `compilation.status`
-/// (the environment's); then no file appears at the output. A rendering that is cancelled
-/// (Session::control()) cleans up and gives the status "interrupted".
-std::optional<RenderReport> render_model(PictureSession& session, const RenderOptions& options,
-                                         Compilation& compilation);
+/// One way from a viewed model to a picture: a row of the table of engines.
+struct Engine {
+    std::string_view name;    ///< as `--engine` takes it
+    std::string_view summary; ///< for --help
+
+    /// Fails, with advice, if the engine is not on this machine.
+    Status (*available)();
+
+    /// Says which of the options the engine cannot follow, and what to do; "" if there is none.
+    std::string (*refusal)(const RenderOptions& options);
+
+    /// Runs what comes before drawing, in the session, which keeps it. False after errors.
+    bool (*compile)(Session& session, const StageOptions& options, Compilation& compilation);
+
+    /// Model -> picture file. Nothing comes back after errors in `compilation.diagnostics` (the model's
+    /// fault), or with a failed `compilation.status` (the environment's); then no file appears at the output.
+    /// A rendering that is cancelled (Session::control()) cleans up and gives the status "interrupted"; a
+    /// progressive one leaves its best picture and reports it.
+    std::optional<DrawReport> (*draw)(PictureSession& session, const RenderOptions& options,
+                                      Compilation& compilation);
+};
+
+/// All engines; the first is the one for who names none.
+std::span<const Engine> engines();
+
+/// Null for an unknown name.
+const Engine* find_engine(std::string_view name);
+
+/// "1.76 million rays per second", and what went wrong with some.
+std::string rays_text(const TraceStatistics& rays, double seconds);
 
 } // namespace graftal

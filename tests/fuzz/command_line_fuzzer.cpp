@@ -22,9 +22,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     }
     const Options& options = *parsed.options;
     GRAFTAL_CHECK(!options.operands.empty(), "command line fuzzer: a model");
-    GRAFTAL_CHECK(options.compile.view.size.width > 0 && options.compile.view.size.height > 0,
+    GRAFTAL_CHECK(options.render.compile.view.size.width > 0 && options.render.compile.view.size.height > 0,
                   "command line fuzzer: a picture has pixels");
-    GRAFTAL_CHECK(options.compile.detail.error_px >= 0 && options.compile.detail.work_seconds > 0,
+    GRAFTAL_CHECK(options.render.compile.detail.error_px >= 0 &&
+                      options.render.compile.detail.work_seconds > 0,
                   "command line fuzzer: budgets");
     return 0;
 }

@@ -37,7 +37,7 @@ class Beside : public fuzz::Scratch {
 
 /// What would only take longer is held down; what is refused or not stays as it is.
 void hold(Options& options, const fuzz::Scratch& scratch) {
-    StageOptions& compile = options.compile;
+    StageOptions& compile = options.render.compile;
     compile.view.size = {std::min(compile.view.size.width, 40), std::min(compile.view.size.height, 30)};
     compile.lower.root = scratch.path("");
     compile.lower.max_objects = 2000;
@@ -45,19 +45,19 @@ void hold(Options& options, const fuzz::Scratch& scratch) {
     compile.lower.run_from = 256;
     compile.detail.memory_bytes = std::min<std::uint64_t>(compile.detail.memory_bytes, 8u << 20);
     compile.detail.work_seconds = std::min(compile.detail.work_seconds, 0.02);
-    options.threads = 1;
+    options.render.threads = 1;
     options.quiet = true;
-    options.antialias.reset();
-    options.progressive = false;
-    options.engine = Engine::native;
+    options.render.antialias.reset();
+    options.render.progressive = false;
+    options.engine = find_engine("native");
     options.points.points = std::min<std::uint64_t>(options.points.points.value_or(2000), 2000);
     options.points.card.clear();
-    options.keep.clear();
+    options.render.keep.clear();
 }
 
 /// What a command writes to, in the folder; "" where it says something.
 std::string output_of(const Options& options) {
-    const std::string ending = std::filesystem::path(options.output).extension().string();
+    const std::string ending = std::filesystem::path(options.render.output).extension().string();
     switch (options.command) {
     case Command::render:
     case Command::points:
@@ -92,7 +92,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     hold(options, scratch);
     const std::string output = output_of(options);
     options.operands = {scratch.path(model)};
-    options.output = output.empty() ? "-" : scratch.path(output);
+    options.render.output = output.empty() ? "-" : scratch.path(output);
     scratch.write(model, text);
     const int status = run_command(options);
     GRAFTAL_CHECK(status == exit_done || status == exit_fault,

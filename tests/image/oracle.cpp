@@ -14,7 +14,7 @@
 #include "compiler/session/stages.h"
 #include "compiler/support/file.h"
 #include "runtime/povray/povray.h"
-#include "runtime/render/native.h"
+#include "runtime/render/native_engine.h"
 #include "runtime/render/scene_files.h"
 #include "runtime/system/temporary_directory.h"
 #include "runtime/trace/camera_rays.h"
@@ -211,15 +211,15 @@ Status draw_natively(const DetailedModel& ours, int threads, Image& image) {
     TemporaryDirectory directory;
     const Status status = directory.create();
     if (!status.ok()) return status;
-    NativeOptions options;
-    options.render.output = directory.path() + "/native.png";
-    options.render.format = SampleFormat::linear16;
-    options.render.antialias = std::nullopt;
-    options.render.threads = threads;
+    RenderOptions options;
+    options.output = directory.path() + "/native.png";
+    options.format = SampleFormat::linear16;
+    options.antialias = std::nullopt;
+    options.threads = threads;
     Compilation compilation;
     if (!trace_model({ours.viewed, ours.detail, prepared_of(ours), {}}, options, {}, {}, compilation))
         return compilation.status;
-    return read_image(options.render.output, image);
+    return read_image(options.output, image);
 }
 
 Shown shown_natively(NativeEye& eye, ImageSize size) {

@@ -12,12 +12,12 @@ namespace graftal {
 namespace {
 
 Image render_path(const std::string& path, RenderOptions options, const std::string& folder,
-                  RenderReport* report) {
+                  PovrayReport* report) {
     options.output = folder + "/picture.exr";
     if (options.format == SampleFormat::srgb8) options.output = folder + "/picture.png";
     Compilation compilation;
     PictureSession session(path);
-    const std::optional<RenderReport> rendered = render_model(session, options, compilation);
+    const std::optional<PovrayReport> rendered = render_by_povray(session, options, compilation);
     Image image;
     EXPECT_TRUE(rendered.has_value())
         << compilation.diagnostics.render(compilation.sources) << compilation.status.message();
@@ -39,7 +39,7 @@ RenderOptions measured(int width, int height) {
 }
 
 Image render_model_text(const std::string& name, const std::string& text, const RenderOptions& options,
-                        RenderReport* report) {
+                        PovrayReport* report) {
     TemporaryDirectory directory;
     EXPECT_TRUE(directory.create().ok());
     std::error_code ignored;
@@ -50,7 +50,7 @@ Image render_model_text(const std::string& name, const std::string& text, const 
     return render_path(path, options, directory.path(), report);
 }
 
-Image render_model_file(const std::string& path, const RenderOptions& options, RenderReport* report) {
+Image render_model_file(const std::string& path, const RenderOptions& options, PovrayReport* report) {
     TemporaryDirectory directory;
     EXPECT_TRUE(directory.create().ok());
     return render_path(GRAFTAL_SOURCE_DIR "/" + path, options, directory.path(), report);

@@ -3,7 +3,7 @@
 #include <string>
 
 #include "runtime/image/image.h"
-#include "runtime/render/render.h"
+#include "runtime/render/povray_engine.h"
 
 namespace graftal {
 
@@ -14,10 +14,10 @@ RenderOptions measured(int width, int height);
 /// the language; `use "scenes/hart/elm.inst"` finds the models of the project. Fails the test,
 /// with the diagnostics, if there is no picture. The output of the options is ignored.
 Image render_model_text(const std::string& name, const std::string& text, const RenderOptions& options,
-                        RenderReport* report = nullptr);
+                        PovrayReport* report = nullptr);
 
 /// The same for a model file of the project, such as "scenes/hart/pound_sign.rifs".
 Image render_model_file(const std::string& path, const RenderOptions& options,
-                        RenderReport* report = nullptr);
+                        PovrayReport* report = nullptr);
 
 } // namespace graftal

@@ -6,7 +6,7 @@ namespace graftal {
 namespace {
 
 TEST(RenderHelpers, DrawAModelGivenAsText) {
-    RenderReport report;
+    PovrayReport report;
     const Image image = render_model_text(
         "ball.inst", "object top {\n    union: sphere\n}\ncamera { location 0, 0, 9 look_at 0, 0, 0 }\n",
         measured(40, 30), &report);

@@ -49,13 +49,9 @@ class Warnings {
 
 AnimateOptions animate_options(const Options& options) {
     AnimateOptions animate;
-    animate.render.compile = options.compile;
-    animate.render.metadata = {"graftal " GRAFTAL_VERSION, options.description, {}};
-    animate.render.antialias = options.antialias;
-    animate.render.threads = options.threads;
-    animate.render.unconfined = options.unconfined;
+    animate.render = options.render;
     animate.engine = options.engine;
-    animate.output = options.output;
+    animate.output = options.render.output;
     animate.frames = options.animation.frames;
     animate.rate = options.animation.rate;
     animate.turn_deg = *options.animation.turn_deg;
@@ -67,17 +63,16 @@ AnimateOptions animate_options(const Options& options) {
 }
 
 std::string done_text(const Options& options, const AnimationOutcome& outcome) {
-    std::string text = fmt::format("{}: {} frames, {:g} per second", options.output, options.animation.frames,
-                                   options.animation.rate.per_second());
+    std::string text = fmt::format("{}: {} frames, {:g} per second", options.render.output,
+                                   options.animation.frames, options.animation.rate.per_second());
     if (outcome.found > 0) text += fmt::format("; {} were there before", outcome.found);
-    if (outcome.drawn > 0 && options.engine == Engine::povray)
-        text += fmt::format("; error at most {:.2g} px", outcome.error_px);
-    if (outcome.drawn > 0 && options.engine == Engine::native)
-        text += "; " + rays_text(outcome.rays, outcome.trace_seconds);
+    const DrawReport& report = outcome.report;
+    if (report.error_px) text += fmt::format("; error at most {:.2g} px", *report.error_px);
+    if (report.rays.camera_rays > 0) text += "; " + rays_text(report.rays, report.trace_seconds);
     text += fmt::format("; {}\n", duration_text(outcome.seconds));
     if (outcome.strangers > 0)
-        text += fmt::format("graftal: '{}' also holds {} frame{} of another animation\n", options.output,
-                            outcome.strangers, outcome.strangers == 1 ? "" : "s");
+        text += fmt::format("graftal: '{}' also holds {} frame{} of another animation\n",
+                            options.render.output, outcome.strangers, outcome.strangers == 1 ? "" : "s");
     return text;
 }
 
@@ -86,7 +81,7 @@ std::string rest_text(const Options& options, const AnimationOutcome& outcome) {
     const std::size_t there = outcome.drawn + outcome.found;
     if (there == 0) return {};
     return fmt::format("graftal: {} of {} frames are in '{}'; the same command goes on from there\n", there,
-                       options.animation.frames, frames_directory(options.output));
+                       options.animation.frames, frames_directory(options.render.output));
 }
 
 } // namespace

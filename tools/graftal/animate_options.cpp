@@ -14,17 +14,17 @@ std::string complete_animation(Options& options) {
     AnimationOptions& animation = options.animation;
     if (options.operands.front() == "-")
         return "an animation reads its model more than once: give the model as a file, not on standard input";
-    if (options.output.empty())
-        options.output = std::filesystem::path(options.operands.front()).stem().string() + ".gif";
-    const std::optional<AnimationKind> kind = animation_kind(options.output);
+    if (options.render.output.empty())
+        options.render.output = std::filesystem::path(options.operands.front()).stem().string() + ".gif";
+    const std::optional<AnimationKind> kind = animation_kind(options.render.output);
     if (!kind)
         return fmt::format("'{}': the name of an animation must end in .gif, .png, .apng, .mp4 or .webm; the "
                            "name of a directory "
                            "of frames has no extension, or ends in a slash",
-                           options.output);
+                           options.render.output);
     if (kind == AnimationKind::gif && animation.rate.hundredths > fastest_gif.hundredths)
         return fmt::format("--fps: a GIF shows at most {:g} frames per second", fastest_gif.per_second());
-    const ImageSize size = options.compile.view.size;
+    const ImageSize size = options.render.compile.view.size;
     if (kind == AnimationKind::video && (size.width % 2 != 0 || size.height % 2 != 0))
         return fmt::format("--size: a video needs an even width and height, such as {}x{}",
                            size.width + size.width % 2, size.height + size.height % 2);
@@ -32,12 +32,13 @@ std::string complete_animation(Options& options) {
     return {};
 }
 
-std::string frame_identity(const CLI::App& command, Engine engine) {
+std::string frame_identity(const CLI::App& command, const Engine& engine) {
     static const std::set<std::string> harmless = {"MODEL",    "--output", "--fps",        "--keep-frames",
                                                    "--time",   "--quiet",  "--dump-after", "--threads",
                                                    "--engine", "--root",   "--unconfined"};
     std::string text = "graftal " GRAFTAL_VERSION;
-    if (engine == Engine::native) text += "\n--engine native"; // the other may be named or not
+    if (&engine != &engines().front()) // which may be named or not
+        text += fmt::format("\n--engine {}", engine.name);
     for (const CLI::Option* option : command.get_options())
         if (option->count() > 0 && !harmless.contains(option->get_name()))
             text += "\n" + option->get_name() + " " + shell_quoted(option->results());

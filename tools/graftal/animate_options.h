@@ -13,6 +13,6 @@ std::string complete_animation(Options& options);
 
 /// The version, the engine and all options but those that leave the frames as they are. An option that is
 /// missing in the list of those costs frames that are drawn anew; it never lets a wrong one pass.
-std::string frame_identity(const CLI::App& command, Engine engine);
+std::string frame_identity(const CLI::App& command, const Engine& engine);
 
 } // namespace graftal

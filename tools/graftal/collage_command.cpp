@@ -61,7 +61,7 @@ std::string collage_text(const Options& options, const Collage& collage) {
 
 int run_collage(const Options& options) {
     CollageOptions collage_options;
-    collage_options.compile = options.compile;
+    collage_options.compile = options.render.compile;
     collage_options.target = options.points.target;
     collage_options.threshold = options.points.threshold;
     collage_options.light = options.points.light;

@@ -24,7 +24,7 @@ std::string verdict_text(const Contraction& contraction) {
 
 int check_one(const Options& options, const std::string& path) {
     Compilation compilation;
-    StageOptions compile = options.compile;
+    StageOptions compile = options.render.compile;
     compile.lower.may_be_orbit = true;
     CommandSession session(options, path);
     std::shared_ptr<const OrbitModel> orbit;
@@ -79,7 +79,8 @@ int run_check(const Options& options) {
 int run_print(const Options& options) {
     Compilation compilation;
     CommandSession session(options, options.operands.front());
-    const std::shared_ptr<const AnalysedModel> model = session.analysed(options.compile, compilation, true);
+    const std::shared_ptr<const AnalysedModel> model =
+        session.analysed(options.render.compile, compilation, true);
     const int status = conclude(options, compilation);
     return model && status == exit_done ? print_output(print(model->graph)) : status;
 }
@@ -87,13 +88,14 @@ int run_print(const Options& options) {
 int run_graph(const Options& options) {
     Compilation compilation;
     CommandSession session(options, options.operands.front());
-    const std::shared_ptr<const AnalysedModel> model = session.analysed(options.compile, compilation, true);
+    const std::shared_ptr<const AnalysedModel> model =
+        session.analysed(options.render.compile, compilation, true);
     const Interruption interruption;
     if (model) {
         const std::string dot = emit_dot(model->graph, model->components);
-        compilation.status = options.output.ends_with(".svg")
-                                 ? write_svg(dot, options.output, interruption.flag())
-                                 : write_text(options.output, dot);
+        compilation.status = options.render.output.ends_with(".svg")
+                                 ? write_svg(dot, options.render.output, interruption.flag())
+                                 : write_text(options.render.output, dot);
     }
     return conclude(options, compilation, interruption.signal());
 }

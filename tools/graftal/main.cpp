@@ -36,7 +36,8 @@ int run_command_line(int argc, char** argv) {
     try {
         const graftal::ParsedCommandLine parsed = graftal::parse_command_line(argc, argv);
         if (!parsed.options) return parsed.exit_status;
-        graftal::limit_memory(std::max(parsed.options->compile.detail.memory_bytes, least_memory_bytes));
+        graftal::limit_memory(
+            std::max(parsed.options->render.compile.detail.memory_bytes, least_memory_bytes));
         return graftal::run_command(*parsed.options);
     } catch (const std::bad_alloc&) {
         throw;

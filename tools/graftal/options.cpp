@@ -26,19 +26,19 @@ namespace {
 
 void add_render(CLI::App& app, Options& options) {
     add_model(app, options);
-    app.add_option("-o,--output", options.output,
+    app.add_option("-o,--output", options.render.output,
                    "Picture to write, .png or .exr (default: MODEL's name + .png, in this folder)")
         ->type_name("FILE");
     add_view(app, options);
     add_common(app, options);
     add_drawing(app, options);
     app.add_flag_callback(
-        "--linear", [&] { options.format = SampleFormat::linear16; },
+        "--linear", [&] { options.render.format = SampleFormat::linear16; },
         "Write a 16-bit PNG of linear values, for measurements (default: 8-bit sRGB)");
-    app.add_flag("--progressive", options.progressive,
+    app.add_flag("--progressive", options.render.progressive,
                  "With --engine native: write coarse pictures first, then finer ones under the same name; "
                  "Ctrl-C keeps the last one");
-    app.add_option("--keep", options.keep, "Keep POV-Ray's scene and its palettes in this directory")
+    app.add_option("--keep", options.render.keep, "Keep POV-Ray's scene and its palettes in this directory")
         ->type_name("DIR");
     app.footer("Examples:\n"
                "  graftal render scenes/hart/pound_sign.rifs            # makes pound_sign.png\n"
@@ -53,7 +53,7 @@ void add_render(CLI::App& app, Options& options) {
 void add_animate(CLI::App& app, Options& options) {
     AnimationOptions& animation = options.animation;
     add_model(app, options);
-    app.add_option("-o,--output", options.output,
+    app.add_option("-o,--output", options.render.output,
                    "Animation to write, .gif, .png (animated), .mp4 or .webm; a name without extension is a "
                    "directory "
                    "of frames (default: MODEL's name + .gif, in this folder)")
@@ -96,7 +96,7 @@ void add_animate(CLI::App& app, Options& options) {
 void add_compile(CLI::App& app, Options& options) {
     add_model(app, options);
     app.add_option(
-           "-o,--output", options.output,
+           "-o,--output", options.render.output,
            "Scene to write: .pov draws the model, .inc declares it for use in your own scene; graftal "
            "writes palettes beside it (default: the scene on standard output)")
         ->type_name("FILE");
@@ -139,7 +139,7 @@ void add_after(CLI::App& app, Options& options, const std::string& verb) {
     add_value(
         app, "--after", "PASS", verb + " the graph as it is after this pass (default: after all passes)",
         "a pass", [](const std::string& text) { return pass_named(text, false); },
-        [&](const std::string& pass) { options.compile.stop_after = pass; });
+        [&](const std::string& pass) { options.render.compile.stop_after = pass; });
 }
 
 void add_print(CLI::App& app, Options& options) {
@@ -154,7 +154,7 @@ void add_print(CLI::App& app, Options& options) {
 void add_graph(CLI::App& app, Options& options) {
     add_model(app, options);
     app.add_option(
-           "-o,--output", options.output,
+           "-o,--output", options.render.output,
            "Drawing of the graph to write: .dot, or .svg by Graphviz (default: DOT on standard output)")
         ->type_name("FILE");
     add_after(app, options, "Draw");
@@ -237,45 +237,31 @@ std::string passes_text() {
     return text;
 }
 
-/// What an engine cannot do, or "". What it does anyhow is fine: the native one has no POV-Ray to take
-/// --memory, and goes into every part in its place, as --flatten wants it.
-std::string refused_by_engine(const Options& options) {
-    if (options.engine == Engine::povray)
-        return options.progressive ? "--progressive needs '--engine native': POV-Ray shows nothing before "
-                                     "its picture is finished"
-                                   : "";
-    if (!options.keep.empty())
-        return "--keep: the native engine writes no scene; leave out --keep, or give '--engine povray'";
-    if (options.compile.detail.visible_only)
-        return "--visible-only: the native engine follows every ray and so draws all shadows; leave out "
-               "--visible-only, or give '--engine povray'";
-    return {};
-}
-
 /// What is wrong with options that are each right, or "".
 std::string complete(Options& options) {
-    const std::string refused = refused_by_engine(options);
+    const std::string refused = options.engine->refusal(options.render);
     if (!refused.empty()) return refused;
-    const std::string extension = std::filesystem::path(options.output).extension().string();
+    const std::string extension = std::filesystem::path(options.render.output).extension().string();
     const bool from_stdin = options.operands.front() == "-";
     if (options.command == Command::render) {
-        if (options.output.empty() && from_stdin)
+        if (options.render.output.empty() && from_stdin)
             return "a model from standard input has no name: name the picture with '-o FILE'";
-        if (options.output.empty())
-            options.output = std::filesystem::path(options.operands.front()).stem().string() + ".png";
-        if (!is_picture_name(options.output))
-            return fmt::format("'{}': the name of a picture must end in .png or .exr", options.output);
+        if (options.render.output.empty())
+            options.render.output = std::filesystem::path(options.operands.front()).stem().string() + ".png";
+        if (!is_picture_name(options.render.output))
+            return fmt::format("'{}': the name of a picture must end in .png or .exr", options.render.output);
     }
     if (options.command == Command::animate) return complete_animation(options);
     if (options.command == Command::points) return complete_points(options);
-    if (options.output.empty()) options.output = "-";
-    const bool to_stdout = options.output == "-";
+    if (options.render.output.empty()) options.render.output = "-";
+    const bool to_stdout = options.render.output == "-";
     if (options.command == Command::compile && !to_stdout && extension != ".pov" && extension != ".inc")
-        return fmt::format("'{}': the name of a scene must end in .pov or .inc", options.output);
+        return fmt::format("'{}': the name of a scene must end in .pov or .inc", options.render.output);
     if (!options.identifier.empty() && extension != ".inc")
         return "--name names what an .inc declares: give '-o FILE.inc' too";
     if (options.command == Command::graph && !to_stdout && extension != ".dot" && extension != ".svg")
-        return fmt::format("'{}': the name of a graph's drawing must end in .dot or .svg", options.output);
+        return fmt::format("'{}': the name of a graph's drawing must end in .dot or .svg",
+                           options.render.output);
     return {};
 }
 
@@ -325,8 +311,9 @@ ParsedCommandLine parse_command_line(int argc, const char* const* argv) {
     const std::string problem = complete(options);
     if (!problem.empty()) return {std::nullopt, usage_error(problem, chosen())};
 
-    options.animation.identity = frame_identity(*app.get_subcommands().front(), options.engine);
-    options.description = picture_description(*app.get_subcommands().front(), options.engine);
+    options.animation.identity = frame_identity(*app.get_subcommands().front(), *options.engine);
+    options.render.metadata = {"graftal " GRAFTAL_VERSION,
+                               picture_description(*app.get_subcommands().front(), *options.engine)};
     return {std::move(options), exit_done};
 }
 

@@ -41,26 +41,17 @@ struct PointsSettings {
 struct Options {
     Command command = Command::render;
     std::vector<std::string> operands; ///< the model or models; for compare the two pictures
-    std::string output;                ///< of render, animate, compile and graph; "-" is standard output
-    StageOptions compile;
+    RenderOptions render;   ///< `compile` and `output` are of every command: "-" is standard output
     std::string dump_after; ///< a pass, "all", or ""
     bool time = false;
     bool quiet = false;
-    int threads = 0;
 
-    Engine engine = Engine::povray;
-    bool progressive = false;
-    SampleFormat format = SampleFormat::srgb8;
-    std::optional<int> antialias = 2;
-    std::string keep;
-    bool unconfined = false; ///< POV-Ray
-    std::string identifier;  ///< of `compile` to an .inc; "": as the model's file
+    const Engine* engine = &engines().front();
+    std::string identifier; ///< of `compile` to an .inc; "": as the model's file
     AnimationOptions animation;
     PointsSettings points;
     bool json = false;
     double threshold = 0;
-
-    std::string description; ///< for the metadata of a picture: picture_description.h
 };
 
 struct ParsedCommandLine {

@@ -8,7 +8,7 @@
 
 namespace graftal {
 
-std::string picture_description(const CLI::App& command, Engine engine) {
+std::string picture_description(const CLI::App& command, const Engine& engine) {
     static const std::set<std::string> unseen = {
         "--output",  "--keep-frames", "--time", "--quiet",       "--keep", "--card", "--dump-after",
         "--threads", "--engine",      "--json", "--progressive", "--help", "--root", "--unconfined"};
@@ -17,8 +17,8 @@ std::string picture_description(const CLI::App& command, Engine engine) {
         if (option->get_positional())
             for (const std::string& operand : option->results())
                 words.push_back(std::filesystem::path(operand).filename().string());
-    if (engine == Engine::native)
-        words.insert(words.end(), {"--engine", "native"}); // the other may be named or not
+    if (&engine != &engines().front()) // which may be named or not
+        words.insert(words.end(), {"--engine", std::string(engine.name)});
     for (const CLI::Option* const option : command.get_options()) {
         if (option->count() == 0 || option->get_positional() || unseen.contains(option->get_name())) continue;
         const bool flag = option->get_items_expected_max() == 0;

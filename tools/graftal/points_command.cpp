@@ -13,14 +13,14 @@ namespace {
 
 PointsOptions points_options(const Options& options) {
     PointsOptions points;
-    points.compile = options.compile;
-    points.output = options.output;
-    points.metadata = {"graftal " GRAFTAL_VERSION, options.description, {}};
+    points.compile = options.render.compile;
+    points.output = options.render.output;
+    points.metadata = options.render.metadata;
     points.points = options.points.points;
     points.colour = options.points.colour;
     points.tone = options.points.tone;
     points.card = options.points.card;
-    points.threads = options.threads;
+    points.threads = options.render.threads;
     return points;
 }
 
@@ -35,7 +35,7 @@ void say_what_points_take(const PointsOptions& points) {
 }
 
 std::string done_text(const Options& options, const PointsReport& report) {
-    std::string text = fmt::format("{}: {} points", options.output, report.points);
+    std::string text = fmt::format("{}: {} points", options.render.output, report.points);
     if (report.inside < report.points)
         text += fmt::format(", {:.3g} % of them in the picture",
                             100 * static_cast<double>(report.inside) / static_cast<double>(report.points));

@@ -39,9 +39,9 @@ void add_positive(CLI::App& app, const std::string& name, const std::string& hel
 std::string complete_card(Options& options) {
     const std::filesystem::path card = options.points.card;
     if (card.extension() != ".inst") return fmt::format("--card: '{}' does not end in .inst", card.string());
-    if (options.output.empty())
-        options.output = std::filesystem::path(card).replace_extension(".png").string();
-    const std::filesystem::path picture = options.output;
+    if (options.render.output.empty())
+        options.render.output = std::filesystem::path(card).replace_extension(".png").string();
+    const std::filesystem::path picture = options.render.output;
     if (picture.extension() != ".png") return "--card: the name of its picture must end in .png";
     if (picture.parent_path() != card.parent_path()) return "--card: its picture must lie in the same folder";
     if (!is_card_picture(picture.filename().string()))
@@ -53,7 +53,7 @@ std::string complete_card(Options& options) {
 
 void add_points_options(CLI::App& app, Options& options) {
     PointsSettings& settings = options.points;
-    app.add_option("-o,--output", options.output,
+    app.add_option("-o,--output", options.render.output,
                    "Picture to write, .png or .exr, or a point cloud, .ply (default: MODEL's name + .png, in "
                    "this folder)")
         ->type_name("FILE");
@@ -95,7 +95,7 @@ void add_points_options(CLI::App& app, Options& options) {
     app.parse_complete_callback([&app, &options, &settings] {
         if (settings.card.empty()) return;
         settings.tone.transparent = true;
-        if (app.count("--size") == 0) options.compile.view.size = {512, 512};
+        if (app.count("--size") == 0) options.render.compile.view.size = {512, 512};
         if (app.count("--exposure") == 0) settings.tone.exposure = 800;
     });
     app.footer("Examples:\n"
@@ -110,17 +110,17 @@ void add_points_options(CLI::App& app, Options& options) {
 std::string complete_points(Options& options) {
     if (!options.points.card.empty())
         if (std::string wrong = complete_card(options); !wrong.empty()) return wrong;
-    if (options.output.empty() && options.operands.front() == "-")
+    if (options.render.output.empty() && options.operands.front() == "-")
         return "a model from standard input has no name: name the picture with '-o FILE'";
-    if (options.output.empty())
-        options.output = std::filesystem::path(options.operands.front()).stem().string() + ".png";
-    if (is_cloud_name(options.output))
+    if (options.render.output.empty())
+        options.render.output = std::filesystem::path(options.operands.front()).stem().string() + ".png";
+    if (is_cloud_name(options.render.output))
         return options.points.colour == PointColour::density
                    ? "--color density: a cloud has no pixels to count points in; write a picture, or choose "
                      "tint or map"
                    : "";
-    if (!is_picture_name(options.output))
-        return fmt::format("'{}': the name must end in .png, .exr or .ply", options.output);
+    if (!is_picture_name(options.render.output))
+        return fmt::format("'{}': the name must end in .png, .exr or .ply", options.render.output);
     return {};
 }
 

@@ -17,18 +17,6 @@ std::string bar(double fraction) {
                        100 * fraction);
 }
 
-const char* name_of(PovrayProgress::Stage stage) {
-    switch (stage) {
-    case PovrayProgress::Stage::parsing:
-        return "reading the scene";
-    case PovrayProgress::Stage::bounding:
-        return "sorting the scene";
-    case PovrayProgress::Stage::rendering:
-        return "rendering";
-    }
-    return "";
-}
-
 } // namespace
 
 ProgressBar::ProgressBar(bool wanted) : enabled_(wanted && ::isatty(STDERR_FILENO)) {}
@@ -42,11 +30,6 @@ void ProgressBar::show(const std::string& text) {
     std::fputs(("\r\033[K" + text).c_str(), stderr);
     std::fflush(stderr);
     shown_ = text;
-}
-
-void ProgressBar::show(const PovrayProgress& progress) {
-    if (progress.fraction) return show(name_of(progress.stage), *progress.fraction);
-    show(fmt::format("{:<18}...", name_of(progress.stage)));
 }
 
 void ProgressBar::show(const std::string& what, double fraction) {

@@ -2,8 +2,6 @@
 
 #include <string>
 
-#include "runtime/povray/messages.h"
-
 namespace graftal {
 
 /// One line on standard error that is rewritten in place, if that is a terminal; else nothing at all.
@@ -16,7 +14,6 @@ class ProgressBar {
 
     /// Names what is going on, without a measure of it.
     void show(const std::string& text);
-    void show(const PovrayProgress& progress);
     void show(const std::string& what, double fraction);
     /// Takes the line away, so that other text can be printed.
     void clear();

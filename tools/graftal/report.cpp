@@ -64,14 +64,6 @@ int print_output(std::string_view text) {
     return exit_environment;
 }
 
-std::string rays_text(const TraceStatistics& rays, double seconds) {
-    const double millions = 1e-6 * static_cast<double>(rays.camera_rays) / std::max(seconds, 1e-9);
-    std::string text = fmt::format("{:.3g} million rays per second", millions);
-    if (rays.given_up > 0)
-        text += fmt::format("; graftal gave up {} rays that met too many parts", rays.given_up);
-    return text;
-}
-
 CommandSession::CommandSession(const Options& options, const std::string& path, Keep keep)
     : PictureSession(path, keep) {
     if (options.dump_after.empty()) return;

@@ -6,7 +6,6 @@
 
 #include "compiler/session/values.h"
 #include "runtime/render/picture_session.h"
-#include "runtime/trace/picture_tracer.h"
 #include "tools/graftal/options.h"
 
 namespace graftal {
@@ -27,9 +26,6 @@ int conclude_out_of_memory(const std::bad_alloc& fault) noexcept;
 
 /// Writes to standard output; exit status 0, or 3 with a complaint if it is closed or full.
 int print_output(std::string_view text);
-
-/// "1.76 million rays a second", and what went wrong with some.
-std::string rays_text(const TraceStatistics& rays, double seconds);
 
 /// The session of a command, with `--dump-after` connected.
 class CommandSession : public PictureSession {

@@ -54,7 +54,7 @@ std::optional<std::string> pass_named(const std::string& text, bool all_allowed)
 }
 
 void add_common(CLI::App& app, Options& options) {
-    StageOptions& compile = options.compile;
+    StageOptions& compile = options.render.compile;
     constexpr std::uint64_t most_steps = 4'000'000'000;
     add_swept(
         app, options, "--steps", "N",
@@ -115,7 +115,7 @@ void add_common(CLI::App& app, Options& options) {
     add_value(
         app, "--threads", "N", "Number of threads (default: one per processor)",
         "a whole number from 1 to 512", [](const std::string& text) { return parse_whole(text, 1, 512); },
-        [&](std::uint64_t threads) { options.threads = static_cast<int>(threads); });
+        [&](std::uint64_t threads) { options.render.threads = static_cast<int>(threads); });
     add_value(
         app, "--dump-after", "PASS",
         "Print the graph on standard error after this pass, or after each with 'all'", "a pass",
@@ -126,7 +126,7 @@ void add_common(CLI::App& app, Options& options) {
 }
 
 void add_camera(CLI::App& app, Options& options) {
-    StageOptions& compile = options.compile;
+    StageOptions& compile = options.render.compile;
     add_value(app, "--size", "WxH", "Size of the picture in pixels (default 1280x720)",
               "a size such as 1280x720, at most 32768 a side", parse_size,
               [&](ImageSize size) { compile.view.size = size; });
@@ -166,7 +166,7 @@ void add_camera(CLI::App& app, Options& options) {
 
 void add_view(CLI::App& app, Options& options) {
     add_camera(app, options);
-    StageOptions& compile = options.compile;
+    StageOptions& compile = options.render.compile;
     CLI::Option* pixels = add_value(
         app, "--error", "PX",
         "Leave out parts smaller than this in the picture (default 0.5; 0 keeps every part)",
@@ -202,17 +202,37 @@ void add_model(CLI::App& app, Options& options) {
         ->type_name("");
 }
 
+namespace {
+
+std::string engine_names(std::string_view between) {
+    std::string names;
+    for (const Engine& engine : engines())
+        names += fmt::format("{}{}", names.empty() ? "" : between, engine.name);
+    return names;
+}
+
+/// "Renderer: povray (POV-Ray 3.7), native (graftal's own ray tracer) (default povray)"
+std::string engines_text() {
+    std::string text = "Renderer";
+    for (const Engine& engine : engines())
+        text +=
+            fmt::format("{}{}, {}", &engine == &engines().front() ? ": " : "; ", engine.name, engine.summary);
+    return text + fmt::format(" (default {})", engines().front().name);
+}
+
+} // namespace
+
 void add_drawing(CLI::App& app, Options& options) {
     const auto engine = [&options](const std::string& text) {
-        if (text != "povray" && text != "native")
-            throw CLI::ValidationError(fmt::format("--engine: '{}' is neither povray nor native", text));
-        options.engine = text == "native" ? Engine::native : Engine::povray;
+        options.engine = find_engine(text);
+        if (!options.engine)
+            throw CLI::ValidationError(
+                fmt::format("--engine: '{}' is not one of: {}", text, engine_names(", ")));
     };
-    app.add_option_function<std::string>(
-           "--engine", engine, "Renderer: povray, or native, graftal's own ray tracer (default povray)")
-        ->type_name("povray|native")
+    app.add_option_function<std::string>("--engine", engine, engines_text())
+        ->type_name(engine_names("|"))
         ->take_last();
-    app.add_flag("--unconfined", options.unconfined,
+    app.add_flag("--unconfined", options.render.unconfined,
                  "Run POV-Ray unconfined: with your permissions, your environment and no limits (for a "
                  "program in its place that runs it somewhere else)");
     const auto antialias = [&options](const std::string& text) {
@@ -220,7 +240,7 @@ void add_drawing(CLI::App& app, Options& options) {
         if (!depth && text != "off")
             throw CLI::ValidationError(
                 fmt::format("--antialias: '{}' is neither 'off' nor a whole number from 1 to 9", text));
-        options.antialias = depth ? std::optional(static_cast<int>(*depth)) : std::nullopt;
+        options.render.antialias = depth ? std::optional(static_cast<int>(*depth)) : std::nullopt;
     };
     app.add_option_function<std::string>(
            "--antialias", antialias, "Smooth edges with up to 4^(N-1) samples per pixel, or off (default 2)")

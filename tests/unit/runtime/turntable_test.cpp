@@ -15,7 +15,7 @@ class Turntable : public testing::Test {
   protected:
     void SetUp() override {
         ASSERT_TRUE(directory_.create().ok());
-        options_.engine = Engine::native;
+        options_.engine = find_engine("native");
         options_.output = directory_.path() + "/frames/";
         options_.frames = 60;
         options_.turn_deg = 360;

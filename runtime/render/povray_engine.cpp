@@ -1,4 +1,4 @@
-#include "runtime/render/render.h"
+#include "runtime/render/povray_engine.h"
 
 #include <algorithm>
 #include <cmath>
@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 
 #include "compiler/povray/overlap.h"
+#include "runtime/povray/povray.h"
 #include "runtime/render/scene_files.h"
 #include "runtime/render/stopwatch.h"
 #include "runtime/system/temporary_directory.h"
@@ -34,8 +35,8 @@ Status choose_directory(const std::string& keep, TemporaryDirectory& temporary, 
                  : Status();
 }
 
-RenderReport report_of(const Cut& cut) {
-    RenderReport report;
+PovrayReport report_of(const Cut& cut) {
+    PovrayReport report;
     report.leaf_count = cut.leaf_count;
     report.placement_count = cut.placement_count;
     report.triangle_count = cut.triangle_count;
@@ -74,6 +75,18 @@ std::uint64_t finite_objects(const Cut& cut) {
     return count;
 }
 
+const char* name_of(PovrayProgress::Stage stage) {
+    switch (stage) {
+    case PovrayProgress::Stage::parsing:
+        return "reading the scene";
+    case PovrayProgress::Stage::bounding:
+        return "sorting the scene";
+    case PovrayProgress::Stage::rendering:
+        return "rendering";
+    }
+    return "";
+}
+
 PovrayJob job_for(const RenderOptions& options) {
     PovrayJob job;
     job.width = options.compile.view.size.width;
@@ -81,7 +94,10 @@ PovrayJob job_for(const RenderOptions& options) {
     job.threads = options.threads;
     job.antialias = options.antialias;
     job.linear16 = options.format == SampleFormat::linear16 || is_exr_name(options.output);
-    job.on_progress = options.on_progress;
+    if (options.on_progress)
+        job.on_progress = [tell = options.on_progress](const PovrayProgress& progress) {
+            tell({name_of(progress.stage), progress.fraction});
+        };
     job.unconfined = options.unconfined;
     // What POV-Ray takes is estimated before; the limit is for what goes wrong.
     job.memory_bytes = 2 * options.compile.detail.memory_bytes + (1ull << 30);
@@ -156,10 +172,59 @@ bool worth_a_trial(const PovrayTime& guessed, double work_seconds) {
     return guessed.seconds() > 0.25 * work_seconds && guessed.tracing > 2 * guessed.parsing;
 }
 
+std::string bytes_text(std::uint64_t bytes) {
+    const double mib = static_cast<double>(bytes) / (1 << 20);
+    return mib < 10'000 ? fmt::format("{:.0f} MiB", mib) : fmt::format("{:.1f} GiB", mib / 1024);
+}
+
+/// Whole numbers up to a million, then "4.7e+11".
+std::string count_text(double count) {
+    return count < 1e6 ? fmt::format("{:.0f}", count) : fmt::format("{:.2e}", count);
+}
+
+std::string leaves_text(const PovrayReport& report) {
+    std::string text =
+        fmt::format("{} leaves as {} placements", count_text(report.leaf_count), report.placement_count);
+    if (report.triangle_count > 0) text += fmt::format(" of meshes with {} triangles", report.triangle_count);
+    return text +
+           (report.error_px > 0 ? fmt::format(", error {:.2g} px", report.error_px) : ", nothing left out");
+}
+
 } // namespace
 
-std::optional<RenderReport> render_model(PictureSession& session, const RenderOptions& options,
-                                         Compilation& compilation) {
+constinit const Engine povray_engine = {
+    .name = "povray",
+    .summary = "POV-Ray 3.7",
+    .available = []() -> Status { return povray_available(); },
+    .refusal = [](const RenderOptions& options) -> std::string {
+        return options.progressive
+                   ? "--progressive needs '--engine native': POV-Ray shows nothing before its "
+                     "picture is finished"
+                   : "";
+    },
+    .compile = [](Session& session, const StageOptions& options, Compilation& compilation) -> bool {
+        return session.compiled(options, compilation) != nullptr;
+    },
+    .draw = [](PictureSession& session, const RenderOptions& options,
+               Compilation& compilation) -> std::optional<DrawReport> {
+        const std::optional<PovrayReport> drawn = render_by_povray(session, options, compilation);
+        if (!drawn) return std::nullopt;
+        DrawReport report;
+        report.summary = fmt::format("{}; POV-Ray {:.1f} s, peak {}, estimated {}", leaves_text(*drawn),
+                                     drawn->povray_seconds, bytes_text(drawn->peak_bytes),
+                                     bytes_text(drawn->estimated_bytes));
+        report.error_px = drawn->error_px;
+        report.peak_bytes = drawn->peak_bytes;
+        return report;
+    },
+};
+
+std::string cut_text(const Cut& cut) {
+    return leaves_text(report_of(cut));
+}
+
+std::optional<PovrayReport> render_by_povray(PictureSession& session, const RenderOptions& options,
+                                             Compilation& compilation) {
     std::shared_ptr<const CompiledModel> model = session.compiled(options.compile, compilation);
     if (!model) return std::nullopt;
     TemporaryDirectory temporary;
@@ -174,7 +239,7 @@ std::optional<RenderReport> render_model(PictureSession& session, const RenderOp
 
     if (!run("emit", [&] { return prepare(*model, options, session.textures(), temporary, job); }))
         return std::nullopt;
-    RenderReport report = report_of(model->cut);
+    PovrayReport report = report_of(model->cut);
     const double overlap = mean_overlap(model->cut, model->view);
     job.finite_objects = finite_objects(model->cut);
     model.reset(); // POV-Ray may need the memory

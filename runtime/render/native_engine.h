@@ -10,17 +10,8 @@
 
 namespace graftal {
 
-/// How far a picture is.
-struct NativeProgress {
-    double fraction = 0;        ///< of all rays of the picture as it was asked for
-    double samples_a_pixel = 0; ///< of what is in the file, 0 if there is none yet
-};
-
-struct NativeOptions {
-    RenderOptions render;     ///< of which only what concerns the model, the picture and the threads counts
-    bool progressive = false; ///< write coarse pictures first, each in place of the one before
-    std::function<void(const NativeProgress&)> on_progress;
-};
+/// graftal's own tracer.
+extern const Engine native_engine;
 
 /// What came of a rendering, for the summary.
 struct NativeReport {
@@ -37,11 +28,8 @@ struct NativeReport {
 /// Takes a picture in linear light, not clamped, in place of a file.
 using PictureSink = std::function<Status(const Image& linear)>;
 
-/// Model -> picture file, by the traversal of the graph itself. As render_model(); but if it is
-/// progressive, an interruption leaves the best picture so far, and a report of it with the status
-/// "interrupted".
-/// With a sink, the pictures go there.
-std::optional<NativeReport> render_natively(PictureSession& session, const NativeOptions& options,
+/// Engine::draw by the traversal of the graph itself. With a sink, the pictures go there.
+std::optional<NativeReport> render_natively(PictureSession& session, const RenderOptions& options,
                                             Compilation& compilation, const PictureSink& sink = {});
 
 /// What rays go through: the detail is resolved() for the view, and the graph prepared for both.
@@ -53,7 +41,7 @@ struct PreparedView {
 };
 
 /// What follows the compiler in render_natively(). `preparing` runs since the preparation began.
-std::optional<NativeReport> trace_model(const PreparedView& model, const NativeOptions& options,
+std::optional<NativeReport> trace_model(const PreparedView& model, const RenderOptions& options,
                                         const Stopwatch& preparing, const CancelFlag& cancel,
                                         Compilation& compilation, const PictureSink& sink = {});
 

@@ -1,6 +1,7 @@
-#include "runtime/render/native.h"
+#include "runtime/render/native_engine.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 #include <vector>
 
@@ -132,7 +133,7 @@ void report_shells(const TraceModel& model, const Asked& asked, Diagnostics& dia
 /// One picture, from the first sample to the last file.
 class Drawing {
   public:
-    Drawing(const TraceModel& model, std::vector<Sampling> samplings, const NativeOptions& options,
+    Drawing(const TraceModel& model, std::vector<Sampling> samplings, const RenderOptions& options,
             const PictureSink& sink, const CancelFlag& cancel)
         : options_(options), sink_(sink), cancel_(cancel), samplings_(std::move(samplings)),
           tracer_(model, limits_of(model)), size_(model.view.size) {
@@ -187,7 +188,7 @@ class Drawing {
         const Stopwatch watch;
         std::size_t traced = 0;
         TraceControl control;
-        control.threads = options_.render.threads;
+        control.threads = options_.threads;
         control.cancelled = [this] { return cancel_.raised(); };
         control.on_tile = [&](const Tile& tile) {
             traced += static_cast<std::size_t>(tile.width) * static_cast<std::size_t>(tile.height);
@@ -201,12 +202,11 @@ class Drawing {
     }
 
     void tell(double fraction) const {
-        if (options_.on_progress)
-            options_.on_progress({fraction, report_.pictures ? report_.samples_a_pixel : 0});
+        if (options_.on_progress) options_.on_progress({report_.pictures ? "refining" : "tracing", fraction});
     }
 
     Status write() {
-        const RenderOptions& render = options_.render;
+        const RenderOptions& render = options_;
         const bool linear = render.format == SampleFormat::linear16 || is_exr_name(render.output);
         Status status =
             sink_ ? sink_(picture_)
@@ -223,11 +223,11 @@ class Drawing {
             for (std::size_t i = begin; i < end; ++i)
                 image.pixels[i] = srgb_encoded(image.pixels[i]);
         };
-        WorkerThreads(options_.render.threads).for_each((image.pixels.size() + grain - 1) / grain, encode);
+        WorkerThreads(options_.threads).for_each((image.pixels.size() + grain - 1) / grain, encode);
         return image;
     }
 
-    const NativeOptions& options_;
+    const RenderOptions& options_;
     const PictureSink& sink_;
     const CancelFlag& cancel_;
     const std::vector<Sampling> samplings_;
@@ -239,16 +239,68 @@ class Drawing {
     double work_ = 0, done_ = 0; ///< samples a pixel
 };
 
+/// "4 samples per pixel", "1 sample per pixel", "1 sample per 8x8 pixels"
+std::string samples_text(double a_pixel) {
+    if (a_pixel > 0 && a_pixel < 1) {
+        const double block = std::round(std::sqrt(1 / a_pixel));
+        return fmt::format("1 sample per {0:g}x{0:g} pixels", block);
+    }
+    return fmt::format("{:g} sample{} per pixel", a_pixel, a_pixel == 1 ? "" : "s");
+}
+
+std::string in_words(const NativeReport& report) {
+    std::string text = report.finished ? "" : "unfinished: ";
+    text += samples_text(report.samples_a_pixel);
+    if (report.finer_share > 0)
+        text += fmt::format(", in {:.2g} % of the picture {},", 100 * report.finer_share,
+                            samples_text(report.finer_samples_a_pixel));
+    text += fmt::format(" in {:.2f} s, {}", report.seconds, rays_text(report.rays, report.seconds));
+    if (report.pictures > 1)
+        text += fmt::format("; the first of {} pictures after {:.2f} s", report.pictures,
+                            report.first_picture_seconds);
+    return text;
+}
+
 } // namespace
 
-std::optional<NativeReport> render_natively(PictureSession& session, const NativeOptions& options,
+constinit const Engine native_engine = {
+    .name = "native",
+    .summary = "graftal's own ray tracer",
+    .available = []() -> Status { return {}; },
+    // What it does anyhow is fine: it has no POV-Ray to take --memory, and goes into every part in its place,
+    // as
+    // --flatten wants it.
+    .refusal = [](const RenderOptions& options) -> std::string {
+        if (!options.keep.empty())
+            return "--keep: the native engine writes no scene; leave out --keep, or give '--engine povray'";
+        if (options.compile.detail.visible_only)
+            return "--visible-only: the native engine follows every ray and so draws all shadows; leave out "
+                   "--visible-only, or give '--engine povray'";
+        return {};
+    },
+    .compile = [](Session& session, const StageOptions& options, Compilation& compilation) -> bool {
+        return session.viewed(options, compilation) != nullptr;
+    },
+    .draw = [](PictureSession& session, const RenderOptions& options,
+               Compilation& compilation) -> std::optional<DrawReport> {
+        const std::optional<NativeReport> drawn = render_natively(session, options, compilation);
+        if (!drawn) return std::nullopt;
+        DrawReport report;
+        report.summary = in_words(*drawn);
+        report.rays = drawn->rays;
+        report.trace_seconds = drawn->seconds;
+        return report;
+    },
+};
+
+std::optional<NativeReport> render_natively(PictureSession& session, const RenderOptions& options,
                                             Compilation& compilation, const PictureSink& sink) {
     const Stopwatch whole;
-    const StageOptions& stages = options.render.compile;
+    const StageOptions& stages = options.compile;
     PreparedView model;
     model.viewed = session.viewed(stages, compilation);
     if (!model.viewed) return std::nullopt;
-    compilation.status = sink ? Status() : check_writable(options.render.output);
+    compilation.status = sink ? Status() : check_writable(options.output);
     if (compilation.status.ok())
         compilation.status = load_textures(model.viewed->model->graph.materials, model.viewed->view,
                                            session.textures(), model.textures);
@@ -265,20 +317,20 @@ std::optional<NativeReport> render_natively(PictureSession& session, const Nativ
     return report;
 }
 
-std::optional<NativeReport> trace_model(const PreparedView& prepared, const NativeOptions& options,
+std::optional<NativeReport> trace_model(const PreparedView& prepared, const RenderOptions& options,
                                         const Stopwatch& preparing, const CancelFlag& cancel,
                                         Compilation& compilation, const PictureSink& sink) {
     const Graph& graph = prepared.viewed->model->graph;
     const View& view = prepared.viewed->view;
     const DetailOptions& detail = prepared.detail;
     Looks looks;
-    looks.wanted = samplings_of(options.render.antialias, options.progressive);
+    looks.wanted = samplings_of(options.antialias, options.progressive);
     looks.tried = detail.culls()
                       ? with_fewer_samples(looks.wanted, view.size, most_for_samples * detail.work_seconds)
                       : looks.wanted;
     const double samples = samples_a_pixel(looks.tried);
     const FittedModel fitted = fit_work(prepared.prepared, view, detail, prepared.textures, samples,
-                                        limits_of, options.render.threads, [&] { return cancel.raised(); });
+                                        limits_of, options.threads, [&] { return cancel.raised(); });
     const TraceModel& model = *fitted.model;
     looks.affordable = looks.tried;
     if (fitted.rays_cut)

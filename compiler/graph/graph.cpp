@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <unordered_map>
 
+#include "compiler/graph/attributes.h"
 #include "compiler/graph/run.h"
 
 namespace graftal {
@@ -25,23 +26,12 @@ class Parts {
 
     struct Part {
         std::string_view master;
-        Affine place;
-        Tint tint;
-        const Material* material = nullptr;
-        std::uint32_t levels = levels_of_master;
-        double chance = 0;
+        Instance instance; ///< apart from its master
     };
 
     std::size_t count() const { return object_.run ? object_.run->part_count() : object_.instances.size(); }
 
-    Part of(const Instance& instance) const {
-        return {graph_.objects[instance.master].name,
-                instance.parent_from_child,
-                instance.tint,
-                material(instance.material),
-                instance.levels,
-                instance.chance};
-    }
+    Part of(const Instance& instance) const { return {graph_.objects[instance.master].name, instance}; }
 
     /// Requires that one is left.
     Part next() {
@@ -50,35 +40,29 @@ class Parts {
         const bool ball = at_ball_;
         at_ball_ = item.ball && !ball;
         if (!at_ball_) ++next_;
-        return {name_of(ball ? Primitive(PrimitiveKind::sphere) : item.shape.primitive()),
-                ball ? run_from_ball(item) : run_from_body(item), Tint(),
-                material(object_.run_materials[item.colour])};
+        Part part{name_of(ball ? Primitive(PrimitiveKind::sphere) : item.shape.primitive()), {}};
+        part.instance.parent_from_child = ball ? run_from_ball(item) : run_from_body(item);
+        part.instance.material = object_.run_materials[item.colour];
+        return part;
     }
 
   private:
-    const Material* material(const std::optional<MaterialId>& id) const {
-        return id ? &graph_.materials[*id] : nullptr;
-    }
-
     const Graph& graph_;
     const Object& object_;
     std::size_t next_ = 0;
     bool at_ball_ = false;
 };
 
-bool equal(const Parts::Part& x, const Parts::Part& y) {
-    if (x.master != y.master || (x.material == nullptr) != (y.material == nullptr)) return false;
-    if (x.material && !(*x.material == *y.material)) return false;
-    return x.place == y.place && x.tint == y.tint && x.levels == y.levels && x.chance == y.chance;
-}
-
 bool equal(const Graph& a, const Object& x, const Graph& b, const Object& y) {
     Parts parts_of_x(a, x), parts_of_y(b, y);
+    const auto alike = [&](const Parts::Part& p, const Parts::Part& q) {
+        return p.master == q.master && equal_attributes(a, p.instance, b, q.instance);
+    };
     if (x.primitive != y.primitive || parts_of_x.count() != parts_of_y.count()) return false;
     if (x.terminal.has_value() != y.terminal.has_value() || x.terminal_px != y.terminal_px) return false;
-    if (x.terminal && !equal(parts_of_x.of(*x.terminal), parts_of_y.of(*y.terminal))) return false;
+    if (x.terminal && !alike(parts_of_x.of(*x.terminal), parts_of_y.of(*y.terminal))) return false;
     for (std::size_t left = parts_of_x.count(); left > 0; --left)
-        if (!equal(parts_of_x.next(), parts_of_y.next())) return false;
+        if (!alike(parts_of_x.next(), parts_of_y.next())) return false;
     return true;
 }
 

@@ -1,9 +1,11 @@
 #include "compiler/graph/print.h"
 
 #include <initializer_list>
+#include <span>
 #include <string>
 #include <string_view>
 
+#include "compiler/graph/attributes.h"
 #include "compiler/graph/run.h"
 #include "compiler/support/number.h"
 
@@ -26,14 +28,7 @@ class Printer {
 
   private:
     void print_numbers(std::string_view key, std::initializer_list<double> numbers) {
-        out_ += key;
-        const char* separator = ": ";
-        for (const double number : numbers) {
-            out_ += separator;
-            out_ += shortest(number);
-            separator = ", ";
-        }
-        out_ += '\n';
+        out_ += numbers_line(key, std::span(numbers.begin(), numbers.size()));
     }
 
     void print_vector(std::string_view key, Vec3 v) { print_numbers(key, {v.x, v.y, v.z}); }
@@ -154,7 +149,7 @@ class Printer {
     /// Returns where the next group begins.
     std::size_t print_group(const std::vector<Instance>& instances, std::size_t first) {
         std::size_t end = first + 1;
-        while (end < instances.size() && placed_alike(instances[first], instances[end]))
+        while (end < instances.size() && equal_attributes(graph_, instances[first], graph_, instances[end]))
             ++end;
         out_ += end == first + 1 ? "  instance: " : "  union: ";
         for (std::size_t i = first; i < end; ++i) {
@@ -166,31 +161,13 @@ class Printer {
         return end;
     }
 
-    static bool placed_alike(const Instance& a, const Instance& b) {
-        return a.parent_from_child == b.parent_from_child && a.tint == b.tint && a.material == b.material &&
-               a.levels == b.levels && a.chance == b.chance;
-    }
-
     const std::string& master_name(const Instance& instance) const {
         return graph_.objects[instance.master].name;
     }
 
     void print_attributes(const Instance& instance) {
-        const Affine& a = instance.parent_from_child;
-        if (!(a == Affine())) {
-            const Mat3& m = a.linear;
-            const Vec3 t = a.translation;
-            print_numbers(is_singular(a) ? "    projection" : "    matrix",
-                          {m[0][0], m[1][0], m[2][0], t.x, //
-                           m[0][1], m[1][1], m[2][1], t.y, //
-                           m[0][2], m[1][2], m[2][2], t.z});
-        }
-        const Tint& tint = instance.tint;
-        if (!(tint == Tint())) print_numbers("    tint", {tint.rgb.r, tint.rgb.g, tint.rgb.b, tint.alpha});
-        if (instance.material) out_ += "    material: " + graph_.materials[*instance.material].name + "\n";
-        if (instance.levels != levels_of_master)
-            out_ += "    // levels: " + std::to_string(instance.levels) + "\n";
-        if (instance.chance > 0) print_numbers("    chance", {instance.chance});
+        for (const Attribute& attribute : instance_attributes())
+            out_ += attribute.text(graph_, instance);
     }
 
     const Graph& graph_;

@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "compiler/graph/attributes.h"
 #include "compiler/graph/components.h"
 #include "compiler/graph/path.h"
 #include "compiler/graph/planes.h"
@@ -67,10 +68,6 @@ template<typename T> bool finite(const std::optional<T>& value) {
 
 bool finite(const std::optional<double>& value) {
     return !value || std::isfinite(*value);
-}
-
-bool in_unit_interval(double value) {
-    return value >= 0 && value <= 1;
 }
 
 class Verifier {
@@ -189,17 +186,8 @@ class Verifier {
         };
         if (instance.master >= graph_.objects.size())
             fault(fmt::format("has master {} of {} objects", instance.master, graph_.objects.size()));
-        if (instance.material && *instance.material >= graph_.materials.size())
-            fault(fmt::format("has material {} of {}", *instance.material, graph_.materials.size()));
-        if (!is_finite(instance.parent_from_child)) fault("has a transform that is not finite");
-        if (instance.parent_from_child.linear == Mat3(0.0)) fault("has a linear part of zero");
-        if (!(instance.chance >= 0) || !std::isfinite(instance.chance))
-            fault(fmt::format("has a chance of {}", instance.chance));
-        const Tint& tint = instance.tint;
-        if (!in_unit_interval(tint.rgb.r) || !in_unit_interval(tint.rgb.g) || !in_unit_interval(tint.rgb.b) ||
-            !in_unit_interval(tint.alpha))
-            fault(fmt::format("has tint ({}, {}, {}) {} outside [0, 1]", tint.rgb.r, tint.rgb.g, tint.rgb.b,
-                              tint.alpha));
+        for (const Attribute& attribute : instance_attributes())
+            if (const std::string what = attribute.fault(graph_, instance); !what.empty()) fault(what);
     }
 
     void check_cycles() {

@@ -4,19 +4,20 @@
 // comes next and when it ends.
 
 #include <algorithm>
-#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <type_traits>
 #include <utility>
 #include <vector>
 
+#include "compiler/support/control.h"
+
 namespace graftal {
 
-/// What ends a walk early.
+/// What ends a walk early, except that nothing is left.
 struct WalkLimits {
     std::uint64_t most_visits = UINT64_MAX;
-    const std::atomic<bool>* cancelled = nullptr; ///< set by anybody; none: nobody will
+    WorkMeter* meter = nullptr; ///< counts visits, and throws Cancelled; null: nobody does
 };
 
 /// The order in which children follow their parent at once, the first of them first.
@@ -34,15 +35,16 @@ template<typename State, typename Smaller = DepthFirst> class Walk {
         if constexpr (!depth_first) std::push_heap(waiting_.begin(), waiting_.end(), Smaller());
     }
 
-    /// The next state. False at the end, or where a limit is passed.
+    /// The next state. False at the end, or after the most visits.
     bool next(State& state) {
         if constexpr (depth_first) std::reverse(waiting_.begin() + first_child(), waiting_.end());
         if (waiting_.empty()) return false;
-        if (visits_ == limits_.most_visits || (limits_.cancelled && limits_.cancelled->load())) {
+        if (visits_ == limits_.most_visits) {
             stopped_ = true;
             return false;
         }
         ++visits_;
+        if (limits_.meter) limits_.meter->add();
         if constexpr (!depth_first) std::pop_heap(waiting_.begin(), waiting_.end(), Smaller());
         state = std::move(waiting_.back());
         waiting_.pop_back();
@@ -65,7 +67,7 @@ template<typename State, typename Smaller = DepthFirst> class Walk {
     /// The children that the last state has got so far. Only depth first.
     std::size_t children() const { return waiting_.size() - first_child_; }
     std::uint64_t visits() const { return visits_; }
-    /// Whether a limit was passed.
+    /// Whether there were more visits than the limit.
     bool stopped() const { return stopped_; }
 
   private:

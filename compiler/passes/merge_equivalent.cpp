@@ -1,8 +1,6 @@
 #include "compiler/passes/merge_equivalent.h"
 
 #include <algorithm>
-#include <array>
-#include <bit>
 #include <cmath>
 #include <compare>
 #include <cstdint>
@@ -13,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "compiler/graph/attributes.h"
 #include "compiler/passes/rewrite.h"
 #include "compiler/support/id_table.h"
 
@@ -23,12 +22,12 @@ namespace {
 /// How an instance places its master, as a number that equal placements share.
 using Label = std::uint32_t;
 
-/// All of an instance but its master, bit by bit.
-using Placement = std::array<std::uint64_t, 19>;
+/// All of an instance but its master.
+using Placement = AttributeWords;
 
 std::uint64_t hash_of(const Placement& placement) {
     std::uint64_t hash = 0;
-    for (const std::uint64_t word : placement)
+    for (const std::uint64_t word : placement.words())
         hash = mixed(hash, word);
     return hash;
 }
@@ -48,26 +47,11 @@ double chance_share(double chance, double sum) {
 }
 
 /// `terminal_px`: nothing but of a terminal; `chance`: relative to all of the object.
-Placement placement_of(const Instance& instance, std::optional<double> terminal_px, double chance) {
-    Placement placement;
-    std::size_t next = 0;
-    const auto put = [&](double value) {
-        placement[next++] = std::bit_cast<std::uint64_t>(value == 0 ? 0.0 : value); // -0 equals 0
-    };
-    const Affine& a = instance.parent_from_child;
-    for (int column = 0; column < 3; ++column)
-        for (int row = 0; row < 3; ++row)
-            put(a.linear[column][row]);
-    for (int row = 0; row < 3; ++row)
-        put(a.translation[row]);
-    for (int channel = 0; channel < 3; ++channel)
-        put(instance.tint.rgb[channel]);
-    put(instance.tint.alpha);
-    const std::uint64_t material = instance.material ? *instance.material + std::uint64_t{1} : 0;
-    const std::uint64_t levels = instance.levels + 1; // 0: those of the master
-    placement[next++] = levels << 33 | material << 1 | (terminal_px ? 1u : 0u);
-    put(terminal_px.value_or(0));
-    put(chance);
+Placement placement_of(Instance instance, std::optional<double> terminal_px, double chance) {
+    instance.chance = chance;
+    Placement placement = attribute_words(instance);
+    placement.put(std::uint64_t{terminal_px.has_value()});
+    placement.put(terminal_px.value_or(0));
     return placement;
 }
 

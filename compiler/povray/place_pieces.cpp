@@ -46,16 +46,15 @@ bool nearly_as_wide(const Mat3& a, const Mat3& b) {
 class Placing {
   public:
     Placing(const CutGraph& cut, const Symmetry& symmetry, const Projection& projection, const Choice& choice,
-            Weights& weights)
+            Weights& weights, WorkMeter* meter)
         : cut_(cut), symmetry_(symmetry), projection_(projection), choice_(choice), weights_(weights),
-          seen_(cut.nodes[cut.root].ball.radius) {}
+          walk_({.meter = meter}), seen_(cut.nodes[cut.root].ball.radius) {}
 
     bool run(const Piece& root, AssemblyLimits& limits) {
         walk_.push(root);
         for (Piece piece; walk_.next(piece);) {
             limits.work_seconds -= (1 + more_work_) / WorkRates::leaves;
             more_work_ = 0;
-            if (limits.meter) limits.meter->add();
             if (out_.things.size() + out_.runs.part_count() > limits.max_placements ||
                 limits.work_seconds < 0)
                 return false;
@@ -308,7 +307,7 @@ class Placing {
 std::optional<PlacedPieces> place_pieces(const CutGraph& cut, const Symmetry& symmetry,
                                          const Projection& projection, const Piece& root,
                                          const Choice& choice, Weights& weights, AssemblyLimits& limits) {
-    Placing placing(cut, symmetry, projection, choice, weights);
+    Placing placing(cut, symmetry, projection, choice, weights, limits.meter);
     if (!placing.run(root, limits)) return std::nullopt;
     return std::move(placing).take();
 }

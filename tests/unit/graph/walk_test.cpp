@@ -1,6 +1,5 @@
 #include "compiler/graph/walk.h"
 
-#include <atomic>
 #include <functional>
 #include <string>
 
@@ -69,16 +68,22 @@ TEST(Walk, EndsAtItsLimits) {
         push_halves(few, number);
     EXPECT_TRUE(few.stopped());
     EXPECT_EQ(few.visits(), 3u);
+}
 
-    std::atomic<bool> cancelled = false;
-    Walk<int> endless({.cancelled = &cancelled});
+TEST(Walk, IsCancelledByItsMeter) {
+    bool cancelled = false;
+    const Control control{CancelFlag([&] { return cancelled; }), {}};
+    WorkMeter meter(control, "walk", 10);
+    Walk<int> endless({.meter = &meter});
     endless.push(1);
-    for (int number = 0; endless.next(number);) {
-        endless.push(number);
-        cancelled = endless.visits() == 1000;
-    }
-    EXPECT_TRUE(endless.stopped());
-    EXPECT_EQ(endless.visits(), 1000u);
+    const auto walk = [&] {
+        for (int number = 0; endless.next(number);) {
+            endless.push(number);
+            cancelled = endless.visits() == 1000;
+        }
+    };
+    EXPECT_THROW(walk(), Cancelled);
+    EXPECT_EQ(endless.visits(), 1001u);
 }
 
 TEST(Path, AnInstanceAddsToWhatHolds) {

@@ -77,10 +77,14 @@ std::size_t union_count(const Graph& graph) {
 
 } // namespace
 
+bool same_finish(const Material& a, const Material& b) {
+    return std::ranges::all_of(finish_numbers,
+                               [&](const FinishNumber& row) { return a.*row.value == b.*row.value; });
+}
+
 bool Material::operator==(const Material& other) const {
-    return name == other.name && rgb == other.rgb && ambient == other.ambient && diffuse == other.diffuse &&
-           specular == other.specular && roughness == other.roughness && reflection == other.reflection &&
-           texture == other.texture && around == other.around && coverage == other.coverage;
+    return name == other.name && rgb == other.rgb && same_finish(*this, other) && texture == other.texture &&
+           around == other.around && coverage == other.coverage;
 }
 
 ObjectId Graph::add(Object object) {

@@ -44,11 +44,9 @@ class Printer {
     void print_material(const Material& material) {
         out_ += "material " + material.name + " {\n";
         print_vector("  color", material.rgb);
-        print_numbers("  ambient", {material.ambient});
-        print_numbers("  diffuse", {material.diffuse});
-        print_numbers("  specular", {material.specular});
-        print_numbers("  roughness", {material.roughness});
-        print_numbers("  reflection", {material.reflection});
+        for (const FinishNumber& row : finish_numbers)
+            if (row.always || material.*row.value != Material().*row.value)
+                print_numbers("  " + std::string(row.name), {material.*row.value});
         if (!material.texture.empty()) {
             out_ += "  texture: \"" + material.texture + "\"\n";
             print_numbers("  around", {material.around});
@@ -64,6 +62,9 @@ class Printer {
             print_light(light);
         if (settings.background) print_background(*settings.background);
         if (settings.ground) print_ground(*settings.ground);
+        if (settings.sky) print_sky(*settings.sky);
+        if (settings.film) print_film(*settings.film);
+        if (settings.haze) print_haze(*settings.haze);
         if (settings.steps) out_ += "steps: " + std::to_string(*settings.steps) + "\n";
         if (out_.size() > before) out_ += '\n';
     }
@@ -76,6 +77,8 @@ class Printer {
         print_number("  angle", camera.angle_deg);
         if (camera.orthographic) out_ += "  orthographic\n";
         print_number("  width", camera.width);
+        if (camera.aperture > 0) print_numbers("  aperture", {camera.aperture});
+        print_vector("  focus", camera.focus);
         out_ += "}\n";
     }
 
@@ -84,6 +87,7 @@ class Printer {
         print_vector(light.sun ? "  sun" : "  location", light.location);
         print_vector("  color", light.rgb);
         if (light.shadowless) out_ += "  shadowless\n";
+        if (light.angle_deg > 0) print_numbers("  angle", {light.angle_deg});
         out_ += "}\n";
     }
 
@@ -101,6 +105,36 @@ class Printer {
         if (ground.material) out_ += "  material: " + *ground.material + "\n";
         print_vector("  color", ground.rgb);
         if (ground.area) print_area(*ground.area);
+        out_ += "}\n";
+    }
+
+    void print_sky(const SkySetting& sky) {
+        out_ += "sky {\n";
+        print_number("  clear", sky.turbidity);
+        if (!sky.turbidity) {
+            print_vector("  zenith", sky.zenith);
+            print_vector("  horizon", sky.horizon);
+        }
+        print_vector("  below", sky.below);
+        print_numbers("  brightness", {sky.brightness});
+        if (sky.bounces > 0) out_ += "  bounces: " + std::to_string(sky.bounces) + "\n";
+        out_ += "}\n";
+    }
+
+    void print_haze(const HazeSetting& haze) {
+        out_ += "haze {\n";
+        print_numbers("  distance", {haze.distance});
+        if (haze.base != 0) print_numbers("  base", {haze.base});
+        print_number("  height", haze.height);
+        print_vector("  color", haze.rgb);
+        out_ += "}\n";
+    }
+
+    void print_film(const Film& film) {
+        out_ += "film {\n";
+        print_numbers("  exposure", {film.exposure});
+        print_numbers("  white", {film.white_k});
+        out_ += film.soft ? "  soft\n" : "  hard\n";
         out_ += "}\n";
     }
 

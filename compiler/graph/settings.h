@@ -2,8 +2,10 @@
 
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
+#include "compiler/light/film.h"
 #include "compiler/support/affine.h"
 #include "compiler/support/flat_area.h"
 #include "compiler/support/source.h"
@@ -20,6 +22,8 @@ struct Material {
     double specular = 0.1;
     double roughness = 0.05;
     double reflection = 0;
+    double translucency = 0; ///< diffuse light that comes through, from behind: of leaves and paper
+    double emission = 0;     ///< light of its own
     /// The picture that is wrapped round each primitive in place of rgb (texture_space.h), by the file it is
     /// read from or the model it is drawn from; empty: none. Where its alpha is below 1/2 there is no
     /// surface.
@@ -32,6 +36,28 @@ struct Material {
     bool operator==(const Material& other) const;
 };
 
+/// One number of a surface's finish: a row of the table that texts, checks and comparisons read.
+struct FinishNumber {
+    std::string_view name; ///< in models
+    double Material::*value;
+    double most = 1;
+    bool positive = false; ///< and not 0
+    bool always = true;    ///< `print` writes it, also where it is as it would be anyhow
+};
+
+inline constexpr FinishNumber finish_numbers[] = {
+    {"ambient", &Material::ambient},
+    {"diffuse", &Material::diffuse},
+    {"specular", &Material::specular},
+    {.name = "roughness", .value = &Material::roughness, .positive = true},
+    {"reflection", &Material::reflection},
+    {.name = "translucency", .value = &Material::translucency, .always = false},
+    {.name = "emission", .value = &Material::emission, .most = 1e6, .always = false},
+};
+
+/// Whether the finishes are equal, whatever the colours.
+bool same_finish(const Material& a, const Material& b);
+
 /// What the model says about the camera; what it leaves out is framed automatically (scene/framing.h).
 struct CameraSetting {
     std::optional<Vec3> location;
@@ -40,6 +66,8 @@ struct CameraSetting {
     std::optional<double> angle_deg; ///< horizontal angle of view, in (0, 180)
     bool orthographic = false;
     std::optional<double> width; ///< orthographic: width of the view in scene units
+    double aperture = 0;         ///< radius of the lens; 0: all is sharp
+    std::optional<Vec3> focus;   ///< what is sharp, as everything at its depth; nothing: look_at
     bool operator==(const CameraSetting&) const = default;
 };
 
@@ -48,7 +76,27 @@ struct LightSetting {
     bool sun = false;   ///< parallel rays
     Rgb rgb{1.0};
     bool shadowless = false;
+    double angle_deg = 0; ///< apparent diameter of a sun
     bool operator==(const LightSetting&) const = default;
+};
+
+/// Light from everywhere (light/sky_light.h).
+struct SkySetting {
+    Rgb zenith{0.35, 0.52, 0.85}, horizon{0.85, 0.9, 0.95};
+    Rgb below{0.2, 0.19, 0.17};
+    std::optional<double> turbidity; ///< a clear sky, about the first sun among the lights
+    double brightness = 1;           ///< of all of it
+    unsigned bounces = 0;
+    bool operator==(const SkySetting&) const = default;
+};
+
+/// Air (light/haze.h).
+struct HazeSetting {
+    double distance = 0;
+    double base = 0;
+    std::optional<double> height; ///< nothing: even all over, as far as anything is seen
+    std::optional<Rgb> rgb;       ///< nothing: as the sky at the horizon
+    bool operator==(const HazeSetting&) const = default;
 };
 
 struct GroundSetting {
@@ -71,6 +119,9 @@ struct SceneSettings {
     std::vector<LightSetting> lights;
     std::optional<BackgroundSetting> background;
     std::optional<GroundSetting> ground;
+    std::optional<SkySetting> sky;
+    std::optional<Film> film;
+    std::optional<HazeSetting> haze;
     std::optional<unsigned> steps; ///< the depth that the model asks for where the command line is silent
     bool operator==(const SceneSettings&) const = default;
 };

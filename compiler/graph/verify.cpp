@@ -121,9 +121,10 @@ class Verifier {
                 flaw(graph_.root, "two materials are named '{}'", material.name);
             if (!is_plain_name(material.name))
                 flaw(graph_.root, "the name of material '{}' cannot be written in .inst", material.name);
-            const bool numbers = finite(material.rgb) && std::isfinite(material.ambient) &&
-                                 std::isfinite(material.diffuse) && std::isfinite(material.specular) &&
-                                 std::isfinite(material.roughness) && std::isfinite(material.reflection);
+            const bool numbers =
+                finite(material.rgb) && std::ranges::all_of(finish_numbers, [&](const FinishNumber& row) {
+                    return std::isfinite(material.*row.value);
+                });
             if (!numbers) flaw(graph_.root, "material '{}' has a number that is not finite", material.name);
         }
     }

@@ -7,6 +7,8 @@
 
 #include <fmt/format.h>
 
+#include "compiler/light/blackbody.h"
+#include "compiler/light/sky_light.h"
 #include "compiler/lower/lower_area.h"
 #include "compiler/lower/lower_transform.h"
 #include "compiler/support/number.h"
@@ -20,6 +22,9 @@ using Kind = SceneStatement::Kind;
 
 constexpr double most_steps = 1e9;
 constexpr double most_around = 1000;
+constexpr double most_brightness = 1e6; // half floats of POV-Ray's pictures end at 65504
+constexpr double most_sun_angle_deg = 90;
+constexpr unsigned most_bounces = 16; // a white room keeps 3 % of its light unshown
 
 bool is_let(const SceneStatement& statement) {
     return statement.kind == Kind::let || statement.kind == Kind::inner;
@@ -78,6 +83,19 @@ class Fields {
         return field ? lower_light_color(field->values, lets_, diagnostics_) : std::nullopt;
     }
 
+    std::optional<double> temperature(std::string_view keyword) const {
+        return number(
+            keyword, [](double x) { return x >= least_temperature_k && x <= most_temperature_k; },
+            fmt::format("lie between {} and {} kelvin", least_temperature_k, most_temperature_k));
+    }
+
+    /// A factor of light.
+    std::optional<double> brightness(std::string_view keyword) const {
+        return number(
+            keyword, [](double x) { return x >= 0 && x <= most_brightness; },
+            fmt::format("lie between 0 and {}", shortest(most_brightness)));
+    }
+
     std::optional<FlatArea> area(std::string_view keyword) const {
         const SceneField* field = find(keyword);
         return field ? lower_area(field->values, field->span, lets_, diagnostics_) : std::nullopt;
@@ -97,12 +115,6 @@ class Fields {
         diagnostics_.error(find(keyword)->values[0].span,
                            fmt::format("'{}' must {}, not {}", keyword, demand, shortest(*value)));
         return std::nullopt;
-    }
-
-    void unit_number(std::string_view keyword, double& target) const {
-        target = number(
-                     keyword, [](double x) { return x >= 0 && x <= 1; }, "lie between 0 and 1")
-                     .value_or(target);
     }
 
     void error(std::string_view keyword, std::string message) const {
@@ -145,6 +157,12 @@ CameraSetting lower_camera(const Fields& fields) {
     camera.angle_deg = fields.number(
         "angle", [](double x) { return x >= least_size && x < 180; }, "lie between 0 and 180 degrees");
     camera.width = fields.size("width");
+    camera.aperture = fields.size("aperture").value_or(0);
+    camera.focus = fields.place("focus");
+    if (fields.flag("focus") && !fields.flag("aperture"))
+        fields.error("focus", "without an 'aperture' everything is in focus");
+    if (fields.flag("aperture") && camera.orthographic)
+        fields.error("aperture", "an orthographic camera has no lens; leave out 'aperture'");
     if (camera.up == Vec3(0.0)) fields.error("up", "'up' must have a direction");
     if (camera.location && camera.look_at && *camera.location == *camera.look_at)
         fields.error("look_at", "the camera looks at its own location");
@@ -166,7 +184,70 @@ LightSetting lower_light(const Fields& fields) {
     if (light.sun && light.location == Vec3(0.0)) fields.error("sun", "'sun' must have a direction");
     light.rgb = fields.light_color("color").value_or(light.rgb);
     light.shadowless = fields.flag("shadowless");
+    if (const std::optional<double> kelvin = fields.temperature("temperature"))
+        light.rgb *= blackbody_rgb(*kelvin);
+    light.rgb *= fields.brightness("brightness").value_or(1);
+    light.angle_deg = fields
+                          .number(
+                              "angle", [](double x) { return x >= 0 && x <= most_sun_angle_deg; },
+                              fmt::format("lie between 0 and {} degrees", most_sun_angle_deg))
+                          .value_or(0);
+    if (fields.flag("angle") && !light.sun)
+        fields.error("angle", "'angle' is the apparent diameter of a sun; this light has a location");
+    if (light.angle_deg > 0 && light.shadowless)
+        fields.error("angle", "a shadowless light has no penumbra; leave out 'angle' or 'shadowless'");
     return light;
+}
+
+SkySetting lower_sky(const Fields& fields, const SceneStatement& statement, Diagnostics& diagnostics) {
+    SkySetting sky;
+    const std::optional<Rgb> zenith = fields.light_color("zenith");
+    sky.zenith = zenith.value_or(sky.zenith);
+    // One colour: the same all over.
+    if (zenith && !fields.flag("clear")) sky.horizon = sky.below = *zenith;
+    sky.horizon = fields.light_color("horizon").value_or(sky.horizon);
+    sky.below = fields.light_color("below").value_or(sky.below);
+    sky.turbidity = fields.number(
+        "clear", [](double x) { return x >= ClearSky::least_turbidity && x <= ClearSky::most_turbidity; },
+        fmt::format("lie between {} (pure air) and {} (haze)", ClearSky::least_turbidity,
+                    ClearSky::most_turbidity));
+    for (const char* const colour : {"zenith", "horizon"})
+        if (fields.flag(colour) && fields.flag("clear"))
+            fields.error(colour, fmt::format("a clear sky has its own colours; leave out '{}'", colour));
+    sky.brightness = fields.brightness("brightness").value_or(1);
+    const auto counts = [](double x) { return x >= 0 && x <= most_bounces && x == std::floor(x); };
+    sky.bounces = static_cast<unsigned>(
+        fields.number("bounces", counts, fmt::format("be a whole number between 0 and {}", most_bounces))
+            .value_or(0));
+    if (statement.fields.empty() && statement.complete)
+        diagnostics.error(statement.span, "this sky says nothing")
+            .with_hint("give it colours, as in 'zenith: 0.3, 0.5, 0.9', or 'clear: 3' for a clear sky");
+    return sky;
+}
+
+HazeSetting lower_haze(const Fields& fields) {
+    HazeSetting haze;
+    if (!fields.flag("distance"))
+        fields.error_at_statement("this haze has no density",
+                                  "give it 'distance: D', at which a third of what lies behind is seen");
+    haze.distance = fields.size("distance").value_or(1);
+    haze.base = fields
+                    .number(
+                        "base", [](double x) { return is_place(Vec3(x)); },
+                        fmt::format("lie within {} units of the origin", shortest(largest_size)))
+                    .value_or(0);
+    haze.height = fields.size("height");
+    haze.rgb = fields.light_color("color");
+    return haze;
+}
+
+Film lower_film(const Fields& fields) {
+    Film film;
+    film.soft = !fields.flag("hard");
+    film.exposure = fields.brightness("exposure").value_or(1);
+    film.white_k = fields.temperature("white").value_or(film.white_k);
+    if (fields.flag("hard") && fields.flag("soft")) fields.error("hard", "a film is either hard or soft");
+    return film;
 }
 
 BackgroundSetting lower_background(const Fields& fields) {
@@ -227,15 +308,13 @@ Material lower_material(const Fields& fields, const SceneStatement& statement, L
     material.name = statement.name;
     material.span = statement.span;
     material.rgb = fields.color("color").value_or(material.rgb);
-    fields.unit_number("ambient", material.ambient);
-    fields.unit_number("diffuse", material.diffuse);
-    fields.unit_number("specular", material.specular);
-    fields.unit_number("reflection", material.reflection);
-    material.roughness =
-        fields
-            .number(
-                "roughness", [](double x) { return x > 0 && x <= 1; }, "be above 0 and at most 1")
-            .value_or(material.roughness);
+    for (const FinishNumber& row : finish_numbers) {
+        const auto good = [&](double x) { return (row.positive ? x > 0 : x >= 0) && x <= row.most; };
+        const std::string range = row.positive ? fmt::format("be above 0 and at most {}", row.most)
+                                               : fmt::format("lie between 0 and {}", row.most);
+        double& value = material.*row.value;
+        value = fields.number(row.name, good, range).value_or(value);
+    }
     lower_texture(fields, lowering, material);
     return material;
 }
@@ -343,6 +422,17 @@ Environment lower_lets(const std::vector<SceneStatement>& statements, Lowering& 
     return lets;
 }
 
+/// A clear sky stands about a sun.
+static void check_sky(const std::vector<SceneStatement>& statements, const SceneSettings& settings,
+                      Diagnostics& diagnostics) {
+    if (!settings.sky || !settings.sky->turbidity) return;
+    if (std::ranges::any_of(settings.lights, [](const LightSetting& light) { return light.sun; })) return;
+    for (const SceneStatement& statement : statements)
+        if (statement.kind == Kind::sky)
+            diagnostics.error(statement.span, "a clear sky needs a sun")
+                .with_hint("light { sun: 1, 1, 2  angle: 0.53  temperature: 5500 } is one");
+}
+
 void lower_settings(const std::vector<SceneStatement>& statements, const Environment& lets, Graph& graph,
                     Lowering& lowering) {
     check_duplicates(statements, lowering.diagnostics);
@@ -368,11 +458,21 @@ void lower_settings(const std::vector<SceneStatement>& statements, const Environ
         case Kind::steps:
             graph.settings.steps = lower_steps(fields);
             break;
+        case Kind::sky:
+            graph.settings.sky = lower_sky(fields, statement, lowering.diagnostics);
+            break;
+        case Kind::haze:
+            graph.settings.haze = lower_haze(fields);
+            break;
+        case Kind::film:
+            graph.settings.film = lower_film(fields);
+            break;
         case Kind::let:
         case Kind::inner:
             break;
         }
     }
+    check_sky(statements, graph.settings, lowering.diagnostics);
     if (const std::optional<double> steps = set_value("steps", lets, lowering)) {
         if (are_steps(*steps))
             graph.settings.steps = static_cast<unsigned>(*steps);

@@ -170,6 +170,10 @@ bool Emitter::write_scene(const View& view, std::vector<PaletteImage>& pictures)
     out_ << "; the camera mirrors it into POV-Ray's.\n// 1 unit of the model is ";
     out_.number(units_.scale, 6) << " here; <0,0,0> here is ";
     out_.vector(origin, 12) << " of the model.\n\nglobal_settings { assumed_gamma 1";
+    if (view.sky_light) {
+        out_ << " ambient_light rgb ";
+        out_.vector(view.ambient_light(), 7);
+    }
     if (needs_fine_bailout()) out_ << " " << fine_bailout;
     out_ << (reflects(cut_, view) ? std::string_view(" max_trace_level 8 }\n") : " }\n");
     const std::string ground =

@@ -27,8 +27,7 @@ std::string body_name(const Primitive& primitive) {
 constexpr double tint_grain = 1.0 / (1 << 24);
 
 bool share_finish(const Material& a, const Material& b) {
-    return a.ambient == b.ambient && a.diffuse == b.diffuse && a.specular == b.specular &&
-           a.roughness == b.roughness && a.reflection == b.reflection && a.texture == b.texture;
+    return same_finish(a, b) && a.texture == b.texture;
 }
 
 } // namespace
@@ -158,10 +157,12 @@ PlacementGroup& Grouping::group_of(std::uint32_t palette, const PathTint& exact_
 
 PlacementGroup& Grouping::group_of(std::uint32_t palette, const PathTint& tint, const Material& finish) {
     std::uint64_t hash = mixed(0, palette);
-    for (const double number :
-         {tint.premultiplied.r, tint.premultiplied.g, tint.premultiplied.b, tint.alpha, finish.ambient,
-          finish.diffuse, finish.specular, finish.roughness, finish.reflection})
-        hash = mixed(hash, std::bit_cast<std::uint64_t>(number));
+    const auto mix = [&](double number) { hash = mixed(hash, std::bit_cast<std::uint64_t>(number)); };
+    for (int c = 0; c < 3; ++c)
+        mix(tint.premultiplied[c]);
+    mix(tint.alpha);
+    for (const FinishNumber& row : finish_numbers)
+        mix(finish.*row.value);
     hash = mixed(hash, std::hash<std::string>()(finish.texture));
     const auto next = static_cast<std::uint32_t>(result_.groups.size());
     const std::uint32_t id = group_ids_.find_or_add(hash, next, [&](std::uint32_t other) {

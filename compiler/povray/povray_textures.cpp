@@ -36,6 +36,8 @@ std::string number_text(double value) {
 
 std::string finish_text(const Material& m, bool shining) {
     std::string text = fmt::format("ambient {} diffuse {}", number_text(m.ambient), number_text(m.diffuse));
+    if (m.translucency > 0) text += ", " + number_text(m.translucency);
+    if (m.emission > 0) text += " emission " + number_text(m.emission);
     if (shining && m.specular > 0)
         text += fmt::format(" specular {} roughness {}", number_text(m.specular),
                             number_text(std::max(m.roughness, least_roughness)));

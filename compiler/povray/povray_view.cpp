@@ -1,13 +1,16 @@
 #include "compiler/povray/povray_view.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
+#include <fmt/format.h>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
-#include "compiler/support/check.h"
+#include "compiler/light/blackbody.h"
+#include "compiler/scene/light_list.h"
 
 namespace graftal {
 
@@ -21,7 +24,21 @@ void write_rgb(SdlWriter& out, Rgb rgb) {
     out.vector(rgb, 7);
 }
 
-void write_camera(SdlWriter& out, const Camera& camera, ImageSize size, const PovrayUnits& units) {
+int blur_samples(Quality quality) {
+    switch (quality) {
+    case Quality::draft:
+        return 16;
+    case Quality::normal:
+        return 64;
+    case Quality::best:
+        break;
+    }
+    return 256;
+}
+
+void write_camera(SdlWriter& out, const View& view, const PovrayUnits& units) {
+    const Camera& camera = view.camera;
+    const ImageSize size = view.size;
     const double aspect = static_cast<double>(size.width) / size.height;
     const double width = camera.orthographic ? units.scale * camera.width : aspect;
     const double depth =
@@ -31,7 +48,15 @@ void write_camera(SdlWriter& out, const Camera& camera, ImageSize size, const Po
     out.vector(units(camera.location), view_digits) << "\n  direction ";
     out.vector(depth * camera.direction, view_digits) << "\n  right ";
     out.vector(width * camera.right, view_digits) << "\n  up ";
-    out.vector(width / aspect * camera.up, view_digits) << "\n}\n";
+    out.vector(width / aspect * camera.up, view_digits);
+    if (view.lens.radius > 0) {
+        constexpr double povray_aperture = 4; // of a lens of radius 1
+        out << "\n  focal_point ";
+        out.vector(units(camera.location + view.lens.depth * camera.direction), view_digits) << " aperture ";
+        out.number(povray_aperture * units.scale * view.lens.radius, view_digits)
+            << fmt::format(" blur_samples {} variance 0", blur_samples(view.quality));
+    }
+    out << "\n}\n";
 }
 
 void write_light(SdlWriter& out, const Light& light, const PovrayUnits& units, Vec3 centre) {
@@ -47,6 +72,15 @@ void write_light(SdlWriter& out, const Light& light, const PovrayUnits& units, V
     out << (light.shadowless ? std::string_view(" shadowless }\n") : " }\n");
 }
 
+/// "x*(a) + y*(b) + z*(c)"
+void write_dot(SdlWriter& out, Vec3 v) {
+    const std::string_view axes[] = {"x*(", " + y*(", " + z*("};
+    for (int i = 0; i < 3; ++i) {
+        out << axes[i];
+        out.number(v[i], view_digits) << ")";
+    }
+}
+
 void write_sky(SdlWriter& out, const Sky& sky) {
     if (sky.zenith == sky.horizon) {
         out << "background { ";
@@ -57,12 +91,8 @@ void write_sky(SdlWriter& out, const Sky& sky) {
     // A pattern of exactly 1 would wrap round to 0.
     const double slope = 1 / (sky.to - sky.from);
     out << "sky_sphere { pigment {\n  function { min(0.999999, max(0, ";
-    const std::string_view axes[] = {"x*(", "y*(", "z*("};
-    for (int i = 0; i < 3; ++i) {
-        out << axes[i];
-        out.number(slope * sky.axis[i], view_digits) << ") + ";
-    }
-    out << "(";
+    write_dot(out, slope * sky.axis);
+    out << " + (";
     out.number(-slope * sky.from, view_digits) << "))) }\n  color_map { [0 ";
     write_rgb(out, sky.horizon);
     out << "] [1 ";
@@ -70,14 +100,109 @@ void write_sky(SdlWriter& out, const Sky& sky) {
     out << "] }\n} }\n";
 }
 
+/// Perez's formula times the zenith's value: a number of the height c and the cosine s to the sun.
+void write_perez(SdlWriter& out, std::string_view name, const std::array<double, 5>& a, double zenith) {
+    out << "#declare " << name << " = function(c, s) { ";
+    out.number(zenith, view_digits) << "*(1 + (";
+    out.number(a[0], view_digits) << ")*exp((";
+    out.number(a[1], view_digits) << ")/max(c, 0.001)))*(1 + (";
+    out.number(a[2], view_digits) << ")*exp((";
+    out.number(a[3], view_digits) << ")*acos(max(-1, min(1, s)))) + (";
+    out.number(a[4], view_digits) << ")*s*s) }\n";
+}
+
+/// The largest component of what the sky shows: about the sun, or where the horizon is bright.
+double brightest(const SkyLight& sky) {
+    const Rgb at_sun = sky.radiance(sky.clear->to_sun);
+    double most = std::max({at_sun.r, at_sun.g, at_sun.b, sky.below.r, sky.below.g, sky.below.b});
+    View listed;
+    listed.sky_light = sky;
+    constexpr unsigned directions = 4000;
+    for (const Light& light : listed_lights(listed, {1, directions})) {
+        const Rgb rgb = sky.radiance(light.location);
+        most = std::max({most, rgb.r, rgb.g, rgb.b});
+    }
+    constexpr double between_directions = 1.5;
+    return between_directions * most;
+}
+
+/// Three pigments, one for each component, whose mean is a third of their sum.
+void write_clear_sky(SdlWriter& out, const SkyLight& sky) {
+    const ClearSky& clear = *sky.clear;
+    const std::string_view names[] = {"sky_Y", "sky_x", "sky_y"};
+    for (int i = 0; i < 3; ++i)
+        write_perez(out, names[i], clear.perez[static_cast<std::size_t>(i)], clear.zenith_yxy[i]);
+    const double most = brightest(sky);
+    const double scale = sky.brightness / ClearSky::kcd_of_paper / most;
+    out << "sky_sphere { pigment { average pigment_map {\n";
+    for (int component = 0; component < 3; ++component) {
+        Rgb only(0.0);
+        only[component] = 1;
+        // The row of the matrix from XYZ: X = Y x / y, Z = Y (1 - x - y) / y.
+        const Rgb row(rgb_from_xyz({1, 0, 0})[component], rgb_from_xyz({0, 1, 0})[component],
+                      rgb_from_xyz({0, 0, 1})[component]);
+        const std::string name = fmt::format("sky_{}", component);
+        out << "  #declare " << name << " = function(c, s) { max(0, sky_Y(c, s)/sky_y(c, s)*((";
+        out.number(row.x, view_digits) << ")*sky_x(c, s) + (";
+        out.number(row.y, view_digits) << ")*sky_y(c, s) + (";
+        out.number(row.z, view_digits)
+            << ")*(1 - sky_x(c, s) - sky_y(c, s)))) }\n  [1 function { min(0.999999, ";
+        out << "select(";
+        write_dot(out, sky.up);
+        out << ", ";
+        out.number(sky.below[component] / most, view_digits) << ", ";
+        out.number(scale, view_digits) << "*" << name << "(";
+        write_dot(out, sky.up);
+        out << ", ";
+        write_dot(out, clear.to_sun);
+        out << "))) } color_map { [0 rgb 0] [1 ";
+        write_rgb(out, 3 * most * only);
+        out << "] }]\n";
+    }
+    out << "} } }\n";
+}
+
+/// As a colour that runs along a pattern of the height, from below to the zenith.
+void write_sky_light(SdlWriter& out, const SkyLight& sky) {
+    if (sky.clear) return write_clear_sky(out, sky);
+    out << "sky_sphere { pigment {\n  function { min(0.999999, 0.5 + 0.5*(";
+    write_dot(out, sky.up);
+    out << ")) }\n  color_map { [0 ";
+    write_rgb(out, sky.below);
+    out << "] [0.5 ";
+    write_rgb(out, sky.below);
+    out << "] [0.5 ";
+    write_rgb(out, sky.horizon);
+    out << "] [";
+    out.number(0.5 + 0.5 * SkyLight::full_height, view_digits) << " ";
+    write_rgb(out, sky.zenith);
+    out << "] [1 ";
+    write_rgb(out, sky.zenith);
+    out << "] }\n} }\n";
+}
+
+void write_haze(SdlWriter& out, const Haze& haze, const PovrayUnits& units) {
+    out << "fog { fog_type 2 distance ";
+    out.number(units.scale * haze.distance, view_digits) << " ";
+    write_rgb(out, haze.rgb);
+    out << " fog_offset ";
+    out.number(units.scale * (haze.base - glm::dot(units.origin, haze.up)), view_digits) << " fog_alt ";
+    out.number(units.scale * haze.height, view_digits) << " up ";
+    out.vector(haze.up, view_digits) << " }\n";
+}
+
 } // namespace
 
 void write_view(SdlWriter& out, const View& view, const PovrayUnits& units, Vec3 centre,
                 const std::string& ground_texture) {
-    write_camera(out, view.camera, view.size, units);
-    for (const Light& light : view.lights)
+    write_camera(out, view, units);
+    for (const Light& light : listed_lights(view, list_size(view.quality)))
         write_light(out, light, units, centre);
-    write_sky(out, view.sky);
+    if (view.shows_sky_light)
+        write_sky_light(out, *view.sky_light);
+    else
+        write_sky(out, view.sky);
+    if (view.haze) write_haze(out, *view.haze, units);
     if (view.ground) {
         out << "plane { y, ";
         out.number(units(Vec3(0, view.ground->height, 0)).y, view_digits)

@@ -46,7 +46,7 @@ std::vector<Light> solid_lights(const Camera& camera, bool over_ground) {
 std::vector<Light> model_lights(const std::vector<LightSetting>& settings) {
     std::vector<Light> lights;
     for (const LightSetting& setting : settings) {
-        Light light{setting.location, setting.sun, setting.rgb, setting.shadowless};
+        Light light{setting.location, setting.sun, setting.rgb, setting.shadowless, setting.angle_deg};
         if (setting.sun) {
             const Vec3 size = glm::abs(setting.location);
             const double largest = std::max({size.x, size.y, size.z});
@@ -56,6 +56,19 @@ std::vector<Light> model_lights(const std::vector<LightSetting>& settings) {
         lights.push_back(light);
     }
     return lights;
+}
+
+SkyLight resolve(const SkySetting& setting, const std::vector<Light>& lights) {
+    SkyLight sky;
+    sky.zenith = setting.brightness * setting.zenith;
+    sky.horizon = setting.brightness * setting.horizon;
+    sky.below = setting.brightness * setting.below;
+    sky.brightness = setting.brightness;
+    sky.bounces = setting.bounces;
+    const auto sun = std::ranges::find_if(lights, [](const Light& light) { return light.sun; });
+    if (setting.turbidity && sun != lights.end())
+        sky.clear.emplace(*setting.turbidity, sun->location, sky.up);
+    return sky;
 }
 
 Ground resolve(const GroundSetting& setting, const std::vector<Material>& materials) {
@@ -73,6 +86,38 @@ Ground resolve(const GroundSetting& setting, const std::vector<Material>& materi
     return ground;
 }
 
+/// Where it says no height, it is as good as even over all that is in the picture.
+Haze resolve(const HazeSetting& setting, const View& view) {
+    constexpr double even = 1e6; // heights in a distance
+    Haze haze;
+    haze.distance = setting.distance;
+    haze.base = setting.base;
+    haze.height = setting.height.value_or(even * setting.distance);
+    const Vec3 level(view.camera.direction.x, 0, view.camera.direction.z);
+    const double length = glm::length(level);
+    haze.rgb = setting.rgb.value_or(view.background(length > 0 ? level / length : Vec3(1, 0, 0)));
+    return haze;
+}
+
+/// Behind the eye nothing can be sharp.
+Lens resolve_lens(const SceneSettings& settings, const Camera& camera, const Box& bounds) {
+    if (!settings.camera || !(settings.camera->aperture > 0) || camera.orthographic) return {};
+    const CameraSetting& setting = *settings.camera;
+    const Vec3 focus = setting.focus ? *setting.focus : setting.look_at.value_or(bounds.centre());
+    const double depth = glm::dot(focus - camera.location, camera.direction);
+    return depth > 0 ? Lens{setting.aperture, depth} : Lens{};
+}
+
+/// Pictures under a sky are soft; those under a clear one, whose colours are measured, are for daylight.
+Film resolve_film(const SceneSettings& settings) {
+    if (settings.film) return *settings.film;
+    constexpr double daylight_k = 5600;
+    Film film;
+    film.soft = settings.sky.has_value();
+    if (settings.sky && settings.sky->turbidity) film.white_k = daylight_k;
+    return film;
+}
+
 } // namespace
 
 double Camera::pixels_per_unit(Vec3 point, int width_px) const {
@@ -87,6 +132,20 @@ double Camera::pixels_per_unit(Vec3 point, int width_px) const {
 Rgb Sky::colour(Vec3 direction) const {
     const double t = std::clamp((glm::dot(direction, axis) - from) / (to - from), 0.0, 1.0);
     return (1 - t) * horizon + t * zenith;
+}
+
+Rgb View::background(Vec3 direction) const {
+    return shows_sky_light ? sky_light->radiance(direction) : sky.colour(direction);
+}
+
+Rgb View::ambient_light() const {
+    return sky_light ? sky_light->on_paper() : Rgb(1.0);
+}
+
+bool View::has_soft_light() const {
+    return sky_light || std::ranges::any_of(lights, [](const Light& light) {
+               return light.sun && light.angle_deg > 0 && !light.shadowless;
+           });
 }
 
 View frame(const Graph& graph, const Box& bounds, ImageSize size, const CameraOverride& camera,
@@ -106,18 +165,25 @@ View view_through(const Camera& camera, const Graph& graph, const Box& bounds, I
     view.size = size;
     view.camera = camera;
     if (settings.ground) view.ground = resolve(*settings.ground, graph.materials);
-    if (!settings.lights.empty())
+    if (!settings.lights.empty() || settings.sky)
         view.lights = model_lights(settings.lights);
     else if (flat)
         view.lights = flat_lights(view.camera, thinnest_axis(bounds));
     else
         view.lights = solid_lights(view.camera, view.ground.has_value());
+    if (settings.sky) {
+        view.sky_light = resolve(*settings.sky, view.lights);
+        view.shows_sky_light = !settings.background;
+    }
+    view.film = resolve_film(settings);
+    view.lens = resolve_lens(settings, camera, bounds);
     if (settings.background) {
         view.sky.zenith = settings.background->rgb;
         view.sky.horizon = settings.background->horizon.value_or(settings.background->rgb);
     } else {
         view.sky = automatic_sky(colours, view, is_figure(bounds));
     }
+    if (settings.haze) view.haze = resolve(*settings.haze, view);
     return view;
 }
 

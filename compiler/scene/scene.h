@@ -9,6 +9,9 @@
 
 #include "compiler/analysis/bounding.h"
 #include "compiler/graph/graph.h"
+#include "compiler/light/film.h"
+#include "compiler/light/haze.h"
+#include "compiler/light/sky_light.h"
 #include "compiler/support/bounds.h"
 
 namespace graftal {
@@ -35,12 +38,22 @@ struct Camera {
     double pixels_per_unit(Vec3 point, int width_px) const;
 };
 
+/// What a camera with a lens has besides: everything at one depth is sharp.
+struct Lens {
+    double radius = 0; ///< 0: all is sharp
+    double depth = 1;  ///< along the camera's direction
+};
+
 struct Light {
     Vec3 location{0.0}; ///< of a sun: a unit vector towards it
     bool sun = false;
     Rgb rgb{1.0};
     bool shadowless = false; ///< then it makes no highlights either, as in POV-Ray
+    double angle_deg = 0;    ///< apparent diameter of a sun
 };
+
+/// How much work goes into what converges.
+enum class Quality { draft, normal, best };
 
 /// The background in a direction d (unit) runs from `horizon`, where dot(d, axis) <= from, to `zenith`,
 /// where dot(d, axis) >= to, linearly in that product.
@@ -62,9 +75,22 @@ struct Ground {
 struct View {
     ImageSize size;
     Camera camera;
+    Lens lens;
     std::vector<Light> lights;
     Sky sky;
     std::optional<Ground> ground;
+    std::optional<SkyLight> sky_light; ///< light from all directions; nothing: what lights there are
+    bool shows_sky_light = false;      ///< in place of `sky`, as the background
+    std::optional<Haze> haze;
+    Film film;
+    Quality quality = Quality::normal;
+
+    /// Of the direction of a ray (unit) that meets nothing.
+    Rgb background(Vec3 direction) const;
+    /// What a material's `ambient` is a share of: the sky's light on paper, or 1 without such a sky.
+    Rgb ambient_light() const;
+    /// Whether light comes from more than points: from discs, or from all directions.
+    bool has_soft_light() const;
 };
 
 /// Gives points whose convex hull holds the model, close to it where it reaches farthest in the directions.

@@ -21,6 +21,7 @@ struct ViewOptions {
     /// Of an animation, whose frames are framed together; null: the model is framed by itself.
     std::shared_ptr<const SharedFraming> framing;
     double turn_deg = 0; ///< with a framing: how far the camera has gone round the model
+    Quality quality = Quality::normal;
     bool operator==(const ViewOptions&) const = default;
 };
 

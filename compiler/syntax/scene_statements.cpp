@@ -26,18 +26,29 @@ struct FieldRule {
 const std::vector<FieldRule>& rules(Kind kind) {
     static const std::vector<FieldRule> camera = {{"location", Shape::vector},   {"look_at", Shape::vector},
                                                   {"up", Shape::vector},         {"angle", Shape::number},
-                                                  {"orthographic", Shape::flag}, {"width", Shape::number}};
-    static const std::vector<FieldRule> light = {{"location", Shape::vector},
-                                                 {"sun", Shape::vector},
-                                                 {"color", Shape::color},
-                                                 {"shadowless", Shape::flag}};
+                                                  {"orthographic", Shape::flag}, {"width", Shape::number},
+                                                  {"aperture", Shape::number},   {"focus", Shape::vector}};
+    static const std::vector<FieldRule> haze = {{"distance", Shape::number},
+                                                {"color", Shape::color},
+                                                {"base", Shape::number},
+                                                {"height", Shape::number}};
+    static const std::vector<FieldRule> light = {
+        {"location", Shape::vector},    {"sun", Shape::vector},        {"color", Shape::color},
+        {"temperature", Shape::number}, {"brightness", Shape::number}, {"angle", Shape::number},
+        {"shadowless", Shape::flag}};
+    static const std::vector<FieldRule> sky = {{"zenith", Shape::color},      {"horizon", Shape::color},
+                                               {"below", Shape::color},       {"clear", Shape::number},
+                                               {"brightness", Shape::number}, {"bounces", Shape::number}};
+    static const std::vector<FieldRule> film = {
+        {"exposure", Shape::number}, {"white", Shape::number}, {"soft", Shape::flag}, {"hard", Shape::flag}};
     static const std::vector<FieldRule> background = {{"zenith", Shape::color}, {"horizon", Shape::color}};
     static const std::vector<FieldRule> ground = {
         {"height", Shape::number}, {"color", Shape::color}, {"material", Shape::name}, {"area", Shape::area}};
     static const std::vector<FieldRule> material = {
-        {"color", Shape::color},     {"ambient", Shape::number},   {"diffuse", Shape::number},
-        {"specular", Shape::number}, {"roughness", Shape::number}, {"reflection", Shape::number},
-        {"texture", Shape::text},    {"around", Shape::number}};
+        {"color", Shape::color},         {"ambient", Shape::number},   {"diffuse", Shape::number},
+        {"specular", Shape::number},     {"roughness", Shape::number}, {"reflection", Shape::number},
+        {"translucency", Shape::number}, {"emission", Shape::number},  {"texture", Shape::text},
+        {"around", Shape::number}};
     static const std::vector<FieldRule> none;
     switch (kind) {
     case Kind::camera:
@@ -50,6 +61,12 @@ const std::vector<FieldRule>& rules(Kind kind) {
         return ground;
     case Kind::material:
         return material;
+    case Kind::sky:
+        return sky;
+    case Kind::film:
+        return film;
+    case Kind::haze:
+        return haze;
     default:
         return none;
     }
@@ -161,6 +178,12 @@ class StatementParser {
             return "camera { location: 3, 2, 5  look_at: 0, 0, 0 }";
         case Kind::light:
             return "light { sun: 1, 2, 3 } or light { location: 10, 20, 30 }";
+        case Kind::sky:
+            return "sky { zenith: 0.3, 0.5, 0.9  horizon: 0.9, 0.9, 1 } or sky { clear: 3 }";
+        case Kind::haze:
+            return "haze { distance: 300  color: 0.7, 0.8, 0.9 }";
+        case Kind::film:
+            return "film { exposure: 1.2 }";
         case Kind::ground:
             return "ground { height: 0  color: 0.3, 0.3, 0.25 }";
         default:
@@ -287,13 +310,16 @@ class StatementParser {
 
 const std::vector<std::string>& scene_keywords() {
     static const std::vector<std::string> keywords = {"camera",   "light", "background", "ground",
-                                                      "material", "steps", "let",        "inner"};
+                                                      "material", "steps", "let",        "inner",
+                                                      "sky",      "film",  "haze"};
     return keywords;
 }
 
 bool at_scene_statement(const TokenStream& stream) {
     // Younger than the languages: the name of a part, too, unless a name follows.
     if (stream.at("inner")) return stream.peek(1).kind == TokenKind::name && !stream.peek(1).first_on_line;
+    if (stream.at("sky") || stream.at("film") || stream.at("haze"))
+        return stream.peek(1).is("{") || stream.peek(1).is(":");
     return kind_of(stream.peek()).has_value();
 }
 

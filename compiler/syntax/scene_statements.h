@@ -19,11 +19,23 @@ struct SceneField {
     Span name_span;
 };
 
-/// camera, light, background, ground, material, steps, let or inner. Short forms are spelled out: `steps: 5`
-/// has the field "steps", `background: r,g,b` the field "zenith", and `let a = 1, b = 2` one field a name.
-/// `inner k = 0.5 members 16` is a `let` with a second value.
+/// camera, light, sky, haze, film, background, ground, material, steps, let or inner. Short forms are spelled
+/// out: `steps: 5` has the field "steps", `background: r,g,b` the field "zenith", and `let a = 1, b = 2` one
+/// field a name. `inner k = 0.5 members 16` is a `let` with a second value.
 struct SceneStatement {
-    enum class Kind : std::uint8_t { camera, light, background, ground, material, steps, let, inner };
+    enum class Kind : std::uint8_t {
+        camera,
+        light,
+        background,
+        ground,
+        material,
+        steps,
+        let,
+        inner,
+        sky,
+        film,
+        haze
+    };
 
     Kind kind = Kind::camera;
     std::string name; ///< of a material

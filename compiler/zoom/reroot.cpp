@@ -8,6 +8,7 @@
 
 #include "compiler/graph/path.h"
 #include "compiler/scene/framing.h"
+#include "compiler/support/number_range.h"
 #include "compiler/zoom/focus.h"
 #include "compiler/zoom/surroundings.h"
 #include "compiler/zoom/zoom_scale.h"
@@ -104,12 +105,23 @@ class Rerooter {
         const double zoom = request_.zoom->times(1);
         for (Light& light : view.lights)
             if (!light.sun) move(light, zoom * (light.location - world_focus), light.location - world_focus);
+        if (view.haze) {
+            view.haze->base = request_.zoom->times(view.haze->base - world_focus.y);
+            view.haze->height = request_.zoom->times(view.haze->height);
+            view.haze->distance = request_.zoom->times(view.haze->distance);
+            if (!is_sound(*view.haze)) view.haze.reset();
+        }
         if (!view.ground) return;
         const double height = request_.zoom->times(view.ground->height - world_focus.y);
         if (std::abs(height) <= farthest_ground())
             view.ground->height = height;
         else
             view.ground.reset();
+    }
+
+    /// Beyond these lengths nothing of it is seen.
+    static bool is_sound(const Haze& haze) {
+        return is_size(haze.distance) && is_size(haze.height) && is_place(Vec3(haze.base));
     }
 
     /// A light beyond all distances is a sun.
@@ -145,6 +157,8 @@ class Rerooter {
     /// picture; `picture_from_root`: nothing where the world is too large to be seen from here.
     void keep_surroundings(const Mat3& turn, const std::optional<Affine>& picture_from_root) {
         View& view = result_.view;
+        view.haze.reset(); // its lengths are those of the world
+        view.lens = {};
         const Vec3 infinitely_far(std::numeric_limits<double>::infinity());
         if (!model_.graph.settings.lights.empty())
             for (Light& light : view.lights) {
@@ -152,6 +166,11 @@ class Rerooter {
                 const bool near = !light.sun && picture_from_root;
                 move(light, near ? (*picture_from_root)(light.location) : infinitely_far, turn * towards);
             }
+        if (view.sky_light) {
+            SkyLight& sky = *view.sky_light;
+            sky.up = glm::normalize(turn * sky.up);
+            if (sky.clear) sky.clear->to_sun = glm::normalize(turn * sky.clear->to_sun);
+        }
         if (model_.graph.settings.background && view.sky.zenith != view.sky.horizon)
             view.sky.axis = glm::normalize(turn * view.sky.axis);
         if (view.ground && picture_from_root) {

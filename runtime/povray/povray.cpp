@@ -113,9 +113,18 @@ std::vector<std::string> povray_arguments(const PovrayJob& job) {
         fmt::format("+W{}", job.width),
         fmt::format("+H{}", job.height),
         "-D",
-        job.linear16 ? "+FN16" : "+FN8",
-        job.linear16 ? "File_Gamma=1.0" : "File_Gamma=srgb",
     };
+    switch (job.format) {
+    case PovrayJob::Format::srgb8:
+        arguments.insert(arguments.end(), {"+FN8", "File_Gamma=srgb"});
+        break;
+    case PovrayJob::Format::linear16:
+        arguments.insert(arguments.end(), {"+FN16", "File_Gamma=1.0"});
+        break;
+    case PovrayJob::Format::half:
+        arguments.push_back("+FE");
+        break;
+    }
     if (job.threads > 0) arguments.push_back(fmt::format("+WT{}", job.threads));
     if (job.antialias) {
         // Every pixel is divided: four corners that agree say nothing about parts smaller than a pixel.

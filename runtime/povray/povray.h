@@ -18,9 +18,14 @@ struct PovrayJob {
     std::string picture = "picture.png";
     int width = 0;
     int height = 0;
-    int threads = 0;                ///< 0: as many as POV-Ray likes
-    std::optional<int> antialias;   ///< N: adaptive, up to 2^N x 2^N samples a pixel, N in 1..9; nothing: off
-    bool linear16 = false;          ///< 16-bit PNG of linear values; else 8-bit sRGB
+    int threads = 0;              ///< 0: as many as POV-Ray likes
+    std::optional<int> antialias; ///< N: adaptive, up to 2^N x 2^N samples a pixel, N in 1..9; nothing: off
+    enum class Format {
+        srgb8,    ///< 8-bit PNG
+        linear16, ///< 16-bit PNG of linear values, at most 1
+        half      ///< EXR of half floats, linear and not clipped
+    };
+    Format format = Format::srgb8;
     std::uint64_t memory_bytes = 0; ///< that it may take; 0: no limit
     std::uint64_t cpu_seconds = 0;  ///< of all its threads; 0: no limit
     /// May read and write what we may, with our environment and without limits: for programs that start

@@ -10,6 +10,7 @@
 #include "compiler/detail/coarser.h"
 #include "compiler/povray/povray_units.h"
 #include "compiler/session/stages.h"
+#include "runtime/image/develop.h"
 #include "runtime/render/fit_work.h"
 #include "runtime/render/samplings.h"
 #include "runtime/render/scene_files.h"
@@ -36,6 +37,41 @@ ShaderLimits limits_of(const TraceModel& model) {
     limits.farthest = farthest_in_povray / choose_units(drawn, model.view.camera).scale;
     return limits;
 }
+
+ShaderLimits limits_for(const TraceModel& model, const RenderOptions& options) {
+    ShaderLimits limits = limits_of(model);
+    if (options.listed_lights) limits.list = list_size(model.view.quality);
+    return limits;
+}
+
+/// Whether pixels are estimated, by samples that differ.
+bool is_sampled(const View& view, const RenderOptions& options) {
+    return view.lens.radius > 0 || (view.has_soft_light() && !options.listed_lights);
+}
+
+std::vector<Sampling> samplings_for(const View& view, const RenderOptions& options) {
+    if (!is_sampled(view, options)) return samplings_of(options.antialias, options.progressive);
+    const SampleGoal goal = sample_goal(view.quality);
+    return samplings_of_soft_light(options.samples.value_or(goal.most_samples),
+                                   options.noise_255.value_or(options.samples ? 0 : goal.noise_255),
+                                   options.progressive);
+}
+
+/// Of what a picture under lights may take: a sample of soft light follows several rays.
+double work_of_soft_light(Quality quality) {
+    switch (quality) {
+    case Quality::draft:
+        return 1;
+    case Quality::normal:
+        return 4;
+    case Quality::best:
+        break;
+    }
+    return 20;
+}
+
+/// A pixel's, before more is culled to save work.
+constexpr int fewest_soft_samples = 8;
 
 /// How closely a picture is looked at.
 struct Looks {
@@ -94,7 +130,7 @@ void report_work(const FittedModel& fitted, const Looks& looks, const Asked& ask
                              readable_seconds(work_as_asked(fitted, looks, asked.size)));
     const std::string samples = samples_in_words(looks.affordable);
     if (!fitted.work_cut) {
-        if (looks.fewer())
+        if (looks.fewer() && !(looks.wanted.back().noise_255 > 0)) // else see report_noise()
             diagnostics
                 .warning(span, fmt::format("{} allow {} per pixel, not {}", limit.allowed,
                                            samples == "one" ? "one sample" : samples + " samples",
@@ -110,6 +146,23 @@ void report_work(const FittedModel& fitted, const Looks& looks, const Asked& ask
     else if (looks.fewer())
         limit.besides += (fitted.rays_cut ? ", " : ", by ") + samples + " per pixel";
     warn_of_limit(span, limit, {fitted.error_px, asked.detail.error_px}, diagnostics);
+}
+
+/// Says where the work allowed left more noise than was asked for.
+void report_noise(const TraceStatistics& rays, const Looks& looks, const Asked& asked,
+                  Diagnostics& diagnostics) {
+    constexpr double noticed = 0.01; // of the picture
+    const double share = static_cast<double>(rays.noisy_pixels) / asked.size.width / asked.size.height;
+    if (!looks.fewer() || !(share > noticed)) return;
+    const Limit limit = limit_of_work(asked.detail.work_seconds);
+    diagnostics
+        .warning(asked.span,
+                 fmt::format("{} allow {} samples per pixel: in {:.0f} % of the picture the noise is above "
+                             "{:g} of 255 steps",
+                             limit.allowed, samples_in_words(looks.affordable), 100 * share,
+                             looks.wanted.back().noise_255))
+        .with_hint(fmt::format("allow more with {}, or ask for less with --quality, --noise or --size",
+                               limit.option));
 }
 
 /// Says what a picture takes that is too large even for one sample a pixel.
@@ -136,7 +189,7 @@ class Drawing {
     Drawing(const TraceModel& model, std::vector<Sampling> samplings, const RenderOptions& options,
             const PictureSink& sink, const CancelFlag& cancel)
         : options_(options), sink_(sink), cancel_(cancel), samplings_(std::move(samplings)),
-          tracer_(model, limits_of(model)), size_(model.view.size) {
+          tracer_(model, limits_for(model, options)), size_(model.view.size), film_(model.view.film) {
         picture_.width = size_.width;
         picture_.height = size_.height;
         picture_.channels = 3;
@@ -217,13 +270,13 @@ class Drawing {
 
     Image encoded() const {
         Image image = picture_;
-        constexpr std::size_t grain = 1 << 16;
+        constexpr int rows = 16;
         const auto encode = [&](int, std::uint64_t piece) {
-            const std::size_t begin = piece * grain, end = std::min(begin + grain, image.pixels.size());
-            for (std::size_t i = begin; i < end; ++i)
-                image.pixels[i] = srgb_encoded(image.pixels[i]);
+            const int begin = static_cast<int>(piece) * rows;
+            develop_rows(image, film_, begin, std::min(begin + rows, image.height));
         };
-        WorkerThreads(options_.threads).for_each((image.pixels.size() + grain - 1) / grain, encode);
+        WorkerThreads(options_.threads)
+            .for_each(static_cast<std::uint64_t>((image.height + rows - 1) / rows), encode);
         return image;
     }
 
@@ -233,6 +286,7 @@ class Drawing {
     const std::vector<Sampling> samplings_;
     PictureTracer tracer_;
     ImageSize size_;
+    Film film_;
     Image picture_;
     NativeReport report_;
     Stopwatch watch_;
@@ -322,30 +376,41 @@ std::optional<NativeReport> trace_model(const PreparedView& prepared, const Rend
                                         Compilation& compilation, const PictureSink& sink) {
     const Graph& graph = prepared.viewed->model->graph;
     const View& view = prepared.viewed->view;
-    const DetailOptions& detail = prepared.detail;
+    const bool sampled = is_sampled(view, options);
+    DetailOptions detail = prepared.detail;
+    if (sampled) detail.work_seconds *= work_of_soft_light(view.quality);
     Looks looks;
-    looks.wanted = samplings_of(options.antialias, options.progressive);
+    looks.wanted = samplings_for(view, options);
     looks.tried = detail.culls()
                       ? with_fewer_samples(looks.wanted, view.size, most_for_samples * detail.work_seconds)
                       : looks.wanted;
+    // Noise is better than parts that are missing.
+    Sampling& finest = looks.tried.back();
+    if (sampled && detail.culls()) finest.most_samples = std::min(finest.most_samples, fewest_soft_samples);
     const double samples = samples_a_pixel(looks.tried);
-    const FittedModel fitted = fit_work(prepared.prepared, view, detail, prepared.textures, samples,
-                                        limits_of, options.threads, [&] { return cancel.raised(); });
+    const FittedModel fitted = fit_work(
+        prepared.prepared, view, detail, prepared.textures, samples,
+        [&](const TraceModel& tried) { return limits_for(tried, options); }, options.threads,
+        [&] { return cancel.raised(); });
     const TraceModel& model = *fitted.model;
     looks.affordable = looks.tried;
     if (fitted.rays_cut)
         looks.affordable = within_seconds(looks.tried, fitted.seconds / samples, fitted.allowed_seconds);
+    else if (sampled)
+        looks.affordable = with_more_samples(looks.tried, looks.wanted.back(), fitted.seconds / samples,
+                                             fitted.allowed_seconds);
     const Asked asked{graph.objects[graph.root].span, view.size, detail};
     report_work(fitted, looks, asked, compilation.diagnostics);
     report_size(looks, asked, compilation.diagnostics);
     compilation.times.push_back({"prepare", preparing.seconds()});
     if (detail.culls() && !detail.steps) note_shadowless(model.prepared.cut, graph, compilation.diagnostics);
     const Stopwatch drawing_watch;
-    Drawing drawing(model, std::move(looks.affordable), options, sink, cancel);
+    Drawing drawing(model, looks.affordable, options, sink, cancel);
     compilation.status = drawing.run();
     compilation.times.push_back({"trace", drawing_watch.seconds()});
     report_shells(model, asked, compilation.diagnostics);
     NativeReport report = drawing.report();
+    report_noise(report.rays, looks, asked, compilation.diagnostics);
     report.first_picture_seconds += preparing.seconds() - drawing_watch.seconds();
     if (!compilation.status.ok() && report.pictures == 0) return std::nullopt;
     return report;

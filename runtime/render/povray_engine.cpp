@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 
 #include "compiler/povray/overlap.h"
+#include "runtime/image/develop.h"
 #include "runtime/povray/povray.h"
 #include "runtime/render/scene_files.h"
 #include "runtime/render/stopwatch.h"
@@ -47,7 +48,8 @@ PovrayReport report_of(const Cut& cut) {
 }
 
 /// The picture that POV-Ray left becomes the one that was asked for.
-Status finish_picture(const PovrayJob& job, const RenderOptions& options, const CancelFlag& cancel) {
+Status finish_picture(const PovrayJob& job, const RenderOptions& options, const Film& film,
+                      const CancelFlag& cancel) {
     const std::string raw = job.directory + "/" + job.picture;
     Image image;
     Status status = read_image(raw, image);
@@ -58,6 +60,8 @@ Status finish_picture(const PovrayJob& job, const RenderOptions& options, const 
     if (image.width != job.width || image.height != job.height)
         return Status::failure(fmt::format("POV-Ray wrote a picture of {} x {} pixels, not {} x {}",
                                            image.width, image.height, job.width, job.height));
+    if (!is_exr_name(options.output) && job.format == PovrayJob::Format::half)
+        develop_rows(image, film, 0, image.height);
     return write_image(options.output, image, options.format, options.metadata);
 }
 
@@ -87,13 +91,19 @@ const char* name_of(PovrayProgress::Stage stage) {
     return "";
 }
 
-PovrayJob job_for(const RenderOptions& options) {
+PovrayJob job_for(const RenderOptions& options, const Film& film) {
     PovrayJob job;
     job.width = options.compile.view.size.width;
     job.height = options.compile.view.size.height;
     job.threads = options.threads;
     job.antialias = options.antialias;
-    job.linear16 = options.format == SampleFormat::linear16 || is_exr_name(options.output);
+    const bool linear = options.format == SampleFormat::linear16;
+    if (is_exr_name(options.output) || (!linear && !film.plain())) {
+        job.format = PovrayJob::Format::half;
+        job.picture = "picture.exr";
+    } else if (linear) {
+        job.format = PovrayJob::Format::linear16;
+    }
     if (options.on_progress)
         job.on_progress = [tell = options.on_progress](const PovrayProgress& progress) {
             tell({name_of(progress.stage), progress.fraction});
@@ -228,7 +238,8 @@ std::optional<PovrayReport> render_by_povray(PictureSession& session, const Rend
     std::shared_ptr<const CompiledModel> model = session.compiled(options.compile, compilation);
     if (!model) return std::nullopt;
     TemporaryDirectory temporary;
-    PovrayJob job = job_for(options);
+    const Film film = model->view.film;
+    PovrayJob job = job_for(options, film);
     job.cancel = session.control().cancel;
     const auto run = [&](const char* stage, const auto& work) {
         const Stopwatch watch;
@@ -264,7 +275,7 @@ std::optional<PovrayReport> render_by_povray(PictureSession& session, const Rend
         return result.status;
     };
     if (!run("povray", trace)) return std::nullopt;
-    if (!run("picture", [&] { return finish_picture(job, options, job.cancel); })) return std::nullopt;
+    if (!run("picture", [&] { return finish_picture(job, options, film, job.cancel); })) return std::nullopt;
     return report;
 }
 

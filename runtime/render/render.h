@@ -25,6 +25,9 @@ struct RenderOptions {
     ImageMetadata metadata;                    ///< to be written into it
     SampleFormat format = SampleFormat::srgb8; ///< of a PNG; an EXR is linear anyhow
     std::optional<int> antialias = 2;          ///< up to 4^(N-1) samples a pixel; nothing: one
+    std::optional<int> samples;                ///< of soft light, the most a pixel; nothing: by the quality
+    std::optional<double> noise_255;           ///< that may be left; nothing: by the quality
+    bool listed_lights = false;                ///< soft light from a list of lights (light_list.h)
     int threads = 0;                           ///< 0: as many as the engine likes
     bool progressive = false;                  ///< write coarse pictures first, each in place of the last
     bool unconfined = false;                   ///< PovrayJob::unconfined

@@ -1,5 +1,8 @@
 #include "runtime/render/samplings.h"
 
+#include <algorithm>
+#include <cmath>
+
 #include "compiler/detail/work.h"
 
 namespace graftal {
@@ -9,6 +12,10 @@ namespace {
 /// False where the coarsest look is left alone.
 bool look_less_closely(std::vector<Sampling>& samplings, int coarsest_block) {
     Sampling& finest = samplings.back();
+    if (finest.most_samples > 1) {
+        finest.most_samples /= 2;
+        return true;
+    }
     const int depth = finest.antialias.value_or(1);
     if (depth > 2) {
         --*finest.antialias;
@@ -34,6 +41,30 @@ std::vector<Sampling> samplings_of(std::optional<int> antialias, bool progressiv
     return all;
 }
 
+std::vector<Sampling> samplings_of_soft_light(int most_samples, double noise_255, bool progressive) {
+    std::vector<Sampling> all;
+    if (progressive) {
+        for (const int block : {8, 4, 2})
+            all.push_back({.block = block});
+        for (int samples = 1; samples < most_samples; samples *= 4)
+            all.push_back({.most_samples = samples});
+    }
+    all.push_back({.most_samples = most_samples, .noise_255 = noise_255});
+    return all;
+}
+
+SampleGoal sample_goal(Quality quality) {
+    switch (quality) {
+    case Quality::draft:
+        return {16, 6};
+    case Quality::normal:
+        return {128, 3};
+    case Quality::best:
+        break;
+    }
+    return {1024, 1};
+}
+
 double samples_a_pixel(const std::vector<Sampling>& samplings) {
     double sum = 0;
     for (const Sampling& sampling : samplings)
@@ -48,6 +79,15 @@ double least_seconds(const std::vector<Sampling>& samplings, ImageSize size) {
 std::vector<Sampling> with_fewer_samples(std::vector<Sampling> samplings, ImageSize size, double seconds) {
     while (least_seconds(samplings, size) > seconds && look_less_closely(samplings, 1)) {
     }
+    return samplings;
+}
+
+std::vector<Sampling> with_more_samples(std::vector<Sampling> samplings, const Sampling& wanted,
+                                        double seconds_a_sample, double seconds) {
+    const double coarse = samples_a_pixel(samplings) - samplings.back().samples_a_pixel();
+    const double most = std::clamp(std::floor(seconds / seconds_a_sample - coarse), 0.0,
+                                   static_cast<double>(wanted.most_samples));
+    samplings.back().most_samples = std::max(samplings.back().most_samples, static_cast<int>(most));
     return samplings;
 }
 

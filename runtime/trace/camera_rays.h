@@ -2,6 +2,8 @@
 
 #include <vector>
 
+#include <glm/vec2.hpp>
+
 #include "compiler/scene/scene.h"
 #include "compiler/support/ray.h"
 
@@ -16,8 +18,12 @@ class CameraRays {
     /// pixel's middle is (0.5, 0.5). The direction is of unit length.
     Ray through(double x, double y) const;
 
+    /// The same from a place of the lens: `place` in [0, 1)^2 spreads evenly over its disc.
+    Ray through(double x, double y, glm::dvec2 place) const;
+
   private:
     Camera camera_;
+    Lens lens_;
     double half_width_; ///< of the picture at distance 1; of parallel rays: in scene units
     double half_height_;
     ImageSize size_;

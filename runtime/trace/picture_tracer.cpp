@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <bit>
 #include <memory>
 #include <mutex>
 #include <vector>
@@ -10,8 +11,12 @@
 #include <glm/vec2.hpp>
 
 #include "compiler/support/check.h"
+#include "compiler/support/counter_random.h"
 #include "runtime/system/worker_threads.h"
 #include "runtime/trace/camera_rays.h"
+#include "runtime/trace/noise_meter.h"
+#include "runtime/trace/pixel_filter.h"
+#include "runtime/trace/sample_stream.h"
 #include "runtime/trace/traversal.h"
 
 namespace graftal {
@@ -20,6 +25,9 @@ namespace {
 
 /// Pixels along each side of a tile: enough to share edges of, and some hundred tiles to a picture.
 constexpr int tile_size = 32;
+
+/// After which the noise is measured: enough to see rare light, and whole rounds of Sobol's sequence.
+constexpr int samples_a_round = 16;
 
 /// Of a probe, for one thread at a time.
 constexpr std::uint64_t probe_piece = 32;
@@ -37,10 +45,12 @@ class Worker {
   public:
     Worker(const TraceModel& model, const ShaderLimits& limits, const std::function<bool()>& cancelled)
         : rays_(model.view), traversal_(model),
-          shader_(model.view, traversal_, limits, model.textures.of_ground), cancelled_(cancelled) {}
+          shader_(model.view, traversal_, limits, model.textures.of_ground), picture_film_(model.view.film),
+          lens_(model.view.lens.radius > 0), cancelled_(cancelled) {}
 
     /// False if it was cancelled before the last ray.
     bool trace(const Sampling& sampling, const Tile& tile, Image& picture) {
+        if (sampling.block == 1 && sampling.most_samples > 0) return trace_samples(sampling, tile, picture);
         if (sampling.block > 1 || !sampling.antialias) return trace_blocks(sampling.block, tile, picture);
         return trace_lattice(steps_of(sampling), tile, picture);
     }
@@ -55,12 +65,24 @@ class Worker {
         return true;
     }
 
-    TraceStatistics statistics() const { return {camera_rays_, traversal_.work(), traversal_.given_up()}; }
+    TraceStatistics statistics() const {
+        return {camera_rays_, traversal_.work(), traversal_.given_up(), noisy_pixels_};
+    }
 
   private:
-    Rgb look(double x, double y) {
+    /// `random` is of no account where all light is from points.
+    Rgb look(double x, double y, SampleStream random) {
         ++camera_rays_;
-        return shader_.radiance(rays_.through(x, y));
+        if (!lens_) return shader_.radiance(rays_.through(x, y), random);
+        const glm::dvec2 place = random.next();
+        return shader_.radiance(rays_.through(x, y, place), random);
+    }
+
+    /// By numbers of their own, wherever in the picture.
+    Rgb look(double x, double y) {
+        return look(x, y,
+                    SampleStream(CounterRandom::scrambled(std::bit_cast<std::uint64_t>(x)),
+                                 static_cast<std::uint32_t>(std::bit_cast<std::uint64_t>(y) >> 20)));
     }
 
     bool cancelled() const { return cancelled_ && cancelled_(); }
@@ -82,6 +104,27 @@ class Worker {
                 for (int j = y; j < below; ++j)
                     for (int i = x; i < right; ++i)
                         set(picture, i, j, rgb);
+            }
+        return true;
+    }
+
+    /// Pixel by pixel, each by itself, so that it depends on its place in the picture alone.
+    bool trace_samples(const Sampling& sampling, const Tile& tile, Image& picture) {
+        for (int y = tile.y; y < tile.y + tile.height; ++y)
+            for (int x = tile.x; x < tile.x + tile.width; ++x) {
+                const auto seed = static_cast<std::uint64_t>(y) << 32 | static_cast<std::uint32_t>(x);
+                NoiseMeter meter(picture_film_);
+                bool calm = false;
+                for (int i = 0; i < sampling.most_samples && !calm; ++i) {
+                    if (cancelled()) return false;
+                    SampleStream random(seed, static_cast<std::uint32_t>(i));
+                    const glm::dvec2 place = random.next();
+                    meter.add(
+                        look(x + 0.5 + filter_.offset(place.x), y + 0.5 + filter_.offset(place.y), random));
+                    calm = meter.count() % samples_a_round == 0 && meter.error_255() < sampling.noise_255;
+                }
+                if (!calm && sampling.noise_255 > 0) ++noisy_pixels_;
+                set(picture, x, y, meter.mean());
             }
         return true;
     }
@@ -131,8 +174,11 @@ class Worker {
     CameraRays rays_;
     Traversal traversal_;
     Shader shader_;
+    PixelFilter filter_;
+    Film picture_film_;
+    bool lens_;
     const std::function<bool()>& cancelled_;
-    std::uint64_t camera_rays_ = 0;
+    std::uint64_t camera_rays_ = 0, noisy_pixels_ = 0;
     std::vector<Rgb> row_, sums_;
 };
 
@@ -148,6 +194,7 @@ std::vector<Tile> tiles_of(ImageSize size, int block) {
 } // namespace
 
 double Sampling::samples_a_pixel() const {
+    if (block == 1 && most_samples > 0) return most_samples;
     const double steps = steps_of(*this);
     return steps * steps / (static_cast<double>(block) * block);
 }
@@ -156,6 +203,7 @@ TraceStatistics& TraceStatistics::operator+=(const TraceStatistics& other) {
     camera_rays += other.camera_rays;
     work += other.work;
     given_up += other.given_up;
+    noisy_pixels += other.noisy_pixels;
     return *this;
 }
 

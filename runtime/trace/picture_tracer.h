@@ -16,19 +16,23 @@ struct Tile {
 };
 
 /// How finely a picture is looked at: blocks of pixels that show what their middle does, or samples within
-/// each pixel.
+/// each pixel, on a lattice or at random.
 struct Sampling {
     int block = 1;                ///< pixels along each side of a block
     std::optional<int> antialias; ///< with blocks of 1: povray_samples_of_pixel() of this depth, else one
+    int most_samples = 0;         ///< with blocks of 1: so many through a filter, in place of a lattice
+    double noise_255 = 0; ///< fewer, where the error of a pixel is below this, in 255ths as it is shown
 
     /// Rays through a pixel, those that neighbours share counted once.
     double samples_a_pixel() const;
 };
 
 struct TraceStatistics {
-    std::uint64_t camera_rays = 0;
-    std::uint64_t work = 0;     ///< steps of all rays (Traversal::work)
-    std::uint64_t given_up = 0; ///< rays that met too many parts (Traversal::given_up)
+    std::uint64_t camera_rays = 0; ///< one a sample
+    std::uint64_t work = 0;        ///< steps of all rays (Traversal::work)
+    std::uint64_t given_up = 0;    ///< rays that met too many parts (Traversal::given_up)
+    /// Pixels that have all their samples, and more noise than Sampling::noise_255.
+    std::uint64_t noisy_pixels = 0;
 
     TraceStatistics& operator+=(const TraceStatistics& other);
 };

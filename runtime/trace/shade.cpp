@@ -8,6 +8,7 @@
 #include <glm/geometric.hpp>
 
 #include "compiler/scene/ground.h"
+#include "compiler/support/number_range.h"
 
 namespace graftal {
 
@@ -38,6 +39,26 @@ double finite_or_zero(double value) {
     return std::isfinite(value) ? value : 0;
 }
 
+double largest(Rgb rgb) {
+    return std::max({rgb.r, rgb.g, rgb.b});
+}
+
+Vec3 from_pole(Vec3 pole, double along, double turn) {
+    const auto [a, b] = axes_across(pole);
+    const double radius = std::sqrt(std::max(0.0, 1 - along * along));
+    return along * pole + radius * (std::cos(turn) * a + std::sin(turn) * b);
+}
+
+/// Of the half about a unit normal: its density is the cosine over pi.
+Vec3 cosine_direction(Vec3 normal, glm::dvec2 place) {
+    return from_pole(normal, std::sqrt(1 - place.x), 2 * std::numbers::pi * place.y);
+}
+
+/// Its density is 1 / (2 pi).
+Vec3 even_direction(Vec3 normal, glm::dvec2 place) {
+    return from_pole(normal, 1 - place.x, 2 * std::numbers::pi * place.y);
+}
+
 } // namespace
 
 /// A point of a surface as the viewer sees it.
@@ -52,10 +73,29 @@ struct Shader::Point {
 Shader::Shader(const View& view, Surfaces& surfaces, const ShaderLimits& limits,
                std::shared_ptr<const Texture> ground_texture)
     : view_(view), surfaces_(surfaces), limits_(limits), ground_texture_(std::move(ground_texture)) {
-    for (const Light& light : view.lights) {
+    const bool listed = limits.list.has_value();
+    for (const Light& light : listed ? listed_lights(view, *limits.list) : view.lights) {
         if (std::max({light.rgb.x, light.rgb.y, light.rgb.z}) < least_light) continue;
         const Vec3 at = light.sun ? glm::normalize(light.location) : light.location;
-        if (is_finite(at)) lamps_.push_back({at, light.rgb, light.sun, light.shadowless});
+        if (!is_finite(at)) continue;
+        const Lamp lamp{at, light.rgb, light.sun, light.shadowless};
+        if (!light.sun || light.shadowless || !(light.angle_deg > 0)) {
+            lamps_.push_back(lamp);
+            continue;
+        }
+        const auto [a, b] = axes_across(at);
+        const double radius = std::tan(0.5 * light.angle_deg * std::numbers::pi / 180);
+        discs_.push_back({lamp, radius * a, radius * b});
+    }
+    if (view.sky_light) {
+        ambient_light_ = view.ambient_light();
+        if (!listed) {
+            sky_ = &*view.sky_light;
+            bounces_ = sky_->bounces;
+            if (bounces_ > 0) ambient_light_ = Rgb(0.0);
+        }
+    } else {
+        ambient_light_ = Rgb(1.0);
     }
     if (view.ground && ground_texture_) picture_from_world_ = inverse(world_from_picture(*view.ground));
     const Camera& camera = view.camera;
@@ -65,28 +105,64 @@ Shader::Shader(const View& view, Surfaces& surfaces, const ShaderLimits& limits,
     sky_slope_ = 1 / (view.sky.to - view.sky.from);
 }
 
-Rgb Shader::radiance(const Ray& ray) {
-    Rgb sum(0.0);
-    double weight = 1;
+Rgb Shader::radiance(const Ray& ray, SampleStream& random) {
+    Rgb sum(0.0), weight(1.0);
     Ray path = ray;
     RayRange range;
-    for (int surface = 0; surface < most_surfaces && weight >= limits_.least_weight; ++surface) {
+    unsigned bounces = 0;
+    const unsigned most = most_surfaces + bounces_;
+    double clear = 1; // the share that the air leaves
+    for (unsigned surface = 0; surface < most && largest(weight) >= limits_.least_weight; ++surface) {
         SurfaceHit hit;
-        if (!closest(path, range, hit)) {
-            sum += weight * sky(path.direction);
+        const bool found = closest(path, range, hit);
+        if (view_.haze) {
+            const double length = found ? hit.t : std::min(limits_.farthest, largest_size);
+            const double left = view_.haze->left_after(path.origin, path.direction, length);
+            sum += clear * (1 - left) * weight * view_.haze->rgb;
+            clear *= left;
+        }
+        if (!found) {
+            // The surfaces that light is scattered by have taken the sky's already.
+            if (bounces == 0) sum += clear * weight * sky(path.direction);
             break;
         }
         const Point point = point_of(path, hit);
-        sum += weight * lit(point);
-        if (!(hit.material->reflection > 0)) break;
-        weight *= hit.material->reflection;
-        const double along = glm::dot(point.to_viewer, point.normal);
-        path = {point.position, glm::normalize(2 * along * point.normal - point.to_viewer)};
-        // Degenerate normals mirror nothing.
-        if (!is_finite(path.direction)) break;
-        range.least = least_distance(point.position, mirror_pixels);
+        sum += clear * weight * lit(point, random);
+        if (!bounce(point, bounces, path, weight, random)) break;
+        range.least = least_distance(point.position, bounces > 0 ? shadow_pixels : mirror_pixels);
     }
     return {finite_or_zero(sum.x), finite_or_zero(sum.y), finite_or_zero(sum.z)};
+}
+
+/// The way on from a surface, backwards along the light: its mirrored ray, or where bounces are left one by
+/// the cosine, each with the chance that its light is of the two. False at the end.
+bool Shader::bounce(const Point& point, unsigned& bounces, Ray& path, Rgb& weight,
+                    SampleStream& random) const {
+    const double mirrored = point.material->reflection;
+    const double through = point.material->translucency, diffuse = point.material->diffuse + through;
+    const Rgb scattered = bounces < bounces_ ? diffuse * point.rgb : Rgb(0.0);
+    const double most = largest(scattered);
+    if (!(mirrored + most > 0)) return false;
+    if (most > 0) {
+        const glm::dvec2 choice = random.next();
+        // The weight tells how much of the path's light there is left to look for.
+        const double going_on = std::min(1.0, mirrored + most);
+        if (choice.x >= going_on) return false;
+        const double chance = going_on * mirrored / (mirrored + most);
+        if (choice.x >= chance) {
+            weight *= scattered / (going_on - chance);
+            const bool behind = choice.y * diffuse < through;
+            const Vec3 pole = behind ? -point.normal : point.normal;
+            path = {point.position, cosine_direction(pole, random.next())};
+            ++bounces;
+            return is_finite(path.direction);
+        }
+        weight /= chance;
+    }
+    weight *= mirrored;
+    const double along = glm::dot(point.to_viewer, point.normal);
+    path = {point.position, glm::normalize(2 * along * point.normal - point.to_viewer)};
+    return is_finite(path.direction); // degenerate normals mirror nothing
 }
 
 bool Shader::first_hit(const Ray& ray, SurfaceHit& hit) {
@@ -143,12 +219,60 @@ double Shader::least_distance(Vec3 point, double pixels) const {
     return std::max(pixels * pixel, least_share * (largest_entry(point) + distance));
 }
 
-Rgb Shader::lit(const Point& point) {
+Rgb Shader::lit(const Point& point, SampleStream& random) {
     const double least = least_distance(point.position, shadow_pixels);
-    Rgb sum = point.material->ambient * point.rgb;
+    Rgb sum = point.material->ambient * ambient_light_ * point.rgb;
+    if (point.material->emission > 0) sum += point.material->emission * point.rgb;
     for (const Lamp& lamp : lamps_)
         sum += light_of(lamp, point, least);
+    for (const Disc& disc : discs_) {
+        const glm::dvec2 place = random.next();
+        const double radius = std::sqrt(place.x), turn = 2 * std::numbers::pi * place.y;
+        Lamp part = disc.middle;
+        part.at = glm::normalize(part.at + radius * (std::cos(turn) * disc.a + std::sin(turn) * disc.b));
+        sum += light_of(part, point, least);
+    }
+    if (sky_) sum += from_sky(point, least, random);
     return sum;
+}
+
+/// One direction, by the cosine: of the half that the surface faces, or of the other if light comes through;
+/// of a surface that shines, by half evenly.
+Rgb Shader::from_sky(const Point& point, double least, SampleStream& random) {
+    const Material& material = *point.material;
+    const double front = material.diffuse + material.specular;
+    if (!(front + material.translucency > 0)) return Rgb(0.0);
+    glm::dvec2 place = random.next();
+    const double front_chance = front / (front + material.translucency);
+    const bool behind = place.x >= front_chance;
+    const double chance = behind ? 1 - front_chance : front_chance;
+    place.x = (behind ? place.x - front_chance : place.x) / chance;
+    const bool shines = !behind && material.specular > 0;
+    const bool even = shines && place.x < 0.5;
+    if (shines) place.x = even ? 2 * place.x : 2 * place.x - 1;
+    const Vec3 pole = behind ? -point.normal : point.normal;
+    const Ray to_sky{point.position, even ? even_direction(pole, place) : cosine_direction(pole, place)};
+    const double cosine = glm::dot(pole, to_sky.direction);
+    if (!(cosine >= least_cosine)) return Rgb(0.0);
+    const Rgb light = sky_->radiance(to_sky.direction);
+    if (!(largest(light) > 0)) return Rgb(0.0);
+    Rgb share = (behind ? material.translucency : material.diffuse) * cosine * point.rgb;
+    if (shines) share += shine(point, to_sky.direction);
+    const double density_pi = chance * (shines ? 0.5 * cosine + 0.25 : cosine); // a steradian, times pi
+    if (!(largest(share) > 0) || shadowed(to_sky, {least})) return Rgb(0.0);
+    return share / density_pi * light;
+}
+
+/// The specular share of a light from there.
+double Shader::shine(const Point& point, Vec3 to_light) const {
+    const Material& material = *point.material;
+    if (!(material.specular > 0)) return 0;
+    const Vec3 halfway = point.to_viewer + to_light;
+    const double glint = glm::dot(halfway, point.normal) / glm::length(halfway);
+    const double exponent = 1 / std::max(material.roughness, least_roughness);
+    // x^n <= e^(n (x - 1)): most points are far from any highlight.
+    if (!(glint > 0 && exponent * (1 - glint) < dark_exponent)) return 0;
+    return material.specular * std::pow(glint, exponent);
 }
 
 Rgb Shader::light_of(const Lamp& lamp, const Point& point, double least) {
@@ -163,17 +287,11 @@ Rgb Shader::light_of(const Lamp& lamp, const Point& point, double least) {
     }
     const double cosine = glm::dot(point.normal, to_light.direction);
     // Also if the cosine is not a number, as of a light that lies on the surface.
-    if (!(cosine >= least_cosine)) return Rgb(0.0);
-    Rgb share = material.diffuse * cosine * point.rgb;
-    if (material.specular > 0 && !lamp.shadowless) {
-        const Vec3 halfway = point.to_viewer + to_light.direction;
-        const double glint = glm::dot(halfway, point.normal) / glm::length(halfway);
-        const double exponent = 1 / std::max(material.roughness, least_roughness);
-        // x^n <= e^(n (x - 1)): most points are far from any highlight.
-        if (glint > 0 && exponent * (1 - glint) < dark_exponent)
-            share += material.specular * std::pow(glint, exponent);
-    }
-    if (std::max({share.x, share.y, share.z}) <= 0) return Rgb(0.0);
+    if (!(std::abs(cosine) >= least_cosine)) return Rgb(0.0);
+    const bool behind = cosine < 0;
+    Rgb share = (behind ? -material.translucency : material.diffuse) * cosine * point.rgb;
+    if (!lamp.shadowless && !behind) share += shine(point, to_light.direction);
+    if (!(largest(share) > 0)) return Rgb(0.0);
     if (!lamp.shadowless && shadowed(to_light, range)) return Rgb(0.0);
     return share * lamp.rgb;
 }
@@ -186,6 +304,7 @@ bool Shader::shadowed(const Ray& to_light, const RayRange& range) {
 }
 
 Rgb Shader::sky(Vec3 direction) const {
+    if (view_.shows_sky_light) return view_.sky_light->radiance(direction);
     const Sky& sky = view_.sky;
     if (sky.zenith == sky.horizon) return sky.zenith;
     const double height = (glm::dot(direction, sky.axis) - sky.from) * sky_slope_;

@@ -2,10 +2,13 @@
 
 #include <limits>
 #include <memory>
+#include <optional>
 #include <vector>
 
+#include "compiler/scene/light_list.h"
 #include "compiler/scene/scene.h"
 #include "runtime/image/texture.h"
+#include "runtime/trace/sample_stream.h"
 #include "runtime/trace/surfaces.h"
 
 namespace graftal {
@@ -17,6 +20,8 @@ struct ShaderLimits {
     double farthest = std::numeric_limits<double>::infinity();
     /// Reflected rays that would count for less: its adc_bailout.
     double least_weight = 1.0 / 255;
+    /// Soft light comes from the lights of this list; nothing: from samples of it.
+    std::optional<LightListSize> list;
 };
 
 /// Light, as POV-Ray 3.7 computes it for what graftal emits (compiler/emit): ambient, diffuse and specular
@@ -25,8 +30,12 @@ struct ShaderLimits {
 /// and h halfway between the two, the light along a ray is
 ///     ambient c + sum over the lights that are not shadowed, n.l > 0, of
 ///         (diffuse (n.l) c + specular (n.h)^(1/roughness)) e
+///     + sum over those behind, n.l < 0, of translucency |n.l| c e + emission c
 ///     + reflection * (the light along the mirrored ray);
-/// shadowless lights are not shadowed and have no specular part. A picture shows up to eight surfaces one in
+/// shadowless lights are not shadowed and have no specular part. Light from discs and from the sky is the sum
+/// of the same over what is in them, e = L dw / pi: estimated by one direction for each, or by a list of
+/// lights (light_list.h), to which the estimate converges as the list grows. Of a sky that asks for bounces,
+/// surfaces light each other diffusely, and `ambient` is 0. A picture shows up to eight surfaces one in
 /// the other; what the last of them mirrors is black. Nothing is clamped. (POV-Ray's trace.cpp: TraceRay,
 /// ComputeLightedTexture, ComputeOneDiffuseLight, ComputeSpecularColour, ComputeReflection, ComputeSky.)
 class Shader {
@@ -37,8 +46,17 @@ class Shader {
            std::shared_ptr<const Texture> ground_texture = nullptr);
 
     /// The light that comes along the ray, from the front; components may exceed 1, and are finite whatever
-    /// is met. The direction is of unit length.
-    Rgb radiance(const Ray& ray);
+    /// is met. The direction is of unit length. Where soft light is sampled, an estimate by the numbers of
+    /// the stream.
+    Rgb radiance(const Ray& ray, SampleStream& random);
+    /// The same where nothing is sampled.
+    Rgb radiance(const Ray& ray) {
+        SampleStream unused(0, 0);
+        return radiance(ray, unused);
+    }
+
+    /// True where radiance() estimates: more samples make a better picture.
+    bool samples() const { return sky_ || !discs_.empty(); }
 
     /// What the ray meets first, the ground included; false if that is the sky.
     bool first_hit(const Ray& ray, SurfaceHit& hit);
@@ -50,6 +68,11 @@ class Shader {
         bool sun;
         bool shadowless;
     };
+    /// A sun with an angle.
+    struct Disc {
+        Lamp middle;
+        Vec3 a, b; ///< half axes: from the middle's direction to its edge
+    };
     struct Point;
 
     bool closest(const Ray& ray, RayRange range, SurfaceHit& hit);
@@ -57,7 +80,10 @@ class Shader {
     bool meet_ground(const Ray& ray, const RayRange& range, double& t) const;
     const Texture::Texel& ground_texel(Vec3 point) const;
     Point point_of(const Ray& ray, const SurfaceHit& hit) const;
-    Rgb lit(const Point& point);
+    Rgb lit(const Point& point, SampleStream& random);
+    Rgb from_sky(const Point& point, double least, SampleStream& random);
+    double shine(const Point& point, Vec3 to_light) const;
+    bool bounce(const Point& point, unsigned& bounces, Ray& path, Rgb& weight, SampleStream& random) const;
     Rgb light_of(const Lamp& lamp, const Point& point, double least);
     bool shadowed(const Ray& to_light, const RayRange& range);
     Rgb sky(Vec3 direction) const;
@@ -66,8 +92,12 @@ class Shader {
     const View& view_;
     Surfaces& surfaces_;
     const ShaderLimits limits_;
-    std::vector<Lamp> lamps_; ///< without those that are black
-    double pixel_;            ///< a pixel's length: of parallel rays in scene units, else at distance 1
+    std::vector<Lamp> lamps_;       ///< without those that are black
+    std::vector<Disc> discs_;       ///< that are sampled
+    const SkyLight* sky_ = nullptr; ///< that is sampled
+    Rgb ambient_light_;
+    unsigned bounces_ = 0;
+    double pixel_; ///< a pixel's length: of parallel rays in scene units, else at distance 1
     double sky_slope_;
     std::shared_ptr<const Texture> ground_texture_; ///< null: plain
     Affine picture_from_world_;                     ///< of the ground's

@@ -26,7 +26,7 @@ Image picture_of(const std::string& directory, ImageSize size, SampleFormat form
     job.directory = directory;
     job.width = size.width;
     job.height = size.height;
-    job.linear16 = format == SampleFormat::linear16;
+    if (format == SampleFormat::linear16) job.format = PovrayJob::Format::linear16;
     job.antialias = antialias;
     const PovrayResult result = run_povray(job);
     EXPECT_TRUE(result.status.ok()) << result.status.message();

@@ -94,7 +94,7 @@ Status draw_by_povray(const std::string& directory, ImageSize size, int threads,
     job.directory = directory;
     job.width = size.width;
     job.height = size.height;
-    job.linear16 = true;
+    job.format = PovrayJob::Format::linear16;
     job.threads = threads;
     const PovrayResult result = run_povray(job);
     return result.status.ok() ? read_image(directory + "/" + job.picture, image) : result.status;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <vector>
 
 #include "compiler/passes/pipeline.h"
@@ -204,6 +205,8 @@ void add_model(CLI::App& app, Options& options) {
 
 namespace {
 
+constexpr int most_samples_a_pixel = 65'536;
+
 std::string engine_names(std::string_view between) {
     std::string names;
     for (const Engine& engine : engines())
@@ -232,6 +235,25 @@ void add_drawing(CLI::App& app, Options& options) {
     app.add_option_function<std::string>("--engine", engine, engines_text())
         ->type_name(engine_names("|"))
         ->take_last();
+    static const std::map<std::string, Quality> qualities = {
+        {"draft", Quality::draft}, {"normal", Quality::normal}, {"best", Quality::best}};
+    app.add_option("--quality", options.render.compile.view.quality,
+                   "How closely soft light is followed: draft, normal or best (default normal)")
+        ->transform(CLI::CheckedTransformer(qualities).description(""))
+        ->type_name("QUALITY")
+        ->take_last();
+    app.add_option("--samples", options.render.samples,
+                   "Soft light, native engine: so many samples per pixel, in place of --quality's")
+        ->check(CLI::Range(1, most_samples_a_pixel).description(""))
+        ->type_name("N")
+        ->take_last();
+    app.add_option("--noise", options.render.noise_255,
+                   "Soft light, native engine: no more samples where the error is below N of 255 steps")
+        ->check(CLI::Range(0.0, 255.0).description(""))
+        ->type_name("N")
+        ->take_last();
+    app.add_flag("--listed-lights", options.render.listed_lights,
+                 "Soft light, native engine: as POV-Ray draws it, from the same list of lights");
     app.add_flag("--unconfined", options.render.unconfined,
                  "Run POV-Ray unconfined: with your permissions, your environment and no limits (for a "
                  "program in its place that runs it somewhere else)");

@@ -73,7 +73,7 @@ TEST_F(Povray, RendersAScene) {
 TEST_F(Povray, LinearPictureHoldsTheColourAsItIs) {
     scene("box { <-9,-9,0>, <9,9,1> pigment { rgb <0.25,0.5,0.75> } finish { emission 1 ambient 0 diffuse 0 "
           "} }\n");
-    job_.linear16 = true;
+    job_.format = PovrayJob::Format::linear16;
     ASSERT_TRUE(run_povray(job_).status.ok());
     Image image;
     ASSERT_TRUE(read_image(path("picture.png"), image).ok());
@@ -86,7 +86,7 @@ TEST_F(Povray, PaletteIsReadAsLinear) {
     ASSERT_TRUE(palette_saved(path("palette.png"), 2, 1, std::vector(2, Rgb(0.1, 0.2, 0.3))).ok());
     scene("box { <-9,-9,0>, <9,9,1> pigment { image_map { png \"palette.png\" gamma 1.0 } }"
           " finish { emission 1 ambient 0 diffuse 0 } }\n");
-    job_.linear16 = true;
+    job_.format = PovrayJob::Format::linear16;
     const PovrayResult result = run_povray(job_);
     ASSERT_TRUE(result.status.ok()) << result.status.message();
     Image image;
@@ -201,7 +201,7 @@ TEST_F(Povray, ArgumentsSayWhatWasAsked) {
     EXPECT_THAT(povray_arguments(job_), testing::IsSupersetOf({"+Iscene.pov", "+Opicture.png", "+W16", "+H12",
                                                                "-D", "+FN8", "+WT3", "+R4", "-J"}));
     job_.antialias = std::nullopt;
-    job_.linear16 = true;
+    job_.format = PovrayJob::Format::linear16;
     EXPECT_THAT(povray_arguments(job_), testing::IsSupersetOf({"-A", "+FN16", "File_Gamma=1.0"}));
 }
 

@@ -1,0 +1,97 @@
+#include "compiler/light/sky_light.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+
+#include "compiler/light/blackbody.h"
+
+namespace graftal {
+
+namespace {
+
+/// Perez's formula without the factor of the zenith.
+double perez_at(const std::array<double, 5>& c, double cos_zenith, double cos_sun) {
+    const double to_sun = std::acos(std::clamp(cos_sun, -1.0, 1.0));
+    return (1 + c[0] * std::exp(c[1] / cos_zenith)) *
+           (1 + c[2] * std::exp(c[3] * to_sun) + c[4] * cos_sun * cos_sun);
+}
+
+/// a t^3 + b t^2 + c t + d
+double cubic(double t, double a, double b, double c, double d) {
+    return ((a * t + b) * t + c) * t + d;
+}
+
+/// Luminance in kcd/m2, and chromaticities.
+Rgb zenith_of(double turbidity, double sun_from_zenith) {
+    const double t = turbidity, s = sun_from_zenith;
+    const double chi = (4.0 / 9 - t / 120) * (std::numbers::pi - 2 * s);
+    return {
+        (4.0453 * t - 4.9710) * std::tan(chi) - 0.2155 * t + 2.4192,
+        t * t * cubic(s, 0.00166, -0.00375, 0.00209, 0) + t * cubic(s, -0.02903, 0.06377, -0.03202, 0.00394) +
+            cubic(s, 0.11693, -0.21196, 0.06052, 0.25886),
+        t * t * cubic(s, 0.00275, -0.00610, 0.00317, 0) + t * cubic(s, -0.04214, 0.08970, -0.04153, 0.00516) +
+            cubic(s, 0.15346, -0.26756, 0.06670, 0.26688)};
+}
+
+constexpr double least_cosine = 1e-3; // at the horizon the formula divides by 0
+
+} // namespace
+
+ClearSky::ClearSky(double turbidity, Vec3 towards_sun, Vec3 up) : to_sun(towards_sun) {
+    constexpr double lowest_sun = 0.01; // cosine; the luminance of the zenith is fitted above
+    const double cosine = std::clamp(glm::dot(to_sun, up), lowest_sun, 1.0);
+    const Vec3 level = to_sun - glm::dot(to_sun, up) * up;
+    if (glm::dot(to_sun, up) < lowest_sun)
+        to_sun = cosine * up + std::sqrt(1 - cosine * cosine) * glm::normalize(level);
+    const double t = turbidity;
+    perez = {{{0.1787 * t - 1.4630, -0.3554 * t + 0.4275, -0.0227 * t + 5.3251, 0.1206 * t - 2.5771,
+               -0.0670 * t + 0.3703},
+              {-0.0193 * t - 0.2592, -0.0665 * t + 0.0008, -0.0004 * t + 0.2125, -0.0641 * t - 0.8989,
+               -0.0033 * t + 0.0452},
+              {-0.0167 * t - 0.2608, -0.0950 * t + 0.0092, -0.0079 * t + 0.2102, -0.0441 * t - 1.6537,
+               -0.0109 * t + 0.0529}}};
+    zenith_yxy = zenith_of(t, std::acos(cosine));
+    for (int i = 0; i < 3; ++i)
+        zenith_yxy[i] /= perez_at(perez[static_cast<std::size_t>(i)], 1, cosine);
+}
+
+Rgb ClearSky::radiance(Vec3 direction, Vec3 up) const {
+    const double height = glm::dot(direction, up);
+    const double cos_sun = glm::dot(direction, to_sun);
+    Rgb yxy;
+    for (int i = 0; i < 3; ++i)
+        yxy[i] = zenith_yxy[i] *
+                 perez_at(perez[static_cast<std::size_t>(i)], std::max(height, least_cosine), cos_sun);
+    const double luminance = std::max(yxy.x, 0.0);
+    const Rgb xyz = luminance / yxy.z * Rgb(yxy.y, yxy.z, 1 - yxy.y - yxy.z);
+    return glm::max(rgb_from_xyz(xyz), Rgb(0.0));
+}
+
+Rgb SkyLight::radiance(Vec3 direction) const {
+    const double height = glm::dot(direction, up);
+    if (height < 0) return below;
+    if (clear) return brightness / ClearSky::kcd_of_paper * clear->radiance(direction, up);
+    const double t = std::min(height / full_height, 1.0);
+    return (1 - t) * horizon + t * zenith;
+}
+
+Rgb SkyLight::on_paper() const {
+    constexpr int rings = 64, parts = 64;
+    const Vec3 across = std::abs(up.x) < 0.9 ? Vec3(1, 0, 0) : Vec3(0, 1, 0);
+    const Vec3 x = glm::normalize(glm::cross(up, across)), z = glm::cross(x, up);
+    Rgb sum(0.0);
+    for (int i = 0; i < rings; ++i)
+        for (int j = 0; j < parts; ++j) {
+            const double sine = std::sqrt((i + 0.5) / rings); // equal shares of the cosine-weighted sphere
+            const double turn = 2 * std::numbers::pi * (j + 0.5) / parts;
+            sum +=
+                radiance(std::sqrt(1 - sine * sine) * up + sine * (std::cos(turn) * x + std::sin(turn) * z));
+        }
+    return sum / static_cast<double>(rings * parts);
+}
+
+} // namespace graftal

@@ -1,0 +1,81 @@
+#include "compiler/scene/light_list.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include <glm/geometric.hpp>
+
+namespace graftal {
+
+namespace {
+
+/// Between neighbours of a spiral whose points spread evenly.
+const double golden_turn = std::numbers::pi * (3 - std::sqrt(5.0));
+
+Vec3 around(Vec3 direction, const AxesAcross& axes, double along, double radius, double turn) {
+    return glm::normalize(along * direction + radius * (std::cos(turn) * axes.a + std::sin(turn) * axes.b));
+}
+
+void list_disc(const Light& sun, unsigned count, std::vector<Light>& list) {
+    const double radius = std::tan(0.5 * sun.angle_deg * std::numbers::pi / 180);
+    const AxesAcross axes = axes_across(sun.location);
+    for (unsigned i = 0; i < count; ++i) {
+        Light part = sun;
+        part.angle_deg = 0;
+        part.rgb = sun.rgb / static_cast<double>(count);
+        part.location = around(sun.location, axes, 1, radius * std::sqrt((i + 0.5) / count), i * golden_turn);
+        list.push_back(part);
+    }
+}
+
+/// Directions whose cosine with `up` lies between `low` and `high`.
+void list_zone(const SkyLight& sky, double low, double high, unsigned count, std::vector<Light>& list) {
+    const AxesAcross axes = axes_across(sky.up);
+    for (unsigned i = 0; i < count; ++i) {
+        const double along = high - (high - low) * (i + 0.5) / count;
+        const Vec3 towards = around(sky.up, axes, along, std::sqrt(1 - along * along), i * golden_turn);
+        const double share = 2 * (high - low) / count; // of 2 pi (high - low) in all, over pi
+        const Rgb rgb = share * sky.radiance(towards);
+        if (std::max({rgb.r, rgb.g, rgb.b}) > 0)
+            list.push_back({.location = towards, .sun = true, .rgb = rgb});
+    }
+}
+
+} // namespace
+
+AxesAcross axes_across(Vec3 direction) {
+    const Vec3 other = std::abs(direction.x) < 0.9 ? Vec3(1, 0, 0) : Vec3(0, 1, 0);
+    const Vec3 a = glm::normalize(glm::cross(direction, other));
+    return {a, glm::cross(direction, a)};
+}
+
+LightListSize list_size(Quality quality) {
+    // POV-Ray's time grows as their number does. 16 show bands, 32 will do, 64 looks like 512.
+    switch (quality) {
+    case Quality::draft:
+        return {4, 16};
+    case Quality::normal:
+        return {8, 40};
+    case Quality::best:
+        break;
+    }
+    return {16, 160};
+}
+
+std::vector<Light> listed_lights(const View& view, const LightListSize& size) {
+    std::vector<Light> list;
+    for (const Light& light : view.lights)
+        if (light.sun && light.angle_deg > 0 && !light.shadowless)
+            list_disc(light, size.disc, list);
+        else
+            list.push_back(light);
+    if (!view.sky_light) return list;
+    // What shines from below counts less than the sky, and not at all through a ground.
+    const unsigned from_below = view.ground ? 0 : size.dome / 5;
+    list_zone(*view.sky_light, 0, 1, size.dome - from_below, list);
+    if (from_below > 0) list_zone(*view.sky_light, -1, 0, from_below, list);
+    return list;
+}
+
+} // namespace graftal

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <vector>
+
+#include "compiler/scene/scene.h"
+
+namespace graftal {
+
+/// How many parallel lights stand for light from a disc, and from all directions.
+struct LightListSize {
+    unsigned disc = 0, dome = 0;
+    bool operator==(const LightListSize&) const = default;
+};
+
+/// Two unit vectors at right angles to a third, and to each other.
+struct AxesAcross {
+    Vec3 a, b;
+};
+AxesAcross axes_across(Vec3 direction);
+
+LightListSize list_size(Quality quality);
+
+/// The lights of a view as points and parallel rays alone, the same for every engine. A sun with an angle
+/// becomes suns on its disc, evenly; the sky becomes suns on a lattice of equal solid angles, those of a
+/// direction d with the colour L(d) dw / pi: their sum converges to the integral that a surface takes from
+/// them. Over a ground none comes from below. Shadowless lights and lamps stay as they are.
+std::vector<Light> listed_lights(const View& view, const LightListSize& size);
+
+} // namespace graftal

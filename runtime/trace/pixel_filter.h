@@ -1,0 +1,23 @@
+#pragma once
+
+#include <array>
+
+namespace graftal {
+
+/// Blackman and Harris's window over three pixels, as a distribution: samples drawn by it count alike, and
+/// each belongs to one pixel alone (Ernst, Stamminger and Greiner, "Filter importance sampling", 2006).
+class PixelFilter {
+  public:
+    static constexpr double radius_px = 1.5;
+
+    PixelFilter();
+
+    /// Of u in [0, 1): the offset from the pixel's middle along one axis, in pixels.
+    double offset(double u) const;
+
+  private:
+    static constexpr int steps = 256;
+    std::array<double, steps + 1> offset_of_{};
+};
+
+} // namespace graftal

@@ -1,0 +1,73 @@
+#include "compiler/scene/light_list.h"
+
+#include <cmath>
+#include <numbers>
+
+#include <glm/geometric.hpp>
+#include <gtest/gtest.h>
+
+namespace graftal {
+namespace {
+
+/// What white paper that faces up shows.
+Rgb on_paper(const std::vector<Light>& lights) {
+    Rgb sum(0.0);
+    for (const Light& light : lights)
+        sum += std::max(0.0, light.location.y) * light.rgb;
+    return sum;
+}
+
+TEST(LightList, ASkysLightsAddUpToItsLight) {
+    View view;
+    view.sky_light.emplace();
+    view.sky_light->clear.emplace(3, glm::normalize(Vec3(1, 0.7, 2)), Vec3(0, 1, 0));
+    view.sky_light->below = {0.3, 0.2, 0.1};
+    const Rgb whole = view.sky_light->on_paper();
+    double before = 1;
+    for (const unsigned count : {40u, 400u, 4000u}) {
+        const Rgb listed = on_paper(listed_lights(view, {1, count}));
+        const double error = glm::length(listed - whole) / glm::length(whole);
+        EXPECT_LT(error, before) << count;
+        before = 0.3 * error + 1e-3;
+    }
+    EXPECT_LT(before, 4e-3);
+}
+
+TEST(LightList, NoneComesThroughAGround) {
+    View view;
+    view.sky_light = SkyLight{.zenith = Rgb(1.0), .horizon = Rgb(1.0), .below = Rgb(1.0)};
+    int below = 0;
+    for (const Light& light : listed_lights(view, {1, 50}))
+        below += light.location.y < 0;
+    EXPECT_EQ(below, 10);
+    view.ground.emplace();
+    const std::vector<Light> over_ground = listed_lights(view, {1, 50});
+    EXPECT_EQ(over_ground.size(), 50u);
+    for (const Light& light : over_ground)
+        EXPECT_GT(light.location.y, 0);
+}
+
+TEST(LightList, ASunsPartsLieOnItsDiscAndAddUpToIt) {
+    View view;
+    const Vec3 towards = glm::normalize(Vec3(1, 2, -0.5));
+    view.lights = {{.location = towards, .sun = true, .rgb = {2, 1, 0.5}, .angle_deg = 10},
+                   {.location = {1, 2, 3}, .rgb = Rgb(4.0)}};
+    const std::vector<Light> list = listed_lights(view, {16, 1});
+    ASSERT_EQ(list.size(), 17u);
+    Rgb sum(0.0);
+    Vec3 mean(0.0);
+    double widest = 0;
+    for (std::size_t i = 0; i < 16; ++i) {
+        sum += list[i].rgb;
+        mean += list[i].location / 16.0;
+        widest = std::max(widest, std::acos(glm::dot(list[i].location, towards)));
+    }
+    EXPECT_NEAR(glm::length(sum - Rgb(2, 1, 0.5)), 0, 1e-12);
+    EXPECT_LT(glm::length(glm::normalize(mean) - towards), 0.01);
+    EXPECT_LT(widest, 5 * std::numbers::pi / 180);
+    EXPECT_GT(widest, 4 * std::numbers::pi / 180);
+    EXPECT_EQ(list.back().location, Vec3(1, 2, 3)) << "a lamp stays";
+}
+
+} // namespace
+} // namespace graftal

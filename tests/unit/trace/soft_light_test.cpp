@@ -1,0 +1,130 @@
+// Light from discs and from the sky, against closed forms and against long lists of lights.
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include <gtest/gtest.h>
+
+#include "tests/unit/trace/lit_scene.h"
+
+namespace graftal {
+namespace {
+
+View under_sky(Rgb light, unsigned bounces = 0) {
+    View view = black_view();
+    view.sky_light = SkyLight{.zenith = light, .horizon = light, .below = light, .bounces = bounces};
+    view.shows_sky_light = true;
+    return view;
+}
+
+Rgb mean_light(Shader& shader, const Ray& ray, std::uint32_t samples) {
+    Rgb sum(0.0);
+    for (std::uint32_t i = 0; i < samples; ++i) {
+        SampleStream random(0, i);
+        sum += shader.radiance(ray, random);
+    }
+    return sum / static_cast<double>(samples);
+}
+
+/// A white ball in a white sky cannot be seen: each sample of each of its points is the sky's light.
+TEST(SoftLight, AWhiteBallInAWhiteFurnaceVanishes) {
+    View view = under_sky({0.5, 0.25, 1});
+    Scene scene;
+    scene.balls.push_back({Vec3(0.0), 1, Rgb(1.0), matt});
+    Shader shader(view, scene);
+    for (const double x : {0.0, 0.3, 0.7, 0.99, 0.9999, 1.5}) {
+        const Rgb light = mean_light(shader, {{x, 0, 10}, {0, 0, -1}}, 4);
+        EXPECT_NEAR(light.r, 0.5, 1e-12) << x;
+        EXPECT_NEAR(light.g, 0.25, 1e-12) << x;
+        EXPECT_NEAR(light.b, 1, 1e-12) << x;
+    }
+}
+
+/// Grey balls that light each other: with albedo a, what k bounces leave out is below a^(k + 1).
+TEST(SoftLight, WhiteBallsThatTouchVanishAsTheBouncesGrow) {
+    Scene scene;
+    const Material nearly_white{.ambient = 0, .diffuse = 1, .specular = 0};
+    for (const double x : {-1.0, 1.0})
+        scene.balls.push_back({{x, 0, 0}, 1, Rgb(1.0), nearly_white});
+    double before = 1;
+    for (const unsigned bounces : {0u, 1u, 4u, 16u}) {
+        View view = under_sky(Rgb(1.0), bounces);
+        Shader shader(view, scene);
+        const double lost = 1 - mean_light(shader, {{0.3, 0, 10}, {0, 0, -1}}, 1 << 14).g;
+        EXPECT_GT(lost, -0.003) << bounces; // noise
+        EXPECT_LT(lost, 0.8 * before) << bounces;
+        before = lost;
+    }
+    EXPECT_LT(before, 0.01);
+}
+
+/// Of an even sky, a point that sees the part above a wall of height h at distance d with an endless edge.
+TEST(SoftLight, AWallTakesHalfOfTheSky) {
+    View view = under_sky(Rgb(1.0));
+    Scene scene;
+    // The plane z = 0 faces the viewer; the plane x = 0.5 stands on it.
+    scene.walls = {{{0, 0, 1}, 0, Rgb(1.0), matt}, {{1, 0, 0}, 0.5, Rgb(1.0), matt}};
+    Shader shader(view, scene);
+    const Rgb light = mean_light(shader, {{0, 0, 10}, {0, 0, -1}}, 4096);
+    EXPECT_NEAR(light.g, 0.5, 0.005); // the cosine-weighted half x < 0
+}
+
+TEST(SoftLight, ADiscSunLightsLikeItsMiddleAndCastsAPenumbra) {
+    View view = black_view();
+    const double angle = std::numbers::pi / 6;
+    view.lights = {
+        {.location = {std::sin(angle), 0, std::cos(angle)}, .sun = true, .rgb = {1, 2, 3}, .angle_deg = 8}};
+    Scene open;
+    open.walls = {{{0, 0, 1}, 0, Rgb(1.0), matt}};
+    Shader unshadowed(view, open);
+    const Rgb light = mean_light(unshadowed, ahead, 1024);
+    for (int c = 0; c < 3; ++c) // the mean cosine over a small disc is that of its middle, nearly
+        EXPECT_NEAR(light[c], (c + 1) * std::cos(angle), 0.01 * (c + 1));
+
+    // A ball of 4 degrees, seen in the middle of a sun of 8, covers a quarter of it.
+    const double distance = 5, radius = distance * std::sin(2 * std::numbers::pi / 180);
+    Scene eclipse = open;
+    eclipse.balls.push_back({distance * view.lights[0].location, radius, Rgb(1.0), matt});
+    Shader shadowed(view, eclipse);
+    EXPECT_NEAR(mean_light(shadowed, ahead, 4096).r, 0.75 * std::cos(angle), 0.01);
+}
+
+/// The estimate and the list have the same limit: all of a material, and a sky that is not even.
+TEST(SoftLight, SamplesAndLongListsAgree) {
+    View view = black_view();
+    view.sky_light = SkyLight{.zenith = {0.3, 0.5, 0.9}, .horizon = {1, 0.9, 0.8}, .below = {0.3, 0.2, 0.1}};
+    view.sky_light->up = glm::normalize(Vec3(0.3, 1, 0.4));
+    view.lights = {
+        {.location = glm::normalize(Vec3(1, 1, 1)), .sun = true, .rgb = Rgb(2.0), .angle_deg = 20}};
+    const Material shining{.ambient = 0.1, .diffuse = 0.7, .specular = 0.3, .roughness = 0.1};
+    Scene scene;
+    scene.balls = {{Vec3(0.0), 1, {0.9, 0.5, 0.2}, shining}, {{0.7, 0.9, 0.8}, 0.5, Rgb(0.7), matt}};
+    ShaderLimits listed;
+    listed.list = LightListSize{50'000, 100'000};
+    Shader by_list(view, scene, listed), by_samples(view, scene);
+    EXPECT_FALSE(by_list.samples());
+    EXPECT_TRUE(by_samples.samples());
+    for (const Vec3 target : {Vec3(0.0), Vec3(0.5, 0.3, 0), Vec3(-0.6, 0.5, 0), Vec3(0.1, -0.9, 0)}) {
+        const Vec3 eye(0, 0, 10);
+        const Ray ray{eye, glm::normalize(target - eye)};
+        const Rgb listed_light = by_list.radiance(ray), sampled = mean_light(by_samples, ray, 1 << 17);
+        for (int c = 0; c < 3; ++c)
+            EXPECT_NEAR(sampled[c], listed_light[c], 0.0015) << target.x << " " << target.y;
+    }
+}
+
+TEST(SoftLight, AmbientIsAShareOfTheSkysLightAndBouncesReplaceIt) {
+    const Material glowing{.ambient = 0.25, .diffuse = 0, .specular = 0};
+    Scene scene;
+    scene.walls = {{{0, 0, 1}, 0, Rgb(1.0), glowing}};
+    View view = under_sky(Rgb(0.8));
+    Shader shader(view, scene);
+    EXPECT_NEAR(mean_light(shader, ahead, 4).g, 0.2, 1e-12);
+    view.sky_light->bounces = 1;
+    Shader bouncing(view, scene);
+    EXPECT_EQ(mean_light(bouncing, ahead, 4).g, 0);
+}
+
+} // namespace
+} // namespace graftal

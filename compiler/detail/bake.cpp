@@ -114,10 +114,10 @@ class Baker {
         const auto when = numbers_.size() < fewest_leaves_for_a_thread
                               ? std::launch::deferred
                               : std::launch::async | std::launch::deferred;
-        const std::future<void> coloured = std::async(when, [this] { colour_leaves(); });
+        std::future<void> coloured = std::async(when, [this] { colour_leaves(); });
         for (BakedPart& part : parts_)
             build(part);
-        coloured.wait();
+        coloured.get(); // throws what stopped it
         for (BakedPart& part : parts_)
             finish(part);
     }

@@ -230,6 +230,7 @@ class Drawing {
     void note(const Sampling& sampling, std::size_t traced) {
         if (traced == pixels()) {
             report_.samples_a_pixel = sampling.samples_a_pixel();
+            report_.fewer_where_calm = sampling.noise_255 > 0;
             return;
         }
         report_.finer_samples_a_pixel = sampling.samples_a_pixel();
@@ -304,6 +305,7 @@ std::string samples_text(double a_pixel) {
 
 std::string in_words(const NativeReport& report) {
     std::string text = report.finished ? "" : "unfinished: ";
+    if (report.fewer_where_calm) text += "up to ";
     text += samples_text(report.samples_a_pixel);
     if (report.finer_share > 0)
         text += fmt::format(", in {:.2g} % of the picture {},", 100 * report.finer_share,

@@ -19,6 +19,7 @@ struct NativeReport {
     double seconds = 0;               ///< of tracing
     double first_picture_seconds = 0; ///< from the beginning of the call until a picture was there
     double samples_a_pixel = 0;       ///< of the picture that is there, all over
+    bool fewer_where_calm = false;    ///< a pixel has fewer samples where they agree
     bool finished = false;            ///< it is as it was asked for
     double finer_samples_a_pixel = 0; ///< if an interruption left it: of the part that is finer
     double finer_share = 0;           ///< of its area

@@ -133,6 +133,17 @@ Status prepare(const CompiledModel& model, const RenderOptions& options, Texture
     return status;
 }
 
+/// What POV-Ray's picture lacks.
+void note_bounces(const CompiledModel& model, Diagnostics& diagnostics) {
+    if (!model.view.sky_light || model.view.sky_light->bounces == 0) return;
+    const Graph& graph = model.model->graph;
+    diagnostics
+        .note(
+            graph.objects[graph.root].span,
+            "POV-Ray's picture has no light from surface to surface: each material's 'ambient' stands for it")
+        .with_hint("use --engine native to follow the 'bounces' of the sky");
+}
+
 /// Seconds of one processor that POV-Ray takes.
 struct PovrayTime {
     double parsing = 0;
@@ -248,6 +259,7 @@ std::optional<PovrayReport> render_by_povray(PictureSession& session, const Rend
         return compilation.status.ok();
     };
 
+    note_bounces(*model, compilation.diagnostics);
     if (!run("emit", [&] { return prepare(*model, options, session.textures(), temporary, job); }))
         return std::nullopt;
     PovrayReport report = report_of(model->cut);

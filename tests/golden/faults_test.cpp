@@ -60,6 +60,22 @@ TEST_F(Faults, NoMemoryIsSaidWithoutTakingAny) {
         }
 }
 
+/// Colours are mixed on a thread of their own: what stopped it was lost, and the model was black.
+TEST_F(Faults, AnotherSceneForWantOfMemoryIsNotSilent) {
+    const std::string command = "compile -q --size 48x28 -o - m.rifs";
+    const std::string good = graftal(command).out;
+    constexpr int first = 4000, step = 6, run_to_end = 40; // the fault had 13 calls
+    int others = 0, equal = 0;
+    for (int number = first; equal < run_to_end; number += step) {
+        const RunResult result = with("alloc:" + std::to_string(number), command);
+        const bool same = result.status == 0 && result.out == good;
+        equal = same ? equal + 1 : 0;
+        others += !same;
+        EXPECT_TRUE(same || !result.err.empty()) << number;
+    }
+    EXPECT_GT(others, 10) << "the faults are behind all calls";
+}
+
 TEST_F(Faults, NoThreadsAreFewerThreads) {
     for (const std::string fault : {"thread:1", "thread:1:stay", "thread:3:stay"}) {
         const RunResult result =

@@ -69,6 +69,22 @@ TEST_F(Render, LinearPngAndExrHoldTheSameValues) {
     EXPECT_LE(compare_images(picture("a.png"), picture("a.exr")).max, 1.0 / 2048);
 }
 
+TEST_F(Render, SoftLightIsFollowedByBothEngines) {
+    write("m.inst", "sky { zenith: 0.6, 0.6, 0.6  bounces: 2 }\nmaterial white { color: 1, 1, 1  diffuse: 1  "
+                    "ambient: 0  specular: 0 }\nobject m { sphere material: white }\n");
+    const RunResult povray = graftal("render m.inst" + small + "-o a.png");
+    EXPECT_EQ(povray.status, 0);
+    EXPECT_THAT(povray.err, testing::HasSubstr("no light from surface to surface"));
+    const RunResult native = graftal("render m.inst --engine native" + small + "-o b.png");
+    EXPECT_EQ(native.status, 0);
+    EXPECT_THAT(native.err, testing::HasSubstr("b.png: up to 128 samples per pixel"));
+    // A white ball in an even sky cannot be seen, except for the dither; a list of 40 lights is near.
+    const Image furnace = picture("b.png");
+    const auto [least, most] = std::ranges::minmax(furnace.pixels);
+    EXPECT_LE(most - least, 1.001f / 255);
+    EXPECT_LT(compare_images(picture("a.png"), furnace).mean, 3.0 / 255);
+}
+
 TEST_F(Render, OldPictureIsReplacedWhole) {
     write("a.png", "old");
     ASSERT_EQ(graftal("render " + gasket + small + "-o a.png").status, 0);

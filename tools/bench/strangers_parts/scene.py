@@ -69,6 +69,10 @@ def materials(draw, model, most=3):
         for field in ('ambient', 'diffuse', 'specular', 'reflection'):
             if draw.chance(0.2):
                 fields.append(f'{field}: {number(draw.random())}')
+        if draw.chance(0.15):
+            fields.append(f'translucency: {number(draw.random())}')
+        if draw.chance(0.05):
+            fields.append(f'emission: {number(draw.log_uniform(0.01, 100))}')
         if draw.chance(0.1):
             fields.append(f'roughness: {number(draw.log_uniform(0.001, 1))}')
         model.say(f'material {name} {{ {"  ".join(fields)} }}')
@@ -86,6 +90,8 @@ def surroundings(draw, model):
             fields += ['orthographic', f'width: {number(draw.log_uniform(0.01, 30))}']
         else:
             fields.append(f'angle: {number(draw.uniform(5, 120))}')
+            if draw.chance(0.2):
+                fields.append(f'aperture: {number(draw.log_uniform(0.001, 1))}')
         model.say(f'camera {{ {"  ".join(fields)} }}')
     while draw.chance(0.15):
         if draw.chance(0.5):
@@ -93,9 +99,47 @@ def surroundings(draw, model):
                       f'{"  shadowless" if draw.chance(0.3) else ""} }}')
         else:
             model.say(f'light {{ sun: {numbers([draw.uniform(-1, 1), draw.uniform(0.1, 1), draw.uniform(-1, 1)])}'
-                      f'  color: {colour(draw)} }}')
+                      f'  color: {colour(draw)}{sun_fields(draw)} }}')
+    soft_light(draw, model)
     if draw.chance(0.15):
         model.say(f'background {{ zenith: {colour(draw)}  horizon: {colour(draw)} }}' if draw.chance(0.5) else
                   f'background: {colour(draw)}')
     if draw.chance(0.1):
         model.say(f'ground {{ height: {number(draw.uniform(-2, 0.2))}  color: {colour(draw)} }}')
+
+
+def sun_fields(draw):
+    """Angle, temperature and brightness, each now and then."""
+    text = ''
+    if draw.chance(0.3):
+        text += f'  angle: {number(draw.log_uniform(0.01, 90))}'
+    if draw.chance(0.2):
+        text += f'  temperature: {number(draw.log_uniform(1000, 40000))}'
+    if draw.chance(0.2):
+        text += f'  brightness: {number(draw.log_uniform(0.01, 100))}'
+    return text
+
+
+def soft_light(draw, model):
+    """Sky, haze and film, each now and then."""
+    if draw.chance(0.15):
+        if draw.chance(0.4):
+            model.say(f'light {{ sun: {numbers([draw.uniform(-1, 1), draw.uniform(-0.2, 1), draw.uniform(-1, 1)])}'
+                      f'{sun_fields(draw)} }}')
+            fields = [f'clear: {number(draw.uniform(2, 10))}']
+        else:
+            fields = [f'{name}: {colour(draw)}' for name in ('zenith', 'horizon', 'below') if draw.chance(0.6)]
+            fields = fields or ['zenith: 1, 1, 1']
+        if draw.chance(0.3):
+            fields.append(f'brightness: {number(draw.log_uniform(0.01, 100))}')
+        if draw.chance(0.3):
+            fields.append(f'bounces: {draw.whole(0, 8)}')
+        model.say(f'sky {{ {"  ".join(fields)} }}')
+    if draw.chance(0.06):
+        fields = [f'distance: {number(draw.log_uniform(0.01, 1000))}']
+        if draw.chance(0.5):
+            fields += [f'base: {number(draw.normal())}', f'height: {number(draw.log_uniform(0.001, 100))}']
+        model.say(f'haze {{ {"  ".join(fields)} }}')
+    if draw.chance(0.06):
+        model.say(f'film {{ exposure: {number(draw.log_uniform(0.01, 100))}'
+                  f'  white: {number(draw.log_uniform(1000, 40000))}  {"soft" if draw.chance(0.5) else "hard"} }}')

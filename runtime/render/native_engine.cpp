@@ -57,17 +57,17 @@ std::vector<Sampling> samplings_for(const View& view, const RenderOptions& optio
                                    options.progressive);
 }
 
-/// Of what a picture under lights may take: a sample of soft light follows several rays.
+/// Seconds of one processor: a sample of soft light follows several rays.
 double work_of_soft_light(Quality quality) {
     switch (quality) {
     case Quality::draft:
-        return 1;
+        return 30;
     case Quality::normal:
-        return 4;
+        return 60;
     case Quality::best:
         break;
     }
-    return 20;
+    return 600;
 }
 
 /// A pixel's, before more is culled to save work.
@@ -380,7 +380,7 @@ std::optional<NativeReport> trace_model(const PreparedView& prepared, const Rend
     const View& view = prepared.viewed->view;
     const bool sampled = is_sampled(view, options);
     DetailOptions detail = prepared.detail;
-    if (sampled) detail.work_seconds *= work_of_soft_light(view.quality);
+    if (sampled) detail.work_seconds = options.soft_work_seconds.value_or(work_of_soft_light(view.quality));
     Looks looks;
     looks.wanted = samplings_for(view, options);
     looks.tried = detail.culls()

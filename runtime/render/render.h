@@ -27,11 +27,13 @@ struct RenderOptions {
     std::optional<int> antialias = 2;          ///< up to 4^(N-1) samples a pixel; nothing: one
     std::optional<int> samples;                ///< of soft light, the most a pixel; nothing: by the quality
     std::optional<double> noise_255;           ///< that may be left; nothing: by the quality
-    bool listed_lights = false;                ///< soft light from a list of lights (light_list.h)
-    int threads = 0;                           ///< 0: as many as the engine likes
-    bool progressive = false;                  ///< write coarse pictures first, each in place of the last
-    bool unconfined = false;                   ///< PovrayJob::unconfined
-    std::string keep;                          ///< a directory for the scene, to stay; empty: a temporary one
+    /// In place of the work of the detail, where soft light is sampled; nothing: by the quality.
+    std::optional<double> soft_work_seconds;
+    bool listed_lights = false; ///< soft light from a list of lights (light_list.h)
+    int threads = 0;            ///< 0: as many as the engine likes
+    bool progressive = false;   ///< write coarse pictures first, each in place of the last
+    bool unconfined = false;    ///< PovrayJob::unconfined
+    std::string keep;           ///< a directory for the scene, to stay; empty: a temporary one
     std::function<void(const DrawProgress&)> on_progress;
     /// Called by an engine that shows nothing for long, before it starts, with the seconds of one processor
     /// that it will take: within a factor of two or so where they are many.

@@ -47,6 +47,7 @@ void hold(Options& options, const fuzz::Scratch& scratch) {
     compile.detail.work_seconds = std::min(compile.detail.work_seconds, 0.02);
     options.render.threads = 1;
     options.quiet = true;
+    options.render.soft_work_seconds = compile.detail.work_seconds;
     options.render.antialias.reset();
     options.render.progressive = false;
     options.engine = find_engine("native");

@@ -223,5 +223,17 @@ TEST_F(Faults, LibrariesThatGiveUpAreSaid) {
     EXPECT_THAT(result.err, Not(HasSubstr("internal error")));
 }
 
+/// As libraries do; GLib with a trap, in the middle of loading others.
+TEST_F(Faults, SignalsOfLibrariesThatGiveUpAreSaid) {
+    for (const std::string signal : {"ABRT", "TRAP", "SEGV", "BUS"}) {
+        const RunResult result =
+            shell("mkfifo pipe; \"$graftal\" check - <>pipe & child=$!; sleep 0.5; kill -" + signal +
+                  " $child; wait $child; status=$?; rm pipe; exit $status");
+        EXPECT_EQ(result.status, 3) << signal;
+        EXPECT_THAT(result.err, HasSubstr("graftal: internal error: graftal or one of its libraries"))
+            << signal;
+    }
+}
+
 } // namespace
 } // namespace graftal

@@ -59,7 +59,7 @@ int run_command_line(int argc, char** argv) {
 }
 
 /// Some libraries abort or crash where they get no memory or cannot open a file of the system's: of those
-/// behind OpenImageIO some do while they are loaded.
+/// behind OpenImageIO some do while they are loaded, and GLib ends with a trap.
 void end_after_crash(int) {
     end_at_once("graftal: internal error: graftal or one of its libraries crashed; the system may have no "
                 "memory, files "
@@ -73,9 +73,10 @@ void end_after_waiting(int) {
 
 void handle_crashes() {
 #ifdef __SANITIZE_ADDRESS__
-    graftal::handle_on_own_stack({SIGABRT}, end_after_crash); // the sanitizer tells more of the others
+    graftal::handle_on_own_stack({SIGABRT, SIGTRAP},
+                                 end_after_crash); // the sanitizer tells more of the others
 #else
-    graftal::handle_on_own_stack({SIGABRT, SIGSEGV, SIGBUS}, end_after_crash);
+    graftal::handle_on_own_stack({SIGABRT, SIGTRAP, SIGSEGV, SIGBUS}, end_after_crash);
 #endif
     graftal::handle_on_own_stack({SIGALRM}, end_after_waiting);
 }

@@ -185,9 +185,11 @@ void add_view(CLI::App& app, Options& options) {
     add_value(
         app, "--work", "SECONDS",
         "Limit of the work for a picture, roughly in seconds of one processor; graftal draws coarser where a "
-        "picture would take more (default 30)",
+        "picture would take more (default 30; under soft light 30, 60 or 600 by --quality)",
         "a number of seconds above 0", [](const std::string& text) { return parse_at_least(text, 1e-3); },
-        [&](double seconds) { compile.detail.work_seconds = seconds; });
+        [&](double seconds) {
+            compile.detail.work_seconds = options.render.soft_work_seconds.emplace(seconds);
+        });
     app.add_flag("--visible-only", compile.detail.visible_only,
                  "Leave out parts that the camera does not see, and their shadows too");
     app.add_flag("--flatten", compile.cut.flatten,

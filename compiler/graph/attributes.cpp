@@ -12,7 +12,6 @@ namespace graftal {
 namespace attribute_rows {
 
 constexpr Attribute place = {
-    .name = "transform",
     .put =
         [](const Instance& instance, AttributeWords& words) {
             const Affine& a = instance.parent_from_child;
@@ -42,7 +41,6 @@ constexpr Attribute place = {
 };
 
 constexpr Attribute tint = {
-    .name = "tint",
     .put =
         [](const Instance& instance, AttributeWords& words) {
             for (int channel = 0; channel < 3; ++channel)
@@ -69,7 +67,6 @@ inline const Material* material_of(const Graph& graph, const Instance& instance)
 }
 
 constexpr Attribute material = {
-    .name = "material",
     .put =
         [](const Instance& instance, AttributeWords& words) {
             words.put(instance.material ? *instance.material + std::uint64_t{1} : std::uint64_t{0});
@@ -90,7 +87,6 @@ constexpr Attribute material = {
 };
 
 constexpr Attribute levels = {
-    .name = "levels",
     .put = [](const Instance& instance, AttributeWords& words) { words.put(std::uint64_t{instance.levels}); },
     .equal = [](const Graph&, const Instance& x, const Graph&,
                 const Instance& y) { return x.levels == y.levels; },
@@ -102,7 +98,6 @@ constexpr Attribute levels = {
 };
 
 constexpr Attribute chance = {
-    .name = "chance",
     .put = [](const Instance& instance, AttributeWords& words) { words.put(instance.chance); },
     .equal = [](const Graph&, const Instance& x, const Graph&,
                 const Instance& y) { return x.chance == y.chance; },

@@ -29,7 +29,6 @@ class AttributeWords {
 };
 
 struct Attribute {
-    std::string_view name;
     void (*put)(const Instance& instance, AttributeWords& words);
     bool (*equal)(const Graph& a, const Instance& x, const Graph& b, const Instance& y);
     /// A line of `.inst` text, indented; "" where nothing is stated.

@@ -2,8 +2,6 @@
 
 #include <cmath>
 
-#include <glm/geometric.hpp>
-
 namespace graftal {
 
 namespace {
@@ -16,8 +14,8 @@ double column(double s) {
 } // namespace
 
 double Haze::left_after(Vec3 from, Vec3 direction, double length) const {
-    const double begin = (glm::dot(from, up) - base) / height;
-    const double end = begin + length * glm::dot(direction, up) / height;
+    const double begin = (from.y - base) / height;
+    const double end = begin + length * direction.y / height;
     double density = 1;
     if (begin > 0 || end > 0) {
         constexpr double level = 1e-4; // POV-Ray's: below, the quotient is lost in rounding

@@ -9,9 +9,8 @@ namespace graftal {
 struct Haze {
     Rgb rgb{0.7, 0.8, 0.9};
     double distance = 0; ///< after which 1/e of what lies behind is left, where it is even
-    Vec3 up{0, 1, 0};
-    double base = 0;   ///< the height, along `up`, from which it thins
-    double height = 1; ///< over the base, at which it has half of its density left
+    double base = 0;     ///< the height y from which it thins
+    double height = 1;   ///< over the base, at which it has half of its density left
 
     /// The share of what lies behind that is seen through `length` of it along a ray. POV-Ray 3.7's
     /// `fog_type 2`: the density is 1 / (1 + s^2) at s = (y - base) / height > 0, and 1 below. Requires a

@@ -8,6 +8,7 @@
 #include <glm/geometric.hpp>
 
 #include "compiler/light/blackbody.h"
+#include "compiler/support/axes_across.h"
 
 namespace graftal {
 
@@ -37,8 +38,6 @@ Rgb zenith_of(double turbidity, double sun_from_zenith) {
             cubic(s, 0.15346, -0.26756, 0.06670, 0.26688)};
 }
 
-constexpr double least_cosine = 1e-3; // at the horizon the formula divides by 0
-
 } // namespace
 
 ClearSky::ClearSky(double turbidity, Vec3 towards_sun, Vec3 up) : to_sun(towards_sun) {
@@ -65,7 +64,7 @@ Rgb ClearSky::radiance(Vec3 direction, Vec3 up) const {
     Rgb yxy;
     for (int i = 0; i < 3; ++i)
         yxy[i] = zenith_yxy[i] *
-                 perez_at(perez[static_cast<std::size_t>(i)], std::max(height, least_cosine), cos_sun);
+                 perez_at(perez[static_cast<std::size_t>(i)], std::max(height, least_height), cos_sun);
     const double luminance = std::max(yxy.x, 0.0);
     const Rgb xyz = luminance / yxy.z * Rgb(yxy.y, yxy.z, 1 - yxy.y - yxy.z);
     return glm::max(rgb_from_xyz(xyz), Rgb(0.0));
@@ -81,15 +80,14 @@ Rgb SkyLight::radiance(Vec3 direction) const {
 
 Rgb SkyLight::on_paper() const {
     constexpr int rings = 64, parts = 64;
-    const Vec3 across = std::abs(up.x) < 0.9 ? Vec3(1, 0, 0) : Vec3(0, 1, 0);
-    const Vec3 x = glm::normalize(glm::cross(up, across)), z = glm::cross(x, up);
+    const auto [x, z] = axes_across(up);
     Rgb sum(0.0);
     for (int i = 0; i < rings; ++i)
         for (int j = 0; j < parts; ++j) {
             const double sine = std::sqrt((i + 0.5) / rings); // equal shares of the cosine-weighted sphere
             const double turn = 2 * std::numbers::pi * (j + 0.5) / parts;
             sum +=
-                radiance(std::sqrt(1 - sine * sine) * up + sine * (std::cos(turn) * x + std::sin(turn) * z));
+                radiance(std::sqrt(1 - sine * sine) * up + sine * (std::cos(turn) * x - std::sin(turn) * z));
         }
     return sum / static_cast<double>(rings * parts);
 }

@@ -13,6 +13,9 @@ namespace graftal {
 struct ClearSky {
     static constexpr double least_turbidity = 2, most_turbidity = 10;
 
+    /// The sine of the lowest height that the formula is taken at: at the horizon it divides by 0.
+    static constexpr double least_height = 1e-3;
+
     /// White paper under the sun overhead, of 100 klx, has 100 / pi kcd/m2.
     static constexpr double kcd_of_paper = 31.83;
 

@@ -7,12 +7,9 @@
 
 #include <fmt/format.h>
 
-#include "compiler/light/blackbody.h"
-#include "compiler/light/sky_light.h"
-#include "compiler/lower/lower_area.h"
-#include "compiler/lower/lower_transform.h"
+#include "compiler/lower/lower_light.h"
+#include "compiler/lower/scene_fields.h"
 #include "compiler/support/number.h"
-#include "compiler/support/number_range.h"
 
 namespace graftal {
 
@@ -21,134 +18,13 @@ namespace {
 using Kind = SceneStatement::Kind;
 
 constexpr double most_steps = 1e9;
-constexpr double most_around = 1000;
-constexpr double most_brightness = 1e6; // half floats of POV-Ray's pictures end at 65504
-constexpr double most_sun_angle_deg = 90;
-constexpr unsigned most_bounces = 16; // a white room keeps 3 % of its light unshown
+constexpr unsigned most_around = 1000;
 
 bool is_let(const SceneStatement& statement) {
     return statement.kind == Kind::let || statement.kind == Kind::inner;
 }
 
-/// One statement's fields by name, each evaluated and checked on demand.
-class Fields {
-  public:
-    Fields(const SceneStatement& statement, const Environment& lets, Diagnostics& diagnostics)
-        : statement_(statement), lets_(lets), diagnostics_(diagnostics) {
-        for (auto field = statement.fields.begin(); field != statement.fields.end(); ++field) {
-            const auto first = std::find_if(statement.fields.begin(), field, [&](const SceneField& other) {
-                return other.keyword == field->keyword;
-            });
-            if (first == field) continue;
-            diagnostics.error(field->span, fmt::format("duplicate '{}'", field->keyword))
-                .with_note(first->span, "first given here");
-        }
-    }
-
-    const SceneField* find(std::string_view keyword) const {
-        const auto found = std::find_if(statement_.fields.begin(), statement_.fields.end(),
-                                        [&](const SceneField& field) { return field.keyword == keyword; });
-        return found == statement_.fields.end() ? nullptr : &*found;
-    }
-
-    bool flag(std::string_view keyword) const { return find(keyword) != nullptr; }
-
-    /// A point of the scene.
-    std::optional<Vec3> place(std::string_view keyword) const {
-        return vector(keyword, is_place,
-                      fmt::format("lie within {} units of the origin", shortest(largest_size)));
-    }
-
-    /// A vector of which only the direction counts.
-    std::optional<Vec3> direction(std::string_view keyword) const {
-        const auto good = [](Vec3 v) { return v == Vec3(0.0) || is_direction(v); };
-        return vector(keyword, good, range_demand());
-    }
-
-    /// A positive size.
-    std::optional<double> size(std::string_view keyword) const {
-        const std::optional<double> value = number(
-            keyword, [](double x) { return x > 0; }, "be positive");
-        if (!value || is_size(*value)) return value;
-        return number(keyword, is_size, range_demand());
-    }
-
-    std::optional<Rgb> color(std::string_view keyword) const {
-        const SceneField* field = find(keyword);
-        return field ? lower_color(field->values, lets_, diagnostics_) : std::nullopt;
-    }
-
-    std::optional<Rgb> light_color(std::string_view keyword) const {
-        const SceneField* field = find(keyword);
-        return field ? lower_light_color(field->values, lets_, diagnostics_) : std::nullopt;
-    }
-
-    std::optional<double> temperature(std::string_view keyword) const {
-        return number(
-            keyword, [](double x) { return x >= least_temperature_k && x <= most_temperature_k; },
-            fmt::format("lie between {} and {} kelvin", least_temperature_k, most_temperature_k));
-    }
-
-    /// A factor of light.
-    std::optional<double> brightness(std::string_view keyword) const {
-        return number(
-            keyword, [](double x) { return x >= 0 && x <= most_brightness; },
-            fmt::format("lie between 0 and {}", shortest(most_brightness)));
-    }
-
-    std::optional<FlatArea> area(std::string_view keyword) const {
-        const SceneField* field = find(keyword);
-        return field ? lower_area(field->values, field->span, lets_, diagnostics_) : std::nullopt;
-    }
-
-    std::optional<double> number(std::string_view keyword) const {
-        const SceneField* field = find(keyword);
-        return field ? evaluate(field->values[0], lets_, diagnostics_) : std::nullopt;
-    }
-
-    /// A number for which `good` holds, else the error "'angle' must lie ..., not 200".
-    template<typename Predicate>
-    std::optional<double> number(std::string_view keyword, const Predicate& good,
-                                 std::string_view demand) const {
-        const std::optional<double> value = number(keyword);
-        if (!value || good(*value)) return value;
-        diagnostics_.error(find(keyword)->values[0].span,
-                           fmt::format("'{}' must {}, not {}", keyword, demand, shortest(*value)));
-        return std::nullopt;
-    }
-
-    void error(std::string_view keyword, std::string message) const {
-        diagnostics_.error(find(keyword)->span, std::move(message));
-    }
-
-    void error_at_statement(std::string message, std::string hint) const {
-        if (!statement_.complete) return; // what is missed may be what could not be read
-        diagnostics_.error(statement_.span, std::move(message)).with_hint(std::move(hint));
-    }
-
-  private:
-    static std::string range_demand() {
-        return fmt::format("have a size between {} and {}", shortest(least_size), shortest(largest_size));
-    }
-
-    template<typename Predicate>
-    std::optional<Vec3> vector(std::string_view keyword, const Predicate& good,
-                               const std::string& demand) const {
-        const SceneField* field = find(keyword);
-        if (!field) return std::nullopt;
-        const std::optional<Vec3> value = lower_vector(field->values, lets_, diagnostics_);
-        if (!value || good(*value)) return value;
-        diagnostics_.error(join(field->values.front().span, field->values.back().span),
-                           fmt::format("'{}' must {}", keyword, demand));
-        return std::nullopt;
-    }
-
-    const SceneStatement& statement_;
-    const Environment& lets_;
-    Diagnostics& diagnostics_;
-};
-
-CameraSetting lower_camera(const Fields& fields) {
+CameraSetting lower_camera(const SceneFields& fields) {
     CameraSetting camera;
     camera.location = fields.place("location");
     camera.look_at = fields.place("look_at");
@@ -173,84 +49,7 @@ CameraSetting lower_camera(const Fields& fields) {
     return camera;
 }
 
-LightSetting lower_light(const Fields& fields) {
-    LightSetting light;
-    light.sun = fields.flag("sun");
-    if (light.sun && fields.flag("location"))
-        fields.error("location", "a light has either a location or, as a sun, a direction");
-    if (!light.sun && !fields.flag("location"))
-        fields.error_at_statement("this light has no place", "give it 'location: x, y, z' or 'sun: x, y, z'");
-    light.location = (light.sun ? fields.direction("sun") : fields.place("location")).value_or(Vec3(1.0));
-    if (light.sun && light.location == Vec3(0.0)) fields.error("sun", "'sun' must have a direction");
-    light.rgb = fields.light_color("color").value_or(light.rgb);
-    light.shadowless = fields.flag("shadowless");
-    if (const std::optional<double> kelvin = fields.temperature("temperature"))
-        light.rgb *= blackbody_rgb(*kelvin);
-    light.rgb *= fields.brightness("brightness").value_or(1);
-    light.angle_deg = fields
-                          .number(
-                              "angle", [](double x) { return x >= 0 && x <= most_sun_angle_deg; },
-                              fmt::format("lie between 0 and {} degrees", most_sun_angle_deg))
-                          .value_or(0);
-    if (fields.flag("angle") && !light.sun)
-        fields.error("angle", "'angle' is the apparent diameter of a sun; this light has a location");
-    if (light.angle_deg > 0 && light.shadowless)
-        fields.error("angle", "a shadowless light has no penumbra; leave out 'angle' or 'shadowless'");
-    return light;
-}
-
-SkySetting lower_sky(const Fields& fields, const SceneStatement& statement, Diagnostics& diagnostics) {
-    SkySetting sky;
-    const std::optional<Rgb> zenith = fields.light_color("zenith");
-    sky.zenith = zenith.value_or(sky.zenith);
-    // One colour: the same all over.
-    if (zenith && !fields.flag("clear")) sky.horizon = sky.below = *zenith;
-    sky.horizon = fields.light_color("horizon").value_or(sky.horizon);
-    sky.below = fields.light_color("below").value_or(sky.below);
-    sky.turbidity = fields.number(
-        "clear", [](double x) { return x >= ClearSky::least_turbidity && x <= ClearSky::most_turbidity; },
-        fmt::format("lie between {} (pure air) and {} (haze)", ClearSky::least_turbidity,
-                    ClearSky::most_turbidity));
-    for (const char* const colour : {"zenith", "horizon"})
-        if (fields.flag(colour) && fields.flag("clear"))
-            fields.error(colour, fmt::format("a clear sky has its own colours; leave out '{}'", colour));
-    sky.brightness = fields.brightness("brightness").value_or(1);
-    const auto counts = [](double x) { return x >= 0 && x <= most_bounces && x == std::floor(x); };
-    sky.bounces = static_cast<unsigned>(
-        fields.number("bounces", counts, fmt::format("be a whole number between 0 and {}", most_bounces))
-            .value_or(0));
-    if (statement.fields.empty() && statement.complete)
-        diagnostics.error(statement.span, "this sky says nothing")
-            .with_hint("give it colours, as in 'zenith: 0.3, 0.5, 0.9', or 'clear: 3' for a clear sky");
-    return sky;
-}
-
-HazeSetting lower_haze(const Fields& fields) {
-    HazeSetting haze;
-    if (!fields.flag("distance"))
-        fields.error_at_statement("this haze has no density",
-                                  "give it 'distance: D', at which a third of what lies behind is seen");
-    haze.distance = fields.size("distance").value_or(1);
-    haze.base = fields
-                    .number(
-                        "base", [](double x) { return is_place(Vec3(x)); },
-                        fmt::format("lie within {} units of the origin", shortest(largest_size)))
-                    .value_or(0);
-    haze.height = fields.size("height");
-    haze.rgb = fields.light_color("color");
-    return haze;
-}
-
-Film lower_film(const Fields& fields) {
-    Film film;
-    film.soft = !fields.flag("hard");
-    film.exposure = fields.brightness("exposure").value_or(1);
-    film.white_k = fields.temperature("white").value_or(film.white_k);
-    if (fields.flag("hard") && fields.flag("soft")) fields.error("hard", "a film is either hard or soft");
-    return film;
-}
-
-BackgroundSetting lower_background(const Fields& fields) {
+BackgroundSetting lower_background(const SceneFields& fields) {
     BackgroundSetting background;
     if (!fields.flag("zenith"))
         fields.error_at_statement("this background has no colour", "give it 'zenith: r, g, b'");
@@ -259,13 +58,9 @@ BackgroundSetting lower_background(const Fields& fields) {
     return background;
 }
 
-GroundSetting lower_ground(const Fields& fields) {
+GroundSetting lower_ground(const SceneFields& fields) {
     GroundSetting ground;
-    ground.height = fields
-                        .number(
-                            "height", [](double x) { return is_place(Vec3(x)); },
-                            fmt::format("lie within {} units of the origin", shortest(largest_size)))
-                        .value_or(0);
+    ground.height = fields.coordinate("height").value_or(0);
     ground.rgb = fields.color("color");
     if (const SceneField* material = fields.find("material")) ground.material = material->name;
     ground.area = fields.area("area");
@@ -292,18 +87,17 @@ void read_texture(const SceneField& field, bool take_colour, Lowering& lowering,
 }
 
 /// How the picture lies.
-void lower_texture(const Fields& fields, Lowering& lowering, Material& material) {
+void lower_texture(const SceneFields& fields, Lowering& lowering, Material& material) {
     if (const SceneField* texture = fields.find("texture"))
         read_texture(*texture, !fields.flag("color"), lowering, material);
     else if (fields.flag("around"))
         fields.error(
             "around",
             "'around' sets how often a texture repeats around the shape, but the material has no texture");
-    const auto counts = [](double x) { return x >= 1 && x <= most_around && x == std::floor(x); };
-    material.around = fields.number("around", counts, "be a whole number between 1 and 1000").value_or(1);
+    material.around = fields.whole("around", 1, most_around).value_or(1);
 }
 
-Material lower_material(const Fields& fields, const SceneStatement& statement, Lowering& lowering) {
+Material lower_material(const SceneFields& fields, const SceneStatement& statement, Lowering& lowering) {
     Material material;
     material.name = statement.name;
     material.span = statement.span;
@@ -325,7 +119,7 @@ bool are_steps(double x) {
     return x >= 0 && x <= most_steps && x == std::floor(x);
 }
 
-std::optional<unsigned> lower_steps(const Fields& fields) {
+std::optional<unsigned> lower_steps(const SceneFields& fields) {
     const std::optional<double> steps = fields.number("steps", are_steps, steps_demand);
     if (!steps) return std::nullopt;
     return static_cast<unsigned>(*steps);
@@ -422,23 +216,12 @@ Environment lower_lets(const std::vector<SceneStatement>& statements, Lowering& 
     return lets;
 }
 
-/// A clear sky stands about a sun.
-static void check_sky(const std::vector<SceneStatement>& statements, const SceneSettings& settings,
-                      Diagnostics& diagnostics) {
-    if (!settings.sky || !settings.sky->turbidity) return;
-    if (std::ranges::any_of(settings.lights, [](const LightSetting& light) { return light.sun; })) return;
-    for (const SceneStatement& statement : statements)
-        if (statement.kind == Kind::sky)
-            diagnostics.error(statement.span, "a clear sky needs a sun")
-                .with_hint("light { sun: 1, 1, 2  angle: 0.53  temperature: 5500 } is one");
-}
-
 void lower_settings(const std::vector<SceneStatement>& statements, const Environment& lets, Graph& graph,
                     Lowering& lowering) {
     check_duplicates(statements, lowering.diagnostics);
     for (const SceneStatement& statement : statements) {
         if (is_let(statement)) continue;
-        const Fields fields(statement, lets, lowering.diagnostics);
+        const SceneFields fields(statement, lets, lowering.diagnostics);
         switch (statement.kind) {
         case Kind::camera:
             graph.settings.camera = lower_camera(fields);
@@ -459,7 +242,7 @@ void lower_settings(const std::vector<SceneStatement>& statements, const Environ
             graph.settings.steps = lower_steps(fields);
             break;
         case Kind::sky:
-            graph.settings.sky = lower_sky(fields, statement, lowering.diagnostics);
+            graph.settings.sky = lower_sky(fields);
             break;
         case Kind::haze:
             graph.settings.haze = lower_haze(fields);

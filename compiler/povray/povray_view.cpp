@@ -24,18 +24,6 @@ void write_rgb(SdlWriter& out, Rgb rgb) {
     out.vector(rgb, 7);
 }
 
-int blur_samples(Quality quality) {
-    switch (quality) {
-    case Quality::draft:
-        return 16;
-    case Quality::normal:
-        return 64;
-    case Quality::best:
-        break;
-    }
-    return 256;
-}
-
 void write_camera(SdlWriter& out, const View& view, const PovrayUnits& units) {
     const Camera& camera = view.camera;
     const ImageSize size = view.size;
@@ -54,7 +42,7 @@ void write_camera(SdlWriter& out, const View& view, const PovrayUnits& units) {
         out << "\n  focal_point ";
         out.vector(units(camera.location + view.lens.depth * camera.direction), view_digits) << " aperture ";
         out.number(povray_aperture * units.scale * view.lens.radius, view_digits)
-            << fmt::format(" blur_samples {} variance 0", blur_samples(view.quality));
+            << fmt::format(" blur_samples {} variance 0", by_quality(view.quality, 16, 64, 256));
     }
     out << "\n}\n";
 }
@@ -105,7 +93,8 @@ void write_perez(SdlWriter& out, std::string_view name, const std::array<double,
     out << "#declare " << name << " = function(c, s) { ";
     out.number(zenith, view_digits) << "*(1 + (";
     out.number(a[0], view_digits) << ")*exp((";
-    out.number(a[1], view_digits) << ")/max(c, 0.001)))*(1 + (";
+    out.number(a[1], view_digits) << ")/max(c, ";
+    out.number(ClearSky::least_height, view_digits) << ")))*(1 + (";
     out.number(a[2], view_digits) << ")*exp((";
     out.number(a[3], view_digits) << ")*acos(max(-1, min(1, s)))) + (";
     out.number(a[4], view_digits) << ")*s*s) }\n";
@@ -186,9 +175,8 @@ void write_haze(SdlWriter& out, const Haze& haze, const PovrayUnits& units) {
     out.number(units.scale * haze.distance, view_digits) << " ";
     write_rgb(out, haze.rgb);
     out << " fog_offset ";
-    out.number(units.scale * (haze.base - glm::dot(units.origin, haze.up)), view_digits) << " fog_alt ";
-    out.number(units.scale * haze.height, view_digits) << " up ";
-    out.vector(haze.up, view_digits) << " }\n";
+    out.number(units.scale * (haze.base - units.origin.y), view_digits) << " fog_alt ";
+    out.number(units.scale * haze.height, view_digits) << " up <0,1,0> }\n";
 }
 
 } // namespace

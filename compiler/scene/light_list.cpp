@@ -6,6 +6,8 @@
 
 #include <glm/geometric.hpp>
 
+#include "compiler/support/axes_across.h"
+
 namespace graftal {
 
 namespace {
@@ -44,29 +46,15 @@ void list_zone(const SkyLight& sky, double low, double high, unsigned count, std
 
 } // namespace
 
-AxesAcross axes_across(Vec3 direction) {
-    const Vec3 other = std::abs(direction.x) < 0.9 ? Vec3(1, 0, 0) : Vec3(0, 1, 0);
-    const Vec3 a = glm::normalize(glm::cross(direction, other));
-    return {a, glm::cross(direction, a)};
-}
-
 LightListSize list_size(Quality quality) {
     // POV-Ray's time grows as their number does. 16 show bands, 32 will do, 64 looks like 512.
-    switch (quality) {
-    case Quality::draft:
-        return {4, 16};
-    case Quality::normal:
-        return {8, 40};
-    case Quality::best:
-        break;
-    }
-    return {16, 160};
+    return by_quality<LightListSize>(quality, {4, 16}, {8, 40}, {16, 160});
 }
 
 std::vector<Light> listed_lights(const View& view, const LightListSize& size) {
     std::vector<Light> list;
     for (const Light& light : view.lights)
-        if (light.sun && light.angle_deg > 0 && !light.shadowless)
+        if (light.is_disc())
             list_disc(light, size.disc, list);
         else
             list.push_back(light);

@@ -12,12 +12,6 @@ struct LightListSize {
     bool operator==(const LightListSize&) const = default;
 };
 
-/// Two unit vectors at right angles to a third, and to each other.
-struct AxesAcross {
-    Vec3 a, b;
-};
-AxesAcross axes_across(Vec3 direction);
-
 LightListSize list_size(Quality quality);
 
 /// The lights of a view as points and parallel rays alone, the same for every engine. A sun with an angle

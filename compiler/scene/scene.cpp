@@ -143,9 +143,7 @@ Rgb View::ambient_light() const {
 }
 
 bool View::has_soft_light() const {
-    return sky_light || std::ranges::any_of(lights, [](const Light& light) {
-               return light.sun && light.angle_deg > 0 && !light.shadowless;
-           });
+    return sky_light || std::ranges::any_of(lights, &Light::is_disc);
 }
 
 View frame(const Graph& graph, const Box& bounds, ImageSize size, const CameraOverride& camera,

@@ -50,10 +50,17 @@ struct Light {
     Rgb rgb{1.0};
     bool shadowless = false; ///< then it makes no highlights either, as in POV-Ray
     double angle_deg = 0;    ///< apparent diameter of a sun
+
+    /// Whether its light comes from a disc.
+    bool is_disc() const { return sun && angle_deg > 0 && !shadowless; }
 };
 
 /// How much work goes into what converges.
 enum class Quality { draft, normal, best };
+
+template<typename Value> constexpr Value by_quality(Quality quality, Value draft, Value normal, Value best) {
+    return quality == Quality::draft ? draft : quality == Quality::normal ? normal : best;
+}
 
 /// The background in a direction d (unit) runs from `horizon`, where dot(d, axis) <= from, to `zenith`,
 /// where dot(d, axis) >= to, linearly in that product.

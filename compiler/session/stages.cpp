@@ -203,14 +203,13 @@ std::optional<unsigned> levels_of(const AnalysedModel& model, std::optional<unsi
 
 std::optional<ViewedModel> look_at(std::shared_ptr<const AnalysedModel> model, std::optional<unsigned> steps,
                                    const ViewOptions& options, Diagnostics& diagnostics) {
-    if (options.zoom.active()) {
-        std::optional<ViewedModel> viewed = zoom_in(*model, steps, options, diagnostics);
-        if (viewed) viewed->view.quality = options.quality;
-        return viewed;
-    }
-    View view = view_of(*model, steps, options, false);
-    view.quality = options.quality;
-    return ViewedModel{std::move(model), steps, std::move(view), {}};
+    std::optional<ViewedModel> viewed;
+    if (options.zoom.active())
+        viewed = zoom_in(*model, steps, options, diagnostics);
+    else
+        viewed = {model, steps, view_of(*model, steps, options, false), {}};
+    if (viewed) viewed->view.quality = options.quality;
+    return viewed;
 }
 
 DetailOptions resolved(DetailOptions asked, const ViewedModel& viewed) {

@@ -183,7 +183,7 @@ void Model::memory(std::uint64_t bytes) {
 }
 
 void Model::work(double seconds) {
-    parts_->options.compile.detail.work_seconds = parts_->options.soft_work_seconds.emplace(seconds);
+    parts_->options.limit_work(seconds);
 }
 
 void Model::threads(int count) {

@@ -1,7 +1,8 @@
 #include "runtime/image/develop.h"
 
-#include <array>
 #include <cmath>
+
+#include <glm/common.hpp>
 
 #include "compiler/light/blackbody.h"
 
@@ -28,19 +29,22 @@ double developed(double light, const Film& film) {
     return srgb_encoded(static_cast<float>(rolled_off(film.exposure * light, film.soft)));
 }
 
-void develop_rows(Image& picture, const Film& film, int first, int end) {
-    constexpr double neutral_k = 6504;
-    const Rgb gains = blackbody_rgb(neutral_k) / glm::max(blackbody_rgb(film.white_k), Rgb(1e-3));
-    const bool dithered = !film.plain();
-    const int colours = picture.channels < 3 ? 1 : 3;
+Developer::Developer(const Film& film) : film_(film) {
+    const double neutral_k = Film().white_k;
+    if (film.white_k != neutral_k)
+        gains_ = blackbody_rgb(neutral_k) / glm::max(blackbody_rgb(film.white_k), Rgb(1e-3));
+}
+
+void Developer::develop(Image& picture, int first, int end) const {
+    const bool dithered = !film_.plain();
+    const bool grey = picture.channels < 3;
     for (int y = first; y < end; ++y)
         for (int x = 0; x < picture.width; ++x) {
             const std::size_t pixel = static_cast<std::size_t>(y) * static_cast<std::size_t>(picture.width) +
                                       static_cast<std::size_t>(x);
             float* const samples = picture.pixels.data() + pixel * static_cast<std::size_t>(picture.channels);
-            for (int c = 0; c < colours; ++c) {
-                const double gain = film.white_k == neutral_k || colours == 1 ? 1 : gains[c];
-                const double value = developed(gain * samples[c], film);
+            for (int c = 0; c < (grey ? 1 : 3); ++c) {
+                const double value = developed((grey ? 1 : gains_[c]) * samples[c], film_);
                 samples[c] = static_cast<float>(dithered ? value + dither(x, y, c) / 255 : value);
             }
         }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "compiler/light/film.h"
+#include "compiler/support/tint.h"
 #include "runtime/image/image.h"
 
 namespace graftal {
@@ -10,10 +11,20 @@ namespace graftal {
 /// which leaves what is dark alone and never reaches 1; encoded as IEC 61966-2-1 says.
 double developed(double light, const Film& film);
 
-/// Linear light into the samples of an 8-bit picture, rows `first` to `end`: each component by developed(),
-/// after the gains that make the film's white temperature white. A film that is not plain() is dithered by
-/// half a step, so that slow gradients have no bands; where a value needs none it stays. Alpha stays. Every
-/// engine's pictures go through here.
-void develop_rows(Image& picture, const Film& film, int first, int end);
+/// Linear light into the samples of an 8-bit picture: each component by developed(), after the gains that
+/// make the film's white temperature white. A film that is not plain() is dithered by half a step, so that
+/// slow gradients have no bands; where a value needs none it stays. Alpha stays. Every engine's pictures, and
+/// those of random points, go through here.
+class Developer {
+  public:
+    explicit Developer(const Film& film);
+
+    /// Rows `first` to `end`; threads may share it for rows of their own.
+    void develop(Image& picture, int first, int end) const;
+
+  private:
+    Film film_;
+    Rgb gains_{1.0};
+};
 
 } // namespace graftal

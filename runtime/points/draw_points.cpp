@@ -12,6 +12,7 @@
 #include "compiler/chaos/unroll.h"
 #include "compiler/support/check.h"
 #include "compiler/support/file.h"
+#include "runtime/image/develop.h"
 #include "runtime/points/accumulation.h"
 #include "runtime/points/card.h"
 #include "runtime/points/orbit_source.h"
@@ -145,9 +146,7 @@ Status write_picture(Canvas& canvas, const View& view, const PointsOptions& opti
     Tone tone = options.tone;
     tone.by_density = options.colour == PointColour::density;
     Image image = toned(points, tone, view);
-    if (!is_exr_name(options.output))
-        for (std::size_t i = 0; i < image.pixels.size(); ++i)
-            if (image.channels == 3 || i % 4 != 3) image.pixels[i] = srgb_encoded(image.pixels[i]);
+    if (!is_exr_name(options.output)) Developer(Film()).develop(image, 0, image.height);
     if (is_exr_name(options.output) && image.channels == 4) // colour belongs to alpha already, as EXR has it
         for (std::size_t i = 0; i < image.pixels.size(); ++i)
             if (i % 4 != 3) image.pixels[i] *= image.pixels[i / 4 * 4 + 3];

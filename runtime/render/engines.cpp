@@ -12,7 +12,6 @@ namespace graftal {
 DrawReport& DrawReport::operator+=(const DrawReport& other) {
     summary.clear();
     if (other.error_px) error_px = std::max(error_px.value_or(0), *other.error_px);
-    peak_bytes = std::max(peak_bytes, other.peak_bytes);
     rays += other.rays;
     trace_seconds += other.trace_seconds;
     return *this;

@@ -24,8 +24,8 @@ namespace {
 /// Of the work, what may go to samples that meet nothing: what is seen takes the rest.
 constexpr double most_for_samples = 0.5;
 
-/// Where POV-Ray's pictures end.
-ShaderLimits limits_of(const TraceModel& model) {
+/// Where POV-Ray's pictures end, and whether soft light is listed.
+ShaderLimits limits_of(const TraceModel& model, const RenderOptions& options) {
     constexpr double farthest_in_povray = 1e7;
     const Ball& ball = model.prepared.cut.nodes[model.prepared.cut.root].ball;
     DrawnExtent drawn;
@@ -35,11 +35,6 @@ ShaderLimits limits_of(const TraceModel& model) {
     }
     ShaderLimits limits;
     limits.farthest = farthest_in_povray / choose_units(drawn, model.view.camera).scale;
-    return limits;
-}
-
-ShaderLimits limits_for(const TraceModel& model, const RenderOptions& options) {
-    ShaderLimits limits = limits_of(model);
     if (options.listed_lights) limits.list = list_size(model.view.quality);
     return limits;
 }
@@ -59,15 +54,7 @@ std::vector<Sampling> samplings_for(const View& view, const RenderOptions& optio
 
 /// Seconds of one processor: a sample of soft light follows several rays.
 double work_of_soft_light(Quality quality) {
-    switch (quality) {
-    case Quality::draft:
-        return 30;
-    case Quality::normal:
-        return 60;
-    case Quality::best:
-        break;
-    }
-    return 600;
+    return by_quality(quality, 30.0, 60.0, 600.0);
 }
 
 /// A pixel's, before more is culled to save work.
@@ -189,7 +176,7 @@ class Drawing {
     Drawing(const TraceModel& model, std::vector<Sampling> samplings, const RenderOptions& options,
             const PictureSink& sink, const CancelFlag& cancel)
         : options_(options), sink_(sink), cancel_(cancel), samplings_(std::move(samplings)),
-          tracer_(model, limits_for(model, options)), size_(model.view.size), film_(model.view.film) {
+          tracer_(model, limits_of(model, options)), size_(model.view.size), film_(model.view.film) {
         picture_.width = size_.width;
         picture_.height = size_.height;
         picture_.channels = 3;
@@ -272,9 +259,10 @@ class Drawing {
     Image encoded() const {
         Image image = picture_;
         constexpr int rows = 16;
+        const Developer developer(film_);
         const auto encode = [&](int, std::uint64_t piece) {
             const int begin = static_cast<int>(piece) * rows;
-            develop_rows(image, film_, begin, std::min(begin + rows, image.height));
+            developer.develop(image, begin, std::min(begin + rows, image.height));
         };
         WorkerThreads(options_.threads)
             .for_each(static_cast<std::uint64_t>((image.height + rows - 1) / rows), encode);
@@ -323,8 +311,7 @@ constinit const Engine native_engine = {
     .name = "native",
     .summary = "graftal's own ray tracer",
     .available = []() -> Status { return {}; },
-    // What it does anyhow is fine: it has no POV-Ray to take --memory, and goes into every part in its place,
-    // as
+    // What it does anyhow is fine: it has no POV-Ray to take --memory, and it goes into every part, as
     // --flatten wants it.
     .refusal = [](const RenderOptions& options) -> std::string {
         if (!options.keep.empty())
@@ -392,7 +379,7 @@ std::optional<NativeReport> trace_model(const PreparedView& prepared, const Rend
     const double samples = samples_a_pixel(looks.tried);
     const FittedModel fitted = fit_work(
         prepared.prepared, view, detail, prepared.textures, samples,
-        [&](const TraceModel& tried) { return limits_for(tried, options); }, options.threads,
+        [&](const TraceModel& tried) { return limits_of(tried, options); }, options.threads,
         [&] { return cancel.raised(); });
     const TraceModel& model = *fitted.model;
     looks.affordable = looks.tried;

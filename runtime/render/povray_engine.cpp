@@ -42,7 +42,6 @@ PovrayReport report_of(const Cut& cut) {
     report.placement_count = cut.placement_count;
     report.triangle_count = cut.triangle_count;
     report.error_px = cut.error_px;
-    report.tessellation_px = cut.tessellation_px;
     report.estimated_bytes = cut.estimated_bytes;
     return report;
 }
@@ -61,7 +60,7 @@ Status finish_picture(const PovrayJob& job, const RenderOptions& options, const 
         return Status::failure(fmt::format("POV-Ray wrote a picture of {} x {} pixels, not {} x {}",
                                            image.width, image.height, job.width, job.height));
     if (!is_exr_name(options.output) && job.format == PovrayJob::Format::half)
-        develop_rows(image, film, 0, image.height);
+        Developer(film).develop(image, 0, image.height);
     return write_image(options.output, image, options.format, options.metadata);
 }
 
@@ -235,7 +234,6 @@ constinit const Engine povray_engine = {
                                      drawn->povray_seconds, bytes_text(drawn->peak_bytes),
                                      bytes_text(drawn->estimated_bytes));
         report.error_px = drawn->error_px;
-        report.peak_bytes = drawn->peak_bytes;
         return report;
     },
 };

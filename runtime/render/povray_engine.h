@@ -13,7 +13,6 @@ struct PovrayReport {
     std::uint64_t placement_count = 0;
     std::uint64_t triangle_count = 0;
     double error_px = 0;
-    double tessellation_px = 0;
     std::uint64_t estimated_bytes = 0;
     std::uint64_t peak_bytes = 0; ///< of POV-Ray
     double povray_seconds = 0;

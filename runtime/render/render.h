@@ -38,13 +38,15 @@ struct RenderOptions {
     /// Called by an engine that shows nothing for long, before it starts, with the seconds of one processor
     /// that it will take: within a factor of two or so where they are many.
     std::function<void(double seconds)> on_start;
+
+    /// Of one processor that the picture may take, under whatever light.
+    void limit_work(double seconds) { compile.detail.work_seconds = soft_work_seconds.emplace(seconds); }
 };
 
 /// What came of one picture, or of many.
 struct DrawReport {
     std::string summary;            ///< of one picture, for people
     std::optional<double> error_px; ///< the largest, by an engine that bounds it
-    std::uint64_t peak_bytes = 0;   ///< of a program outside
     TraceStatistics rays;           ///< by an engine that counts them
     double trace_seconds = 0;
 

@@ -24,7 +24,6 @@ Ray CameraRays::through(double x, double y) const {
 
 Ray CameraRays::through(double x, double y, glm::dvec2 place) const {
     const Ray middle = through(x, y);
-    if (!(lens_.radius > 0)) return middle;
     const double radius = lens_.radius * std::sqrt(place.x), turn = 2 * std::numbers::pi * place.y;
     const Vec3 aside = radius * (std::cos(turn) * camera_.right + std::sin(turn) * camera_.up);
     const Vec3 sharp = middle(lens_.depth / glm::dot(middle.direction, camera_.direction));

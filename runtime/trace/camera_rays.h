@@ -18,7 +18,8 @@ class CameraRays {
     /// pixel's middle is (0.5, 0.5). The direction is of unit length.
     Ray through(double x, double y) const;
 
-    /// The same from a place of the lens: `place` in [0, 1)^2 spreads evenly over its disc.
+    bool has_lens() const { return lens_.radius > 0; }
+    /// The same from a place of the lens: `place` in [0, 1)^2 spreads evenly over its disc. Requires a lens.
     Ray through(double x, double y, glm::dvec2 place) const;
 
   private:

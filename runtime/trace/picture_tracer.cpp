@@ -45,8 +45,8 @@ class Worker {
   public:
     Worker(const TraceModel& model, const ShaderLimits& limits, const std::function<bool()>& cancelled)
         : rays_(model.view), traversal_(model),
-          shader_(model.view, traversal_, limits, model.textures.of_ground), picture_film_(model.view.film),
-          lens_(model.view.lens.radius > 0), cancelled_(cancelled) {}
+          shader_(model.view, traversal_, limits, model.textures.of_ground), film_(model.view.film),
+          cancelled_(cancelled) {}
 
     /// False if it was cancelled before the last ray.
     bool trace(const Sampling& sampling, const Tile& tile, Image& picture) {
@@ -73,7 +73,7 @@ class Worker {
     /// `random` is of no account where all light is from points.
     Rgb look(double x, double y, SampleStream random) {
         ++camera_rays_;
-        if (!lens_) return shader_.radiance(rays_.through(x, y), random);
+        if (!rays_.has_lens()) return shader_.radiance(rays_.through(x, y), random);
         const glm::dvec2 place = random.next();
         return shader_.radiance(rays_.through(x, y, place), random);
     }
@@ -110,17 +110,18 @@ class Worker {
 
     /// Pixel by pixel, each by itself, so that it depends on its place in the picture alone.
     bool trace_samples(const Sampling& sampling, const Tile& tile, Image& picture) {
+        static const PixelFilter filter;
         for (int y = tile.y; y < tile.y + tile.height; ++y)
             for (int x = tile.x; x < tile.x + tile.width; ++x) {
                 const auto seed = static_cast<std::uint64_t>(y) << 32 | static_cast<std::uint32_t>(x);
-                NoiseMeter meter(picture_film_);
+                NoiseMeter meter(film_);
                 bool calm = false;
                 for (int i = 0; i < sampling.most_samples && !calm; ++i) {
                     if (cancelled()) return false;
                     SampleStream random(seed, static_cast<std::uint32_t>(i));
                     const glm::dvec2 place = random.next();
                     meter.add(
-                        look(x + 0.5 + filter_.offset(place.x), y + 0.5 + filter_.offset(place.y), random));
+                        look(x + 0.5 + filter.offset(place.x), y + 0.5 + filter.offset(place.y), random));
                     calm = meter.count() % samples_a_round == 0 && meter.error_255() < sampling.noise_255;
                 }
                 if (!calm && sampling.noise_255 > 0) ++noisy_pixels_;
@@ -174,9 +175,7 @@ class Worker {
     CameraRays rays_;
     Traversal traversal_;
     Shader shader_;
-    PixelFilter filter_;
-    Film picture_film_;
-    bool lens_;
+    const Film& film_;
     const std::function<bool()>& cancelled_;
     std::uint64_t camera_rays_ = 0, noisy_pixels_ = 0;
     std::vector<Rgb> row_, sums_;

@@ -8,6 +8,7 @@
 #include <glm/geometric.hpp>
 
 #include "compiler/scene/ground.h"
+#include "compiler/support/axes_across.h"
 #include "compiler/support/number_range.h"
 
 namespace graftal {
@@ -75,11 +76,11 @@ Shader::Shader(const View& view, Surfaces& surfaces, const ShaderLimits& limits,
     : view_(view), surfaces_(surfaces), limits_(limits), ground_texture_(std::move(ground_texture)) {
     const bool listed = limits.list.has_value();
     for (const Light& light : listed ? listed_lights(view, *limits.list) : view.lights) {
-        if (std::max({light.rgb.x, light.rgb.y, light.rgb.z}) < least_light) continue;
+        if (largest(light.rgb) < least_light) continue;
         const Vec3 at = light.sun ? glm::normalize(light.location) : light.location;
         if (!is_finite(at)) continue;
         const Lamp lamp{at, light.rgb, light.sun, light.shadowless};
-        if (!light.sun || light.shadowless || !(light.angle_deg > 0)) {
+        if (!light.is_disc()) {
             lamps_.push_back(lamp);
             continue;
         }

@@ -44,10 +44,9 @@ void hold(Options& options, const fuzz::Scratch& scratch) {
     compile.lower.max_modules = 20'000;
     compile.lower.run_from = 256;
     compile.detail.memory_bytes = std::min<std::uint64_t>(compile.detail.memory_bytes, 8u << 20);
-    compile.detail.work_seconds = std::min(compile.detail.work_seconds, 0.02);
+    options.render.limit_work(std::min(compile.detail.work_seconds, 0.02));
     options.render.threads = 1;
     options.quiet = true;
-    options.render.soft_work_seconds = compile.detail.work_seconds;
     options.render.antialias.reset();
     options.render.progressive = false;
     options.engine = find_engine("native");

@@ -187,9 +187,7 @@ void add_view(CLI::App& app, Options& options) {
         "Limit of the work for a picture, roughly in seconds of one processor; graftal draws coarser where a "
         "picture would take more (default 30; under soft light 30, 60 or 600 by --quality)",
         "a number of seconds above 0", [](const std::string& text) { return parse_at_least(text, 1e-3); },
-        [&](double seconds) {
-            compile.detail.work_seconds = options.render.soft_work_seconds.emplace(seconds);
-        });
+        [&](double seconds) { options.render.limit_work(seconds); });
     app.add_flag("--visible-only", compile.detail.visible_only,
                  "Leave out parts that the camera does not see, and their shadows too");
     app.add_flag("--flatten", compile.cut.flatten,
@@ -216,7 +214,7 @@ std::string engine_names(std::string_view between) {
     return names;
 }
 
-/// "Renderer: povray (POV-Ray 3.7), native (graftal's own ray tracer) (default povray)"
+/// "Renderer: povray, POV-Ray 3.7; native, graftal's own ray tracer (default povray)"
 std::string engines_text() {
     std::string text = "Renderer";
     for (const Engine& engine : engines())

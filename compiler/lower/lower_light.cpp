@@ -1,0 +1,97 @@
+#include "compiler/lower/lower_light.h"
+
+#include <algorithm>
+
+#include "compiler/light/blackbody.h"
+#include "compiler/light/sky_light.h"
+
+namespace graftal {
+
+namespace {
+
+constexpr double most_sun_angle_deg = 90;
+constexpr unsigned most_bounces = 16; // a white room keeps 3 % of its light unshown
+
+} // namespace
+
+LightSetting lower_light(const SceneFields& fields) {
+    LightSetting light;
+    light.sun = fields.flag("sun");
+    if (light.sun && fields.flag("location"))
+        fields.error("location", "a light has either a location or, as a sun, a direction");
+    if (!light.sun && !fields.flag("location"))
+        fields.error_at_statement("this light has no place", "give it 'location: x, y, z' or 'sun: x, y, z'");
+    light.location = (light.sun ? fields.direction("sun") : fields.place("location")).value_or(Vec3(1.0));
+    if (light.sun && light.location == Vec3(0.0)) fields.error("sun", "'sun' must have a direction");
+    light.rgb = fields.light_color("color").value_or(light.rgb);
+    light.shadowless = fields.flag("shadowless");
+    if (const std::optional<double> kelvin = fields.temperature("temperature"))
+        light.rgb *= blackbody_rgb(*kelvin);
+    light.rgb *= fields.brightness("brightness").value_or(1);
+    light.angle_deg = fields
+                          .number(
+                              "angle", [](double x) { return x >= 0 && x <= most_sun_angle_deg; },
+                              fmt::format("lie between 0 and {} degrees", most_sun_angle_deg))
+                          .value_or(0);
+    if (fields.flag("angle") && !light.sun)
+        fields.error("angle", "'angle' is the apparent diameter of a sun; this light has a location");
+    if (light.angle_deg > 0 && light.shadowless)
+        fields.error("angle", "a shadowless light has no penumbra; leave out 'angle' or 'shadowless'");
+    return light;
+}
+
+SkySetting lower_sky(const SceneFields& fields) {
+    SkySetting sky;
+    const std::optional<Rgb> zenith = fields.light_color("zenith");
+    sky.zenith = zenith.value_or(sky.zenith);
+    // One colour: the same all over.
+    if (zenith && !fields.flag("clear")) sky.horizon = sky.below = *zenith;
+    sky.horizon = fields.light_color("horizon").value_or(sky.horizon);
+    sky.below = fields.light_color("below").value_or(sky.below);
+    sky.turbidity = fields.number(
+        "clear", [](double x) { return x >= ClearSky::least_turbidity && x <= ClearSky::most_turbidity; },
+        fmt::format("lie between {} (pure air) and {} (haze)", ClearSky::least_turbidity,
+                    ClearSky::most_turbidity));
+    for (const char* const colour : {"zenith", "horizon"})
+        if (fields.flag(colour) && fields.flag("clear"))
+            fields.error(colour, fmt::format("a clear sky has its own colours; leave out '{}'", colour));
+    sky.brightness = fields.brightness("brightness").value_or(1);
+    sky.bounces = fields.whole("bounces", 0, most_bounces).value_or(0);
+    if (fields.empty())
+        fields.error_at_statement("this sky says nothing", "give it colours, as in 'zenith: 0.3, 0.5, 0.9', "
+                                                           "or 'clear: 3' for a clear sky");
+    return sky;
+}
+
+HazeSetting lower_haze(const SceneFields& fields) {
+    HazeSetting haze;
+    if (!fields.flag("distance"))
+        fields.error_at_statement("this haze has no density",
+                                  "give it 'distance: D', at which a third of what lies behind is seen");
+    haze.distance = fields.size("distance").value_or(1);
+    haze.base = fields.coordinate("base").value_or(0);
+    haze.height = fields.size("height");
+    haze.rgb = fields.light_color("color");
+    return haze;
+}
+
+Film lower_film(const SceneFields& fields) {
+    Film film;
+    film.soft = !fields.flag("hard");
+    film.exposure = fields.brightness("exposure").value_or(1);
+    film.white_k = fields.temperature("white").value_or(film.white_k);
+    if (fields.flag("hard") && fields.flag("soft")) fields.error("hard", "a film is either hard or soft");
+    return film;
+}
+
+void check_sky(const std::vector<SceneStatement>& statements, const SceneSettings& settings,
+               Diagnostics& diagnostics) {
+    if (!settings.sky || !settings.sky->turbidity) return;
+    if (std::ranges::any_of(settings.lights, [](const LightSetting& light) { return light.sun; })) return;
+    for (const SceneStatement& statement : statements)
+        if (statement.kind == SceneStatement::Kind::sky)
+            diagnostics.error(statement.span, "a clear sky needs a sun")
+                .with_hint("light { sun: 1, 1, 2  angle: 0.53  temperature: 5500 } is one");
+}
+
+} // namespace graftal

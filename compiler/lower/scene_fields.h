@@ -1,0 +1,157 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "compiler/light/blackbody.h"
+#include "compiler/lower/lower_area.h"
+#include "compiler/lower/lower_transform.h"
+#include "compiler/support/number.h"
+#include "compiler/support/number_range.h"
+#include "compiler/syntax/scene_statements.h"
+
+namespace graftal {
+
+inline constexpr double most_brightness = 1e6; // half floats of POV-Ray's pictures end at 65504
+
+/// One statement's fields by name, each evaluated and checked on demand.
+class SceneFields {
+  public:
+    SceneFields(const SceneStatement& statement, const Environment& lets, Diagnostics& diagnostics)
+        : statement_(statement), lets_(lets), diagnostics_(diagnostics) {
+        for (auto field = statement.fields.begin(); field != statement.fields.end(); ++field) {
+            const auto first = std::find_if(statement.fields.begin(), field, [&](const SceneField& other) {
+                return other.keyword == field->keyword;
+            });
+            if (first == field) continue;
+            diagnostics.error(field->span, fmt::format("duplicate '{}'", field->keyword))
+                .with_note(first->span, "first given here");
+        }
+    }
+
+    const SceneField* find(std::string_view keyword) const {
+        const auto found = std::find_if(statement_.fields.begin(), statement_.fields.end(),
+                                        [&](const SceneField& field) { return field.keyword == keyword; });
+        return found == statement_.fields.end() ? nullptr : &*found;
+    }
+
+    bool empty() const { return statement_.fields.empty(); }
+    bool flag(std::string_view keyword) const { return find(keyword) != nullptr; }
+
+    /// A point of the scene.
+    std::optional<Vec3> place(std::string_view keyword) const {
+        return vector(keyword, is_place, place_demand());
+    }
+
+    /// One coordinate of such a point.
+    std::optional<double> coordinate(std::string_view keyword) const {
+        return number(
+            keyword, [](double x) { return is_place(Vec3(x)); }, place_demand());
+    }
+
+    std::optional<unsigned> whole(std::string_view keyword, unsigned least, unsigned most) const {
+        const std::optional<double> value = number(
+            keyword, [&](double x) { return x >= least && x <= most && x == std::floor(x); },
+            fmt::format("be a whole number between {} and {}", least, most));
+        return value ? std::optional(static_cast<unsigned>(*value)) : std::nullopt;
+    }
+
+    /// A vector of which only the direction counts.
+    std::optional<Vec3> direction(std::string_view keyword) const {
+        const auto good = [](Vec3 v) { return v == Vec3(0.0) || is_direction(v); };
+        return vector(keyword, good, range_demand());
+    }
+
+    /// A positive size.
+    std::optional<double> size(std::string_view keyword) const {
+        const std::optional<double> value = number(
+            keyword, [](double x) { return x > 0; }, "be positive");
+        if (!value || is_size(*value)) return value;
+        return number(keyword, is_size, range_demand());
+    }
+
+    std::optional<Rgb> color(std::string_view keyword) const {
+        const SceneField* field = find(keyword);
+        return field ? lower_color(field->values, lets_, diagnostics_) : std::nullopt;
+    }
+
+    std::optional<Rgb> light_color(std::string_view keyword) const {
+        const SceneField* field = find(keyword);
+        return field ? lower_light_color(field->values, lets_, diagnostics_) : std::nullopt;
+    }
+
+    std::optional<double> temperature(std::string_view keyword) const {
+        return number(
+            keyword, [](double x) { return x >= least_temperature_k && x <= most_temperature_k; },
+            fmt::format("lie between {} and {} kelvin", least_temperature_k, most_temperature_k));
+    }
+
+    /// A factor of light.
+    std::optional<double> brightness(std::string_view keyword) const {
+        return number(
+            keyword, [](double x) { return x >= 0 && x <= most_brightness; },
+            fmt::format("lie between 0 and {}", shortest(most_brightness)));
+    }
+
+    std::optional<FlatArea> area(std::string_view keyword) const {
+        const SceneField* field = find(keyword);
+        return field ? lower_area(field->values, field->span, lets_, diagnostics_) : std::nullopt;
+    }
+
+    std::optional<double> number(std::string_view keyword) const {
+        const SceneField* field = find(keyword);
+        return field ? evaluate(field->values[0], lets_, diagnostics_) : std::nullopt;
+    }
+
+    /// A number for which `good` holds, else the error "'angle' must lie ..., not 200".
+    template<typename Predicate>
+    std::optional<double> number(std::string_view keyword, const Predicate& good,
+                                 std::string_view demand) const {
+        const std::optional<double> value = number(keyword);
+        if (!value || good(*value)) return value;
+        diagnostics_.error(find(keyword)->values[0].span,
+                           fmt::format("'{}' must {}, not {}", keyword, demand, shortest(*value)));
+        return std::nullopt;
+    }
+
+    void error(std::string_view keyword, std::string message) const {
+        diagnostics_.error(find(keyword)->span, std::move(message));
+    }
+
+    void error_at_statement(std::string message, std::string hint) const {
+        if (!statement_.complete) return; // what is missed may be what could not be read
+        diagnostics_.error(statement_.span, std::move(message)).with_hint(std::move(hint));
+    }
+
+  private:
+    static std::string place_demand() {
+        return fmt::format("lie within {} units of the origin", shortest(largest_size));
+    }
+    static std::string range_demand() {
+        return fmt::format("have a size between {} and {}", shortest(least_size), shortest(largest_size));
+    }
+
+    template<typename Predicate>
+    std::optional<Vec3> vector(std::string_view keyword, const Predicate& good,
+                               const std::string& demand) const {
+        const SceneField* field = find(keyword);
+        if (!field) return std::nullopt;
+        const std::optional<Vec3> value = lower_vector(field->values, lets_, diagnostics_);
+        if (!value || good(*value)) return value;
+        diagnostics_.error(join(field->values.front().span, field->values.back().span),
+                           fmt::format("'{}' must {}", keyword, demand));
+        return std::nullopt;
+    }
+
+    const SceneStatement& statement_;
+    const Environment& lets_;
+    Diagnostics& diagnostics_;
+};
+
+} // namespace graftal

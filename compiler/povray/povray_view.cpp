@@ -179,6 +179,22 @@ void write_haze(SdlWriter& out, const Haze& haze, const PovrayUnits& units) {
     out.number(units.scale * haze.height, view_digits) << " up <0,1,0> }\n";
 }
 
+/// Its opacity is a pattern of x and z; its light is that of paper.
+void write_catcher(SdlWriter& out, const ShadowCatcher& catcher, const PovrayUnits& units) {
+    const Vec3 centre = units(catcher.centre);
+    const double radius = units.scale * catcher.radius;
+    out << "plane { y, ";
+    out.number(centre.y, view_digits) << "\n  pigment { function { min(0.999999, pow(max(0, 1 - (pow((x - (";
+    out.number(centre.x, view_digits) << "))/";
+    out.number(radius, view_digits) << ", 2) + pow((z - (";
+    out.number(centre.z, view_digits) << "))/";
+    out.number(radius, view_digits) << ", 2))), 2)) }\n  color_map { [0 ";
+    write_rgb(out, catcher.rgb);
+    out << " transmit 1] [1 ";
+    write_rgb(out, catcher.rgb);
+    out << "] } }\n  finish { ambient 0 diffuse 1 } no_shadow }\n";
+}
+
 } // namespace
 
 void write_view(SdlWriter& out, const View& view, const PovrayUnits& units, Vec3 centre,
@@ -196,6 +212,7 @@ void write_view(SdlWriter& out, const View& view, const PovrayUnits& units, Vec3
         out.number(units(Vec3(0, view.ground->height, 0)).y, view_digits)
             << "\n  " << ground_texture << " }\n";
     }
+    if (view.catcher) write_catcher(out, *view.catcher, units);
 }
 
 } // namespace graftal

@@ -238,6 +238,21 @@ void place_orthographic(Camera& camera, const CameraSetting& setting, const Subj
     camera.location = setting.location.value_or(subject.world(anchor - (3 - nearest) * camera.direction));
 }
 
+/// Width over height of what the camera sees of the subject; 1 of a point.
+double aspect_of(const Camera& camera, const Subject& subject) {
+    Vec3 most(-std::numeric_limits<double>::infinity()), least(-most);
+    const Vec3 eye = in_axes(camera, subject.local(camera.location));
+    for (const Vec3 corner : subject.corners) {
+        Vec3 p = in_axes(camera, corner);
+        if (!camera.orthographic) p = (p - eye) / std::max((p - eye).z, 1e-6);
+        most = glm::max(most, p);
+        least = glm::min(least, p);
+    }
+    const double width = most.x - least.x, height = most.y - least.y;
+    if (!(width > 0 || height > 0)) return 1;
+    return width / std::max(height, 1e-6 * width);
+}
+
 } // namespace
 
 int thinnest_axis(const Box& bounds) {
@@ -298,6 +313,24 @@ Camera frame_camera(const CameraSetting& setting, const Box& bounds, const Outli
         place_perspective(camera, setting, subject, aspect);
     if (!setting.location) camera.location = without_noise(camera.location, subject);
     return camera;
+}
+
+ImageSize shaped_size(const CameraSetting& setting, const Box& bounds, const Outliner& outliner,
+                      ImageSize size) {
+    if (setting.width || (setting.location && setting.angle_deg)) return size;
+    const Camera camera = frame_camera(setting, bounds, outliner, size);
+    Subject subject(bounds);
+    if (outliner && !is_figure(bounds))
+        look_closer(subject, camera, outliner, static_cast<double>(size.width) / size.height);
+    const double aspect = aspect_of(camera, subject);
+    constexpr double shapes[] = {16.0 / 9, 3.0 / 2, 4.0 / 3, 1, 3.0 / 4, 2.0 / 3, 9.0 / 16};
+    const auto distance = [&](double shape) { return std::abs(std::log(aspect / shape)); };
+    const double shape = *std::ranges::min_element(shapes, {}, distance);
+    const double pixels = static_cast<double>(size.width) * size.height;
+    const auto even = [](double length) {
+        return 2 * std::max(1, static_cast<int>(std::lround(length / 2)));
+    };
+    return {even(std::sqrt(pixels * shape)), even(std::sqrt(pixels / shape))};
 }
 
 } // namespace graftal

@@ -33,4 +33,9 @@ CameraSetting merge(const CameraSetting& model, const CameraSetting& over);
 Camera frame_camera(const CameraSetting& setting, const Box& bounds, const Outliner& outliner, ImageSize size,
                     bool turning = false);
 
+/// A size of about as many pixels as `size`, in the shape that suits what is seen: of the usual shapes from
+/// 16:9 to 9:16 the nearest to the outline's. `size` itself where the setting says how much is seen.
+ImageSize shaped_size(const CameraSetting& setting, const Box& bounds, const Outliner& outliner,
+                      ImageSize size);
+
 } // namespace graftal

@@ -10,6 +10,7 @@
 
 #include "compiler/scene/backdrop.h"
 #include "compiler/scene/framing.h"
+#include "compiler/scene/studio.h"
 #include "compiler/support/check.h"
 
 namespace graftal {
@@ -109,11 +110,11 @@ Lens resolve_lens(const SceneSettings& settings, const Camera& camera, const Box
 }
 
 /// Pictures under a sky are soft; those under a clear one, whose colours are measured, are for daylight.
-Film resolve_film(const SceneSettings& settings) {
+Film resolve_film(const SceneSettings& settings, bool under_sky) {
     if (settings.film) return *settings.film;
     constexpr double daylight_k = 5600;
     Film film;
-    film.soft = settings.sky.has_value();
+    film.soft = under_sky;
     if (settings.sky && settings.sky->turbidity) film.white_k = daylight_k;
     return film;
 }
@@ -163,8 +164,12 @@ View view_through(const Camera& camera, const Graph& graph, const Box& bounds, I
     view.size = size;
     view.camera = camera;
     if (settings.ground) view.ground = resolve(*settings.ground, graph.materials);
-    if (!settings.lights.empty() || settings.sky)
+    const bool silent = settings.lights.empty() && !settings.sky; // about light
+    const bool studio = silent && !is_figure(bounds);
+    if (!silent)
         view.lights = model_lights(settings.lights);
+    else if (studio)
+        light_as_in_studio(view);
     else if (flat)
         view.lights = flat_lights(view.camera, thinnest_axis(bounds));
     else
@@ -173,15 +178,21 @@ View view_through(const Camera& camera, const Graph& graph, const Box& bounds, I
         view.sky_light = resolve(*settings.sky, view.lights);
         view.shows_sky_light = !settings.background;
     }
-    view.film = resolve_film(settings);
+    view.film = resolve_film(settings, view.sky_light.has_value());
     view.lens = resolve_lens(settings, camera, bounds);
     if (settings.background) {
         view.sky.zenith = settings.background->rgb;
         view.sky.horizon = settings.background->horizon.value_or(settings.background->rgb);
+    } else if (studio && !view.ground) {
+        view.sky = studio_backdrop(view);
     } else {
         view.sky = automatic_sky(colours, view, is_figure(bounds));
     }
-    if (settings.haze) view.haze = resolve(*settings.haze, view);
+    if (studio && !view.ground) view.catcher = catcher_below(view, bounds);
+    if (settings.haze)
+        view.haze = resolve(*settings.haze, view);
+    else if (studio && view.ground)
+        view.haze = air_over_ground(view, bounds);
     return view;
 }
 

@@ -12,6 +12,7 @@
 #include "compiler/light/film.h"
 #include "compiler/light/haze.h"
 #include "compiler/light/sky_light.h"
+#include "compiler/scene/shadow_catcher.h"
 #include "compiler/support/bounds.h"
 
 namespace graftal {
@@ -86,6 +87,7 @@ struct View {
     std::vector<Light> lights;
     Sky sky;
     std::optional<Ground> ground;
+    std::optional<ShadowCatcher> catcher;
     std::optional<SkyLight> sky_light; ///< light from all directions; nothing: what lights there are
     bool shows_sky_light = false;      ///< in place of `sky`, as the background
     std::optional<Haze> haze;
@@ -109,10 +111,10 @@ using CameraOverride = CameraSetting;
 
 /// Resolves the scene statements of the model. What they leave out is chosen so that the whole of `bounds`
 /// is in the picture with a small margin: flat models (no depth along one axis) face on, undistorted and in
-/// their true colours; models in space from the front, a little from the right and above, with a key light
-/// with shadows over the viewer's left shoulder and a weaker shadowless fill from the right; a background
-/// that lets the model stand out. With an outline as well, the picture is filled by the model itself rather
-/// than by its box. Requires bounds that are not empty.
+/// their true colours; models in space from the front, a little from the right and above, in the light of a
+/// studio (studio.h) where they name no light; figures on a background that lets them stand out. With an
+/// outline as well, the picture is filled by the model itself rather than by its box. Requires bounds that
+/// are not empty.
 View frame(const Graph& graph, const Box& bounds, ImageSize size, const CameraOverride& camera = {},
            const Outliner& outliner = {});
 

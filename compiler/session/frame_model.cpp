@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "compiler/graph/unfold.h"
+#include "compiler/scene/framing.h"
 #include "compiler/scene/outline.h"
 
 namespace graftal {
@@ -51,8 +52,12 @@ Sight sight_of(const AnalysedModel& model, std::optional<unsigned> steps) {
 }
 
 View frame_model(const AnalysedModel& model, std::optional<unsigned> steps, ImageSize size,
-                 const CameraOverride& camera) {
+                 const CameraOverride& camera, bool shaped) {
     const Sight sight = sight_of(model, steps);
+    if (shaped) {
+        const CameraSetting own = model.graph.settings.camera.value_or(CameraSetting{});
+        size = shaped_size(merge(own, camera), sight.bounds, sight.outliner, size);
+    }
     return frame(model.graph, sight.bounds, size, camera, sight.outliner);
 }
 

@@ -16,8 +16,8 @@ struct Sight {
 /// can be looked at part by part, else its limit set.
 Sight sight_of(const AnalysedModel& model, std::optional<unsigned> steps);
 
-/// The view of a model as it will be drawn.
+/// The view of a model as it will be drawn; `shaped`: of a size that suits it (shaped_size()).
 View frame_model(const AnalysedModel& model, std::optional<unsigned> steps, ImageSize size,
-                 const CameraOverride& camera);
+                 const CameraOverride& camera, bool shaped = false);
 
 } // namespace graftal

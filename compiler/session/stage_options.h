@@ -16,6 +16,7 @@ class SharedFraming;
 /// From where a model is looked at, and in how many pixels.
 struct ViewOptions {
     ImageSize size;
+    bool shaped = false; ///< to suit the model, of about as many pixels (shaped_size())
     CameraOverride camera;
     ZoomRequest zoom;
     /// Of an animation, whose frames are framed together; null: the model is framed by itself.

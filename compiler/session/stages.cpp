@@ -85,7 +85,8 @@ bool converges(const Contraction& contraction) {
 
 View view_of(const AnalysedModel& model, std::optional<unsigned> steps, const ViewOptions& options,
              bool part) {
-    if (!options.framing) return frame_model(model, steps, options.size, options.camera);
+    const bool shaped = options.shaped && !options.zoom.active();
+    if (!options.framing) return frame_model(model, steps, options.size, options.camera, shaped);
     if (!part) return options.framing->view(model, options.camera, options.turn_deg);
     // A part that is looked at by itself (--at) is framed for its own frame, which the models do not know.
     SharedFraming own;

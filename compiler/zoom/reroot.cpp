@@ -74,6 +74,7 @@ class Rerooter {
     bool set_view(const std::optional<Vec3>& look_at, const std::optional<Affine>& picture_from_root) {
         if (request_.zoom) {
             result_.view = frame_object_(model_.graph.root, 0);
+            result_.view.catcher.reset(); // it lies under the whole model, and not under what is seen of it
             turn_to_focus(look_at.value_or(focus_.points.front()));
         } else if (!look_from_object(picture_from_root)) {
             return false;
@@ -159,6 +160,7 @@ class Rerooter {
         View& view = result_.view;
         view.haze.reset(); // its lengths are those of the world
         view.lens = {};
+        view.catcher.reset();
         const Vec3 infinitely_far(std::numeric_limits<double>::infinity());
         if (!model_.graph.settings.lights.empty())
             for (Light& light : view.lights) {
@@ -166,7 +168,7 @@ class Rerooter {
                 const bool near = !light.sun && picture_from_root;
                 move(light, near ? (*picture_from_root)(light.location) : infinitely_far, turn * towards);
             }
-        if (view.sky_light) {
+        if (model_.graph.settings.sky) {
             SkyLight& sky = *view.sky_light;
             sky.up = glm::normalize(turn * sky.up);
             if (sky.clear) sky.clear->to_sun = glm::normalize(turn * sky.clear->to_sun);

@@ -264,6 +264,7 @@ std::optional<Collage> measure_collage(Session& session, const CollageOptions& o
     if (!compilation.status.ok()) return std::nullopt;
     StageOptions compile = options.compile;
     compile.view.size = {image.width, image.height};
+    compile.view.shaped = false;
     const std::shared_ptr<const ViewedModel> viewed = session.viewed(compile, compilation);
     if (!viewed) return std::nullopt;
     Diagnostics& diagnostics = compilation.diagnostics;

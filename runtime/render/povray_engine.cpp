@@ -90,14 +90,14 @@ const char* name_of(PovrayProgress::Stage stage) {
     return "";
 }
 
-PovrayJob job_for(const RenderOptions& options, const Film& film) {
+PovrayJob job_for(const RenderOptions& options, const View& view) {
     PovrayJob job;
-    job.width = options.compile.view.size.width;
-    job.height = options.compile.view.size.height;
+    job.width = view.size.width;
+    job.height = view.size.height;
     job.threads = options.threads;
     job.antialias = options.antialias;
     const bool linear = options.format == SampleFormat::linear16;
-    if (is_exr_name(options.output) || (!linear && !film.plain())) {
+    if (is_exr_name(options.output) || (!linear && !view.film.plain())) {
         job.format = PovrayJob::Format::half;
         job.picture = "picture.exr";
     } else if (linear) {
@@ -248,7 +248,7 @@ std::optional<PovrayReport> render_by_povray(PictureSession& session, const Rend
     if (!model) return std::nullopt;
     TemporaryDirectory temporary;
     const Film film = model->view.film;
-    PovrayJob job = job_for(options, film);
+    PovrayJob job = job_for(options, model->view);
     job.cancel = session.control().cancel;
     const auto run = [&](const char* stage, const auto& work) {
         const Stopwatch watch;

@@ -54,7 +54,7 @@ std::vector<Sampling> samplings_of_soft_light(int most_samples, double noise_255
 }
 
 SampleGoal sample_goal(Quality quality) {
-    return by_quality<SampleGoal>(quality, {16, 6}, {128, 3}, {1024, 1});
+    return by_quality<SampleGoal>(quality, {16, 6}, {64, 3}, {1024, 1});
 }
 
 double samples_a_pixel(const std::vector<Sampling>& samplings) {

@@ -98,6 +98,12 @@ Shader::Shader(const View& view, Surfaces& surfaces, const ShaderLimits& limits,
     } else {
         ambient_light_ = Rgb(1.0);
     }
+    if (view.catcher) {
+        catcher_paper_.rgb = view.catcher->rgb;
+        catcher_paper_.ambient = 0;
+        catcher_paper_.diffuse = 1;
+        catcher_paper_.specular = 0;
+    }
     if (view.ground && ground_texture_) picture_from_world_ = inverse(world_from_picture(*view.ground));
     const Camera& camera = view.camera;
     const double width =
@@ -116,11 +122,25 @@ Rgb Shader::radiance(const Ray& ray, SampleStream& random) {
     for (unsigned surface = 0; surface < most && largest(weight) >= limits_.least_weight; ++surface) {
         SurfaceHit hit;
         const bool found = closest(path, range, hit);
+        double caught = 0; // of what lies behind the catcher
+        if (view_.catcher) {
+            RayRange before = range;
+            before.most = found ? hit.t : limits_.farthest;
+            caught = meet_catcher(path, before, hit);
+        }
         if (view_.haze) {
-            const double length = found ? hit.t : std::min(limits_.farthest, largest_size);
+            const double length = found || caught > 0 ? hit.t : std::min(limits_.farthest, largest_size);
             const double left = view_.haze->left_after(path.origin, path.direction, length);
             sum += clear * (1 - left) * weight * view_.haze->rgb;
             clear *= left;
+        }
+        if (caught > 0) {
+            const Point point = point_of(path, hit);
+            sum += caught * clear * weight * lit(point, random);
+            weight *= 1 - caught;
+            path.origin = point.position;
+            range.least = least_distance(point.position, mirror_pixels);
+            continue;
         }
         if (!found) {
             // The surfaces that light is scattered by have taken the sky's already.
@@ -185,10 +205,23 @@ bool Shader::closest(const Ray& ray, RayRange range, SurfaceHit& hit) {
     return true;
 }
 
-bool Shader::meet_ground(const Ray& ray, const RayRange& range, double& t) const {
+/// The opacity of the catcher where the ray meets it, in front of what else it meets; 0: nowhere.
+double Shader::meet_catcher(const Ray& ray, const RayRange& range, SurfaceHit& hit) const {
+    double t = 0;
+    if (!meet_level(view_.catcher->centre.y, ray, range, t)) return 0;
+    const double opacity = view_.catcher->opacity(ray(t));
+    if (opacity > 0) hit = {t, {0, 1, 0}, catcher_paper_.rgb, &catcher_paper_};
+    return opacity;
+}
+
+bool Shader::meet_level(double height, const Ray& ray, const RayRange& range, double& t) {
     if (!(std::abs(ray.direction.y) >= least_cosine)) return false;
-    t = (view_.ground->height - ray.origin.y) / ray.direction.y;
-    if (!(range.least < t && t < range.most)) return false;
+    t = (height - ray.origin.y) / ray.direction.y;
+    return range.least < t && t < range.most;
+}
+
+bool Shader::meet_ground(const Ray& ray, const RayRange& range, double& t) const {
+    if (!meet_level(view_.ground->height, ray, range, t)) return false;
     return !ground_texture_ || !ground_texel(ray(t)).clear;
 }
 
@@ -202,6 +235,7 @@ Shader::Point Shader::point_of(const Ray& ray, const SurfaceHit& hit) const {
     if (glm::dot(hit.normal, ray.direction) > 0) point.normal = -hit.normal;
     // Exactly on the ground, its own shadow cannot begin on the way to a low sun.
     if (view_.ground && hit.material == &view_.ground->material) point.position.y = view_.ground->height;
+    if (hit.material == &catcher_paper_) point.position.y = view_.catcher->centre.y;
     return point;
 }
 

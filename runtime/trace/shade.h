@@ -78,6 +78,8 @@ class Shader {
     bool closest(const Ray& ray, RayRange range, SurfaceHit& hit);
     /// Where and how the ground is met; false beyond the range, along it, and where its picture is clear.
     bool meet_ground(const Ray& ray, const RayRange& range, double& t) const;
+    static bool meet_level(double height, const Ray& ray, const RayRange& range, double& t);
+    double meet_catcher(const Ray& ray, const RayRange& range, SurfaceHit& hit) const;
     const Texture::Texel& ground_texel(Vec3 point) const;
     Point point_of(const Ray& ray, const SurfaceHit& hit) const;
     Rgb lit(const Point& point, SampleStream& random);
@@ -99,6 +101,7 @@ class Shader {
     unsigned bounces_ = 0;
     double pixel_; ///< a pixel's length: of parallel rays in scene units, else at distance 1
     double sky_slope_;
+    Material catcher_paper_;
     std::shared_ptr<const Texture> ground_texture_; ///< null: plain
     Affine picture_from_world_;                     ///< of the ground's
 };

@@ -128,9 +128,16 @@ void add_common(CLI::App& app, Options& options) {
 
 void add_camera(CLI::App& app, Options& options) {
     StageOptions& compile = options.render.compile;
-    add_value(app, "--size", "WxH", "Size of the picture in pixels (default 1280x720)",
-              "a size such as 1280x720, at most 32768 a side", parse_size,
-              [&](ImageSize size) { compile.view.size = size; });
+    compile.view.shaped = !can_sweep(app); // a film keeps the shape of screens
+    add_value(app, "--size", "WxH",
+              compile.view.shaped
+                  ? "Size of the picture in pixels (default: as many as 1280x720 has, in a shape "
+                    "that suits the model)"
+                  : "Size of the picture in pixels (default 1280x720)",
+              "a size such as 1280x720, at most 32768 a side", parse_size, [&](ImageSize size) {
+                  compile.view.size = size;
+                  compile.view.shaped = false;
+              });
     const auto camera = [&compile, &sweeps = options.animation.sweeps,
                          swept = can_sweep(app)](const std::vector<std::string>& texts) {
         for (const std::string& text : texts) {

@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "compiler/scene/backdrop.h"
+#include "compiler/scene/framing.h"
 
 namespace graftal {
 namespace {
@@ -250,37 +251,6 @@ TEST(Frame, AWidthMeansParallelRays) {
     EXPECT_FALSE(frame(graph, unit_cube, {200, 100}, {.angle_deg = 30}).camera.orthographic);
 }
 
-TEST(Frame, WhiteNeverClipsAndShadowsAreNotBlack) {
-    const View view = frame(model(), unit_cube, {100, 100});
-    const Material ordinary;
-    double brightest = 0;
-    for (int i = 0; i < 200; ++i)
-        for (int j = 0; j < 100; ++j) {
-            const double a = i * pi / 100, z = -1 + j / 50.0, r = std::sqrt(1 - z * z);
-            const Vec3 normal(r * std::cos(a), r * std::sin(a), z);
-            for (int c = 0; c < 3; ++c) {
-                double sum = ordinary.ambient;
-                for (const Light& light : view.lights)
-                    sum += ordinary.diffuse * light.rgb[c] * std::max(0.0, glm::dot(normal, light.location));
-                brightest = std::max(brightest, sum);
-            }
-        }
-    EXPECT_LT(brightest, 1);
-    EXPECT_GT(brightest, 0.8);
-    int casting = 0;
-    for (const Light& light : view.lights) {
-        EXPECT_TRUE(light.sun);
-        EXPECT_NEAR(glm::length(light.location), 1, 1e-12);
-        casting += !light.shadowless;
-    }
-    EXPECT_EQ(casting, 1);
-    EXPECT_GE(view.lights.size(), 2u);
-    // The key stands over the viewer's left shoulder.
-    EXPECT_LT(glm::dot(view.lights[0].location, view.camera.right), 0);
-    EXPECT_GT(glm::dot(view.lights[0].location, view.camera.up), 0);
-    EXPECT_LT(glm::dot(view.lights[0].location, view.camera.direction), 0);
-}
-
 TEST(Frame, FlatModelsShowTheirTrueColours) {
     for (const Vec3 eye : {Vec3(0, 0, 5), Vec3(2, 1, -3)}) {
         const View view = frame(model(), square, {100, 100}, {.location = eye});
@@ -352,13 +322,9 @@ TEST(Sky, ModelsNameTheirOwn) {
     EXPECT_EQ(view.sky.axis, Vec3(0, 1, 0));
 }
 
-TEST(Sky, ModelsStandOutFromTheAutomaticOne) {
-    for (const Box& box : {square, unit_cube}) {
-        const double behind_dark = frame(painted(Rgb(0.02)), box, {100, 100}).sky.horizon.g;
-        const double behind_light = frame(painted(Rgb(0.9)), box, {100, 100}).sky.horizon.g;
-        EXPECT_GT(behind_dark, 0.5);
-        EXPECT_LT(behind_light, 0.3);
-    }
+TEST(Sky, FiguresStandOutFromTheAutomaticOne) {
+    EXPECT_GT(frame(painted(Rgb(0.02)), square, {100, 100}).sky.horizon.g, 0.5);
+    EXPECT_LT(frame(painted(Rgb(0.9)), square, {100, 100}).sky.horizon.g, 0.3);
 }
 
 TEST(Sky, GradientSpansThePicture) {
@@ -395,6 +361,25 @@ TEST(SampleColours, FollowTintsOnCyclesAndTakeTheNearestMaterial) {
     cycle.root = cycle.add(std::move(self));
     for (const Rgb& colour : sample_colours(cycle))
         EXPECT_NEAR(colour.g, 0.5, 1e-12);
+}
+
+TEST(ShapedSize, SuitsTheModelAndHasAsManyPixels) {
+    const ImageSize usual{1280, 720};
+    const auto of = [&](const Box& box, const CameraSetting& camera = {}) {
+        return shaped_size(camera, box, {}, usual);
+    };
+    EXPECT_EQ(of({{-1, 0, -1}, {1, 9, 1}}), (ImageSize{720, 1280}));
+    EXPECT_EQ(of({{-9, 0, -1}, {9, 2, 1}}), usual);
+    EXPECT_EQ(of(square), (ImageSize{960, 960}));
+    for (const Box& box : {unit_cube, Box{{0, 0, 0}, {2, 3, 0}}, Box{Vec3(1), Vec3(1)}}) {
+        const ImageSize size = of(box);
+        EXPECT_NEAR(size.width * size.height, 1280 * 720, 2000);
+        EXPECT_EQ(size.width % 2 + size.height % 2, 0);
+    }
+    const Box tall{{0, 0, 0}, {1, 9, 0}};
+    EXPECT_EQ(of(tall, {.width = 3}), usual);
+    EXPECT_EQ(of(tall, {.location = Vec3(0, 0, 5), .angle_deg = 40}), usual);
+    EXPECT_EQ(of(tall, {.location = Vec3(0, 0, 50)}), (ImageSize{720, 1280}));
 }
 
 TEST(PixelsPerUnit, OrthographicIsTheSameEverywhere) {

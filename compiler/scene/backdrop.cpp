@@ -71,7 +71,7 @@ struct Shades {
 };
 
 /// Light backgrounds look better where both will do.
-constexpr double preference_for_light = 2;
+constexpr double preference_for_light = 4;
 
 Shades choose(const std::vector<Rgb>& colours, Shades light, Shades dark) {
     const double over_light = low_contrast(colours, 0.5 * (light.zenith + light.horizon));

@@ -148,16 +148,16 @@ bool View::has_soft_light() const {
 }
 
 View frame(const Graph& graph, const Box& bounds, ImageSize size, const CameraOverride& camera,
-           const Outliner& outliner) {
+           const Outliner& outliner, DefaultLight light) {
     GRAFTAL_CHECK(!bounds.empty(), "frame: empty bounds");
     GRAFTAL_CHECK(size.width > 0 && size.height > 0, "frame: empty picture");
     const CameraSetting setting = merge(graph.settings.camera.value_or(CameraSetting{}), camera);
     return view_through(frame_camera(setting, bounds, outliner, size), graph, bounds, size,
-                        sample_colours(graph));
+                        sample_colours(graph), light);
 }
 
 View view_through(const Camera& camera, const Graph& graph, const Box& bounds, ImageSize size,
-                  const std::vector<Rgb>& colours) {
+                  const std::vector<Rgb>& colours, DefaultLight light) {
     const SceneSettings& settings = graph.settings;
     const bool flat = thickness(bounds) <= flat_share;
     View view;
@@ -165,7 +165,7 @@ View view_through(const Camera& camera, const Graph& graph, const Box& bounds, I
     view.camera = camera;
     if (settings.ground) view.ground = resolve(*settings.ground, graph.materials);
     const bool silent = settings.lights.empty() && !settings.sky; // about light
-    const bool studio = silent && !is_figure(bounds);
+    const bool studio = silent && light == DefaultLight::studio && !is_figure(bounds);
     if (!silent)
         view.lights = model_lights(settings.lights);
     else if (studio)

@@ -109,6 +109,12 @@ using Outliner = std::function<std::vector<Vec3>(const std::vector<Vec3>& direct
 /// field.
 using CameraOverride = CameraSetting;
 
+/// The light of a solid model that names none.
+enum class DefaultLight {
+    studio, ///< studio.h
+    plain,  ///< one sun with sharp shadows over the viewer's left shoulder, a shadowless fill from the right
+};
+
 /// Resolves the scene statements of the model. What they leave out is chosen so that the whole of `bounds`
 /// is in the picture with a small margin: flat models (no depth along one axis) face on, undistorted and in
 /// their true colours; models in space from the front, a little from the right and above, in the light of a
@@ -116,11 +122,11 @@ using CameraOverride = CameraSetting;
 /// outline as well, the picture is filled by the model itself rather than by its box. Requires bounds that
 /// are not empty.
 View frame(const Graph& graph, const Box& bounds, ImageSize size, const CameraOverride& camera = {},
-           const Outliner& outliner = {});
+           const Outliner& outliner = {}, DefaultLight light = DefaultLight::studio);
 
 /// The view through a camera that is settled; the rest is chosen as frame() does it, for a model of these
 /// bounds that shows these colours (backdrop.h).
 View view_through(const Camera& camera, const Graph& graph, const Box& bounds, ImageSize size,
-                  const std::vector<Rgb>& colours);
+                  const std::vector<Rgb>& colours, DefaultLight light = DefaultLight::studio);
 
 } // namespace graftal

@@ -51,14 +51,14 @@ Sight sight_of(const AnalysedModel& model, std::optional<unsigned> steps) {
             }};
 }
 
-View frame_model(const AnalysedModel& model, std::optional<unsigned> steps, ImageSize size,
-                 const CameraOverride& camera, bool shaped) {
+View frame_model(const AnalysedModel& model, std::optional<unsigned> steps, const ViewOptions& options) {
     const Sight sight = sight_of(model, steps);
-    if (shaped) {
+    ImageSize size = options.size;
+    if (options.shaped && !options.zoom.active()) {
         const CameraSetting own = model.graph.settings.camera.value_or(CameraSetting{});
-        size = shaped_size(merge(own, camera), sight.bounds, sight.outliner, size);
+        size = shaped_size(merge(own, options.camera), sight.bounds, sight.outliner, size);
     }
-    return frame(model.graph, sight.bounds, size, camera, sight.outliner);
+    return frame(model.graph, sight.bounds, size, options.camera, sight.outliner, options.light);
 }
 
 } // namespace graftal

@@ -3,6 +3,7 @@
 #include <optional>
 
 #include "compiler/scene/scene.h"
+#include "compiler/session/stage_options.h"
 #include "compiler/session/values.h"
 
 namespace graftal {
@@ -16,8 +17,7 @@ struct Sight {
 /// can be looked at part by part, else its limit set.
 Sight sight_of(const AnalysedModel& model, std::optional<unsigned> steps);
 
-/// The view of a model as it will be drawn; `shaped`: of a size that suits it (shaped_size()).
-View frame_model(const AnalysedModel& model, std::optional<unsigned> steps, ImageSize size,
-                 const CameraOverride& camera, bool shaped = false);
+/// The view of a model as it will be drawn, without zoom and shared framing.
+View frame_model(const AnalysedModel& model, std::optional<unsigned> steps, const ViewOptions& options);
 
 } // namespace graftal

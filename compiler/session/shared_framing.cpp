@@ -63,15 +63,16 @@ void SharedFraming::settle(const CameraOverride& camera, ImageSize size, bool tu
     first_ = frame(merge(*first_setting_, camera));
 }
 
-View SharedFraming::view(const AnalysedModel& model, const CameraOverride& camera, double turn_deg) const {
-    const CameraSetting setting = merge(model.graph.settings.camera.value_or(CameraSetting{}), camera);
+View SharedFraming::view(const AnalysedModel& model, const ViewOptions& options) const {
+    const CameraSetting setting =
+        merge(model.graph.settings.camera.value_or(CameraSetting{}), options.camera);
     Camera turned = frame(completed(setting));
-    const Turn turn(turn_deg);
+    const Turn turn(options.turn_deg);
     turned.location = bounds_.centre() + turn(turned.location - bounds_.centre());
     turned.direction = turn(turned.direction);
     turned.up = turn(turned.up);
     turned.right = turn(turned.right);
-    return view_through(turned, model.graph, bounds_, size_, colours_);
+    return view_through(turned, model.graph, bounds_, size_, colours_, options.light);
 }
 
 Camera SharedFraming::frame(const CameraSetting& setting) const {

@@ -5,6 +5,7 @@
 
 #include "compiler/scene/extremes.h"
 #include "compiler/scene/scene.h"
+#include "compiler/session/stage_options.h"
 #include "compiler/session/values.h"
 
 namespace graftal {
@@ -20,9 +21,9 @@ class SharedFraming {
     /// All models are known. `camera` is the first frame's; `turning` says that it will go round.
     void settle(const CameraOverride& camera, ImageSize size, bool turning);
 
-    /// The view of a frame whose camera has gone `turn_deg` round the vertical axis through the middle of the
-    /// bounds, towards its right. Multiples of 360 give equal views. Requires settle().
-    View view(const AnalysedModel& model, const CameraOverride& camera, double turn_deg) const;
+    /// The view of a frame whose camera has gone `turn_deg` of the options round the vertical axis through
+    /// the middle of the bounds, towards its right. Multiples of 360 give equal views. Requires settle().
+    View view(const AnalysedModel& model, const ViewOptions& options) const;
 
     bool turning() const { return turning_; }
 

@@ -23,6 +23,7 @@ struct ViewOptions {
     std::shared_ptr<const SharedFraming> framing;
     double turn_deg = 0; ///< with a framing: how far the camera has gone round the model
     Quality quality = Quality::normal;
+    DefaultLight light = DefaultLight::studio;
     bool operator==(const ViewOptions&) const = default;
 };
 

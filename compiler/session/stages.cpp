@@ -85,14 +85,13 @@ bool converges(const Contraction& contraction) {
 
 View view_of(const AnalysedModel& model, std::optional<unsigned> steps, const ViewOptions& options,
              bool part) {
-    const bool shaped = options.shaped && !options.zoom.active();
-    if (!options.framing) return frame_model(model, steps, options.size, options.camera, shaped);
-    if (!part) return options.framing->view(model, options.camera, options.turn_deg);
+    if (!options.framing) return frame_model(model, steps, options);
+    if (!part) return options.framing->view(model, options);
     // A part that is looked at by itself (--at) is framed for its own frame, which the models do not know.
     SharedFraming own;
     own.include(model, steps);
     own.settle(options.camera, options.size, options.framing->turning());
-    return own.view(model, options.camera, options.turn_deg);
+    return own.view(model, options);
 }
 
 /// What frames an object as if it were the model; the camera that the model gives is meant for its root.

@@ -224,7 +224,7 @@ std::optional<PointsReport> draw_orbit(const OrbitModel& model, const PointsOpti
     const CameraSetting own = model.scene.settings.camera.value_or(CameraSetting{});
     const ImageSize size =
         wanted.shaped ? shaped_size(merge(own, wanted.camera), box, {}, wanted.size) : wanted.size;
-    const View view = frame(model.scene, box, size, wanted.camera);
+    const View view = frame(model.scene, box, size, wanted.camera, {}, wanted.light);
     compilation.status = options.card.empty() ? place_points(source, view, options, nullptr, cancel, report)
                                               : place_card(source, box, {}, options, cancel, report);
     if (source.report(compilation.diagnostics)) compilation.status = Status(); // which is why it was given up

@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 
 #include "compiler/povray/overlap.h"
+#include "compiler/scene/light_list.h"
 #include "runtime/image/develop.h"
 #include "runtime/povray/povray.h"
 #include "runtime/render/scene_files.h"
@@ -153,12 +154,13 @@ struct PovrayTime {
 
 /// By the length of the text, and by the boxes that rays meet. Scenes of random models took 0.01 to 0.4
 /// microseconds for a box, and those with shadows from outside the picture more.
-PovrayTime guessed_time(const PovrayJob& job, double overlap) {
+PovrayTime guessed_time(const PovrayJob& job, double overlap, std::size_t lights) {
     std::error_code error;
     const auto bytes = std::filesystem::file_size(job.directory + "/" + job.scene, error);
     const double megabytes = error ? 0 : 1e-6 * static_cast<double>(bytes);
     const double rays_a_pixel = job.antialias ? 1.5 * std::pow(4.0, *job.antialias - 1) : 1;
-    const double rays = rays_a_pixel * job.width * job.height;
+    // Measured under one sun: the way to each light is another ray.
+    const double rays = rays_a_pixel * job.width * job.height * (1 + static_cast<double>(lights)) / 2;
     return {0.05 * megabytes, rays * (1e-6 + 4e-7 * overlap)};
 }
 
@@ -262,12 +264,13 @@ std::optional<PovrayReport> render_by_povray(PictureSession& session, const Rend
         return std::nullopt;
     PovrayReport report = report_of(model->cut);
     const double overlap = mean_overlap(model->cut, model->view);
+    const std::size_t lights = listed_lights(model->view, list_size(model->view.quality)).size();
     job.finite_objects = finite_objects(model->cut);
     model.reset(); // POV-Ray may need the memory
     session.yield_memory();
     return_free_memory();
 
-    PovrayTime time = guessed_time(job, overlap);
+    PovrayTime time = guessed_time(job, overlap, lights);
     const auto set_limit = [&] { // far more than any picture has taken
         job.cpu_seconds = static_cast<std::uint64_t>(600 + 50 * time.seconds());
     };

@@ -41,8 +41,8 @@ class Bodies : public CommandLine {
                       " }\nobject o { scatter: leaf count: 60 over: -0.3,-0.3,0.3,0.3 by: jitter turn: y "
                       "lean: 0..70 size: 0.05 rotate: x, 90 }\n");
             const std::string size = std::to_string(std::lround(0.7 / 0.05 * size_px));
-            const RunResult run = graftal("render " + name + ".inst -q --antialias 2 --size " + size + "x" +
-                                          size + " -o " + name + ".exr " + options);
+            const RunResult run = graftal("render " + name + ".inst -q --plain-light --antialias 2 --size " +
+                                          size + "x" + size + " -o " + name + ".exr " + options);
             EXPECT_EQ(run.status, 0) << run.err;
             means[static_cast<std::size_t>(shade)] = mean(picture(name + ".exr"));
         }

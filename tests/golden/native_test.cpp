@@ -201,7 +201,8 @@ class NativeAnimation : public Native {
 };
 
 TEST_F(NativeAnimation, FramesAgreeWithPovrays) {
-    const std::string turning = pound_sign + "--steps 2 --size 48x36 --antialias off --frames 3 --turn 60 ";
+    const std::string turning =
+        pound_sign + "--steps 2 --size 48x36 --antialias off --plain-light --frames 3 --turn 60 ";
     const RunResult result =
         shell("PATH=/nowhere \"$graftal\" animate --engine native -o native/ " + turning);
     ASSERT_EQ(result.status, 0) << result.err;
@@ -218,7 +219,8 @@ TEST_F(NativeAnimation, FramesAgreeWithPovrays) {
 }
 
 TEST_F(NativeAnimation, FramesOfOneEngineAreNotTheOthers) {
-    const std::string turning = pound_sign + "--steps 1 --size 48x36 --antialias off --frames 2 -o a ";
+    const std::string turning =
+        pound_sign + "--steps 1 --size 48x36 --antialias off --plain-light --frames 2 -o a ";
     const auto found = [&](const std::string& options) {
         const RunResult result = graftal("animate " + turning + options);
         EXPECT_EQ(result.status, 0) << result.err;
@@ -273,7 +275,8 @@ TEST_F(Native, PlanesBehindFlatMapsAreWherePovrayHasThem) {
          "object all { union: part, ball }\n",
          false},
     };
-    const std::string view = "--camera 'location=0,2,-6 look_at=0,1,0' --antialias off --size 64x36 ";
+    const std::string view =
+        "--camera 'location=0,2,-6 look_at=0,1,0' --antialias off --size 64x36 --plain-light ";
     for (const auto& [text, stays] : models) {
         write("model.inst", ball + text);
         const RunResult native = graftal("render --engine native " + view + "model.inst -o native.png");
@@ -302,7 +305,8 @@ TEST_F(Native, CommandsOfThePageWork) {
         words.resize(std::min(words.find(" #"), words.size()));
         if (words.starts_with("animate")) words += " --frames 2";
         const bool draws = !words.starts_with("compare");
-        const RunResult result = graftal(words + (draws ? " -q --size 48x27 --antialias off --error 2" : ""));
+        const RunResult result =
+            graftal(words + (draws ? " -q --size 48x27 --antialias off --error 2 --plain-light" : ""));
         EXPECT_EQ(result.status, 0) << words << "\n" << result.err;
     }
     EXPECT_GE(commands.size(), 6u);

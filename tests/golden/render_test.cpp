@@ -77,7 +77,7 @@ TEST_F(Render, SoftLightIsFollowedByBothEngines) {
     EXPECT_THAT(povray.err, testing::HasSubstr("no light from surface to surface"));
     const RunResult native = graftal("render m.inst --engine native" + small + "-o b.png");
     EXPECT_EQ(native.status, 0);
-    EXPECT_THAT(native.err, testing::HasSubstr("b.png: up to 128 samples per pixel"));
+    EXPECT_THAT(native.err, testing::HasSubstr("b.png: up to 64 samples per pixel"));
     // A white ball in an even sky cannot be seen, except for the dither; a list of 40 lights is near.
     const Image furnace = picture("b.png");
     const auto [least, most] = std::ranges::minmax(furnace.pixels);

@@ -43,12 +43,13 @@ TEST_F(Work, WhatLiesInEachOtherIsDrawnByBothEngines) {
     write("tree.inst", tree_limit);
     write("crowd.rifs", crowd_in_the_plane);
     for (const char* const model : {"tree.inst", "crowd.rifs"}) {
-        const RunResult native =
-            shell(std::string("\"$graftal\" render --engine native --size 96x54 -o native.png ") + model);
+        const RunResult native = shell(
+            std::string("\"$graftal\" render --engine native --plain-light --size 96x54 -o native.png ") +
+            model);
         EXPECT_EQ(native.status, 0) << native.err;
         EXPECT_THAT(native.err, Not(HasSubstr("given up")));
         const RunResult povray =
-            shell(std::string("\"$graftal\" render --size 96x54 -o povray.png ") + model);
+            shell(std::string("\"$graftal\" render --plain-light --size 96x54 -o povray.png ") + model);
         EXPECT_EQ(povray.status, 0) << povray.err;
         // Each has a shell of its own: as fine as its octave, or half octave, of sizes asks for.
         const Image a = picture("native.png"), b = picture("povray.png");
@@ -61,15 +62,15 @@ TEST_F(Work, WhatLiesInEachOtherIsDrawnByBothEngines) {
 
 TEST_F(Work, LessWorkMakesACoarserPictureAndSaysSo) {
     write("tree.inst", tree_limit);
-    const RunResult result =
-        shell("\"$graftal\" render --engine native --size 160x90 --work 0.05 tree.inst -o a.png --threads 1");
+    const RunResult result = shell("\"$graftal\" render --engine native --plain-light --size 160x90 --work "
+                                   "0.05 tree.inst -o a.png --threads 1");
     EXPECT_EQ(result.status, 0) << result.err;
     EXPECT_THAT(result.err, HasSubstr("warning: 0.05 seconds of work allow an error of"));
     EXPECT_THAT(result.err, HasSubstr("give them with --work, or ask for less with --error or --steps"));
-    EXPECT_EQ(
-        shell("\"$graftal\" render --engine native --size 160x90 --work 0.05 tree.inst -o b.png --threads 2")
-            .status,
-        0);
+    EXPECT_EQ(shell("\"$graftal\" render --engine native --plain-light --size 160x90 --work 0.05 tree.inst "
+                    "-o b.png --threads 2")
+                  .status,
+              0);
     EXPECT_EQ(compare_images(picture("a.png"), picture("b.png")).differing, 0u) << "threads decide nothing";
 }
 
@@ -80,9 +81,9 @@ TEST_F(Work, WhereEveryRayMeetsTooMuchFewerAreTraced) {
                         "  map b { rotate <3, 1, 2>, 77 scale 0.6, 0.65, 0.7 }\n"
                         "  terminal cone scale 0.96 translate 0, 0.5, 0.3\n"
                         "}\n");
-    const RunResult result =
-        shell("\"$graftal\" render --engine native --size 160x90 --work 0.002 --steps 35 cones.rifs "
-              "-o a.png --threads 2");
+    const RunResult result = shell(
+        "\"$graftal\" render --engine native --plain-light --size 160x90 --work 0.002 --steps 35 cones.rifs "
+        "-o a.png --threads 2");
     EXPECT_EQ(result.status, 0) << result.err;
     EXPECT_THAT(result.err, HasSubstr("and graftal gives up rays that meet too many parts, one per"));
     EXPECT_EQ(picture("a.png").width, 160);
@@ -101,8 +102,9 @@ TEST_F(Work, ShellsHaveTheMaterialOfTheTerminal) {
                         "  terminal cube scale 0.5, 0.5, 0.002 translate 0.5, 0.5 material blue\n"
                         "}\n");
     for (const std::string error : {"0.5", "8"}) {
-        const RunResult result = shell("\"$graftal\" render --engine native --size 64x36 --error " + error +
-                                       " cubes.rifs -o a.png");
+        const RunResult result =
+            shell("\"$graftal\" render --engine native --plain-light --size 64x36 --error " + error +
+                  " cubes.rifs -o a.png");
         ASSERT_EQ(result.status, 0) << result.err;
         const Image image = picture("a.png");
         const float* middle = &image.pixels[image.channels * (18 * 64 + 32)];
@@ -132,7 +134,7 @@ TEST_F(Work, AShellTakesWhatThereIsAndIsNotGivenUpForIt) {
 
 TEST_F(Work, OfPovrayIsSaidBeforeItStarts) {
     write("ball.inst", "object ball { sphere }\n");
-    const std::string render = "render ball.inst -q -o a.png --size ";
+    const std::string render = "render ball.inst --plain-light -q -o a.png --size ";
     EXPECT_EQ(graftal(render + "64x36").err, "");
     EXPECT_THAT(graftal(render + "64x36 --work 0.001").err,
                 ContainsRegex("graftal: POV-Ray will take about 0\\.[0-9]+ seconds"));
@@ -148,7 +150,7 @@ TEST_F(Work, OfRaysThroughACrowdIsSaidToo) {
                         "  V -> gYRY\n"
                         "  Y -> [&VR]FF/+(30)[V][R[&/]-F]R\n"
                         "}\n");
-    EXPECT_THAT(graftal("render crowd.lsys -q -o a.png --size 64x36 --work 0.3").err,
+    EXPECT_THAT(graftal("render crowd.lsys --plain-light -q -o a.png --size 64x36 --work 0.3").err,
                 HasSubstr("graftal: POV-Ray will take about "));
 }
 

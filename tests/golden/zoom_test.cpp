@@ -20,7 +20,7 @@ TEST_F(Zoom, CommandsOfThePageWork) {
     const std::vector<std::string> commands = commands_of("docs/zoom.md");
     for (std::string words : commands) {
         if (words.starts_with("animate")) words += " --frames 2";
-        const RunResult result = graftal(words + " -q --size 48x27 --antialias off --error 2");
+        const RunResult result = graftal(words + " -q --size 48x27 --antialias off --error 2 --plain-light");
         EXPECT_EQ(result.status, 0) << words << "\n" << result.err;
         EXPECT_EQ(result.err, "") << words;
     }

@@ -85,10 +85,10 @@ TEST_P(Turntable, KeepsTheModelInThePictureAtOneDistance) {
     options.lower.steps = GetParam().steps;
     const Shown model = analysed(GetParam().scene, options);
     const SharedFraming framing = framed({model}, true);
-    const View front = framing.view(*model.model, {}, 0);
+    const View front = framing.view(*model.model, {.turn_deg = 0});
     double widest = 0;
     for (int frame = 0; frame < 16; ++frame) {
-        const View view = framing.view(*model.model, {}, 360.0 * frame / 16);
+        const View view = framing.view(*model.model, {.turn_deg = 360.0 * frame / 16});
         const Spread most = spread(model, view);
         EXPECT_LE(most.x, 0.93) << frame;
         EXPECT_LE(most.y, 0.93) << frame;
@@ -102,8 +102,9 @@ TEST_P(Turntable, KeepsTheModelInThePictureAtOneDistance) {
         }
     }
     EXPECT_GT(widest, 0.7) << "the model fills the picture in some frame";
-    EXPECT_TRUE(same(framing.view(*model.model, {}, 360).camera, front.camera)) << "the loop is closed";
-    EXPECT_TRUE(same(framing.view(*model.model, {}, -720).camera, front.camera));
+    EXPECT_TRUE(same(framing.view(*model.model, {.turn_deg = 360}).camera, front.camera))
+        << "the loop is closed";
+    EXPECT_TRUE(same(framing.view(*model.model, {.turn_deg = -720}).camera, front.camera));
 }
 
 INSTANTIATE_TEST_SUITE_P(Scenes, Turntable,
@@ -121,9 +122,9 @@ TEST(SharedFraming, GrowthHappensInThePicture) {
         models.push_back(analysed("abop/fig1_24f.lsys", options));
     }
     const SharedFraming framing = framed(models, false);
-    const View first = framing.view(*models[0].model, {}, 0);
+    const View first = framing.view(*models[0].model, {.turn_deg = 0});
     for (const Shown& model : models) {
-        const View view = framing.view(*model.model, {}, 0);
+        const View view = framing.view(*model.model, {.turn_deg = 0});
         EXPECT_TRUE(same(view.camera, first.camera));
         EXPECT_EQ(view.sky.zenith, first.sky.zenith);
         const Spread most = spread(model, view);
@@ -137,15 +138,15 @@ TEST(SharedFraming, WhatIsLeftOpenIsAsInTheFirstFrame) {
     const Shown model = analysed("hart/pound_sign.rifs");
     const CameraOverride wide{.angle_deg = 40}, narrow{.angle_deg = 10};
     const SharedFraming framing = framed({model}, false, wide);
-    const Camera first = framing.view(*model.model, wide, 0).camera,
-                 last = framing.view(*model.model, narrow, 0).camera;
+    const Camera first = framing.view(*model.model, {.camera = wide}).camera,
+                 last = framing.view(*model.model, {.camera = narrow}).camera;
     EXPECT_EQ(first.location, last.location);
     EXPECT_EQ(last.angle_deg, 10);
 
     const CameraOverride far{.location = Vec3(0, 0, 20)}, near{.location = Vec3(0, 0, 4)};
     const SharedFraming approach = framed({model}, false, far);
-    EXPECT_EQ(approach.view(*model.model, far, 0).camera.angle_deg,
-              approach.view(*model.model, near, 0).camera.angle_deg);
+    EXPECT_EQ(approach.view(*model.model, {.camera = far}).camera.angle_deg,
+              approach.view(*model.model, {.camera = near}).camera.angle_deg);
 }
 
 } // namespace

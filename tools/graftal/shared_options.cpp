@@ -197,6 +197,16 @@ void add_view(CLI::App& app, Options& options) {
         [&](double seconds) { options.render.limit_work(seconds); });
     app.add_flag("--visible-only", compile.detail.visible_only,
                  "Leave out parts that the camera does not see, and their shadows too");
+    static const std::map<std::string, Quality> qualities = {
+        {"draft", Quality::draft}, {"normal", Quality::normal}, {"best", Quality::best}};
+    app.add_flag_callback(
+        "--plain-light", [&options] { options.render.compile.view.light = DefaultLight::plain; },
+        "Where the model names no light: one sun and no sky, which is many times faster to draw");
+    app.add_option("--quality", options.render.compile.view.quality,
+                   "How closely soft light is followed: draft, normal or best (default normal)")
+        ->transform(CLI::CheckedTransformer(qualities).description(""))
+        ->type_name("QUALITY")
+        ->take_last();
     app.add_flag("--flatten", compile.cut.flatten,
                  "Write every part in its place, without sharing (for comparison)");
 }
@@ -241,13 +251,6 @@ void add_drawing(CLI::App& app, Options& options) {
     };
     app.add_option_function<std::string>("--engine", engine, engines_text())
         ->type_name(engine_names("|"))
-        ->take_last();
-    static const std::map<std::string, Quality> qualities = {
-        {"draft", Quality::draft}, {"normal", Quality::normal}, {"best", Quality::best}};
-    app.add_option("--quality", options.render.compile.view.quality,
-                   "How closely soft light is followed: draft, normal or best (default normal)")
-        ->transform(CLI::CheckedTransformer(qualities).description(""))
-        ->type_name("QUALITY")
         ->take_last();
     app.add_option("--samples", options.render.samples,
                    "Soft light, native engine: so many samples per pixel, in place of --quality's")

@@ -181,7 +181,8 @@ bool Emitter::write_scene(const View& view, std::vector<PaletteImage>& pictures)
                                        units_.pov_from_world() * world_from_picture(*view.ground))
                     : "";
     out_ << textures_.declarations(pictures) << "\n";
-    write_view(out_, view, units_, cut_.bounds.empty() ? Vec3(0.0) : cut_.bounds.centre(), ground);
+    write_view(out_, view, units_, cut_.bounds.empty() ? Vec3(0.0) : cut_.bounds.centre(),
+               options_.lights.value_or(list_size(view.quality)), ground);
     if (!bodies_.declare(out_, progress_)) return false;
     out_ << "\n";
     return write_objects() && out_.flush();

@@ -3,10 +3,12 @@
 // Where POV-Ray's text goes, and what goes with it.
 
 #include <functional>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
 
+#include "compiler/scene/light_list.h"
 #include "compiler/support/tint.h"
 
 namespace graftal {
@@ -32,6 +34,7 @@ struct PovrayOptions {
     /// What the `.inc` declares, and what all its names begin with; "": by the model's name. Requires an
     /// is_model_identifier().
     std::string identifier = {};
+    std::optional<LightListSize> lights = {}; ///< of soft light; nothing: by the view's quality
 };
 
 } // namespace graftal

@@ -198,9 +198,9 @@ void write_catcher(SdlWriter& out, const ShadowCatcher& catcher, const PovrayUni
 } // namespace
 
 void write_view(SdlWriter& out, const View& view, const PovrayUnits& units, Vec3 centre,
-                const std::string& ground_texture) {
+                const LightListSize& lights, const std::string& ground_texture) {
     write_camera(out, view, units);
-    for (const Light& light : listed_lights(view, list_size(view.quality)))
+    for (const Light& light : listed_lights(view, lights))
         write_light(out, light, units, centre);
     if (view.shows_sky_light)
         write_sky_light(out, *view.sky_light);

@@ -2,13 +2,14 @@
 
 #include "compiler/povray/povray_units.h"
 #include "compiler/povray/sdl_writer.h"
+#include "compiler/scene/light_list.h"
 #include "compiler/scene/scene.h"
 
 namespace graftal {
 
-/// Camera, lights, sky and ground. The camera carries the mirror between the right-handed scene and
-/// POV-Ray's left-handed habit: its axes are given outright, never by look_at.
+/// Camera, lights (soft ones as a list of that size), sky and ground. The camera carries the mirror between
+/// the right-handed scene and POV-Ray's left-handed habit: its axes are given outright, never by look_at.
 void write_view(SdlWriter& out, const View& view, const PovrayUnits& units, Vec3 centre,
-                const std::string& ground_texture);
+                const LightListSize& lights, const std::string& ground_texture);
 
 } // namespace graftal

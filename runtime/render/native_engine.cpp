@@ -52,11 +52,6 @@ std::vector<Sampling> samplings_for(const View& view, const RenderOptions& optio
                                    options.progressive);
 }
 
-/// Seconds of one processor: a sample of soft light follows several rays.
-double work_of_soft_light(Quality quality) {
-    return by_quality(quality, 30.0, 60.0, 600.0);
-}
-
 /// A pixel's, before more is culled to save work.
 constexpr int fewest_soft_samples = 8;
 
@@ -367,7 +362,7 @@ std::optional<NativeReport> trace_model(const PreparedView& prepared, const Rend
     const View& view = prepared.viewed->view;
     const bool sampled = is_sampled(view, options);
     DetailOptions detail = prepared.detail;
-    if (sampled) detail.work_seconds = options.soft_work_seconds.value_or(work_of_soft_light(view.quality));
+    if (sampled) detail.work_seconds = options.soft_work(view.quality);
     Looks looks;
     looks.wanted = samplings_for(view, options);
     looks.tried = detail.culls()

@@ -123,13 +123,13 @@ void return_free_memory() {
 
 /// Checks what would fail late, and writes the scene.
 Status prepare(const CompiledModel& model, const RenderOptions& options, TextureStore& textures,
-               TemporaryDirectory& temporary, PovrayJob& job) {
+               TemporaryDirectory& temporary, const LightListSize& lights, PovrayJob& job) {
     Status status = povray_available(job.program);
     if (status.ok()) status = check_writable(options.output);
     if (status.ok()) status = choose_directory(options.keep, temporary, job.directory);
     if (status.ok())
-        status =
-            write_scene(model, job.directory + "/" + job.scene, {.progress = true}, textures, job.cancel);
+        status = write_scene(model, job.directory + "/" + job.scene, {.progress = true, .lights = lights},
+                             textures, job.cancel);
     return status;
 }
 
@@ -144,6 +144,31 @@ void note_bounces(const CompiledModel& model, Diagnostics& diagnostics) {
         .with_hint("use --engine native to follow the 'bounces' of the sky");
 }
 
+/// The lights that POV-Ray can follow in the time that the picture may take, as soft as the quality asks at
+/// most. Fewer show their number as bands in the shade.
+LightListSize affordable_list(const View& view, double seconds_a_light, double seconds) {
+    constexpr LightListSize least{3, 8};
+    const LightListSize asked = list_size(view.quality);
+    const double share = seconds / seconds_a_light / static_cast<double>(listed_lights(view, asked).size());
+    const auto part = [share](unsigned least_count, unsigned count) {
+        return std::min(count, std::max(least_count, static_cast<unsigned>(std::min(share, 1.0) * count)));
+    };
+    return {part(least.disc, asked.disc), part(least.dome, asked.dome)};
+}
+
+void note_fewer_lights(const CompiledModel& model, const LightListSize& lights, Diagnostics& diagnostics) {
+    const auto count = [&](const LightListSize& size) { return listed_lights(model.view, size).size(); };
+    const std::size_t drawn = count(lights), asked = count(list_size(model.view.quality));
+    if (drawn == asked) return;
+    const Graph& graph = model.model->graph;
+    diagnostics
+        .note(graph.objects[graph.root].span,
+              fmt::format(
+                  "POV-Ray takes soft light from {} lights in place of {}, to draw this picture in time",
+                  drawn, asked))
+        .with_hint("--engine native follows soft light faster; a larger --work gives POV-Ray more lights");
+}
+
 /// Seconds of one processor that POV-Ray takes.
 struct PovrayTime {
     double parsing = 0;
@@ -152,16 +177,19 @@ struct PovrayTime {
     double seconds() const { return parsing + tracing; }
 };
 
-/// By the length of the text, and by the boxes that rays meet. Scenes of random models took 0.01 to 0.4
-/// microseconds for a box, and those with shadows from outside the picture more.
-PovrayTime guessed_time(const PovrayJob& job, double overlap, std::size_t lights) {
+/// By the boxes that rays meet. Scenes of random models took 0.01 to 0.4 microseconds for a box, and those
+/// with shadows from outside the picture more.
+double seconds_a_light(const PovrayJob& job, double overlap) {
+    const double rays_a_pixel = job.antialias ? 1.5 * std::pow(4.0, *job.antialias - 1) : 1;
+    // Measured under one sun: the way to each light is another ray.
+    return 0.5 * rays_a_pixel * job.width * job.height * (1e-6 + 4e-7 * overlap);
+}
+
+PovrayTime guessed_time(const PovrayJob& job, double seconds_a_light, std::size_t lights) {
     std::error_code error;
     const auto bytes = std::filesystem::file_size(job.directory + "/" + job.scene, error);
     const double megabytes = error ? 0 : 1e-6 * static_cast<double>(bytes);
-    const double rays_a_pixel = job.antialias ? 1.5 * std::pow(4.0, *job.antialias - 1) : 1;
-    // Measured under one sun: the way to each light is another ray.
-    const double rays = rays_a_pixel * job.width * job.height * (1 + static_cast<double>(lights)) / 2;
-    return {0.05 * megabytes, rays * (1e-6 + 4e-7 * overlap)};
+    return {0.05 * megabytes, seconds_a_light * (1 + static_cast<double>(lights))};
 }
 
 /// Measured on a picture of the same scene that has a four-hundredth of the pixels, or fewer where that might
@@ -260,17 +288,23 @@ std::optional<PovrayReport> render_by_povray(PictureSession& session, const Rend
     };
 
     note_bounces(*model, compilation.diagnostics);
-    if (!run("emit", [&] { return prepare(*model, options, session.textures(), temporary, job); }))
+    const View& view = model->view;
+    const double light_seconds = seconds_a_light(job, mean_overlap(model->cut, view));
+    LightListSize list = list_size(view.quality);
+    if (view.has_soft_light()) {
+        list = affordable_list(view, light_seconds, options.soft_work(view.quality));
+        note_fewer_lights(*model, list, compilation.diagnostics);
+    }
+    const std::size_t lights = listed_lights(view, list).size();
+    if (!run("emit", [&] { return prepare(*model, options, session.textures(), temporary, list, job); }))
         return std::nullopt;
     PovrayReport report = report_of(model->cut);
-    const double overlap = mean_overlap(model->cut, model->view);
-    const std::size_t lights = listed_lights(model->view, list_size(model->view.quality)).size();
     job.finite_objects = finite_objects(model->cut);
     model.reset(); // POV-Ray may need the memory
     session.yield_memory();
     return_free_memory();
 
-    PovrayTime time = guessed_time(job, overlap, lights);
+    PovrayTime time = guessed_time(job, light_seconds, lights);
     const auto set_limit = [&] { // far more than any picture has taken
         job.cpu_seconds = static_cast<std::uint64_t>(600 + 50 * time.seconds());
     };

@@ -113,7 +113,8 @@ Status write_scene(const CompiledModel& model, const std::string& path, const Sc
                                 .include = form.include,
                                 .file_name = std::filesystem::path(path).filename().string(),
                                 .progress = form.progress,
-                                .identifier = form.identifier};
+                                .identifier = form.identifier,
+                                .lights = form.lights};
     PendingFile pending(path);
     if (!pending.status().ok()) return pending.status();
     const OpenFile file(std::fopen(pending.temporary_path().c_str(), "wb"));

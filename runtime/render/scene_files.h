@@ -1,7 +1,9 @@
 #pragma once
 
+#include <optional>
 #include <string>
 
+#include "compiler/scene/light_list.h"
 #include "compiler/session/values.h"
 #include "compiler/support/control.h"
 #include "compiler/support/status.h"
@@ -10,9 +12,10 @@
 namespace graftal {
 
 struct SceneForm {
-    bool include = false;        ///< the `.inc` form
-    bool progress = false;       ///< with the marks that the POV-Ray driver reads
-    std::string identifier = {}; ///< PovrayOptions::identifier
+    bool include = false;                     ///< the `.inc` form
+    bool progress = false;                    ///< with the marks that the POV-Ray driver reads
+    std::string identifier = {};              ///< PovrayOptions::identifier
+    std::optional<LightListSize> lights = {}; ///< PovrayOptions::lights
 };
 
 /// Writes the model as SDL to `path`, and the palettes and pictures that it refers to beside it, each whole

@@ -15,6 +15,7 @@ namespace {
 double covered_px(const std::string& path, double error_px) {
     StageOptions options;
     options.view.size = {80, 45};
+    options.view.light = DefaultLight::plain;
     options.detail.error_px = error_px;
     const std::optional<CompiledModel> model = compile_file(path, options);
     if (!model) return 0;

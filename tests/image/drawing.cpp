@@ -90,6 +90,7 @@ void show_pigments(CompiledModel& model) {
 StageOptions whole(ImageSize size, std::optional<unsigned> steps) {
     StageOptions options;
     options.view.size = size;
+    options.view.light = DefaultLight::plain;
     options.detail.error_px = 0;
     options.lower.steps = steps;
     return options;

@@ -280,6 +280,7 @@ class NativeLight : public testing::TestWithParam<LitScene> {};
 TEST_P(NativeLight, IsPovrays) {
     const LitScene& scene = GetParam();
     StageOptions options = whole(scene.size);
+    options.view.light = DefaultLight::studio;
     options.cut.flatten = true;
     const std::optional<CompiledModel> model = compile_text("lit.inst", scene.text, options);
     ASSERT_TRUE(model);
@@ -303,6 +304,7 @@ INSTANTIATE_TEST_SUITE_P(Scenes, NativeLight, testing::ValuesIn(scenes),
 TEST(NativeLightSamples, ArePovraysOfAnAntialiasedPixel) {
     const LitScene& scene = scenes[1];
     StageOptions options = whole(scene.size);
+    options.view.light = DefaultLight::studio;
     options.cut.flatten = true;
     const std::optional<CompiledModel> model = compile_text("lit.inst", scene.text, options);
     ASSERT_TRUE(model);

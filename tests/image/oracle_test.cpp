@@ -22,6 +22,7 @@ constexpr ImageSize small{160, 120};
 StageOptions plain(double error_px = 0.5) {
     StageOptions options;
     options.view.size = small;
+    options.view.light = DefaultLight::plain;
     options.detail.error_px = error_px;
     return options;
 }

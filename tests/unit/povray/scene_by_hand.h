@@ -56,7 +56,7 @@ struct Scene {
         return cut.groups.back();
     }
 
-    View view() const { return frame(graph, cut.bounds, {400, 300}); }
+    View view() const { return frame(graph, cut.bounds, {400, 300}, {}, {}, DefaultLight::plain); }
 
     std::string text() { return text(view()); }
     std::string text(const View& view) {

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <vector>
+
+#include "compiler/scene/scene.h"
+
+namespace graftal {
+
+/// The light of a solid model that names none: a wide warm sun over the viewer's left shoulder, and a pale
+/// sky that is not seen. Requires the camera and the ground of the view.
+void light_as_in_studio(View& view);
+
+/// The background of such a picture where there is no ground: grey paper, lighter towards the foot of the
+/// picture.
+Sky studio_backdrop(const View& view);
+
+/// Air over the ground of such a picture, which hides where the ground ends. Requires the background.
+std::optional<Haze> air_over_ground(const View& view, const Box& bounds);
+
+/// What the model casts its shade on where it has no ground: a disc under it, of the colour that shows the
+/// background where nothing stands in the light. Nothing where the eye lies in the bounds or sees no such
+/// disc from above. Requires lights, sky and background.
+std::optional<ShadowCatcher> catcher_below(const View& view, const Box& bounds);
+
+} // namespace graftal

@@ -47,6 +47,9 @@ inline constexpr const char* stamp_keyword = "graftal:stamp";
 /// A linear value as sRGB encodes it (IEC 61966-2-1); clamped to [0, 1], 0 for NaN.
 float srgb_encoded(float linear);
 
+/// What an 8-bit PNG stores for a sample: 255 times it, rounded, halves up; clamped, 0 for NaN.
+std::uint8_t level8_of(float sample);
+
 /// Keeps all of a picture; refuses one of more than `most_samples`.
 class ImageSink : public RowSink {
   public:

@@ -249,9 +249,9 @@ class Drawing {
     Status write() {
         const RenderOptions& render = options_;
         const bool linear = render.format == SampleFormat::linear16 || is_exr_name(render.output);
-        Status status =
-            sink_ ? sink_(picture_)
-                  : write_image(render.output, linear ? picture_ : encoded(), render.format, render.metadata);
+        const Image image = linear ? picture_ : encoded();
+        const Status status =
+            sink_ ? sink_(image) : write_image(render.output, image, render.format, render.metadata);
         if (status.ok() && report_.pictures++ == 0) report_.first_picture_seconds = watch_.seconds();
         return status;
     }

@@ -393,8 +393,14 @@ std::optional<NativeReport> trace_model(const PreparedView& prepared, const Rend
     report_size(looks, asked, compilation.diagnostics);
     compilation.times.push_back({"prepare", preparing.seconds()});
     if (detail.culls() && !detail.steps) note_shadowless(model.prepared.cut, graph, compilation.diagnostics);
+    std::vector<Sampling> samplings = looks.affordable;
+    if (options.draft_seconds) {
+        const double seconds_a_sample = fitted.seconds / samples + least_seconds({{.block = 1}}, view.size);
+        if (const auto draft = draft_before(samplings.front(), seconds_a_sample, *options.draft_seconds))
+            samplings.insert(samplings.begin(), *draft);
+    }
     const Stopwatch drawing_watch;
-    Drawing drawing(model, looks.affordable, options, sink, cancel);
+    Drawing drawing(model, std::move(samplings), options, sink, cancel);
     compilation.status = drawing.run();
     compilation.times.push_back({"trace", drawing_watch.seconds()});
     report_shells(model, asked, compilation.diagnostics);

@@ -31,6 +31,7 @@ struct RenderOptions {
     std::optional<double> soft_work_seconds;
     bool listed_lights = false; ///< soft light from a list of lights (light_list.h)
     int threads = 0;            ///< 0: as many as the engine likes
+    bool aovs = false;          ///< of an EXR: further channels (aov_channels.h)
     bool progressive = false;   ///< write coarse pictures first, each in place of the last
     /// Of one processor, about: a coarse picture that takes so long comes before the first that takes longer.
     std::optional<double> draft_seconds;

@@ -39,6 +39,9 @@ void add_render(CLI::App& app, Options& options) {
     app.add_flag("--progressive", options.render.progressive,
                  "With --engine native: write coarse pictures first, then finer ones under the same name; "
                  "Ctrl-C keeps the last one");
+    app.add_flag("--aovs", options.render.aovs,
+                 "With --engine native and an EXR: write the channels A, coverage, Z, normal, albedo, id and "
+                 "levels too");
     app.add_flag("--watch", options.watch,
                  "Draw again, with --engine native, whenever the model changes or a file that it uses, until "
                  "Ctrl-C");
@@ -52,6 +55,7 @@ void add_render(CLI::App& app, Options& options) {
                "  graftal print tree.inst | graftal render - -o tree.png\n"
                "  graftal render fern.rifs --engine native              # the same picture, much sooner\n"
                "  graftal render forest.inst --engine native --progressive --size 1920x1080\n"
+               "  graftal render tree.inst --engine native --aovs -o tree.exr  # depth, normals, ... too\n"
                "  graftal render fern.rifs --watch                      # and again after each save");
 }
 

@@ -9,6 +9,7 @@ namespace graftal {
 struct PrepareOptions {
     std::optional<unsigned> steps; ///< levels; nothing: as deep as the error asks for
     bool culls = true;             ///< whether anything is culled for its size
+    bool keeps_objects = false;    ///< DetailOptions'
     bool operator==(const PrepareOptions&) const = default;
 };
 
@@ -21,10 +22,11 @@ struct DetailOptions {
     bool visible_only = false; ///< drop what is out of the picture, with its shadows and reflections
     /// Whether proxies show the limit's normals (limit_normal.h), or their own.
     bool limit_normals = true;
+    bool keeps_objects = false; ///< of detail_passes(): what is met can be told by the model's objects
 
     /// Whether anything is culled for its size.
     bool culls() const { return error_world ? *error_world > 0 : error_px > 0; }
-    PrepareOptions preparing() const { return {steps, culls()}; }
+    PrepareOptions preparing() const { return {steps, culls(), keeps_objects}; }
     bool operator==(const DetailOptions&) const = default;
 };
 

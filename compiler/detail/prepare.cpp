@@ -52,7 +52,7 @@ PreparedCut prepare_cut(const Graph& graph, const Components& components,
                         const Control& control, const PassObserver& after_each) {
     WorkMeter meter(control, "prepare", prepared_a_look);
     PreparedCut prepared;
-    BoundedGraph passed = run_passes(detail_passes(), {graph, bounds},
+    BoundedGraph passed = run_passes(detail_passes(options.keeps_objects), {graph, bounds},
                                      {.stop_after = {}, .after_each = after_each}, nullptr, &meter);
     CutGraph& cut = prepared.cut = build_cut_graph(std::move(passed.graph), passed.bounds);
     if (!options.steps) drop_endings(cut);

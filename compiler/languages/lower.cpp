@@ -25,7 +25,7 @@ LoweredText lower_root(FileId file, const LowerOptions& options, SourceMap& sour
     Lowering lowering{.sources = sources,
                       .diagnostics = diagnostics,
                       .options = options,
-                      .look_at_texture = help.look_at_texture,
+                      .help = help,
                       .meter = meter,
                       .languages = languages()};
     const Language* const language = language_of(file, sources, languages());

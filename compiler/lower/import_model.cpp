@@ -59,11 +59,13 @@ bool check_chain(Span use_span, const std::string& path, Lowering& lowering) {
     return true;
 }
 
-Status check_regular(const std::string& path, const std::string& root) {
+Status check_regular(const std::string& path, const Lowering& lowering) {
+    const std::string& root = lowering.options.root;
     std::error_code code;
     // Asked first: of what lies outside nobody learns whether it is there.
     if (!root.empty() && !lies_in(path, root))
         return Status::failure(fmt::format("'{}' leads out of --root '{}'", path, root));
+    if (lowering.help.on_file) lowering.help.on_file(path);
     if (!std::filesystem::exists(path, code))
         return Status::failure(fmt::format("cannot open '{}': {}", path, std::strerror(ENOENT)));
     if (is_special_file(path)) return Status::failure(fmt::format("'{}' is not a regular file", path));
@@ -74,7 +76,7 @@ Status check_regular(const std::string& path, const std::string& root) {
 std::optional<FileId> read_used(Span use_span, const std::string& path, Lowering& lowering) {
     if (const auto known = lowering.files.find(path); known != lowering.files.end()) return known->second;
     std::string text;
-    Status read = check_regular(path, lowering.options.root);
+    Status read = check_regular(path, lowering);
     if (read.ok()) read = read_text(path, text);
     if (read.ok()) return lowering.files[path] = lowering.sources.add(path, std::move(text));
     add_chain(lowering.diagnostics.error(use_span, read.message()), lowering);
@@ -189,7 +191,7 @@ bool has_room(const Graph& into, const Graph& model, Span span, Lowering& loweri
 std::optional<std::string> find_beside(Span name_span, std::string_view path, Lowering& lowering) {
     if (!check_path(name_span, path, lowering)) return std::nullopt;
     std::string found = path_beside(name_span, path, lowering.sources);
-    const Status regular = check_regular(found, lowering.options.root);
+    const Status regular = check_regular(found, lowering);
     if (regular.ok()) return found;
     add_chain(lowering.diagnostics.error(name_span, regular.message()), lowering);
     return std::nullopt;

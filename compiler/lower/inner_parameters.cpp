@@ -84,7 +84,7 @@ std::vector<InnerParameter> inner_parameters_of(FileId file, Lowering& lowering)
     Lowering aside{.sources = lowering.sources,
                    .diagnostics = quiet,
                    .options = lowering.options,
-                   .look_at_texture = lowering.look_at_texture,
+                   .help = lowering.help,
                    .meter = lowering.meter,
                    .languages = lowering.languages,
                    .loading = std::vector<LoadingFile>(2)};

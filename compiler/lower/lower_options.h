@@ -44,10 +44,15 @@ struct LowerOptions {
 /// Looks at the picture that a material names.
 using LookAtTexture = std::function<Status(const std::string& path, TextureFacts& facts)>;
 
+/// Hears of each file that a model names, there or not, before it is read. Not of one that leads out of the
+/// root.
+using OnFile = std::function<void(const std::string& path)>;
+
 /// Whom lowering asks on its way.
 struct LowerHelp {
     LookAtTexture look_at_texture; ///< without this, textures are taken on trust
     Control control;               ///< follows modules, parts and objects
+    OnFile on_file = {};
 };
 
 /// What lowering learns beside the graph.

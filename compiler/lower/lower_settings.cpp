@@ -72,9 +72,9 @@ void read_texture(const SceneField& field, bool take_colour, Lowering& lowering,
     const std::optional<std::string> path = find_beside(field.name_span, field.name, lowering);
     if (!path) return;
     material.texture = *path;
-    if (!lowering.look_at_texture) return;
+    if (!lowering.help.look_at_texture) return;
     TextureFacts facts;
-    const Status status = lowering.look_at_texture(*path, facts);
+    const Status status = lowering.help.look_at_texture(*path, facts);
     if (!status.ok()) lowering.diagnostics.error(field.name_span, status.message());
     material.coverage = facts.coverage;
     if (take_colour) material.rgb = facts.mean;

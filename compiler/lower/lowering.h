@@ -33,7 +33,7 @@ struct Lowering {
     SourceMap& sources;
     Diagnostics& diagnostics;
     const LowerOptions& options;
-    const LookAtTexture& look_at_texture;
+    const LowerHelp& help;
     WorkMeter& meter;                      ///< of modules, parts and objects
     std::span<const Language> languages;   ///< that models may be written in
     std::vector<LoadingFile> loading = {}; ///< from the root model to the file being lowered

@@ -33,6 +33,7 @@ constexpr std::array<Pass, 2> before_analysis = {{
      boundless<merge_equivalent>, true},
 }};
 
+/// The first does not keep objects: see detail_passes().
 constexpr std::array<Pass, 4> before_detail = {{
     {"hoist_placements", "moves what all instances of an object share to the object's users",
      boundless<hoist_placements>, false},
@@ -56,8 +57,8 @@ std::span<const Pass> model_passes() {
     return before_analysis;
 }
 
-std::span<const Pass> detail_passes() {
-    return before_detail;
+std::span<const Pass> detail_passes(bool keeps_objects) {
+    return std::span(before_detail).subspan(keeps_objects ? 1 : 0);
 }
 
 BoundedGraph run_passes(std::span<const Pass> passes, BoundedGraph graph, const PipelineOptions& options,

@@ -26,8 +26,9 @@ struct Pass {
 std::span<const Pass> model_passes();
 
 /// All passes that run on what is drawn, after analysis and after a zoom has given the graph its root.
-/// They need the bounds.
-std::span<const Pass> detail_passes();
+/// They need the bounds. `keeps_objects`: without hoist_placements, which dissolves objects of one instance
+/// into their users.
+std::span<const Pass> detail_passes(bool keeps_objects = false);
 
 struct PassTime {
     std::string name;

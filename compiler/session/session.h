@@ -60,6 +60,8 @@ class Session {
 
     /// Without this, textures are taken on trust.
     void look_at_textures(LookAtTexture look) { look_at_texture_ = std::move(look); }
+    /// Hears of each file that the model names, while it is lowered.
+    void on_file(OnFile hear) { on_file_ = std::move(hear); }
     /// Sees the graph after each pass, for models and for detail.
     void after_each_pass(PassObserver observer) { after_pass_ = std::move(observer); }
 
@@ -153,6 +155,7 @@ class Session {
     std::uint64_t edits_ = 0;
     std::uint64_t file_changes_ = 0;
     LookAtTexture look_at_texture_;
+    OnFile on_file_;
     PassObserver after_pass_;
     Keep keep_;
     Control control_;

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <atomic>
-#include <cmath>
 #include <utility>
 
 #include <fmt/format.h>
@@ -59,13 +58,11 @@ std::vector<Message> messages_of(const Compilation& compilation) {
     return messages;
 }
 
-Picture picture_of(const Image& linear) {
-    Picture picture{linear.width, linear.height, {}};
-    picture.rgb.reserve(linear.pixels.size());
-    for (const float sample : linear.pixels) {
-        const float encoded = std::clamp(srgb_encoded(sample), 0.0f, 1.0f);
-        picture.rgb.push_back(static_cast<std::uint8_t>(std::lround(255 * encoded)));
-    }
+Picture picture_of(const Image& image) {
+    Picture picture{image.width, image.height, {}};
+    picture.rgb.reserve(image.pixels.size());
+    for (const float sample : image.pixels)
+        picture.rgb.push_back(level8_of(sample));
     return picture;
 }
 
@@ -233,8 +230,8 @@ Result<Stats> Model::stats() {
 Result<Picture> Model::render() {
     return parts_->run<Picture>([this](Compilation& compilation) -> std::optional<Picture> {
         std::optional<Picture> picture;
-        const PictureSink sink = [&](const Image& linear) {
-            picture = picture_of(linear);
+        const PictureSink sink = [&](const Image& image) {
+            picture = picture_of(image);
             return Status();
         };
         if (!render_natively(parts_->session, parts_->told(), compilation, sink)) return std::nullopt;

@@ -120,7 +120,7 @@ class Model {
     // What comes of it.
 
     Result<Stats> stats();
-    /// Draws into memory, by the native engine.
+    /// Draws into memory, by the native engine: the pixels of the `.png` that render_to() writes.
     Result<Picture> render();
     /// Draws into a file, `.png` or `.exr`, which appears whole or not at all.
     Result<Drawn> render_to(const std::string& path, Engine engine = Engine::native);

@@ -101,9 +101,9 @@ std::string read(const std::string& path, RowSink& sink) {
 }
 
 std::string write(const std::string& path, const Image& image, SampleFormat format,
-                  const ImageMetadata& metadata) {
+                  const ImageMetadata& metadata, const MoreChannels* more) {
     if (!is_exr_name(path)) return write_png(path, image, format, metadata);
-    return module().files ? module().files->write_exr(path, image, metadata) : module().error;
+    return module().files ? module().files->write_exr(path, image, metadata, more) : module().error;
 }
 
 Status failure(const char* verb, const std::string& path, std::string text) {
@@ -154,17 +154,18 @@ Status read_image(const std::string& path, Image& image) {
 }
 
 Status write_image(const std::string& path, const Image& image, SampleFormat format,
-                   const ImageMetadata& metadata) {
+                   const ImageMetadata& metadata, const MoreChannels* more) {
     PendingFile pending(path);
     const Status status =
-        pending.status().ok() ? write_image(pending, image, format, metadata) : pending.status();
+        pending.status().ok() ? write_image(pending, image, format, metadata, more) : pending.status();
     return status.ok() ? pending.commit() : status;
 }
 
 Status write_image(const PendingFile& pending, const Image& image, SampleFormat format,
-                   const ImageMetadata& metadata) {
+                   const ImageMetadata& metadata, const MoreChannels* more) {
     GRAFTAL_CHECK(is_picture_name(pending.path()), pending.path());
-    const std::string error = write(pending.temporary_path(), image, format, metadata);
+    GRAFTAL_CHECK(!more || is_exr_name(pending.path()), pending.path());
+    const std::string error = write(pending.temporary_path(), image, format, metadata, more);
     return error.empty() ? Status() : failure("write", pending.path(), error);
 }
 

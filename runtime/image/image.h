@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "compiler/support/file.h"
@@ -38,6 +39,13 @@ struct ImageMetadata {
     std::string stamp;       ///< tag graftal:stamp: what a frame of an animation was made from
 };
 
+/// What an EXR may hold besides the colours.
+struct MoreChannels {
+    std::vector<std::string> names; ///< as OpenEXR has them, such as "normal.X"
+    std::vector<float> samples;     ///< row by row, top first, the channels of a pixel together
+    std::vector<std::pair<std::string, std::string>> tags; ///< name and text
+};
+
 /// True for names that write_image knows: `.png` and `.exr`, in any case.
 bool is_picture_name(const std::string& path);
 bool is_exr_name(const std::string& path);
@@ -46,6 +54,9 @@ inline constexpr const char* stamp_keyword = "graftal:stamp";
 
 /// A linear value as sRGB encodes it (IEC 61966-2-1); clamped to [0, 1], 0 for NaN.
 float srgb_encoded(float linear);
+
+/// What an 8-bit PNG stores for a sample: 255 times it, rounded, halves up; clamped, 0 for NaN.
+std::uint8_t level8_of(float sample);
 
 /// Keeps all of a picture; refuses one of more than `most_samples`.
 class ImageSink : public RowSink {
@@ -67,12 +78,12 @@ Status read_rows(const std::string& path, RowSink& sink);
 Status read_image(const std::string& path, Image& image);
 
 /// Writes `.png` or `.exr`, whole or not at all. Requires is_picture_name(path). The bytes depend on the
-/// arguments only. Samples are clamped to [0, 1] in PNG.
+/// arguments only. Samples are clamped to [0, 1] in PNG. `more`: null, or requires an EXR.
 Status write_image(const std::string& path, const Image& image, SampleFormat format,
-                   const ImageMetadata& metadata = {});
+                   const ImageMetadata& metadata = {}, const MoreChannels* more = nullptr);
 /// The same without the commit.
 Status write_image(const PendingFile& pending, const Image& image, SampleFormat format,
-                   const ImageMetadata& metadata = {});
+                   const ImageMetadata& metadata = {}, const MoreChannels* more = nullptr);
 
 /// Writes a 16-bit PNG of linear values for an SDL image_map with `gamma 1.0`: sample = round(65535 value).
 /// Pixels that are missing at the end are filled with the last. Does not commit. Requires

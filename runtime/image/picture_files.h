@@ -13,7 +13,8 @@ namespace graftal {
 /// lies in a module that image.cpp loads. Each function returns what went wrong, in words, or "".
 struct PictureFiles {
     std::string (*read)(const std::string& path, RowSink& sink);
-    std::string (*write_exr)(const std::string& path, const Image& image, const ImageMetadata& metadata);
+    std::string (*write_exr)(const std::string& path, const Image& image, const ImageMetadata& metadata,
+                             const MoreChannels* more);
     /// Pictures of one size as an animated GIF. `on_frame` is called before each; false gives up, with
     /// "interrupted".
     std::string (*write_gif)(const std::string& path, const std::vector<std::string>& frames,

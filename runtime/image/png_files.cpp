@@ -160,7 +160,7 @@ void put_level16(png_byte* bytes, unsigned value) {
 void put_row(const float* values, std::size_t count, int bits, png_byte* row) {
     if (bits == 8)
         for (std::size_t i = 0; i < count; ++i)
-            row[i] = static_cast<png_byte>(level(values[i], 255));
+            row[i] = level8_of(values[i]);
     else
         for (std::size_t i = 0; i < count; ++i)
             put_level16(row + 2 * i, level(values[i], 65535));
@@ -250,6 +250,10 @@ class Reader {
 };
 
 } // namespace
+
+std::uint8_t level8_of(float sample) {
+    return static_cast<std::uint8_t>(level(sample, 255));
+}
 
 std::optional<bool> is_png_file(const std::string& path) {
     const OpenFile file(std::fopen(path.c_str(), "rb"));

@@ -11,6 +11,7 @@
 #include "compiler/povray/povray_units.h"
 #include "compiler/session/stages.h"
 #include "runtime/image/develop.h"
+#include "runtime/render/aov_channels.h"
 #include "runtime/render/fit_work.h"
 #include "runtime/render/samplings.h"
 #include "runtime/render/scene_files.h"
@@ -177,6 +178,9 @@ class Drawing {
         picture_.channels = 3;
         picture_.pixels.resize(3 * pixels());
         work_ = samples_a_pixel(samplings_);
+        if (!options.aovs) return;
+        aovs_.resize(pixels());
+        numbers_.emplace(model.prepared.cut);
     }
 
     Status run() {
@@ -231,7 +235,7 @@ class Drawing {
             const double share = static_cast<double>(traced) / static_cast<double>(pixels());
             tell((done_ + share * sampling.samples_a_pixel()) / work_);
         };
-        tracer_.trace(sampling, control, picture_);
+        tracer_.trace(sampling, control, picture_, numbers_ ? &aovs_ : nullptr);
         done_ += sampling.samples_a_pixel();
         report_.seconds += watch.seconds();
         return traced;
@@ -244,9 +248,12 @@ class Drawing {
     Status write() {
         const RenderOptions& render = options_;
         const bool linear = render.format == SampleFormat::linear16 || is_exr_name(render.output);
-        Status status =
-            sink_ ? sink_(picture_)
-                  : write_image(render.output, linear ? picture_ : encoded(), render.format, render.metadata);
+        const Image image = linear ? picture_ : encoded();
+        MoreChannels more;
+        if (numbers_) more = aov_channels(aovs_, *numbers_);
+        const Status status = sink_ ? sink_(image)
+                                    : write_image(render.output, image, render.format, render.metadata,
+                                                  numbers_ ? &more : nullptr);
         if (status.ok() && report_.pictures++ == 0) report_.first_picture_seconds = watch_.seconds();
         return status;
     }
@@ -272,6 +279,8 @@ class Drawing {
     ImageSize size_;
     Film film_;
     Image picture_;
+    AovPicture aovs_;
+    std::optional<ObjectNumbers> numbers_; ///< if there are AOVs
     NativeReport report_;
     Stopwatch watch_;
     double work_ = 0, done_ = 0; ///< samples a pixel
@@ -309,6 +318,8 @@ constinit const Engine native_engine = {
     // What it does anyhow is fine: it has no POV-Ray to take --memory, and it goes into every part, as
     // --flatten wants it.
     .refusal = [](const RenderOptions& options) -> std::string {
+        if (options.aovs && !is_exr_name(options.output))
+            return "--aovs: only an EXR has room for more channels: name the picture with '-o FILE.exr'";
         if (!options.keep.empty())
             return "--keep: the native engine writes no scene; leave out --keep, or give '--engine povray'";
         if (options.compile.detail.visible_only)
@@ -334,7 +345,8 @@ constinit const Engine native_engine = {
 std::optional<NativeReport> render_natively(PictureSession& session, const RenderOptions& options,
                                             Compilation& compilation, const PictureSink& sink) {
     const Stopwatch whole;
-    const StageOptions& stages = options.compile;
+    StageOptions stages = options.compile;
+    stages.detail.keeps_objects = options.aovs;
     PreparedView model;
     model.viewed = session.viewed(stages, compilation);
     if (!model.viewed) return std::nullopt;
@@ -388,8 +400,14 @@ std::optional<NativeReport> trace_model(const PreparedView& prepared, const Rend
     report_size(looks, asked, compilation.diagnostics);
     compilation.times.push_back({"prepare", preparing.seconds()});
     if (detail.culls() && !detail.steps) note_shadowless(model.prepared.cut, graph, compilation.diagnostics);
+    std::vector<Sampling> samplings = looks.affordable;
+    if (options.draft_seconds) {
+        const double seconds_a_sample = fitted.seconds / samples + least_seconds({{.block = 1}}, view.size);
+        if (const auto draft = draft_before(samplings.front(), seconds_a_sample, *options.draft_seconds))
+            samplings.insert(samplings.begin(), *draft);
+    }
     const Stopwatch drawing_watch;
-    Drawing drawing(model, looks.affordable, options, sink, cancel);
+    Drawing drawing(model, std::move(samplings), options, sink, cancel);
     compilation.status = drawing.run();
     compilation.times.push_back({"trace", drawing_watch.seconds()});
     report_shells(model, asked, compilation.diagnostics);

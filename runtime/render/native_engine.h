@@ -26,8 +26,8 @@ struct NativeReport {
     int pictures = 0;                 ///< written
 };
 
-/// Takes a picture in linear light, not clamped, in place of a file.
-using PictureSink = std::function<Status(const Image& linear)>;
+/// Takes a picture in place of a file: the samples that the file would have.
+using PictureSink = std::function<Status(const Image& image)>;
 
 /// Engine::draw by the traversal of the graph itself. With a sink, the pictures go there.
 std::optional<NativeReport> render_natively(PictureSession& session, const RenderOptions& options,

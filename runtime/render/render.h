@@ -31,9 +31,12 @@ struct RenderOptions {
     std::optional<double> soft_work_seconds;
     bool listed_lights = false; ///< soft light from a list of lights (light_list.h)
     int threads = 0;            ///< 0: as many as the engine likes
+    bool aovs = false;          ///< of an EXR: further channels (aov_channels.h)
     bool progressive = false;   ///< write coarse pictures first, each in place of the last
-    bool unconfined = false;    ///< PovrayJob::unconfined
-    std::string keep;           ///< a directory for the scene, to stay; empty: a temporary one
+    /// Of one processor, about: a coarse picture that takes so long comes before the first that takes longer.
+    std::optional<double> draft_seconds;
+    bool unconfined = false; ///< PovrayJob::unconfined
+    std::string keep;        ///< a directory for the scene, to stay; empty: a temporary one
     std::function<void(const DrawProgress&)> on_progress;
     /// Called by an engine that shows nothing for long, before it starts, with the seconds of one processor
     /// that it will take: within a factor of two or so where they are many.

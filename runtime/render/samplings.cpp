@@ -53,6 +53,14 @@ std::vector<Sampling> samplings_of_soft_light(int most_samples, double noise_255
     return all;
 }
 
+std::optional<Sampling> draft_before(const Sampling& first, double seconds_a_sample, double seconds) {
+    constexpr int coarsest_block = 16;
+    Sampling draft = first;
+    while (draft.samples_a_pixel() * seconds_a_sample > seconds && draft.block < coarsest_block)
+        draft = {.block = 2 * draft.block};
+    return draft.block > first.block ? std::optional(draft) : std::nullopt;
+}
+
 SampleGoal sample_goal(Quality quality) {
     return by_quality<SampleGoal>(quality, {16, 6}, {64, 3}, {1024, 1});
 }

@@ -14,6 +14,10 @@ std::vector<Sampling> samplings_of(std::optional<int> antialias, bool progressiv
 /// The same for light that is sampled.
 std::vector<Sampling> samplings_of_soft_light(int most_samples, double noise_255, bool progressive);
 
+/// A look in blocks that takes about `seconds` of one processor, to be had before the first look: nothing if
+/// that takes no more. `seconds_a_sample`: that the samples of a picture take together, one a pixel.
+std::optional<Sampling> draft_before(const Sampling& first, double seconds_a_sample, double seconds);
+
 /// What a quality asks for: the most samples of a pixel, and the noise that is left.
 struct SampleGoal {
     int most_samples = 0;

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include <glm/common.hpp>
+#include <glm/geometric.hpp>
 #include <glm/vec2.hpp>
 
 #include "compiler/support/check.h"
@@ -46,10 +47,11 @@ class Worker {
     Worker(const TraceModel& model, const ShaderLimits& limits, const std::function<bool()>& cancelled)
         : rays_(model.view), traversal_(model),
           shader_(model.view, traversal_, limits, model.textures.of_ground), film_(model.view.film),
-          cancelled_(cancelled) {}
+          view_(model.view), cancelled_(cancelled) {}
 
-    /// False if it was cancelled before the last ray.
-    bool trace(const Sampling& sampling, const Tile& tile, Image& picture) {
+    /// False if it was cancelled before the last ray. `aovs` may be null.
+    bool trace(const Sampling& sampling, const Tile& tile, Image& picture, AovPicture* aovs) {
+        aovs_ = aovs;
         if (sampling.block == 1 && sampling.most_samples > 0) return trace_samples(sampling, tile, picture);
         if (sampling.block > 1 || !sampling.antialias) return trace_blocks(sampling.block, tile, picture);
         return trace_lattice(steps_of(sampling), tile, picture);
@@ -73,9 +75,12 @@ class Worker {
     /// `random` is of no account where all light is from points.
     Rgb look(double x, double y, SampleStream random) {
         ++camera_rays_;
-        if (!rays_.has_lens()) return shader_.radiance(rays_.through(x, y), random);
-        const glm::dvec2 place = random.next();
-        return shader_.radiance(rays_.through(x, y, place), random);
+        const Ray ray = rays_.has_lens() ? rays_.through(x, y, random.next()) : rays_.through(x, y);
+        if (!aovs_) return shader_.radiance(ray, random);
+        SurfaceHit first;
+        const Rgb rgb = shader_.radiance(ray, random, &first);
+        seen_ = AovSample(first, ray, view_);
+        return rgb;
     }
 
     /// By numbers of their own, wherever in the picture.
@@ -94,6 +99,11 @@ class Worker {
             picture.pixels[first + static_cast<std::size_t>(c)] = static_cast<float>(rgb[c]);
     }
 
+    void set(int x, int y, const AovSum& sum) {
+        (*aovs_)[static_cast<std::size_t>(y) * static_cast<std::size_t>(view_.size.width) +
+                 static_cast<std::size_t>(x)] = sum.pixel();
+    }
+
     bool trace_blocks(int block, const Tile& tile, Image& picture) {
         for (int y = tile.y; y < tile.y + tile.height; y += block)
             for (int x = tile.x; x < tile.x + tile.width; x += block) {
@@ -101,9 +111,13 @@ class Worker {
                 const int right = std::min(x + block, tile.x + tile.width);
                 const int below = std::min(y + block, tile.y + tile.height);
                 const Rgb rgb = look(0.5 * (x + right), 0.5 * (y + below));
+                AovSum sum;
+                sum.add(seen_, 1, 0);
                 for (int j = y; j < below; ++j)
-                    for (int i = x; i < right; ++i)
+                    for (int i = x; i < right; ++i) {
                         set(picture, i, j, rgb);
+                        if (aovs_) set(i, j, sum);
+                    }
             }
         return true;
     }
@@ -115,17 +129,20 @@ class Worker {
             for (int x = tile.x; x < tile.x + tile.width; ++x) {
                 const auto seed = static_cast<std::uint64_t>(y) << 32 | static_cast<std::uint32_t>(x);
                 NoiseMeter meter(film_);
+                AovSum sum;
                 bool calm = false;
                 for (int i = 0; i < sampling.most_samples && !calm; ++i) {
                     if (cancelled()) return false;
                     SampleStream random(seed, static_cast<std::uint32_t>(i));
                     const glm::dvec2 place = random.next();
-                    meter.add(
-                        look(x + 0.5 + filter.offset(place.x), y + 0.5 + filter.offset(place.y), random));
+                    const glm::dvec2 offset(filter.offset(place.x), filter.offset(place.y));
+                    meter.add(look(x + 0.5 + offset.x, y + 0.5 + offset.y, random));
+                    if (aovs_) sum.add(seen_, 1, glm::dot(offset, offset));
                     calm = meter.count() % samples_a_round == 0 && meter.error_255() < sampling.noise_255;
                 }
                 if (!calm && sampling.noise_255 > 0) ++noisy_pixels_;
                 set(picture, x, y, meter.mean());
+                if (aovs_) set(x, y, sum);
             }
         return true;
     }
@@ -135,9 +152,10 @@ class Worker {
         const auto width = static_cast<std::size_t>(tile.width);
         sums_.assign(width * static_cast<std::size_t>(tile.height), Rgb(0.0));
         row_.resize(width);
+        aov_sums_.assign(aovs_ ? sums_.size() : 0, AovSum());
         const double weight = 1.0 / (4.0 * steps * steps); // of a corner of one cell
         for (int j = 0; j <= tile.height * steps; ++j) {
-            if (!trace_row(tile.x, tile.y + static_cast<double>(j) / steps, steps)) return false;
+            if (!trace_row(tile, j, steps)) return false;
             const int below = j / steps;
             const bool edge = j % steps == 0;
             // A cell's upper and lower corners count alike; between two cells of a pixel they count for both.
@@ -145,25 +163,42 @@ class Worker {
             if (edge && below > 0) add_row(below - 1, weight);
         }
         for (int y = 0; y < tile.height; ++y)
-            for (int x = 0; x < tile.width; ++x)
-                set(picture, tile.x + x, tile.y + y,
-                    sums_[static_cast<std::size_t>(y) * width + static_cast<std::size_t>(x)]);
+            for (int x = 0; x < tile.width; ++x) {
+                const std::size_t pixel = static_cast<std::size_t>(y) * width + static_cast<std::size_t>(x);
+                set(picture, tile.x + x, tile.y + y, sums_[pixel]);
+                if (aovs_) set(tile.x + x, tile.y + y, aov_sums_[pixel]);
+            }
         return true;
     }
 
     /// For each pixel the sum over a row of its samples: 1 for those on its edges, 2 for those between.
-    bool trace_row(int left, double y, int steps) {
+    bool trace_row(const Tile& tile, int j, int steps) {
         std::fill(row_.begin(), row_.end(), Rgb(0.0));
+        const double y = tile.y + static_cast<double>(j) / steps;
         const int count = static_cast<int>(row_.size()) * steps;
         for (int i = 0; i <= count; ++i) {
             if (cancelled()) return false;
-            const Rgb rgb = look(left + static_cast<double>(i) / steps, y);
+            const Rgb rgb = look(tile.x + static_cast<double>(i) / steps, y);
+            if (aovs_) add_seen(tile, {i, j}, steps);
             const auto pixel = static_cast<std::size_t>(i / steps);
             const bool edge = i % steps == 0;
             if (pixel < row_.size()) row_[pixel] += (edge ? 1.0 : 2.0) * rgb;
             if (edge && pixel > 0) row_[pixel - 1] += rgb;
         }
         return true;
+    }
+
+    /// Adds what the sample at this place of the lattice has seen to the pixels that it belongs to.
+    void add_seen(const Tile& tile, glm::ivec2 place, int steps) {
+        const glm::ivec2 first = place / steps, edge(place.x % steps == 0, place.y % steps == 0);
+        const double weight = (2 - edge.x) * (2 - edge.y); // as in trace_row() and trace_lattice()
+        for (int y = std::max(first.y - edge.y, 0); y <= std::min(first.y, tile.height - 1); ++y)
+            for (int x = std::max(first.x - edge.x, 0); x <= std::min(first.x, tile.width - 1); ++x) {
+                const glm::dvec2 offset =
+                    glm::dvec2(place) / static_cast<double>(steps) - glm::dvec2(x, y) - 0.5;
+                aov_sums_[static_cast<std::size_t>(y) * row_.size() + static_cast<std::size_t>(x)].add(
+                    seen_, weight, glm::dot(offset, offset));
+            }
     }
 
     void add_row(int y, double weight) {
@@ -176,9 +211,13 @@ class Worker {
     Traversal traversal_;
     Shader shader_;
     const Film& film_;
+    const View& view_;
     const std::function<bool()>& cancelled_;
     std::uint64_t camera_rays_ = 0, noisy_pixels_ = 0;
     std::vector<Rgb> row_, sums_;
+    AovPicture* aovs_ = nullptr; ///< null: none are wanted
+    AovSample seen_;             ///< by the last look, if they are
+    std::vector<AovSum> aov_sums_;
 };
 
 std::vector<Tile> tiles_of(ImageSize size, int block) {
@@ -226,14 +265,16 @@ bool PictureTracer::run(std::uint64_t tasks, const TraceControl& control, const 
     return complete;
 }
 
-bool PictureTracer::trace(const Sampling& sampling, const TraceControl& control, Image& picture) {
+bool PictureTracer::trace(const Sampling& sampling, const TraceControl& control, Image& picture,
+                          AovPicture* aovs) {
     GRAFTAL_CHECK(picture.channels == 3 && picture.width == model_.view.size.width &&
                       picture.height == model_.view.size.height,
                   "trace: a picture of another size");
+    GRAFTAL_CHECK(!aovs || 3 * aovs->size() == picture.pixels.size(), "trace: AOVs of another size");
     const std::vector<Tile> tiles = tiles_of(model_.view.size, sampling.block);
     std::mutex telling;
     return run(tiles.size(), control, [&](Worker& worker, std::uint64_t number) {
-        if (!worker.trace(sampling, tiles[number], picture)) return false;
+        if (!worker.trace(sampling, tiles[number], picture, aovs)) return false;
         if (!control.on_tile) return true;
         const std::lock_guard lock(telling);
         control.on_tile(tiles[number]);

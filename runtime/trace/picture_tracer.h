@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "runtime/image/image.h"
+#include "runtime/trace/aovs.h"
 #include "runtime/trace/shade.h"
 #include "runtime/trace/trace_model.h"
 
@@ -53,8 +54,10 @@ class PictureTracer {
     explicit PictureTracer(const TraceModel& model, const ShaderLimits& limits = {});
 
     /// Fills the picture: linear light, not clamped. Pixels that a cancelled trace did not come to stay as
-    /// they were; then false. Requires three channels and the size of the view.
-    bool trace(const Sampling& sampling, const TraceControl& control, Image& picture);
+    /// they were; then false. Requires three channels and the size of the view. `aovs`, if it is not null,
+    /// has a pixel for each of the picture, and is filled likewise.
+    bool trace(const Sampling& sampling, const TraceControl& control, Image& picture,
+               AovPicture* aovs = nullptr);
 
     /// Traces the camera rays number `begin` to `end` of a sequence that covers the picture evenly at any
     /// length, and each side of it: what is thin is met as often as its share of the picture says, too (the

@@ -112,7 +112,8 @@ Shader::Shader(const View& view, Surfaces& surfaces, const ShaderLimits& limits,
     sky_slope_ = 1 / (view.sky.to - view.sky.from);
 }
 
-Rgb Shader::radiance(const Ray& ray, SampleStream& random) {
+Rgb Shader::radiance(const Ray& ray, SampleStream& random, SurfaceHit* first) {
+    if (first) *first = {};
     Rgb sum(0.0), weight(1.0);
     Ray path = ray;
     RayRange range;
@@ -122,6 +123,7 @@ Rgb Shader::radiance(const Ray& ray, SampleStream& random) {
     for (unsigned surface = 0; surface < most && largest(weight) >= limits_.least_weight; ++surface) {
         SurfaceHit hit;
         const bool found = closest(path, range, hit);
+        if (first && surface == 0 && found) *first = hit;
         double caught = 0; // of what lies behind the catcher
         if (view_.catcher) {
             RayRange before = range;

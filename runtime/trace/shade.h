@@ -47,8 +47,9 @@ class Shader {
 
     /// The light that comes along the ray, from the front; components may exceed 1, and are finite whatever
     /// is met. The direction is of unit length. Where soft light is sampled, an estimate by the numbers of
-    /// the stream.
-    Rgb radiance(const Ray& ray, SampleStream& random);
+    /// the stream. `first`, if it is not null, gets what is met first; its material is null if that is the
+    /// sky.
+    Rgb radiance(const Ray& ray, SampleStream& random, SurfaceHit* first = nullptr);
     /// The same where nothing is sampled.
     Rgb radiance(const Ray& ray) {
         SampleStream unused(0, 0);

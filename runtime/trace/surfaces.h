@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstdint>
+
 #include "compiler/graph/settings.h"
 #include "compiler/support/ray.h"
 #include "compiler/support/tint.h"
@@ -12,6 +14,11 @@ struct SurfaceHit {
     Vec3 normal{0, 1, 0};               ///< of unit length, to either side
     Rgb rgb{0.8};                       ///< opaque, all tints in front
     const Material* material = nullptr; ///< its finish; its rgb does not count
+    /// Of the prepared graph: the last on the way from the root that is no primitive.
+    std::uint32_t node = no_node;
+    std::uint32_t levels = 0; ///< that the way has used up (graph.h, "Levels")
+
+    static constexpr std::uint32_t no_node = UINT32_MAX;
 };
 
 /// What can be met by rays, in world space. One for each thread: looking may use its memory.

@@ -167,6 +167,7 @@ class ModelBuilder {
             if (!met.insert(key_of(part.edge)).second) continue;
             TraceEdge edge;
             edge.child = part.edge.child;
+            edge.holder = part.holder.value_or(id);
             edge.levels = part.edge.levels;
             edge.similarity = part.edge.similarity;
             edge.tint = part.edge.tint;
@@ -188,6 +189,7 @@ class ModelBuilder {
         CutEdge edge;
         Box box;
         double turns = 1;
+        std::optional<NodeId> holder = {}; ///< TraceEdge's, unless it is the node itself
     };
 
     /// The instances, with the primitives of small groups in place of the groups: a box more to test is
@@ -224,7 +226,7 @@ class ModelBuilder {
             const auto primitive = cut_.nodes[edge.child].primitive;
             if (primitive)
                 parts.push_back({edge, box_of_image(*primitive, edge.node_from_child),
-                                 length_in_turns(member.node_from_child.linear)});
+                                 length_in_turns(member.node_from_child.linear), group.child});
             else if (is_small_group(edge.child))
                 add_group(edge, parts);
             else

@@ -43,6 +43,9 @@ struct TraceEdge {
     double growth = 1;  ///< 1 / stretch
     Box box;            ///< of what the child draws, in the parent's frame
     std::uint32_t child = 0;
+    /// Of a primitive: the node that holds it, also where its parts stand in place of it; no_edge: the one
+    /// before.
+    std::uint32_t holder = no_edge;
     unsigned levels = 0;
     bool similarity = false; ///< then a path's norm is the product of its stretches
     double flatness = 1; ///< the least stretch, as a share of the largest; child_from_parent is only used if

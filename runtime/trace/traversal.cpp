@@ -152,6 +152,8 @@ void Traversal::surface_at_best(SurfaceHit& hit) const {
     Rgb inherited = plain.rgb;
     std::optional<MaterialId> material;
     hit.material = &plain;
+    hit.node = SurfaceHit::no_node;
+    hit.levels = 0;
     const CutNode* parent = nullptr; // as in descend() (detail/piece.h)
     for (const std::uint32_t step : path_) {
         const TraceEdge& edge = model_.edges[step & ~from_cut];
@@ -163,6 +165,11 @@ void Traversal::surface_at_best(SurfaceHit& hit) const {
             inherited = hit.material->rgb;
         }
         parent = &model_.source(edge.child);
+        if (!parent->primitive)
+            hit.node = model_.layers.source[edge.child];
+        else if (edge.holder != no_edge)
+            hit.node = model_.layers.source[edge.holder];
+        hit.levels += edge.levels;
     }
     if (best_.mesh_colour) {
         inherited = best_.mesh_colour->fixed + best_.mesh_colour->open * inherited;

@@ -25,6 +25,7 @@
 #include <pthread.h>
 #include <spawn.h>
 #include <sys/file.h>
+#include <sys/inotify.h>
 #include <sys/mman.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
@@ -310,6 +311,14 @@ int pipe(int* ends) noexcept {
 
 int pipe2(int* ends, int flags) noexcept {
     return fails(pipe_) ? -1 : NEXT(pipe2)(ends, flags);
+}
+
+int inotify_init1(int flags) noexcept {
+    return fails(watch_) ? -1 : NEXT(inotify_init1)(flags);
+}
+
+int inotify_add_watch(int watch, const char* path, std::uint32_t what) noexcept {
+    return fails(watch_) ? -1 : NEXT(inotify_add_watch)(watch, path, what);
 }
 
 // Processes and threads

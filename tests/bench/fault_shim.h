@@ -34,6 +34,7 @@ enum Kind {
     poll_,
     thread_,
     load_,
+    watch_,
     kinds
 };
 
@@ -42,11 +43,11 @@ struct Fault {
     int error;
 };
 inline constexpr Fault faults[kinds] = {
-    {"alloc", ENOMEM}, {"map", ENOMEM},  {"open", EMFILE}, {"read", EIO},    {"write", ENOSPC},
-    {"sync", EIO},     {"seek", EIO},    {"close", EIO},   {"rename", EIO},  {"unlink", EPERM},
-    {"mkdir", ENOSPC}, {"stat", EACCES}, {"lock", ENOLCK}, {"dup", EMFILE},  {"pipe", EMFILE},
-    {"fork", EAGAIN},  {"exec", ENOMEM}, {"wait", ECHILD}, {"poll", ENOMEM}, {"thread", EAGAIN},
-    {"load", ENOMEM},
+    {"alloc", ENOMEM}, {"map", ENOMEM},   {"open", EMFILE}, {"read", EIO},    {"write", ENOSPC},
+    {"sync", EIO},     {"seek", EIO},     {"close", EIO},   {"rename", EIO},  {"unlink", EPERM},
+    {"mkdir", ENOSPC}, {"stat", EACCES},  {"lock", ENOLCK}, {"dup", EMFILE},  {"pipe", EMFILE},
+    {"fork", EAGAIN},  {"exec", ENOMEM},  {"wait", ECHILD}, {"poll", ENOMEM}, {"thread", EAGAIN},
+    {"load", ENOMEM},  {"watch", EMFILE},
 };
 
 /// What FAULTS_RECORD holds, zeros at first: how many calls were made to fail, and the calls of each

@@ -1,20 +1,15 @@
 // Pictures of the native engine while they are made, and when it is told to stop.
 
+#include "tests/golden/background_run.h"
 #include "tests/golden/command_line.h"
 
 #include <chrono>
 #include <csignal>
-#include <cstdlib>
-#include <fstream>
-#include <functional>
 #include <thread>
 #include <vector>
 
-#include <fcntl.h>
 #include <fmt/format.h>
 #include <gmock/gmock.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include "runtime/image/image.h"
 
@@ -27,65 +22,6 @@ using testing::MatchesRegex;
 
 using Clock = std::chrono::steady_clock;
 
-/// A run of graftal in the background, in the folder of the test.
-class BackgroundRun {
-  public:
-    BackgroundRun(const std::string& folder, const std::vector<std::string>& arguments)
-        : messages_(folder + "/../err") {
-        id_ = ::fork();
-        if (id_ == 0) start(folder, arguments);
-    }
-    ~BackgroundRun() {
-        if (id_ <= 0 || ended_) return;
-        ::kill(id_, SIGKILL);
-        wait();
-    }
-    BackgroundRun(const BackgroundRun&) = delete;
-    BackgroundRun& operator=(const BackgroundRun&) = delete;
-
-    bool running() {
-        if (!ended_) note(::waitpid(id_, &wait_status_, WNOHANG));
-        return !ended_;
-    }
-    void send(int signal) const { ::kill(id_, signal); }
-    /// The exit status as a shell has it, negative after a signal that ended the process itself.
-    int wait() {
-        if (!ended_) note(::waitpid(id_, &wait_status_, 0));
-        return WIFEXITED(wait_status_) ? WEXITSTATUS(wait_status_) : -WTERMSIG(wait_status_);
-    }
-    std::string messages() const {
-        std::ifstream file(messages_);
-        return {std::istreambuf_iterator<char>(file), {}};
-    }
-    /// It does not die of the signal, but has a handler: it is drawing.
-    bool catches(int signal) const {
-        std::ifstream status(fmt::format("/proc/{}/status", id_));
-        for (std::string word; status >> word;)
-            if (word == "SigCgt:" && status >> word)
-                return (std::stoull(word, nullptr, 16) >> (signal - 1) & 1) != 0;
-        return false;
-    }
-
-  private:
-    void start(const std::string& folder, const std::vector<std::string>& arguments) const {
-        ::dup2(::open(messages_.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600), STDERR_FILENO);
-        ::signal(SIGINT, SIG_DFL);
-        if (::chdir(folder.c_str()) != 0) ::_exit(125);
-        std::vector<char*> words = {const_cast<char*>("graftal")};
-        for (const std::string& argument : arguments)
-            words.push_back(const_cast<char*>(argument.c_str()));
-        words.push_back(nullptr);
-        ::execv(GRAFTAL_PROGRAM, words.data());
-        ::_exit(126);
-    }
-    void note(pid_t id) { ended_ = id != 0; }
-
-    std::string messages_;
-    pid_t id_ = 0;
-    int wait_status_ = 0;
-    bool ended_ = false;
-};
-
 class Progressive : public CommandLine {
   protected:
     BackgroundRun start(const std::string& command, const std::string& output,
@@ -93,11 +29,6 @@ class Progressive : public CommandLine {
         more.insert(more.begin(),
                     {command, source_path("scenes/forest/forest.inst"), "-o", output, "--engine", "native"});
         return {path("."), more};
-    }
-    /// Waits until something is so, or the run has ended.
-    static void wait_until(BackgroundRun& run, const std::function<bool()>& so) {
-        while (!so() && run.running())
-            std::this_thread::sleep_for(std::chrono::milliseconds(2));
     }
     /// A whole picture, or none if there is no file.
     Image picture(const std::string& name) const {
@@ -165,7 +96,7 @@ TEST_F(Progressive, InterruptionLeavesTheBestPictureSoFar) {
     for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
         BackgroundRun run =
             start("render", "a.png", {"--size", "1280x720", "--antialias", "4", "--progressive"});
-        wait_until(run, [&] { return exists("a.png"); });
+        run.wait_until([&] { return exists("a.png"); });
         run.send(signal);
         EXPECT_EQ(run.wait(), 128 + signal);
         EXPECT_THAT(run.messages(),
@@ -188,7 +119,7 @@ TEST_F(Progressive, InterruptionBeforeAPictureLeavesNothing) {
             BackgroundRun run = progressive
                                     ? start("render", "a.png", {"--size", "4000x3000", "--progressive"})
                                     : start("render", "a.png", {"--antialias", "9", "--work", "20000"});
-            wait_until(run, [&] { return run.catches(SIGTERM); });
+            run.wait_until([&] { return run.catches(SIGTERM); });
             run.send(SIGTERM);
             EXPECT_EQ(run.wait(), 128 + SIGTERM);
             EXPECT_EQ(run.messages(), "graftal: interrupted\n");
@@ -201,7 +132,7 @@ TEST_F(Progressive, InterruptionBeforeAPictureLeavesNothing) {
 /// A tile of this picture holds 67 million rays, which are minutes.
 TEST_F(Progressive, InterruptionIsPrompt) {
     BackgroundRun run = start("render", "a.png", {"--antialias", "9", "--work", "20000", "--threads", "1"});
-    wait_until(run, [&] { return run.catches(SIGINT); });
+    run.wait_until([&] { return run.catches(SIGINT); });
     std::this_thread::sleep_for(std::chrono::milliseconds(300));
     const Clock::time_point begin = Clock::now();
     run.send(SIGINT);
@@ -213,7 +144,7 @@ TEST_F(Progressive, InterruptionIsPrompt) {
 TEST_F(Progressive, AnimationGoesOnAfterAnInterruption) {
     const std::vector<std::string> turning = {"--size", "128x72", "--antialias", "off", "--frames", "6"};
     BackgroundRun run = start("animate", "a/", turning);
-    wait_until(run, [&] { return exists("a/frame_0002.png"); });
+    run.wait_until([&] { return exists("a/frame_0002.png"); });
     run.send(SIGINT);
     EXPECT_EQ(run.wait(), 128 + SIGINT);
     EXPECT_THAT(run.messages(),

@@ -16,6 +16,7 @@ inline constexpr int exit_environment = 3;
 int run_command(const Options& options);
 
 int run_render(const Options& options);
+int run_watch(const Options& options); ///< `render --watch`
 int run_animate(const Options& options);
 int run_points(const Options& options);
 int run_collage(const Options& options);

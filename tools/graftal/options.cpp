@@ -10,6 +10,7 @@
 #include "compiler/passes/pipeline.h"
 #include "compiler/povray/emit_povray.h"
 #include "compiler/povray/povray_names.h"
+#include "runtime/render/native_engine.h"
 #include "tools/graftal/animate_options.h"
 #include "tools/graftal/commands.h"
 #include "tools/graftal/option_values.h"
@@ -38,6 +39,12 @@ void add_render(CLI::App& app, Options& options) {
     app.add_flag("--progressive", options.render.progressive,
                  "With --engine native: write coarse pictures first, then finer ones under the same name; "
                  "Ctrl-C keeps the last one");
+    app.add_flag("--aovs", options.render.aovs,
+                 "With --engine native and an EXR: write the channels A, coverage, Z, normal, albedo, id and "
+                 "levels too");
+    app.add_flag("--watch", options.watch,
+                 "Draw again, with --engine native, whenever the model changes or a file that it uses, until "
+                 "Ctrl-C");
     app.add_option("--keep", options.render.keep, "Keep POV-Ray's scene and its palettes in this directory")
         ->type_name("DIR");
     app.footer("Examples:\n"
@@ -47,7 +54,9 @@ void add_render(CLI::App& app, Options& options) {
                "  graftal render gasket.inst --steps 6 --error 0        # six levels, with every part\n"
                "  graftal print tree.inst | graftal render - -o tree.png\n"
                "  graftal render fern.rifs --engine native              # the same picture, much sooner\n"
-               "  graftal render forest.inst --engine native --progressive --size 1920x1080");
+               "  graftal render forest.inst --engine native --progressive --size 1920x1080\n"
+               "  graftal render tree.inst --engine native --aovs -o tree.exr  # depth, normals, ... too\n"
+               "  graftal render fern.rifs --watch                      # and again after each save");
 }
 
 void add_animate(CLI::App& app, Options& options) {
@@ -237,8 +246,23 @@ std::string passes_text() {
     return text;
 }
 
+/// What is wrong with options beside --watch, or "".
+std::string refusal_to_watch(const Options& options) {
+    if (options.engine && options.engine != &native_engine)
+        return fmt::format("--watch draws with '--engine native': leave out '--engine {}'",
+                           options.engine->name);
+    if (options.operands.front() == "-")
+        return "--watch: standard input does not change: give the name of a model's file";
+    if (options.render.output == "-")
+        return "--watch draws one picture after the other: name their file with '-o FILE'";
+    return {};
+}
+
 /// What is wrong with options that are each right, or "".
 std::string complete(Options& options) {
+    if (const std::string refused = options.watch ? refusal_to_watch(options) : ""; !refused.empty())
+        return refused;
+    if (!options.engine) options.engine = options.watch ? &native_engine : &engines().front();
     const std::string refused = options.engine->refusal(options.render);
     if (!refused.empty()) return refused;
     const std::string extension = std::filesystem::path(options.render.output).extension().string();

@@ -46,8 +46,9 @@ struct Options {
     bool time = false;
     bool quiet = false;
 
-    const Engine* engine = &engines().front();
-    std::string identifier; ///< of `compile` to an .inc; "": as the model's file
+    const Engine* engine = nullptr; ///< as --engine names it; never null after parse_command_line()
+    bool watch = false;             ///< of `render`: again after each change
+    std::string identifier;         ///< of `compile` to an .inc; "": as the model's file
     AnimationOptions animation;
     PointsSettings points;
     bool json = false;

@@ -36,6 +36,13 @@ void ProgressBar::show(const std::string& what, double fraction) {
     show(fmt::format("{:<18}", what) + bar(fraction));
 }
 
+void ProgressBar::show(const DrawProgress& progress) {
+    if (progress.fraction)
+        show(std::string(progress.stage), *progress.fraction);
+    else
+        show(fmt::format("{:<18}...", progress.stage));
+}
+
 void ProgressBar::clear() {
     if (shown_.empty()) return;
     std::fputs("\r\033[K", stderr);

@@ -2,6 +2,8 @@
 
 #include <string>
 
+#include "runtime/render/render.h"
+
 namespace graftal {
 
 /// One line on standard error that is rewritten in place, if that is a terminal; else nothing at all.
@@ -15,6 +17,7 @@ class ProgressBar {
     /// Names what is going on, without a measure of it.
     void show(const std::string& text);
     void show(const std::string& what, double fraction);
+    void show(const DrawProgress& progress);
     /// Takes the line away, so that other text can be printed.
     void clear();
 

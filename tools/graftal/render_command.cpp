@@ -14,12 +14,7 @@ namespace graftal {
 int run_render(const Options& options) {
     ProgressBar bar(!options.quiet);
     RenderOptions render = options.render;
-    render.on_progress = [&](const DrawProgress& progress) {
-        if (progress.fraction)
-            bar.show(std::string(progress.stage), *progress.fraction);
-        else
-            bar.show(fmt::format("{:<18}...", progress.stage));
-    };
+    render.on_progress = [&](const DrawProgress& progress) { bar.show(progress); };
     render.on_start = [&](double seconds) {
         // Besides what the compiler takes, of the same work.
         if (!(seconds > 0.5 * options.render.compile.detail.work_seconds)) return;

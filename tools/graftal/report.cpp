@@ -30,12 +30,16 @@ void complain(std::string_view text) {
     say(fmt::format("graftal: {}\n", escaped(text, longest_complaint)));
 }
 
-int conclude(const Options& options, const Compilation& compilation, int signal) {
+void print_findings(const Options& options, const Compilation& compilation) {
     say(compilation.diagnostics.render(compilation.sources, options.quiet));
     if (!compilation.status.ok()) complain(compilation.status.message());
     if (options.time)
         for (const StageTime& time : compilation.times)
             say(fmt::format("{:>10.3f} s  {}\n", time.seconds, time.stage));
+}
+
+int conclude(const Options& options, const Compilation& compilation, int signal) {
+    print_findings(options, compilation);
     if (signal) return 128 + signal;
     if (compilation.diagnostics.has_errors()) return exit_fault;
     return compilation.status.ok() ? exit_done : exit_environment;

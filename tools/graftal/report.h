@@ -16,8 +16,10 @@ void say(const std::string& text);
 /// "graftal: TEXT" on standard error.
 void complain(std::string_view text);
 
-/// Prints the diagnostics, the failed status if there is one, and the times if they were asked for; returns
-/// the exit status that follows. `signal`: that interrupted the command, or 0.
+/// Prints the diagnostics, the failed status if there is one, and the times if they were asked for.
+void print_findings(const Options& options, const Compilation& compilation);
+
+/// The same; returns the exit status that follows. `signal`: that interrupted the command, or 0.
 int conclude(const Options& options, const Compilation& compilation, int signal = 0);
 
 /// Says that the memory did not suffice, and for what, without taking any; returns the exit status that

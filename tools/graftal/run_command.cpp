@@ -5,7 +5,7 @@ namespace graftal {
 int run_command(const Options& options) {
     switch (options.command) {
     case Command::render:
-        return run_render(options);
+        return options.watch ? run_watch(options) : run_render(options);
     case Command::animate:
         return run_animate(options);
     case Command::points:

@@ -174,7 +174,28 @@ std::string read(const std::string& path, RowSink& sink) {
     }
 }
 
-std::string write_exr(const std::string& path, const Image& image, const ImageMetadata& metadata) {
+/// Adds the channels to those of the picture, and names them in the specification.
+std::vector<float> joined(const Image& image, const MoreChannels& more, OIIO::ImageSpec& spec) {
+    const auto own = static_cast<std::size_t>(image.channels), others = more.names.size();
+    spec.nchannels += static_cast<int>(others);
+    for (const std::string& name : more.names) {
+        if (name == "A") spec.alpha_channel = static_cast<int>(spec.channelnames.size());
+        if (name == "Z") spec.z_channel = static_cast<int>(spec.channelnames.size());
+        spec.channelnames.push_back(name);
+    }
+    std::vector<float> samples;
+    samples.reserve(spec.image_pixels() * (own + others));
+    for (std::size_t pixel = 0; pixel < spec.image_pixels(); ++pixel) {
+        const auto first = image.pixels.begin() + static_cast<std::ptrdiff_t>(pixel * own);
+        const auto other = more.samples.begin() + static_cast<std::ptrdiff_t>(pixel * others);
+        samples.insert(samples.end(), first, first + static_cast<std::ptrdiff_t>(own));
+        samples.insert(samples.end(), other, other + static_cast<std::ptrdiff_t>(others));
+    }
+    return samples;
+}
+
+std::string write_exr(const std::string& path, const Image& image, const ImageMetadata& metadata,
+                      const MoreChannels* more) {
     OIIO::ImageSpec spec(image.width, image.height, image.channels, OIIO::TypeDesc::FLOAT);
     spec.attribute("oiio:ColorSpace", "Linear"); // and colour belongs to alpha already, as EXR has it
     const auto tag = [&](const char* name, const std::string& value) {
@@ -184,8 +205,15 @@ std::string write_exr(const std::string& path, const Image& image, const ImageMe
     tag("Software", metadata.software);
     tag(stamp_keyword, metadata.stamp);
     tag("ImageDescription", metadata.description);
+    std::vector<float> all;
+    if (more) {
+        all = joined(image, *more, spec);
+        for (const auto& [name, text] : more->tags)
+            tag(name.c_str(), text);
+    }
+    const float* const samples = more ? all.data() : image.pixels.data();
     return write_checked(path, [&](OIIO::ImageOutput& output) {
-        return output.open(path, spec) && output.write_image(OIIO::TypeDesc::FLOAT, image.pixels.data());
+        return output.open(path, spec) && output.write_image(OIIO::TypeDesc::FLOAT, samples);
     });
 }
 

@@ -155,6 +155,24 @@ TEST_F(Use, an_orbit_fails_whatever_failed_before) {
     EXPECT_THAT(errors(), HasSubstr("no model can use it"));
 }
 
+TEST_F(Use, files_are_told_before_they_are_read_there_or_not) {
+    write("parts/leaf.inst", "material bark { texture: \"bark.png\" } object leaf { sphere material: bark }");
+    write("a.inst", "use leaf = \"parts/leaf.inst\" use none = \"none.inst\" use far = \"../far.inst\"\n"
+                    "object a { union: leaf, none, far  instance: mesh \"a.obj\" }");
+    std::vector<std::string> told;
+    const LowerHelp help{.on_file = [&](const std::string& path) {
+        told.push_back(std::filesystem::path(path).lexically_relative(folder_).string());
+    }};
+    lower_model((folder_ / "a.inst").string(), {.root = folder_.string()}, sources_, diagnostics_, status_,
+                help);
+    EXPECT_THAT(told, ::testing::IsSupersetOf({"parts/leaf.inst", "none.inst"})) << errors();
+    EXPECT_THAT(told, ::testing::Not(::testing::Contains("../far.inst"))) << "beyond the root";
+    told.clear();
+    write("a.inst", "use leaf = \"parts/leaf.inst\"\nobject a { union: leaf  instance: mesh \"a.obj\" }");
+    lower_model((folder_ / "a.inst").string(), {}, sources_, diagnostics_, status_, help);
+    EXPECT_THAT(told, UnorderedElementsAre("parts/leaf.inst", "parts/bark.png", "a.obj")) << errors();
+}
+
 TEST_F(Use, a_root_model_that_is_not_there_is_a_failed_status) {
     lower("nowhere.inst");
     EXPECT_FALSE(graph_);

@@ -45,5 +45,16 @@ TEST(Samplings, BlocksWhereSamplesTakeLong) {
     EXPECT_EQ(looks.back().block, 4);
 }
 
+TEST(Samplings, ADraftComesBeforeALongLook) {
+    const Sampling fine{.antialias = 2};
+    EXPECT_FALSE(draft_before(fine, 1, 4)) << "it takes no longer itself";
+    EXPECT_EQ(draft_before(fine, 1, 3.9)->samples_a_pixel(), 1 / 4.0);
+    EXPECT_EQ(draft_before(fine, 1, 0.1)->block, 4);
+    EXPECT_EQ(draft_before(fine, 1e6, 0.1)->block, 16) << "the coarsest, however long it takes";
+    EXPECT_FALSE(draft_before({.block = 8}, 1, 0.1));
+    EXPECT_EQ(draft_before({.block = 8}, 1, 0.01)->block, 16);
+    EXPECT_EQ(draft_before({.most_samples = 128}, 1, 0.3)->samples_a_pixel(), 1 / 4.0);
+}
+
 } // namespace
 } // namespace graftal

@@ -1,0 +1,13 @@
+#pragma once
+
+#include "runtime/image/image.h"
+#include "runtime/trace/aovs.h"
+
+namespace graftal {
+
+/// The channels of an EXR for AOVs, as docs/native.md describes them: A, coverage, Z, normal.X, normal.Y,
+/// normal.Z, albedo.R, albedo.G, albedo.B, id and levels. The tag `graftal:ids` names the objects that are
+/// seen, one "NUMBER NAME" a line.
+MoreChannels aov_channels(const AovPicture& aovs, const ObjectNumbers& numbers);
+
+} // namespace graftal

@@ -1,0 +1,235 @@
+// AOVs in EXR files, against closed forms.
+
+#include <cmath>
+#include <fstream>
+#include <map>
+#include <numbers>
+#include <sstream>
+
+#include <OpenImageIO/imageio.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "runtime/render/native_engine.h"
+#include "runtime/system/temporary_directory.h"
+
+namespace graftal {
+namespace {
+
+/// The channels of an EXR, by name.
+struct Channels {
+    int width = 0, height = 0;
+    std::map<std::string, std::vector<float>> of;
+    std::map<float, std::string> names; ///< by id
+
+    float at(const std::string& name, int x, int y) const {
+        return of.at(name)[static_cast<std::size_t>(y * width + x)];
+    }
+    Vec3 vector_at(const std::string& name, int x, int y) const {
+        return {at(name + ".X", x, y), at(name + ".Y", x, y), at(name + ".Z", x, y)};
+    }
+    std::string object_at(int x, int y) const {
+        const auto name = names.find(at("id", x, y));
+        return name == names.end() ? "" : name->second;
+    }
+};
+
+class Aovs : public testing::Test {
+  protected:
+    void SetUp() override {
+        ASSERT_TRUE(directory_.create().ok());
+        options_.aovs = true;
+        options_.antialias.reset();
+        options_.compile.view.size = {64, 48};
+        options_.output = directory_.path() + "/m.exr";
+    }
+
+    void draw(const std::string& model) {
+        const std::string path = directory_.path() + "/m.inst";
+        std::ofstream(path) << model;
+        PictureSession session(path);
+        Compilation compilation;
+        ASSERT_TRUE(native_engine.draw(session, options_, compilation))
+            << compilation.diagnostics.render(compilation.sources) << compilation.status.message();
+    }
+
+    Channels read() const {
+        Channels channels;
+        const auto input = OIIO::ImageInput::open(options_.output);
+        EXPECT_TRUE(input) << OIIO::geterror();
+        if (!input) return channels;
+        const OIIO::ImageSpec& spec = input->spec();
+        channels.width = spec.width;
+        channels.height = spec.height;
+        std::vector<float> samples(spec.image_pixels() * static_cast<std::size_t>(spec.nchannels));
+        EXPECT_TRUE(input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, samples.data()));
+        for (std::size_t i = 0; i < samples.size(); ++i)
+            channels.of[spec.channelnames[i % spec.channelnames.size()]].push_back(samples[i]);
+        std::istringstream ids{std::string(spec.get_string_attribute("graftal:ids"))};
+        std::string name;
+        for (float id = 0; ids >> id >> name;)
+            channels.names[id] = name;
+        return channels;
+    }
+    Channels drawn(const std::string& model) {
+        draw(model);
+        return read();
+    }
+
+    std::string bytes() const {
+        std::ifstream file(options_.output, std::ios::binary);
+        return {std::istreambuf_iterator<char>(file), {}};
+    }
+
+    TemporaryDirectory directory_;
+    RenderOptions options_;
+};
+
+const std::string parallel = "camera { location: 0,0,5 look_at: 0,0,0 orthographic width: 4 }\n";
+const std::string perspective = "camera { location: 0,0,5 look_at: 0,0,0 angle: 60 }\n";
+const std::string ball = "object m { instance: sphere }\n";
+
+TEST_F(Aovs, AreTheChannelsThatTheDocumentationNames) {
+    const Channels channels = drawn(parallel + ball);
+    std::vector<std::string> names;
+    for (const auto& [name, samples] : channels.of) {
+        names.push_back(name);
+        EXPECT_EQ(samples.size(), 64u * 48) << name;
+    }
+    EXPECT_THAT(names, testing::UnorderedElementsAre("R", "G", "B", "A", "coverage", "Z", "normal.X",
+                                                     "normal.Y", "normal.Z", "albedo.R", "albedo.G",
+                                                     "albedo.B", "id", "levels"));
+}
+
+TEST_F(Aovs, OfASphereUnderParallelRays) {
+    const Channels channels = drawn(parallel + "material red { color: 0.8, 0.2, 0.1 }\n"
+                                               "object m { instance: sphere material: red }\n");
+    int met = 0;
+    for (int j = 0; j < 48; ++j)
+        for (int i = 0; i < 64; ++i) {
+            const double x = (i + 0.5) / 16 - 2, y = 1.5 - (j + 0.5) / 16, square = 1 - x * x - y * y;
+            EXPECT_EQ(channels.at("A", i, j), 1);
+            EXPECT_EQ(channels.at("coverage", i, j), square > 0 ? 1 : 0);
+            if (square <= 0) {
+                EXPECT_EQ(channels.at("Z", i, j), std::numeric_limits<float>::infinity());
+                EXPECT_EQ(channels.vector_at("normal", i, j), Vec3(0.0));
+                EXPECT_EQ(channels.at("id", i, j), 0);
+                continue;
+            }
+            ++met;
+            const Vec3 normal(x, y, std::sqrt(square));
+            EXPECT_NEAR(channels.at("Z", i, j), 5 - normal.z, 1e-6);
+            EXPECT_LT(glm::length(channels.vector_at("normal", i, j) - normal), 1e-6);
+            EXPECT_FLOAT_EQ(channels.at("albedo.R", i, j), 0.8f);
+            EXPECT_FLOAT_EQ(channels.at("albedo.G", i, j), 0.2f);
+            EXPECT_FLOAT_EQ(channels.at("albedo.B", i, j), 0.1f);
+            EXPECT_EQ(channels.object_at(i, j), "m");
+        }
+    EXPECT_GT(met, 700);
+}
+
+/// The depth of a wall that faces the camera is everywhere the same, unlike the distance.
+TEST_F(Aovs, DepthIsAlongTheCamerasDirection) {
+    const Channels channels =
+        drawn(perspective + "object m { instance: cube scale: 20, 20, 1 }\n"); // its face at z = 1/2 or 1
+    const float depth = channels.at("Z", 32, 24);
+    EXPECT_TRUE(depth == 4 || depth == 4.5f) << depth;
+    for (int j = 0; j < 48; ++j)
+        for (int i = 0; i < 64; ++i) {
+            EXPECT_NEAR(channels.at("Z", i, j), depth, 1e-5);
+            EXPECT_LT(glm::length(channels.vector_at("normal", i, j) - Vec3(0, 0, 1)), 1e-6);
+        }
+}
+
+TEST_F(Aovs, OfTheGround) {
+    const Channels channels =
+        drawn(perspective + "ground { height: -2 }\n"
+                            "object m { instance: sphere scale: 0.1 translate: 0, 1, 0 }\n");
+    const double slope = std::tan(std::numbers::pi / 6) / 32; // of a pixel
+    for (int j = 26; j < 48; ++j)
+        for (int i = 0; i < 64; ++i) {
+            const double depth = 2 / (slope * (j + 0.5 - 24));
+            EXPECT_NEAR(channels.at("Z", i, j), depth, 1e-5 * depth);
+            EXPECT_EQ(channels.vector_at("normal", i, j), Vec3(0, 1, 0));
+            EXPECT_EQ(channels.object_at(i, j), "(ground)");
+            EXPECT_EQ(channels.at("levels", i, j), 0);
+        }
+    EXPECT_EQ(channels.object_at(0, 0), "");
+}
+
+TEST_F(Aovs, MeansAreOverTheSamplesThatMeet) {
+    options_.antialias = 4;
+    const Channels channels = drawn(parallel + ball);
+    double area = 0;
+    for (int j = 0; j < 48; ++j)
+        for (int i = 0; i < 64; ++i) {
+            const float coverage = channels.at("coverage", i, j), depth = channels.at("Z", i, j);
+            area += coverage / 256;
+            EXPECT_EQ(std::isfinite(depth), coverage > 0);
+            if (coverage > 0) {
+                EXPECT_TRUE(4 <= depth && depth <= 5) << depth;
+            }
+            // The nearest sample is the pixel's middle.
+            const double x = (i + 0.5) / 16 - 2, y = 1.5 - (j + 0.5) / 16;
+            EXPECT_EQ(channels.object_at(i, j), x * x + y * y < 1 ? "m" : "");
+        }
+    EXPECT_NEAR(area, std::numbers::pi, 0.01);
+    // In the middle of the sphere it is (x^2 + y^2) / 2 deeper; the means over 8 cells of each side.
+    EXPECT_NEAR(channels.at("Z", 32, 24), 4 + (1.0 / 3 + 1.0 / 6 / 64) / 256, 3e-6);
+}
+
+TEST_F(Aovs, IdsTellObjectsApart) {
+    const std::string model =
+        parallel + "canonical object left { instance: sphere }\ncanonical object right { instance: cube }\n"
+                   "object m { instance: left scale: 0.5 translate: -1, 0, 0\n"
+                   "  instance: right scale: 0.5 translate: 1, 0, 0 }\n";
+    const Channels channels = drawn(model);
+    EXPECT_EQ(channels.object_at(16, 24), "left");
+    EXPECT_EQ(channels.object_at(48, 24), "right");
+    EXPECT_NE(channels.at("id", 16, 24), channels.at("id", 48, 24));
+    EXPECT_EQ(channels.names.size(), 2u) << "of what is seen";
+    EXPECT_EQ(channels.object_at(32, 24), "");
+    options_.compile.view.camera.location = Vec3(3, 0, 5);
+    EXPECT_EQ(drawn(model).names, channels.names) << "from wherever they are seen";
+}
+
+TEST_F(Aovs, LevelsAreThoseOfTheRecursion) {
+    options_.compile.lower.steps = 3;
+    // Balls of radius 2^-k at 0, 1.6, 2.4, 2.8: each in the middle of a row of pixels of its own.
+    const Channels channels = drawn("camera { location: 1.5,0,5 look_at: 1.5,0,0 orthographic width: 5 }\n"
+                                    "object m { instance: sphere scale: 0.5\n"
+                                    "  instance: m scale: 0.5 translate: 1.6, 0, 0 }\n");
+    const double at[] = {0, 1.6, 2.4, 2.8};
+    for (int k = 0; k < 4; ++k) {
+        const int x = static_cast<int>((at[k] + 1) / 5 * 64);
+        EXPECT_EQ(channels.at("levels", x, 24), static_cast<float>(k));
+        EXPECT_EQ(channels.object_at(x, 24), "m");
+    }
+}
+
+TEST_F(Aovs, DoNotDependOnThreadsAndLeaveThePicture) {
+    const std::string soft = "sky { zenith: 0.3, 0.4, 0.7  horizon: 0.9, 0.8, 0.7 }\n" + perspective + ball;
+    for (const std::string& model : {parallel + ball, soft})
+        for (const bool progressive : {false, true}) {
+            options_.antialias = 2;
+            options_.samples = 8;
+            options_.progressive = progressive;
+            options_.threads = 1;
+            const Channels channels = drawn(model);
+            const std::string one = bytes();
+            options_.threads = 3;
+            draw(model);
+            EXPECT_EQ(bytes(), one);
+            options_.aovs = false;
+            const Channels plain = drawn(model);
+            options_.aovs = true;
+            for (const std::string name : {"R", "G", "B"})
+                for (std::size_t i = 0; i < plain.of.at(name).size(); ++i)
+                    EXPECT_NEAR(plain.of.at(name)[i], channels.of.at(name)[i], 1e-5) << name;
+            EXPECT_EQ(channels.at("coverage", 32, 24), 1);
+            EXPECT_NEAR(channels.at("Z", 32, 24), 4, 0.01);
+        }
+}
+
+} // namespace
+} // namespace graftal

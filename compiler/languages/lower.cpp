@@ -26,6 +26,7 @@ LoweredText lower_root(FileId file, const LowerOptions& options, SourceMap& sour
                       .diagnostics = diagnostics,
                       .options = options,
                       .look_at_texture = help.look_at_texture,
+                      .load_sky_picture = help.load_sky_picture,
                       .meter = meter,
                       .languages = languages()};
     const Language* const language = language_of(file, sources, languages());

@@ -85,6 +85,7 @@ std::vector<InnerParameter> inner_parameters_of(FileId file, Lowering& lowering)
                    .diagnostics = quiet,
                    .options = lowering.options,
                    .look_at_texture = lowering.look_at_texture,
+                   .load_sky_picture = lowering.load_sky_picture,
                    .meter = lowering.meter,
                    .languages = lowering.languages,
                    .loading = std::vector<LoadingFile>(2)};

@@ -34,6 +34,7 @@ struct Lowering {
     Diagnostics& diagnostics;
     const LowerOptions& options;
     const LookAtTexture& look_at_texture;
+    const LoadSkyPicture& load_sky_picture;
     WorkMeter& meter;                      ///< of modules, parts and objects
     std::span<const Language> languages;   ///< that models may be written in
     std::vector<LoadingFile> loading = {}; ///< from the root model to the file being lowered

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
 
 #include "compiler/support/axes_across.h"
 
@@ -44,6 +45,15 @@ void list_zone(const SkyLight& sky, double low, double high, unsigned count, std
     }
 }
 
+void list_picture(const SkyLight& sky, unsigned count, bool above_only, std::vector<Light>& list) {
+    const Mat3 world_from_picture = glm::transpose(sky.picture_from_world);
+    for (const SkyRegion& region : sky_regions(sky.picture->cells(), count, above_only))
+        if (const Rgb rgb = sky.brightness / std::numbers::pi * region.power;
+            std::max({rgb.r, rgb.g, rgb.b}) > 0)
+            list.push_back(
+                {.location = glm::normalize(world_from_picture * region.direction), .sun = true, .rgb = rgb});
+}
+
 } // namespace
 
 LightListSize list_size(Quality quality) {
@@ -59,6 +69,10 @@ std::vector<Light> listed_lights(const View& view, const LightListSize& size) {
         else
             list.push_back(light);
     if (!view.sky_light) return list;
+    if (view.sky_light->picture) {
+        list_picture(*view.sky_light, size.dome, view.ground.has_value(), list);
+        return list;
+    }
     // What shines from below counts less than the sky, and not at all through a ground.
     const unsigned from_below = view.ground ? 0 : size.dome / 5;
     list_zone(*view.sky_light, 0, 1, size.dome - from_below, list);

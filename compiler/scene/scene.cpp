@@ -60,6 +60,8 @@ std::vector<Light> model_lights(const std::vector<LightSetting>& settings) {
 
 SkyLight resolve(const SkySetting& setting, const std::vector<Light>& lights) {
     SkyLight sky;
+    sky.picture = setting.picture;
+    sky.picture_from_world = Affine::rotate({0, 1, 0}, -setting.turn_deg).linear;
     sky.zenith = setting.brightness * setting.zenith;
     sky.horizon = setting.brightness * setting.horizon;
     sky.below = setting.brightness * setting.below;

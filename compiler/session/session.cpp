@@ -159,7 +159,8 @@ bool Session::need_lowered(const StageOptions& options, bool wanted, Compilation
         Diagnostics findings;
         ++runs_.lowered;
         std::optional<LoweredModel> model =
-            lower_source(*source_.value, options.lower, {look_at_texture_, control_}, sources_, findings);
+            lower_source(*source_.value, options.lower, {look_at_texture_, control_, load_sky_picture_},
+                         sources_, findings);
         const Derivation* const derivation =
             model && model->notes.derivation ? &*model->notes.derivation : nullptr;
         reads_steps_ = !model || derivation;

@@ -60,6 +60,8 @@ class Session {
 
     /// Without this, textures are taken on trust.
     void look_at_textures(LookAtTexture look) { look_at_texture_ = std::move(look); }
+    /// Without this, environments too, and they are white.
+    void load_sky_pictures(LoadSkyPicture load) { load_sky_picture_ = std::move(load); }
     /// Sees the graph after each pass, for models and for detail.
     void after_each_pass(PassObserver observer) { after_pass_ = std::move(observer); }
 
@@ -153,6 +155,7 @@ class Session {
     std::uint64_t edits_ = 0;
     std::uint64_t file_changes_ = 0;
     LookAtTexture look_at_texture_;
+    LoadSkyPicture load_sky_picture_;
     PassObserver after_pass_;
     Keep keep_;
     Control control_;

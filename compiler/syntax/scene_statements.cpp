@@ -38,6 +38,7 @@ const std::vector<FieldRule>& rules(Kind kind) {
         {"shadowless", Shape::flag}};
     static const std::vector<FieldRule> sky = {{"zenith", Shape::color},      {"horizon", Shape::color},
                                                {"below", Shape::color},       {"clear", Shape::number},
+                                               {"environment", Shape::text},  {"turn", Shape::number},
                                                {"brightness", Shape::number}, {"bounces", Shape::number}};
     static const std::vector<FieldRule> film = {
         {"exposure", Shape::number}, {"white", Shape::number}, {"soft", Shape::flag}, {"hard", Shape::flag}};

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
 
 #include "compiler/graph/path.h"
 #include "compiler/scene/framing.h"
@@ -28,6 +29,14 @@ constexpr double worst_condition = 1e8;
 constexpr double visible_px = 0.25;
 /// A primitive this much larger than all that is in reach looks like a plane, and POV-Ray loses its place.
 constexpr double largest_primitive = 1e3;
+
+/// The rotation, or reflection, that turns y and the half plane of x as the map does.
+Mat3 upright_rotation(const Mat3& map) {
+    const Vec3 y = glm::normalize(map[1]);
+    const Vec3 x = glm::normalize(map[0] - glm::dot(map[0], y) * y);
+    const Vec3 z = glm::cross(x, y);
+    return {x, y, glm::determinant(map) < 0 ? -z : z};
+}
 
 class Rerooter {
   public:
@@ -169,6 +178,7 @@ class Rerooter {
         if (view.sky_light) {
             SkyLight& sky = *view.sky_light;
             sky.up = glm::normalize(turn * sky.up);
+            sky.picture_from_world = sky.picture_from_world * glm::transpose(upright_rotation(turn));
             if (sky.clear) sky.clear->to_sun = glm::normalize(turn * sky.clear->to_sun);
         }
         if (model_.graph.settings.background && view.sky.zenith != view.sky.horizon)

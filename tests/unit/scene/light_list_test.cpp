@@ -1,6 +1,7 @@
 #include "compiler/scene/light_list.h"
 
 #include <cmath>
+#include <memory>
 #include <numbers>
 
 #include <glm/geometric.hpp>
@@ -45,6 +46,43 @@ TEST(LightList, NoneComesThroughAGround) {
     EXPECT_EQ(over_ground.size(), 50u);
     for (const Light& light : over_ground)
         EXPECT_GT(light.location.y, 0);
+}
+
+TEST(LightList, AnEvenPicturesLightsAreThoseOfAnEvenSky) {
+    View view;
+    view.sky_light.emplace();
+    view.sky_light->picture =
+        std::make_shared<SkyPicture>(2, 1, std::vector<SkyPicture::Texel>(2, {0.25f, 0.5f, 1}));
+    view.sky_light->brightness = 2;
+    for (const unsigned count : {16u, 40u, 160u}) {
+        const std::vector<Light> list = listed_lights(view, {1, count});
+        EXPECT_EQ(list.size(), count);
+        EXPECT_LT(glm::length(on_paper(list) - Rgb(0.5, 1, 2)), 1e-4) << "up, however few";
+        Rgb aside(0.0);
+        for (const Light& light : list)
+            aside += std::max(0.0, light.location.x) * light.rgb;
+        EXPECT_LT(glm::length(aside - Rgb(0.5, 1, 2)), 1.0 / count) << count;
+    }
+    view.ground.emplace();
+    for (const Light& light : listed_lights(view, {1, 50}))
+        EXPECT_GT(light.location.y, 0);
+}
+
+TEST(LightList, APictureTurnsWithItsSky) {
+    View view;
+    view.sky_light.emplace();
+    std::vector<SkyPicture::Texel> texels(64 * 32, {0, 0, 0});
+    texels[8 * 64 + 32] = {100, 100, 100}; // to the right of the middle, which is x
+    view.sky_light->picture = std::make_shared<SkyPicture>(64, 32, std::move(texels));
+    for (const double turn_deg : {0.0, 90.0, -30.0}) {
+        view.sky_light->picture_from_world = Affine::rotate({0, 1, 0}, -turn_deg).linear;
+        const Vec3 middle = Affine::rotate({0, 1, 0}, turn_deg)(Vec3(1, 0, 0));
+        for (const Light& light : listed_lights(view, {1, 16})) {
+            const Vec3 level = glm::normalize(Vec3(light.location.x, 0, light.location.z));
+            EXPECT_GT(glm::dot(level, middle), 0.98) << turn_deg;
+            EXPECT_GT(glm::dot(view.sky_light->radiance(light.location), Rgb(1.0)), 30) << turn_deg;
+        }
+    }
 }
 
 TEST(LightList, ASunsPartsLieOnItsDiscAndAddUpToIt) {

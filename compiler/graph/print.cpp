@@ -88,6 +88,9 @@ class Printer {
         print_vector("  color", light.rgb);
         if (light.shadowless) out_ += "  shadowless\n";
         if (light.angle_deg > 0) print_numbers("  angle", {light.angle_deg});
+        if (light.width > 0) print_numbers("  size", {light.width, light.height});
+        if (light.radius > 0) print_numbers("  radius", {light.radius});
+        print_vector("  look_at", light.look_at);
         out_ += "}\n";
     }
 

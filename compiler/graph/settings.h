@@ -78,7 +78,10 @@ struct LightSetting {
     bool sun = false;   ///< parallel rays
     Rgb rgb{1.0};
     bool shadowless = false;
-    double angle_deg = 0; ///< apparent diameter of a sun
+    double angle_deg = 0;         ///< apparent diameter of a sun
+    double width = 0, height = 0; ///< of a lamp that is a rectangle
+    double radius = 0;            ///< of a lamp that is a disc
+    std::optional<Vec3> look_at;  ///< what such a lamp faces
     bool operator==(const LightSetting&) const = default;
 };
 

@@ -42,7 +42,7 @@ struct Lattice {
             const double size = 2 * std::numbers::pi / columns * (height_of(row) - height_of(row + 1));
             for (int column = 0; column < columns; ++column) {
                 const double u = (column + 0.5) / columns;
-                look(column, row, direction_at(u, height_of(row + 0.5)),
+                look(column, row, direction_at(u, 0.5 * (height_of(row) + height_of(row + 1))),
                      size * picture.radiance_at(u, (row + 0.5) / rows));
             }
         }

@@ -13,6 +13,34 @@ namespace {
 constexpr double most_sun_angle_deg = 90;
 constexpr unsigned most_bounces = 16; // a white room keeps 3 % of its light unshown
 
+/// A lamp that is more than a point.
+void lower_lamp(const SceneFields& fields, LightSetting& light) {
+    const bool rectangle = fields.flag("size"), disc = fields.flag("radius");
+    light.look_at = fields.place("look_at");
+    if (!rectangle && !disc) {
+        if (fields.flag("look_at") && fields.complete())
+            fields.error("look_at", "a point of light faces nothing; give it a 'size' or a 'radius'");
+        return;
+    }
+    const char* const shape = rectangle ? "size" : "radius";
+    if (rectangle && disc) return fields.error("radius", "a lamp has either a 'size' or a 'radius'");
+    if (fields.flag("sun"))
+        return fields.error(shape,
+                            fmt::format("a sun has no '{}'; its 'angle' is its apparent diameter", shape));
+    if (light.shadowless)
+        return fields.error(
+            shape, fmt::format("a shadowless light has no penumbra; leave out '{}' or 'shadowless'", shape));
+    if (!fields.flag("look_at"))
+        return fields.error(shape, fmt::format("a lamp with a '{}' needs a 'look_at': what it faces", shape));
+    if (light.look_at == light.location) fields.error("look_at", "the lamp looks at its own location");
+    if (disc) {
+        light.radius = fields.size("radius").value_or(0);
+    } else {
+        light.width = fields.size("size", 0).value_or(0);
+        light.height = fields.size("size", 1).value_or(0);
+    }
+}
+
 /// Says what of a picture of the sky is not used as it stands.
 void report_sky_picture(const LoadedSkyPicture& loaded, Span span, Diagnostics& diagnostics) {
     const SkyPicture& picture = *loaded.picture;
@@ -21,7 +49,7 @@ void report_sky_picture(const LoadedSkyPicture& loaded, Span span, Diagnostics& 
             .warning(span, fmt::format("this picture of {} x {} pixels is stretched over all directions",
                                        loaded.file_width, loaded.file_height))
             .with_hint("a picture of longitude and latitude is twice as wide as it is high");
-    if (picture.width() < loaded.file_width)
+    if (picture.width() < loaded.file_width || picture.height() < loaded.file_height)
         diagnostics
             .warning(span, fmt::format("this picture of {} x {} pixels is used at {} x {}", loaded.file_width,
                                        loaded.file_height, picture.width(), picture.height()))
@@ -44,7 +72,7 @@ void lower_environment(const SceneFields& fields, Lowering& lowering, SkySetting
         if (fields.flag(other))
             return fields.error(other,
                                 fmt::format("an environment has its own light; leave out '{}'", other));
-    constexpr double most_turn_deg = 1e6;
+    constexpr double most_turn_deg = 36'000;
     sky.turn_deg = fields
                        .number(
                            "turn", [](double x) { return std::abs(x) <= most_turn_deg; },
@@ -91,6 +119,7 @@ LightSetting lower_light(const SceneFields& fields) {
         fields.error("angle", "'angle' is the apparent diameter of a sun; this light has a location");
     if (light.angle_deg > 0 && light.shadowless)
         fields.error("angle", "a shadowless light has no penumbra; leave out 'angle' or 'shadowless'");
+    lower_lamp(fields, light);
     return light;
 }
 

@@ -32,6 +32,21 @@ void list_disc(const Light& sun, unsigned count, std::vector<Light>& list) {
     }
 }
 
+void list_area(const Light& lamp, unsigned count, std::vector<Light>& list) {
+    const double golden_share = 0.5 * golden_turn / std::numbers::pi;
+    for (unsigned i = 0; i < count; ++i) {
+        Light part = lamp;
+        part.a = part.b = Vec3(0.0);
+        part.rgb = lamp.rgb / static_cast<double>(count);
+        const double share = (i + 0.5) / count, turn = i * golden_turn;
+        const Vec3 place =
+            lamp.round ? std::sqrt(share) * (std::cos(turn) * lamp.a + std::sin(turn) * lamp.b)
+                       : (2 * share - 1) * lamp.a + (2 * std::fmod(0.5 + i * golden_share, 1.0) - 1) * lamp.b;
+        part.location = lamp.location + place;
+        list.push_back(part);
+    }
+}
+
 /// Directions whose cosine with `up` lies between `low` and `high`.
 void list_zone(const SkyLight& sky, double low, double high, unsigned count, std::vector<Light>& list) {
     const AxesAcross axes = axes_across(sky.up);
@@ -58,7 +73,7 @@ void list_picture(const SkyLight& sky, unsigned count, bool above_only, std::vec
 
 LightListSize list_size(Quality quality) {
     // POV-Ray's time grows as their number does. 16 show bands, 32 will do, 64 looks like 512.
-    return by_quality<LightListSize>(quality, {4, 16}, {8, 40}, {16, 160});
+    return by_quality<LightListSize>(quality, {4, 16, 9}, {8, 40, 32}, {16, 160, 128});
 }
 
 std::vector<Light> listed_lights(const View& view, const LightListSize& size) {
@@ -66,6 +81,8 @@ std::vector<Light> listed_lights(const View& view, const LightListSize& size) {
     for (const Light& light : view.lights)
         if (light.is_disc())
             list_disc(light, size.disc, list);
+        else if (light.is_area())
+            list_area(light, size.area, list);
         else
             list.push_back(light);
     if (!view.sky_light) return list;

@@ -113,7 +113,8 @@ class Rerooter {
         camera.location = -std::max(depth, 1e-3 * radius) * camera.direction;
         const double zoom = request_.zoom->times(1);
         for (Light& light : view.lights)
-            if (!light.sun) move(light, zoom * (light.location - world_focus), light.location - world_focus);
+            if (!light.sun)
+                move(light, zoom * (light.location - world_focus), light.location - world_focus, Mat3(zoom));
         if (view.haze) {
             view.haze->base = request_.zoom->times(view.haze->base - world_focus.y);
             view.haze->height = request_.zoom->times(view.haze->height);
@@ -133,11 +134,16 @@ class Rerooter {
         return is_size(haze.distance) && is_size(haze.height) && is_place(Vec3(haze.base));
     }
 
-    /// A light beyond all distances is a sun.
-    void move(Light& light, Vec3 location, Vec3 direction) {
+    /// A light beyond all distances is a sun, and a lamp reaches no farther. `linear`: of its sides.
+    void move(Light& light, Vec3 location, Vec3 direction, const Mat3& linear) {
         const double far = 1e3 * glm::length(result_.view.camera.location);
         light.sun = !(glm::length(location) <= far);
         light.location = light.sun ? glm::normalize(direction) : location;
+        for (Vec3* const side : {&light.a, &light.b}) {
+            const Vec3 moved = linear * *side;
+            const double length = glm::length(moved);
+            *side = light.sun ? Vec3(0.0) : length <= far ? moved : far * glm::normalize(*side);
+        }
     }
 
     double farthest_ground() const { return reach_share * glm::length(result_.view.camera.location); }
@@ -173,7 +179,8 @@ class Rerooter {
             for (Light& light : view.lights) {
                 const Vec3 towards = light.sun ? light.location : light.location - focus_.points.front();
                 const bool near = !light.sun && picture_from_root;
-                move(light, near ? (*picture_from_root)(light.location) : infinitely_far, turn * towards);
+                move(light, near ? (*picture_from_root)(light.location) : infinitely_far, turn * towards,
+                     near ? picture_from_root->linear : turn);
             }
         if (view.sky_light) {
             SkyLight& sky = *view.sky_light;

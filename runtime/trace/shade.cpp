@@ -80,13 +80,15 @@ Shader::Shader(const View& view, Surfaces& surfaces, const ShaderLimits& limits,
         const Vec3 at = light.sun ? glm::normalize(light.location) : light.location;
         if (!is_finite(at)) continue;
         const Lamp lamp{at, light.rgb, light.sun, light.shadowless};
-        if (!light.is_disc()) {
+        if (light.is_area()) {
+            areas_.push_back({lamp, light.a, light.b, light.round});
+        } else if (light.is_disc()) {
+            const auto [a, b] = axes_across(at);
+            const double radius = std::tan(0.5 * light.angle_deg * std::numbers::pi / 180);
+            areas_.push_back({lamp, radius * a, radius * b, true});
+        } else {
             lamps_.push_back(lamp);
-            continue;
         }
-        const auto [a, b] = axes_across(at);
-        const double radius = std::tan(0.5 * light.angle_deg * std::numbers::pi / 180);
-        discs_.push_back({lamp, radius * a, radius * b});
     }
     if (view.sky_light) {
         ambient_light_ = view.ambient_light();
@@ -227,11 +229,17 @@ Rgb Shader::lit(const Point& point, SampleStream& random) {
     if (point.material->emission > 0) sum += point.material->emission * point.rgb;
     for (const Lamp& lamp : lamps_)
         sum += light_of(lamp, point, least);
-    for (const Disc& disc : discs_) {
-        const glm::dvec2 place = random.next();
-        const double radius = std::sqrt(place.x), turn = 2 * std::numbers::pi * place.y;
-        Lamp part = disc.middle;
-        part.at = glm::normalize(part.at + radius * (std::cos(turn) * disc.a + std::sin(turn) * disc.b));
+    for (const Area& area : areas_) {
+        glm::dvec2 place = random.next();
+        if (area.round) {
+            const double radius = std::sqrt(place.x), turn = 2 * std::numbers::pi * place.y;
+            place = {radius * std::cos(turn), radius * std::sin(turn)};
+        } else {
+            place = 2.0 * place - 1.0;
+        }
+        Lamp part = area.middle;
+        part.at += place.x * area.a + place.y * area.b;
+        if (part.sun) part.at = glm::normalize(part.at);
         sum += light_of(part, point, least);
     }
     if (sky_) sum += from_sky(point, least, random);

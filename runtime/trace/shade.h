@@ -57,7 +57,7 @@ class Shader {
     }
 
     /// True where radiance() estimates: more samples make a better picture.
-    bool samples() const { return sky_ || !discs_.empty(); }
+    bool samples() const { return sky_ || !areas_.empty(); }
 
     /// What the ray meets first, the ground included; false if that is the sky.
     bool first_hit(const Ray& ray, SurfaceHit& hit);
@@ -69,10 +69,11 @@ class Shader {
         bool sun;
         bool shadowless;
     };
-    /// A sun with an angle.
-    struct Disc {
+    /// A sun with an angle, or a lamp with an area.
+    struct Area {
         Lamp middle;
-        Vec3 a, b; ///< half axes: from the middle's direction to its edge
+        Vec3 a, b; ///< half axes: from the middle to its edge
+        bool round;
     };
     struct Point;
 
@@ -96,7 +97,7 @@ class Shader {
     Surfaces& surfaces_;
     const ShaderLimits limits_;
     std::vector<Lamp> lamps_;                 ///< without those that are black
-    std::vector<Disc> discs_;                 ///< that are sampled
+    std::vector<Area> areas_;                 ///< that are sampled
     const SkyLight* sky_ = nullptr;           ///< that is sampled
     const SkySampling* bright_sky_ = nullptr; ///< where it has bright parts
     Rgb ambient_light_;

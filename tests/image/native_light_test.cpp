@@ -209,6 +209,13 @@ const LitScene scenes[] = {
         haze { distance: 30 }
     )",
      false},
+    {"LampsWithAreas", {140, 110}, balls_and_blocks + on_magenta + R"(
+        camera { location: 2, 4, 9 look_at: 0, 1.4, 0 angle: 60 }
+        light { location: -2, 6, 3 size: 3, 1 look_at: 0, 1, 0 color: 0.6, 0.5, 0.4 }
+        light { location: 4, 2, 5 radius: 0.7 look_at: 0, 1, 0 color: 0.3, 0.4, 0.6 }
+        light { location: 1, 9, 1 radius: 0.5 look_at: 1, 0, 1 color: 0.2, 0.2, 0.2 }
+        ground { height: 0 }
+    )"},
     {"LightThroughLeaves", {130, 110}, on_magenta + R"(
         material leaf { ambient: 0.05 diffuse: 0.5 translucency: 0.4 specular: 0.2 roughness: 0.1 }
         material ember { ambient: 0 diffuse: 0.2 emission: 0.6 }

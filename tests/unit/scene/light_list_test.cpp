@@ -48,6 +48,33 @@ TEST(LightList, NoneComesThroughAGround) {
         EXPECT_GT(light.location.y, 0);
 }
 
+TEST(LightList, ALampsPartsLieOnItsAreaAndAddUpToIt) {
+    View view;
+    const Vec3 middle(1, 5, 2), a(2, 0, 0), b(0, 0, 0.5);
+    for (const bool round : {false, true}) {
+        view.lights = {{.location = middle, .rgb = {2, 1, 0.5}, .a = a, .b = b, .round = round}};
+        for (const unsigned count : {9u, 32u, 128u}) {
+            const std::vector<Light> list = listed_lights(view, {.area = count});
+            ASSERT_EQ(list.size(), count);
+            Rgb sum(0.0);
+            Vec3 mean(0.0);
+            double squares = 0;
+            for (const Light& light : list) {
+                sum += light.rgb;
+                const double x = (light.location.x - 1) / 2, z = (light.location.z - 2) / 0.5;
+                EXPECT_LT(round ? x * x + z * z : std::max(x * x, z * z), 1);
+                EXPECT_EQ(light.location.y, 5);
+                mean += Vec3(x, 0, z) / static_cast<double>(count);
+                squares += (x * x + z * z) / count;
+                EXPECT_FALSE(light.is_area());
+            }
+            EXPECT_NEAR(glm::length(sum - Rgb(2, 1, 0.5)), 0, 1e-12);
+            EXPECT_LT(glm::length(mean), 0.5 / std::sqrt(count));
+            EXPECT_NEAR(squares, round ? 0.5 : 2.0 / 3, 0.06) << "as spread as the area";
+        }
+    }
+}
+
 TEST(LightList, AnEvenPicturesLightsAreThoseOfAnEvenSky) {
     View view;
     view.sky_light.emplace();

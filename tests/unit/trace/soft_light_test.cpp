@@ -115,6 +115,66 @@ TEST(SoftLight, SamplesAndLongListsAgree) {
     }
 }
 
+/// A half plane at y = 1 that shades the points below it, x < 0.
+class Awning : public Scene {
+  public:
+    bool meets_any(const Ray& ray, const RayRange& range) override {
+        const double t = (1 - ray.origin.y) / ray.direction.y;
+        return range.least < t && t < range.most && ray(t).x < 0;
+    }
+};
+
+/// The ground sees, over the edge, the part of the lamp beyond a chord: at x the one at -x (height - 1).
+TEST(SoftLight, ALampCastsThePenumbraOfItsShape) {
+    constexpr double height = 100, half = 40;
+    Awning scene;
+    scene.walls = {{{0, 1, 0}, 0, Rgb(1.0), matt}};
+    View view = black_view();
+    for (const bool round : {false, true}) {
+        view.lights = {{.location = {0, height, 0},
+                        .rgb = Rgb(0.5),
+                        .a = {half, 0, 0},
+                        .b = {0, 0, round ? half : 1e-3},
+                        .round = round}};
+        Shader shader(view, scene);
+        for (const double x : {-1.0, -0.3, -0.1, 0.0, 0.2, 0.35, 1.0}) {
+            const double chord = std::clamp(x * (height - 1) / half, -1.0, 1.0);
+            const double seen =
+                round ? 1 - (std::acos(chord) - chord * std::sqrt(1 - chord * chord)) / std::numbers::pi
+                      : 0.5 * (1 + chord);
+            // Seen at an angle, what lies at its edge counts less: by the mean cosine of what is seen.
+            double cosine = 0, weight = 0;
+            for (int i = 0; i < 1000; ++i) {
+                const double q = -1 + (i + 0.5) / 500;
+                if (q < -chord) continue;
+                const double width = round ? std::sqrt(1 - q * q) : 1;
+                for (int j = 0; j < 50; ++j) {
+                    const double z = round ? half * width * (-1 + (j + 0.5) / 25) : 0;
+                    const double across = half * q - x;
+                    cosine += width * height / std::sqrt(height * height + across * across + z * z) / 50;
+                }
+                weight += width;
+            }
+            const Ray down{{x, 0.5, 0}, {0, -1, 0}};
+            EXPECT_NEAR(mean_light(shader, down, 1 << 13).g, 0.5 * seen * (weight > 0 ? cosine / weight : 0),
+                        0.003)
+                << (round ? "disc " : "rectangle ") << x;
+        }
+    }
+}
+
+TEST(SoftLight, AFarLampLightsLikeAPointOfItsColour) {
+    Scene scene;
+    scene.walls = {{{0, 0, 1}, 0, Rgb(1.0), matt}};
+    View view = black_view();
+    view.lights = {{.location = {3e3, 0, 4e3}, .rgb = {1, 2, 3}, .a = {0.8, 0, -0.6}, .b = {0, 1, 0}}};
+    Shader shader(view, scene);
+    EXPECT_TRUE(shader.samples());
+    const Rgb light = mean_light(shader, ahead, 16);
+    for (int c = 0; c < 3; ++c)
+        EXPECT_NEAR(light[c], 0.8 * (c + 1), 1e-3);
+}
+
 /// The same light from everywhere, whatever says so.
 TEST(SoftLight, AnEvenPictureIsAFurnaceToo) {
     View view = under_sky(Rgb(0.0));
@@ -207,6 +267,28 @@ TEST(SoftLight, SamplesAndLongListsOfAPictureAgree) {
         const Rgb listed_light = by_list.radiance(ray), sampled = mean_light(by_samples, ray, 1 << 17);
         for (int c = 0; c < 3; ++c)
             EXPECT_NEAR(sampled[c], listed_light[c], 0.004 * listed_light[c] + 0.001) << target.x << target.y;
+    }
+}
+
+TEST(SoftLight, SamplesAndLongListsOfLampsAgree) {
+    View view = black_view();
+    view.lights = {
+        {.location = {2, 3, 2}, .rgb = {1, 0.8, 0.6}, .a = {1, 0, -1}, .b = {0, 0.5, 0}},
+        {.location = {-2, 1, 3}, .rgb = {0.3, 0.4, 0.8}, .a = {0.5, 0, 0}, .b = {0, 0.5, 0}, .round = true}};
+    const Material shining{
+        .ambient = 0.1, .diffuse = 0.7, .specular = 0.3, .roughness = 0.1, .translucency = 0.2};
+    Scene scene;
+    scene.balls = {{Vec3(0.0), 1, {0.9, 0.5, 0.2}, shining}, {{0.7, 0.9, 0.8}, 0.5, Rgb(0.7), matt}};
+    ShaderLimits listed;
+    listed.list = LightListSize{.area = 100'000};
+    Shader by_list(view, scene, listed), by_samples(view, scene);
+    EXPECT_FALSE(by_list.samples());
+    for (const Vec3 target : {Vec3(0.0), Vec3(0.5, 0.3, 0), Vec3(-0.6, 0.5, 0), Vec3(0.1, -0.9, 0)}) {
+        const Vec3 eye(0, 0, 10);
+        const Ray ray{eye, glm::normalize(target - eye)};
+        const Rgb listed_light = by_list.radiance(ray), sampled = mean_light(by_samples, ray, 1 << 15);
+        for (int c = 0; c < 3; ++c)
+            EXPECT_NEAR(sampled[c], listed_light[c], 0.0015) << target.x << target.y;
     }
 }
 

@@ -114,7 +114,7 @@ def surroundings(draw, model):
     while draw.chance(0.15):
         if draw.chance(0.5):
             model.say(f'light {{ location: {numbers([10 * draw.normal() for _ in range(3)])}  color: {colour(draw)}'
-                      f'{"  shadowless" if draw.chance(0.3) else ""} }}')
+                      f'{lamp_fields(draw)} }}')
         else:
             model.say(f'light {{ sun: {numbers([draw.uniform(-1, 1), draw.uniform(0.1, 1), draw.uniform(-1, 1)])}'
                       f'  color: {colour(draw)}{sun_fields(draw)} }}')
@@ -124,6 +124,17 @@ def surroundings(draw, model):
                   f'background: {colour(draw)}')
     if draw.chance(0.1):
         model.say(f'ground {{ height: {number(draw.uniform(-2, 0.2))}  color: {colour(draw)} }}')
+
+
+def lamp_fields(draw):
+    """An area, or no shadows, now and then."""
+    if draw.chance(0.3):
+        return '  shadowless'
+    if draw.chance(0.5):
+        return ''
+    sides = [draw.log_uniform(0.01, 30) for _ in range(2)]
+    shape = f'size: {numbers(sides)}' if draw.chance(0.5) else f'radius: {number(sides[0])}'
+    return f'  {shape}  look_at: {numbers([draw.normal() for _ in range(3)])}'
 
 
 def sun_fields(draw):

@@ -88,6 +88,9 @@ class Printer {
         print_vector("  color", light.rgb);
         if (light.shadowless) out_ += "  shadowless\n";
         if (light.angle_deg > 0) print_numbers("  angle", {light.angle_deg});
+        if (light.width > 0) print_numbers("  size", {light.width, light.height});
+        if (light.radius > 0) print_numbers("  radius", {light.radius});
+        print_vector("  look_at", light.look_at);
         out_ += "}\n";
     }
 
@@ -111,11 +114,14 @@ class Printer {
     void print_sky(const SkySetting& sky) {
         out_ += "sky {\n";
         print_number("  clear", sky.turbidity);
-        if (!sky.turbidity) {
+        if (!sky.environment.empty()) {
+            out_ += "  environment: \"" + sky.environment + "\"\n";
+            if (sky.turn_deg != 0) print_numbers("  turn", {sky.turn_deg});
+        } else if (!sky.turbidity) {
             print_vector("  zenith", sky.zenith);
             print_vector("  horizon", sky.horizon);
         }
-        print_vector("  below", sky.below);
+        if (sky.environment.empty()) print_vector("  below", sky.below);
         print_numbers("  brightness", {sky.brightness});
         if (sky.bounces > 0) out_ += "  bounces: " + std::to_string(sky.bounces) + "\n";
         out_ += "}\n";

@@ -1,11 +1,13 @@
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "compiler/light/film.h"
+#include "compiler/light/sky_picture.h"
 #include "compiler/support/affine.h"
 #include "compiler/support/flat_area.h"
 #include "compiler/support/source.h"
@@ -76,7 +78,10 @@ struct LightSetting {
     bool sun = false;   ///< parallel rays
     Rgb rgb{1.0};
     bool shadowless = false;
-    double angle_deg = 0; ///< apparent diameter of a sun
+    double angle_deg = 0;         ///< apparent diameter of a sun
+    double width = 0, height = 0; ///< of a lamp that is a rectangle
+    double radius = 0;            ///< of a lamp that is a disc
+    std::optional<Vec3> look_at;  ///< what such a lamp faces
     bool operator==(const LightSetting&) const = default;
 };
 
@@ -84,8 +89,11 @@ struct LightSetting {
 struct SkySetting {
     Rgb zenith{0.35, 0.52, 0.85}, horizon{0.85, 0.9, 0.95};
     Rgb below{0.2, 0.19, 0.17};
-    std::optional<double> turbidity; ///< a clear sky, about the first sun among the lights
-    double brightness = 1;           ///< of all of it
+    std::optional<double> turbidity;           ///< a clear sky, about the first sun among the lights
+    std::string environment;                   ///< the file of a picture (SkyPicture); empty: none
+    std::shared_ptr<const SkyPicture> picture; ///< what it holds; null: nobody has read it, and it is white
+    double turn_deg = 0;                       ///< of the picture about y; 90 brings its middle from x to -z
+    double brightness = 1;                     ///< of all of it
     unsigned bounces = 0;
     bool operator==(const SkySetting&) const = default;
 };

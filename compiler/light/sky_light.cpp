@@ -71,6 +71,7 @@ Rgb ClearSky::radiance(Vec3 direction, Vec3 up) const {
 }
 
 Rgb SkyLight::radiance(Vec3 direction) const {
+    if (picture) return brightness * picture->radiance(picture_from_world * direction);
     const double height = glm::dot(direction, up);
     if (height < 0) return below;
     if (clear) return brightness / ClearSky::kcd_of_paper * clear->radiance(direction, up);
@@ -79,6 +80,7 @@ Rgb SkyLight::radiance(Vec3 direction) const {
 }
 
 Rgb SkyLight::on_paper() const {
+    if (picture) return brightness * picture->on_paper();
     constexpr int rings = 64, parts = 64;
     const auto [x, z] = axes_across(up);
     Rgb sum(0.0);

@@ -1,8 +1,10 @@
 #pragma once
 
 #include <array>
+#include <memory>
 #include <optional>
 
+#include "compiler/light/sky_picture.h"
 #include "compiler/support/affine.h"
 #include "compiler/support/tint.h"
 
@@ -38,8 +40,10 @@ struct SkyLight {
     Rgb zenith{0.0}, horizon{0.0}; ///< from one to the other, linearly in the height up to full_height
     Rgb below{0.0};                ///< of all directions below the horizon
     std::optional<ClearSky> clear; ///< in place of zenith and horizon
-    double brightness = 1;         ///< of the clear sky; 1: as under a sun of brightness 1
-    unsigned bounces = 0;          ///< of light between surfaces, by engines that follow it
+    std::shared_ptr<const SkyPicture> picture; ///< in place of all these
+    Mat3 picture_from_world{1.0};              ///< turns directions
+    double brightness = 1; ///< of the picture, or the clear sky; 1: as under a sun of brightness 1
+    unsigned bounces = 0;  ///< of light between surfaces, by engines that follow it
 
     /// The sine of the height at which the zenith's colour is reached.
     static constexpr double full_height = 0.6;

@@ -1,6 +1,7 @@
 #include "compiler/lower/lower_light.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "compiler/light/blackbody.h"
 #include "compiler/light/sky_light.h"
@@ -11,6 +12,87 @@ namespace {
 
 constexpr double most_sun_angle_deg = 90;
 constexpr unsigned most_bounces = 16; // a white room keeps 3 % of its light unshown
+
+/// A lamp that is more than a point.
+void lower_lamp(const SceneFields& fields, LightSetting& light) {
+    const bool rectangle = fields.flag("size"), disc = fields.flag("radius");
+    light.look_at = fields.place("look_at");
+    if (!rectangle && !disc) {
+        if (fields.flag("look_at") && fields.complete())
+            fields.error("look_at", "a point of light faces nothing; give it a 'size' or a 'radius'");
+        return;
+    }
+    const char* const shape = rectangle ? "size" : "radius";
+    if (rectangle && disc) return fields.error("radius", "a lamp has either a 'size' or a 'radius'");
+    if (fields.flag("sun"))
+        return fields.error(shape,
+                            fmt::format("a sun has no '{}'; its 'angle' is its apparent diameter", shape));
+    if (light.shadowless)
+        return fields.error(
+            shape, fmt::format("a shadowless light has no penumbra; leave out '{}' or 'shadowless'", shape));
+    if (!fields.flag("look_at"))
+        return fields.error(shape, fmt::format("a lamp with a '{}' needs a 'look_at': what it faces", shape));
+    if (light.look_at == light.location) fields.error("look_at", "the lamp looks at its own location");
+    if (disc) {
+        light.radius = fields.size("radius").value_or(0);
+    } else {
+        light.width = fields.size("size", 0).value_or(0);
+        light.height = fields.size("size", 1).value_or(0);
+    }
+}
+
+/// Says what of a picture of the sky is not used as it stands.
+void report_sky_picture(const LoadedSkyPicture& loaded, Span span, Diagnostics& diagnostics) {
+    const SkyPicture& picture = *loaded.picture;
+    if (loaded.file_width != 2 * loaded.file_height)
+        diagnostics
+            .warning(span, fmt::format("this picture of {} x {} pixels is stretched over all directions",
+                                       loaded.file_width, loaded.file_height))
+            .with_hint("a picture of longitude and latitude is twice as wide as it is high");
+    if (picture.width() < loaded.file_width || picture.height() < loaded.file_height)
+        diagnostics
+            .warning(span, fmt::format("this picture of {} x {} pixels is used at {} x {}", loaded.file_width,
+                                       loaded.file_height, picture.width(), picture.height()))
+            .with_hint(fmt::format("an environment keeps at most {0} x {0} pixels, and 8 million in all",
+                                   most_sky_columns));
+    if (loaded.mended > 0)
+        diagnostics.warning(
+            span, fmt::format("{} of this picture's pixels are no light: negative ones and those that are no "
+                              "numbers are taken as 0, and brighter ones than {} as that",
+                              loaded.mended, shortest(most_radiance)));
+}
+
+void lower_environment(const SceneFields& fields, Lowering& lowering, SkySetting& sky) {
+    const SceneField* const field = fields.find("environment");
+    if (!field) {
+        if (fields.flag("turn")) fields.error("turn", "'turn' turns an 'environment', but this sky has none");
+        return;
+    }
+    for (const char* const other : {"clear", "zenith", "horizon", "below"})
+        if (fields.flag(other))
+            return fields.error(other,
+                                fmt::format("an environment has its own light; leave out '{}'", other));
+    constexpr double most_turn_deg = 36'000;
+    sky.turn_deg = fields
+                       .number(
+                           "turn", [](double x) { return std::abs(x) <= most_turn_deg; },
+                           fmt::format("lie within {} degrees", shortest(most_turn_deg)))
+                       .value_or(0);
+    const std::optional<std::string> path = find_beside(field->name_span, field->name, lowering);
+    if (!path) return;
+    sky.environment = *path;
+    sky.turbidity.reset();
+    sky.zenith = sky.horizon = sky.below = Rgb(1.0);
+    if (!lowering.help.load_sky_picture || !lowering.at_root_model()) return; // used models bring no light
+    LoadedSkyPicture loaded;
+    const Status status = lowering.help.load_sky_picture(*path, loaded);
+    if (!status.ok()) {
+        lowering.diagnostics.error(field->name_span, status.message());
+        return;
+    }
+    report_sky_picture(loaded, field->name_span, lowering.diagnostics);
+    sky.picture = loaded.picture;
+}
 
 } // namespace
 
@@ -37,10 +119,11 @@ LightSetting lower_light(const SceneFields& fields) {
         fields.error("angle", "'angle' is the apparent diameter of a sun; this light has a location");
     if (light.angle_deg > 0 && light.shadowless)
         fields.error("angle", "a shadowless light has no penumbra; leave out 'angle' or 'shadowless'");
+    lower_lamp(fields, light);
     return light;
 }
 
-SkySetting lower_sky(const SceneFields& fields) {
+SkySetting lower_sky(const SceneFields& fields, Lowering& lowering) {
     SkySetting sky;
     const std::optional<Rgb> zenith = fields.light_color("zenith");
     sky.zenith = zenith.value_or(sky.zenith);
@@ -57,9 +140,11 @@ SkySetting lower_sky(const SceneFields& fields) {
             fields.error(colour, fmt::format("a clear sky has its own colours; leave out '{}'", colour));
     sky.brightness = fields.brightness("brightness").value_or(1);
     sky.bounces = fields.whole("bounces", 0, most_bounces).value_or(0);
+    lower_environment(fields, lowering, sky);
     if (fields.empty())
-        fields.error_at_statement("this sky says nothing", "give it colours, as in 'zenith: 0.3, 0.5, 0.9', "
-                                                           "or 'clear: 3' for a clear sky");
+        fields.error_at_statement("this sky says nothing",
+                                  "give it colours, as in 'zenith: 0.3, 0.5, 0.9', 'clear: 3' for a clear "
+                                  "sky, or a picture, as in 'environment: \"studio.exr\"'");
     return sky;
 }
 

@@ -5,12 +5,13 @@
 #include <vector>
 
 #include "compiler/graph/settings.h"
+#include "compiler/lower/lowering.h"
 #include "compiler/lower/scene_fields.h"
 
 namespace graftal {
 
 LightSetting lower_light(const SceneFields& fields);
-SkySetting lower_sky(const SceneFields& fields);
+SkySetting lower_sky(const SceneFields& fields, Lowering& lowering);
 HazeSetting lower_haze(const SceneFields& fields);
 Film lower_film(const SceneFields& fields);
 

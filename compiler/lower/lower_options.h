@@ -8,6 +8,7 @@
 #include <optional>
 #include <string>
 
+#include "compiler/light/sky_picture.h"
 #include "compiler/lower/derivation.h"
 #include "compiler/support/control.h"
 #include "compiler/support/file.h"
@@ -50,9 +51,10 @@ using OnFile = std::function<void(const std::string& path)>;
 
 /// Whom lowering asks on its way.
 struct LowerHelp {
-    LookAtTexture look_at_texture; ///< without this, textures are taken on trust
-    Control control;               ///< follows modules, parts and objects
+    LookAtTexture look_at_texture;        ///< without this, textures are taken on trust
+    Control control;                      ///< follows modules, parts and objects
     OnFile on_file = {};
+    LoadSkyPicture load_sky_picture = {}; ///< without this, environments are taken on trust, and are white
 };
 
 /// What lowering learns beside the graph.

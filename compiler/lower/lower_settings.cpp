@@ -242,7 +242,7 @@ void lower_settings(const std::vector<SceneStatement>& statements, const Environ
             graph.settings.steps = lower_steps(fields);
             break;
         case Kind::sky:
-            graph.settings.sky = lower_sky(fields);
+            graph.settings.sky = lower_sky(fields, lowering);
             break;
         case Kind::haze:
             graph.settings.haze = lower_haze(fields);

@@ -42,6 +42,8 @@ class SceneFields {
     }
 
     bool empty() const { return statement_.fields.empty(); }
+    /// False if an error lost a part of the statement, which may be what is missed.
+    bool complete() const { return statement_.complete; }
     bool flag(std::string_view keyword) const { return find(keyword) != nullptr; }
 
     /// A point of the scene.
@@ -68,12 +70,12 @@ class SceneFields {
         return vector(keyword, good, range_demand());
     }
 
-    /// A positive size.
-    std::optional<double> size(std::string_view keyword) const {
+    /// A positive size: number `index` of the field's.
+    std::optional<double> size(std::string_view keyword, std::size_t index = 0) const {
         const std::optional<double> value = number(
-            keyword, [](double x) { return x > 0; }, "be positive");
+            keyword, [](double x) { return x > 0; }, "be positive", index);
         if (!value || is_size(*value)) return value;
-        return number(keyword, is_size, range_demand());
+        return number(keyword, is_size, range_demand(), index);
     }
 
     std::optional<Rgb> color(std::string_view keyword) const {
@@ -104,18 +106,18 @@ class SceneFields {
         return field ? lower_area(field->values, field->span, lets_, diagnostics_) : std::nullopt;
     }
 
-    std::optional<double> number(std::string_view keyword) const {
+    std::optional<double> number(std::string_view keyword, std::size_t index = 0) const {
         const SceneField* field = find(keyword);
-        return field ? evaluate(field->values[0], lets_, diagnostics_) : std::nullopt;
+        return field ? evaluate(field->values[index], lets_, diagnostics_) : std::nullopt;
     }
 
     /// A number for which `good` holds, else the error "'angle' must lie ..., not 200".
     template<typename Predicate>
-    std::optional<double> number(std::string_view keyword, const Predicate& good,
-                                 std::string_view demand) const {
-        const std::optional<double> value = number(keyword);
+    std::optional<double> number(std::string_view keyword, const Predicate& good, std::string_view demand,
+                                 std::size_t index = 0) const {
+        const std::optional<double> value = number(keyword, index);
         if (!value || good(*value)) return value;
-        diagnostics_.error(find(keyword)->values[0].span,
+        diagnostics_.error(find(keyword)->values[index].span,
                            fmt::format("'{}' must {}, not {}", keyword, demand, shortest(*value)));
         return std::nullopt;
     }
@@ -125,7 +127,7 @@ class SceneFields {
     }
 
     void error_at_statement(std::string message, std::string hint) const {
-        if (!statement_.complete) return; // what is missed may be what could not be read
+        if (!complete()) return;
         diagnostics_.error(statement_.span, std::move(message)).with_hint(std::move(hint));
     }
 

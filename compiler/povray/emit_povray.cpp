@@ -180,9 +180,16 @@ bool Emitter::write_scene(const View& view, std::vector<PaletteImage>& pictures)
         view.ground ? textures_.ground(view.ground->material,
                                        units_.pov_from_world() * world_from_picture(*view.ground))
                     : "";
+    std::string sky_file;
+    if (view.shows_sky_light && view.sky_light->picture) {
+        sky_file = picture_stem(options_) + "_sky.exr";
+        pictures.push_back({.file_name = sky_file,
+                            .sky = view.sky_light->picture,
+                            .sky_brightness = view.sky_light->brightness});
+    }
     out_ << textures_.declarations(pictures) << "\n";
     write_view(out_, view, units_, cut_.bounds.empty() ? Vec3(0.0) : cut_.bounds.centre(),
-               options_.lights.value_or(list_size(view.quality)), ground);
+               options_.lights.value_or(list_size(view.quality)), ground, sky_file);
     if (!bodies_.declare(out_, progress_)) return false;
     out_ << "\n";
     return write_objects() && out_.flush();

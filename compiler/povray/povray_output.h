@@ -3,11 +3,13 @@
 // Where POV-Ray's text goes, and what goes with it.
 
 #include <functional>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
 #include <string_view>
 
+#include "compiler/light/sky_picture.h"
 #include "compiler/scene/light_list.h"
 #include "compiler/support/tint.h"
 
@@ -16,14 +18,16 @@ namespace graftal {
 /// Receives text piece by piece, so that a scene of gigabytes never lies in memory; returns false to stop.
 using TextSink = std::function<bool(std::string_view)>;
 
-/// A picture that the scene refers to: the palette of a mesh with more colours than a colour_map holds, or
-/// the texture of a material.
+/// A picture that the scene refers to: the palette of a mesh with more colours than a colour_map holds, the
+/// texture of a material, or the sky.
 struct PaletteImage {
-    std::string file_name; ///< beside the scene; PNG, 16 bit, linear
+    std::string file_name; ///< beside the scene; a palette: PNG, 16 bit, linear
     int width = 0;
     int height = 0;
     std::span<const Rgb> pixels; ///< row by row, top first, of a palette of the cut; may end early
     std::string texture = {};    ///< Material::texture: then no palette; RGBA, 8 bit, alpha 0 or 1
+    std::shared_ptr<const SkyPicture> sky = {}; ///< then no palette either; EXR, times sky_brightness
+    double sky_brightness = 1;
 };
 
 struct PovrayOptions {

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
 
 #include "compiler/light/blackbody.h"
 #include "compiler/scene/light_list.h"
@@ -151,8 +152,21 @@ void write_clear_sky(SdlWriter& out, const SkyLight& sky) {
     out << "} } }\n";
 }
 
+/// POV-Ray's map_type 1 has -x in the middle of the picture. It wraps the picture from pole to pole, too:
+/// within half a row of a pole the colours differ.
+void write_sky_picture(SdlWriter& out, const SkyLight& sky, const std::string& file) {
+    const Mat3 world_from_pov =
+        glm::transpose(sky.picture_from_world) * Affine::rotate({0, 1, 0}, 180).linear;
+    out << "sky_sphere { pigment { image_map { exr \"" << file << "\" map_type 1 interpolate 2 } } matrix <";
+    for (int column = 0; column < 3; ++column)
+        for (int row = 0; row < 3; ++row)
+            out.number(world_from_pov[column][row], view_digits) << ",";
+    out << "0,0,0> }\n";
+}
+
 /// As a colour that runs along a pattern of the height, from below to the zenith.
-void write_sky_light(SdlWriter& out, const SkyLight& sky) {
+void write_sky_light(SdlWriter& out, const SkyLight& sky, const std::string& file) {
+    if (sky.picture) return write_sky_picture(out, sky, file);
     if (sky.clear) return write_clear_sky(out, sky);
     out << "sky_sphere { pigment {\n  function { min(0.999999, 0.5 + 0.5*(";
     write_dot(out, sky.up);
@@ -198,12 +212,12 @@ void write_catcher(SdlWriter& out, const ShadowCatcher& catcher, const PovrayUni
 } // namespace
 
 void write_view(SdlWriter& out, const View& view, const PovrayUnits& units, Vec3 centre,
-                const LightListSize& lights, const std::string& ground_texture) {
+                const LightListSize& lights, const std::string& ground_texture, const std::string& sky_file) {
     write_camera(out, view, units);
     for (const Light& light : listed_lights(view, lights))
         write_light(out, light, units, centre);
     if (view.shows_sky_light)
-        write_sky_light(out, *view.sky_light);
+        write_sky_light(out, *view.sky_light, sky_file);
     else
         write_sky(out, view.sky);
     if (view.haze) write_haze(out, *view.haze, units);

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <string>
+
 #include "compiler/povray/povray_units.h"
 #include "compiler/povray/sdl_writer.h"
 #include "compiler/scene/light_list.h"
@@ -9,7 +11,9 @@ namespace graftal {
 
 /// Camera, lights (soft ones as a list of that size), sky and ground. The camera carries the mirror between
 /// the right-handed scene and POV-Ray's left-handed habit: its axes are given outright, never by look_at.
+/// `sky_file`: of the sky's picture, if it is shown.
 void write_view(SdlWriter& out, const View& view, const PovrayUnits& units, Vec3 centre,
-                const LightListSize& lights, const std::string& ground_texture);
+                const LightListSize& lights, const std::string& ground_texture,
+                const std::string& sky_file = {});
 
 } // namespace graftal

@@ -6,9 +6,9 @@
 
 namespace graftal {
 
-/// How many parallel lights stand for light from a disc, and from all directions.
+/// How many lights stand for light from a sun's disc, from all directions, and from a lamp's area.
 struct LightListSize {
-    unsigned disc = 0, dome = 0;
+    unsigned disc = 0, dome = 0, area = 0;
     bool operator==(const LightListSize&) const = default;
 };
 
@@ -17,7 +17,9 @@ LightListSize list_size(Quality quality);
 /// The lights of a view as points and parallel rays alone, the same for every engine. A sun with an angle
 /// becomes suns on its disc, evenly; the sky becomes suns on a lattice of equal solid angles, those of a
 /// direction d with the colour L(d) dw / pi: their sum converges to the integral that a surface takes from
-/// them. Over a ground none comes from below. Shadowless lights and lamps stay as they are.
+/// them. Those of a picture stand for regions of much the same light (sky_cells.h). Over a ground none comes
+/// from below. A lamp with an area becomes points on it, evenly. Shadowless lights and points stay as they
+/// are.
 std::vector<Light> listed_lights(const View& view, const LightListSize& size);
 
 } // namespace graftal

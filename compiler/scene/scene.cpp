@@ -11,6 +11,7 @@
 #include "compiler/scene/backdrop.h"
 #include "compiler/scene/framing.h"
 #include "compiler/scene/studio.h"
+#include "compiler/support/axes_across.h"
 #include "compiler/support/check.h"
 
 namespace graftal {
@@ -44,6 +45,16 @@ std::vector<Light> solid_lights(const Camera& camera, bool over_ground) {
             {.location = fill, .sun = true, .rgb = {0.27, 0.29, 0.33}, .shadowless = true}};
 }
 
+/// Of a lamp that looks along the way: one level, and one upwards; x is level for a lamp that looks up or
+/// down.
+AxesAcross lamp_axes(Vec3 way) {
+    const Vec3 direction = glm::normalize(way);
+    const Vec3 level = glm::cross(direction, Vec3(0, 1, 0));
+    constexpr double steep = 1e-6;
+    const Vec3 a = glm::length(level) > steep ? glm::normalize(level) : Vec3(1, 0, 0);
+    return {a, glm::cross(a, direction)};
+}
+
 std::vector<Light> model_lights(const std::vector<LightSetting>& settings) {
     std::vector<Light> lights;
     for (const LightSetting& setting : settings) {
@@ -54,6 +65,12 @@ std::vector<Light> model_lights(const std::vector<LightSetting>& settings) {
             // A sun from nowhere stands overhead.
             light.location = largest > 0 ? glm::normalize(setting.location / largest) : Vec3(0, 1, 0);
         }
+        if (setting.look_at) {
+            const bool round = light.round = setting.radius > 0;
+            const auto [a, b] = lamp_axes(*setting.look_at - setting.location);
+            light.a = (round ? setting.radius : 0.5 * setting.width) * a;
+            light.b = (round ? setting.radius : 0.5 * setting.height) * b;
+        }
         lights.push_back(light);
     }
     return lights;
@@ -61,6 +78,8 @@ std::vector<Light> model_lights(const std::vector<LightSetting>& settings) {
 
 SkyLight resolve(const SkySetting& setting, const std::vector<Light>& lights) {
     SkyLight sky;
+    sky.picture = setting.picture;
+    sky.picture_from_world = Affine::rotate({0, 1, 0}, -setting.turn_deg).linear;
     sky.zenith = setting.brightness * setting.zenith;
     sky.horizon = setting.brightness * setting.horizon;
     sky.below = setting.brightness * setting.below;
@@ -144,7 +163,8 @@ Rgb View::ambient_light() const {
 }
 
 bool View::has_soft_light() const {
-    return sky_light || std::ranges::any_of(lights, &Light::is_disc);
+    return sky_light ||
+           std::ranges::any_of(lights, [](const Light& light) { return light.is_disc() || light.is_area(); });
 }
 
 View frame(const Graph& graph, const Box& bounds, ImageSize size, const CameraOverride& camera,

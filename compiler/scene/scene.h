@@ -51,9 +51,14 @@ struct Light {
     Rgb rgb{1.0};
     bool shadowless = false; ///< then it makes no highlights either, as in POV-Ray
     double angle_deg = 0;    ///< apparent diameter of a sun
+    Vec3 a{0.0}, b{0.0};     ///< of a lamp: half of its rectangle's sides, or of its disc's axes; 0: a point
+    bool round = false;      ///< a disc
 
-    /// Whether its light comes from a disc.
+    /// Whether its light comes from a disc in the sky.
     bool is_disc() const { return sun && angle_deg > 0 && !shadowless; }
+    /// Whether it comes from all points of an area alike, each as bright in all directions and at all
+    /// distances.
+    bool is_area() const { return !sun && !shadowless && a != Vec3(0.0); }
 };
 
 /// How much work goes into what converges.

@@ -158,8 +158,9 @@ bool Session::need_lowered(const StageOptions& options, bool wanted, Compilation
         sources_ = SourceMap();
         Diagnostics findings;
         ++runs_.lowered;
-        std::optional<LoweredModel> model = lower_source(
-            *source_.value, options.lower, {look_at_texture_, control_, on_file_}, sources_, findings);
+        std::optional<LoweredModel> model =
+            lower_source(*source_.value, options.lower,
+                         {look_at_texture_, control_, on_file_, load_sky_picture_}, sources_, findings);
         const Derivation* const derivation =
             model && model->notes.derivation ? &*model->notes.derivation : nullptr;
         reads_steps_ = !model || derivation;

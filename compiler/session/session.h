@@ -62,6 +62,8 @@ class Session {
     void look_at_textures(LookAtTexture look) { look_at_texture_ = std::move(look); }
     /// Hears of each file that the model names, while it is lowered.
     void on_file(OnFile hear) { on_file_ = std::move(hear); }
+    /// Without this, environments too, and they are white.
+    void load_sky_pictures(LoadSkyPicture load) { load_sky_picture_ = std::move(load); }
     /// Sees the graph after each pass, for models and for detail.
     void after_each_pass(PassObserver observer) { after_pass_ = std::move(observer); }
 
@@ -156,6 +158,7 @@ class Session {
     std::uint64_t file_changes_ = 0;
     LookAtTexture look_at_texture_;
     OnFile on_file_;
+    LoadSkyPicture load_sky_picture_;
     PassObserver after_pass_;
     Keep keep_;
     Control control_;

@@ -15,7 +15,7 @@ namespace {
 
 using Kind = SceneStatement::Kind;
 
-enum class Shape { flag, number, vector, color, name, text, area };
+enum class Shape { flag, number, pair, vector, color, name, text, area };
 
 struct FieldRule {
     std::string_view keyword;
@@ -35,9 +35,11 @@ const std::vector<FieldRule>& rules(Kind kind) {
     static const std::vector<FieldRule> light = {
         {"location", Shape::vector},    {"sun", Shape::vector},        {"color", Shape::color},
         {"temperature", Shape::number}, {"brightness", Shape::number}, {"angle", Shape::number},
-        {"shadowless", Shape::flag}};
+        {"shadowless", Shape::flag},    {"size", Shape::pair},         {"radius", Shape::number},
+        {"look_at", Shape::vector}};
     static const std::vector<FieldRule> sky = {{"zenith", Shape::color},      {"horizon", Shape::color},
                                                {"below", Shape::color},       {"clear", Shape::number},
+                                               {"environment", Shape::text},  {"turn", Shape::number},
                                                {"brightness", Shape::number}, {"bounces", Shape::number}};
     static const std::vector<FieldRule> film = {
         {"exposure", Shape::number}, {"white", Shape::number}, {"soft", Shape::flag}, {"hard", Shape::flag}};
@@ -267,6 +269,9 @@ class StatementParser {
             break;
         case Shape::number:
             values = parse_numbers(stream_, 1, 1, what);
+            break;
+        case Shape::pair:
+            values = parse_numbers(stream_, 2, 2, what);
             break;
         case Shape::vector:
             values = parse_vector(stream_, what);

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
 
 #include "compiler/graph/path.h"
 #include "compiler/scene/framing.h"
@@ -28,6 +29,14 @@ constexpr double worst_condition = 1e8;
 constexpr double visible_px = 0.25;
 /// A primitive this much larger than all that is in reach looks like a plane, and POV-Ray loses its place.
 constexpr double largest_primitive = 1e3;
+
+/// The rotation, or reflection, that turns y and the half plane of x as the map does.
+Mat3 upright_rotation(const Mat3& map) {
+    const Vec3 y = glm::normalize(map[1]);
+    const Vec3 x = glm::normalize(map[0] - glm::dot(map[0], y) * y);
+    const Vec3 z = glm::cross(x, y);
+    return {x, y, glm::determinant(map) < 0 ? -z : z};
+}
 
 class Rerooter {
   public:
@@ -105,7 +114,8 @@ class Rerooter {
         camera.location = -std::max(depth, 1e-3 * radius) * camera.direction;
         const double zoom = request_.zoom->times(1);
         for (Light& light : view.lights)
-            if (!light.sun) move(light, zoom * (light.location - world_focus), light.location - world_focus);
+            if (!light.sun)
+                move(light, zoom * (light.location - world_focus), light.location - world_focus, Mat3(zoom));
         if (view.haze) {
             view.haze->base = request_.zoom->times(view.haze->base - world_focus.y);
             view.haze->height = request_.zoom->times(view.haze->height);
@@ -125,11 +135,16 @@ class Rerooter {
         return is_size(haze.distance) && is_size(haze.height) && is_place(Vec3(haze.base));
     }
 
-    /// A light beyond all distances is a sun.
-    void move(Light& light, Vec3 location, Vec3 direction) {
+    /// A light beyond all distances is a sun, and a lamp reaches no farther. `linear`: of its sides.
+    void move(Light& light, Vec3 location, Vec3 direction, const Mat3& linear) {
         const double far = 1e3 * glm::length(result_.view.camera.location);
         light.sun = !(glm::length(location) <= far);
         light.location = light.sun ? glm::normalize(direction) : location;
+        for (Vec3* const side : {&light.a, &light.b}) {
+            const Vec3 moved = linear * *side;
+            const double length = glm::length(moved);
+            *side = light.sun ? Vec3(0.0) : length <= far ? moved : far * glm::normalize(*side);
+        }
     }
 
     double farthest_ground() const { return reach_share * glm::length(result_.view.camera.location); }
@@ -166,11 +181,13 @@ class Rerooter {
             for (Light& light : view.lights) {
                 const Vec3 towards = light.sun ? light.location : light.location - focus_.points.front();
                 const bool near = !light.sun && picture_from_root;
-                move(light, near ? (*picture_from_root)(light.location) : infinitely_far, turn * towards);
+                move(light, near ? (*picture_from_root)(light.location) : infinitely_far, turn * towards,
+                     near ? picture_from_root->linear : turn);
             }
         if (model_.graph.settings.sky) {
             SkyLight& sky = *view.sky_light;
             sky.up = glm::normalize(turn * sky.up);
+            sky.picture_from_world = sky.picture_from_world * glm::transpose(upright_rotation(turn));
             if (sky.clear) sky.clear->to_sun = glm::normalize(turn * sky.clear->to_sun);
         }
         if (model_.graph.settings.background && view.sky.zenith != view.sky.horizon)

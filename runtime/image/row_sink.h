@@ -1,8 +1,12 @@
 #pragma once
 
+#include <cstdint>
 #include <string>
 
 namespace graftal {
+
+/// Reading takes time by the size of the file's picture, whatever is kept of it: larger ones are refused.
+inline constexpr std::uint64_t most_file_texels = 1u << 28;
 
 /// Takes a picture row by row, the top one first, as it comes out of its file: a small file may hold a huge
 /// picture, and who takes it decides what to keep of it.

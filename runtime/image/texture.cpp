@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "runtime/image/image.h"
+#include "runtime/image/sky_file.h"
 
 namespace graftal {
 
@@ -21,11 +22,15 @@ std::uint8_t level_of(float sample, bool linear) {
 constexpr std::uint64_t most_texels = 1u << 25;
 constexpr std::uint64_t most_texels_of_all = 1u << 27;
 constexpr std::uint64_t least_texels = 1u << 12;
-/// Reading takes time by the size of the file's picture, whatever is kept of it.
-constexpr std::uint64_t most_file_texels = 1u << 28;
+constexpr std::uint64_t most_sky_texels = 1u << 23;
+constexpr std::uint64_t texels_a_sky_texel = 4; // 16 bytes, with what sampling needs
 
 std::uint64_t texel_count(int width, int height) {
     return static_cast<std::uint64_t>(width) * static_cast<std::uint64_t>(height);
+}
+
+std::uint64_t texels_of(const LoadedSkyPicture& sky) {
+    return texels_a_sky_texel * texel_count(sky.picture->width(), sky.picture->height());
 }
 
 /// Makes a texture of the rows of a file, reduced to at most so many texels.
@@ -178,13 +183,33 @@ Status TextureStore::look_at(const std::string& path, TextureFacts& facts) {
     return status;
 }
 
+Status TextureStore::load_sky(const std::string& path, LoadedSkyPicture& loaded) {
+    const std::lock_guard lock(mutex_);
+    if (const auto known = skies_.find(path); known != skies_.end()) {
+        loaded = known->second.loaded;
+        return {};
+    }
+    const FileStamp stamp = stamp_of(path);
+    const std::uint64_t room = most_texels_of_all - std::min(texels_of_all_, most_texels_of_all);
+    const Status status =
+        read_sky_picture(path, std::clamp(room / texels_a_sky_texel, least_texels, most_sky_texels), loaded);
+    if (!status.ok()) return status;
+    texels_of_all_ += texels_of(loaded);
+    skies_[path] = {loaded, stamp};
+    return {};
+}
+
 bool TextureStore::forget_changed() {
     const std::lock_guard lock(mutex_);
-    const std::size_t forgotten = std::erase_if(known_, [this](const auto& entry) {
-        if (stamp_of(entry.first) == entry.second.stamp) return false;
-        texels_of_all_ -= entry.second.texture->texels.size();
-        return true;
-    });
+    const auto forget = [this](auto& entries, const auto& size) {
+        return std::erase_if(entries, [&](const auto& entry) {
+            if (stamp_of(entry.first) == entry.second.stamp) return false;
+            texels_of_all_ -= size(entry.second);
+            return true;
+        });
+    };
+    std::size_t forgotten = forget(known_, [](const Entry& entry) { return entry.texture->texels.size(); });
+    forgotten += forget(skies_, [](const SkyEntry& entry) { return texels_of(entry.loaded); });
     return forgotten > 0;
 }
 

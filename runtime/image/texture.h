@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "compiler/light/sky_picture.h"
 #include "compiler/support/file.h"
 #include "compiler/support/status.h"
 #include "compiler/support/texture_facts.h"
@@ -51,6 +52,9 @@ class TextureStore {
     /// What a compiler asks of it (LowerOptions).
     Status look_at(const std::string& path, TextureFacts& facts);
 
+    /// A sky's picture (sky_file.h), which counts as four times its texels.
+    Status load_sky(const std::string& path, LoadedSkyPicture& loaded);
+
     /// Forgets those whose files are not as they were when they were read. Whether there are any.
     bool forget_changed();
 
@@ -60,8 +64,14 @@ class TextureStore {
         FileStamp stamp; ///< of the file, when it was read
     };
 
+    struct SkyEntry {
+        LoadedSkyPicture loaded;
+        FileStamp stamp;
+    };
+
     std::mutex mutex_;
     std::map<std::string, Entry> known_;
+    std::map<std::string, SkyEntry> skies_;
     std::uint64_t texels_of_all_ = 0;
 };
 

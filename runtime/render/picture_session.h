@@ -11,6 +11,9 @@ class PictureSession : public Session {
     explicit PictureSession(std::string path, Keep keep = Keep::everything) : Session(std::move(path), keep) {
         look_at_textures(
             [this](const std::string& name, TextureFacts& facts) { return textures_.look_at(name, facts); });
+        load_sky_pictures([this](const std::string& name, LoadedSkyPicture& loaded) {
+            return textures_.load_sky(name, loaded);
+        });
     }
     PictureSession(const PictureSession&) = delete;
     PictureSession& operator=(const PictureSession&) = delete;

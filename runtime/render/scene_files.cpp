@@ -15,6 +15,7 @@
 #include "compiler/povray/emit_povray.h"
 #include "compiler/support/file.h"
 #include "runtime/image/image.h"
+#include "runtime/image/sky_file.h"
 #include "runtime/image/texture.h"
 #include "runtime/system/temporary_directory.h"
 
@@ -58,6 +59,7 @@ class PendingPalettes {
     Status write(const std::filesystem::path& folder, const PaletteImage& palette) {
         const PendingFile& file = files_.emplace_back((folder / palette.file_name).string());
         if (!file.status().ok()) return file.status();
+        if (palette.sky) return write_sky_picture(file, *palette.sky, palette.sky_brightness);
         if (palette.texture.empty())
             return write_palette(file, palette.width, palette.height, palette.pixels);
         Status status;

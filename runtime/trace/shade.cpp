@@ -80,18 +80,21 @@ Shader::Shader(const View& view, Surfaces& surfaces, const ShaderLimits& limits,
         const Vec3 at = light.sun ? glm::normalize(light.location) : light.location;
         if (!is_finite(at)) continue;
         const Lamp lamp{at, light.rgb, light.sun, light.shadowless};
-        if (!light.is_disc()) {
+        if (light.is_area()) {
+            areas_.push_back({lamp, light.a, light.b, light.round});
+        } else if (light.is_disc()) {
+            const auto [a, b] = axes_across(at);
+            const double radius = std::tan(0.5 * light.angle_deg * std::numbers::pi / 180);
+            areas_.push_back({lamp, radius * a, radius * b, true});
+        } else {
             lamps_.push_back(lamp);
-            continue;
         }
-        const auto [a, b] = axes_across(at);
-        const double radius = std::tan(0.5 * light.angle_deg * std::numbers::pi / 180);
-        discs_.push_back({lamp, radius * a, radius * b});
     }
     if (view.sky_light) {
         ambient_light_ = view.ambient_light();
         if (!listed) {
             sky_ = &*view.sky_light;
+            if (sky_->picture && sky_->picture->sampling().any()) bright_sky_ = &sky_->picture->sampling();
             bounces_ = sky_->bounces;
             if (bounces_ > 0) ambient_light_ = Rgb(0.0);
         }
@@ -262,41 +265,72 @@ Rgb Shader::lit(const Point& point, SampleStream& random) {
     if (point.material->emission > 0) sum += point.material->emission * point.rgb;
     for (const Lamp& lamp : lamps_)
         sum += light_of(lamp, point, least);
-    for (const Disc& disc : discs_) {
-        const glm::dvec2 place = random.next();
-        const double radius = std::sqrt(place.x), turn = 2 * std::numbers::pi * place.y;
-        Lamp part = disc.middle;
-        part.at = glm::normalize(part.at + radius * (std::cos(turn) * disc.a + std::sin(turn) * disc.b));
+    for (const Area& area : areas_) {
+        glm::dvec2 place = random.next();
+        if (area.round) {
+            const double radius = std::sqrt(place.x), turn = 2 * std::numbers::pi * place.y;
+            place = {radius * std::cos(turn), radius * std::sin(turn)};
+        } else {
+            place = 2.0 * place - 1.0;
+        }
+        Lamp part = area.middle;
+        part.at += place.x * area.a + place.y * area.b;
+        if (part.sun) part.at = glm::normalize(part.at);
         sum += light_of(part, point, least);
     }
     if (sky_) sum += from_sky(point, least, random);
     return sum;
 }
 
-/// One direction, by the cosine: of the half that the surface faces, or of the other if light comes through;
-/// of a surface that shines, by half evenly.
+/// How a surface chooses a direction towards the sky, by the cosine: of the half that it faces, or of the
+/// other if light comes through; if it shines, by half evenly.
+struct Shader::SkyChoice {
+    double front_chance = 1;
+    bool shines = false;
+
+    Vec3 direction(Vec3 normal, glm::dvec2 place) const {
+        const bool behind = place.x >= front_chance;
+        place.x = behind ? (place.x - front_chance) / (1 - front_chance) : place.x / front_chance;
+        if (behind) return cosine_direction(-normal, place);
+        const bool even = shines && place.x < 0.5;
+        if (shines) place.x = even ? 2 * place.x : 2 * place.x - 1;
+        return even ? even_direction(normal, place) : cosine_direction(normal, place);
+    }
+
+    /// A steradian, times pi. `along`: the cosine with the normal.
+    double density_pi(double along) const {
+        if (along < 0) return (1 - front_chance) * -along;
+        return front_chance * (shines ? 0.5 * along + 0.25 : along);
+    }
+};
+
 Rgb Shader::from_sky(const Point& point, double least, SampleStream& random) {
     const Material& material = *point.material;
     const double front = material.diffuse + material.specular;
     if (!(front + material.translucency > 0)) return Rgb(0.0);
-    glm::dvec2 place = random.next();
-    const double front_chance = front / (front + material.translucency);
-    const bool behind = place.x >= front_chance;
-    const double chance = behind ? 1 - front_chance : front_chance;
-    place.x = (behind ? place.x - front_chance : place.x) / chance;
-    const bool shines = !behind && material.specular > 0;
-    const bool even = shines && place.x < 0.5;
-    if (shines) place.x = even ? 2 * place.x : 2 * place.x - 1;
-    const Vec3 pole = behind ? -point.normal : point.normal;
-    const Ray to_sky{point.position, even ? even_direction(pole, place) : cosine_direction(pole, place)};
-    const double cosine = glm::dot(pole, to_sky.direction);
-    if (!(cosine >= least_cosine)) return Rgb(0.0);
-    const Rgb light = sky_->radiance(to_sky.direction);
+    const SkyChoice choice{front / (front + material.translucency), material.specular > 0};
+    Rgb light = sky_light(choice, point, choice.direction(point.normal, random.next()), least);
+    if (bright_sky_)
+        light +=
+            sky_light(choice, point, bright_sky_->direction(random.next()) * sky_->picture_from_world, least);
+    return light;
+}
+
+/// Of the sky in one direction, over what the strategies that may have chosen it give to it.
+Rgb Shader::sky_light(const SkyChoice& choice, const Point& point, Vec3 direction, double least) {
+    const Material& material = *point.material;
+    const double along = glm::dot(point.normal, direction);
+    if (!(std::abs(along) >= least_cosine)) return Rgb(0.0);
+    const bool behind = along < 0;
+    Rgb share = (behind ? -material.translucency : material.diffuse) * along * point.rgb;
+    if (!behind && choice.shines) share += shine(point, direction);
+    if (!(largest(share) > 0)) return Rgb(0.0);
+    const Rgb light = sky_->radiance(direction);
     if (!(largest(light) > 0)) return Rgb(0.0);
-    Rgb share = (behind ? material.translucency : material.diffuse) * cosine * point.rgb;
-    if (shines) share += shine(point, to_sky.direction);
-    const double density_pi = chance * (shines ? 0.5 * cosine + 0.25 : cosine); // a steradian, times pi
-    if (!(largest(share) > 0) || shadowed(to_sky, {least})) return Rgb(0.0);
+    double density_pi = choice.density_pi(along);
+    if (bright_sky_)
+        density_pi += std::numbers::pi * bright_sky_->density(sky_->picture_from_world * direction);
+    if (!(density_pi > 0) || shadowed({point.position, direction}, {least})) return Rgb(0.0);
     return share / density_pi * light;
 }
 

@@ -33,8 +33,9 @@ struct ShaderLimits {
 ///     + sum over those behind, n.l < 0, of translucency |n.l| c e + emission c
 ///     + reflection * (the light along the mirrored ray);
 /// shadowless lights are not shadowed and have no specular part. Light from discs and from the sky is the sum
-/// of the same over what is in them, e = L dw / pi: estimated by one direction for each, or by a list of
-/// lights (light_list.h), to which the estimate converges as the list grows. Of a sky that asks for bounces,
+/// of the same over what is in them, e = L dw / pi: estimated by one direction for each (two where the sky is
+/// a picture with bright parts, by the balance heuristic: Veach 1997, 9.2.2), or by a list of lights
+/// (light_list.h), to which the estimate converges as the list grows. Of a sky that asks for bounces,
 /// surfaces light each other diffusely, and `ambient` is 0. A picture shows up to eight surfaces one in
 /// the other; what the last of them mirrors is black. Nothing is clamped. (POV-Ray's trace.cpp: TraceRay,
 /// ComputeLightedTexture, ComputeOneDiffuseLight, ComputeSpecularColour, ComputeReflection, ComputeSky.)
@@ -57,7 +58,7 @@ class Shader {
     }
 
     /// True where radiance() estimates: more samples make a better picture.
-    bool samples() const { return sky_ || !discs_.empty(); }
+    bool samples() const { return sky_ || !areas_.empty(); }
 
     /// What the ray meets first, the ground included; false if that is the sky.
     bool first_hit(const Ray& ray, SurfaceHit& hit);
@@ -69,10 +70,11 @@ class Shader {
         bool sun;
         bool shadowless;
     };
-    /// A sun with an angle.
-    struct Disc {
+    /// A sun with an angle, or a lamp with an area.
+    struct Area {
         Lamp middle;
-        Vec3 a, b; ///< half axes: from the middle's direction to its edge
+        Vec3 a, b; ///< half axes: from the middle to its edge
+        bool round;
     };
     struct Point;
 
@@ -84,7 +86,9 @@ class Shader {
     const Texture::Texel& ground_texel(Vec3 point) const;
     Point point_of(const Ray& ray, const SurfaceHit& hit) const;
     Rgb lit(const Point& point, SampleStream& random);
+    struct SkyChoice;
     Rgb from_sky(const Point& point, double least, SampleStream& random);
+    Rgb sky_light(const SkyChoice& choice, const Point& point, Vec3 direction, double least);
     double shine(const Point& point, Vec3 to_light) const;
     bool bounce(const Point& point, unsigned& bounces, Ray& path, Rgb& weight, SampleStream& random) const;
     Rgb light_of(const Lamp& lamp, const Point& point, double least);
@@ -95,9 +99,10 @@ class Shader {
     const View& view_;
     Surfaces& surfaces_;
     const ShaderLimits limits_;
-    std::vector<Lamp> lamps_;       ///< without those that are black
-    std::vector<Disc> discs_;       ///< that are sampled
-    const SkyLight* sky_ = nullptr; ///< that is sampled
+    std::vector<Lamp> lamps_;                 ///< without those that are black
+    std::vector<Area> areas_;                 ///< that are sampled
+    const SkyLight* sky_ = nullptr;           ///< that is sampled
+    const SkySampling* bright_sky_ = nullptr; ///< where it has bright parts
     Rgb ambient_light_;
     unsigned bounces_ = 0;
     double pixel_; ///< a pixel's length: of parallel rays in scene units, else at distance 1

@@ -9,6 +9,7 @@
 
 #include "compiler/support/check.h"
 #include "runtime/image/image.h"
+#include "runtime/image/sky_file.h"
 #include "runtime/image/texture.h"
 #include "tests/fuzz/scratch.h"
 
@@ -49,5 +50,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
                       texture.mean.x <= 1,
                   "picture fuzzer: what a texture says of itself");
     texture.at(0.3, -1e300);
+    LoadedSkyPicture sky;
+    GRAFTAL_CHECK(read_sky_picture(scratch.path(name), most_texels, sky).ok(), "picture fuzzer: read again");
+    const Rgb light = sky.picture->radiance({0.6, 0, 0.8});
+    GRAFTAL_CHECK(light.x >= 0 && light.y <= most_radiance && std::isfinite(sky.picture->on_paper().z),
+                  "picture fuzzer: a sky's light");
     return 0;
 }

@@ -72,6 +72,17 @@ TEST_F(Root, TexturesStayInside) {
     }
 }
 
+TEST_F(Root, EnvironmentsStayInside) {
+    for (const std::string picture : {"../out/bark.png", "bark_link.png", "/etc/passwd", "bark.png"}) {
+        write("room/t.inst", "sky { environment: \"" + picture + "\" }\nobject a { sphere }\n");
+        const RunResult result = graftal("check -q --root room room/t.inst");
+        EXPECT_EQ(result.status, picture == "bark.png" ? 0 : 1) << picture << result.err;
+        if (result.status == 0) continue;
+        EXPECT_THAT(result.err, HasSubstr("room/t.inst:1:20: error: '")) << picture;
+        EXPECT_THAT(result.err, HasSubstr("leads out of --root 'room'")) << picture;
+    }
+}
+
 TEST_F(Root, EveryCommandThatReadsModelsHasIt) {
     write_users("../out/leaf.inst");
     for (const std::string command :

@@ -70,6 +70,84 @@ TEST_F(Textured, WhatIsNoPictureIsAnErrorOfTheModel) {
     EXPECT_EQ(files(), "a.inst bad.png");
 }
 
+/// Twice as wide as high, brighter to the right.
+Image sky_picture(int width = 64) {
+    Image image{width, width / 2, 3, {}};
+    for (int y = 0; y < width / 2; ++y)
+        for (int x = 0; x < width; ++x)
+            for (const int c : {1, 2, 3})
+                image.pixels.push_back(0.1f * static_cast<float>(c) + static_cast<float>(x) / 64);
+    return image;
+}
+
+class WithEnvironment : public CommandLine {
+  protected:
+    void SetUp() override {
+        CommandLine::SetUp();
+        ASSERT_TRUE(write_image(path("sky.exr"), sky_picture(), SampleFormat::srgb8).ok());
+        write("a.inst", "sky { environment: \"sky.exr\"  turn: 40  brightness: 0.7 }\n"
+                        "ground { height: -1 }\nobject a { sphere }\n");
+    }
+};
+
+TEST_F(WithEnvironment, BothEnginesShowTheSame) {
+    for (const std::string engine : {"povray", "native --listed-lights", "native --samples 256 --noise 0"}) {
+        const RunResult result =
+            graftal("render a.inst --size 120x90 -q -o '" + engine + ".png' --engine " + engine);
+        ASSERT_EQ(result.status, 0) << result.err;
+    }
+    const Image povray = picture("povray.png");
+    EXPECT_LT(compare_images(povray, picture("native --listed-lights.png")).mean, 0.1 / 255);
+    EXPECT_LT(compare_images(povray, picture("native --samples 256 --noise 0.png")).mean, 2.0 / 255);
+}
+
+TEST_F(WithEnvironment, ReadsAgainAsItIsPrinted) {
+    const RunResult printed = graftal("print a.inst");
+    ASSERT_EQ(printed.status, 0) << printed.err;
+    EXPECT_THAT(printed.out, HasSubstr("  environment: \"sky.exr\"\n  turn: 40\n  brightness: 0.7\n"));
+    write("again.inst", printed.out);
+    EXPECT_EQ(graftal("print again.inst").out, printed.out);
+}
+
+TEST_F(WithEnvironment, ACompiledSceneHasItBesideIt) {
+    ASSERT_EQ(graftal("compile a.inst -o scene.pov").status, 0);
+    EXPECT_EQ(files(), "a.inst a.inst_sky.exr scene.pov sky.exr");
+    write("behind.inst", "sky { environment: \"sky.exr\" }\nbackground: 0,0,0\nobject a { sphere }\n");
+    ASSERT_EQ(graftal("compile behind.inst -o behind.pov").status, 0);
+    EXPECT_THAT(files(), testing::Not(HasSubstr("behind.inst_sky.exr")));
+}
+
+TEST_F(WithEnvironment, WhatItsPictureIsNotIsSaidAtItsPlace) {
+    const auto said = [&](const std::string& name) {
+        write("b.inst", "sky {\n  environment: \"" + name + "\"\n}\nobject a { sphere }\n");
+        return graftal("check b.inst").err;
+    };
+    ASSERT_TRUE(write_image(path("square.exr"), {1, 1, 3, {1, 1, 1}}, SampleFormat::srgb8).ok());
+    EXPECT_THAT(said("square.exr"),
+                HasSubstr("b.inst:2:16: warning: this picture of 1 x 1 pixels is stretched"));
+    ASSERT_TRUE(write_image(path("dark.exr"), {2, 1, 3, {1, 1, 1, -1, 0, 0}}, SampleFormat::srgb8).ok());
+    EXPECT_THAT(said("dark.exr"), HasSubstr("b.inst:2:16: warning: 1 of this picture's pixels are no light"));
+    ASSERT_TRUE(write_image(path("wide.png"), {8194, 4097, 1, std::vector<float>(8194u * 4097, 1.0f)},
+                            SampleFormat::srgb8)
+                    .ok());
+    EXPECT_THAT(said("wide.png"),
+                HasSubstr("warning: this picture of 8194 x 4097 pixels is used at 2732 x 1366"));
+    write("b.inst", "sky { environment: \"sky.exr\"  turn: 1e30 }\nobject a { sphere }\n");
+    EXPECT_THAT(graftal("check b.inst").err,
+                HasSubstr("error: 'turn' must lie within 36000 degrees, not 1e"));
+    write("none.exr", "no picture");
+    EXPECT_THAT(said("none.exr"), HasSubstr("b.inst:2:16: error: cannot read picture 'none.exr'"));
+}
+
+/// A model that is used brings no light, so nobody reads its pictures.
+TEST_F(WithEnvironment, IsThatOfTheModelItselfAlone) {
+    write("none.exr", "no picture");
+    write("part.inst", "sky { environment: \"none.exr\" }\nobject a { sphere }\n");
+    write("b.inst", "use part = \"part.inst\"\nobject b { part }\n");
+    EXPECT_EQ(graftal("check -q b.inst").status, 0);
+    EXPECT_EQ(graftal("check -q part.inst").status, 1);
+}
+
 TEST_F(Textured, CompiledScenesHaveThePicturesBesideThem) {
     ASSERT_EQ(graftal("compile " + textured + "-o scene.pov").status, 0);
     EXPECT_EQ(files(), "scene.pov textured.inst_I_1.png textured.inst_I_2.png");

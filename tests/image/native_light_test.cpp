@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <optional>
 #include <ostream>
 #include <string>
@@ -208,6 +209,13 @@ const LitScene scenes[] = {
         haze { distance: 30 }
     )",
      false},
+    {"LampsWithAreas", {140, 110}, balls_and_blocks + on_magenta + R"(
+        camera { location: 2, 4, 9 look_at: 0, 1.4, 0 angle: 60 }
+        light { location: -2, 6, 3 size: 3, 1 look_at: 0, 1, 0 color: 0.6, 0.5, 0.4 }
+        light { location: 4, 2, 5 radius: 0.7 look_at: 0, 1, 0 color: 0.3, 0.4, 0.6 }
+        light { location: 1, 9, 1 radius: 0.5 look_at: 1, 0, 1 color: 0.2, 0.2, 0.2 }
+        ground { height: 0 }
+    )"},
     {"LightThroughLeaves", {130, 110}, on_magenta + R"(
         material leaf { ambient: 0.05 diffuse: 0.5 translucency: 0.4 specular: 0.2 roughness: 0.1 }
         material ember { ambient: 0 diffuse: 0.2 emission: 0.6 }
@@ -300,6 +308,46 @@ TEST_P(NativeLight, IsPovrays) {
 
 INSTANTIATE_TEST_SUITE_P(Scenes, NativeLight, testing::ValuesIn(scenes),
                          [](const auto& scene) { return std::string(scene.param.name); });
+
+/// Smooth, with a sun, in numbers that half floats hold.
+std::shared_ptr<const SkyPicture> sky_picture() {
+    constexpr int width = 1024, height = 512;
+    std::vector<SkyPicture::Texel> texels;
+    for (int y = 0; y < height; ++y)
+        for (int x = 0; x < width; ++x) {
+            const auto step = [](int i, int n) { return static_cast<float>(i * 64 / n) / 64; };
+            texels.push_back({step(x, width), 1 - step(y, height), y < height / 2 ? 0.75f : 0.125f});
+        }
+    texels[100 * width + 700] = {4096, 4096, 2048};
+    return std::make_shared<SkyPicture>(width, height, std::move(texels));
+}
+
+/// Both have the same list of lights; POV-Ray mixes the texels of the background by itself.
+TEST(NativeLightPicture, OfTheSkyIsPovrays) {
+    const ImageSize size{150, 110};
+    for (const std::string ground : {"", "ground { height: 0 material: faint }"}) {
+        StageOptions options = whole(size);
+        options.cut.flatten = true;
+        std::optional<CompiledModel> model = compile_text("lit.inst", mirrors + ground + R"(
+            sky { zenith: 1, 1, 1 }
+            film { hard }
+            camera { location: 2, 4, 9 look_at: 0, 3.4, 0 angle: 100 }
+        )",
+                                                          options);
+        ASSERT_TRUE(model);
+        SkyLight& sky = *model->view.sky_light;
+        sky.picture = sky_picture();
+        sky.picture_from_world = Affine::rotate({0, 1, 0}, -130).linear;
+        sky.brightness = 0.5;
+        const NativePicture native = shade(*model, {povray_sample_of_pixel});
+        const Image povray = draw(*model, SampleFormat::linear16);
+        ASSERT_EQ(povray.pixels.size(), native.pixels.size() * static_cast<std::size_t>(povray.channels));
+        const Agreement agreement = compare(native, povray);
+        EXPECT_GT(agreement.hits, size.width * size.height / 40);
+        EXPECT_LT(agreement.hits, size.width * size.height);
+        EXPECT_EQ(agreement.off, 0) << "by up to " << 65535 * agreement.max << "/65535";
+    }
+}
 
 TEST(NativeLightSamples, ArePovraysOfAnAntialiasedPixel) {
     const LitScene& scene = scenes[1];

@@ -409,5 +409,23 @@ TEST(PixelsPerUnit, PerspectiveIsTheLargestMeasureOfALengthAcrossTheRay) {
     EXPECT_NEAR(camera.pixels_per_unit(point, 100), largest, 1e-3);
 }
 
+TEST(Lights, ALampsRectangleIsLevelAndFacesWhatItLooksAt) {
+    Graph graph = painted(Rgb(0.5));
+    graph.settings.lights = {{.location = {0, 2, 5}, .width = 4, .height = 2, .look_at = Vec3(0, 2, 0)},
+                             {.location = {1, 5, 0}, .radius = 3, .look_at = Vec3(1, 0, 0)},
+                             {.location = {1, 5, 0}}};
+    const View view = frame(graph, Box{Vec3(-1.0), Vec3(1.0)}, {100, 100});
+    ASSERT_EQ(view.lights.size(), 3u);
+    EXPECT_EQ(view.lights[0].a, Vec3(2, 0, 0));
+    EXPECT_EQ(view.lights[0].b, Vec3(0, 1, 0));
+    EXPECT_FALSE(view.lights[0].round);
+    EXPECT_EQ(view.lights[1].a, Vec3(3, 0, 0)) << "x, where no side is level alone";
+    EXPECT_EQ(glm::abs(view.lights[1].b), Vec3(0, 0, 3));
+    EXPECT_TRUE(view.lights[1].round);
+    EXPECT_TRUE(view.lights[0].is_area());
+    EXPECT_FALSE(view.lights[2].is_area());
+    EXPECT_TRUE(view.has_soft_light());
+}
+
 } // namespace
 } // namespace graftal

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <numbers>
 
 #include <gtest/gtest.h>
@@ -111,6 +112,183 @@ TEST(SoftLight, SamplesAndLongListsAgree) {
         const Rgb listed_light = by_list.radiance(ray), sampled = mean_light(by_samples, ray, 1 << 17);
         for (int c = 0; c < 3; ++c)
             EXPECT_NEAR(sampled[c], listed_light[c], 0.0015) << target.x << " " << target.y;
+    }
+}
+
+/// A half plane at y = 1 that shades the points below it, x < 0.
+class Awning : public Scene {
+  public:
+    bool meets_any(const Ray& ray, const RayRange& range) override {
+        const double t = (1 - ray.origin.y) / ray.direction.y;
+        return range.least < t && t < range.most && ray(t).x < 0;
+    }
+};
+
+/// The ground sees, over the edge, the part of the lamp beyond a chord: at x the one at -x (height - 1).
+TEST(SoftLight, ALampCastsThePenumbraOfItsShape) {
+    constexpr double height = 100, half = 40;
+    Awning scene;
+    scene.walls = {{{0, 1, 0}, 0, Rgb(1.0), matt}};
+    View view = black_view();
+    for (const bool round : {false, true}) {
+        view.lights = {{.location = {0, height, 0},
+                        .rgb = Rgb(0.5),
+                        .a = {half, 0, 0},
+                        .b = {0, 0, round ? half : 1e-3},
+                        .round = round}};
+        Shader shader(view, scene);
+        for (const double x : {-1.0, -0.3, -0.1, 0.0, 0.2, 0.35, 1.0}) {
+            const double chord = std::clamp(x * (height - 1) / half, -1.0, 1.0);
+            const double seen =
+                round ? 1 - (std::acos(chord) - chord * std::sqrt(1 - chord * chord)) / std::numbers::pi
+                      : 0.5 * (1 + chord);
+            // Seen at an angle, what lies at its edge counts less: by the mean cosine of what is seen.
+            double cosine = 0, weight = 0;
+            for (int i = 0; i < 1000; ++i) {
+                const double q = -1 + (i + 0.5) / 500;
+                if (q < -chord) continue;
+                const double width = round ? std::sqrt(1 - q * q) : 1;
+                for (int j = 0; j < 50; ++j) {
+                    const double z = round ? half * width * (-1 + (j + 0.5) / 25) : 0;
+                    const double across = half * q - x;
+                    cosine += width * height / std::sqrt(height * height + across * across + z * z) / 50;
+                }
+                weight += width;
+            }
+            const Ray down{{x, 0.5, 0}, {0, -1, 0}};
+            EXPECT_NEAR(mean_light(shader, down, 1 << 13).g, 0.5 * seen * (weight > 0 ? cosine / weight : 0),
+                        0.003)
+                << (round ? "disc " : "rectangle ") << x;
+        }
+    }
+}
+
+TEST(SoftLight, AFarLampLightsLikeAPointOfItsColour) {
+    Scene scene;
+    scene.walls = {{{0, 0, 1}, 0, Rgb(1.0), matt}};
+    View view = black_view();
+    view.lights = {{.location = {3e3, 0, 4e3}, .rgb = {1, 2, 3}, .a = {0.8, 0, -0.6}, .b = {0, 1, 0}}};
+    Shader shader(view, scene);
+    EXPECT_TRUE(shader.samples());
+    const Rgb light = mean_light(shader, ahead, 16);
+    for (int c = 0; c < 3; ++c)
+        EXPECT_NEAR(light[c], 0.8 * (c + 1), 1e-3);
+}
+
+/// The same light from everywhere, whatever says so.
+TEST(SoftLight, AnEvenPictureIsAFurnaceToo) {
+    View view = under_sky(Rgb(0.0));
+    view.sky_light->picture = std::make_shared<SkyPicture>(
+        6, 3, std::vector<SkyPicture::Texel>(18, SkyPicture::Texel{0.25f, 0.125f, 0.5f}));
+    view.sky_light->brightness = 2;
+    Scene scene;
+    scene.balls.push_back({Vec3(0.0), 1, Rgb(1.0), matt});
+    Shader shader(view, scene);
+    for (const double x : {0.0, 0.7, 0.9999, 1.5}) {
+        const Rgb light = mean_light(shader, {{x, 0, 10}, {0, 0, -1}}, 4);
+        EXPECT_NEAR(light.r, 0.5, 1e-12) << x;
+        EXPECT_NEAR(light.b, 1, 1e-12) << x;
+    }
+}
+
+/// With the angle g between the normal and the middle of the white half, (1 + cos g) / 2.
+TEST(SoftLight, AHalfWhitePictureLightsABallFromThatSide) {
+    std::vector<SkyPicture::Texel> texels(2048 * 2, {0, 0, 0});
+    for (std::size_t i = 0; i < texels.size(); ++i)
+        if (i % 2048 >= 1024) texels[i] = {1, 1, 1}; // z > 0
+    View view = under_sky(Rgb(0.0));
+    view.sky_light->picture = std::make_shared<SkyPicture>(2048, 2, std::move(texels));
+    Scene scene;
+    scene.balls.push_back({Vec3(0.0), 1, Rgb(1.0), matt});
+    const double turned = std::numbers::pi / 3;
+    for (const bool turn : {false, true}) {
+        const Vec3 white = turn ? Vec3(std::sin(turned), 0, std::cos(turned)) : Vec3(0, 0, 1);
+        if (turn) view.sky_light->picture_from_world = Affine::rotate({0, 1, 0}, -60).linear;
+        Shader shader(view, scene);
+        for (const Vec3 normal :
+             {Vec3(0, 0, 1), Vec3(0.6, 0, 0.8), Vec3(-0.6, 0.64, 0.48), Vec3(0, 0.8, 0.6)}) {
+            const Rgb light = mean_light(shader, {normal + Vec3(0, 0, 9), {0, 0, -1}}, 1 << 14);
+            EXPECT_NEAR(light.g, 0.5 * (1 + glm::dot(normal, white)), 0.004) << turn << normal.x;
+        }
+    }
+}
+
+/// One texel of a hundred thousand has most of the light: no sample of any pixel is far from its mean.
+TEST(SoftLight, ASunInAPictureMakesNoSparks) {
+    const int width = 512, height = 256;
+    std::vector<SkyPicture::Texel> texels(static_cast<std::size_t>(width * height), {0.1f, 0.1f, 0.1f});
+    texels[100 * 512 + 400] = {1e4f, 1e4f, 1e4f}; // z > 0, above
+    View view = under_sky(Rgb(0.0));
+    view.sky_light->picture = std::make_shared<SkyPicture>(width, height, std::move(texels));
+    const Material shining{.ambient = 0, .diffuse = 0.7, .specular = 0.3, .roughness = 0.1};
+    Scene scene;
+    scene.walls = {{{0, 0, 1}, 0, Rgb(1.0), shining}};
+    scene.balls = {{{0.5, 0.2, 0.8}, 0.5, Rgb(0.7), matt}};
+    ShaderLimits listed;
+    listed.list = LightListSize{1, 100'000};
+    Shader by_list(view, scene, listed), by_samples(view, scene);
+    const double light = by_list.radiance(ahead).g;
+    EXPECT_GT(light, 0.3) << "0.1 is the sky's";
+    double sum = 0, squares = 0, largest = 0;
+    constexpr int samples = 1 << 14;
+    for (std::uint32_t i = 0; i < samples; ++i) {
+        SampleStream random(0, i);
+        const double sample = by_samples.radiance(ahead, random).g;
+        sum += sample / samples;
+        squares += (sample - light) * (sample - light) / samples;
+        largest = std::max(largest, sample);
+    }
+    EXPECT_NEAR(sum, light, 0.01 * light);
+    EXPECT_LT(std::sqrt(squares), 0.2 * light);
+    EXPECT_LT(largest, 2 * light);
+}
+
+TEST(SoftLight, SamplesAndLongListsOfAPictureAgree) {
+    View view = black_view();
+    std::vector<SkyPicture::Texel> texels;
+    for (int i = 0; i < 32 * 16; ++i) {
+        const float light = i % 37 == 5 ? 20.0f : 0.2f + 0.05f * static_cast<float>(i % 11);
+        texels.push_back({light, 0.7f * light, 0.1f + 0.01f * static_cast<float>(i % 7)});
+    }
+    view.sky_light.emplace();
+    view.sky_light->picture = std::make_shared<SkyPicture>(32, 16, std::move(texels));
+    view.sky_light->picture_from_world = Affine::rotate({0, 1, 0}, 50).linear;
+    view.sky_light->brightness = 0.5;
+    const Material shining{
+        .ambient = 0.1, .diffuse = 0.7, .specular = 0.3, .roughness = 0.1, .translucency = 0.2};
+    Scene scene;
+    scene.balls = {{Vec3(0.0), 1, {0.9, 0.5, 0.2}, shining}, {{0.7, 0.9, 0.8}, 0.5, Rgb(0.7), matt}};
+    ShaderLimits listed;
+    listed.list = LightListSize{1, 100'000};
+    Shader by_list(view, scene, listed), by_samples(view, scene);
+    for (const Vec3 target : {Vec3(0.0), Vec3(0.5, 0.3, 0), Vec3(-0.6, 0.5, 0), Vec3(0.1, -0.9, 0)}) {
+        const Vec3 eye(0, 0, 10);
+        const Ray ray{eye, glm::normalize(target - eye)};
+        const Rgb listed_light = by_list.radiance(ray), sampled = mean_light(by_samples, ray, 1 << 17);
+        for (int c = 0; c < 3; ++c)
+            EXPECT_NEAR(sampled[c], listed_light[c], 0.004 * listed_light[c] + 0.001) << target.x << target.y;
+    }
+}
+
+TEST(SoftLight, SamplesAndLongListsOfLampsAgree) {
+    View view = black_view();
+    view.lights = {
+        {.location = {2, 3, 2}, .rgb = {1, 0.8, 0.6}, .a = {1, 0, -1}, .b = {0, 0.5, 0}},
+        {.location = {-2, 1, 3}, .rgb = {0.3, 0.4, 0.8}, .a = {0.5, 0, 0}, .b = {0, 0.5, 0}, .round = true}};
+    const Material shining{
+        .ambient = 0.1, .diffuse = 0.7, .specular = 0.3, .roughness = 0.1, .translucency = 0.2};
+    Scene scene;
+    scene.balls = {{Vec3(0.0), 1, {0.9, 0.5, 0.2}, shining}, {{0.7, 0.9, 0.8}, 0.5, Rgb(0.7), matt}};
+    ShaderLimits listed;
+    listed.list = LightListSize{.area = 100'000};
+    Shader by_list(view, scene, listed), by_samples(view, scene);
+    EXPECT_FALSE(by_list.samples());
+    for (const Vec3 target : {Vec3(0.0), Vec3(0.5, 0.3, 0), Vec3(-0.6, 0.5, 0), Vec3(0.1, -0.9, 0)}) {
+        const Vec3 eye(0, 0, 10);
+        const Ray ray{eye, glm::normalize(target - eye)};
+        const Rgb listed_light = by_list.radiance(ray), sampled = mean_light(by_samples, ray, 1 << 15);
+        for (int c = 0; c < 3; ++c)
+            EXPECT_NEAR(sampled[c], listed_light[c], 0.0015) << target.x << target.y;
     }
 }
 

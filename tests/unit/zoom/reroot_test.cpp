@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <memory>
 #include <set>
 
 #include <boost/multiprecision/cpp_int.hpp>
@@ -282,13 +283,47 @@ TEST(Reroot, StepsCountFromTheOldRoot) {
     EXPECT_GE(most, 8u);
 }
 
+/// A picture shows an object in the object's own frame: the world turns the other way.
+TEST(Reroot, TheSkysPictureStaysInTheWorld) {
+    const Affine world_from_part = Affine::rotate({0, 0, 1}, 90) * Affine::scale(Vec3(0.5));
+    Graph graph;
+    graph.primitive(PrimitiveKind::triangle);
+    Object part{"part", {}, {}, {}, {}}, root{"root", {}, {}, {}, {}};
+    part.instances.push_back({0, {}, {}, {}, {}});
+    root.instances.push_back({graph.add(std::move(part)), world_from_part, {}, {}, {}});
+    graph.root = graph.add(std::move(root));
+    const Components components = strong_components(graph);
+    const std::vector<ObjectBounds> bounds = bounds_of(graph);
+    const auto picture = std::make_shared<const SkyPicture>(
+        2, 2, std::vector<SkyPicture::Texel>{{1, 0, 0}, {2, 0, 0}, {3, 0, 0}, {4, 0, 0}});
+    const FrameObject frame = [&](ObjectId, unsigned) {
+        View view = face_on(2.5);
+        view.sky_light.emplace();
+        view.sky_light->picture = picture;
+        return view;
+    };
+    Diagnostics diagnostics;
+    std::string problem;
+    ZoomRequest request;
+    request.at = parse_address("part", problem);
+    const std::optional<GraphPath> at = find_path(graph, *request.at, diagnostics);
+    const std::optional<Rerooted> rerooted =
+        reroot({graph, components, bounds, {}, at}, request, frame, {}, diagnostics);
+    ASSERT_TRUE(rerooted);
+    const SkyLight& sky = *rerooted->view.sky_light;
+    const Mat3 part_from_world = Affine::rotate({0, 0, 1}, -90).linear;
+    for (const Vec3 direction : {Vec3(1, 0, 0), Vec3(0, 0.6, 0.8), Vec3(-0.6, 0, 0.8), Vec3(0, -1, 0)})
+        EXPECT_NEAR(sky.radiance(part_from_world * direction).r, picture->radiance(direction).r, 1e-9);
+}
+
 TEST(Reroot, LightsAndGroundFollow) {
     const Graph graph = corner_maps(triangle, {});
     const Components components = strong_components(graph);
     const std::vector<ObjectBounds> bounds = bounds_of(graph);
     const FrameObject frame = [](ObjectId, unsigned) {
         View view = face_on(2.5);
-        view.lights = {{.location = Vec3(0, 3, 0)}, {.location = Vec3(0, 1, 0), .sun = true}};
+        view.lights = {{.location = Vec3(0, 3, 0), .a = Vec3(0, 0, 0.5), .b = Vec3(0.25, 0, 0)},
+                       {.location = Vec3(0, 1, 0), .sun = true}};
         view.ground = Ground{1.0, {}};
         return view;
     };
@@ -303,6 +338,9 @@ TEST(Reroot, LightsAndGroundFollow) {
     };
     EXPECT_EQ(zoomed("4").lights[0].location, Vec3(0, 8, 0));
     EXPECT_FALSE(zoomed("4").lights[0].sun);
+    EXPECT_EQ(zoomed("4").lights[0].a, Vec3(0, 0, 2));
+    EXPECT_EQ(zoomed("4").lights[0].b, Vec3(1, 0, 0));
+    EXPECT_FALSE(zoomed("1e100").lights[0].is_area());
     EXPECT_TRUE(zoomed("1e100").lights[0].sun);
     EXPECT_LT(glm::distance(zoomed("1e100").lights[0].location, Vec3(0, 1, 0)), 1e-12);
     EXPECT_TRUE(zoomed("1e100").lights[1].sun);

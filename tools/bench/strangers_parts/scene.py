@@ -52,6 +52,24 @@ def png(draw):
         chunk(b'IDAT', zlib.compress(rows)) + chunk(b'IEND', b'')
 
 
+def hdr(draw):
+    """Light of all directions, of any proportions."""
+    width, height = (draw.whole(1, 40), draw.whole(1, 40)) if draw.chance(0.5) else (32, 16)
+    texels = b''.join(bytes(draw.whole(0, 255) for _ in range(3)) + bytes([draw.whole(110, 140)])
+                      for _ in range(width * height))
+    return f'#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y {height} +X {width}\n'.encode() + texels
+
+
+def environment(draw, model):
+    """The fields of a sky."""
+    name = draw.pick(['sky.hdr', 'sky.png'])
+    model.files[name] = hdr(draw) if name == 'sky.hdr' else png(draw)
+    fields = [f'environment: "{name}"']
+    if draw.chance(0.5):
+        fields.append(f'turn: {number(draw.uniform(-360, 360))}')
+    return fields
+
+
 def materials(draw, model, most=3):
     """Declares some, and returns their names; model.files gets their pictures."""
     names = []
@@ -96,7 +114,7 @@ def surroundings(draw, model):
     while draw.chance(0.15):
         if draw.chance(0.5):
             model.say(f'light {{ location: {numbers([10 * draw.normal() for _ in range(3)])}  color: {colour(draw)}'
-                      f'{"  shadowless" if draw.chance(0.3) else ""} }}')
+                      f'{lamp_fields(draw)} }}')
         else:
             model.say(f'light {{ sun: {numbers([draw.uniform(-1, 1), draw.uniform(0.1, 1), draw.uniform(-1, 1)])}'
                       f'  color: {colour(draw)}{sun_fields(draw)} }}')
@@ -106,6 +124,17 @@ def surroundings(draw, model):
                   f'background: {colour(draw)}')
     if draw.chance(0.1):
         model.say(f'ground {{ height: {number(draw.uniform(-2, 0.2))}  color: {colour(draw)} }}')
+
+
+def lamp_fields(draw):
+    """An area, or no shadows, now and then."""
+    if draw.chance(0.3):
+        return '  shadowless'
+    if draw.chance(0.5):
+        return ''
+    sides = [draw.log_uniform(0.01, 30) for _ in range(2)]
+    shape = f'size: {numbers(sides)}' if draw.chance(0.5) else f'radius: {number(sides[0])}'
+    return f'  {shape}  look_at: {numbers([draw.normal() for _ in range(3)])}'
 
 
 def sun_fields(draw):
@@ -127,6 +156,8 @@ def soft_light(draw, model):
             model.say(f'light {{ sun: {numbers([draw.uniform(-1, 1), draw.uniform(-0.2, 1), draw.uniform(-1, 1)])}'
                       f'{sun_fields(draw)} }}')
             fields = [f'clear: {number(draw.uniform(2, 10))}']
+        elif draw.chance(0.4):
+            fields = environment(draw, model)
         else:
             fields = [f'{name}: {colour(draw)}' for name in ('zenith', 'horizon', 'below') if draw.chance(0.6)]
             fields = fields or ['zenith: 1, 1, 1']

@@ -79,7 +79,7 @@ def leftovers(name, row, out, temporary):
     found = {path.name for path in out.iterdir()}
     if expected and expected not in found:
         return ['no result']
-    palettes = {file for file in found if expected and re.search(r'_[IPT]_\d+\.png$', file)}
+    palettes = {file for file in found if expected and re.search(r'_[IPT]_\d+\.png$|_sky\.exr$', file)}
     extra = found - {expected} - palettes | {path.name for path in temporary.iterdir()}
     return ['leaves ' + ' '.join(sorted(extra)[:3])] if extra else []
 

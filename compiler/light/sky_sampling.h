@@ -1,0 +1,44 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include <glm/vec2.hpp>
+
+#include "compiler/support/affine.h"
+
+namespace graftal {
+
+/// Directions by chance, more of them where a picture of the sky is bright: in longitude and latitude their
+/// density runs linearly between the middles of texels, as the light does. It is found as a texel, by a table
+/// of rows and one of each row's columns (Pharr, Jakob and Humphreys, "Physically Based Rendering", 3rd ed.,
+/// 14.2.4), and a way from its middle, by a tent. Only the light above the mean counts, since another
+/// strategy finds the rest as well: Karlik, Sik, Vevoda, Skrivan and Krivanek, "MIS Compensation" (2019).
+class SkySampling {
+  public:
+    /// `light` of texels, row by row, the top first. Requires that each is finite and not negative.
+    SkySampling(int width, int height, std::span<const float> light);
+
+    /// Whether any light is above the mean; else no direction has a density.
+    bool any() const { return any_; }
+
+    /// Of two numbers in [0, 1). Requires any().
+    Vec3 direction(glm::dvec2 place) const;
+    /// Of direction(), a steradian. Requires a unit vector.
+    double density(Vec3 direction) const;
+
+  private:
+    double row_chance(std::size_t row) const { return row > 0 ? rows_[row] - rows_[row - 1] : rows_[0]; }
+    /// Of the columns as they are rounded: what sampling and its density make of them is the same.
+    double column_chance(std::size_t row, std::size_t column) const {
+        const float* const chances = columns_.data() + row * width_;
+        return column > 0 ? chances[column] - chances[column - 1] : chances[0];
+    }
+
+    std::size_t width_, height_;
+    bool any_ = false;
+    std::vector<double> rows_;   ///< the chance of this row or one before
+    std::vector<float> columns_; ///< likewise within a row
+};
+
+} // namespace graftal

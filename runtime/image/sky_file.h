@@ -1,0 +1,23 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "compiler/light/sky_picture.h"
+#include "compiler/support/file.h"
+#include "compiler/support/status.h"
+
+namespace graftal {
+
+/// The sky in the picture of a file, reduced while it is read: to at most so many texels, and
+/// most_sky_columns across and down. Samples of EXR and HDR files are linear, all others sRGB; alpha is of no
+/// account. What is no light is mended and counted: negative samples and those that are no numbers become 0,
+/// larger ones most_radiance. Requires most_texels > 0.
+Status read_sky_picture(const std::string& path, std::uint64_t most_texels, LoadedSkyPicture& loaded);
+
+/// Writes it times a factor as POV-Ray is to read it: EXR, which POV-Ray takes in half precision, so that no
+/// light is above 65504. A low picture is written with more rows, and the same light between them: POV-Ray
+/// mixes the two poles within half a row. Does not commit.
+Status write_sky_picture(const PendingFile& pending, const SkyPicture& picture, double factor);
+
+} // namespace graftal

@@ -51,8 +51,8 @@ using OnFile = std::function<void(const std::string& path)>;
 
 /// Whom lowering asks on its way.
 struct LowerHelp {
-    LookAtTexture look_at_texture;        ///< without this, textures are taken on trust
-    Control control;                      ///< follows modules, parts and objects
+    LookAtTexture look_at_texture; ///< without this, textures are taken on trust
+    Control control;               ///< follows modules, parts and objects
     OnFile on_file = {};
     LoadSkyPicture load_sky_picture = {}; ///< without this, environments are taken on trust, and are white
 };

@@ -178,14 +178,14 @@ TEST_F(Native, NoSpaceIsStatusThreeAndLeavesTheOldPicture) {
                         2 * kib, arguments));
     };
     write("a.png", "old");
-    const RunResult none = with_room(1, elm + "--size 320x180");
+    const RunResult none = with_room(1, elm + "--plain-light --size 320x180");
     EXPECT_EQ(none.status, 3);
     EXPECT_EQ(none.err, "graftal: cannot write picture 'a.png': File too large\n");
     EXPECT_EQ(read("a.png"), "old");
     EXPECT_EQ(files(), "a.png");
 
     // The first of the pictures is small, the last is not.
-    const RunResult some = with_room(6, elm + "--size 320x180 --progressive");
+    const RunResult some = with_room(6, elm + "--plain-light --size 320x180 --progressive");
     EXPECT_EQ(some.status, 3);
     EXPECT_THAT(some.err, StartsWith("graftal: cannot write picture 'a.png': File too large\n"
                                      "a.png: unfinished: 1 sample per "));

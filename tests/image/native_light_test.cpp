@@ -86,7 +86,7 @@ const LitScene scenes[] = {
         light { location: 0, 3, 6 color: 1, 1, 1 }
         ground { height: -0.5 material: satin color: 0.3, 0.5, 0.2 }
     )"},
-    {"AutomaticLights", {160, 120}, balls_and_blocks + on_magenta},
+    {"AutomaticLights", {160, 120}, balls_and_blocks + on_magenta, false},
     {"AutomaticLightsOnGround",
      {150, 130},
      balls_and_blocks + on_magenta + "ground { height: 0 material: rough }"},

@@ -17,6 +17,7 @@ StageOptions zoomed(const std::string& at, const std::string& zoom, ImageSize si
     StageOptions options;
     options.view.size = size;
     std::string problem;
+    options.view.light = DefaultLight::plain; // of dozens of lights, roundings add up
     options.view.zoom.at = parse_address(at, problem);
     EXPECT_EQ(problem, "");
     options.view.zoom.zoom = Magnification::parse(zoom);

@@ -1,6 +1,7 @@
 #include "compiler/graph/graph.h"
 
 #include <algorithm>
+#include <cmath>
 #include <unordered_map>
 
 #include "compiler/graph/attributes.h"
@@ -80,6 +81,17 @@ std::size_t union_count(const Graph& graph) {
 bool same_finish(const Material& a, const Material& b) {
     return std::ranges::all_of(finish_numbers,
                                [&](const FinishNumber& row) { return a.*row.value == b.*row.value; });
+}
+
+Interior interior_of(const Material& material) {
+    constexpr double least_bending = 1.000001;
+    constexpr double least_left = 1e-4; // of a colour's component, which may be 0
+    Interior interior{std::max(material.ior, least_bending), Rgb(0.0)};
+    if (material.absorption > 0)
+        for (int c = 0; c < 3; ++c)
+            interior.absorbed[c] =
+                -std::log(std::clamp(material.rgb[c], least_left, 1.0)) / material.absorption;
+    return interior;
 }
 
 bool Material::operator==(const Material& other) const {

@@ -3,62 +3,16 @@
 #include <memory>
 #include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
+#include "compiler/graph/material.h"
 #include "compiler/light/film.h"
 #include "compiler/light/sky_picture.h"
 #include "compiler/support/affine.h"
 #include "compiler/support/flat_area.h"
-#include "compiler/support/source.h"
 #include "compiler/support/tint.h"
 
 namespace graftal {
-
-/// How a surface takes light; the numbers are POV-Ray's finish, which the tracer follows too.
-struct Material {
-    std::string name;
-    Rgb rgb{0.8};
-    double ambient = 0.1;
-    double diffuse = 0.8;
-    double specular = 0.1;
-    double roughness = 0.05;
-    double reflection = 0;
-    double translucency = 0; ///< diffuse light that comes through, from behind: of leaves and paper
-    double emission = 0;     ///< light of its own
-    /// The picture that is wrapped round each primitive in place of rgb (texture_space.h), by the file it is
-    /// read from or the model it is drawn from; empty: none. Where its alpha is below 1/2 there is no
-    /// surface.
-    std::string texture;
-    double around = 1;   ///< how often it goes round what is round
-    double coverage = 1; ///< share of the picture that is not clear
-    Span span;
-
-    /// Spans do not count.
-    bool operator==(const Material& other) const;
-};
-
-/// One number of a surface's finish: a row of the table that texts, checks and comparisons read.
-struct FinishNumber {
-    std::string_view name; ///< in models
-    double Material::*value;
-    double most = 1;
-    bool positive = false; ///< and not 0
-    bool always = true;    ///< `print` writes it, also where it is as it would be anyhow
-};
-
-inline constexpr FinishNumber finish_numbers[] = {
-    {"ambient", &Material::ambient},
-    {"diffuse", &Material::diffuse},
-    {"specular", &Material::specular},
-    {.name = "roughness", .value = &Material::roughness, .positive = true},
-    {"reflection", &Material::reflection},
-    {.name = "translucency", .value = &Material::translucency, .always = false},
-    {.name = "emission", .value = &Material::emission, .most = 1e6, .always = false},
-};
-
-/// Whether the finishes are equal, whatever the colours.
-bool same_finish(const Material& a, const Material& b);
 
 /// What the model says about the camera; what it leaves out is framed automatically (scene/framing.h).
 struct CameraSetting {

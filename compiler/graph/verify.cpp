@@ -126,6 +126,10 @@ class Verifier {
                     return std::isfinite(material.*row.value);
                 });
             if (!numbers) flaw(graph_.root, "material '{}' has a number that is not finite", material.name);
+            if (material.metallic > 0 && material.has_coat())
+                flaw(graph_.root, "material '{}' is a metal with an index of refraction", material.name);
+            if (material.absorption > 0 && !material.is_transparent())
+                flaw(graph_.root, "material '{}' is opaque and absorbs", material.name);
         }
     }
 

@@ -80,8 +80,10 @@ void InstLowerer::check_names(const InstDefinition& definition) {
     for (const InstGroup& group : definition.groups) {
         for (const InstReference& reference : group.masters)
             if (!check_reference(reference)) unknown_.insert(&reference);
-        if (group.material && !materials_.contains(*group.material))
-            material_named(*group.material, group.material_span, graph_, diagnostics_);
+        if (!group.material || materials_.contains(*group.material)) continue;
+        if (const auto id =
+                material_named(*group.material, group.material_span, graph_.materials, diagnostics_))
+            materials_.emplace(*group.material, *id);
     }
 }
 

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "compiler/lower/lower_light.h"
+#include "compiler/lower/named_materials.h"
 #include "compiler/lower/scene_fields.h"
 #include "compiler/support/number.h"
 
@@ -19,6 +20,7 @@ using Kind = SceneStatement::Kind;
 
 constexpr double most_steps = 1e9;
 constexpr unsigned most_around = 1000;
+constexpr std::size_t most_candidate_materials = 1000;
 
 bool is_let(const SceneStatement& statement) {
     return statement.kind == Kind::let || statement.kind == Kind::inner;
@@ -90,25 +92,65 @@ void read_texture(const SceneField& field, bool take_colour, Lowering& lowering,
 void lower_texture(const SceneFields& fields, Lowering& lowering, Material& material) {
     if (const SceneField* texture = fields.find("texture"))
         read_texture(*texture, !fields.flag("color"), lowering, material);
-    else if (fields.flag("around"))
+    else if (fields.flag("around") && material.texture.empty())
         fields.error(
             "around",
             "'around' sets how often a texture repeats around the shape, but the material has no texture");
-    material.around = fields.whole("around", 1, most_around).value_or(1);
+    if (const auto around = fields.whole("around", 1, most_around)) material.around = *around;
+    // POV-Ray would bend and colour light in the holes too.
+    if (material.coverage < 1 && (material.has_coat() || material.absorption > 0))
+        fields.error_at_statement("the picture of this material has clear parts, so that it is no solid",
+                                  "leave out 'ior' and 'absorption'");
 }
 
-Material lower_material(const SceneFields& fields, const SceneStatement& statement, Lowering& lowering) {
-    Material material;
-    material.name = statement.name;
-    material.span = statement.span;
-    material.rgb = fields.color("color").value_or(material.rgb);
+void lower_finish(const SceneFields& fields, Material& material) {
     for (const FinishNumber& row : finish_numbers) {
-        const auto good = [&](double x) { return (row.positive ? x > 0 : x >= 0) && x <= row.most; };
-        const std::string range = row.positive ? fmt::format("be above 0 and at most {}", row.most)
-                                               : fmt::format("lie between 0 and {}", row.most);
+        const auto good = [&](double x) {
+            return (row.positive ? x > row.least : x >= row.least) && x <= row.most;
+        };
+        const std::string range = row.positive
+                                      ? fmt::format("be above {} and at most {}", row.least, row.most)
+                                      : fmt::format("lie between {} and {}", row.least, row.most);
         double& value = material.*row.value;
         value = fields.number(row.name, good, range).value_or(value);
     }
+    // All of Fresnel's, unless it says how much.
+    if (fields.flag("ior") && !fields.flag("reflection")) material.reflection = material.has_coat() ? 1 : 0;
+    if (!material.is_transparent() && fields.flag("absorption"))
+        fields.error("absorption", "'absorption' colours what goes through; give 'transparency' as well");
+    if (!material.is_transparent()) material.absorption = 0;
+    if (material.metallic > 0 && material.has_coat())
+        fields.error(fields.flag("metallic") ? "metallic"
+                     : fields.flag("ior")    ? "ior"
+                                             : "from",
+                     "a metal reflects by its colour, and has no 'ior'; leave out one of the two");
+}
+
+/// What a material is except for its own fields. `before`: the materials of the statements above.
+Material base_of(const SceneFields& fields, std::string_view own_name,
+                 const std::vector<SceneStatement>& statements, const std::vector<Material>& before,
+                 Diagnostics& diagnostics) {
+    const SceneField* const from = fields.find("from");
+    if (!from) return {};
+    const auto of_name = std::ranges::find_if(statements, [&](const SceneStatement& statement) {
+        return statement.kind == Kind::material && statement.name == from->name && from->name != own_name;
+    });
+    if (of_name != statements.end() &&
+        std::ranges::find(before, from->name, &Material::name) == before.end()) {
+        diagnostics.error(from->name_span, fmt::format("material '{}' is not known here yet", from->name))
+            .with_note(of_name->span, "defined here: move it up");
+        return {};
+    }
+    const Material* const base = find_material(from->name, from->name_span, before, diagnostics);
+    return base ? *base : Material();
+}
+
+Material lower_material(const SceneFields& fields, const SceneStatement& statement, Material material,
+                        Lowering& lowering) {
+    material.name = statement.name;
+    material.span = statement.span;
+    material.rgb = fields.color("color").value_or(material.rgb);
+    lower_finish(fields, material);
     lower_texture(fields, lowering, material);
     return material;
 }
@@ -236,7 +278,10 @@ void lower_settings(const std::vector<SceneStatement>& statements, const Environ
             graph.settings.ground = lower_ground(fields);
             break;
         case Kind::material:
-            graph.materials.push_back(lower_material(fields, statement, lowering));
+            graph.materials.push_back(lower_material(
+                fields, statement,
+                base_of(fields, statement.name, statements, graph.materials, lowering.diagnostics),
+                lowering));
             break;
         case Kind::steps:
             graph.settings.steps = lower_steps(fields);
@@ -266,21 +311,36 @@ void lower_settings(const std::vector<SceneStatement>& statements, const Environ
     for (const SceneStatement& statement : statements)
         for (const SceneField& field : statement.fields)
             if (statement.kind == Kind::ground && field.keyword == "material")
-                material_named(field.name, field.name_span, graph, lowering.diagnostics);
+                material_named(field.name, field.name_span, graph.materials, lowering.diagnostics);
 }
 
-std::optional<MaterialId> material_named(std::string_view name, Span span, const Graph& graph,
-                                         Diagnostics& diagnostics) {
-    for (MaterialId id = 0; id < graph.materials.size(); ++id)
-        if (graph.materials[id].name == name) return id;
+const Material* find_material(std::string_view name, Span span, const std::vector<Material>& materials,
+                              Diagnostics& diagnostics) {
+    const auto find = [&](const std::vector<Material>& list) -> const Material* {
+        const auto found = std::ranges::find(list, name, &Material::name);
+        return found == list.end() ? nullptr : &*found;
+    };
+    if (const Material* own = find(materials)) return own;
+    if (const Material* common = find(named_materials())) return common;
     std::vector<std::string> known;
-    for (const Material& material : graph.materials)
-        known.push_back(material.name);
+    for (const std::vector<Material>* list : {&materials, &named_materials()})
+        for (const Material& material : *list)
+            if (known.size() < most_candidate_materials) known.push_back(material.name);
     const std::string hint = choices(name, known);
     diagnostics.error(span, fmt::format("unknown material '{}'", name))
-        .with_hint(hint.empty() ? fmt::format("material {} {{ color: 0.5, 0.4, 0.1 }} defines it", name)
-                                : hint);
-    return std::nullopt;
+        .with_hint(did_you_mean(name, known).empty()
+                       ? fmt::format("material {} {{ color: 0.5, 0.4, 0.1 }} defines it; {}", name, hint)
+                       : hint);
+    return nullptr;
+}
+
+std::optional<MaterialId> material_named(std::string_view name, Span span, std::vector<Material>& materials,
+                                         Diagnostics& diagnostics) {
+    const Material* const material = find_material(name, span, materials, diagnostics);
+    if (!material) return std::nullopt;
+    const auto known = std::ranges::find(materials, name, &Material::name) - materials.begin();
+    if (static_cast<std::size_t>(known) == materials.size()) materials.push_back(*material);
+    return static_cast<MaterialId>(known);
 }
 
 } // namespace graftal

@@ -25,8 +25,12 @@ std::optional<double> set_value(std::string_view setting, const Environment& let
 void lower_settings(const std::vector<SceneStatement>& statements, const Environment& lets, Graph& graph,
                     Lowering& lowering);
 
-/// The material of this name, or nothing after the error "unknown material" with a suggestion.
-std::optional<MaterialId> material_named(std::string_view name, Span span, const Graph& graph,
+/// The material of this name: of the list, else of those that every model knows (named_materials.h). Null
+/// after the error "unknown material" with a suggestion.
+const Material* find_material(std::string_view name, Span span, const std::vector<Material>& materials,
+                              Diagnostics& diagnostics);
+/// The same in the list, which then has it.
+std::optional<MaterialId> material_named(std::string_view name, Span span, std::vector<Material>& materials,
                                          Diagnostics& diagnostics);
 
 } // namespace graftal

@@ -442,9 +442,10 @@ class Drawer {
     /// The materials that the block names, else ours.
     bool choose_palette(const Graph& graph) {
         for (const Name& name : grammar_.source->colors) {
-            const std::optional<MaterialId> id = material_named(name.text, name.span, graph, diagnostics_);
-            if (!id) return false;
-            palette_.push_back(graph.materials[*id]);
+            const Material* const material =
+                find_material(name.text, name.span, graph.materials, diagnostics_);
+            if (!material) return false;
+            palette_.push_back(*material);
         }
         if (!palette_.empty()) return true;
         const bool coloured = grammar_.uses(

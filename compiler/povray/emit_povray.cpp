@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <iterator>
+#include <optional>
 #include <string_view>
+#include <tuple>
 
 #include <fmt/format.h>
 
@@ -13,6 +16,7 @@
 #include "compiler/povray/sdl_writer.h"
 #include "compiler/scene/ground.h"
 #include "compiler/support/check.h"
+#include "compiler/support/number.h"
 
 namespace graftal {
 
@@ -29,9 +33,10 @@ struct Range {
     std::size_t begin, end;
 };
 
-/// What becomes one union: all placements of one texture, whatever groups they come from.
+/// What becomes one union: all placements of one texture and interior, whatever groups they come from.
 struct Bucket {
     std::uint32_t texture;
+    std::optional<Interior> interior;
     std::vector<Range> ranges;
     std::vector<const RunPlacements*> runs;
     std::uint64_t count = 0;
@@ -40,6 +45,7 @@ struct Bucket {
 /// Planes are objects of their own: an infinite part would take a union out of POV-Ray's tree.
 struct Plane {
     std::uint32_t texture;
+    std::optional<Interior> interior;
     const Placement* placement;
 };
 
@@ -49,6 +55,12 @@ std::string picture_stem(const PovrayOptions& options) {
     if (!options.include || name.empty()) return harmless(options.scene_name);
     if (name.ends_with(".inc")) name.remove_suffix(4);
     return harmless(name);
+}
+
+/// Nothing where no ray asks for it.
+std::optional<Interior> declared_interior(const Material& material) {
+    if (!material.is_transparent() && !material.has_coat()) return std::nullopt;
+    return interior_of(material);
 }
 
 class Emitter {
@@ -70,6 +82,7 @@ class Emitter {
     void write_header();
     bool write_objects();
     bool write_bucket(const Bucket& bucket);
+    std::string interior_text(const Interior& interior) const;
     void write_usage(const std::vector<std::string>& materials, bool pictures);
     bool needs_fine_bailout() const { return textures_.least_transmit() < default_bailout; }
 
@@ -88,16 +101,23 @@ class Emitter {
 };
 
 void Emitter::sort_into_buckets() {
-    std::vector<std::uint32_t> bucket_of_texture;
+    std::vector<std::vector<std::uint32_t>> buckets_of_texture;
     for (std::uint32_t g = 0; g < cut_.groups.size(); ++g) {
         const PlacementGroup& group = cut_.groups[g];
         if (group.placements.empty() && group.runs.empty()) continue;
         const std::uint32_t texture = textures_.texture_of(group);
-        if (texture == bucket_of_texture.size()) {
-            bucket_of_texture.push_back(static_cast<std::uint32_t>(buckets_.size()));
-            buckets_.push_back({.texture = texture});
+        const std::optional<Interior> interior = declared_interior(group.material);
+        if (texture == buckets_of_texture.size()) buckets_of_texture.emplace_back();
+        std::vector<std::uint32_t>& alike = buckets_of_texture[texture];
+        const auto known =
+            std::ranges::find(alike, interior, [&](std::uint32_t b) { return buckets_[b].interior; });
+        const std::uint32_t number =
+            known == alike.end() ? static_cast<std::uint32_t>(buckets_.size()) : *known;
+        if (known == alike.end()) {
+            alike.push_back(number);
+            buckets_.push_back({.texture = texture, .interior = interior});
         }
-        Bucket& bucket = buckets_[bucket_of_texture[texture]];
+        Bucket& bucket = buckets_[number];
         std::size_t begin = 0;
         const auto close_range = [&](std::size_t end) {
             if (end > begin) bucket.ranges.push_back({g, begin, end});
@@ -106,7 +126,7 @@ void Emitter::sort_into_buckets() {
         };
         for (std::size_t i = 0; i < group.placements.size(); ++i) {
             if (!bodies_.is_plane(group.placements[i].body)) continue;
-            planes_.push_back({texture, &group.placements[i]});
+            planes_.push_back({texture, interior, &group.placements[i]});
             close_range(i);
         }
         close_range(group.placements.size());
@@ -116,6 +136,11 @@ void Emitter::sort_into_buckets() {
         }
     }
     std::erase_if(buckets_, [](const Bucket& bucket) { return bucket.count == 0; });
+    std::ranges::stable_sort(buckets_, {}, [](const Bucket& bucket) {
+        const Interior interior = bucket.interior.value_or(Interior());
+        return std::tuple(bucket.interior.has_value(), interior.ior, interior.absorbed.r, interior.absorbed.g,
+                          interior.absorbed.b);
+    });
 }
 
 void Emitter::write_header() {
@@ -149,18 +174,48 @@ bool Emitter::write_bucket(const Bucket& bucket) {
 }
 
 bool Emitter::write_objects() {
-    for (const Bucket& bucket : buckets_)
-        if (!write_bucket(bucket)) return false;
-    for (const Plane& plane : planes_)
+    // One interior for all that has it: a ray that enters one part may leave another.
+    for (auto first = buckets_.begin(); first != buckets_.end();) {
+        const auto next = std::find_if(
+            first, buckets_.end(), [&](const Bucket& bucket) { return bucket.interior != first->interior; });
+        if (first->interior) out_ << "union {\n";
+        for (; first != next; ++first)
+            if (!write_bucket(*first)) return false;
+        const std::optional<Interior>& interior = std::prev(next)->interior;
+        if (interior) out_ << "  " << interior_text(*interior) << "\n}\n";
+    }
+    for (const Plane& plane : planes_) {
+        std::string look = texture_texts_[plane.texture];
+        if (plane.interior) look += " " + interior_text(*plane.interior);
         bodies_.place(out_, plane.placement->body, units_.pov_from_world() * plane.placement->world_from_body,
-                      texture_texts_[plane.texture]);
+                      look);
+    }
     return !out_.stopped();
 }
 
-bool reflects(const Cut& cut, const View& view) {
-    return (view.ground && view.ground->material.reflection > 0) ||
-           std::any_of(cut.groups.begin(), cut.groups.end(),
-                       [](const PlacementGroup& group) { return group.material.reflection > 0; });
+/// Absorbed by a medium: POV-Ray's `fade_distance` dims nothing that lies in the solid.
+std::string Emitter::interior_text(const Interior& interior) const {
+    constexpr int digits = 9;
+    std::string text = "interior { ior ";
+    append_number(text, interior.ior, digits);
+    if (interior.absorbed != Rgb(0.0)) {
+        text += " media { method 1 intervals 1 samples 1,1 absorption rgb <";
+        for (int c = 0; c < 3; ++c) {
+            if (c > 0) text += ",";
+            append_number(text, interior.absorbed[c] / units_.scale, digits);
+        }
+        text += "> }";
+    }
+    return text + " } hollow";
+}
+
+/// Whether rays go on from some surface.
+bool leads_on(const Cut& cut, const View& view) {
+    const auto leads = [](const Material& material) {
+        return material.reflection > 0 || material.is_transparent();
+    };
+    return (view.ground && leads(view.ground->material)) ||
+           std::ranges::any_of(cut.groups, leads, &PlacementGroup::material);
 }
 
 bool Emitter::write_scene(const View& view, std::vector<PaletteImage>& pictures) {
@@ -175,11 +230,13 @@ bool Emitter::write_scene(const View& view, std::vector<PaletteImage>& pictures)
         out_.vector(view.ambient_light(), 7);
     }
     if (needs_fine_bailout()) out_ << " " << fine_bailout;
-    out_ << (reflects(cut_, view) ? std::string_view(" max_trace_level 8 }\n") : " }\n");
-    const std::string ground =
-        view.ground ? textures_.ground(view.ground->material,
-                                       units_.pov_from_world() * world_from_picture(*view.ground))
-                    : "";
+    out_ << (leads_on(cut_, view) ? std::string_view(" max_trace_level 32 }\n") : " }\n");
+    std::string ground = view.ground
+                             ? textures_.ground(view.ground->material,
+                                                units_.pov_from_world() * world_from_picture(*view.ground))
+                             : "";
+    if (const auto interior = view.ground ? declared_interior(view.ground->material) : std::nullopt)
+        ground += " " + interior_text(*interior);
     std::string sky_file;
     if (view.shows_sky_light && view.sky_light->picture) {
         sky_file = picture_stem(options_) + "_sky.exr";

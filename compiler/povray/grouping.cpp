@@ -27,7 +27,7 @@ std::string body_name(const Primitive& primitive) {
 constexpr double tint_grain = 1.0 / (1 << 24);
 
 bool share_finish(const Material& a, const Material& b) {
-    return same_finish(a, b) && a.texture == b.texture;
+    return same_finish(a, b) && a.texture == b.texture && interior_of(a) == interior_of(b);
 }
 
 } // namespace

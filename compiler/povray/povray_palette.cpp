@@ -24,7 +24,7 @@ void append_colour(std::string& out, Rgb rgb) {
 }
 
 /// Each colour from one step to the next: two entries at each step, the old colour and the new.
-std::string colour_map(const Palette& palette) {
+std::string colour_map(const Palette& palette, const std::string& clear) {
     std::string text = "uv_mapping gradient x color_map {";
     const double count = static_cast<double>(palette.size());
     for (std::size_t i = 0; i < palette.size(); ++i)
@@ -33,6 +33,7 @@ std::string colour_map(const Palette& palette) {
             append_number(text, static_cast<double>(edge) / count, step_digits);
             text += " ";
             append_colour(text, palette[i]);
+            if (!clear.empty()) text += " " + clear;
             text += "]";
         }
     return text + " }";
@@ -56,9 +57,14 @@ std::pair<double, double> PaletteLayout::uv(std::uint32_t slot) const {
     return {u, 1 - (slot / width + 0.5) / height_};
 }
 
-std::string palette_pigment(const Palette& palette, const std::string& file_name) {
-    if (!PaletteLayout(static_cast<std::uint32_t>(palette.size())).picture()) return colour_map(palette);
-    return fmt::format("uv_mapping image_map {{ png \"{}\" gamma 1.0 }}", file_name);
+std::string palette_pigment(const Palette& palette, const std::string& file_name, const std::string& clear) {
+    if (!PaletteLayout(static_cast<std::uint32_t>(palette.size())).picture())
+        return colour_map(palette, clear);
+    return fmt::format("uv_mapping image_map {{ png \"{}\" gamma 1.0 {}}}", file_name, clear_image(clear));
+}
+
+std::string clear_image(const std::string& clear) {
+    return clear.empty() ? clear : std::string(clear).insert(clear.find(' '), " all") + " ";
 }
 
 PaletteImage palette_image(const Palette& palette, std::string file_name) {

@@ -30,8 +30,13 @@ class PaletteLayout {
     int height_ = 0;
 };
 
-/// The pigment of a palette: `uv_mapping ...`, a colour map, or a picture of the given file name.
-std::string palette_pigment(const Palette& palette, const std::string& file_name);
+/// The pigment of a palette: `uv_mapping ...`, a colour map, or a picture of the given file name. `clear`:
+/// what each colour says of light that goes through, such as "filter 0.5"; or nothing.
+std::string palette_pigment(const Palette& palette, const std::string& file_name,
+                            const std::string& clear = {});
+
+/// The same for all colours of an image map, with a space behind it; nothing for nothing.
+std::string clear_image(const std::string& clear);
 
 /// The picture, over the palette's own colours. Requires a palette whose layout is one.
 PaletteImage palette_image(const Palette& palette, std::string file_name);

@@ -34,23 +34,51 @@ std::string number_text(double value) {
     return text;
 }
 
-std::string finish_text(const Material& m, bool shining) {
+/// What scatters light.
+std::string matt_text(const Material& m) {
     std::string text = fmt::format("ambient {} diffuse {}", number_text(m.ambient), number_text(m.diffuse));
     if (m.translucency > 0) text += ", " + number_text(m.translucency);
     if (m.emission > 0) text += " emission " + number_text(m.emission);
-    if (shining && m.specular > 0)
-        text += fmt::format(" specular {} roughness {}", number_text(m.specular),
-                            number_text(std::max(m.roughness, least_roughness)));
-    if (shining && m.reflection > 0) text += fmt::format(" reflection {}", number_text(m.reflection));
     return text;
 }
 
-/// A texture up to the pigment that shows where the picture is not clear. What is clear must not shine
-/// either.
-std::string clear_or(const std::string& picture, std::string_view pattern) {
-    return fmt::format("texture {{ {} {{ {}_shape }} texture_map {{ "
-                       "[0.5 pigment {{ rgbt 1 }} finish {{ ambient 0 diffuse 0 }}] [0.5 pigment {{ ",
-                       pattern, picture);
+/// What shines and mirrors.
+std::string shine_text(const Material& m) {
+    std::string text;
+    if (m.specular > 0)
+        text += fmt::format(" specular {} roughness {}", number_text(m.specular),
+                            number_text(std::max(m.roughness, least_roughness)));
+    if (m.specular > 0 && m.metallic > 0) text += " metallic " + number_text(m.metallic);
+    if (m.reflection > 0 && m.has_coat())
+        text += fmt::format(" reflection {{ 0, {} fresnel on }} conserve_energy", number_text(m.reflection));
+    else if (m.reflection > 0 && m.metallic > 0)
+        text += fmt::format(" reflection {{ {} metallic {} }}", number_text(m.reflection),
+                            number_text(m.metallic));
+    else if (m.reflection > 0)
+        text += fmt::format(" reflection {}", number_text(m.reflection));
+    if (m.reflection > 0 && m.is_transparent() && !m.has_coat()) text += " conserve_energy";
+    return text;
+}
+
+/// What a pigment says of light that goes through (optics.h).
+std::string clearness(const Material& m) {
+    if (!m.is_transparent()) return {};
+    return (m.absorption > 0 ? "transmit " : "filter ") + number_text(m.transparency);
+}
+
+constexpr std::string_view clear_texture = "texture { pigment { rgbt 1 } finish { ";
+
+std::string colour_text(Rgb rgb, const std::string& clear) {
+    std::string text;
+    append_rgb(text, rgb);
+    if (!clear.empty()) text += " " + clear;
+    return text;
+}
+
+/// A tint over a pigment.
+std::string mean_text(const std::string& pigment, const PathTint& tint, const std::string& clear) {
+    return fmt::format("average pigment_map {{ [{} {}] [{} {}] }}", number_text(1 - tint.alpha), pigment,
+                       number_text(tint.alpha), colour_text(tint.premultiplied / tint.alpha, clear));
 }
 
 void begin_texture(std::string& text) {
@@ -74,34 +102,49 @@ std::string PovrayTextures::name_of(const Material& material) {
     return material.name.empty() ? "default" : material.name;
 }
 
-const std::string& PovrayTextures::finish(const Material& material, bool shining) {
-    if (!(last_finish_.material == material)) last_finish_ = {material, {}, {}};
-    std::string& name = shining ? last_finish_.shining : last_finish_.matt;
-    if (name.empty()) name = named_finish(material, shining);
+const std::string& PovrayTextures::finish(const Material& material, Layer layer) {
+    if (!(last_finish_.material == material)) last_finish_ = {material, {}};
+    std::string& name = last_finish_.names[static_cast<std::size_t>(layer)];
+    if (name.empty()) name = named_finish(material, layer);
     return name;
 }
 
-std::string PovrayTextures::named_finish(const Material& material, bool shining) {
-    const std::string text = finish_text(material, shining);
+std::string PovrayTextures::named_finish(const Material& material, Layer layer) {
+    const std::string matt = matt_text(material), shine = shine_text(material);
+    const std::string text = layer == Layer::matt   ? matt
+                             : layer == Layer::coat ? "ambient 0 diffuse 0" + shine
+                                                    : matt + shine;
     std::string& name = finish_by_text_[text];
     if (name.empty()) {
         const std::string wish = name_of(material);
-        name = finish_names_.next(text == finish_text(material, true) ? wish : wish + "_matt");
+        const std::string_view ending = layer == Layer::coat                     ? "_coat"
+                                        : layer == Layer::matt && !shine.empty() ? "_matt"
+                                                                                 : "";
+        name = finish_names_.next(wish + std::string(ending));
         finish_declarations_.push_back(fmt::format("#declare {} = finish {{ {} }}\n", name, text));
     }
     return name;
 }
 
-const std::string& PovrayTextures::palette_name(std::uint32_t index) {
-    std::string& name = palettes_[index];
+const std::string& PovrayTextures::palette_name(std::uint32_t index, const std::string& clear) {
+    std::string& name = palettes_[{index, clear}];
     if (name.empty()) name = fmt::format("{}P_{}", prefix_, palettes_.size());
     return name;
 }
 
 void PovrayTextures::append_plain(std::string& text, Rgb rgb, const Material& material) {
+    append_surface(text, colour_text(rgb, clearness(material)), material);
+}
+
+/// One layer, and above it a clear one that reflects if there is a coat.
+void PovrayTextures::append_surface(std::string& text, std::string_view pigment, const Material& material) {
     begin_texture(text);
-    append_rgb(text, rgb);
-    end_texture(text, finish(material, true));
+    text += pigment;
+    end_texture(text, finish(material, material.has_coat() ? Layer::matt : Layer::whole));
+    if (!material.has_coat()) return;
+    text += "\n          ";
+    text += clear_texture;
+    text += finish(material, Layer::coat) + " } }";
 }
 
 std::string PovrayTextures::plain(Rgb rgb, const Material& material) {
@@ -113,34 +156,58 @@ std::string PovrayTextures::plain(Rgb rgb, const Material& material) {
 void PovrayTextures::append_layered(std::string& text, const PlacementGroup& group) {
     const Palette& palette = cut_.palettes[group.palette];
     const PathTint& tint = group.tint;
-    if (tint.alpha >= 1 - no_tint) return append_plain(text, tint.premultiplied, group.material);
-    if (palette.size() == 1) return append_plain(text, tint.over(palette[0]), group.material);
-    const std::string& shining = finish(group.material, true);
+    const Material& material = group.material;
+    if (tint.alpha >= 1 - no_tint) return append_plain(text, tint.premultiplied, material);
+    if (palette.size() == 1) return append_plain(text, tint.over(palette[0]), material);
+    const std::string clear = clearness(material);
+    const std::string& name = palette_name(group.palette, clear);
+    if (tint.alpha <= no_tint) return append_surface(text, name, material);
+    // What more than scatters light needs the colour of both in one layer.
+    if (material.is_transparent() || material.has_coat() || material.metallic > 0)
+        return append_surface(text, mean_text(name, tint, clear), material);
     begin_texture(text);
-    text += palette_name(group.palette);
-    if (tint.alpha <= no_tint) return end_texture(text, shining);
+    text += name;
     least_transmit_ = std::min(least_transmit_, 1 - tint.alpha);
     // Highlights and reflections belong to the top layer alone: each layer adds its own.
-    end_texture(text, finish(group.material, false));
+    end_texture(text, finish(material, Layer::matt));
     text += "\n          ";
     begin_texture(text);
     append_rgb(text, tint.premultiplied / tint.alpha);
     text += " transmit ";
     append_number(text, 1 - tint.alpha, colour_digits);
-    end_texture(text, shining);
+    end_texture(text, finish(material, Layer::whole));
 }
 
-const std::string& PovrayTextures::picture_name(const std::string& texture) {
-    std::string& name = pictures_[texture];
+const std::string& PovrayTextures::picture_name(const Material& material) {
+    std::string& name = pictures_[{material.texture, clearness(material)}];
     if (name.empty()) name = fmt::format("{}I_{}", prefix_, pictures_.size());
     return name;
 }
 
+/// Where the picture is clear nothing, else this pigment.
+void PovrayTextures::append_shape(std::string& text, std::string_view pattern, std::string_view pigment,
+                                  const Material& material) {
+    text += fmt::format("texture {{ {} {{ {}_shape }} texture_map {{ "
+                        "[0.5 pigment {{ rgbt 1 }} finish {{ ambient 0 diffuse 0 }}] [0.5 ",
+                        pattern, picture_name(material));
+    if (material.has_coat()) {
+        // A map takes layers by name only.
+        std::string layers;
+        append_surface(layers, pigment, material);
+        std::string& name = layers_[layers];
+        if (name.empty()) name = fmt::format("{}L_{}", prefix_, layers_.size());
+        text += name;
+    } else {
+        text += fmt::format("pigment {{ {} }} finish {{ {} }}", pigment, finish(material, Layer::whole));
+    }
+    text += "] }";
+}
+
 std::string PovrayTextures::ground(const Material& material, const Affine& pov_from_picture) {
     if (material.texture.empty()) return plain(material.rgb, material);
-    const std::string& name = picture_name(material.texture);
-    std::string text = clear_or(name, "pigment_pattern");
-    text += name + " } finish { " + finish(material, true) + " }] } matrix <";
+    std::string text;
+    append_shape(text, "pigment_pattern", picture_name(material), material);
+    text += " matrix <";
     constexpr int place_digits = 12;
     for (int column = 0; column < 4; ++column)
         for (int row = 0; row < 3; ++row) {
@@ -154,23 +221,15 @@ std::string PovrayTextures::ground(const Material& material, const Affine& pov_f
 
 /// The tint over the picture is the weighted mean of a colour and the picture, where there is any of it.
 void PovrayTextures::append_picture(std::string& text, const PlacementGroup& group) {
-    const std::string& name = picture_name(group.material.texture);
+    const Material& material = group.material;
+    const std::string& name = picture_name(material);
     const PathTint& tint = group.tint;
-    text += clear_or(name, "uv_mapping pigment_pattern");
-    if (tint.alpha <= no_tint) {
-        text += name;
-    } else if (tint.alpha >= 1 - no_tint) {
-        append_rgb(text, tint.premultiplied);
-    } else {
-        text += "average pigment_map { [";
-        append_number(text, 1 - tint.alpha, colour_digits);
-        text += " " + name + "] [";
-        append_number(text, tint.alpha, colour_digits);
-        text += " ";
-        append_rgb(text, tint.premultiplied / tint.alpha);
-        text += "] }";
-    }
-    text += " } finish { " + finish(group.material, true) + " }] } }";
+    const std::string pigment = tint.alpha <= no_tint ? name
+                                : tint.alpha >= 1 - no_tint
+                                    ? colour_text(tint.premultiplied, clearness(material))
+                                    : mean_text(name, tint, clearness(material));
+    append_shape(text, "uv_mapping pigment_pattern", pigment, material);
+    text += " }";
 }
 
 std::uint32_t PovrayTextures::texture_of(const PlacementGroup& group) {
@@ -230,21 +289,23 @@ std::string PovrayTextures::declarations(std::vector<PaletteImage>& pictures) co
     std::string text;
     for (const std::string& declaration : finish_declarations_)
         text += declaration;
-    for (const auto& [index, name] : palettes_) {
-        const Palette& palette = cut_.palettes[index];
-        text +=
-            fmt::format("#declare {} = pigment {{ {} }}\n", name, palette_pigment(palette, file_name(name)));
+    for (const auto& [key, name] : palettes_) {
+        const Palette& palette = cut_.palettes[key.first];
+        text += fmt::format("#declare {} = pigment {{ {} }}\n", name,
+                            palette_pigment(palette, file_name(name), key.second));
         if (PaletteLayout(static_cast<std::uint32_t>(palette.size())).picture())
             pictures.push_back(palette_image(palette, file_name(name)));
     }
-    for (const auto& [texture, name] : pictures_) {
+    for (const auto& [key, name] : pictures_) {
         // With use_alpha the pattern is 1 where the picture is clear.
-        text += fmt::format("#declare {0} = pigment {{ image_map {{ png \"{1}\" }} }}\n"
+        text += fmt::format("#declare {0} = pigment {{ image_map {{ png \"{1}\" {2}}} }}\n"
                             "#declare {0}_shape = pigment {{ image_pattern {{ png \"{1}\" use_alpha }} "
                             "color_map {{ [0 rgb 1] [1 rgb 0] }} }}\n",
-                            name, file_name(name));
-        pictures.push_back({.file_name = file_name(name), .texture = texture});
+                            name, file_name(name), clear_image(key.second));
+        pictures.push_back({.file_name = file_name(name), .texture = key.first});
     }
+    for (const auto& [layers, name] : layers_)
+        text += fmt::format("#declare {} = {}\n", name, layers);
     return text;
 }
 

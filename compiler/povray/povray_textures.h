@@ -1,11 +1,14 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <deque>
 #include <map>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <unordered_map>
+#include <utility>
 #include <vector>
 
 #include "compiler/povray/cut_parts.h"
@@ -49,21 +52,26 @@ class PovrayTextures {
     std::string declarations(std::vector<PaletteImage>& pictures) const;
 
   private:
+    /// All of a finish, what scatters light, or what shines and mirrors above it.
+    enum class Layer { whole, matt, coat };
+
     /// Names of one material's finishes, where they are known.
     struct FinishNames {
         Material material;
-        std::string shining, matt;
+        std::array<std::string, 3> names; ///< by Layer
     };
 
     void append_layered(std::string& text, const PlacementGroup& group);
     void append_picture(std::string& text, const PlacementGroup& group);
     void append_plain(std::string& text, Rgb rgb, const Material& material);
-    /// The name of the finish, with or without what shines.
-    const std::string& finish(const Material& material, bool shining);
-    std::string named_finish(const Material& material, bool shining);
+    void append_surface(std::string& text, std::string_view pigment, const Material& material);
+    void append_shape(std::string& text, std::string_view pattern, std::string_view pigment,
+                      const Material& material);
+    const std::string& finish(const Material& material, Layer layer);
+    std::string named_finish(const Material& material, Layer layer);
     static std::string name_of(const Material& material);
-    const std::string& palette_name(std::uint32_t index);
-    const std::string& picture_name(const std::string& texture);
+    const std::string& palette_name(std::uint32_t index, const std::string& clear);
+    const std::string& picture_name(const Material& material);
     std::string file_name(const std::string& name) const;
 
     const Cut& cut_;
@@ -72,8 +80,10 @@ class PovrayTextures {
     UniqueNames finish_names_;
     std::unordered_map<std::string, std::string> finish_by_text_;
     std::vector<std::string> finish_declarations_;
-    std::map<std::uint32_t, std::string> palettes_; ///< by index in the cut: the declared name
-    std::map<std::string, std::string> pictures_;   ///< likewise, by Material::texture
+    /// Declared names, by index in the cut and what is said of light that goes through.
+    std::map<std::pair<std::uint32_t, std::string>, std::string> palettes_;
+    std::map<std::pair<std::string, std::string>, std::string> pictures_; ///< likewise, by Material::texture
+    std::map<std::string, std::string> layers_;                           ///< by their text
     FinishNames last_finish_;
     bool by_material_;
     std::deque<std::string> textures_;

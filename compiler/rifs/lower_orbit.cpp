@@ -34,7 +34,7 @@ class OrbitLowering {
         model_.name = block_.name.text;
         model_.span = block_.name.span;
         lower_start();
-        const RifsLooks looks(model_.lets, model_.scene.materials, diagnostics_);
+        RifsLooks looks(model_.lets, model_.scene.materials, diagnostics_);
         if (block_.maps.empty())
             diagnostics_.error(block_.name.span, fmt::format("'orbit {}' has no map", block_.name.text))
                 .with_hint("x = ...  y = ...");
@@ -139,7 +139,7 @@ class OrbitLowering {
             model_.skip = static_cast<std::uint64_t>(skip);
     }
 
-    void lower_map(const OrbitMap& map, const RifsLooks& looks) {
+    void lower_map(const OrbitMap& map, RifsLooks& looks) {
         OrbitFormulas formulas;
         formulas.name = map.name.text;
         formulas.span = map.span;

@@ -62,7 +62,7 @@ class RifsLowering {
         inner_parameters(tree_.statements, lets_, diagnostics_); // for its checks
         lower_settings(tree_.statements, lets_, graph_, lowering_);
         import_models();
-        const RifsLooks looks(lets_, graph_.materials, diagnostics_);
+        RifsLooks looks(lets_, graph_.materials, diagnostics_);
         system_ = evaluate_rifs(tree_, lets_, looks, diagnostics_);
         check_block_names();
         lower_parts(looks);
@@ -126,7 +126,7 @@ class RifsLowering {
                     .with_note(use->second.span, "first defined here");
     }
 
-    void lower_parts(const RifsLooks& looks) {
+    void lower_parts(RifsLooks& looks) {
         std::vector<const RifsPart*> parts;
         std::set<const RifsPart*> terminals; // looked up only
         const auto add_terminal = [&](const std::optional<RifsPart>& terminal) {
@@ -149,7 +149,7 @@ class RifsLowering {
             if (terminals.contains(part)) check_terminal(*part, components);
     }
 
-    void lower_part(const RifsPart& part, const RifsLooks& looks) {
+    void lower_part(const RifsPart& part, RifsLooks& looks) {
         const std::optional<ObjectId> master = find_master(part);
         const std::optional<Affine> placed = lower_transforms(part.transforms, lets_, diagnostics_);
         const Tint tint = looks.tint(part.look);

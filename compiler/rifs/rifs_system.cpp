@@ -19,12 +19,10 @@ namespace {
 
 constexpr double probability_slack = 0.02;
 /// Beyond this a suggestion for a misspelt name would take longer than it is worth.
-constexpr std::size_t most_candidate_materials = 1000;
 
 class SystemBuilder {
   public:
-    SystemBuilder(const RifsFile& file, const Environment& lets, const RifsLooks& looks,
-                  Diagnostics& diagnostics)
+    SystemBuilder(const RifsFile& file, const Environment& lets, RifsLooks& looks, Diagnostics& diagnostics)
         : file_(file), lets_(lets), looks_(looks), diagnostics_(diagnostics) {}
 
     RifsSystem build() && {
@@ -139,7 +137,7 @@ class SystemBuilder {
 
     const RifsFile& file_;
     const Environment& lets_;
-    const RifsLooks& looks_;
+    RifsLooks& looks_;
     Diagnostics& diagnostics_;
     RifsSystem system_;
     Names block_names_;
@@ -180,8 +178,7 @@ std::optional<double> evaluate_probability(const std::optional<Expression>& prob
     return std::nullopt;
 }
 
-RifsLooks::RifsLooks(const Environment& lets, const std::vector<Material>& materials,
-                     Diagnostics& diagnostics)
+RifsLooks::RifsLooks(const Environment& lets, std::vector<Material>& materials, Diagnostics& diagnostics)
     : lets_(lets), materials_(materials), diagnostics_(diagnostics) {
     for (MaterialId id = 0; id < materials.size(); ++id)
         ids_.try_emplace(materials[id].name, id);
@@ -192,23 +189,16 @@ Tint RifsLooks::tint(const RifsLook& look) const {
     return lower_tint(look.tint, lets_, diagnostics_).value_or(Tint());
 }
 
-std::optional<MaterialId> RifsLooks::material(const RifsLook& look) const {
+std::optional<MaterialId> RifsLooks::material(const RifsLook& look) {
     if (!look.material) return std::nullopt;
-    const auto found = ids_.find(look.material->text);
-    if (found != ids_.end()) return found->second;
-    std::vector<std::string> known;
-    for (const Material& material : materials_)
-        if (known.size() < most_candidate_materials) known.push_back(material.name);
-    const std::string hint = choices(look.material->text, known);
-    diagnostics_.error(look.material->span, fmt::format("unknown material '{}'", look.material->text))
-        .with_hint(hint.empty()
-                       ? fmt::format("define it before the block: material {} {{ color: 0.5, 0.4, 0.1 }}",
-                                     look.material->text)
-                       : hint);
-    return std::nullopt;
+    const std::string name(look.material->text);
+    if (const auto found = ids_.find(name); found != ids_.end()) return found->second;
+    const std::optional<MaterialId> id = material_named(name, look.material->span, materials_, diagnostics_);
+    if (id) ids_.emplace(name, *id);
+    return id;
 }
 
-RifsSystem evaluate_rifs(const RifsFile& file, const Environment& lets, const RifsLooks& looks,
+RifsSystem evaluate_rifs(const RifsFile& file, const Environment& lets, RifsLooks& looks,
                          Diagnostics& diagnostics) {
     return SystemBuilder(file, lets, looks, diagnostics).build();
 }

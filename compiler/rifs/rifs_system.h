@@ -54,22 +54,23 @@ std::optional<double> evaluate_probability(const std::optional<Expression>& prob
 /// Evaluates the tints and materials that the tree names. Errors are reported and give the neutral ones.
 class RifsLooks {
   public:
-    /// `materials`: of the graph that is being made. All must outlive this.
-    RifsLooks(const Environment& lets, const std::vector<Material>& materials, Diagnostics& diagnostics);
+    /// `materials`: of the graph that is being made, which takes up those that every model knows as they are
+    /// named. All must outlive this.
+    RifsLooks(const Environment& lets, std::vector<Material>& materials, Diagnostics& diagnostics);
 
     Tint tint(const RifsLook& look) const;
-    std::optional<MaterialId> material(const RifsLook& look) const;
+    std::optional<MaterialId> material(const RifsLook& look);
 
   private:
     const Environment& lets_;
-    const std::vector<Material>& materials_;
+    std::vector<Material>& materials_;
     Diagnostics& diagnostics_;
-    std::unordered_map<std::string_view, MaterialId> ids_;
+    std::unordered_map<std::string, MaterialId> ids_;
 };
 
 /// Numbers the blocks and maps, and evaluates the maps' transforms, looks and probabilities. Errors are
 /// reported; the nodes are there in any case.
-RifsSystem evaluate_rifs(const RifsFile& file, const Environment& lets, const RifsLooks& looks,
+RifsSystem evaluate_rifs(const RifsFile& file, const Environment& lets, RifsLooks& looks,
                          Diagnostics& diagnostics);
 
 /// The map of a row of codes (docs/language.md): 2-D forms scale z by sqrt|det|. `numbers`: as many as

@@ -47,10 +47,11 @@ const std::vector<FieldRule>& rules(Kind kind) {
     static const std::vector<FieldRule> ground = {
         {"height", Shape::number}, {"color", Shape::color}, {"material", Shape::name}, {"area", Shape::area}};
     static const std::vector<FieldRule> material = {
-        {"color", Shape::color},         {"ambient", Shape::number},   {"diffuse", Shape::number},
-        {"specular", Shape::number},     {"roughness", Shape::number}, {"reflection", Shape::number},
-        {"translucency", Shape::number}, {"emission", Shape::number},  {"texture", Shape::text},
-        {"around", Shape::number}};
+        {"color", Shape::color},         {"ambient", Shape::number},    {"diffuse", Shape::number},
+        {"specular", Shape::number},     {"roughness", Shape::number},  {"reflection", Shape::number},
+        {"translucency", Shape::number}, {"emission", Shape::number},   {"texture", Shape::text},
+        {"around", Shape::number},       {"metallic", Shape::number},   {"transparency", Shape::number},
+        {"ior", Shape::number},          {"absorption", Shape::number}, {"from", Shape::name}};
     static const std::vector<FieldRule> none;
     switch (kind) {
     case Kind::camera:

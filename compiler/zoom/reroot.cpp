@@ -123,11 +123,18 @@ class Rerooter {
             if (!is_sound(*view.haze)) view.haze.reset();
         }
         if (!view.ground) return;
+        scale_absorption(view.ground->material);
         const double height = request_.zoom->times(view.ground->height - world_focus.y);
         if (std::abs(height) <= farthest_ground())
             view.ground->height = height;
         else
             view.ground.reset();
+    }
+
+    /// Its length is one of the world, whose measure an object's own frame does not know.
+    void scale_absorption(Material& material) const {
+        material.absorption =
+            request_.zoom ? std::min(request_.zoom->times(material.absorption), largest_size) : 0;
     }
 
     /// Beyond these lengths nothing of it is seen.
@@ -196,6 +203,7 @@ class Rerooter {
             // No longer level, it is a plane like others.
             const Affine world_from_plane = Affine::translate({0, view.ground->height, 0});
             ground_ = {*picture_from_root * world_from_plane, view.ground->material};
+            scale_absorption(ground_->material);
         }
         view.ground.reset();
     }
@@ -308,6 +316,8 @@ class Rerooter {
         const double stretch = norm(picture_from_frame.linear);
         Graph& graph = result_.graph;
         graph = model_.graph;
+        for (Material& material : graph.materials)
+            scale_absorption(material);
         result_.bounds = model_.bounds;
         Object root;
         root.name = free_name("surroundings", graph.objects);

@@ -8,6 +8,7 @@
 #include "compiler/scene/light_list.h"
 #include "compiler/scene/scene.h"
 #include "runtime/image/texture.h"
+#include "runtime/trace/optics.h"
 #include "runtime/trace/sample_stream.h"
 #include "runtime/trace/surfaces.h"
 
@@ -31,20 +32,27 @@ struct ShaderLimits {
 ///     ambient c + sum over the lights that are not shadowed, n.l > 0, of
 ///         (diffuse (n.l) c + specular (n.h)^(1/roughness)) e
 ///     + sum over those behind, n.l < 0, of translucency |n.l| c e + emission c
-///     + reflection * (the light along the mirrored ray);
-/// shadowless lights are not shadowed and have no specular part. Light from discs and from the sky is the sum
-/// of the same over what is in them, e = L dw / pi: estimated by one direction for each (two where the sky is
-/// a picture with bright parts, by the balance heuristic: Veach 1997, 9.2.2), or by a list of lights
-/// (light_list.h), to which the estimate converges as the list grows. Of a sky that asks for bounces,
-/// surfaces light each other diffusely, and `ambient` is 0. A picture shows up to eight surfaces one in
-/// the other; what the last of them mirrors is black. Nothing is clamped. (POV-Ray's trace.cpp: TraceRay,
-/// ComputeLightedTexture, ComputeOneDiffuseLight, ComputeSpecularColour, ComputeReflection, ComputeSky.)
+///     + reflection * (the light along the mirrored ray)
+///     + transparency c * (the light along the refracted ray);
+/// what is transparent has so much less of the light that does not shine or mirror. With an index of
+/// refraction the reflection goes by Fresnel's formula, and what it takes is left out of all that does not
+/// shine; so is the reflection of what lets light through. Metals give highlights and reflections their
+/// colour. Within a solid, light fades as its interior says. Lights shine through on straight lines, coloured
+/// by each surface and interior. Shadowless lights are not shadowed and have no specular part. Light from
+/// discs and from the sky is the sum of the same over what is in them, e = L dw / pi: estimated by one
+/// direction for each (two where the sky is a picture with bright parts, by the balance heuristic: Veach
+/// 1997, 9.2.2), or by a list of lights (light_list.h), to which the estimate converges as the list grows. Of
+/// a sky that asks for bounces, surfaces light each other diffusely, and `ambient` is 0. A picture shows up
+/// to 32 surfaces one in the other; what the last of them shows is black. Nothing is clamped. (POV-Ray's
+/// trace.cpp: TraceRay, ComputeLightedTexture, ComputeOneDiffuseLight, ComputeSpecularColour,
+/// ComputeReflection, ComputeRefraction, ComputeShadowColour, ComputeSky.)
 class Shader {
   public:
     /// Keeps references to the view and the surfaces. `ground_texture`: of the ground's material; null: the
     /// ground shows its colour.
     Shader(const View& view, Surfaces& surfaces, const ShaderLimits& limits = {},
            std::shared_ptr<const Texture> ground_texture = nullptr);
+    ~Shader();
 
     /// The light that comes along the ray, from the front; components may exceed 1, and are finite whatever
     /// is met. The direction is of unit length. Where soft light is sampled, an estimate by the numbers of
@@ -77,6 +85,8 @@ class Shader {
         bool round;
     };
     struct Point;
+    struct Path;
+    struct Way;
 
     bool closest(const Ray& ray, RayRange range, SurfaceHit& hit);
     /// Where and how the ground is met; false beyond the range, along it, and where its picture is clear.
@@ -84,15 +94,18 @@ class Shader {
     static bool meet_level(double height, const Ray& ray, const RayRange& range, double& t);
     double meet_catcher(const Ray& ray, const RayRange& range, SurfaceHit& hit) const;
     const Texture::Texel& ground_texel(Vec3 point) const;
-    Point point_of(const Ray& ray, const SurfaceHit& hit) const;
+    Point point_of(const Path& path, const SurfaceHit& hit) const;
+    void share_light(Point& point) const;
     Rgb lit(const Point& point, SampleStream& random);
     struct SkyChoice;
     Rgb from_sky(const Point& point, double least, SampleStream& random);
     Rgb sky_light(const SkyChoice& choice, const Point& point, Vec3 direction, double least);
-    double shine(const Point& point, Vec3 to_light) const;
-    bool bounce(const Point& point, unsigned& bounces, Ray& path, Rgb& weight, SampleStream& random) const;
+    Rgb shine(const Point& point, Vec3 to_light) const;
+    Rgb follow(Path& path, SampleStream& random, SurfaceHit* first = nullptr);
+    bool goes_on(Path& path, const Point& point, SampleStream& random);
+    bool scatter(Path& path, const Point& point, double choice, SampleStream& random) const;
     Rgb light_of(const Lamp& lamp, const Point& point, double least);
-    bool shadowed(const Ray& to_light, const RayRange& range);
+    Rgb light_through(Ray to_light, RayRange range, const Inside& start);
     Rgb sky(Vec3 direction) const;
     double least_distance(Vec3 point, double pixels) const;
 
@@ -103,6 +116,9 @@ class Shader {
     std::vector<Area> areas_;                 ///< that are sampled
     const SkyLight* sky_ = nullptr;           ///< that is sampled
     const SkySampling* bright_sky_ = nullptr; ///< where it has bright parts
+    std::vector<Path> waiting_;               ///< of the ray under way: what is to be followed still
+    bool all_opaque_;
+    Inside camera_inside_; ///< of the ground
     Rgb ambient_light_;
     unsigned bounces_ = 0;
     double pixel_; ///< a pixel's length: of parallel rays in scene units, else at distance 1

@@ -30,6 +30,8 @@ class Surfaces {
     virtual bool closest(const Ray& ray, const RayRange& range, SurfaceHit& hit) = 0;
     /// Whether there is any surface within the range.
     virtual bool meets_any(const Ray& ray, const RayRange& range) = 0;
+    /// Whether no surface at all lets light through: what looks no further is faster.
+    virtual bool all_opaque() const { return false; }
 };
 
 } // namespace graftal

@@ -1,5 +1,6 @@
 #include "runtime/trace/traversal.h"
 
+#include <algorithm>
 #include <array>
 
 #include "compiler/primitives/texture_space.h"
@@ -82,6 +83,10 @@ bool Traversal::closest(const Ray& ray, const RayRange& range, SurfaceHit& hit) 
 
 bool Traversal::meets_any(const Ray& ray, const RayRange& range) {
     return run(ray, range, true);
+}
+
+bool Traversal::all_opaque() const {
+    return std::ranges::none_of(model_.prepared.cut.materials, &Material::is_transparent);
 }
 
 void Traversal::append_to_path(std::uint32_t edge) {

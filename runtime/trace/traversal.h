@@ -48,6 +48,7 @@ class Traversal final : public Surfaces {
 
     bool closest(const Ray& ray, const RayRange& range, SurfaceHit& hit) override;
     bool meets_any(const Ray& ray, const RayRange& range) override;
+    bool all_opaque() const override;
 
     /// Nodes and primitives that rays went into so far.
     std::uint64_t visits() const { return visits_; }

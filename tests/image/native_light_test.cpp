@@ -67,6 +67,23 @@ const std::string mirrors = R"(
     }
 )";
 
+const std::string glassware = R"(
+    material glass { color: 0.95, 0.97, 0.9 ambient: 0 diffuse: 0 specular: 0.8 roughness: 0.005
+                     transparency: 0.95 ior: 1.5 }
+    material jade { color: 0.3, 0.8, 0.5 ambient: 0.1 diffuse: 0.5 specular: 0.3 transparency: 0.7
+                    ior: 1.3 reflection: 0.8 absorption: 1.5 }
+    material film { color: 0.9, 0.5, 0.2 ambient: 0.1 diffuse: 0.6 transparency: 0.6 }
+    material tile { ambient: 0.1 diffuse: 0.7 specular: 0 }
+    object things {
+        sphere translate: -1.3, 1.05, 0.4 material glass
+        cube scale: 0.7, 1, 0.4 rotate: y, 25 translate: 1, 1.02, 0.3 material jade
+        sphere scale: 0.4 translate: -0.1, 0.5, 1.7 material film
+        cube scale: 0.3 rotate: y, 40 translate: -1.2, 0.35, -1.2 material tile tint: 0.9, 0.2, 0.1, 1
+        cube scale: 0.4 rotate: <1, 2, 3>, 40 translate: 0.9, 2.6, 0 material glass
+        sphere scale: 0.5 translate: 2.3, 0.51, 0.5 material jade tint: 0.8, 0.2, 0.3, 0.5
+    }
+)";
+
 const LitScene scenes[] = {
     {"Perspective", {160, 120}, balls_and_blocks + on_magenta + R"(
         camera { location: 2, 4, 9 look_at: 0, 1.4, 0 angle: 50 }
@@ -214,6 +231,107 @@ const LitScene scenes[] = {
         light { location: -2, 6, 3 size: 3, 1 look_at: 0, 1, 0 color: 0.6, 0.5, 0.4 }
         light { location: 4, 2, 5 radius: 0.7 look_at: 0, 1, 0 color: 0.3, 0.4, 0.6 }
         light { location: 1, 9, 1 radius: 0.5 look_at: 1, 0, 1 color: 0.2, 0.2, 0.2 }
+        ground { height: 0 }
+    )"},
+    {"Metals", {130, 110}, on_magenta + R"(
+        material gold { color: 1, 0.7, 0.3 ambient: 0.05 diffuse: 0.2 specular: 0.9 roughness: 0.03
+                        reflection: 0.8 metallic: 1 }
+        material tin { color: 0.4, 0.5, 0.9 diffuse: 0.4 specular: 0.7 roughness: 0.1 reflection: 0.3
+                       metallic: 0.5 }
+        material cloth { color: 0.7, 0.1, 0.1 specular: 0.8 roughness: 0.2 metallic: 0.8 }
+        object things {
+            sphere translate: -1.1, 1, 0 material gold
+            sphere translate: 1.1, 1, 0 material tin tint: 0.9, 0.4, 0.2, 0.5
+            cube scale: 0.4 rotate: y, 30 translate: 0, 0.4, 1.6 material cloth
+            cube scale: 3, 2, 0.1 translate: 0, 2, -2 material gold
+        }
+        camera { location: 1, 2.5, 7 look_at: 0, 1, 0 angle: 45 }
+        light { sun: 1, 2, 2 color: 0.7, 0.7, 0.7 }
+        light { location: -3, 4, 3 color: 0.5, 0.4, 0.3 }
+        ground { height: 0 material: tin }
+    )"},
+    {"FresnelsGloss", {130, 110}, on_magenta + R"(
+        material lacquer { color: 0.7, 0.1, 0.05 diffuse: 0.8 specular: 0.6 roughness: 0.01 ior: 1.5 }
+        material wet { diffuse: 0.6 specular: 0 ior: 1.33 reflection: 0.7 emission: 0.1 translucency: 0.2 }
+        object things {
+            sphere translate: -1.1, 1, 0 material lacquer
+            sphere translate: 1.1, 1, 0 material wet tint: 0.2, 0.6, 0.3, 0.8
+            cube scale: 3, 2, 0.1 translate: 0, 2, -2 material wet
+        }
+        camera { location: 1, 1.5, 7 look_at: 0, 1, 0 angle: 45 }
+        light { sun: 1, 2, 2 color: 0.7, 0.7, 0.7 }
+        light { location: -3, 4, 3 color: 0.5, 0.4, 0.3 }
+        ground { height: 0 material: lacquer color: 0.3, 0.35, 0.4 }
+    )"},
+    {"GlassOverGround",
+     {150, 110},
+     glassware + R"(
+        camera { location: 1, 3.5, 7 look_at: 0.2, 1, 0 angle: 45 }
+        background { zenith: 0.2, 0.4, 0.9 horizon: 0.9, 0.8, 0.7 }
+        light { sun: 1, 2, -0.7 color: 0.8, 0.8, 0.7 }
+        light { location: -3, 5, 4 color: 0.4, 0.4, 0.4 }
+        ground { height: 0 material: tile color: 0.6, 0.6, 0.5 }
+    )",
+     false},
+    {"GlassUnderASkyInHaze",
+     {100, 80},
+     glassware + R"(
+        camera { location: -2, 2.5, 7 look_at: 0.2, 1, 0 angle: 45 }
+        sky { zenith: 0.3, 0.5, 0.9 horizon: 0.9, 0.9, 0.9 below: 0.2, 0.2, 0.2 }
+        light { sun: 1, 2, 1 angle: 3 brightness: 0.5 }
+        haze { distance: 30 color: 0.6, 0.65, 0.7 }
+        ground { height: 0 material: tile color: 0.6, 0.6, 0.5 }
+    )",
+     false,
+     2},
+    {"WaterWithAFloor",
+     {150, 100},
+     R"(
+        material water { color: 0.3, 0.7, 0.8 ambient: 0 diffuse: 0 specular: 0.5 roughness: 0.002
+                         transparency: 1 ior: 1.33 absorption: 2 }
+        material sand { color: 0.8, 0.7, 0.5 specular: 0 }
+        material glass { transparency: 0.9 ior: 1.5 diffuse: 0 ambient: 0 }
+        object things {
+            plane translate: 0, -2, 0 material sand
+            sphere translate: -1.5, -0.3, 0 material sand tint: 0.9, 0.2, 0.1, 1
+            cube scale: 0.5 rotate: <1, 1, 0>, 30 translate: 1, 0.1, 0.5 material glass
+            sphere scale: 0.4 translate: 0.2, -1, 1.5 material glass
+        }
+        camera { location: 0, 1.7, 7 look_at: 0, -0.3, 0 angle: 45 }
+        background { zenith: 0.2, 0.4, 0.9 horizon: 0.9, 0.8, 0.7 }
+        light { sun: 0.5, 1, 0.4 color: 0.9, 0.9, 0.8 }
+        light { location: -2, 3, 2 color: 0.3, 0.3, 0.3 }
+        ground { height: 0 material: water }
+    )",
+     false},
+    {"UnderWater",
+     {110, 100},
+     R"(
+        material water { color: 0.3, 0.7, 0.8 ambient: 0 diffuse: 0 transparency: 1 ior: 1.33 absorption: 4 }
+        material sand { color: 0.8, 0.7, 0.5 specular: 0 }
+        object things {
+            sphere translate: 0, -1.5, 0 material sand
+            cube translate: 0.5, 2, -2 material sand
+        }
+        camera { location: 0, -2, 6 look_at: 0, -0.8, 0 angle: 70 }
+        background { zenith: 0.2, 0.4, 0.9 horizon: 0.9, 0.8, 0.7 }
+        light { sun: 0.5, 1, 0.4 color: 0.9, 0.9, 0.8 }
+        ground { height: 0 material: water }
+    )",
+     false},
+    {"PanesInARow", {130, 90}, on_magenta + R"(
+        material pane { color: 0.9, 0.4, 0.3 ambient: 0.05 diffuse: 0.6 transparency: 0.8 reflection: 0.2 }
+        material gauze { transparency: 0.5 translucency: 0.3 diffuse: 0.4 specular: 0.4 }
+        material foil { color: 0.9, 0.8, 0.3 transparency: 0.4 metallic: 1 reflection: 0.6 }
+        object things {
+            triangle scale: 2 rotate: y, 20 translate: -1, 0, 0 material pane tint: 0.2, 0.7, 0.9, 0.7
+            triangle scale: 2 rotate: y, -30 translate: 0.2, 0, 0.8 material gauze tint: 0.7, 0.5, 0.1, 1
+            triangle scale: 2 rotate: <0, 1, 1>, 30 translate: 0.9, 0, -0.8 material foil
+            sphere scale: 0.4 translate: 0.2, 0.5, -1.5
+        }
+        camera { location: 0.4, 1.5, 6 look_at: 0, 0.8, 0 angle: 50 }
+        light { sun: 0.3, 0.8, -1 color: 0.7, 0.7, 0.6 }
+        light { location: 3, 2, 4 color: 0.5, 0.4, 0.6 }
         ground { height: 0 }
     )"},
     {"LightThroughLeaves", {130, 110}, on_magenta + R"(

@@ -87,6 +87,11 @@ class Generator {
             material.ambient = unit();
             material.roughness = 0.01 + 0.9 * unit();
             if (choices_.one_in(2)) material.reflection = unit();
+            // As chance has it of the others, without more of it.
+            if (material.ambient < 0.25) material.ior = 1 + material.roughness;
+            if (material.ambient > 0.75) material.metallic = material.roughness;
+            if (material.rgb.r < 0.25) material.transparency = material.rgb.g;
+            if (material.is_transparent() && material.rgb.b < 0.5) material.absorption = 0.1 + material.rgb.b;
             graph_.materials.push_back(material);
         }
     }

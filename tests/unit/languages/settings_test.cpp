@@ -1,9 +1,12 @@
 // Scene statements and lets, through the .inst front-end.
 
+#include <algorithm>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "compiler/languages/lower.h"
+#include "compiler/lower/named_materials.h"
 
 namespace graftal {
 namespace {
@@ -56,6 +59,64 @@ TEST(Settings, all_statements) {
     EXPECT_EQ(model.settings().steps, 12u);
     ASSERT_EQ(model.graph->materials.size(), 1u);
     EXPECT_EQ(model.graph->materials[0], (Material{"stone", Rgb(0.5), .2, .7, .3, .01, .4, {}}));
+}
+
+const Material* material_of(const std::optional<Graph>& graph, std::string_view name) {
+    if (!graph) return nullptr;
+    const auto found = std::ranges::find(graph->materials, name, &Material::name);
+    return found == graph->materials.end() ? nullptr : &*found;
+}
+
+TEST(Settings, EveryLanguageKnowsTheNamedMaterials) {
+    for (const Material& material : named_materials()) {
+        SCOPED_TRACE(material.name);
+        const std::string name = material.name;
+        for (const auto& [file, text] :
+             {std::pair<std::string, std::string>{"m.inst", "object a { sphere material " + name + " }"},
+              {"m.inst", "ground { material: " + name + " } object a { sphere }"},
+              {"m.rifs", "rifs r { map a { scale 1/2 } terminal sphere material " + name + " }"},
+              {"m.lsys", "lsys a {\nsteps 1\nwidth 0.1\ncolors " + name + "\naxiom F\n}"}}) {
+            SourceMap sources;
+            Diagnostics diagnostics;
+            const std::optional<Graph> graph = lower_text(file, text, {}, sources, diagnostics).graph;
+            ASSERT_TRUE(graph) << diagnostics.render(sources);
+            ASSERT_TRUE(material_of(graph, name)) << file;
+            EXPECT_EQ(*material_of(graph, name), material) << file;
+        }
+    }
+}
+
+TEST(Settings, AMaterialOfTheFileTakesPrecedence) {
+    const Model model("material gold { color: 0, 0, 1 }\nobject a { sphere material gold }");
+    ASSERT_TRUE(model.graph) << model.errors();
+    ASSERT_EQ(model.graph->materials.size(), 1u);
+    EXPECT_EQ(model.graph->materials[0].rgb, Rgb(0, 0, 1));
+    EXPECT_EQ(model.graph->materials[0].metallic, 0);
+}
+
+TEST(Settings, AMaterialMayStartFromAnother) {
+    const Model model("material gold { from: gold  roughness: 0.5 }\n"
+                      "material brass { from: gold  color: 0.8, 0.6, 0.2 }\n"
+                      "material pond { from: water  absorption: 3 }\n"
+                      "material ice { from: pond  transparency: 0 }");
+    ASSERT_TRUE(model.graph) << model.errors();
+    const Material &gold = *material_of(model.graph, "gold"), &brass = *material_of(model.graph, "brass");
+    EXPECT_EQ(gold.metallic, 1);
+    EXPECT_EQ(gold.roughness, 0.5);
+    EXPECT_EQ(brass.roughness, 0.5);
+    EXPECT_EQ(brass.rgb, Rgb(0.8, 0.6, 0.2));
+    EXPECT_EQ(material_of(model.graph, "pond")->absorption, 3);
+    EXPECT_EQ(material_of(model.graph, "ice")->absorption, 0) << "nothing goes through";
+}
+
+TEST(Settings, AnIndexOfRefractionBringsItsReflection) {
+    const Model model("material a { ior: 1.5 }\nmaterial b { ior: 1.5 reflection: 0.2 }\n"
+                      "material c { ior: 1 }\nmaterial d { from: glass ior: 1.3 }");
+    ASSERT_TRUE(model.graph) << model.errors();
+    EXPECT_EQ(material_of(model.graph, "a")->reflection, 1);
+    EXPECT_EQ(material_of(model.graph, "b")->reflection, 0.2);
+    EXPECT_EQ(material_of(model.graph, "c")->reflection, 0);
+    EXPECT_EQ(material_of(model.graph, "d")->reflection, 1);
 }
 
 TEST(Settings, colons_and_commas_may_be_left_out_and_short_forms_work) {

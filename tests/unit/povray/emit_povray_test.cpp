@@ -32,6 +32,60 @@ TEST(EmitPovray, IsTheSameEveryTime) {
     EXPECT_EQ(one_sphere().text(), one_sphere().text());
 }
 
+const Material glass{.diffuse = 0, .specular = 0.5, .reflection = 1, .transparency = 0.9, .ior = 1.5};
+
+/// A ray that goes into one of them may come out of another.
+TEST(EmitPovray, OneInteriorForAllThatHasIt) {
+    Scene scene;
+    const std::uint32_t sphere = scene.body(PrimitiveKind::sphere);
+    const auto add = [&](Rgb rgb, const Material& material) {
+        scene.group(scene.palette({rgb}), {{sphere, {}}, {sphere, place({2, 0, 0}, Vec3(1))}}).material =
+            material;
+    };
+    add(Rgb(1), {});
+    add({1, 0, 0}, glass);
+    add({0, 1, 0}, glass);
+    Material water = glass;
+    water.ior = 1.33;
+    water.rgb = {0.5, 1, 1};
+    water.absorption = 2;
+    add(Rgb(1), water);
+    const std::string text = scene.text();
+    EXPECT_EQ(count(text, "interior {"), 2);
+    EXPECT_THAT(text, HasSubstr("interior { ior 1.5 } hollow"));
+    EXPECT_THAT(text, HasSubstr("interior { ior 1.33 media { method 1 intervals 1 samples 1,1 absorption rgb "
+                                "<0.000693147181,0,0> } } hollow"));
+    EXPECT_THAT(text, HasSubstr("rgb <1,0,0> filter 0.9"));
+    EXPECT_THAT(text, HasSubstr("transmit 0.9"));
+    EXPECT_THAT(text, HasSubstr("max_trace_level 32"));
+    EXPECT_EQ(count(text, "{"), count(text, "}"));
+}
+
+TEST(EmitPovray, ACoatIsALayerOfItsOwn) {
+    Scene scene;
+    Material lacquer = glass;
+    lacquer.transparency = 0;
+    scene.group(scene.palette({Rgb(0.5)}), {{scene.body(PrimitiveKind::sphere), {}}}).material = lacquer;
+    const std::string text = scene.text();
+    EXPECT_THAT(text, HasSubstr("texture { pigment { rgbt 1 } finish { F_default_coat } }"));
+    EXPECT_THAT(text,
+                HasSubstr("ambient 0 diffuse 0 specular 0.5 roughness 0.05 reflection { 0, 1 fresnel on } "
+                          "conserve_energy"));
+}
+
+TEST(EmitPovray, MetalsHaveTheirColourInOneLayer) {
+    Scene scene;
+    PathTint tint;
+    tint.premultiplied = {0.2, 0, 0};
+    tint.alpha = 0.25;
+    PlacementGroup& group = scene.group(scene.palette({Rgb(1), Rgb(0.5)}), {{scene.mesh("m", 2), {}}}, tint);
+    group.material.metallic = 0.5;
+    group.material.reflection = 0.75;
+    const std::string text = scene.text();
+    EXPECT_THAT(text, HasSubstr("average pigment_map { [0.75 P_1] [0.25 rgb <0.8,0,0>] }"));
+    EXPECT_THAT(text, HasSubstr("specular 0.1 roughness 0.05 metallic 0.5 reflection { 0.75 metallic 0.5 }"));
+}
+
 TEST(EmitPovray, PrimitivesThatNeedNoMatrixHaveNone) {
     struct Case {
         Primitive kind = PrimitiveKind::sphere;

@@ -62,7 +62,7 @@ TEST(PovrayView, LightsSkyAndGroundFollowTheView) {
     text = scene.text(view);
     EXPECT_THAT(text, HasSubstr("sky_sphere"));
     EXPECT_THAT(text, HasSubstr("reflection 0.5"));
-    EXPECT_THAT(text, HasSubstr("max_trace_level 8"));
+    EXPECT_THAT(text, HasSubstr("max_trace_level 32"));
 }
 
 TEST(PovrayView, WorldIsBroughtToAboutAThousandUnits) {

@@ -156,11 +156,11 @@ TEST(Shader, MirrorsAddWhatTheyShow) {
     expect_rgb(wall.look({{-8, 0, 8}, {half, 0, -half}}), {0.6, 0.1, 0.1});
 }
 
-TEST(Shader, FacingMirrorsShowEightSurfaces) {
+TEST(Shader, FacingMirrorsShow32Surfaces) {
     const Material mirror{.ambient = 1, .diffuse = 0, .reflection = 1};
     FacingWall wall(mirror, {1, 0, 0});
     wall.scene.walls.push_back({{0, 0, 1}, 20, {0, 1, 0}, mirror});
-    expect_rgb(wall.look(), {4, 4, 0});
+    expect_rgb(wall.look(), {16, 16, 0});
 }
 
 TEST(Shader, FaintReflectionsAreLeftOut) {

@@ -116,6 +116,20 @@ TEST(Reroot, ASmallZoomKeepsTheRoot) {
     EXPECT_EQ(rerooted.view.camera.location, Vec3(0, 0, 10));
 }
 
+TEST(Reroot, AbsorptionKeepsItsLengthInTheWorld) {
+    Graph graph = corner_maps(triangle, {});
+    graph.materials = {{.name = "water", .transparency = 1, .absorption = 3}, {.name = "clay"}};
+    const auto at = [&](const std::string& zoom) {
+        const Tried tried = try_zoom(graph, "(up)*", zoom);
+        return tried.rerooted->graph.materials[0].absorption;
+    };
+    EXPECT_EQ(at("1"), 3);
+    EXPECT_EQ(at("2^4"), 48);
+    EXPECT_EQ(at("1e200"), 1e100) << "no path is that long";
+    EXPECT_EQ(try_zoom(graph, "(up)*", "8").rerooted->graph.materials[1].absorption, 0);
+    EXPECT_EQ(try_zoom(graph, "up.up", "").rerooted->graph.materials[0].absorption, 0) << "of no known size";
+}
+
 TEST(Reroot, TheSamePictureAtEveryPeriod) {
     struct Case {
         const char* at;

@@ -4,6 +4,7 @@ import zlib
 
 from draw import number, numbers
 
+NAMED = ['leaf', 'bark', 'stone', 'water', 'glass', 'gold', 'snow', 'wax']
 PRIMITIVES = ['triangle', 'sphere', 'cube', 'cylinder', 'cone', 'torus']
 
 
@@ -93,9 +94,29 @@ def materials(draw, model, most=3):
             fields.append(f'emission: {number(draw.log_uniform(0.01, 100))}')
         if draw.chance(0.1):
             fields.append(f'roughness: {number(draw.log_uniform(0.001, 1))}')
+        fields += optics(draw, not any(field.startswith('texture') for field in fields))
         model.say(f'material {name} {{ {"  ".join(fields)} }}')
         names.append(name)
+    if draw.chance(0.2):
+        names.append(draw.pick(NAMED))
     return names
+
+
+def optics(draw, solid):
+    """Of a material: one to start from, and of metal or of glass, each now and then. Pictures may have holes: they
+    are no solids."""
+    fields = []
+    if draw.chance(0.15):
+        fields.append(f'from: {draw.pick(["leaf", "bark", "stone", "snow"])}')
+    if draw.chance(0.1):
+        fields.append(f'metallic: {number(draw.random())}')
+    elif solid and draw.chance(0.15):
+        fields.append(f'ior: {number(draw.uniform(1, 3))}')
+    if draw.chance(0.15):
+        fields.append(f'transparency: {number(draw.random())}')
+        if solid and draw.chance(0.4):
+            fields.append(f'absorption: {number(draw.log_uniform(0.01, 100))}')
+    return fields
 
 
 def surroundings(draw, model):

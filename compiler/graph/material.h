@@ -1,0 +1,84 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "compiler/support/affine.h"
+#include "compiler/support/number_range.h"
+#include "compiler/support/source.h"
+#include "compiler/support/tint.h"
+
+namespace graftal {
+
+/// How a surface takes light; the numbers are POV-Ray's finish, which the tracer follows too (optics.h).
+struct Material {
+    std::string name;
+    Rgb rgb{0.8};
+    double ambient = 0.1;
+    double diffuse = 0.8;
+    double specular = 0.1;
+    double roughness = 0.05;
+    double reflection = 0;
+    double translucency = 0; ///< diffuse light that comes through, from behind: of leaves and paper
+    double emission = 0;     ///< light of its own
+    double metallic = 0;     ///< how much of its colour highlights and reflections take on
+    double transparency = 0; ///< the share of light that goes straight in, and out again
+    double ior = 1;          ///< index of refraction; above 1, the surface reflects by Fresnel's formula
+    /// The path in scene units that leaves of white light the material's own rgb; 0: it is the surface that
+    /// colours what goes through it.
+    double absorption = 0;
+    /// The picture that is wrapped round each primitive in place of rgb (texture_space.h), by the file it is
+    /// read from or the model it is drawn from; empty: none. Where its alpha is below 1/2 there is no
+    /// surface.
+    std::string texture;
+    double around = 1;   ///< how often it goes round what is round
+    double coverage = 1; ///< share of the picture that is not clear
+    Span span;
+
+    /// Spans do not count.
+    bool operator==(const Material& other) const;
+
+    bool is_transparent() const { return transparency > 0; }
+    /// Whether it has a clear coat, which reflects more the more a ray grazes it. What the coat reflects
+    /// is not there for what is below it.
+    bool has_coat() const { return ior > 1; }
+};
+
+/// One number of a surface's finish: a row of the table that texts, checks and comparisons read.
+struct FinishNumber {
+    std::string_view name; ///< in models
+    double Material::*value;
+    double most = 1;
+    double least = 0;
+    bool positive = false; ///< and not 0
+    bool always = true;    ///< `print` writes it, also where it is as it would be anyhow
+};
+
+inline constexpr FinishNumber finish_numbers[] = {
+    {"ambient", &Material::ambient},
+    {"diffuse", &Material::diffuse},
+    {"specular", &Material::specular},
+    {.name = "roughness", .value = &Material::roughness, .positive = true},
+    {"reflection", &Material::reflection},
+    {.name = "translucency", .value = &Material::translucency, .always = false},
+    {.name = "emission", .value = &Material::emission, .most = 1e6, .always = false},
+    {.name = "metallic", .value = &Material::metallic, .always = false},
+    {.name = "transparency", .value = &Material::transparency, .always = false},
+    {.name = "ior", .value = &Material::ior, .most = 10, .least = 1, .always = false},
+    {.name = "absorption", .value = &Material::absorption, .most = largest_size, .always = false},
+};
+
+/// Whether the finishes are equal, whatever the colours.
+bool same_finish(const Material& a, const Material& b);
+
+/// What light meets within a solid.
+struct Interior {
+    double ior = 1;
+    Rgb absorbed{0.0}; ///< optical depth of a unit of length
+    bool operator==(const Interior&) const = default;
+};
+
+/// Between the surfaces of what has this material. POV-Ray counts only rays that bend: none goes straight on.
+Interior interior_of(const Material& material);
+
+} // namespace graftal

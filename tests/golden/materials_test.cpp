@@ -1,0 +1,82 @@
+// Metal, clear coats and glass on what becomes meshes, with tints and pictures, by both engines.
+
+#include "tests/golden/command_line.h"
+
+#include <gmock/gmock.h>
+
+#include "runtime/image/image.h"
+
+namespace graftal {
+namespace {
+
+using testing::HasSubstr;
+
+class Materials : public CommandLine {
+  protected:
+    void SetUp() override {
+        CommandLine::SetUp();
+        write("m.inst", R"(
+            material amber { color: 0.9, 0.6, 0.2  transparency: 0.6  diffuse: 0.5  ior: 1.4 }
+            material foil { color: 0.9, 0.6, 0.2  metallic: 1  reflection: 0.5  specular: 0.6 }
+            material lacquer { color: 0.5, 0.6, 0.7  ior: 1.5 }
+            material pane { texture: "leaf.png"  transparency: 0.4 }
+            material tin { texture: "leaf.png"  metallic: 1  reflection: 0.3 }
+            material enamel { texture: "bands.png"  ior: 1.5  reflection: 0.5  transparency: 0.3 }
+            canonical object bush {
+                cube  scale: 0.5
+                bush  scale: 0.45  translate: 0.8, 0.6, 0  tint: 0.2, 0.8, 0.9, 0.4
+                bush  scale: 0.45  translate: -0.8, 0.6, 0  tint: 0.9, 0.2, 0.1, 0.3
+                bush  scale: 0.45  rotate: y, 40  translate: 0, -0.9, 0.3
+            }
+            object top {
+                bush  translate: -2.5, 1.4, 0  material: amber    tint: 0.5, 0.5, 1, 0.3
+                bush  translate: 0, 1.4, 0     material: foil     tint: 0.5, 0.5, 1, 0.3
+                bush  translate: 2.5, 1.4, 0   material: lacquer  tint: 0.5, 0.5, 1, 0.3
+                cube  scale: 0.7, 0.7, 0.01  rotate: y, 20   translate: -1.2, 0.8, 2  material: pane
+                      tint: 0.3, 0.3, 1, 0.3
+                cube  scale: 0.7, 0.7, 0.01  rotate: y, -20  translate: 1.2, 0.8, 2   material: tin
+                cube  scale: 0.4  rotate: y, 25  translate: 0, 0.41, 2.5  material: enamel
+                      tint: 0.3, 0.9, 0.3, 0.4
+            }
+            ground { height: 0  color: 0.5, 0.5, 0.45 }
+            light { sun: -1, 2, 1.5  color: 0.8, 0.8, 0.7 }
+            background { zenith: 0.3, 0.5, 0.9  horizon: 0.9, 0.9, 0.95 }
+            camera { location: 0, 3, 9  look_at: 0, 1.2, 0  angle: 45 }
+            steps: 3
+        )");
+        for (const std::string file : {"leaf.png", "bands.png"})
+            ASSERT_EQ(shell("cp '" + source_path("tests/golden/textured/" + file) + "' .").status, 0);
+    }
+};
+
+TEST_F(Materials, BothEnginesShowTheSame) {
+    for (const std::string engine : {"native", "povray"}) {
+        const RunResult result = graftal("render m.inst --antialias off --size 200x120 -q --engine " +
+                                         engine + " -o " + engine + ".png");
+        ASSERT_EQ(result.status, 0) << result.err;
+    }
+    const ImageDifference difference = compare_images(picture("native.png"), picture("povray.png"), 0.05);
+    EXPECT_LT(difference.mean, 2e-4);
+    EXPECT_LT(difference.over_threshold, 20u);
+}
+
+TEST_F(Materials, ArePrintedWhole) {
+    const RunResult printed = graftal("print m.inst");
+    ASSERT_EQ(printed.status, 0) << printed.err;
+    EXPECT_THAT(printed.out, HasSubstr("  transparency: 0.6\n  ior: 1.4\n"));
+    write("again.inst", printed.out);
+    EXPECT_EQ(graftal("print again.inst").out, printed.out);
+}
+
+TEST_F(Materials, PicturesWithHolesAreNoSolids) {
+    write("holes.inst",
+          "material leaf { texture: \"leaf.png\"  ior: 1.5 }\nobject a { sphere material: leaf }\n");
+    const RunResult result = graftal("print holes.inst");
+    EXPECT_EQ(result.status, 1);
+    EXPECT_THAT(result.err,
+                HasSubstr("holes.inst:1:10: error: the picture of this material has clear parts"));
+    EXPECT_THAT(result.err, HasSubstr("leave out 'ior' and 'absorption'"));
+}
+
+} // namespace
+} // namespace graftal

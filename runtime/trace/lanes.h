@@ -89,8 +89,4 @@ GRAFTAL_INLINE Float8 greater(const Float8& a, const Float8& b) {
     return a > b ? a : b;
 }
 
-GRAFTAL_INLINE Float8 splat8(float x) {
-    return x - Float8{};
-}
-
 } // namespace graftal

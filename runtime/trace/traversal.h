@@ -59,7 +59,7 @@ class Traversal final : public Surfaces {
     std::uint64_t given_up() const { return given_up_; }
 
   private:
-    template<Instructions instructions> struct Kernel; ///< the traversal proper (traversal_kernel.h)
+    template<Instructions instructions, bool any> struct Kernel; ///< the traversal proper (traversal_kernel.h)
 
     /// An object on the way from the root, and the ray in its frame: origin + (t - base) / unit * direction.
     struct alignas(32) Frame {
@@ -150,7 +150,7 @@ class Traversal final : public Surfaces {
     bool meet_drawn(const Primitive& primitive, const Affine& drawn, const RayRange& range);
     /// The edges to a frame's node.
     void keep_way(std::uint32_t frame_number);
-    bool run(const Ray& ray, const RayRange& range, bool any);
+    template<bool any> bool run(const Ray& ray, const RayRange& range);
     /// False once the ray went into too many parts, and hurrying did not help.
     bool goes_on();
     /// Appends an edge to the path; of an unrolling's edge those that it stands for.

@@ -18,11 +18,11 @@
 
 namespace graftal {
 
-template<Instructions instructions> struct Traversal::Kernel {
+/// `any`: whatever is met first will do, and only that it is.
+template<Instructions instructions, bool any> struct Traversal::Kernel {
     Traversal& self;
     const TraceModel& model;
     const RayRange range;
-    bool any;
 
     GRAFTAL_INLINE bool run(const Ray& ray) {
         self.depth_ = 0;
@@ -131,7 +131,7 @@ template<Instructions instructions> struct Traversal::Kernel {
             const auto i = static_cast<std::size_t>(axis);
             Byte8 bytes;
             std::memcpy(&bytes, node.side[side][i].data(), sizeof(bytes));
-            return splat8(node.origin[i]) + __builtin_convertvector(bytes, Float8) * splat8(node.step[i]);
+            return spread<instructions>(node.origin[i]) + __builtin_convertvector(bytes, Float8) * spread<instructions>(node.step[i]);
         };
         return test_lanes(
             side_of, [&](std::size_t lane) { return node.first + node.offset[lane]; }, (1u << node.count) - 1,
@@ -146,13 +146,13 @@ template<Instructions instructions> struct Traversal::Kernel {
         const Frame& frame = self.frames_[frame_number];
         // A little more, for what single precision leaves out.
         const float most = static_cast<float>((self.best_.t - frame.base) * frame.speed) + 2e-6f;
-        Float8 enters = splat8(frame.least), leaves = splat8(most);
+        Float8 enters = spread<instructions>(frame.least), leaves = spread<instructions>(most);
         for (int axis = 0; axis < 3; ++axis) {
             const auto in = static_cast<std::size_t>(frame.side_in[axis]);
-            const Float8 reciprocal = splat8(frame.reciprocal[axis]);
+            const Float8 reciprocal = spread<instructions>(frame.reciprocal[axis]);
             // Lanes of no numbers stay so by the last axis.
-            enters = greater(enters, (side_of(in, axis) - splat8(frame.origin_in[axis])) * reciprocal);
-            leaves = lesser(leaves, (side_of(1 - in, axis) - splat8(frame.origin_out[axis])) * reciprocal);
+            enters = greater(enters, (side_of(in, axis) - spread<instructions>(frame.origin_in[axis])) * reciprocal);
+            leaves = lesser(leaves, (side_of(1 - in, axis) - spread<instructions>(frame.origin_out[axis])) * reciprocal);
         }
         std::uint32_t lanes = bits_of<instructions>(enters <= leaves) & used;
         if (lanes == 0) return false;

@@ -45,6 +45,7 @@ struct TraceEdge {
     std::uint32_t child = 0;
     unsigned levels = 0;
     bool similarity = false; ///< then a path's norm is the product of its stretches
+    bool upright = false;    ///< only scales evenly and moves, so that rays keep their directions
     double flatness = 1; ///< the least stretch, as a share of the largest; child_from_parent is only used if
                          ///< it is not too little
     PathTint tint;
@@ -90,7 +91,7 @@ struct TraceNode {
     double flattest_edge = 1;          ///< least flatness of its edges
     std::uint32_t first_unrolling = 0; ///< the deepest first
     std::uint32_t unrolling_count = 0;
-    double reach = 0; ///< from ball_centre; the balls of all nodes that they pass over are within it
+    double reach = 0; ///< from ball_centre; the balls of all nodes that they pass over or lead to are within it
     std::uint32_t first_edge = 0; ///< of its edges, which follow each other
     std::uint32_t edge_count = 0;
     std::uint32_t stop_edge_count = 0; ///< which follow those

@@ -61,15 +61,20 @@ class Traversal final : public Surfaces {
   private:
     template<Instructions instructions, bool any> struct Kernel; ///< the traversal proper (traversal_kernel.h)
 
-    /// An object on the way from the root, and the ray in its frame: origin + (t - base) / unit * direction.
-    struct alignas(32) Frame {
-        LaneMap world_from_node;
+    /// The ray in some frame: origin + (t - base) / unit * direction.
+    struct LocalRay {
         Double4 origin, direction; ///< the direction's largest component is 1, within a small factor
         double base = 0;
-        double unit = 1;     ///< of t
-        double speed = 1;    ///< 1 / unit
-        double scale = 1;    ///< norm of world_from_node
-        double flatness = 1; ///< at most its least stretch, as a share of the largest
+        double unit = 1;  ///< of t
+        double speed = 1; ///< 1 / unit
+    };
+
+    /// An object on the way from the root, and the ray in its frame.
+    struct alignas(32) Frame : LocalRay {
+        LaneMap world_from_node;
+        double scale = 1;        ///< norm of world_from_node
+        double flatness = 1;     ///< at most its least stretch, as a share of the largest
+        double least_detail = 0; ///< that a unit has of its entries' children, or less
         std::uint32_t edge = 0;
         std::uint32_t node = 0;
         std::uint32_t steps = 0;

@@ -15,7 +15,7 @@ namespace {
 /// Parts of one unrolling: what goes into the first and second caches.
 constexpr std::size_t most_parts = 512;
 /// Unrollings of one node, and groups in groups that are passed over between two of them.
-constexpr std::size_t most_unrollings = 6;
+constexpr std::size_t most_unrollings = 7;
 constexpr int most_groups = 8;
 /// Parts of a part, to find its box.
 constexpr std::uint32_t most_looked_at = 64;
@@ -67,17 +67,17 @@ class Unroller {
         bool deeper = has_groups(parts);
         std::size_t edges = model_.edges.size();
         while (unrollings.size() < most_unrollings) {
-            pass_groups(node, parts);
+            pass_groups(parts);
             if (has_groups(parts)) { // half of the way
                 model_.edges.resize(edges);
                 break;
             }
-            if (deeper) {
-                parts.unrolling.tree = tree_over(parts.edges);
-                unrollings.push_back(parts.unrolling);
-            }
+            parts.unrolling.tree = deeper ? tree_over(parts.edges) : node.tree;
+            for (const std::uint32_t edge : parts.edges)
+                include_in_reach(node, model_.edges[edge]);
+            unrollings.push_back(parts.unrolling);
             edges = model_.edges.size();
-            deeper = expand(node, parts, is_any_union);
+            deeper = expand(parts, is_any_union);
             if (!deeper) break;
         }
         node.first_unrolling = static_cast<std::uint32_t>(model_.unrollings.size());
@@ -98,14 +98,14 @@ class Unroller {
     }
 
     /// Puts the parts of groups in their places.
-    void pass_groups(TraceNode& node, Parts& parts) {
+    void pass_groups(Parts& parts) {
         const auto is_group_here = [&](const TraceEdge& edge) { return is_group(edge, parts.unrolling); };
-        for (int i = 0; i < most_groups && expand(node, parts, is_group_here); ++i) {
+        for (int i = 0; i < most_groups && expand(parts, is_group_here); ++i) {
         }
     }
 
     /// Puts their parts in place of those of which it holds; false if there are none, or too many.
-    template<typename Holds> bool expand(TraceNode& node, Parts& parts, const Holds& holds) {
+    template<typename Holds> bool expand(Parts& parts, const Holds& holds) {
         std::size_t count = 0;
         bool any = false;
         const auto is_expanded = [&](std::uint32_t number) { return holds(model_.edges[number]); };
@@ -122,7 +122,7 @@ class Unroller {
                 continue;
             }
             const TraceNode& child = model_.nodes[model_.edges[number].child];
-            pass_over(node, model_.edges[number], child, deeper.unrolling);
+            pass_over(model_.edges[number], child, deeper.unrolling);
             for (std::uint32_t i = 0; i < child.edge_count; ++i)
                 deeper.edges.push_back(add_edge(number, child.first_edge + i));
         }
@@ -135,8 +135,7 @@ class Unroller {
     }
 
     /// Notes what must hold for a node to be gone through.
-    static void pass_over(TraceNode& node, const TraceEdge& edge, const TraceNode& child,
-                          Unrolling& unrolling) {
+    static void pass_over(const TraceEdge& edge, const TraceNode& child, Unrolling& unrolling) {
         if (child.unending) unrolling.least_steps = std::max(unrolling.least_steps, edge.levels + 1);
         if (child.cullable)
             unrolling.least_size =
@@ -144,6 +143,11 @@ class Unroller {
                                                    (edge.similarity ? 1 : edge.flatness) / child.cut_detail);
         unrolling.flattest_edge =
             std::min(unrolling.flattest_edge, (edge.similarity ? 1 : edge.flatness) * child.flattest_edge);
+    }
+
+    void include_in_reach(TraceNode& node, const TraceEdge& edge) {
+        const TraceNode& child = model_.nodes[edge.child];
+        if (is_endless(child)) return;
         const Vec3 centre = edge.parent_from_child.affine()(vec3_of(child.ball_centre));
         node.reach = std::max(node.reach, glm::distance(centre, vec3_of(node.ball_centre)) +
                                               edge.stretch * child.ball_radius);
@@ -164,6 +168,7 @@ class Unroller {
         edge.child_from_parent =
             LaneMap(second.child_from_parent.affine() * first.child_from_parent.affine());
         edge.similarity = first.similarity && second.similarity;
+        edge.upright = first.upright && second.upright;
         edge.flatness = first.flatness * second.flatness;
         edge.stretch = edge.similarity ? first.stretch * second.stretch : norm(parent_from_child.linear);
         edge.growth = 1 / edge.stretch;

@@ -27,8 +27,11 @@ class Projection {
     double pixels_that_matter(const Ball& world_ball) const;
     /// The detail of one scene unit there; less out of the picture too.
     double detail_per_unit(const Ball& world_ball) const;
-    /// No ball within the region has less detail_per_unit().
-    double least_detail_per_unit(const Ball& region) const;
+    /// No ball within the region has less detail_per_unit(), nor more.
+    struct DetailRange {
+        double least, most;
+    };
+    DetailRange detail_range(const Ball& region) const;
 
     /// Half of what a part measures at least that has no width of its own (least_width.h), in scene units:
     /// where the error is a length, that length. 0 where nothing is culled.
@@ -91,14 +94,20 @@ inline double Projection::pixels_that_matter(const Ball& ball) const {
     return pixels_per_unit(ball) / (sees(ball) ? 1 : coarser_out_of_sight);
 }
 
-inline double Projection::least_detail_per_unit(const Ball& region) const {
-    if (!culls_) return std::numeric_limits<double>::infinity();
+inline Projection::DetailRange Projection::detail_range(const Ball& region) const {
+    constexpr double infinite = std::numeric_limits<double>::infinity();
+    if (!culls_) return {infinite, infinite};
     const double hidden = sees({region.centre, -region.radius}) ? 1 : coarser_out_of_sight;
-    if (error_world_ > 0) return 1 / (error_world_ * hidden);
-    if (camera_.orthographic) return width_px_ / (camera_.width * error_px_ * hidden);
+    const double hidden_all = hidden == 1 || sees(region) ? 1 : coarser_out_of_sight;
+    if (error_world_ > 0) return {1 / (error_world_ * hidden), 1 / (error_world_ * hidden_all)};
+    if (camera_.orthographic) {
+        const double pixels = width_px_ / camera_.width;
+        return {pixels / (error_px_ * hidden), pixels / (error_px_ * hidden_all)};
+    }
     const Vec3 from_eye = region.centre - camera_.location;
     const double depth = std::max(glm::dot(from_eye, camera_.direction), 0.5 * glm::length(from_eye));
-    return pixels_per_tangent_ / (std::max(depth + region.radius, near_) * error_px_ * hidden);
+    return {pixels_per_tangent_ / (std::max(depth + region.radius, near_) * error_px_ * hidden),
+            pixels_per_tangent_ / (std::max(depth - region.radius, near_) * error_px_ * hidden_all)};
 }
 
 inline double Projection::detail_per_unit(const Ball& ball) const {

@@ -34,6 +34,19 @@ template<Instructions instructions> GRAFTAL_INLINE std::uint32_t bits_of(const I
     return bits;
 }
 
+/// The same number in all lanes.
+template<Instructions instructions> GRAFTAL_INLINE Float8 spread(float x) {
+#if defined(__x86_64__) && !defined(__clang__)
+    if constexpr (instructions == Instructions::avx2) {
+        Float8 lanes;
+        // GCC inserts them one by one.
+        __asm__("vbroadcastss %1, %0" : "=x"(lanes) : "xm"(x));
+        return lanes;
+    }
+#endif
+    return x - Float8{};
+}
+
 /// The range of t in which a ray is within a box; empty where least > most.
 GRAFTAL_INLINE RayRange range_in(const Box& box, const Ray& ray, RayRange range) {
     for (int axis = 0; axis < 3; ++axis) {

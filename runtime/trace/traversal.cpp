@@ -55,10 +55,10 @@ Rgb colour_of(const Texture::Texel& texel) {
 
 } // namespace
 
-bool Traversal::run(const Ray& ray, const RayRange& range, bool any) {
+template<bool any> bool Traversal::run(const Ray& ray, const RayRange& range) {
     if (instructions_ == Instructions::avx2)
-        return run_avx2(Kernel<Instructions::avx2>{*this, model_, range, any}, ray);
-    return run_portable(Kernel<Instructions::portable>{*this, model_, range, any}, ray);
+        return run_avx2(Kernel<Instructions::avx2, any>{*this, model_, range}, ray);
+    return run_portable(Kernel<Instructions::portable, any>{*this, model_, range}, ray);
 }
 
 bool Traversal::goes_on() {
@@ -72,7 +72,7 @@ bool Traversal::goes_on() {
 }
 
 bool Traversal::closest(const Ray& ray, const RayRange& range, SurfaceHit& hit) {
-    if (!run(ray, range, false)) return false;
+    if (!run<false>(ray, range)) return false;
     path_.clear();
     for (const std::uint32_t edge : way_)
         append_to_path(edge);
@@ -82,7 +82,7 @@ bool Traversal::closest(const Ray& ray, const RayRange& range, SurfaceHit& hit) 
 }
 
 bool Traversal::meets_any(const Ray& ray, const RayRange& range) {
-    return run(ray, range, true);
+    return run<true>(ray, range);
 }
 
 bool Traversal::all_opaque() const {

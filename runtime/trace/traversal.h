@@ -60,17 +60,23 @@ class Traversal final : public Surfaces {
     std::uint64_t given_up() const { return given_up_; }
 
   private:
-    template<Instructions instructions> struct Kernel; ///< the traversal proper (traversal_kernel.h)
+    template<Instructions instructions, bool any>
+    struct Kernel; ///< the traversal proper (traversal_kernel.h)
 
-    /// An object on the way from the root, and the ray in its frame: origin + (t - base) / unit * direction.
-    struct alignas(32) Frame {
-        LaneMap world_from_node;
+    /// The ray in some frame: origin + (t - base) / unit * direction.
+    struct LocalRay {
         Double4 origin, direction; ///< the direction's largest component is 1, within a small factor
         double base = 0;
-        double unit = 1;     ///< of t
-        double speed = 1;    ///< 1 / unit
-        double scale = 1;    ///< norm of world_from_node
-        double flatness = 1; ///< at most its least stretch, as a share of the largest
+        double unit = 1;  ///< of t
+        double speed = 1; ///< 1 / unit
+    };
+
+    /// An object on the way from the root, and the ray in its frame.
+    struct alignas(32) Frame : LocalRay {
+        LaneMap world_from_node;
+        double scale = 1;        ///< norm of world_from_node
+        double flatness = 1;     ///< at most its least stretch, as a share of the largest
+        double least_detail = 0; ///< that a unit has of its entries' children, or less
         std::uint32_t edge = 0;
         std::uint32_t node = 0;
         std::uint32_t steps = 0;
@@ -151,7 +157,7 @@ class Traversal final : public Surfaces {
     bool meet_drawn(const Primitive& primitive, const Affine& drawn, const RayRange& range);
     /// The edges to a frame's node.
     void keep_way(std::uint32_t frame_number);
-    bool run(const Ray& ray, const RayRange& range, bool any);
+    template<bool any> bool run(const Ray& ray, const RayRange& range);
     /// False once the ray went into too many parts, and hurrying did not help.
     bool goes_on();
     /// Appends an edge to the path; of an unrolling's edge those that it stands for.

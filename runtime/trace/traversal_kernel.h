@@ -18,11 +18,11 @@
 
 namespace graftal {
 
-template<Instructions instructions> struct Traversal::Kernel {
+/// `any`: whatever is met first will do, and only that it is.
+template<Instructions instructions, bool any> struct Traversal::Kernel {
     Traversal& self;
     const TraceModel& model;
     const RayRange range;
-    bool any;
 
     GRAFTAL_INLINE bool run(const Ray& ray) {
         self.depth_ = 0;
@@ -94,6 +94,8 @@ template<Instructions instructions> struct Traversal::Kernel {
         frame.flatness = 1;
         frame.faint = false;
         frame.margin = Vec3(model.widest * model.most_half_width);
+        frame.least_detail = model.least_detail_per_unit;
+        ready_direction(frame);
     }
 
     /// Where boxes are few or infinite: in double precision.
@@ -131,7 +133,8 @@ template<Instructions instructions> struct Traversal::Kernel {
             const auto i = static_cast<std::size_t>(axis);
             Byte8 bytes;
             std::memcpy(&bytes, node.side[side][i].data(), sizeof(bytes));
-            return splat8(node.origin[i]) + __builtin_convertvector(bytes, Float8) * splat8(node.step[i]);
+            return spread<instructions>(node.origin[i]) +
+                   __builtin_convertvector(bytes, Float8) * spread<instructions>(node.step[i]);
         };
         return test_lanes(
             side_of, [&](std::size_t lane) { return node.first + node.offset[lane]; }, (1u << node.count) - 1,
@@ -146,13 +149,15 @@ template<Instructions instructions> struct Traversal::Kernel {
         const Frame& frame = self.frames_[frame_number];
         // A little more, for what single precision leaves out.
         const float most = static_cast<float>((self.best_.t - frame.base) * frame.speed) + 2e-6f;
-        Float8 enters = splat8(frame.least), leaves = splat8(most);
+        Float8 enters = spread<instructions>(frame.least), leaves = spread<instructions>(most);
         for (int axis = 0; axis < 3; ++axis) {
             const auto in = static_cast<std::size_t>(frame.side_in[axis]);
-            const Float8 reciprocal = splat8(frame.reciprocal[axis]);
+            const Float8 reciprocal = spread<instructions>(frame.reciprocal[axis]);
             // Lanes of no numbers stay so by the last axis.
-            enters = greater(enters, (side_of(in, axis) - splat8(frame.origin_in[axis])) * reciprocal);
-            leaves = lesser(leaves, (side_of(1 - in, axis) - splat8(frame.origin_out[axis])) * reciprocal);
+            enters = greater(enters,
+                             (side_of(in, axis) - spread<instructions>(frame.origin_in[axis])) * reciprocal);
+            leaves = lesser(leaves, (side_of(1 - in, axis) - spread<instructions>(frame.origin_out[axis])) *
+                                        reciprocal);
         }
         std::uint32_t lanes = bits_of<instructions>(enters <= leaves) & used;
         if (lanes == 0) return false;
@@ -200,40 +205,73 @@ template<Instructions instructions> struct Traversal::Kernel {
                 return false;
             }
         }
-        Frame& frame = push(); // parents may move, but no more after this
-        const Frame& parent = self.frames_[entry.frame];
-        const Double4 near = parent.origin + splat(entry.at) * parent.direction;
-        const Double4 direction = direction_through(edge.child_from_parent, parent.direction);
-        frame.origin = point_through(edge.child_from_parent, near);
-        frame.base = parent.base + entry.at * parent.unit;
-        if (edge.similarity) {
-            // The direction grows as much as the map shrinks; to compute its length anew would take longer.
-            frame.direction = direction * splat(edge.stretch);
-            frame.speed = parent.speed * edge.growth;
-            frame.unit = parent.unit * edge.stretch;
-        } else {
-            const double largest = largest_component(direction);
-            if (!(largest > 0 && largest < 1 / least_scale)) return false;
-            const double shrink = 1 / largest;
-            frame.direction = direction * splat(shrink);
-            frame.speed = parent.speed * largest;
-            frame.unit = parent.unit * shrink;
-        }
         if (node.kind == TraceNode::Kind::primitive) {
+            const Frame& parent = self.frames_[entry.frame];
+            LocalRay ray;
             if (parent.faint && node.primitive != PrimitiveKind::plane)
                 meet_faint(node, edge, parent, entry);
-            else
-                meet_primitive(node.primitive, parent, frame, entry);
+            else if (take_ray(edge, parent, entry, ray))
+                meet_primitive(node.primitive, parent, ray, entry);
             return false;
+        }
+        Frame& frame = push(); // parents may move, but no more after this
+        const Frame& parent = self.frames_[entry.frame];
+        if (!take_ray(edge, parent, entry, frame)) return false;
+        if (edge.upright) {
+            frame.reciprocal = parent.reciprocal;
+            frame.side_in = parent.side_in;
+        } else {
+            ready_direction(frame);
         }
         frame.flatness = flatness;
         return enter_node(edge, node, parent, frame, entry);
     }
 
+    /// Takes the ray into the frame of an edge's child, from where the entry begins; false if that is no map.
+    GRAFTAL_INLINE bool take_ray(const TraceEdge& edge, const Frame& parent, const Entry& entry,
+                                 LocalRay& ray) const {
+        const Double4 near = parent.origin + splat(entry.at) * parent.direction;
+        ray.base = parent.base + entry.at * parent.unit;
+        if (edge.upright) {
+            ray.origin = near * splat(edge.growth) + edge.child_from_parent.translation;
+            ray.direction = parent.direction;
+            ray.speed = parent.speed * edge.growth;
+            ray.unit = parent.unit * edge.stretch;
+            return true;
+        }
+        const Double4 direction = direction_through(edge.child_from_parent, parent.direction);
+        ray.origin = point_through(edge.child_from_parent, near);
+        if (edge.similarity) {
+            // The direction grows as much as the map shrinks; to compute its length anew would take longer.
+            ray.direction = direction * splat(edge.stretch);
+            ray.speed = parent.speed * edge.growth;
+            ray.unit = parent.unit * edge.stretch;
+            return true;
+        }
+        const double largest = largest_component(direction);
+        if (!(largest > 0 && largest < 1 / least_scale)) return false;
+        const double shrink = 1 / largest;
+        ray.direction = direction * splat(shrink);
+        ray.speed = parent.speed * largest;
+        ray.unit = parent.unit * shrink;
+        return true;
+    }
+
+    /// Where the edge's child lies in the world.
+    GRAFTAL_INLINE void place_child(const Frame& parent, const TraceEdge& edge,
+                                    LaneMap& world_from_child) const {
+        if (!edge.upright) return compose(parent.world_from_node, edge.parent_from_child, world_from_child);
+        const Double4 scale = splat(edge.stretch);
+        for (int i = 0; i < 3; ++i)
+            world_from_child.column[i] = parent.world_from_node.column[i] * scale;
+        world_from_child.translation =
+            point_through(parent.world_from_node, edge.parent_from_child.translation);
+    }
+
     /// The frame has its ray.
     GRAFTAL_INLINE bool enter_node(const TraceEdge& edge, const TraceNode& node, const Frame& parent,
                                    Frame& frame, Entry& entry) {
-        compose(parent.world_from_node, edge.parent_from_child, frame.world_from_node);
+        place_child(parent, edge, frame.world_from_node);
         frame.edge = entry.entry | (parent.cut ? from_cut : 0);
         frame.node = edge.child;
         frame.steps = parent.steps == unlimited_steps ? parent.steps : parent.steps - edge.levels;
@@ -241,7 +279,9 @@ template<Instructions instructions> struct Traversal::Kernel {
             edge.similarity ? parent.scale * edge.stretch : largest_stretch(linear_of(frame.world_from_node));
         if (!(frame.scale > least_scale)) return false;
         frame.faint = parent.faint;
-        frame.cut = is_cut(node, frame);
+        double detail = INFINITY;
+        frame.cut = is_cut(node, frame, parent.least_detail, detail);
+        frame.least_detail = model.least_detail_per_unit;
         frame.items = node.kind == TraceNode::Kind::run;
         if (frame.cut && node.stop_tree == no_tree) {
             if (frame.faint || node.faint)
@@ -250,7 +290,8 @@ template<Instructions instructions> struct Traversal::Kernel {
                 meet_proxy(node, frame);
             return false;
         }
-        if (frame.cut && node.faint && !frame.faint) frame.faint = detail_of(node, frame) <= 1;
+        if (frame.cut && node.faint && !frame.faint)
+            frame.faint = (detail < INFINITY ? detail : detail_of(node, frame)) <= 1;
         const auto number = static_cast<std::uint32_t>(self.depth_ - 1);
         frame.margin = margin_of(node, frame);
         if (node.kind == TraceNode::Kind::unbounded) {
@@ -281,19 +322,22 @@ template<Instructions instructions> struct Traversal::Kernel {
         return test_boxes(model.boxes, tree, number, entry);
     }
 
-    GRAFTAL_INLINE void ready_for_boxes(Frame& frame) {
-        frame.least = static_cast<float>((range.least - frame.base) * frame.speed);
+    GRAFTAL_INLINE void ready_direction(Frame& frame) const {
         const Float4 direction = __builtin_convertvector(frame.direction, Float4);
-        const Float4 origin = __builtin_convertvector(frame.origin, Float4);
         // Where it is 0 something small: far beyond all boxes, but a number, and 0 times it is 0.
         constexpr Float4 least = {1e-18f, 1e-18f, 1e-18f, 1e-18f};
         const Float4 magnitude = direction < 0 ? -direction : direction;
         frame.reciprocal = 1 / (magnitude > least ? direction : least);
-        const Int4 falling = frame.reciprocal < 0;
+        frame.side_in = -(frame.reciprocal < 0);
+    }
+
+    /// The frame has its ray, that its direction, and its margin.
+    GRAFTAL_INLINE void ready_for_boxes(Frame& frame) const {
+        frame.least = static_cast<float>((range.least - frame.base) * frame.speed);
+        const Float4 origin = __builtin_convertvector(frame.origin, Float4);
         const Float4 margin = {static_cast<float>(frame.margin.x), static_cast<float>(frame.margin.y),
                                static_cast<float>(frame.margin.z), 0};
-        const Float4 inwards = falling ? -margin : margin;
-        frame.side_in = -falling;
+        const Float4 inwards = frame.side_in != 0 ? -margin : margin;
         frame.origin_in = origin + inwards;
         frame.origin_out = origin - inwards;
     }
@@ -307,12 +351,15 @@ template<Instructions instructions> struct Traversal::Kernel {
         return 2 * ball.radius * model.projection.detail_per_unit(ball);
     }
 
-    /// The rule of the cut (detail.h).
-    GRAFTAL_INLINE bool is_cut(const TraceNode& node, const Frame& frame) const {
-        const double diameter = 2 * frame.scale * node.ball_radius;
+    /// The rule of the cut (detail.h). `least_detail`: of a unit, anywhere in the node's ball; sets the
+    /// detail if it has to look.
+    GRAFTAL_INLINE bool is_cut(const TraceNode& node, const Frame& frame, double least_detail,
+                               double& detail) const {
         if (self.hurries_ && node.cullable) return true;
-        const bool surely_large = !node.cullable || diameter * model.least_detail_per_unit > node.cut_detail;
-        return graftal::is_cut(node, frame.steps, surely_large ? INFINITY : detail_of(node, frame));
+        const double diameter = 2 * frame.scale * node.ball_radius;
+        const bool surely_large = !node.cullable || diameter * least_detail > node.cut_detail;
+        if (!surely_large) detail = detail_of(node, frame);
+        return graftal::is_cut(node, frame.steps, detail);
     }
 
     /// Whether copies lie in each other in it so often that its shell is drawn.
@@ -323,21 +370,21 @@ template<Instructions instructions> struct Traversal::Kernel {
         return node.shell.has(detail);
     }
 
-    /// The parts that are farthest down, of those that are drawn for sure if none is cut.
-    GRAFTAL_INLINE std::uint32_t tree_of(const TraceNode& node, const Frame& frame) const {
-        if (model.has_shells) return node.tree;
-        double detail = model.least_detail_per_unit;
-        bool known = false;
+    /// The parts that are farthest down, of those that are drawn for sure if none is cut; or what is drawn of
+    /// them, if all of them are.
+    GRAFTAL_INLINE std::uint32_t tree_of(const TraceNode& node, Frame& frame) const {
+        if (model.has_shells || node.unrolling_count == 0) return node.tree;
+        const auto [least, most] = model.projection.detail_range(world_ball(node, frame, node.reach));
+        frame.least_detail = surely_more * least;
         for (std::uint32_t i = 0; i < node.unrolling_count; ++i) {
             const Unrolling& unrolling = model.unrollings[node.first_unrolling + i];
             if (frame.steps < unrolling.least_steps) continue;
             if (!(frame.flatness * unrolling.flattest_edge > flattest_placement)) continue;
-            const double size = surely_more * frame.scale * unrolling.least_size;
-            if (size * detail > 1) return unrolling.tree;
-            if (known) continue;
-            detail = model.projection.least_detail_per_unit(world_ball(node, frame, node.reach));
-            known = true;
-            if (size * detail > 1) return unrolling.tree;
+            if (!(frame.scale * unrolling.least_size * frame.least_detail > 1)) continue;
+            const bool all_cut = unrolling.leaf_tree != no_tree && !frame.faint &&
+                                 !(frame.scale * unrolling.most_size * most > surely_more) &&
+                                 frame.flatness * unrolling.flattest_leaf > flattest_placement;
+            return all_cut ? unrolling.leaf_tree : unrolling.tree;
         }
         return node.tree;
     }
@@ -415,11 +462,11 @@ template<Instructions instructions> struct Traversal::Kernel {
         return !any;
     }
 
-    /// Meets a child whose ray is in `frame`.
-    GRAFTAL_INLINE void meet_primitive(const Primitive& primitive, const Frame& parent, const Frame& frame,
+    /// Meets a child in whose frame the ray is `local`.
+    GRAFTAL_INLINE void meet_primitive(const Primitive& primitive, const Frame& parent, const LocalRay& local,
                                        const Entry& entry) {
-        const Ray ray{vec3_of(frame.origin), vec3_of(frame.direction)};
-        RayRange near = range_from(frame.base, frame.speed);
+        const Ray ray{vec3_of(local.origin), vec3_of(local.direction)};
+        RayRange near = range_from(local.base, local.speed);
         PrimitiveHit hit;
         if (!intersect(primitive, ray, near, hit)) return;
         for (int crossing = 0;
@@ -429,7 +476,7 @@ template<Instructions instructions> struct Traversal::Kernel {
             near.least = hit.t;
             if (crossing == most_crossings || !intersect(primitive, ray, near, hit)) return;
         }
-        if (!set_best(frame.base + hit.t * frame.unit)) return;
+        if (!set_best(local.base + hit.t * local.unit)) return;
         self.best_.normal = hit.normal;
         self.best_.point = ray(hit.t);
         self.best_.turns = model.edges[entry.entry].turns;
@@ -449,10 +496,19 @@ template<Instructions instructions> struct Traversal::Kernel {
     /// A primitive of what stands for a set without area.
     GRAFTAL_INLINE void meet_faint(const TraceNode& node, const TraceEdge& edge, const Frame& parent,
                                    const Entry& entry) {
-        LaneMap place;
-        compose(parent.world_from_node, edge.parent_from_child, place);
         const TraceNode& speck = model.nodes[parent.node];
         const Ball ball = world_ball(speck, parent, speck.ball_radius);
+        if (edge.similarity) { // most are missed: a ball about it tells, as wide as any is drawn
+            const Double4 middle = point_through(edge.parent_from_child, node.ball_centre);
+            const double width = model.widest * model.projection.least_half_width(ball);
+            const double radius = std::max(parent.scale * edge.stretch * node.ball_radius, width);
+            if (passes_point(self.ray_.direction,
+                             self.ray_.origin - vec3_of(point_through(parent.world_from_node, middle)),
+                             radius))
+                return;
+        }
+        LaneMap place;
+        place_child(parent, edge, place);
         if (!self.meet_leaf(node.primitive, place.affine(), true, ball, range)) return;
         self.best_.turns = edge.turns;
         self.keep_way(entry.frame);

@@ -14,6 +14,8 @@ namespace {
 
 /// Parts of one unrolling: what goes into the first and second caches.
 constexpr std::size_t most_parts = 512;
+/// Primitives of one that is cut, and of all.
+constexpr std::size_t most_leaves = 1024, most_leaves_in_all = 8192;
 /// Unrollings of one node, and groups in groups that are passed over between two of them.
 constexpr std::size_t most_unrollings = 6;
 constexpr int most_groups = 8;
@@ -67,22 +69,69 @@ class Unroller {
         bool deeper = has_groups(parts);
         std::size_t edges = model_.edges.size();
         while (unrollings.size() < most_unrollings) {
-            pass_groups(node, parts);
+            pass_groups(parts);
             if (has_groups(parts)) { // half of the way
                 model_.edges.resize(edges);
                 break;
             }
-            if (deeper) {
-                parts.unrolling.tree = tree_over(parts.edges);
+            for (const std::uint32_t edge : parts.edges)
+                include_in_reach(node, model_.edges[edge]);
+            add_leaves(parts);
+            if (deeper || parts.unrolling.leaf_tree != no_tree) {
+                parts.unrolling.tree = deeper ? tree_over(parts.edges) : node.tree;
                 unrollings.push_back(parts.unrolling);
             }
             edges = model_.edges.size();
-            deeper = expand(node, parts, is_any_union);
+            deeper = expand(parts, is_any_union);
             if (!deeper) break;
         }
         node.first_unrolling = static_cast<std::uint32_t>(model_.unrollings.size());
         node.unrolling_count = static_cast<std::uint32_t>(unrollings.size());
         model_.unrollings.insert(model_.unrollings.end(), unrollings.rbegin(), unrollings.rend());
+    }
+
+    /// What is drawn of the parts where all that can be are cut.
+    void add_leaves(Parts& parts) {
+        parts.unrolling.leaf_tree = no_tree;
+        parts.unrolling.most_size = 0;
+        parts.unrolling.flattest_leaf = 1;
+        std::size_t count = 0;
+        for (const std::uint32_t edge : parts.edges) {
+            const std::size_t leaves = leaves_of(model_.nodes[model_.edges[edge].child]);
+            count += leaves;
+            if (leaves == 0 || count > most_leaves) return;
+        }
+        if (leaves_in_all_ + count > most_leaves_in_all) return;
+        std::vector<std::uint32_t> leaves;
+        for (const std::uint32_t number : parts.edges) {
+            const TraceEdge edge = model_.edges[number];
+            const TraceNode& child = model_.nodes[edge.child];
+            if (is_solid(child)) {
+                leaves.push_back(number);
+                continue;
+            }
+            if (child.edge_count > 0)
+                parts.unrolling.most_size = std::max(parts.unrolling.most_size,
+                                                     2 * child.ball_radius * edge.stretch / child.cut_detail);
+            for (std::uint32_t i = 0; i < child.stop_edge_count; ++i)
+                leaves.push_back(add_edge(number, (child.first_edge + child.edge_count + i) | from_cut));
+        }
+        for (const std::uint32_t leaf : leaves)
+            if (!model_.edges[leaf].similarity)
+                parts.unrolling.flattest_leaf =
+                    std::min(parts.unrolling.flattest_leaf, model_.edges[leaf].flatness);
+        leaves_in_all_ += count;
+        parts.unrolling.leaf_tree = tree_over(leaves);
+    }
+
+    /// Primitives that are drawn of a node as it is, or cut; 0 if there is more to it.
+    std::size_t leaves_of(const TraceNode& node) const {
+        if (is_solid(node)) return 1;
+        if (node.kind != TraceNode::Kind::parts || node.faint || node.widens) return 0;
+        if (!(node.edge_count > 0 ? node.cullable : node.unending)) return 0; // no edges: no steps are left
+        for (std::uint32_t i = 0; i < node.stop_edge_count; ++i)
+            if (!is_solid(model_.nodes[model_.edges[node.first_edge + node.edge_count + i].child])) return 0;
+        return node.stop_edge_count;
     }
 
     /// A union that is never cut where the parts passed over are not.
@@ -98,14 +147,14 @@ class Unroller {
     }
 
     /// Puts the parts of groups in their places.
-    void pass_groups(TraceNode& node, Parts& parts) {
+    void pass_groups(Parts& parts) {
         const auto is_group_here = [&](const TraceEdge& edge) { return is_group(edge, parts.unrolling); };
-        for (int i = 0; i < most_groups && expand(node, parts, is_group_here); ++i) {
+        for (int i = 0; i < most_groups && expand(parts, is_group_here); ++i) {
         }
     }
 
     /// Puts their parts in place of those of which it holds; false if there are none, or too many.
-    template<typename Holds> bool expand(TraceNode& node, Parts& parts, const Holds& holds) {
+    template<typename Holds> bool expand(Parts& parts, const Holds& holds) {
         std::size_t count = 0;
         bool any = false;
         const auto is_expanded = [&](std::uint32_t number) { return holds(model_.edges[number]); };
@@ -114,7 +163,8 @@ class Unroller {
             any = any || expanded;
             count += expanded ? model_.nodes[model_.edges[number].child].edge_count : 1;
         }
-        if (!any || count > most_parts || model_.edges.size() + count > most_edges_) return false;
+        if (!any || count > most_parts || model_.edges.size() - leaves_in_all_ + count > most_edges_)
+            return false;
         Parts deeper{{}, parts.unrolling};
         for (const std::uint32_t number : parts.edges) {
             if (!is_expanded(number)) {
@@ -122,7 +172,7 @@ class Unroller {
                 continue;
             }
             const TraceNode& child = model_.nodes[model_.edges[number].child];
-            pass_over(node, model_.edges[number], child, deeper.unrolling);
+            pass_over(model_.edges[number], child, deeper.unrolling);
             for (std::uint32_t i = 0; i < child.edge_count; ++i)
                 deeper.edges.push_back(add_edge(number, child.first_edge + i));
         }
@@ -135,8 +185,7 @@ class Unroller {
     }
 
     /// Notes what must hold for a node to be gone through.
-    static void pass_over(TraceNode& node, const TraceEdge& edge, const TraceNode& child,
-                          Unrolling& unrolling) {
+    static void pass_over(const TraceEdge& edge, const TraceNode& child, Unrolling& unrolling) {
         if (child.unending) unrolling.least_steps = std::max(unrolling.least_steps, edge.levels + 1);
         if (child.cullable)
             unrolling.least_size =
@@ -144,6 +193,11 @@ class Unroller {
                                                    (edge.similarity ? 1 : edge.flatness) / child.cut_detail);
         unrolling.flattest_edge =
             std::min(unrolling.flattest_edge, (edge.similarity ? 1 : edge.flatness) * child.flattest_edge);
+    }
+
+    void include_in_reach(TraceNode& node, const TraceEdge& edge) {
+        const TraceNode& child = model_.nodes[edge.child];
+        if (is_endless(child)) return;
         const Vec3 centre = edge.parent_from_child.affine()(vec3_of(child.ball_centre));
         node.reach = std::max(node.reach, glm::distance(centre, vec3_of(node.ball_centre)) +
                                               edge.stretch * child.ball_radius);
@@ -151,7 +205,7 @@ class Unroller {
 
     std::uint32_t add_edge(std::uint32_t before, std::uint32_t last) {
         const TraceEdge& first = model_.edges[before];
-        const TraceEdge& second = model_.edges[last];
+        const TraceEdge& second = model_.edges[last & ~from_cut];
         TraceEdge edge;
         edge.before = before;
         edge.last = last;
@@ -164,9 +218,14 @@ class Unroller {
         edge.child_from_parent =
             LaneMap(second.child_from_parent.affine() * first.child_from_parent.affine());
         edge.similarity = first.similarity && second.similarity;
+        edge.upright = first.upright && second.upright;
         edge.flatness = first.flatness * second.flatness;
         edge.stretch = edge.similarity ? first.stretch * second.stretch : norm(parent_from_child.linear);
         edge.growth = 1 / edge.stretch;
+        if (edge.upright) {
+            edge.stretch = edge.parent_from_child.column[0][0];
+            edge.growth = edge.child_from_parent.column[0][0];
+        }
         edge.box = box_of(first, second, parent_from_middle, parent_from_child);
         model_.edges.push_back(edge);
         return static_cast<std::uint32_t>(model_.edges.size() - 1);
@@ -221,7 +280,8 @@ class Unroller {
     }
 
     TraceModel& model_;
-    const std::size_t most_edges_;
+    const std::size_t most_edges_; ///< without leaves
+    std::size_t leaves_in_all_ = 0;
 };
 
 } // namespace

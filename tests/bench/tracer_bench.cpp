@@ -1,6 +1,7 @@
 // Camera rays a second, on one thread: by the traversal of the graph, and by Embree on the same parts spelt
-// out as one mesh. See tools/bench/tracer.
+// out as one mesh; and rays that leave the surfaces that those meet. See tools/bench/tracer.
 //   tracer_bench graph MODEL STEPS ERROR_PX       STEPS: a number, or - for as deep as the error asks
+//   tracer_bench light MODEL STEPS ERROR_PX
 //   tracer_bench mesh MODEL STEPS
 
 #include <algorithm>
@@ -9,6 +10,7 @@
 #include <cstdlib>
 #include <ctime>
 #include <fstream>
+#include <numbers>
 #include <string>
 #include <vector>
 
@@ -18,6 +20,7 @@
 #include "compiler/primitives/tessellate.h"
 #include "compiler/session/session.h"
 #include "compiler/session/stages.h"
+#include "compiler/support/counter_random.h"
 #include "runtime/trace/camera_rays.h"
 #include "runtime/trace/traversal.h"
 
@@ -89,6 +92,50 @@ void graph(const TraceModel& model) {
     });
     std::printf("visits a ray: %.2f\n",
                 static_cast<double>(traversal.visits()) / (repeats * static_cast<double>(rays.size())));
+}
+
+/// One ray from each point that the camera sees, by the cosine, as a sky's light comes.
+std::vector<Ray> scattered_rays(const TraceModel& model) {
+    Traversal traversal(model);
+    std::vector<Ray> rays;
+    const CounterRandom random(0);
+    std::uint64_t number = 0;
+    for (const Ray& ray : camera_rays(model.view)) {
+        SurfaceHit hit;
+        if (!traversal.closest(ray, {}, hit)) continue;
+        const Vec3 normal = glm::dot(hit.normal, ray.direction) > 0 ? -hit.normal : hit.normal;
+        const double height = 2 * CounterRandom::unit(random(++number)) - 1;
+        const double turn = 2 * std::numbers::pi * CounterRandom::unit(random(++number));
+        const double radius = std::sqrt(1 - height * height);
+        const Vec3 on_sphere(radius * std::cos(turn), radius * std::sin(turn), height);
+        rays.push_back({ray(hit.t), glm::normalize(normal + on_sphere)});
+    }
+    return rays;
+}
+
+void light(const TraceModel& model) {
+    const std::vector<Ray> rays = scattered_rays(model);
+    const double least = 1e-5 * glm::length(model.prepared.bounds.size());
+    Traversal traversal(model);
+    std::printf("closest:");
+    measure(rays, [&] {
+        std::size_t hits = 0;
+        SurfaceHit hit;
+        for (const Ray& ray : rays)
+            hits += traversal.closest(ray, {least}, hit);
+        return hits;
+    });
+    const std::uint64_t before = traversal.visits();
+    std::printf("any:");
+    measure(rays, [&] {
+        std::size_t hits = 0;
+        for (const Ray& ray : rays)
+            hits += traversal.meets_any(ray, {least});
+        return hits;
+    });
+    const double all = repeats * static_cast<double>(rays.size());
+    std::printf("visits a ray: %.2f, any %.2f\n", static_cast<double>(before) / all,
+                static_cast<double>(traversal.visits() - before) / all);
 }
 
 /// All leaves as triangles; curved ones as coarsely as can be.
@@ -180,10 +227,12 @@ int main(int argc, char** argv) {
     const std::string mode = argc > 3 ? argv[1] : "";
     if (mode == "graph" && argc == 5) {
         graftal::graph(*graftal::load(argv[2], argv[3], std::strtod(argv[4], nullptr)));
+    } else if (mode == "light" && argc == 5) {
+        graftal::light(*graftal::load(argv[2], argv[3], std::strtod(argv[4], nullptr)));
     } else if (mode == "mesh" && argc == 4) {
         graftal::mesh(*graftal::load(argv[2], argv[3], 0));
     } else {
-        std::fputs("usage: tracer_bench graph MODEL STEPS ERROR_PX | mesh MODEL STEPS\n", stderr);
+        std::fputs("usage: tracer_bench graph|light MODEL STEPS ERROR_PX | mesh MODEL STEPS\n", stderr);
         return 2;
     }
 }

@@ -107,7 +107,7 @@ class SkySink : public RowSink {
 
 Status read_sky_picture(const std::string& path, std::uint64_t most_texels, LoadedSkyPicture& loaded) {
     SkySink sink(is_linear_name(path), most_texels);
-    const Status status = read_rows(path, sink);
+    Status status = read_rows(path, sink);
     if (status.ok()) loaded = std::move(sink).finished();
     return status;
 }

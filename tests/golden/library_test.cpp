@@ -12,7 +12,7 @@ class Library : public CommandLine {
     /// The picture in memory, and that of `render` in a file, sample by sample.
     void expect_same_picture(const std::string& model) const {
         write("m.inst", model);
-        const RunResult run = graftal("render m.inst --engine native -q -o m.png" + small);
+        const RunResult run = graftal("render m.inst --engine native -q -o m.png --size 96x54");
         ASSERT_EQ(run.status, 0) << run.err;
         v1::Model library = v1::Model::from_file(path("m.inst"));
         library.size(96, 54);

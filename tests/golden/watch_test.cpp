@@ -21,7 +21,7 @@ const std::string wrong = "object m { instance: sphre }\n";
 
 class Watch : public CommandLine {
   protected:
-    BackgroundRun start(std::vector<std::string> more = {"--size", "96x54"}) const {
+    BackgroundRun start(std::vector<std::string> more = {"--size", "96x54", "--plain-light"}) const {
         more.insert(more.begin(), {"render", "m.inst", "--watch", "-o", "m.png"});
         return {path("."), more};
     }
@@ -129,7 +129,7 @@ TEST_F(Watch, OptionsCountAsInRender) {
 /// Without the change, and without the signal, the picture would take hours.
 TEST_F(Watch, AChangeEndsThePictureUnderWayAndDraftsComeFirst) {
     write("m.inst", ball);
-    BackgroundRun run = start({"--antialias", "9", "--work", "1e6", "--threads", "1"});
+    BackgroundRun run = start({"--plain-light", "--antialias", "9", "--work", "1e6", "--threads", "1"});
     ASSERT_TRUE(run.wait_until([&] { return exists("m.png"); })) << run.messages();
     const std::string draft = read("m.png");
     replace("m.inst", two_balls);

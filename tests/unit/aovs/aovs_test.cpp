@@ -41,6 +41,7 @@ class Aovs : public testing::Test {
         options_.aovs = true;
         options_.antialias.reset();
         options_.compile.view.size = {64, 48};
+        options_.compile.view.light = DefaultLight::plain;
         options_.output = directory_.path() + "/m.exr";
     }
 

@@ -118,6 +118,7 @@ TEST(SoftLight, SamplesAndLongListsAgree) {
 /// A half plane at y = 1 that shades the points below it, x < 0.
 class Awning : public Scene {
   public:
+    bool all_opaque() const override { return true; }
     bool meets_any(const Ray& ray, const RayRange& range) override {
         const double t = (1 - ray.origin.y) / ray.direction.y;
         return range.least < t && t < range.most && ray(t).x < 0;

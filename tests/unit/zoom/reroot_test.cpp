@@ -306,6 +306,7 @@ TEST(Reroot, TheSkysPictureStaysInTheWorld) {
     part.instances.push_back({0, {}, {}, {}, {}});
     root.instances.push_back({graph.add(std::move(part)), world_from_part, {}, {}, {}});
     graph.root = graph.add(std::move(root));
+    graph.settings.sky.emplace();
     const Components components = strong_components(graph);
     const std::vector<ObjectBounds> bounds = bounds_of(graph);
     const auto picture = std::make_shared<const SkyPicture>(

@@ -70,7 +70,7 @@ class ModelBuilder {
         set_map(edge, world_from_root, norm(world_from_root.linear));
         edge.box = bounds_.node[cut_.root];
         edge.similarity = true;
-        find_upright(edge);
+        edge.upright = is_upright(edge);
         model_.edges.push_back(edge);
     }
 
@@ -177,7 +177,7 @@ class ModelBuilder {
             const Affine& graph_from_child = model_.graph_from_frame[edge.child];
             set_map(edge, frame_from_graph * part.edge.node_from_child * graph_from_child,
                     part.edge.stretch * graph_from_child.linear[0][0] * frame_from_graph.linear[0][0]);
-            if (edge.similarity) find_upright(edge);
+            edge.upright = edge.similarity && is_upright(edge);
             edge.box = transformed(frame_from_graph, part.box);
             const auto number = static_cast<std::uint32_t>(model_.edges.size());
             if (!edge.box.empty()) items.emplace_back(edge.box, 1, number);
@@ -245,14 +245,10 @@ class ModelBuilder {
         edge.growth = 1 / stretch;
     }
 
-    static void find_upright(TraceEdge& edge) {
+    /// To the last bit: what else the maps hold is left out.
+    static bool is_upright(const TraceEdge& edge) {
         const auto scales = [](const Mat3& m) { return m == Mat3(m[0][0]) && m[0][0] > 0; };
-        const Mat3 parent_from_child = edge.parent_from_child.affine().linear;
-        const Mat3 child_from_parent = edge.child_from_parent.affine().linear;
-        edge.upright = scales(parent_from_child) && scales(child_from_parent);
-        if (!edge.upright) return;
-        edge.stretch = parent_from_child[0][0]; // to the last bit
-        edge.growth = child_from_parent[0][0];
+        return scales(edge.parent_from_child.affine().linear) && scales(edge.child_from_parent.affine().linear);
     }
 
     using EdgeKey = std::pair<NodeId, std::array<double, 12>>;

@@ -133,8 +133,7 @@ template<Instructions instructions, bool any> struct Traversal::Kernel {
             const auto i = static_cast<std::size_t>(axis);
             Byte8 bytes;
             std::memcpy(&bytes, node.side[side][i].data(), sizeof(bytes));
-            return spread<instructions>(node.origin[i]) +
-                   __builtin_convertvector(bytes, Float8) * spread<instructions>(node.step[i]);
+            return spread<instructions>(node.origin[i]) + __builtin_convertvector(bytes, Float8) * spread<instructions>(node.step[i]);
         };
         return test_lanes(
             side_of, [&](std::size_t lane) { return node.first + node.offset[lane]; }, (1u << node.count) - 1,
@@ -154,10 +153,8 @@ template<Instructions instructions, bool any> struct Traversal::Kernel {
             const auto in = static_cast<std::size_t>(frame.side_in[axis]);
             const Float8 reciprocal = spread<instructions>(frame.reciprocal[axis]);
             // Lanes of no numbers stay so by the last axis.
-            enters = greater(enters,
-                             (side_of(in, axis) - spread<instructions>(frame.origin_in[axis])) * reciprocal);
-            leaves = lesser(leaves, (side_of(1 - in, axis) - spread<instructions>(frame.origin_out[axis])) *
-                                        reciprocal);
+            enters = greater(enters, (side_of(in, axis) - spread<instructions>(frame.origin_in[axis])) * reciprocal);
+            leaves = lesser(leaves, (side_of(1 - in, axis) - spread<instructions>(frame.origin_out[axis])) * reciprocal);
         }
         std::uint32_t lanes = bits_of<instructions>(enters <= leaves) & used;
         if (lanes == 0) return false;
@@ -233,7 +230,7 @@ template<Instructions instructions, bool any> struct Traversal::Kernel {
         const Double4 near = parent.origin + splat(entry.at) * parent.direction;
         ray.base = parent.base + entry.at * parent.unit;
         if (edge.upright) {
-            ray.origin = near * splat(edge.growth) + edge.child_from_parent.translation;
+            ray.origin = near * splat(edge.child_from_parent.column[0][0]) + edge.child_from_parent.translation;
             ray.direction = parent.direction;
             ray.speed = parent.speed * edge.growth;
             ray.unit = parent.unit * edge.stretch;
@@ -258,14 +255,12 @@ template<Instructions instructions, bool any> struct Traversal::Kernel {
     }
 
     /// Where the edge's child lies in the world.
-    GRAFTAL_INLINE void place_child(const Frame& parent, const TraceEdge& edge,
-                                    LaneMap& world_from_child) const {
+    GRAFTAL_INLINE void place_child(const Frame& parent, const TraceEdge& edge, LaneMap& world_from_child) const {
         if (!edge.upright) return compose(parent.world_from_node, edge.parent_from_child, world_from_child);
-        const Double4 scale = splat(edge.stretch);
+        const Double4 scale = splat(edge.parent_from_child.column[0][0]);
         for (int i = 0; i < 3; ++i)
             world_from_child.column[i] = parent.world_from_node.column[i] * scale;
-        world_from_child.translation =
-            point_through(parent.world_from_node, edge.parent_from_child.translation);
+        world_from_child.translation = point_through(parent.world_from_node, edge.parent_from_child.translation);
     }
 
     /// The frame has its ray.
@@ -279,8 +274,7 @@ template<Instructions instructions, bool any> struct Traversal::Kernel {
             edge.similarity ? parent.scale * edge.stretch : largest_stretch(linear_of(frame.world_from_node));
         if (!(frame.scale > least_scale)) return false;
         frame.faint = parent.faint;
-        double detail = INFINITY;
-        frame.cut = is_cut(node, frame, parent.least_detail, detail);
+        frame.cut = is_cut(node, frame, parent.least_detail);
         frame.least_detail = model.least_detail_per_unit;
         frame.items = node.kind == TraceNode::Kind::run;
         if (frame.cut && node.stop_tree == no_tree) {
@@ -290,8 +284,7 @@ template<Instructions instructions, bool any> struct Traversal::Kernel {
                 meet_proxy(node, frame);
             return false;
         }
-        if (frame.cut && node.faint && !frame.faint)
-            frame.faint = (detail < INFINITY ? detail : detail_of(node, frame)) <= 1;
+        if (frame.cut && node.faint && !frame.faint) frame.faint = detail_of(node, frame) <= 1;
         const auto number = static_cast<std::uint32_t>(self.depth_ - 1);
         frame.margin = margin_of(node, frame);
         if (node.kind == TraceNode::Kind::unbounded) {
@@ -351,15 +344,12 @@ template<Instructions instructions, bool any> struct Traversal::Kernel {
         return 2 * ball.radius * model.projection.detail_per_unit(ball);
     }
 
-    /// The rule of the cut (detail.h). `least_detail`: of a unit, anywhere in the node's ball; sets the
-    /// detail if it has to look.
-    GRAFTAL_INLINE bool is_cut(const TraceNode& node, const Frame& frame, double least_detail,
-                               double& detail) const {
-        if (self.hurries_ && node.cullable) return true;
+    /// The rule of the cut (detail.h). `least_detail`: of a unit, anywhere in the node's ball.
+    GRAFTAL_INLINE bool is_cut(const TraceNode& node, const Frame& frame, double least_detail) const {
         const double diameter = 2 * frame.scale * node.ball_radius;
+        if (self.hurries_ && node.cullable) return true;
         const bool surely_large = !node.cullable || diameter * least_detail > node.cut_detail;
-        if (!surely_large) detail = detail_of(node, frame);
-        return graftal::is_cut(node, frame.steps, detail);
+        return graftal::is_cut(node, frame.steps, surely_large ? INFINITY : detail_of(node, frame));
     }
 
     /// Whether copies lie in each other in it so often that its shell is drawn.
@@ -381,10 +371,7 @@ template<Instructions instructions, bool any> struct Traversal::Kernel {
             if (frame.steps < unrolling.least_steps) continue;
             if (!(frame.flatness * unrolling.flattest_edge > flattest_placement)) continue;
             if (!(frame.scale * unrolling.least_size * frame.least_detail > 1)) continue;
-            const bool all_cut = unrolling.leaf_tree != no_tree && !frame.faint &&
-                                 !(frame.scale * unrolling.most_size * most > surely_more) &&
-                                 frame.flatness * unrolling.flattest_leaf > flattest_placement;
-            return all_cut ? unrolling.leaf_tree : unrolling.tree;
+            return unrolling.tree;
         }
         return node.tree;
     }
@@ -496,19 +483,10 @@ template<Instructions instructions, bool any> struct Traversal::Kernel {
     /// A primitive of what stands for a set without area.
     GRAFTAL_INLINE void meet_faint(const TraceNode& node, const TraceEdge& edge, const Frame& parent,
                                    const Entry& entry) {
+        LaneMap place;
+        compose(parent.world_from_node, edge.parent_from_child, place);
         const TraceNode& speck = model.nodes[parent.node];
         const Ball ball = world_ball(speck, parent, speck.ball_radius);
-        if (edge.similarity) { // most are missed: a ball about it tells, as wide as any is drawn
-            const Double4 middle = point_through(edge.parent_from_child, node.ball_centre);
-            const double width = model.widest * model.projection.least_half_width(ball);
-            const double radius = std::max(parent.scale * edge.stretch * node.ball_radius, width);
-            if (passes_point(self.ray_.direction,
-                             self.ray_.origin - vec3_of(point_through(parent.world_from_node, middle)),
-                             radius))
-                return;
-        }
-        LaneMap place;
-        place_child(parent, edge, place);
         if (!self.meet_leaf(node.primitive, place.affine(), true, ball, range)) return;
         self.best_.turns = edge.turns;
         self.keep_way(entry.frame);

@@ -14,10 +14,8 @@ namespace {
 
 /// Parts of one unrolling: what goes into the first and second caches.
 constexpr std::size_t most_parts = 512;
-/// Primitives of one that is cut, and of all.
-constexpr std::size_t most_leaves = 1024, most_leaves_in_all = 8192;
 /// Unrollings of one node, and groups in groups that are passed over between two of them.
-constexpr std::size_t most_unrollings = 6;
+constexpr std::size_t most_unrollings = 7;
 constexpr int most_groups = 8;
 /// Parts of a part, to find its box.
 constexpr std::uint32_t most_looked_at = 64;
@@ -74,13 +72,10 @@ class Unroller {
                 model_.edges.resize(edges);
                 break;
             }
+            parts.unrolling.tree = deeper ? tree_over(parts.edges) : node.tree;
             for (const std::uint32_t edge : parts.edges)
                 include_in_reach(node, model_.edges[edge]);
-            add_leaves(parts);
-            if (deeper || parts.unrolling.leaf_tree != no_tree) {
-                parts.unrolling.tree = deeper ? tree_over(parts.edges) : node.tree;
-                unrollings.push_back(parts.unrolling);
-            }
+            unrollings.push_back(parts.unrolling);
             edges = model_.edges.size();
             deeper = expand(parts, is_any_union);
             if (!deeper) break;
@@ -88,50 +83,6 @@ class Unroller {
         node.first_unrolling = static_cast<std::uint32_t>(model_.unrollings.size());
         node.unrolling_count = static_cast<std::uint32_t>(unrollings.size());
         model_.unrollings.insert(model_.unrollings.end(), unrollings.rbegin(), unrollings.rend());
-    }
-
-    /// What is drawn of the parts where all that can be are cut.
-    void add_leaves(Parts& parts) {
-        parts.unrolling.leaf_tree = no_tree;
-        parts.unrolling.most_size = 0;
-        parts.unrolling.flattest_leaf = 1;
-        std::size_t count = 0;
-        for (const std::uint32_t edge : parts.edges) {
-            const std::size_t leaves = leaves_of(model_.nodes[model_.edges[edge].child]);
-            count += leaves;
-            if (leaves == 0 || count > most_leaves) return;
-        }
-        if (leaves_in_all_ + count > most_leaves_in_all) return;
-        std::vector<std::uint32_t> leaves;
-        for (const std::uint32_t number : parts.edges) {
-            const TraceEdge edge = model_.edges[number];
-            const TraceNode& child = model_.nodes[edge.child];
-            if (is_solid(child)) {
-                leaves.push_back(number);
-                continue;
-            }
-            if (child.edge_count > 0)
-                parts.unrolling.most_size = std::max(parts.unrolling.most_size,
-                                                     2 * child.ball_radius * edge.stretch / child.cut_detail);
-            for (std::uint32_t i = 0; i < child.stop_edge_count; ++i)
-                leaves.push_back(add_edge(number, (child.first_edge + child.edge_count + i) | from_cut));
-        }
-        for (const std::uint32_t leaf : leaves)
-            if (!model_.edges[leaf].similarity)
-                parts.unrolling.flattest_leaf =
-                    std::min(parts.unrolling.flattest_leaf, model_.edges[leaf].flatness);
-        leaves_in_all_ += count;
-        parts.unrolling.leaf_tree = tree_over(leaves);
-    }
-
-    /// Primitives that are drawn of a node as it is, or cut; 0 if there is more to it.
-    std::size_t leaves_of(const TraceNode& node) const {
-        if (is_solid(node)) return 1;
-        if (node.kind != TraceNode::Kind::parts || node.faint || node.widens) return 0;
-        if (!(node.edge_count > 0 ? node.cullable : node.unending)) return 0; // no edges: no steps are left
-        for (std::uint32_t i = 0; i < node.stop_edge_count; ++i)
-            if (!is_solid(model_.nodes[model_.edges[node.first_edge + node.edge_count + i].child])) return 0;
-        return node.stop_edge_count;
     }
 
     /// A union that is never cut where the parts passed over are not.
@@ -163,8 +114,7 @@ class Unroller {
             any = any || expanded;
             count += expanded ? model_.nodes[model_.edges[number].child].edge_count : 1;
         }
-        if (!any || count > most_parts || model_.edges.size() - leaves_in_all_ + count > most_edges_)
-            return false;
+        if (!any || count > most_parts || model_.edges.size() + count > most_edges_) return false;
         Parts deeper{{}, parts.unrolling};
         for (const std::uint32_t number : parts.edges) {
             if (!is_expanded(number)) {
@@ -205,7 +155,7 @@ class Unroller {
 
     std::uint32_t add_edge(std::uint32_t before, std::uint32_t last) {
         const TraceEdge& first = model_.edges[before];
-        const TraceEdge& second = model_.edges[last & ~from_cut];
+        const TraceEdge& second = model_.edges[last];
         TraceEdge edge;
         edge.before = before;
         edge.last = last;
@@ -222,10 +172,6 @@ class Unroller {
         edge.flatness = first.flatness * second.flatness;
         edge.stretch = edge.similarity ? first.stretch * second.stretch : norm(parent_from_child.linear);
         edge.growth = 1 / edge.stretch;
-        if (edge.upright) {
-            edge.stretch = edge.parent_from_child.column[0][0];
-            edge.growth = edge.child_from_parent.column[0][0];
-        }
         edge.box = box_of(first, second, parent_from_middle, parent_from_child);
         model_.edges.push_back(edge);
         return static_cast<std::uint32_t>(model_.edges.size() - 1);
@@ -280,8 +226,7 @@ class Unroller {
     }
 
     TraceModel& model_;
-    const std::size_t most_edges_; ///< without leaves
-    std::size_t leaves_in_all_ = 0;
+    const std::size_t most_edges_;
 };
 
 } // namespace

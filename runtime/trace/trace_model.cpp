@@ -248,7 +248,8 @@ class ModelBuilder {
     /// To the last bit: what else the maps hold is left out.
     static bool is_upright(const TraceEdge& edge) {
         const auto scales = [](const Mat3& m) { return m == Mat3(m[0][0]) && m[0][0] > 0; };
-        return scales(edge.parent_from_child.affine().linear) && scales(edge.child_from_parent.affine().linear);
+        return scales(edge.parent_from_child.affine().linear) &&
+               scales(edge.child_from_parent.affine().linear);
     }
 
     using EdgeKey = std::pair<NodeId, std::array<double, 12>>;

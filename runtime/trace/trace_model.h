@@ -94,7 +94,8 @@ struct TraceNode {
     double flattest_edge = 1;          ///< least flatness of its edges
     std::uint32_t first_unrolling = 0; ///< the deepest first
     std::uint32_t unrolling_count = 0;
-    double reach = 0; ///< from ball_centre; the balls of all nodes that they pass over or lead to are within it
+    double reach =
+        0; ///< from ball_centre; the balls of all nodes that they pass over or lead to are within it
     std::uint32_t first_edge = 0; ///< of its edges, which follow each other
     std::uint32_t edge_count = 0;
     std::uint32_t stop_edge_count = 0; ///< which follow those

@@ -60,7 +60,8 @@ class Traversal final : public Surfaces {
     std::uint64_t given_up() const { return given_up_; }
 
   private:
-    template<Instructions instructions, bool any> struct Kernel; ///< the traversal proper (traversal_kernel.h)
+    template<Instructions instructions, bool any>
+    struct Kernel; ///< the traversal proper (traversal_kernel.h)
 
     /// The ray in some frame: origin + (t - base) / unit * direction.
     struct LocalRay {

@@ -133,7 +133,8 @@ template<Instructions instructions, bool any> struct Traversal::Kernel {
             const auto i = static_cast<std::size_t>(axis);
             Byte8 bytes;
             std::memcpy(&bytes, node.side[side][i].data(), sizeof(bytes));
-            return spread<instructions>(node.origin[i]) + __builtin_convertvector(bytes, Float8) * spread<instructions>(node.step[i]);
+            return spread<instructions>(node.origin[i]) +
+                   __builtin_convertvector(bytes, Float8) * spread<instructions>(node.step[i]);
         };
         return test_lanes(
             side_of, [&](std::size_t lane) { return node.first + node.offset[lane]; }, (1u << node.count) - 1,
@@ -153,8 +154,10 @@ template<Instructions instructions, bool any> struct Traversal::Kernel {
             const auto in = static_cast<std::size_t>(frame.side_in[axis]);
             const Float8 reciprocal = spread<instructions>(frame.reciprocal[axis]);
             // Lanes of no numbers stay so by the last axis.
-            enters = greater(enters, (side_of(in, axis) - spread<instructions>(frame.origin_in[axis])) * reciprocal);
-            leaves = lesser(leaves, (side_of(1 - in, axis) - spread<instructions>(frame.origin_out[axis])) * reciprocal);
+            enters = greater(enters,
+                             (side_of(in, axis) - spread<instructions>(frame.origin_in[axis])) * reciprocal);
+            leaves = lesser(leaves, (side_of(1 - in, axis) - spread<instructions>(frame.origin_out[axis])) *
+                                        reciprocal);
         }
         std::uint32_t lanes = bits_of<instructions>(enters <= leaves) & used;
         if (lanes == 0) return false;
@@ -230,7 +233,8 @@ template<Instructions instructions, bool any> struct Traversal::Kernel {
         const Double4 near = parent.origin + splat(entry.at) * parent.direction;
         ray.base = parent.base + entry.at * parent.unit;
         if (edge.upright) {
-            ray.origin = near * splat(edge.child_from_parent.column[0][0]) + edge.child_from_parent.translation;
+            ray.origin =
+                near * splat(edge.child_from_parent.column[0][0]) + edge.child_from_parent.translation;
             ray.direction = parent.direction;
             ray.speed = parent.speed * edge.growth;
             ray.unit = parent.unit * edge.stretch;
@@ -255,12 +259,14 @@ template<Instructions instructions, bool any> struct Traversal::Kernel {
     }
 
     /// Where the edge's child lies in the world.
-    GRAFTAL_INLINE void place_child(const Frame& parent, const TraceEdge& edge, LaneMap& world_from_child) const {
+    GRAFTAL_INLINE void place_child(const Frame& parent, const TraceEdge& edge,
+                                    LaneMap& world_from_child) const {
         if (!edge.upright) return compose(parent.world_from_node, edge.parent_from_child, world_from_child);
         const Double4 scale = splat(edge.parent_from_child.column[0][0]);
         for (int i = 0; i < 3; ++i)
             world_from_child.column[i] = parent.world_from_node.column[i] * scale;
-        world_from_child.translation = point_through(parent.world_from_node, edge.parent_from_child.translation);
+        world_from_child.translation =
+            point_through(parent.world_from_node, edge.parent_from_child.translation);
     }
 
     /// The frame has its ray.

@@ -27,8 +27,8 @@ void Traversal::Kernel<instructions, any>::meet_item(const Entry& entry) {
 
 template<Instructions instructions, bool any>
 void Traversal::Kernel<instructions, any>::meet_body(RunShape shape, const Affine& run_from_body,
-                                                const TraceRun& run, const RunItem& item, const Ray& ray,
-                                                const Entry& entry) {
+                                                     const TraceRun& run, const RunItem& item, const Ray& ray,
+                                                     const Entry& entry) {
     const Frame& frame = self.frames_[entry.frame];
     // Its axes are at right angles: dividing by the squares of their lengths turns the map round.
     const Mat3& m = run_from_body.linear;

@@ -384,7 +384,10 @@ class Rerooter {
     void warn(double error_px, std::size_t too_large) {
         if (error_px > visible_px)
             diagnostics_.warning(
-                span(), fmt::format("rounding moves parts around this place by up to {:.2g} px", error_px));
+                span(),
+                std::isfinite(error_px)
+                    ? fmt::format("rounding moves parts around this place by up to {:.2g} px", error_px)
+                    : "rounding moves parts beside the eye, by any number of pixels");
         if (around_.lost() > 0)
             diagnostics_.warning(
                 span(),

@@ -131,10 +131,10 @@ void report_work(const FittedModel& fitted, const Looks& looks, const Asked& ask
     warn_of_limit(span, limit, {fitted.error_px, asked.detail.error_px}, diagnostics);
 }
 
-/// Says where the work allowed left more noise than was asked for.
-void report_noise(const TraceStatistics& rays, const Looks& looks, const Asked& asked,
+/// Says where the work allowed left more noise than was asked for; where nobody asked, only if that is much.
+void report_noise(const TraceStatistics& rays, const Looks& looks, const Asked& asked, bool by_default,
                   Diagnostics& diagnostics) {
-    constexpr double noticed = 0.01; // of the picture
+    const double noticed = by_default ? 0.25 : 0.01; // of the picture
     const double share = static_cast<double>(rays.noisy_pixels) / asked.size.width / asked.size.height;
     if (!looks.fewer() || !(share > noticed)) return;
     const Limit limit = limit_of_work(asked.detail.work_seconds);
@@ -412,7 +412,8 @@ std::optional<NativeReport> trace_model(const PreparedView& prepared, const Rend
     compilation.times.push_back({"trace", drawing_watch.seconds()});
     report_shells(model, asked, compilation.diagnostics);
     NativeReport report = drawing.report();
-    report_noise(report.rays, looks, asked, compilation.diagnostics);
+    const bool by_default = !options.samples && !options.noise_255 && view.quality == Quality::normal;
+    report_noise(report.rays, looks, asked, by_default, compilation.diagnostics);
     report.first_picture_seconds += preparing.seconds() - drawing_watch.seconds();
     if (!compilation.status.ok() && report.pictures == 0) return std::nullopt;
     return report;

@@ -10,6 +10,7 @@
 #include "compiler/scene/ground.h"
 #include "compiler/support/axes_across.h"
 #include "compiler/support/number_range.h"
+#include "runtime/trace/sky_choice.h"
 
 namespace graftal {
 
@@ -52,22 +53,6 @@ double finite_or_zero(double value) {
 
 double largest(Rgb rgb) {
     return std::max({rgb.r, rgb.g, rgb.b});
-}
-
-Vec3 from_pole(Vec3 pole, double along, double turn) {
-    const auto [a, b] = axes_across(pole);
-    const double radius = std::sqrt(std::max(0.0, 1 - along * along));
-    return along * pole + radius * (std::cos(turn) * a + std::sin(turn) * b);
-}
-
-/// Of the half about a unit normal: its density is the cosine over pi.
-Vec3 cosine_direction(Vec3 normal, glm::dvec2 place) {
-    return from_pole(normal, std::sqrt(1 - place.x), 2 * std::numbers::pi * place.y);
-}
-
-/// Its density is 1 / (2 pi).
-Vec3 even_direction(Vec3 normal, glm::dvec2 place) {
-    return from_pole(normal, 1 - place.x, 2 * std::numbers::pi * place.y);
 }
 
 } // namespace
@@ -400,28 +385,6 @@ Rgb Shader::lit(const Point& point, SampleStream& random) {
     if (sky_) sum += from_sky(point, least, random);
     return sum;
 }
-
-/// How a surface chooses a direction towards the sky, by the cosine: of the half that it faces, or of the
-/// other if light comes through; if it shines, by half evenly.
-struct Shader::SkyChoice {
-    double front_chance = 1;
-    bool shines = false;
-
-    Vec3 direction(Vec3 normal, glm::dvec2 place) const {
-        const bool behind = place.x >= front_chance;
-        place.x = behind ? (place.x - front_chance) / (1 - front_chance) : place.x / front_chance;
-        if (behind) return cosine_direction(-normal, place);
-        const bool even = shines && place.x < 0.5;
-        if (shines) place.x = even ? 2 * place.x : 2 * place.x - 1;
-        return even ? even_direction(normal, place) : cosine_direction(normal, place);
-    }
-
-    /// A steradian, times pi. `along`: the cosine with the normal.
-    double density_pi(double along) const {
-        if (along < 0) return (1 - front_chance) * -along;
-        return front_chance * (shines ? 0.5 * along + 0.25 : along);
-    }
-};
 
 Rgb Shader::from_sky(const Point& point, double least, SampleStream& random) {
     const Material& material = *point.material;

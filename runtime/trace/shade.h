@@ -25,6 +25,8 @@ struct ShaderLimits {
     std::optional<LightListSize> list;
 };
 
+struct SkyChoice;
+
 /// Light, as POV-Ray 3.7 computes it for what graftal emits (compiler/emit): ambient, diffuse and specular
 /// light of suns and point lights with their shadows, mirrors, the ground and the sky. With the colour c of
 /// the surface, its normal n towards the viewer, the directions v to the viewer and l to a light of colour e,
@@ -97,7 +99,6 @@ class Shader {
     Point point_of(const Path& path, const SurfaceHit& hit) const;
     void share_light(Point& point) const;
     Rgb lit(const Point& point, SampleStream& random);
-    struct SkyChoice;
     Rgb from_sky(const Point& point, double least, SampleStream& random);
     Rgb sky_light(const SkyChoice& choice, const Point& point, Vec3 direction, double least);
     Rgb shine(const Point& point, Vec3 to_light) const;

@@ -108,13 +108,17 @@ Sky automatic_sky(const std::vector<Rgb>& colours, const View& view, bool figure
     } else if (view.ground) {
         sky.to = 0.6;
     } else {
-        const double half = camera.angle_deg * std::numbers::pi / 360;
-        const double rise = std::sin(std::atan(std::tan(half) * view.size.height / view.size.width));
-        sky.axis = camera.up;
-        sky.from = -rise;
-        sky.to = rise;
+        span_picture(sky, view);
     }
     return sky;
+}
+
+void span_picture(Sky& sky, const View& view) {
+    const double half = view.camera.angle_deg * std::numbers::pi / 360;
+    const double rise = std::sin(std::atan(std::tan(half) * view.size.height / view.size.width));
+    sky.axis = view.camera.up;
+    sky.from = -rise;
+    sky.to = rise;
 }
 
 } // namespace graftal

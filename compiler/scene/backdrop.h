@@ -15,4 +15,7 @@ std::vector<Rgb> sample_colours(const Graph& graph);
 /// others a gradient over the height of the picture, or from the horizon up where there is ground.
 Sky automatic_sky(const std::vector<Rgb>& colours, const View& view, bool figure);
 
+/// Lets the gradient run over the height of a picture with perspective.
+void span_picture(Sky& sky, const View& view);
+
 } // namespace graftal

@@ -2,9 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include <glm/geometric.hpp>
+
+#include "compiler/scene/backdrop.h"
 
 namespace graftal {
 
@@ -51,11 +52,7 @@ Sky studio_backdrop(const View& view) {
         backdrop.zenith = backdrop.horizon = 0.5 * (backdrop.zenith + backdrop.horizon);
         return backdrop;
     }
-    const double half = camera.angle_deg * std::numbers::pi / 360;
-    const double rise = std::sin(std::atan(std::tan(half) * view.size.height / view.size.width));
-    backdrop.axis = camera.up;
-    backdrop.from = -rise;
-    backdrop.to = rise;
+    span_picture(backdrop, view);
     return backdrop;
 }
 

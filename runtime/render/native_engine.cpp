@@ -54,7 +54,7 @@ std::vector<Sampling> samplings_for(const View& view, const RenderOptions& optio
 }
 
 /// A pixel's, before more is culled to save work.
-constexpr int fewest_soft_samples = 8;
+constexpr int fewest_soft_samples = 2;
 
 /// How closely a picture is looked at.
 struct Looks {

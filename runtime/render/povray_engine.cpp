@@ -156,6 +156,9 @@ LightListSize affordable_list(const View& view, double seconds_a_light, double s
     return {part(least.disc, asked.disc), part(least.dome, asked.dome)};
 }
 
+/// Of the work that the picture may take. POV-Ray's other rays, and what is not foreseen, need the rest.
+constexpr double share_for_lights = 0.5;
+
 void note_fewer_lights(const CompiledModel& model, const LightListSize& lights, Diagnostics& diagnostics) {
     const auto count = [&](const LightListSize& size) { return listed_lights(model.view, size).size(); };
     const std::size_t drawn = count(lights), asked = count(list_size(model.view.quality));
@@ -293,7 +296,7 @@ std::optional<PovrayReport> render_by_povray(PictureSession& session, const Rend
     const double light_seconds = seconds_a_light(job, mean_overlap(model->cut, view));
     LightListSize list = list_size(view.quality);
     if (view.has_soft_light()) {
-        list = affordable_list(view, light_seconds, options.soft_work(view.quality));
+        list = affordable_list(view, light_seconds, share_for_lights * options.soft_work(view.quality));
         note_fewer_lights(*model, list, compilation.diagnostics);
     }
     const std::size_t lights = listed_lights(view, list).size();

@@ -44,7 +44,7 @@ struct RenderOptions {
 
     /// Of one processor that the picture may take, under whatever light.
     double soft_work(Quality quality) const {
-        return soft_work_seconds.value_or(by_quality(quality, 30.0, 60.0, 600.0));
+        return soft_work_seconds.value_or(by_quality(quality, 60.0, 120.0, 1200.0));
     }
     void limit_work(double seconds) { compile.detail.work_seconds = soft_work_seconds.emplace(seconds); }
 };

@@ -374,15 +374,22 @@ template<Instructions instructions, bool any> struct Traversal::Kernel {
     /// them, if all of them are.
     GRAFTAL_INLINE std::uint32_t tree_of(const TraceNode& node, Frame& frame) const {
         if (model.has_shells || node.unrolling_count == 0) return node.tree;
-        const auto [least, most] = model.projection.detail_range(world_ball(node, frame, node.reach));
-        frame.least_detail = surely_more * least;
+        double most = INFINITY;
+        bool known = false;
         for (std::uint32_t i = 0; i < node.unrolling_count; ++i) {
             const Unrolling& unrolling = model.unrollings[node.first_unrolling + i];
             if (frame.steps < unrolling.least_steps) continue;
             if (!(frame.flatness * unrolling.flattest_edge > flattest_placement)) continue;
-            if (!(frame.scale * unrolling.least_size * frame.least_detail > 1)) continue;
-            const bool all_cut = unrolling.leaf_tree != no_tree && !frame.faint &&
-                                 !(frame.scale * unrolling.most_size * most > surely_more) &&
+            const double size = frame.scale * unrolling.least_size;
+            const bool has_leaves = unrolling.leaf_tree != no_tree && !frame.faint;
+            if (!known && (has_leaves || !(size * frame.least_detail > 1))) {
+                const auto details = model.projection.detail_range(world_ball(node, frame, node.reach));
+                frame.least_detail = surely_more * details.least;
+                most = details.most;
+                known = true;
+            }
+            if (!(size * frame.least_detail > 1)) continue;
+            const bool all_cut = has_leaves && !(frame.scale * unrolling.most_size * most > surely_more) &&
                                  frame.flatness * unrolling.flattest_leaf > flattest_placement;
             return all_cut ? unrolling.leaf_tree : unrolling.tree;
         }

@@ -70,7 +70,7 @@ class ModelBuilder {
         set_map(edge, world_from_root, norm(world_from_root.linear));
         edge.box = bounds_.node[cut_.root];
         edge.similarity = true;
-        find_upright(edge);
+        edge.find_upright();
         model_.edges.push_back(edge);
     }
 
@@ -176,7 +176,7 @@ class ModelBuilder {
             const Affine& graph_from_child = model_.graph_from_frame[edge.child];
             set_map(edge, frame_from_graph * part.edge.node_from_child * graph_from_child,
                     part.edge.stretch * graph_from_child.linear[0][0] * frame_from_graph.linear[0][0]);
-            if (edge.similarity) find_upright(edge);
+            edge.find_upright();
             edge.box = transformed(frame_from_graph, part.box);
             const auto number = static_cast<std::uint32_t>(model_.edges.size());
             if (!edge.box.empty()) items.emplace_back(edge.box, 1, number);
@@ -241,16 +241,6 @@ class ModelBuilder {
         if (!is_singular(parent_from_child)) edge.child_from_parent = LaneMap(inverse(parent_from_child));
         edge.stretch = stretch;
         edge.growth = 1 / stretch;
-    }
-
-    static void find_upright(TraceEdge& edge) {
-        const auto scales = [](const Mat3& m) { return m == Mat3(m[0][0]) && m[0][0] > 0; };
-        const Mat3 parent_from_child = edge.parent_from_child.affine().linear;
-        const Mat3 child_from_parent = edge.child_from_parent.affine().linear;
-        edge.upright = scales(parent_from_child) && scales(child_from_parent);
-        if (!edge.upright) return;
-        edge.stretch = parent_from_child[0][0]; // to the last bit
-        edge.growth = child_from_parent[0][0];
     }
 
     using EdgeKey = std::pair<NodeId, std::array<double, 12>>;
@@ -337,6 +327,14 @@ std::uint64_t most_shell_work(const DetailOptions& options) {
 }
 
 } // namespace
+
+void TraceEdge::find_upright() {
+    const auto scales = [](const Mat3& m) { return m == Mat3(m[0][0]) && m[0][0] > 0; };
+    const Mat3 linear = parent_from_child.affine().linear, inverse = child_from_parent.affine().linear;
+    upright = similarity && scales(linear) && scales(inverse);
+    int exponent = 0;
+    keeps_directions = upright && std::frexp(stretch, &exponent) == 0.5 && inverse[0][0] * stretch == 1;
+}
 
 std::uint32_t TraceRun::edge_of(RunShape shape, std::uint16_t colour) const {
     for (const Look& look : looks)

@@ -44,8 +44,9 @@ struct alignas(64) TraceEdge {
                          ///< it is not too little
     std::uint32_t child = 0;
     unsigned levels = 0;
-    bool similarity = false; ///< then a path's norm is the product of its stretches
-    bool upright = false;    ///< only scales evenly, by `stretch`, and moves: rays keep their directions
+    bool similarity = false;       ///< then a path's norm is the product of its stretches
+    bool upright = false;          ///< only scales evenly and moves
+    bool keeps_directions = false; ///< and to the last bit those of rays: scales by a power of two
     LaneMap parent_from_child;
     LaneMap child_from_parent;
     Box box; ///< of what the child draws, in the parent's frame
@@ -56,6 +57,8 @@ struct alignas(64) TraceEdge {
     /// the way is one of its edges or the node's, and then one of that child's.
     /// `last` may be marked as one from a cut node.
     std::uint32_t before = no_edge, last = no_edge;
+
+    void find_upright();
 };
 
 /// What is some levels below a node, as if it were parts of its own: boxes are sooner tested than frames are

@@ -217,7 +217,7 @@ template<Instructions instructions, bool any> struct Traversal::Kernel {
         Frame& frame = push(); // parents may move, but no more after this
         const Frame& parent = self.frames_[entry.frame];
         if (!take_ray(edge, parent, entry, frame)) return false;
-        if (edge.upright) {
+        if (edge.keeps_directions) {
             frame.reciprocal = parent.reciprocal;
             frame.side_in = parent.side_in;
         } else {
@@ -233,8 +233,10 @@ template<Instructions instructions, bool any> struct Traversal::Kernel {
         const Double4 near = parent.origin + splat(entry.at) * parent.direction;
         ray.base = parent.base + entry.at * parent.unit;
         if (edge.upright) {
-            ray.origin = near * splat(edge.growth) + edge.child_from_parent.translation;
-            ray.direction = parent.direction;
+            const double growth = edge.child_from_parent.column[0][0];
+            ray.origin = near * splat(growth) + edge.child_from_parent.translation;
+            ray.direction = edge.keeps_directions ? parent.direction
+                                                  : parent.direction * splat(growth) * splat(edge.stretch);
             ray.speed = parent.speed * edge.growth;
             ray.unit = parent.unit * edge.stretch;
             return true;
@@ -261,7 +263,7 @@ template<Instructions instructions, bool any> struct Traversal::Kernel {
     GRAFTAL_INLINE void place_child(const Frame& parent, const TraceEdge& edge,
                                     LaneMap& world_from_child) const {
         if (!edge.upright) return compose(parent.world_from_node, edge.parent_from_child, world_from_child);
-        const Double4 scale = splat(edge.stretch);
+        const Double4 scale = splat(edge.parent_from_child.column[0][0]);
         for (int i = 0; i < 3; ++i)
             world_from_child.column[i] = parent.world_from_node.column[i] * scale;
         world_from_child.translation =

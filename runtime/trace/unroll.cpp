@@ -218,14 +218,10 @@ class Unroller {
         edge.child_from_parent =
             LaneMap(second.child_from_parent.affine() * first.child_from_parent.affine());
         edge.similarity = first.similarity && second.similarity;
-        edge.upright = first.upright && second.upright;
         edge.flatness = first.flatness * second.flatness;
         edge.stretch = edge.similarity ? first.stretch * second.stretch : norm(parent_from_child.linear);
         edge.growth = 1 / edge.stretch;
-        if (edge.upright) {
-            edge.stretch = edge.parent_from_child.column[0][0];
-            edge.growth = edge.child_from_parent.column[0][0];
-        }
+        edge.find_upright();
         edge.box = box_of(first, second, parent_from_middle, parent_from_child);
         model_.edges.push_back(edge);
         return static_cast<std::uint32_t>(model_.edges.size() - 1);

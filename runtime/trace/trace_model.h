@@ -70,11 +70,10 @@ struct Unrolling {
     /// Least diameter of a node passed over that may be culled, in the node's frame, by its cut_detail.
     double least_size = std::numeric_limits<double>::infinity();
     double flattest_edge = 1; ///< the least flatness on the ways
-    /// Of primitives: what is drawn of its parts if each is cut that can be. None where that is no
-    /// primitives, or too many.
+    /// Of primitives: what is drawn of its parts if each is cut that can be. None where that is more than
+    /// primitives that are only scaled evenly and moved, or too many.
     std::uint32_t leaf_tree = no_tree;
-    double most_size = 0;     ///< the largest diameter of such a part, likewise
-    double flattest_leaf = 1; ///< on the ways to primitives
+    double most_size = 0; ///< the largest diameter of such a part, likewise
 };
 
 struct alignas(64) TraceNode {

@@ -94,10 +94,9 @@ class Unroller {
     void add_leaves(Parts& parts) {
         parts.unrolling.leaf_tree = no_tree;
         parts.unrolling.most_size = 0;
-        parts.unrolling.flattest_leaf = 1;
         std::size_t count = 0;
         for (const std::uint32_t edge : parts.edges) {
-            const std::size_t leaves = leaves_of(model_.nodes[model_.edges[edge].child]);
+            const std::size_t leaves = leaves_of(model_.edges[edge]);
             count += leaves;
             if (leaves == 0 || count > most_leaves) return;
         }
@@ -116,21 +115,23 @@ class Unroller {
             for (std::uint32_t i = 0; i < child.stop_edge_count; ++i)
                 leaves.push_back(add_edge(number, (child.first_edge + child.edge_count + i) | from_cut));
         }
-        for (const std::uint32_t leaf : leaves)
-            if (!model_.edges[leaf].similarity)
-                parts.unrolling.flattest_leaf =
-                    std::min(parts.unrolling.flattest_leaf, model_.edges[leaf].flatness);
         leaves_in_all_ += count;
         parts.unrolling.leaf_tree = tree_over(leaves);
     }
 
-    /// Primitives that are drawn of a node as it is, or cut; 0 if there is more to it.
-    std::size_t leaves_of(const TraceNode& node) const {
+    /// Primitives that are drawn of a part as it is, or cut; 0 if there is more to it. Those that are turned
+    /// would be met some rounding away from where they are met one level after the other, which shows where
+    /// surfaces coincide.
+    std::size_t leaves_of(const TraceEdge& edge) const {
+        const TraceNode& node = model_.nodes[edge.child];
+        if (!edge.upright) return 0;
         if (is_solid(node)) return 1;
         if (node.kind != TraceNode::Kind::parts || node.faint || node.widens) return 0;
         if (!(node.edge_count > 0 ? node.cullable : node.unending)) return 0; // no edges: no steps are left
-        for (std::uint32_t i = 0; i < node.stop_edge_count; ++i)
-            if (!is_solid(model_.nodes[model_.edges[node.first_edge + node.edge_count + i].child])) return 0;
+        for (std::uint32_t i = 0; i < node.stop_edge_count; ++i) {
+            const TraceEdge& stop = model_.edges[node.first_edge + node.edge_count + i];
+            if (!stop.upright || !is_solid(model_.nodes[stop.child])) return 0;
+        }
         return node.stop_edge_count;
     }
 

@@ -6,9 +6,9 @@
 
 namespace graftal {
 
-/// How many lights stand for light from a sun's disc, from all directions, and from a lamp's area.
+/// How many lights stand for light from a sun's disc, from all directions, and from a lamp's area. Positive.
 struct LightListSize {
-    unsigned disc = 0, dome = 0, area = 0;
+    unsigned disc = 1, dome = 1, area = 1;
     bool operator==(const LightListSize&) const = default;
 };
 

@@ -144,32 +144,48 @@ void note_bounces(const CompiledModel& model, Diagnostics& diagnostics) {
         .with_hint("use --engine native to follow the 'bounces' of the sky");
 }
 
-/// The lights that POV-Ray can follow in the time that the picture may take, as soft as the quality asks at
-/// most. Fewer show their number as bands in the shade.
-LightListSize affordable_list(const View& view, double seconds_a_light, double seconds) {
-    constexpr LightListSize least{3, 8};
+/// The lights that POV-Ray is to follow, and how many they are.
+struct FollowedLights {
+    LightListSize size;
+    std::size_t count = 0;
+};
+
+/// Those that it can follow in so many seconds, as soft as the quality asks at most. Fewer show their number
+/// as bands in the shade.
+FollowedLights affordable_lights(const View& view, double seconds_a_light, double seconds,
+                                 std::size_t asked_count) {
+    constexpr LightListSize least{.disc = 3, .dome = 8, .area = 6};
     const LightListSize asked = list_size(view.quality);
-    const double share = seconds / seconds_a_light / static_cast<double>(listed_lights(view, asked).size());
+    const double share = std::min(seconds / seconds_a_light / static_cast<double>(asked_count), 1.0);
     const auto part = [share](unsigned least_count, unsigned count) {
-        return std::min(count, std::max(least_count, static_cast<unsigned>(std::min(share, 1.0) * count)));
+        return std::min(count, std::max(least_count, static_cast<unsigned>(share * count)));
     };
-    return {part(least.disc, asked.disc), part(least.dome, asked.dome)};
+    const LightListSize size{.disc = part(least.disc, asked.disc),
+                             .dome = part(least.dome, asked.dome),
+                             .area = part(least.area, asked.area)};
+    return {size, size == asked ? asked_count : listed_lights(view, size).size()};
 }
 
 /// Of the work that the picture may take. POV-Ray's other rays, and what is not foreseen, need the rest.
 constexpr double share_for_lights = 0.5;
 
-void note_fewer_lights(const CompiledModel& model, const LightListSize& lights, Diagnostics& diagnostics) {
-    const auto count = [&](const LightListSize& size) { return listed_lights(model.view, size).size(); };
-    const std::size_t drawn = count(lights), asked = count(list_size(model.view.quality));
-    if (drawn == asked) return;
+FollowedLights followed_lights(const CompiledModel& model, double seconds_a_light, double work_seconds,
+                               Diagnostics& diagnostics) {
+    const View& view = model.view;
+    const LightListSize size = list_size(view.quality);
+    const std::size_t asked = listed_lights(view, size).size();
+    if (!view.has_soft_light()) return {size, asked};
+    const FollowedLights lights =
+        affordable_lights(view, seconds_a_light, share_for_lights * work_seconds, asked);
+    if (lights.count == asked) return lights;
     const Graph& graph = model.model->graph;
     diagnostics
         .note(graph.objects[graph.root].span,
               fmt::format(
                   "POV-Ray takes soft light from {} lights in place of {}, to draw this picture in time",
-                  drawn, asked))
+                  lights.count, asked))
         .with_hint("--engine native follows soft light faster; a larger --work gives POV-Ray more lights");
+    return lights;
 }
 
 /// Seconds of one processor that POV-Ray takes.
@@ -292,23 +308,20 @@ std::optional<PovrayReport> render_by_povray(PictureSession& session, const Rend
     };
 
     note_bounces(*model, compilation.diagnostics);
-    const View& view = model->view;
-    const double light_seconds = seconds_a_light(job, mean_overlap(model->cut, view));
-    LightListSize list = list_size(view.quality);
-    if (view.has_soft_light()) {
-        list = affordable_list(view, light_seconds, share_for_lights * options.soft_work(view.quality));
-        note_fewer_lights(*model, list, compilation.diagnostics);
-    }
-    const std::size_t lights = listed_lights(view, list).size();
-    if (!run("emit", [&] { return prepare(*model, options, session.textures(), temporary, list, job); }))
-        return std::nullopt;
+    const double light_seconds = seconds_a_light(job, mean_overlap(model->cut, model->view));
+    const FollowedLights lights = followed_lights(
+        *model, light_seconds, options.soft_work(model->view.quality), compilation.diagnostics);
+    const auto emit = [&] {
+        return prepare(*model, options, session.textures(), temporary, lights.size, job);
+    };
+    if (!run("emit", emit)) return std::nullopt;
     PovrayReport report = report_of(model->cut);
     job.finite_objects = finite_objects(model->cut);
     model.reset(); // POV-Ray may need the memory
     session.yield_memory();
     return_free_memory();
 
-    PovrayTime time = guessed_time(job, light_seconds, lights);
+    PovrayTime time = guessed_time(job, light_seconds, lights.count);
     const auto set_limit = [&] { // far more than any picture has taken
         job.cpu_seconds = static_cast<std::uint64_t>(600 + 50 * time.seconds());
     };

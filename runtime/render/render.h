@@ -42,10 +42,11 @@ struct RenderOptions {
     /// that it will take: within a factor of two or so where they are many.
     std::function<void(double seconds)> on_start;
 
-    /// Of one processor that the picture may take, under whatever light.
+    /// Seconds of one processor that a picture under soft light may take.
     double soft_work(Quality quality) const {
         return soft_work_seconds.value_or(by_quality(quality, 60.0, 120.0, 1200.0));
     }
+    /// The same of a picture under whatever light.
     void limit_work(double seconds) { compile.detail.work_seconds = soft_work_seconds.emplace(seconds); }
 };
 

@@ -83,6 +83,15 @@ Image CommandLine::picture(const std::string& name) const {
     return image;
 }
 
+ImageDifference CommandLine::engines_differ(const std::string& words, double threshold) const {
+    for (const std::string engine : {"native", "povray"}) {
+        const RunResult run =
+            graftal("render " + words + " -q --engine " + engine + " -o " + engine + ".png");
+        EXPECT_EQ(run.status, 0) << run.err;
+    }
+    return compare_images(picture("native.png"), picture("povray.png"), threshold);
+}
+
 std::vector<std::string> CommandLine::commands_of(const std::string& page) const {
     const std::string text = contents(source_path(page));
     EXPECT_NE(text, "") << page;

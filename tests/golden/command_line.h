@@ -32,6 +32,8 @@ class CommandLine : public testing::Test {
     bool exists(const std::string& name) const;
     /// A picture, which must be one.
     Image picture(const std::string& name) const;
+    /// Draws "render WORDS" by both engines, into native.png and povray.png; how far these differ.
+    ImageDifference engines_differ(const std::string& words, double threshold) const;
     /// What follows "graftal" in the commands of a page of docs/, which are set off by four blanks; the
     /// project's scenes/ are made to stand in the working folder.
     std::vector<std::string> commands_of(const std::string& page) const;

@@ -85,6 +85,22 @@ TEST_F(Render, SoftLightIsFollowedByBothEngines) {
     EXPECT_LT(compare_images(picture("a.png"), furnace).mean, 3.0 / 255);
 }
 
+/// However few lights POV-Ray has the time for, each lamp, sun and sky is among them.
+TEST_F(Render, LightThatIsMoreThanAPointStaysInPovraysList) {
+    const std::string scene =
+        "ground { height: 0 }\nbackground: 0.2, 0.2, 0.2\nobject m { sphere translate: 0, 1, 0 }\n";
+    for (const std::string light :
+         {"light { location: -2, 6, 3  size: 3, 1  look_at: 0, 1, 0 }\n",
+          "light { location: -2, 6, 3  radius: 1  look_at: 0, 1, 0 }\n",
+          "light { sun: -1, 2, 1  angle: 5 }\n", "sky { zenith: 0.5, 0.6, 0.8  horizon: 0.8, 0.8, 0.8 }\n"}) {
+        SCOPED_TRACE(light);
+        write("m.inst", light + scene);
+        EXPECT_LT(engines_differ("m.inst --size 96x54 --listed-lights", 0.1).mean, 1.0 / 255);
+        ASSERT_EQ(graftal("render m.inst --size 96x54 --work 0.01 -q -o few.png").status, 0);
+        EXPECT_LT(compare_images(picture("few.png"), picture("native.png")).mean, 12.0 / 255);
+    }
+}
+
 TEST_F(Render, OldPictureIsReplacedWhole) {
     write("a.png", "old");
     ASSERT_EQ(graftal("render " + gasket + small + "-o a.png").status, 0);

@@ -3,6 +3,7 @@
 // A scene of balls and endless walls, for tests of light.
 
 #include <cmath>
+#include <cstdint>
 #include <vector>
 
 #include <glm/geometric.hpp>
@@ -66,6 +67,23 @@ inline View black_view() {
     view.camera.location = {0, 0, 10};
     view.sky.zenith = view.sky.horizon = Rgb(0.0);
     return view;
+}
+
+/// The same in a light that comes from all directions alike, and is seen.
+inline View in_furnace(Rgb light, unsigned bounces = 0) {
+    View view = black_view();
+    view.sky_light = SkyLight{.zenith = light, .horizon = light, .below = light, .bounces = bounces};
+    view.shows_sky_light = true;
+    return view;
+}
+
+inline Rgb mean_light(Shader& shader, const Ray& ray, std::uint32_t samples) {
+    Rgb sum(0.0);
+    for (std::uint32_t i = 0; i < samples; ++i) {
+        SampleStream random(0, i);
+        sum += shader.radiance(ray, random);
+    }
+    return sum / static_cast<double>(samples);
 }
 
 inline const Ray ahead{{0, 0, 10}, {0, 0, -1}};

@@ -13,22 +13,6 @@
 namespace graftal {
 namespace {
 
-View in_furnace(Rgb light, unsigned bounces = 0) {
-    View view = black_view();
-    view.sky_light = SkyLight{.zenith = light, .horizon = light, .below = light, .bounces = bounces};
-    view.shows_sky_light = true;
-    return view;
-}
-
-Rgb mean_of(Shader& shader, const Ray& ray, std::uint32_t samples) {
-    Rgb sum(0.0);
-    for (std::uint32_t i = 0; i < samples; ++i) {
-        SampleStream random(0, i);
-        sum += shader.radiance(ray, random);
-    }
-    return sum / static_cast<double>(samples);
-}
-
 /// Counts the rays that look for the first surface.
 class CountingScene : public Scene {
   public:
@@ -106,7 +90,7 @@ TEST(Optics, ACoatedWhiteBallInAFurnaceVanishes) {
                                {.ambient = 0, .diffuse = 1, .specular = 0, .reflection = 1, .ior = 1.5}});
         Shader shader(view, scene);
         for (const double x : places) {
-            const Rgb light = mean_of(shader, at(x), 1 << 10);
+            const Rgb light = mean_light(shader, at(x), 1 << 10);
             const double error = bounces == 0 ? 2.0 / 255 : 0.02; // rays that are too faint; noise
             EXPECT_NEAR(light.r / 0.5, 1, error) << x;
             EXPECT_NEAR(light.b, 1, error) << x;
@@ -225,7 +209,7 @@ TEST(Optics, SamplesAndLongListsAgreeOnGlassAndMetal) {
     for (const Vec3 target : {Vec3(0.0), Vec3(0.3, 0.3, 0), Vec3(-0.6, 0.5, 0), Vec3(0.8, 0.8, 1.2)}) {
         const Vec3 eye(0, 0, 10);
         const Ray ray{eye, glm::normalize(target - eye)};
-        const Rgb listed_light = by_list.radiance(ray), sampled = mean_of(by_samples, ray, 1 << 16);
+        const Rgb listed_light = by_list.radiance(ray), sampled = mean_light(by_samples, ray, 1 << 16);
         for (int c = 0; c < 3; ++c)
             EXPECT_NEAR(sampled[c], listed_light[c], 0.004) << target.x << " " << target.y;
     }

@@ -12,25 +12,9 @@
 namespace graftal {
 namespace {
 
-View under_sky(Rgb light, unsigned bounces = 0) {
-    View view = black_view();
-    view.sky_light = SkyLight{.zenith = light, .horizon = light, .below = light, .bounces = bounces};
-    view.shows_sky_light = true;
-    return view;
-}
-
-Rgb mean_light(Shader& shader, const Ray& ray, std::uint32_t samples) {
-    Rgb sum(0.0);
-    for (std::uint32_t i = 0; i < samples; ++i) {
-        SampleStream random(0, i);
-        sum += shader.radiance(ray, random);
-    }
-    return sum / static_cast<double>(samples);
-}
-
 /// A white ball in a white sky cannot be seen: each sample of each of its points is the sky's light.
 TEST(SoftLight, AWhiteBallInAWhiteFurnaceVanishes) {
-    View view = under_sky({0.5, 0.25, 1});
+    View view = in_furnace({0.5, 0.25, 1});
     Scene scene;
     scene.balls.push_back({Vec3(0.0), 1, Rgb(1.0), matt});
     Shader shader(view, scene);
@@ -50,7 +34,7 @@ TEST(SoftLight, WhiteBallsThatTouchVanishAsTheBouncesGrow) {
         scene.balls.push_back({{x, 0, 0}, 1, Rgb(1.0), nearly_white});
     double before = 1;
     for (const unsigned bounces : {0u, 1u, 4u, 16u}) {
-        View view = under_sky(Rgb(1.0), bounces);
+        View view = in_furnace(Rgb(1.0), bounces);
         Shader shader(view, scene);
         const double lost = 1 - mean_light(shader, {{0.3, 0, 10}, {0, 0, -1}}, 1 << 14).g;
         EXPECT_GT(lost, -0.003) << bounces; // noise
@@ -62,7 +46,7 @@ TEST(SoftLight, WhiteBallsThatTouchVanishAsTheBouncesGrow) {
 
 /// Of an even sky, a point that sees the part above a wall of height h at distance d with an endless edge.
 TEST(SoftLight, AWallTakesHalfOfTheSky) {
-    View view = under_sky(Rgb(1.0));
+    View view = in_furnace(Rgb(1.0));
     Scene scene;
     // The plane z = 0 faces the viewer; the plane x = 0.5 stands on it.
     scene.walls = {{{0, 0, 1}, 0, Rgb(1.0), matt}, {{1, 0, 0}, 0.5, Rgb(1.0), matt}};
@@ -178,7 +162,7 @@ TEST(SoftLight, AFarLampLightsLikeAPointOfItsColour) {
 
 /// The same light from everywhere, whatever says so.
 TEST(SoftLight, AnEvenPictureIsAFurnaceToo) {
-    View view = under_sky(Rgb(0.0));
+    View view = in_furnace(Rgb(0.0));
     view.sky_light->picture = std::make_shared<SkyPicture>(
         6, 3, std::vector<SkyPicture::Texel>(18, SkyPicture::Texel{0.25f, 0.125f, 0.5f}));
     view.sky_light->brightness = 2;
@@ -197,7 +181,7 @@ TEST(SoftLight, AHalfWhitePictureLightsABallFromThatSide) {
     std::vector<SkyPicture::Texel> texels(2048 * 2, {0, 0, 0});
     for (std::size_t i = 0; i < texels.size(); ++i)
         if (i % 2048 >= 1024) texels[i] = {1, 1, 1}; // z > 0
-    View view = under_sky(Rgb(0.0));
+    View view = in_furnace(Rgb(0.0));
     view.sky_light->picture = std::make_shared<SkyPicture>(2048, 2, std::move(texels));
     Scene scene;
     scene.balls.push_back({Vec3(0.0), 1, Rgb(1.0), matt});
@@ -219,7 +203,7 @@ TEST(SoftLight, ASunInAPictureMakesNoSparks) {
     const int width = 512, height = 256;
     std::vector<SkyPicture::Texel> texels(static_cast<std::size_t>(width * height), {0.1f, 0.1f, 0.1f});
     texels[100 * 512 + 400] = {1e4f, 1e4f, 1e4f}; // z > 0, above
-    View view = under_sky(Rgb(0.0));
+    View view = in_furnace(Rgb(0.0));
     view.sky_light->picture = std::make_shared<SkyPicture>(width, height, std::move(texels));
     const Material shining{.ambient = 0, .diffuse = 0.7, .specular = 0.3, .roughness = 0.1};
     Scene scene;
@@ -297,7 +281,7 @@ TEST(SoftLight, AmbientIsAShareOfTheSkysLightAndBouncesReplaceIt) {
     const Material glowing{.ambient = 0.25, .diffuse = 0, .specular = 0};
     Scene scene;
     scene.walls = {{{0, 0, 1}, 0, Rgb(1.0), glowing}};
-    View view = under_sky(Rgb(0.8));
+    View view = in_furnace(Rgb(0.8));
     Shader shader(view, scene);
     EXPECT_NEAR(mean_light(shader, ahead, 4).g, 0.2, 1e-12);
     view.sky_light->bounces = 1;

@@ -253,6 +253,30 @@ double aspect_of(const Camera& camera, const Subject& subject) {
     return width / std::max(height, 1e-6 * width);
 }
 
+/// frame_camera(); leaves the subject as closely outlined as it was looked at.
+Camera place_camera(const CameraSetting& setting, const Box& bounds, const Outliner& outliner, ImageSize size,
+                    bool turning, Subject& subject) {
+    const double aspect = static_cast<double>(size.width) / size.height;
+    const bool figure = is_figure(bounds);
+    Camera camera;
+    Vec3 direction = -automatic_eye_direction(bounds);
+    if (setting.location) {
+        const Vec3 target = setting.look_at ? subject.local(*setting.look_at) : Vec3(0.0);
+        const Vec3 sight = target - subject.local(*setting.location);
+        const double length = glm::length(sight);
+        if (length > 0 && std::isfinite(length)) direction = sight / length;
+    }
+    orient(camera, direction, setting.up.value_or(Vec3(0, 1, 0)));
+    // Seen face on, the box is exact already.
+    if (outliner && (!figure || turning)) look_closer(subject, camera, outliner, aspect);
+    if (setting.orthographic || (figure && !setting.location && !setting.angle_deg))
+        place_orthographic(camera, setting, subject, aspect);
+    else
+        place_perspective(camera, setting, subject, aspect);
+    if (!setting.location) camera.location = without_noise(camera.location, subject);
+    return camera;
+}
+
 } // namespace
 
 int thinnest_axis(const Box& bounds) {
@@ -294,34 +318,14 @@ bool is_figure(const Box& bounds) {
 Camera frame_camera(const CameraSetting& setting, const Box& bounds, const Outliner& outliner, ImageSize size,
                     bool turning) {
     Subject subject(bounds);
-    const double aspect = static_cast<double>(size.width) / size.height;
-    const bool figure = is_figure(bounds);
-    Camera camera;
-    Vec3 direction = -automatic_eye_direction(bounds);
-    if (setting.location) {
-        const Vec3 target = setting.look_at ? subject.local(*setting.look_at) : Vec3(0.0);
-        const Vec3 sight = target - subject.local(*setting.location);
-        const double length = glm::length(sight);
-        if (length > 0 && std::isfinite(length)) direction = sight / length;
-    }
-    orient(camera, direction, setting.up.value_or(Vec3(0, 1, 0)));
-    // Seen face on, the box is exact already.
-    if (outliner && (!figure || turning)) look_closer(subject, camera, outliner, aspect);
-    if (setting.orthographic || (figure && !setting.location && !setting.angle_deg))
-        place_orthographic(camera, setting, subject, aspect);
-    else
-        place_perspective(camera, setting, subject, aspect);
-    if (!setting.location) camera.location = without_noise(camera.location, subject);
-    return camera;
+    return place_camera(setting, bounds, outliner, size, turning, subject);
 }
 
 ImageSize shaped_size(const CameraSetting& setting, const Box& bounds, const Outliner& outliner,
                       ImageSize size) {
     if (setting.width || (setting.location && setting.angle_deg)) return size;
-    const Camera camera = frame_camera(setting, bounds, outliner, size);
     Subject subject(bounds);
-    if (outliner && !is_figure(bounds))
-        look_closer(subject, camera, outliner, static_cast<double>(size.width) / size.height);
+    const Camera camera = place_camera(setting, bounds, outliner, size, false, subject);
     const double aspect = aspect_of(camera, subject);
     constexpr double shapes[] = {16.0 / 9, 3.0 / 2, 4.0 / 3, 1, 3.0 / 4, 2.0 / 3, 9.0 / 16};
     const auto distance = [&](double shape) { return std::abs(std::log(aspect / shape)); };

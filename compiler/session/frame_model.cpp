@@ -51,14 +51,17 @@ Sight sight_of(const AnalysedModel& model, std::optional<unsigned> steps) {
             }};
 }
 
-View frame_model(const AnalysedModel& model, std::optional<unsigned> steps, const ViewOptions& options) {
-    const Sight sight = sight_of(model, steps);
+View frame_graph(const Graph& graph, const Sight& sight, const ViewOptions& options) {
     ImageSize size = options.size;
     if (options.shaped && !options.zoom.active()) {
-        const CameraSetting own = model.graph.settings.camera.value_or(CameraSetting{});
+        const CameraSetting own = graph.settings.camera.value_or(CameraSetting{});
         size = shaped_size(merge(own, options.camera), sight.bounds, sight.outliner, size);
     }
-    return frame(model.graph, sight.bounds, size, options.camera, sight.outliner, options.light);
+    return frame(graph, sight.bounds, size, options.camera, sight.outliner, options.light);
+}
+
+View frame_model(const AnalysedModel& model, std::optional<unsigned> steps, const ViewOptions& options) {
+    return frame_graph(model.graph, sight_of(model, steps), options);
 }
 
 } // namespace graftal

@@ -10,7 +10,7 @@
 #include <fmt/format.h>
 
 #include "compiler/chaos/unroll.h"
-#include "compiler/scene/framing.h"
+#include "compiler/session/frame_model.h"
 #include "compiler/support/check.h"
 #include "compiler/support/file.h"
 #include "runtime/image/develop.h"
@@ -220,11 +220,7 @@ std::optional<PointsReport> draw_orbit(const OrbitModel& model, const PointsOpti
     if (source.report(compilation.diagnostics)) return std::nullopt;
     PointsReport report;
     report.maps = static_cast<std::uint32_t>(model.maps.size());
-    const ViewOptions& wanted = options.compile.view;
-    const CameraSetting own = model.scene.settings.camera.value_or(CameraSetting{});
-    const ImageSize size =
-        wanted.shaped ? shaped_size(merge(own, wanted.camera), box, {}, wanted.size) : wanted.size;
-    const View view = frame(model.scene, box, size, wanted.camera, {}, wanted.light);
+    const View view = frame_graph(model.scene, {box, {}}, options.compile.view);
     compilation.status = options.card.empty() ? place_points(source, view, options, nullptr, cancel, report)
                                               : place_card(source, box, {}, options, cancel, report);
     if (source.report(compilation.diagnostics)) compilation.status = Status(); // which is why it was given up

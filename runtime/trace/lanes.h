@@ -31,13 +31,13 @@ GRAFTAL_INLINE Double4 lanes_of(const Vec3& v) {
 
 /// An affine map by columns; the last lanes are 0.
 struct LaneMap {
+    Double4 translation; ///< first, for maps of which nothing else is asked
     Double4 column[3];
-    Double4 translation;
 
     LaneMap() : LaneMap(Affine{}) {}
     explicit LaneMap(const Affine& a)
-        : column{lanes_of(a.linear[0]), lanes_of(a.linear[1]), lanes_of(a.linear[2])},
-          translation(lanes_of(a.translation)) {}
+        : translation(lanes_of(a.translation)), column{lanes_of(a.linear[0]), lanes_of(a.linear[1]),
+                                                       lanes_of(a.linear[2])} {}
 
     Affine affine() const {
         Affine a;

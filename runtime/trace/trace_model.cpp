@@ -70,7 +70,7 @@ class ModelBuilder {
         set_map(edge, world_from_root, norm(world_from_root.linear));
         edge.box = bounds_.node[cut_.root];
         edge.similarity = true;
-        edge.upright = is_upright(edge);
+        edge.find_upright();
         model_.edges.push_back(edge);
     }
 
@@ -177,7 +177,7 @@ class ModelBuilder {
             const Affine& graph_from_child = model_.graph_from_frame[edge.child];
             set_map(edge, frame_from_graph * part.edge.node_from_child * graph_from_child,
                     part.edge.stretch * graph_from_child.linear[0][0] * frame_from_graph.linear[0][0]);
-            edge.upright = edge.similarity && is_upright(edge);
+            edge.find_upright();
             edge.box = transformed(frame_from_graph, part.box);
             const auto number = static_cast<std::uint32_t>(model_.edges.size());
             if (!edge.box.empty()) items.emplace_back(edge.box, 1, number);
@@ -243,13 +243,6 @@ class ModelBuilder {
         if (!is_singular(parent_from_child)) edge.child_from_parent = LaneMap(inverse(parent_from_child));
         edge.stretch = stretch;
         edge.growth = 1 / stretch;
-    }
-
-    /// To the last bit: what else the maps hold is left out.
-    static bool is_upright(const TraceEdge& edge) {
-        const auto scales = [](const Mat3& m) { return m == Mat3(m[0][0]) && m[0][0] > 0; };
-        return scales(edge.parent_from_child.affine().linear) &&
-               scales(edge.child_from_parent.affine().linear);
     }
 
     using EdgeKey = std::pair<NodeId, std::array<double, 12>>;
@@ -336,6 +329,14 @@ std::uint64_t most_shell_work(const DetailOptions& options) {
 }
 
 } // namespace
+
+void TraceEdge::find_upright() {
+    const auto scales = [](const Mat3& m) { return m == Mat3(m[0][0]) && m[0][0] > 0; };
+    const Mat3 linear = parent_from_child.affine().linear, inverse = child_from_parent.affine().linear;
+    upright = similarity && scales(linear) && scales(inverse);
+    int exponent = 0;
+    keeps_directions = upright && std::frexp(stretch, &exponent) == 0.5 && inverse[0][0] * stretch == 1;
+}
 
 std::uint32_t TraceRun::edge_of(RunShape shape, std::uint16_t colour) const {
     for (const Look& look : looks)

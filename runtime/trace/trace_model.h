@@ -35,28 +35,33 @@ inline constexpr std::uint32_t from_cut = 1u << 31;
 
 /// An instance as rays go through it. Frames are not those of the graph: each node that is a union has one of
 /// its own, in which all that it draws fills the cube [-1, 1]^3 or nearly so. Single precision then suffices
-/// to test boxes, wherever and however large the model is.
-struct TraceEdge {
+/// to test boxes, wherever and however large the model is. What a ray asks of every one comes first, in few
+/// lines of the processor's caches: in a large model it waits for them.
+struct alignas(64) TraceEdge {
+    double stretch = 1;  ///< norm of the linear part of parent_from_child
+    double growth = 1;   ///< 1 / stretch
+    double flatness = 1; ///< the least stretch, as a share of the largest; child_from_parent is only used if
+                         ///< it is not too little
+    std::uint32_t child = 0;
+    unsigned levels = 0;
+    bool similarity = false;       ///< then a path's norm is the product of its stretches
+    bool upright = false;          ///< only scales evenly and moves
+    bool keeps_directions = false; ///< and to the last bit those of rays: scales by a power of two
     LaneMap parent_from_child;
     LaneMap child_from_parent;
-    double stretch = 1; ///< norm of the linear part of parent_from_child
-    double growth = 1;  ///< 1 / stretch
-    Box box;            ///< of what the child draws, in the parent's frame
-    std::uint32_t child = 0;
+    Box box; ///< of what the child draws, in the parent's frame
+    PathTint tint;
+    std::optional<MaterialId> material;
     /// Of a primitive: the node that holds it, also where its parts stand in place of it; no_edge: the one
     /// before.
     std::uint32_t holder = no_edge;
-    unsigned levels = 0;
-    bool similarity = false; ///< then a path's norm is the product of its stretches
-    bool upright = false;    ///< only scales evenly and moves, so that rays keep their directions
-    double flatness = 1; ///< the least stretch, as a share of the largest; child_from_parent is only used if
-                         ///< it is not too little
-    PathTint tint;
-    std::optional<MaterialId> material;
     double turns = 1; ///< of a primitive: length_in_turns() of the graph's instance
     /// Of an unrolling's edges that lead several levels down, which have no tint and material of their own:
     /// the way is one of its edges or the node's, and then one of that child's.
+    /// `last` may be marked as one from a cut node.
     std::uint32_t before = no_edge, last = no_edge;
+
+    void find_upright();
 };
 
 /// What is some levels below a node, as if it were parts of its own: boxes are sooner tested than frames are
@@ -68,9 +73,13 @@ struct Unrolling {
     /// Least diameter of a node passed over that may be culled, in the node's frame, by its cut_detail.
     double least_size = std::numeric_limits<double>::infinity();
     double flattest_edge = 1; ///< the least flatness on the ways
+    /// Of primitives: what is drawn of its parts if each is cut that can be. None where that is more than
+    /// primitives that are only scaled evenly and moved, or too many.
+    std::uint32_t leaf_tree = no_tree;
+    double most_size = -1; ///< the largest diameter of such a part, likewise; negative if there is none
 };
 
-struct TraceNode {
+struct alignas(64) TraceNode {
     enum class Kind : std::uint8_t {
         primitive,
         parts,     ///< a union
@@ -80,29 +89,29 @@ struct TraceNode {
                    ///< (flat_walk.cpp)
     };
 
+    Double4 ball_centre{}; ///< this first, as in TraceEdge
+    double ball_radius = 0;
+    double reach = 0; ///< from ball_centre; the balls of all nodes that unrollings pass over or lead to are
+                      ///< within it
+    double cut_detail = 1; ///< from which down a cullable node is cut (detail.h)
     Kind kind = Kind::parts;
-    Primitive primitive = PrimitiveKind::sphere;
     bool unending = false;
     bool cullable = true;
-    ShellSizes shell;
     bool faint = false;                ///< of no area (CutNode::shadowless)
     bool widens = false;               ///< as CutNode's
-    double cut_detail = 1;             ///< from which down a cullable node is cut (detail.h)
     std::uint32_t tree = no_tree;      ///< of its edges, or its items of the run
-    std::uint32_t run = 0;             ///< of TraceModel::runs
     std::uint32_t stop_tree = no_tree; ///< of what is drawn where it is cut; none: its proxy
-    double flattest_edge = 1;          ///< least flatness of its edges
-    std::uint32_t first_unrolling = 0; ///< the deepest first
-    std::uint32_t unrolling_count = 0;
-    double reach =
-        0; ///< from ball_centre; the balls of all nodes that they pass over or lead to are within it
-    std::uint32_t first_edge = 0; ///< of its edges, which follow each other
+    std::uint32_t first_edge = 0;      ///< of its edges, which follow each other
     std::uint32_t edge_count = 0;
     std::uint32_t stop_edge_count = 0; ///< which follow those
-    Double4 ball_centre{};
-    double ball_radius = 0;
-    double drawn_radius = 0; ///< about the frame's origin; of what it draws, except for widening
-    LaneMap node_from_proxy; ///< places the unit sphere
+    std::uint32_t first_unrolling = 0; ///< the deepest first
+    std::uint32_t unrolling_count = 0;
+    std::uint32_t run = 0; ///< of TraceModel::runs
+    ShellSizes shell;
+    Primitive primitive = PrimitiveKind::sphere;
+    double flattest_edge = 1; ///< least flatness of its edges
+    double drawn_radius = 0;  ///< about the frame's origin; of what it draws, except for widening
+    LaneMap node_from_proxy;  ///< places the unit sphere
     LaneMap proxy_from_node;
 };
 

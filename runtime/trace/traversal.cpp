@@ -6,6 +6,7 @@
 #include "compiler/primitives/texture_space.h"
 #include "runtime/trace/surface_normal.h"
 #include "runtime/trace/traversal_kernel.h"
+#include "runtime/trace/traversal_leaves.h"
 #include "runtime/trace/traversal_runs.h"
 
 namespace graftal {

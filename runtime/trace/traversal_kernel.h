@@ -217,7 +217,7 @@ template<Instructions instructions, bool any> struct Traversal::Kernel {
         Frame& frame = push(); // parents may move, but no more after this
         const Frame& parent = self.frames_[entry.frame];
         if (!take_ray(edge, parent, entry, frame)) return false;
-        if (edge.upright) {
+        if (edge.keeps_directions) {
             frame.reciprocal = parent.reciprocal;
             frame.side_in = parent.side_in;
         } else {
@@ -233,9 +233,10 @@ template<Instructions instructions, bool any> struct Traversal::Kernel {
         const Double4 near = parent.origin + splat(entry.at) * parent.direction;
         ray.base = parent.base + entry.at * parent.unit;
         if (edge.upright) {
-            ray.origin =
-                near * splat(edge.child_from_parent.column[0][0]) + edge.child_from_parent.translation;
-            ray.direction = parent.direction;
+            const double growth = edge.child_from_parent.column[0][0];
+            ray.origin = near * splat(growth) + edge.child_from_parent.translation;
+            ray.direction = edge.keeps_directions ? parent.direction
+                                                  : parent.direction * splat(growth) * splat(edge.stretch);
             ray.speed = parent.speed * edge.growth;
             ray.unit = parent.unit * edge.stretch;
             return true;
@@ -280,7 +281,8 @@ template<Instructions instructions, bool any> struct Traversal::Kernel {
             edge.similarity ? parent.scale * edge.stretch : largest_stretch(linear_of(frame.world_from_node));
         if (!(frame.scale > least_scale)) return false;
         frame.faint = parent.faint;
-        frame.cut = is_cut(node, frame, parent.least_detail);
+        double detail = INFINITY;
+        frame.cut = is_cut(node, frame, parent.least_detail, detail);
         frame.least_detail = model.least_detail_per_unit;
         frame.items = node.kind == TraceNode::Kind::run;
         if (frame.cut && node.stop_tree == no_tree) {
@@ -290,7 +292,8 @@ template<Instructions instructions, bool any> struct Traversal::Kernel {
                 meet_proxy(node, frame);
             return false;
         }
-        if (frame.cut && node.faint && !frame.faint) frame.faint = detail_of(node, frame) <= 1;
+        if (frame.cut && node.faint && !frame.faint)
+            frame.faint = (detail < INFINITY ? detail : detail_of(node, frame)) <= 1;
         const auto number = static_cast<std::uint32_t>(self.depth_ - 1);
         frame.margin = margin_of(node, frame);
         if (node.kind == TraceNode::Kind::unbounded) {
@@ -350,12 +353,15 @@ template<Instructions instructions, bool any> struct Traversal::Kernel {
         return 2 * ball.radius * model.projection.detail_per_unit(ball);
     }
 
-    /// The rule of the cut (detail.h). `least_detail`: of a unit, anywhere in the node's ball.
-    GRAFTAL_INLINE bool is_cut(const TraceNode& node, const Frame& frame, double least_detail) const {
-        const double diameter = 2 * frame.scale * node.ball_radius;
+    /// The rule of the cut (detail.h). `least_detail`: of a unit, anywhere in the node's ball; sets the
+    /// detail if it has to look.
+    GRAFTAL_INLINE bool is_cut(const TraceNode& node, const Frame& frame, double least_detail,
+                               double& detail) const {
         if (self.hurries_ && node.cullable) return true;
+        const double diameter = 2 * frame.scale * node.ball_radius;
         const bool surely_large = !node.cullable || diameter * least_detail > node.cut_detail;
-        return graftal::is_cut(node, frame.steps, surely_large ? INFINITY : detail_of(node, frame));
+        if (!surely_large) detail = detail_of(node, frame);
+        return graftal::is_cut(node, frame.steps, detail);
     }
 
     /// Whether copies lie in each other in it so often that its shell is drawn.
@@ -370,14 +376,23 @@ template<Instructions instructions, bool any> struct Traversal::Kernel {
     /// them, if all of them are.
     GRAFTAL_INLINE std::uint32_t tree_of(const TraceNode& node, Frame& frame) const {
         if (model.has_shells || node.unrolling_count == 0) return node.tree;
-        const auto [least, most] = model.projection.detail_range(world_ball(node, frame, node.reach));
-        frame.least_detail = surely_more * least;
+        double most = INFINITY;
+        bool known = false;
         for (std::uint32_t i = 0; i < node.unrolling_count; ++i) {
             const Unrolling& unrolling = model.unrollings[node.first_unrolling + i];
             if (frame.steps < unrolling.least_steps) continue;
             if (!(frame.flatness * unrolling.flattest_edge > flattest_placement)) continue;
-            if (!(frame.scale * unrolling.least_size * frame.least_detail > 1)) continue;
-            return unrolling.tree;
+            const double size = frame.scale * unrolling.least_size;
+            const bool has_leaves = unrolling.leaf_tree != no_tree && !frame.faint;
+            if (!known && (has_leaves || !(size * frame.least_detail > 1))) {
+                const auto details = model.projection.detail_range(world_ball(node, frame, node.reach));
+                frame.least_detail = surely_more * details.least;
+                most = details.most;
+                known = true;
+            }
+            if (!(size * frame.least_detail > 1)) continue;
+            const bool all_cut = has_leaves && frame.scale * unrolling.most_size * most <= surely_more;
+            return all_cut ? unrolling.leaf_tree : unrolling.tree;
         }
         return node.tree;
     }
@@ -386,35 +401,6 @@ template<Instructions instructions, bool any> struct Traversal::Kernel {
     GRAFTAL_INLINE double shell_margin(const TraceNode& node, const Frame& frame) const {
         return 1.5 /
                (frame.scale * model.projection.detail_per_unit(world_ball(node, frame, node.ball_radius)));
-    }
-
-    GRAFTAL_INLINE void meet_shell(const TraceMesh& mesh, std::uint32_t frame_number) {
-        const std::size_t others = self.entry_count_;
-        Entry entry;
-        bool more = mesh.tree != no_tree && test_boxes(mesh.boxes, mesh.tree, frame_number, entry);
-        while (more || pop(others, entry)) {
-            more = entry.entry & BoxNode::inner &&
-                   test_boxes(mesh.boxes, entry.entry & ~BoxNode::inner, frame_number, entry);
-            if (!more && !(entry.entry & BoxNode::inner)) meet_triangle(mesh, entry.entry, entry);
-        }
-    }
-
-    GRAFTAL_INLINE void meet_triangle(const TraceMesh& mesh, std::uint32_t triangle, const Entry& entry) {
-        ++self.visits_;
-        const Frame& frame = self.frames_[entry.frame];
-        const Double4 near = frame.origin + splat(entry.at) * frame.direction;
-        const double base = t_of(entry);
-        PrimitiveHit hit;
-        if (!intersect(mesh.triangle(triangle), {vec3_of(near), vec3_of(frame.direction)},
-                       range_from(base, frame.speed), hit))
-            return;
-        if (!set_best(base + hit.t * frame.unit)) return;
-        self.best_.normal = hit.normal;
-        self.best_.world_from_leaf = frame.world_from_node;
-        self.best_.proxy_node = no_edge;
-        self.best_.mesh_colour = &mesh.colours[mesh.colour_of_triangle[triangle]];
-        self.best_.cell = frame.scale * mesh.cell;
-        self.keep_way(entry.frame);
     }
 
     /// By how much parts may reach out of their boxes, in the frame: what is too thin is drawn wider
@@ -486,44 +472,14 @@ template<Instructions instructions, bool any> struct Traversal::Kernel {
     void meet_body(RunShape shape, const Affine& run_from_body, const TraceRun& run, const RunItem& item,
                    const Ray& ray, const Entry& entry);
 
+    // What is met in other ways (traversal_leaves.h):
+    void meet_shell(const TraceMesh& mesh, std::uint32_t frame_number);
+    void meet_triangle(const TraceMesh& mesh, std::uint32_t triangle, const Entry& entry);
     /// A primitive of what stands for a set without area.
-    GRAFTAL_INLINE void meet_faint(const TraceNode& node, const TraceEdge& edge, const Frame& parent,
-                                   const Entry& entry) {
-        LaneMap place;
-        compose(parent.world_from_node, edge.parent_from_child, place);
-        const TraceNode& speck = model.nodes[parent.node];
-        const Ball ball = world_ball(speck, parent, speck.ball_radius);
-        if (!self.meet_leaf(node.primitive, place.affine(), true, ball, range)) return;
-        self.best_.turns = edge.turns;
-        self.keep_way(entry.frame);
-        self.way_.push_back(entry.entry | (parent.cut ? from_cut : 0));
-    }
-
-    GRAFTAL_INLINE void meet_faint_proxy(const TraceNode& node, const Frame& frame) {
-        LaneMap place;
-        compose(frame.world_from_node, node.node_from_proxy, place);
-        if (!self.meet_leaf(PrimitiveKind::sphere, place.affine(), true,
-                            world_ball(node, frame, node.ball_radius), range))
-            return;
-        self.best_.proxy_node = frame.node;
-        self.keep_way(static_cast<std::uint32_t>(self.depth_ - 1));
-    }
-
-    /// Meets what stands for the frame's own node.
-    GRAFTAL_INLINE void meet_proxy(const TraceNode& node, const Frame& frame) {
-        const Double4 origin = point_through(node.proxy_from_node, frame.origin);
-        const Double4 direction = direction_through(node.proxy_from_node, frame.direction);
-        const double largest = largest_component(direction), unit = 1 / largest;
-        PrimitiveHit hit;
-        if (!intersect(PrimitiveKind::sphere, {vec3_of(origin), vec3_of(direction * splat(unit))},
-                       range_from(frame.base, frame.speed * largest), hit))
-            return;
-        if (!set_best(frame.base + hit.t * (frame.unit * unit))) return;
-        self.best_.normal = hit.normal;
-        self.best_.proxy_node = frame.node;
-        compose(frame.world_from_node, node.node_from_proxy, self.best_.world_from_leaf);
-        self.keep_way(static_cast<std::uint32_t>(self.depth_ - 1));
-    }
+    void meet_faint(const TraceNode& node, const TraceEdge& edge, const Frame& parent, const Entry& entry);
+    void meet_faint_proxy(const TraceNode& node, const Frame& frame);
+    /// What stands for the frame's own node.
+    void meet_proxy(const TraceNode& node, const Frame& frame);
 };
 
 } // namespace graftal

@@ -14,8 +14,10 @@ namespace {
 
 /// Parts of one unrolling: what goes into the first and second caches.
 constexpr std::size_t most_parts = 512;
+/// Primitives of one that is cut, and of all.
+constexpr std::size_t most_leaves = 1024, most_leaves_in_all = 8192;
 /// Unrollings of one node, and groups in groups that are passed over between two of them.
-constexpr std::size_t most_unrollings = 7;
+constexpr std::size_t most_unrollings = 6;
 constexpr int most_groups = 8;
 /// Parts of a part, to find its box.
 constexpr std::uint32_t most_looked_at = 64;
@@ -72,10 +74,13 @@ class Unroller {
                 model_.edges.resize(edges);
                 break;
             }
-            parts.unrolling.tree = deeper ? tree_over(parts.edges) : node.tree;
             for (const std::uint32_t edge : parts.edges)
                 include_in_reach(node, model_.edges[edge]);
-            unrollings.push_back(parts.unrolling);
+            add_leaves(parts);
+            if (deeper || parts.unrolling.leaf_tree != no_tree) {
+                parts.unrolling.tree = deeper ? tree_over(parts.edges) : node.tree;
+                unrollings.push_back(parts.unrolling);
+            }
             edges = model_.edges.size();
             deeper = expand(parts, is_any_union);
             if (!deeper) break;
@@ -83,6 +88,51 @@ class Unroller {
         node.first_unrolling = static_cast<std::uint32_t>(model_.unrollings.size());
         node.unrolling_count = static_cast<std::uint32_t>(unrollings.size());
         model_.unrollings.insert(model_.unrollings.end(), unrollings.rbegin(), unrollings.rend());
+    }
+
+    /// What is drawn of the parts where all that can be are cut.
+    void add_leaves(Parts& parts) {
+        parts.unrolling.leaf_tree = no_tree;
+        parts.unrolling.most_size = -1;
+        std::size_t count = 0;
+        for (const std::uint32_t edge : parts.edges) {
+            const std::size_t leaves = leaves_of(model_.edges[edge]);
+            count += leaves;
+            if (leaves == 0 || count > most_leaves) return;
+        }
+        if (leaves_in_all_ + count > most_leaves_in_all) return;
+        std::vector<std::uint32_t> leaves;
+        for (const std::uint32_t number : parts.edges) {
+            const TraceEdge edge = model_.edges[number];
+            const TraceNode& child = model_.nodes[edge.child];
+            if (is_solid(child)) {
+                leaves.push_back(number);
+                continue;
+            }
+            if (child.edge_count > 0)
+                parts.unrolling.most_size = std::max(parts.unrolling.most_size,
+                                                     2 * child.ball_radius * edge.stretch / child.cut_detail);
+            for (std::uint32_t i = 0; i < child.stop_edge_count; ++i)
+                leaves.push_back(add_edge(number, (child.first_edge + child.edge_count + i) | from_cut));
+        }
+        leaves_in_all_ += count;
+        parts.unrolling.leaf_tree = tree_over(leaves);
+    }
+
+    /// Primitives that are drawn of a part as it is, or cut; 0 if there is more to it. Those that are turned
+    /// would be met some rounding away from where they are met one level after the other, which shows where
+    /// surfaces coincide.
+    std::size_t leaves_of(const TraceEdge& edge) const {
+        const TraceNode& node = model_.nodes[edge.child];
+        if (!edge.upright) return 0;
+        if (is_solid(node)) return 1;
+        if (node.kind != TraceNode::Kind::parts || node.faint || node.widens) return 0;
+        if (!(node.edge_count > 0 ? node.cullable : node.unending)) return 0; // no edges: no steps are left
+        for (std::uint32_t i = 0; i < node.stop_edge_count; ++i) {
+            const TraceEdge& stop = model_.edges[node.first_edge + node.edge_count + i];
+            if (!stop.upright || !is_solid(model_.nodes[stop.child])) return 0;
+        }
+        return node.stop_edge_count;
     }
 
     /// A union that is never cut where the parts passed over are not.
@@ -114,7 +164,8 @@ class Unroller {
             any = any || expanded;
             count += expanded ? model_.nodes[model_.edges[number].child].edge_count : 1;
         }
-        if (!any || count > most_parts || model_.edges.size() + count > most_edges_) return false;
+        if (!any || count > most_parts || model_.edges.size() - leaves_in_all_ + count > most_edges_)
+            return false;
         Parts deeper{{}, parts.unrolling};
         for (const std::uint32_t number : parts.edges) {
             if (!is_expanded(number)) {
@@ -155,7 +206,7 @@ class Unroller {
 
     std::uint32_t add_edge(std::uint32_t before, std::uint32_t last) {
         const TraceEdge& first = model_.edges[before];
-        const TraceEdge& second = model_.edges[last];
+        const TraceEdge& second = model_.edges[last & ~from_cut];
         TraceEdge edge;
         edge.before = before;
         edge.last = last;
@@ -168,10 +219,10 @@ class Unroller {
         edge.child_from_parent =
             LaneMap(second.child_from_parent.affine() * first.child_from_parent.affine());
         edge.similarity = first.similarity && second.similarity;
-        edge.upright = first.upright && second.upright;
         edge.flatness = first.flatness * second.flatness;
         edge.stretch = edge.similarity ? first.stretch * second.stretch : norm(parent_from_child.linear);
         edge.growth = 1 / edge.stretch;
+        edge.find_upright();
         edge.box = box_of(first, second, parent_from_middle, parent_from_child);
         model_.edges.push_back(edge);
         return static_cast<std::uint32_t>(model_.edges.size() - 1);
@@ -226,7 +277,8 @@ class Unroller {
     }
 
     TraceModel& model_;
-    const std::size_t most_edges_;
+    const std::size_t most_edges_; ///< without leaves
+    std::size_t leaves_in_all_ = 0;
 };
 
 } // namespace

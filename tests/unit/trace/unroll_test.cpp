@@ -103,6 +103,46 @@ TEST(Unroll, DrawsTheSameBesideThePicture) {
     }
 }
 
+/// Seven of the eight octants of a cube, in two colours, to the limit.
+Graph dented() {
+    Graph graph = empty_graph();
+    const ObjectId cube = graph.primitive(PrimitiveKind::cube);
+    const ObjectId self = graph.add({"self", {}, {}, {}, {}});
+    for (int i = 0; i < 7; ++i) {
+        const Vec3 corner(i & 1 ? 1 : -1, i & 2 ? 1 : -1, i & 4 ? 1 : -1);
+        place(graph, self, self, Affine::translate(0.5 * corner) * Affine::scale(Vec3(0.5)),
+              {{i & 1, 0, 1}, 0.5});
+    }
+    graph.objects[self].terminal = Instance{cube, {}, {}, {}, {}};
+    place(graph, graph.root, self, {});
+    return graph;
+}
+
+TEST(Unroll, PartsThatAreAllCutAreOneTreeOfWhatIsDrawnOfThem) {
+    for (const auto& [error_px, steps] : {std::pair(6.0, std::optional<unsigned>()), {2.0, {}}, {0.0, 4u}}) {
+        SCOPED_TRACE(error_px);
+        const DetailOptions options = options_of(error_px, steps);
+        expect_same(dented(), options);
+        expect_same(dented(), options, Vec3(0.3, 1.5, 2.2));
+        const auto whole = traced(dented(), options), without = traced(dented(), options);
+        for (Unrolling& unrolling : without->unrollings)
+            unrolling.leaf_tree = no_tree;
+        Traversal leaves(*whole), parts(*without);
+        std::mt19937_64 random(5);
+        std::uniform_real_distribution<double> unit(-1, 1);
+        for (int i = 0; i < 5000; ++i) {
+            const Ray ray{whole->view.camera.location, {0.3 * unit(random), 0.3 * unit(random), -1}};
+            SurfaceHit a, b;
+            const bool found = parts.closest(ray, {}, b);
+            ASSERT_EQ(leaves.closest(ray, {}, a), found) << i;
+            if (!found) continue;
+            ASSERT_NEAR(a.t, b.t, 1e-12 * b.t) << i;
+            ASSERT_EQ(a.normal, b.normal) << i;
+        }
+        EXPECT_LT(leaves.visits(), parts.visits());
+    }
+}
+
 TEST(Unroll, StaysSmall) {
     Graph graph = empty_graph();
     const ObjectId ball = graph.primitive(PrimitiveKind::sphere);

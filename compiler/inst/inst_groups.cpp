@@ -183,7 +183,7 @@ void InstLowerer::lower_scattered(const InstGroup& group, Lowered& object) {
     }
     const std::optional<Placement> placement = lower_placement(group);
     const std::size_t most = lowering_.options.max_objects * max_instances_per_object;
-    const ScatterContext context{environment_, graph_.settings, asked_seed(),
+    const ScatterContext context{environment_, graph_.settings, lowering_.options.seed,
                                  most - std::min(most, instance_count_), &lowering_.meter};
     const double chance = lower_chance(group);
     const bool good = placement && std::ranges::count(masters, std::optional<ObjectId>()) == 0;
@@ -241,10 +241,6 @@ HueTurn InstLowerer::lower_hue(const Expression& hue) {
                                         shortest(360 * rounded.turns()), shortest(*degrees)))
             .with_hint("tenths of a degree, and 360/n for whole n up to 3600, are exact");
     return rounded;
-}
-
-std::optional<std::uint64_t> InstLowerer::asked_seed() const {
-    return lowering_.at_root_model() ? lowering_.options.seed : std::nullopt;
 }
 
 std::optional<InstLowerer::Placement> InstLowerer::lower_placement(const InstGroup& group) {

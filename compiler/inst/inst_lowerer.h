@@ -123,7 +123,6 @@ class InstLowerer {
     /// 0 where none is stated.
     double lower_chance(const InstGroup& group);
     HueTurn lower_hue(const Expression& hue);
-    std::optional<std::uint64_t> asked_seed() const;
     std::optional<Placement> lower_placement(const InstGroup& group);
     std::optional<Tint> lower_tints(const std::vector<InstTint>& tints);
     std::optional<ObjectId> resolve(const InstReference& reference);

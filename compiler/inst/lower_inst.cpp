@@ -32,7 +32,7 @@ std::string abridged_chain(const std::vector<std::string_view>& names) {
 
 InstLowerer::InstLowerer(const InstModule& module, Lowering& lowering)
     : module_(module), lowering_(lowering), diagnostics_(lowering.diagnostics), index_(module_, diagnostics_),
-      chance_(module_), seed_(asked_seed().value_or(0)) {}
+      chance_(module_), seed_(lowering.options.seed.value_or(0)) {}
 
 std::optional<Graph> InstLowerer::run() && {
     lets_ = lower_lets(module_.scene, lowering_);

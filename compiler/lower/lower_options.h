@@ -26,7 +26,7 @@ struct LowerOptions {
     /// steps as are done by then; others after `steps`, or if these are not given, too. Other languages have
     /// no time: without `steps` it is an error.
     std::optional<double> time;
-    std::optional<std::uint64_t> seed; ///< of what is random, in place of what the model says
+    std::optional<std::uint64_t> seed; ///< of what is random, in used models too
     /// Files that a model names, and the model itself, must lie in this folder, with all symbolic links
     /// resolved;
     /// "": they may lie anywhere.

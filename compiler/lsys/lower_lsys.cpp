@@ -17,6 +17,7 @@
 #include "compiler/lsys/lsys_drawing.h"
 #include "compiler/lsys/lsys_grammar.h"
 #include "compiler/lsys/model_placer.h"
+#include "compiler/support/counter_random.h"
 
 namespace graftal {
 
@@ -313,15 +314,21 @@ class LsysLowering {
         return steps && *steps <= max_derivation_steps;
     }
 
+    /// Used models that differ only in their seeds differ under `--seed`, too.
+    std::uint64_t seed_of(const LsysGrammar& grammar) const {
+        const std::optional<std::uint64_t> asked = lowering_.options.seed;
+        if (!asked) return grammar.seed;
+        return lowering_.at_root_model() ? *asked : CounterRandom(*asked)(grammar.seed);
+    }
+
     std::optional<ObjectId> draw(const Block& block, const LsysGrammar& grammar,
                                  const std::map<SymbolId, Model>& models, std::optional<unsigned> steps) {
         const LsysBlock& source = *block.source;
         const LowerOptions& options = lowering_.options;
-        const std::uint64_t seed = lowering_.at_root_model() && options.seed ? *options.seed : grammar.seed;
         std::optional<LsysDrawing> drawing = draw_lsys(grammar, placer(models),
                                                        {.steps = steps,
                                                         .share = share_of_step(block, grammar),
-                                                        .seed = seed,
+                                                        .seed = seed_of(grammar),
                                                         .exact = options.exact,
                                                         .max_modules = options.max_modules,
                                                         .inner = inner_counts(models),

@@ -109,14 +109,18 @@ class Drawer {
             if (!derive()) return std::nullopt;
         } else {
             if (grammar_.is_stochastic) variants_ = fewest_of(grammar_);
+            const std::uint32_t fewest = variants_;
             const std::size_t sixteens = std::max(1u, variants_ / fewest_variants);
             const auto sized = [&](const Rounding& rounding) {
                 return sixteens * (rounding.resizes ? most_resized_parts : most_sized_parts);
             };
             const auto exact = [](const Rounding&) { return most_exact_parts; };
             if (sizes_.any() && !choose_rounding(graph, sized)) return std::nullopt;
-            if (!choose_variants(graph)) return std::nullopt;
+            // Variants that differ in their directions too would be too many to judge.
             if (uses_directions() && !choose_rounding(graph, exact)) return std::nullopt;
+            if (!choose_variants(graph)) return std::nullopt;
+            if (uses_directions() && variants_ > fewest && !choose_rounding(graph, exact))
+                return std::nullopt;
         }
         if (in_run_) return draw_run(graph);
         std::optional<LsysDrawing> drawing = compose(graph, pool);
@@ -352,30 +356,35 @@ class Drawer {
         return {glm::transpose(frame) * (grammar_.step / size), Vec3(0.0)};
     }
 
-    /// Composes a small pool and judges by its variance how many variants it takes.
+    /// Composes a small pool, or what of it there is room for, and judges by its variance how many variants
+    /// it takes. Errors come again when the model itself is composed, except those of productions: false.
     bool choose_variants(const Graph& graph) {
         if (!grammar_.is_stochastic) return true;
         Graph scratch = graph;
         ObjectPool pool(scratch);
-        Composition composition(*this, scratch, pool, false, stand_ins(scratch));
+        Diagnostics quiet;
+        Composition composition(*this, scratch, pool, false, stand_ins(scratch), options_.max_parts, quiet);
         double sum = 0, squares = 0;
         int shift = 0;
-        for (std::uint32_t i = 0; i < variants_; ++i) {
-            const std::optional<TurtlePart> part = composition.variant(i);
-            if (!part) return false;
+        std::uint32_t judged = 0;
+        for (; judged < variants_; ++judged) {
+            const std::optional<TurtlePart> part = composition.variant(judged);
+            if (!part) break;
             // In units of 2^shift, since the counts may be beyond doubles.
             const BigCount drawn = part->segments + part->bodies;
-            if (i == 0 && drawn > 0) shift = std::max(0, static_cast<int>(msb(drawn)) - 60);
+            if (judged == 0 && drawn > 0) shift = std::max(0, static_cast<int>(msb(drawn)) - 60);
             const double count = BigCount(drawn >> shift).convert_to<double>();
             sum += count;
             squares += count * count;
         }
-        const double mean = sum / variants_;
+        if (judged < variants_ && (judged < 2 || !composition.composer.too_many_parts()))
+            return !rewriter_.failed();
+        const double mean = sum / judged;
         // The relative variance of one whole model is at least that of one level, and no more than that of
         // all.
-        const double variance = mean > 0 ? std::max(0.0, squares / variants_ / (mean * mean) - 1) : 0;
+        const double variance = mean > 0 ? std::max(0.0, squares / judged / (mean * mean) - 1) : 0;
         const double wanted = variance * std::max(1u, steps_) / (most_drift * most_drift);
-        const double parts = static_cast<double>(composition.composer.part_count()) / variants_;
+        const double parts = static_cast<double>(composition.composer.part_count()) / judged;
         const double room = 0.5 * static_cast<double>(options_.max_parts) / std::max(parts, 1.0);
         while (variants_ < wanted && 2 * variants_ <= std::min<double>(room, most_variants))
             variants_ *= 2;

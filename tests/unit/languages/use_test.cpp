@@ -8,6 +8,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "compiler/graph/print.h"
 #include "compiler/languages/lower.h"
 
 namespace graftal {
@@ -110,6 +111,27 @@ TEST_F(Use, set_speaks_to_the_root_model_only) {
     ASSERT_TRUE(graph_) << errors();
     EXPECT_EQ(object("a").instances[0].parent_from_child.linear[0][0], 10);
     EXPECT_EQ(object("l.leaf").instances[0].parent_from_child.linear[0][0], 2);
+}
+
+TEST_F(Use, a_seed_reaches_used_models) {
+    const std::string tree = "lsys tree {\nwidth 0.1\nsteps 4\naxiom A\nA -> F[+(random(0, 90))A]A\nseed ";
+    write("one.lsys", tree + "1\n}");
+    write("two.lsys", tree + "2\n}");
+    write("bush.inst", "object bush { cube scale: random(1, 2) }");
+    write("wood.inst", "use bush = \"bush.inst\" object wood { scatter: bush count: 9 over: disc 9 }");
+    const auto printed = [&](const std::string& name, std::optional<std::uint64_t> seed) {
+        write("a.inst", "use m = \"" + name + "\" object a { m }");
+        LowerOptions options;
+        options.seed = seed;
+        lower("a.inst", options);
+        return graph_ ? print(*graph_) : errors();
+    };
+    for (const char* name : {"one.lsys", "wood.inst"}) {
+        EXPECT_EQ(printed(name, 5), printed(name, 5)) << name;
+        EXPECT_NE(printed(name, 5), printed(name, 6)) << name;
+        EXPECT_NE(printed(name, 5), printed(name, std::nullopt)) << name;
+    }
+    EXPECT_NE(printed("one.lsys", 5), printed("two.lsys", 5));
 }
 
 TEST_F(Use, uses_that_double_the_model_are_bounded) {

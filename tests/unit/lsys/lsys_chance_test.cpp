@@ -111,6 +111,17 @@ TEST(LsysChance, theSeedDecides) {
     }
 }
 
+TEST(LsysChance, variantsAreJudgedByThoseThereIsRoomFor) {
+    LowerOptions options;
+    options.max_objects = 50'000;
+    const CompiledLsys compiled("angle 25\nwidth 0.1\naxiom A\n"
+                                "A -> F[$+(normal(30, 8))A][$-(normal(30, 8))A]/(137)A",
+                                9, options);
+    EXPECT_GE(compiled.derivation->variants, draw_sets);
+    EXPECT_LE(compiled.derivation->parts, options.max_objects);
+    EXPECT_EQ(compiled.derivation->segments, std::to_string((19683 - 1) / 2));
+}
+
 TEST(LsysChance, parametersAreArguments) {
     const Sample sample =
         leaves("axiom A(1)\nA(n) : n <= 64 -> [+L(n)]A(n+1)\nL(n) -> F(random(n, n + 1))", 65, {});

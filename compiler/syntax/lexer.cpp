@@ -11,6 +11,7 @@
 
 #include "compiler/support/number.h"
 #include "compiler/support/printable.h"
+#include "compiler/support/srgb.h"
 #include "compiler/syntax/lookalikes.h"
 
 namespace graftal {
@@ -45,7 +46,7 @@ std::size_t hex_colour_size(std::string_view text) {
     return end < text.size() && is_letter(text[end]) ? 0 : end;
 }
 
-/// Of such a text, linear: pictures and the web have sRGB (IEC 61966-2-1).
+/// Of such a text, in linear light.
 std::array<double, 3> hex_colour(std::string_view text) {
     std::array<double, 3> rgb{};
     const std::size_t digits = text.size() == 4 ? 1 : 2;
@@ -54,8 +55,7 @@ std::array<double, 3> hex_colour(std::string_view text) {
         const char* const first = text.data() + 1 + i * digits;
         std::from_chars(first, first + digits, value, 16);
         const double share = value / (digits == 1 ? 15.0 : 255.0);
-        const double linear = share <= 0.04045 ? share / 12.92 : std::pow((share + 0.055) / 1.055, 2.4);
-        rgb[i] = std::round(linear * 1000) / 1000;
+        rgb[i] = std::round(linear_from_srgb(share) * 1000) / 1000;
     }
     return rgb;
 }

@@ -29,7 +29,8 @@ double developed(double light, const Film& film) {
     return srgb_encoded(static_cast<float>(rolled_off(film.exposure * light, film.soft)));
 }
 
-Developer::Developer(const Film& film) : film_(film) {
+Developer::Developer(const Film& film, SampleFormat format)
+    : film_(film), largest_level_(largest_level(format)) {
     const double neutral_k = Film().white_k;
     if (film.white_k != neutral_k)
         gains_ = blackbody_rgb(neutral_k) / glm::max(blackbody_rgb(film.white_k), Rgb(1e-3));
@@ -45,7 +46,7 @@ void Developer::develop(Image& picture, int first, int end) const {
             float* const samples = picture.pixels.data() + pixel * static_cast<std::size_t>(picture.channels);
             for (int c = 0; c < (grey ? 1 : 3); ++c) {
                 const double value = developed((grey ? 1 : gains_[c]) * samples[c], film_);
-                samples[c] = static_cast<float>(dithered ? value + dither(x, y, c) / 255 : value);
+                samples[c] = static_cast<float>(dithered ? value + dither(x, y, c) / largest_level_ : value);
             }
         }
 }

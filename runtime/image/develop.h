@@ -11,19 +11,20 @@ namespace graftal {
 /// which leaves what is dark alone and never reaches 1; encoded as IEC 61966-2-1 says.
 double developed(double light, const Film& film);
 
-/// Linear light into the samples of an 8-bit picture: each component by developed(), after the gains that
-/// make the film's white temperature white. A film that is not plain() is dithered by half a step, so that
-/// slow gradients have no bands; where a value needs none it stays. Alpha stays. Every engine's pictures, and
-/// those of random points, go through here.
+/// Linear light into the samples of a PNG: each component by developed(), after the gains that make the
+/// film's white temperature white. A film that is not plain() is dithered by half a step of the format, so
+/// that slow gradients have no bands; where a value needs none it stays. Alpha stays. Every engine's
+/// pictures, and those of random points, go through here.
 class Developer {
   public:
-    explicit Developer(const Film& film);
+    Developer(const Film& film, SampleFormat format);
 
     /// Rows `first` to `end`; threads may share it for rows of their own.
     void develop(Image& picture, int first, int end) const;
 
   private:
     Film film_;
+    int largest_level_;
     Rgb gains_{1.0};
 };
 

@@ -29,8 +29,14 @@ struct Image {
 /// 32-bit floats and are linear by definition.
 enum class SampleFormat {
     srgb8,    ///< 8 bit, sRGB encoded: for people
+    srgb16,   ///< the same with 16 bit: for prints, and for what works on the picture
     linear16, ///< 16 bit, linear light (gamma 1 in the file): for numbers
 };
+
+/// What a PNG stores for 1.
+inline int largest_level(SampleFormat format) {
+    return format == SampleFormat::srgb8 ? 255 : 65535;
+}
 
 /// What a picture says about its making.
 struct ImageMetadata {

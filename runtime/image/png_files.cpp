@@ -273,7 +273,8 @@ std::string write_png(const std::string& path, const Image& image, SampleFormat 
                       const ImageMetadata& metadata) {
     GRAFTAL_CHECK(1 <= image.channels && image.channels <= 4, path);
     const bool linear = format == SampleFormat::linear16;
-    const Kind kind{image.width, image.height, image.channels, linear ? 16 : 8, linear};
+    const Kind kind{image.width, image.height, image.channels, format == SampleFormat::srgb8 ? 8 : 16,
+                    linear};
     const std::size_t row_samples =
         static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.channels);
     return write(path, kind, metadata, [&](int y, png_byte* row) {

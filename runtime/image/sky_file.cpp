@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "compiler/support/srgb.h"
 #include "runtime/image/image.h"
 
 namespace graftal {
@@ -20,10 +21,6 @@ bool is_linear_name(const std::string& path) {
     for (char& c : ending)
         c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
     return ending == ".exr" || ending == ".hdr";
-}
-
-double decoded(float encoded) {
-    return encoded <= 0.04045f ? encoded / 12.92 : std::pow((encoded + 0.055) / 1.055, 2.4);
 }
 
 /// Takes the rows of a file; each texel is the mean of so many pixels across and down.
@@ -83,7 +80,7 @@ class SkySink : public RowSink {
         bool mended = false;
         for (int c = 0; c < 3; ++c) {
             const float sample = samples[channels_ >= 3 ? c : 0];
-            const double value = linear_ ? sample : decoded(sample);
+            const double value = linear_ ? sample : linear_from_srgb(sample);
             light[c] = value > 0 ? std::min<double>(value, most_radiance) : 0;
             mended = mended || !(value >= 0 && value <= most_radiance);
         }

@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "compiler/support/srgb.h"
 #include "runtime/image/image.h"
 #include "runtime/image/sky_file.h"
 
@@ -146,8 +147,7 @@ const Texture::Texel& Texture::at(double u, double v) const {
 }
 
 double srgb_decoded(std::uint8_t level) {
-    const double encoded = level / 255.0;
-    return encoded <= 0.04045 ? encoded / 12.92 : std::pow((encoded + 0.055) / 1.055, 2.4);
+    return linear_from_srgb(level / 255.0);
 }
 
 Status read_texture(const std::string& path, std::uint64_t most_texels, Texture& texture) {

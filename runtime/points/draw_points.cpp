@@ -147,13 +147,17 @@ Status write_picture(Canvas& canvas, const View& view, const PointsOptions& opti
     Tone tone = options.tone;
     tone.by_density = options.colour == PointColour::density;
     Image image = toned(points, tone, view);
-    if (!is_exr_name(options.output)) Developer(Film()).develop(image, 0, image.height);
+    if (!is_exr_name(options.output)) {
+        Film film;
+        film.soft = tone.light;
+        Developer(film, options.format).develop(image, 0, image.height);
+    }
     if (is_exr_name(options.output) && image.channels == 4) // colour belongs to alpha already, as EXR has it
         for (std::size_t i = 0; i < image.pixels.size(); ++i)
             if (i % 4 != 3) image.pixels[i] *= image.pixels[i / 4 * 4 + 3];
     PendingFile picture(options.output);
     if (!picture.status().ok()) return picture.status();
-    if (Status status = write_image(picture, image, SampleFormat::srgb8, options.metadata); !status.ok())
+    if (Status status = write_image(picture, image, options.format, options.metadata); !status.ok())
         return status;
     if (!card) return picture.commit();
     PendingFile* const both[] = {&picture, card};

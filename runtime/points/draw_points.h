@@ -18,7 +18,8 @@ bool is_cloud_name(const std::string& path);
 
 struct PointsOptions {
     StageOptions compile;
-    std::string output; ///< is_picture_name() or is_cloud_name()
+    std::string output;                        ///< is_picture_name() or is_cloud_name()
+    SampleFormat format = SampleFormat::srgb8; ///< of a PNG
     ImageMetadata metadata;
     std::optional<std::uint64_t> points; ///< nothing: 100 a pixel, or a million of a cloud
     std::string card;                    ///< `.inst` file of a card with the picture (card.h); empty: none

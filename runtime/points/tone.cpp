@@ -1,7 +1,6 @@
 #include "runtime/points/tone.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numbers>
 #include <vector>
@@ -9,17 +8,13 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
+#include "compiler/support/check.h"
+#include "compiler/support/srgb.h"
+#include "runtime/points/glow.h"
+
 namespace graftal {
 
 namespace {
-
-double linear_of(double srgb) {
-    return srgb <= 0.04045 ? srgb / 12.92 : std::pow((srgb + 0.055) / 1.055, 2.4);
-}
-
-Rgb linear_of(Rgb srgb) {
-    return {linear_of(srgb.r), linear_of(srgb.g), linear_of(srgb.b)};
-}
 
 /// What the background shows through each pixel.
 class Backdrop {
@@ -64,7 +59,7 @@ class Curve {
 
     double operator()(std::uint64_t count) const {
         if (count == 0) return 0;
-        return std::pow(std::min(1.0, std::log1p(factor_ * static_cast<double>(count)) / white_), power_);
+        return std::pow(std::log1p(factor_ * static_cast<double>(count)) / white_, power_);
     }
 
   private:
@@ -74,35 +69,40 @@ class Curve {
 } // namespace
 
 Image toned(const Accumulation& points, const Tone& tone, const View& view) {
+    GRAFTAL_CHECK(!(tone.light && tone.transparent), "toned");
     const ImageSize size = points.size();
     const Curve curve(points, tone);
     const Backdrop backdrop(view);
+    const auto ground_at = [&](std::size_t pixel) {
+        const auto width = static_cast<std::size_t>(size.width);
+        if (tone.ground) return *tone.ground;
+        return backdrop.at(static_cast<int>(pixel % width), static_cast<int>(pixel / width));
+    };
+    const std::vector<Accumulation::Cell>& cells = points.cells();
     Image image{size.width, size.height, tone.transparent ? 4 : 3, {}};
-    image.pixels.reserve(points.cells().size() * static_cast<std::size_t>(image.channels));
-    std::size_t pixel = 0;
-    for (int y = 0; y < size.height; ++y)
-        for (int x = 0; x < size.width; ++x, ++pixel) {
-            const Accumulation::Cell& cell = points.cells()[pixel];
-            const double cover = curve(cell.count);
-            Rgb rgb(0.0);
-            if (cover > 0) rgb = tone.by_density ? density_colour(cover) : points.mean_colour(cell);
-            if (!tone.transparent) rgb = cover * rgb + (1 - cover) * backdrop.at(x, y);
-            for (int c = 0; c < 3; ++c)
-                image.pixels.push_back(static_cast<float>(rgb[c]));
-            if (tone.transparent) image.pixels.push_back(static_cast<float>(cover));
-        }
+    image.pixels.reserve(cells.size() * static_cast<std::size_t>(image.channels));
+    for (std::size_t pixel = 0; pixel < cells.size(); ++pixel) {
+        const Accumulation::Cell& cell = cells[pixel];
+        const double weight = curve(cell.count);
+        const double cover = std::min(1.0, weight);
+        Rgb rgb(0.0);
+        if (cell.count > 0) rgb = tone.by_density ? tone.scale.at(cover) : points.mean_colour(cell);
+        if (tone.light)
+            rgb *= weight;
+        else if (!tone.transparent)
+            rgb = cover * rgb + (1 - cover) * ground_at(pixel);
+        for (int c = 0; c < 3; ++c)
+            image.pixels.push_back(static_cast<float>(rgb[c]));
+        if (tone.transparent) image.pixels.push_back(static_cast<float>(cover));
+    }
+    if (!tone.light) return image;
+    if (tone.glow > 0) spread_glow(image, tone.glow);
+    for (std::size_t pixel = 0; pixel < cells.size(); ++pixel) {
+        const Rgb ground = ground_at(pixel);
+        for (std::size_t c = 0; c < 3; ++c)
+            image.pixels[3 * pixel + c] += static_cast<float>(ground[static_cast<int>(c)]);
+    }
     return image;
-}
-
-Rgb density_colour(double x) {
-    // sRGB, even steps of lightness from violet over green to yellow.
-    static constexpr std::array<Rgb, 6> scale = {Rgb(0.25, 0.10, 0.45), Rgb(0.22, 0.32, 0.60),
-                                                 Rgb(0.13, 0.52, 0.56), Rgb(0.25, 0.70, 0.42),
-                                                 Rgb(0.68, 0.84, 0.22), Rgb(1.00, 0.95, 0.55)};
-    const double at = std::clamp(x, 0.0, 1.0) * (scale.size() - 1);
-    const auto i = std::min(static_cast<std::size_t>(at), scale.size() - 2);
-    const double t = at - static_cast<double>(i);
-    return linear_of((1 - t) * scale[i] + t * scale[i + 1]);
 }
 
 Rgb map_colour(std::uint32_t number) {
@@ -111,7 +111,7 @@ Rgb map_colour(std::uint32_t number) {
     Rgb rgb;
     for (int c = 0; c < 3; ++c)
         rgb[c] = 0.62 + 0.36 * std::cos(2 * std::numbers::pi * (turn - c / 3.0));
-    return linear_of(rgb);
+    return linear_from_srgb(rgb);
 }
 
 } // namespace graftal

@@ -1,8 +1,11 @@
 #pragma once
 
+#include <optional>
+
 #include "compiler/scene/scene.h"
 #include "runtime/image/image.h"
 #include "runtime/points/accumulation.h"
+#include "runtime/points/colour_scale.h"
 
 namespace graftal {
 
@@ -14,22 +17,23 @@ enum class PointColour {
 };
 
 /// How numbers of points become a picture. With n points in a pixel, m in the mean over all pixels that have
-/// any, and w the number that 95 of 100 of these do not exceed, the points cover
+/// any, and w the number that 95 of 100 of these do not exceed, they have the weight
 ///     a = (log(1 + exposure n / m) / log(1 + exposure w / m))^(1 / gamma)
-/// of the pixel, at most all of it, with their mean colour.
+/// and their mean colour.
 struct Tone {
     double exposure = 30;
     double gamma = 1;
-    bool transparent = false; ///< no background, but an alpha
-    bool by_density = false;  ///< colours by a instead of the points' own
+    bool transparent = false; ///< no ground, but an alpha
+    bool by_density = false;  ///< colours of the scale by a, instead of the points' own
+    bool light = false; ///< they add a times their colour to the ground; else they cover a of it, at most all
+    double glow = 0;    ///< the share of their light that spreads around them, in [0, 1]
+    std::optional<Rgb> ground; ///< in linear light; nothing: the model's background
+    ColourScale scale;
 };
 
 /// The picture in linear light, RGB, or with straight alpha. An accumulation without points gives the
-/// background.
+/// ground. Requires that light is not transparent.
 Image toned(const Accumulation& points, const Tone& tone, const View& view);
-
-/// A colour of the scale that densities are shown by, 0 <= x <= 1, from dark to bright.
-Rgb density_colour(double x);
 
 /// A colour for the map of this number: neighbours differ.
 Rgb map_colour(std::uint32_t number);

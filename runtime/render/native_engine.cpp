@@ -261,7 +261,7 @@ class Drawing {
     Image encoded() const {
         Image image = picture_;
         constexpr int rows = 16;
-        const Developer developer(film_);
+        const Developer developer(film_, options_.format);
         const auto encode = [&](int, std::uint64_t piece) {
             const int begin = static_cast<int>(piece) * rows;
             developer.develop(image, begin, std::min(begin + rows, image.height));

@@ -61,7 +61,7 @@ Status finish_picture(const PovrayJob& job, const RenderOptions& options, const 
         return Status::failure(fmt::format("POV-Ray wrote a picture of {} x {} pixels, not {} x {}",
                                            image.width, image.height, job.width, job.height));
     if (!is_exr_name(options.output) && job.format == PovrayJob::Format::half)
-        Developer(film).develop(image, 0, image.height);
+        Developer(film, options.format).develop(image, 0, image.height);
     return write_image(options.output, image, options.format, options.metadata);
 }
 
@@ -98,7 +98,8 @@ PovrayJob job_for(const RenderOptions& options, const View& view) {
     job.threads = options.threads;
     job.antialias = options.antialias;
     const bool linear = options.format == SampleFormat::linear16;
-    if (is_exr_name(options.output) || (!linear && !view.film.plain())) {
+    const bool as_povray_writes_it = options.format == SampleFormat::srgb8 && view.film.plain();
+    if (is_exr_name(options.output) || (!linear && !as_povray_writes_it)) {
         job.format = PovrayJob::Format::half;
         job.picture = "picture.exr";
     } else if (linear) {

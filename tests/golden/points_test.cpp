@@ -1,5 +1,8 @@
 #include "tests/golden/command_line.h"
 
+#include <algorithm>
+#include <cmath>
+
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>
 
@@ -24,6 +27,12 @@ TEST_F(CommandLine, PointsUsage) {
         {"points a.rifs --color red", "--color: 'red' is neither tint nor map nor density"},
         {"points a.rifs --exposure 0", "--exposure: '0' is not a number above 0"},
         {"points a.rifs --gamma nan", "--gamma: 'nan' is not a number above 0"},
+        {"points a.rifs --palette red", "--palette: 'red' is not a palette (viridis, gold, "},
+        {"points a.rifs --ground red", "--ground: 'red' is not black, white or a colour such as #102040"},
+        {"points a.rifs --glow 2", "--glow: '2' is not a number from 0 to 1"},
+        {"points a.rifs --light --transparent", "--light and --transparent exclude each other"},
+        {"points a.rifs --card a.inst --glow 0.5",
+         "--card: a card is no light: leave --light and --glow out"},
         {"points a.rifs -o a.jpg", "'a.jpg': the name must end in .png, .exr or .ply"},
         {"points a.rifs -o a.ply --color density", "a cloud has no pixels to count points in"},
         {"points -", "standard input has no name"},
@@ -47,6 +56,13 @@ TEST_F(CommandLine, PointsMakePicturesAndClouds) {
     EXPECT_EQ(graftal("points " + fern + few_points + "-q --transparent -o a.exr").err, "");
     EXPECT_EQ(picture("a.exr").channels, 4);
     EXPECT_EQ(graftal("points " + flower + few_points + "--color density -o b.png").status, 0);
+    EXPECT_EQ(graftal("points " + fern + few_points + "--palette gold --glow 0.3 --bits 16 -o b.png").status,
+              0);
+    const Image gold = picture("b.png");
+    EXPECT_LT(gold.pixels[0], 0.2) << "the ground of light is black";
+    EXPECT_TRUE(std::ranges::any_of(gold.pixels, [](float x) { return x * 255 != std::round(x * 255); }));
+    EXPECT_EQ(graftal("points " + fern + few_points + "--ground white -o b.png").status, 0);
+    EXPECT_EQ(picture("b.png").pixels[0], 1);
     EXPECT_EQ(graftal("points " + fern + " --points 1000 -o c.ply").status, 0);
     EXPECT_THAT(read("c.ply"), StartsWith("ply\nformat binary_little_endian 1.0\ncomment graftal "));
     EXPECT_EQ(graftal("points - -o d.png" + few_points + "< " + fern).status, 0);

@@ -36,6 +36,7 @@ void add_render(CLI::App& app, Options& options) {
     app.add_flag_callback(
         "--linear", [&] { options.render.format = SampleFormat::linear16; },
         "Write a 16-bit PNG of linear values, for measurements (default: 8-bit sRGB)");
+    add_bits(app, options)->excludes("--linear");
     app.add_flag("--progressive", options.render.progressive,
                  "With --engine native: write coarse pictures first, then finer ones under the same name; "
                  "Ctrl-C keeps the last one");

@@ -15,6 +15,7 @@ PointsOptions points_options(const Options& options) {
     PointsOptions points;
     points.compile = options.render.compile;
     points.output = options.render.output;
+    points.format = options.render.format;
     points.metadata = options.render.metadata;
     points.points = options.points.points;
     points.colour = options.points.colour;

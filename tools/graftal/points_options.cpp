@@ -9,6 +9,7 @@
 #include "compiler/support/number.h"
 #include "runtime/points/card.h"
 #include "runtime/points/draw_points.h"
+#include "tools/graftal/shared_options.h"
 
 namespace graftal {
 
@@ -33,6 +34,33 @@ void add_positive(CLI::App& app, const std::string& name, const std::string& hel
         value = *number;
     };
     app.add_option_function<std::string>(name, set, help)->type_name("X")->take_last();
+}
+
+/// How the measure becomes colours and light.
+void add_measure(CLI::App& app, Tone& tone) {
+    add_value(
+        app, "--palette", "NAME|COLOURS",
+        fmt::format("Colour by density, with this palette ({}) or with colours such as '#102040,#ffe080'",
+                    ColourScale::names()),
+        fmt::format("a palette ({}) or colours such as #102040,#ffe080", ColourScale::names()),
+        [](const std::string& text) { return ColourScale::parse(text); },
+        [&tone](ColourScale&& scale) { tone.scale = std::move(scale); });
+    add_value(app, "--ground", "COLOUR",
+              "Colour behind the points, such as black or #102040, in place of the background",
+              "black, white or a colour such as #102040", parse_colour,
+              [&tone](Rgb rgb) { tone.ground = rgb; });
+    app.add_flag("--light", tone.light, "The points shine, on black unless --ground names another colour");
+    add_value(
+        app, "--glow", "SHARE", "Like --light, and this share of the light spreads around the points",
+        "a number from 0 to 1",
+        [](const std::string& text) {
+            const std::optional<double> share = parse_number(text);
+            return share && *share >= 0 && *share <= 1 ? share : std::nullopt;
+        },
+        [&tone](double share) {
+            tone.glow = share;
+            tone.light = true;
+        });
 }
 
 /// What `--card` leaves out, and what is wrong with it, or "".
@@ -85,14 +113,20 @@ void add_points_options(CLI::App& app, Options& options) {
                  settings.tone.exposure);
     add_positive(app, "--gamma", "Above 1 lightens the thin parts, below 1 darkens them (default 1)",
                  settings.tone.gamma);
-    app.add_flag("--transparent", settings.tone.transparent,
-                 "Write an alpha channel instead of a background");
+    add_measure(app, settings.tone);
+    add_bits(app, options);
+    app.add_flag("--transparent", settings.tone.transparent, "Write an alpha channel instead of a background")
+        ->excludes("--ground")
+        ->excludes("--light")
+        ->excludes("--glow");
     app.add_option("--card", settings.card,
                    "Also write a model of a flat cube that bears the picture, in place of a flat model, for "
                    "use as a\n"
                    "terminal (default size 512x512, exposure 800; the picture is transparent)")
         ->type_name("FILE.inst");
     app.parse_complete_callback([&app, &options, &settings] {
+        if (settings.tone.light && !settings.tone.ground) settings.tone.ground = Rgb(0.0);
+        if (app.count("--palette") > 0 && app.count("--color") == 0) settings.colour = PointColour::density;
         if (settings.card.empty()) return;
         settings.tone.transparent = true;
         if (app.count("--size") == 0) options.render.compile.view.size = {512, 512};
@@ -104,7 +138,8 @@ void add_points_options(CLI::App& app, Options& options) {
                "  graftal points scenes/hart/pound_sign.rifs --points 1e7 -o pound_sign.ply\n"
                "  graftal points scenes/ifs/twin_dragon.rifs --color map\n"
                "  graftal points scenes/plants/maple_leaf.rifs --card leaf_card.inst   # and leaf_card.png\n"
-               "  graftal points scenes/orbits/gumowski_mira.rifs --color density --set a=0.31");
+               "  graftal points scenes/orbits/gumowski_mira.rifs --color density --set a=0.31\n"
+               "  graftal points scenes/orbits/clifford.rifs --palette gold --glow 0.3 --bits 16");
 }
 
 std::string complete_points(Options& options) {
@@ -114,6 +149,8 @@ std::string complete_points(Options& options) {
         return "a model from standard input has no name: name the picture with '-o FILE'";
     if (options.render.output.empty())
         options.render.output = std::filesystem::path(options.operands.front()).stem().string() + ".png";
+    if (!options.points.card.empty() && options.points.tone.light)
+        return "--card: a card is no light: leave --light and --glow out";
     if (is_cloud_name(options.render.output))
         return options.points.colour == PointColour::density
                    ? "--color density: a cloud has no pixels to count points in; write a picture, or choose "

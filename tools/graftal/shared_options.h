@@ -34,6 +34,8 @@ void add_common(CLI::App& app, Options& options);
 void add_camera(CLI::App& app, Options& options);
 /// The same, and how much of the model is drawn.
 void add_view(CLI::App& app, Options& options);
+/// `--bits`, of a PNG for people.
+CLI::Option* add_bits(CLI::App& app, Options& options);
 /// What those take that make pictures.
 void add_drawing(CLI::App& app, Options& options);
 

@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "compiler/support/file.h"
+#include "runtime/points/glow.h"
 #include "runtime/points/projection.h"
 #include "runtime/system/temporary_directory.h"
 #include "runtime/trace/camera_rays.h"
@@ -201,6 +202,74 @@ TEST(Tone, CoversFromNothingToAll) {
     EXPECT_EQ(image.pixels[11], 0);
     EXPECT_EQ(image.pixels[4], 1);
     EXPECT_EQ(image.pixels[5], 0);
+}
+
+TEST(Tone, LightAddsToTheGroundAndMayBeBrighterThanWhite) {
+    View view;
+    view.size = {100, 1};
+    Accumulation points(view.size);
+    const float red[3] = {1, 0, 0};
+    for (std::size_t pixel = 0; pixel < 99; ++pixel)
+        for (int i = 0; i < (pixel == 98 ? 1000 : 10); ++i)
+            points.add(pixel, red);
+    Tone tone;
+    tone.ground = Rgb(0.25, 0.5, 0);
+    tone.light = true;
+    const Image light = toned(points, tone, view);
+    EXPECT_FLOAT_EQ(light.pixels[0], 1.25f);
+    EXPECT_FLOAT_EQ(light.pixels[1], 0.5f);
+    EXPECT_GT(light.pixels[3 * 98], 1.5f);
+    EXPECT_FLOAT_EQ(light.pixels[3 * 99], 0.25f);
+    tone.light = false;
+    const Image cover = toned(points, tone, view);
+    EXPECT_FLOAT_EQ(cover.pixels[3 * 98], 1);
+    EXPECT_FLOAT_EQ(cover.pixels[3 * 98 + 1], 0);
+    tone.by_density = true;
+    tone.scale = *ColourScale::parse("white,#000000");
+    EXPECT_FLOAT_EQ(toned(points, tone, view).pixels[3 * 98 + 2], 0);
+}
+
+TEST(ColourScale, IsANameOrColours) {
+    const ColourScale scale = *ColourScale::parse("#ff0000,black,white");
+    EXPECT_EQ(scale.at(-1), Rgb(1, 0, 0));
+    EXPECT_EQ(scale.at(0.5), Rgb(0.0));
+    EXPECT_EQ(scale.at(7), Rgb(1.0));
+    EXPECT_NEAR(scale.at(0.75).r, 0.2140, 1e-4); // half of sRGB
+    for (const char* name : {"viridis", "gold", "ice", "ember", "grey", "ink"})
+        EXPECT_TRUE(ColourScale::parse(name)) << name;
+    for (const char* wrong :
+         {"", "red", "black", "#12345,white", "white,", ",white", "#gg0000,white", "#-10000,white"})
+        EXPECT_FALSE(ColourScale::parse(wrong)) << wrong;
+    std::string many = "black";
+    for (int i = 0; i < 64; ++i)
+        many += ",white";
+    EXPECT_FALSE(ColourScale::parse(many));
+}
+
+TEST(Glow, SpreadsTheLightAndLosesNone) {
+    for (const ImageSize size : {ImageSize{256, 192}, ImageSize{5, 3}, ImageSize{1, 1}, ImageSize{1000, 1}}) {
+        const std::size_t samples =
+            3 * static_cast<std::size_t>(size.width) * static_cast<std::size_t>(size.height);
+        Image even{size.width, size.height, 3, std::vector<float>(samples, 0.5f)};
+        spread_glow(even, 0.4);
+        for (const float value : even.pixels)
+            ASSERT_NEAR(value, 0.5, 1e-5);
+    }
+    Image dot{256, 256, 3, std::vector<float>(3 * 256 * 256)};
+    const auto red = [&](int x, int y) -> float& {
+        return dot.pixels[static_cast<std::size_t>(3 * (256 * y + x))];
+    };
+    red(128, 128) = 1000;
+    spread_glow(dot, 0.5);
+    double sum = 0;
+    for (const float value : dot.pixels)
+        sum += value;
+    EXPECT_NEAR(sum, 1000, 0.1);
+    EXPECT_GT(red(128, 128), 500);
+    EXPECT_GT(red(131, 128), red(140, 128));
+    EXPECT_GT(red(140, 128), red(146, 128));
+    EXPECT_GT(red(146, 128), 0);
+    EXPECT_EQ(dot.pixels[3 * (256 * 128 + 131) + 1], 0);
 }
 
 } // namespace

@@ -110,7 +110,8 @@ std::vector<std::string> types_in(const std::string& file) {
 TEST_F(PngFiles, EveryKindComesBack) {
     const int colour_types[] = {0, 4, 2, 6};
     for (int channels = 1; channels <= 4; ++channels)
-        for (const SampleFormat format : {SampleFormat::srgb8, SampleFormat::linear16}) {
+        for (const SampleFormat format :
+             {SampleFormat::srgb8, SampleFormat::srgb16, SampleFormat::linear16}) {
             const int bits = format == SampleFormat::srgb8 ? 8 : 16;
             const Image image = levels(150, 120, channels, (1 << bits) - 1);
             ASSERT_EQ(write_png(path("a.png"), image, format, {}), "");

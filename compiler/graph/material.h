@@ -27,6 +27,7 @@ struct Material {
     /// The path in scene units that leaves of white light the material's own rgb; 0: it is the surface that
     /// colours what goes through it.
     double absorption = 0;
+    double blur = 0; ///< how rough mirrors and glass are: the alpha of Trowbridge and Reitz (facets.h)
     /// The picture that is wrapped round each primitive in place of rgb (texture_space.h), by the file it is
     /// read from or the model it is drawn from; empty: none. Where its alpha is below 1/2 there is no
     /// surface.
@@ -39,6 +40,8 @@ struct Material {
     bool operator==(const Material& other) const;
 
     bool is_transparent() const { return transparency > 0; }
+    /// Whether what it mirrors, or shows behind itself, is blurred.
+    bool is_blurred() const { return blur > 0 && (reflection > 0 || is_transparent()); }
     /// Whether it has a clear coat, which reflects more the more a ray grazes it. What the coat reflects
     /// is not there for what is below it.
     bool has_coat() const { return ior > 1; }
@@ -66,6 +69,7 @@ inline constexpr FinishNumber finish_numbers[] = {
     {.name = "transparency", .value = &Material::transparency, .always = false},
     {.name = "ior", .value = &Material::ior, .most = 10, .least = 1, .always = false},
     {.name = "absorption", .value = &Material::absorption, .most = largest_size, .always = false},
+    {.name = "blur", .value = &Material::blur, .always = false},
 };
 
 /// Whether the finishes are equal, whatever the colours.

@@ -119,6 +119,11 @@ void lower_finish(const SceneFields& fields, Material& material) {
     if (!material.is_transparent() && fields.flag("absorption"))
         fields.error("absorption", "'absorption' colours what goes through; give 'transparency' as well");
     if (!material.is_transparent()) material.absorption = 0;
+    if (fields.flag("blur") && material.blur > 0 && !material.is_blurred())
+        fields.error("blur",
+                     "'blur' blurs what a surface mirrors or lets through; give 'reflection', 'ior' or "
+                     "'transparency' as well");
+    if (!material.is_blurred()) material.blur = 0;
     if (material.metallic > 0 && material.has_coat())
         fields.error(fields.flag("metallic") ? "metallic"
                      : fields.flag("ior")    ? "ior"

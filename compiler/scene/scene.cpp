@@ -167,6 +167,18 @@ bool View::has_soft_light() const {
            std::ranges::any_of(lights, [](const Light& light) { return light.is_disc() || light.is_area(); });
 }
 
+bool shows_blur(const Graph& graph, const View& view) {
+    const auto blurred = [&](const std::optional<MaterialId>& id) {
+        return id && graph.materials[*id].is_blurred();
+    };
+    return (view.ground && view.ground->material.is_blurred()) ||
+           std::ranges::any_of(graph.objects, [&](const Object& object) {
+               return std::ranges::any_of(object.run_materials, blurred) ||
+                      std::ranges::any_of(object.instances,
+                                          [&](const Instance& part) { return blurred(part.material); });
+           });
+}
+
 View frame(const Graph& graph, const Box& bounds, ImageSize size, const CameraOverride& camera,
            const Outliner& outliner, DefaultLight light) {
     GRAFTAL_CHECK(!bounds.empty(), "frame: empty bounds");

@@ -107,6 +107,9 @@ struct View {
     bool has_soft_light() const;
 };
 
+/// Whether the model or its ground has a material whose mirrors or glass are blurred.
+bool shows_blur(const Graph& graph, const View& view);
+
 /// Gives points whose convex hull holds the model, close to it where it reaches farthest in the directions.
 using Outliner = std::function<std::vector<Vec3>(const std::vector<Vec3>& directions)>;
 

@@ -51,7 +51,8 @@ const std::vector<FieldRule>& rules(Kind kind) {
         {"specular", Shape::number},     {"roughness", Shape::number},  {"reflection", Shape::number},
         {"translucency", Shape::number}, {"emission", Shape::number},   {"texture", Shape::text},
         {"around", Shape::number},       {"metallic", Shape::number},   {"transparency", Shape::number},
-        {"ior", Shape::number},          {"absorption", Shape::number}, {"from", Shape::name}};
+        {"ior", Shape::number},          {"absorption", Shape::number}, {"from", Shape::name},
+        {"blur", Shape::number}};
     static const std::vector<FieldRule> none;
     switch (kind) {
     case Kind::camera:

@@ -41,12 +41,13 @@ ShaderLimits limits_of(const TraceModel& model, const RenderOptions& options) {
 }
 
 /// Whether pixels are estimated, by samples that differ.
-bool is_sampled(const View& view, const RenderOptions& options) {
-    return view.lens.radius > 0 || (view.has_soft_light() && !options.listed_lights);
+bool is_sampled(const Graph& graph, const View& view, const RenderOptions& options) {
+    if (view.lens.radius > 0) return true;
+    return !options.listed_lights && (view.has_soft_light() || shows_blur(graph, view));
 }
 
-std::vector<Sampling> samplings_for(const View& view, const RenderOptions& options) {
-    if (!is_sampled(view, options)) return samplings_of(options.antialias, options.progressive);
+std::vector<Sampling> samplings_for(bool sampled, const View& view, const RenderOptions& options) {
+    if (!sampled) return samplings_of(options.antialias, options.progressive);
     const SampleGoal goal = sample_goal(view.quality);
     return samplings_of_soft_light(options.samples.value_or(goal.most_samples),
                                    options.noise_255.value_or(options.samples ? 0 : goal.noise_255),
@@ -372,11 +373,11 @@ std::optional<NativeReport> trace_model(const PreparedView& prepared, const Rend
                                         Compilation& compilation, const PictureSink& sink) {
     const Graph& graph = prepared.viewed->model->graph;
     const View& view = prepared.viewed->view;
-    const bool sampled = is_sampled(view, options);
+    const bool sampled = is_sampled(graph, view, options);
     DetailOptions detail = prepared.detail;
     if (sampled) detail.work_seconds = options.soft_work(view.quality);
     Looks looks;
-    looks.wanted = samplings_for(view, options);
+    looks.wanted = samplings_for(sampled, view, options);
     looks.tried = detail.culls()
                       ? with_fewer_samples(looks.wanted, view.size, most_for_samples * detail.work_seconds)
                       : looks.wanted;

@@ -135,14 +135,18 @@ Status prepare(const CompiledModel& model, const RenderOptions& options, Texture
 }
 
 /// What POV-Ray's picture lacks.
-void note_bounces(const CompiledModel& model, Diagnostics& diagnostics) {
-    if (!model.view.sky_light || model.view.sky_light->bounces == 0) return;
+void note_lacks(const CompiledModel& model, Diagnostics& diagnostics) {
     const Graph& graph = model.model->graph;
-    diagnostics
-        .note(
-            graph.objects[graph.root].span,
-            "POV-Ray's picture has no light from surface to surface: each material's 'ambient' stands for it")
-        .with_hint("use --engine native to follow the 'bounces' of the sky");
+    const View& view = model.view;
+    const Span span = graph.objects[graph.root].span;
+    if (view.sky_light && view.sky_light->bounces > 0)
+        diagnostics
+            .note(span, "POV-Ray's picture has no light from surface to surface: each material's 'ambient' "
+                        "stands for it")
+            .with_hint("use --engine native to follow the 'bounces' of the sky");
+    if (shows_blur(graph, view))
+        diagnostics.note(span, "POV-Ray's picture shows all mirrors and glass sharp")
+            .with_hint("use --engine native to draw the 'blur' of materials");
 }
 
 /// The lights that POV-Ray is to follow, and how many they are.
@@ -308,7 +312,7 @@ std::optional<PovrayReport> render_by_povray(PictureSession& session, const Rend
         return compilation.status.ok();
     };
 
-    note_bounces(*model, compilation.diagnostics);
+    note_lacks(*model, compilation.diagnostics);
     const double light_seconds = seconds_a_light(job, mean_overlap(model->cut, model->view));
     const FollowedLights lights = followed_lights(
         *model, light_seconds, options.soft_work(model->view.quality), compilation.diagnostics);

@@ -10,6 +10,7 @@
 #include "compiler/scene/ground.h"
 #include "compiler/support/axes_across.h"
 #include "compiler/support/number_range.h"
+#include "runtime/trace/facets.h"
 #include "runtime/trace/sky_choice.h"
 
 namespace graftal {
@@ -61,6 +62,7 @@ double largest(Rgb rgb) {
 struct Shader::Point {
     Vec3 position;
     Vec3 normal; ///< towards the viewer
+    Vec3 facet;  ///< normal of what mirrors and refracts
     Vec3 to_viewer;
     Rgb rgb;
     const Material* material;
@@ -86,6 +88,14 @@ struct Shader::Way {
     Rgb share;
     double counts;  ///< 0: there is none
     Vec3 direction; ///< of any length
+
+    /// Of a rough surface: less goes where its facets hide each other. `normal`: on the side that it goes to.
+    void roughen(Vec3 normal, double blur) {
+        if (!(counts > 0)) return;
+        const double left = unhidden(glm::dot(glm::normalize(direction), normal), blur);
+        share *= left;
+        counts *= left;
+    }
 
     /// Of several, with this chance.
     void choose(double chance) {
@@ -189,7 +199,7 @@ Rgb Shader::follow(Path& path, SampleStream& random, SurfaceHit* first) {
         }
         if (caught > 0) {
             path.weight *= path.inside.left_after(hit.t);
-            const Point point = point_of(path, hit);
+            const Point point = point_of(path, hit, random);
             sum += caught * path.weight * lit(point, random);
             path.weight *= 1 - caught;
             path.counts *= 1 - caught;
@@ -203,7 +213,7 @@ Rgb Shader::follow(Path& path, SampleStream& random, SurfaceHit* first) {
             break;
         }
         path.weight *= path.inside.left_after(hit.t);
-        const Point point = point_of(path, hit);
+        const Point point = point_of(path, hit, random);
         sum += path.weight * lit(point, random);
         if (!goes_on(path, point, random)) break;
         path.range.least = least_distance(point.position, path.bounces > 0 ? shadow_pixels : mirror_pixels);
@@ -215,9 +225,9 @@ Rgb Shader::follow(Path& path, SampleStream& random, SurfaceHit* first) {
 /// Where light may bounce, or has, it is one of them or one by the cosine, each with the chance that its
 /// light is of the three. False at the end.
 bool Shader::goes_on(Path& path, const Point& point, SampleStream& random) {
-    const double along = glm::dot(point.to_viewer, point.normal);
+    const double along = glm::dot(point.to_viewer, point.facet);
     const Material& material = *point.material;
-    Way mirror{point.mirrored, point.mirrors, 2 * along * point.normal - point.to_viewer};
+    Way mirror{point.mirrored, point.mirrors, 2 * along * point.facet - point.to_viewer};
     Way pane{point.through, largest(point.through), Vec3(0.0)};
     Inside beyond;
     if (pane.counts > 0) {
@@ -229,8 +239,12 @@ bool Shader::goes_on(Path& path, const Point& point, SampleStream& random) {
             mirror = {Rgb(1.0), pane.counts, mirror.direction};
             pane.counts = 0;
         } else {
-            pane.direction = (ratio * along - std::sqrt(square)) * point.normal - ratio * point.to_viewer;
+            pane.direction = (ratio * along - std::sqrt(square)) * point.facet - ratio * point.to_viewer;
         }
+    }
+    if (is_blurred(material)) {
+        mirror.roughen(point.normal, material.blur);
+        pane.roughen(-point.normal, material.blur);
     }
     const double scattered =
         path.bounces < bounces_ ? point.body * (material.diffuse + material.translucency) * largest(point.rgb)
@@ -318,9 +332,16 @@ const Texture::Texel& Shader::ground_texel(Vec3 point) const {
     return ground_texture_->at(place.x, place.y);
 }
 
-Shader::Point Shader::point_of(const Path& path, const SurfaceHit& hit) const {
-    Point point{path.ray(hit.t), hit.normal, -path.ray.direction, hit.rgb, hit.material, &path.inside};
-    if (glm::dot(hit.normal, path.ray.direction) > 0) point.normal = -hit.normal;
+bool Shader::is_blurred(const Material& material) const {
+    return material.is_blurred() && !limits_.list;
+}
+
+Shader::Point Shader::point_of(const Path& path, const SurfaceHit& hit, SampleStream& random) const {
+    Vec3 normal = hit.normal;
+    if (glm::dot(hit.normal, path.ray.direction) > 0) normal = -hit.normal;
+    Point point{path.ray(hit.t), normal, normal, -path.ray.direction, hit.rgb, hit.material, &path.inside};
+    if (is_blurred(*hit.material))
+        point.facet = visible_facet(normal, point.to_viewer, hit.material->blur, random.next());
     // Exactly on the ground, its own shadow cannot begin on the way to a low sun.
     if (view_.ground && hit.material == &view_.ground->material) point.position.y = view_.ground->height;
     if (hit.material == &catcher_paper_) point.position.y = view_.catcher->centre.y;
@@ -330,7 +351,7 @@ Shader::Point Shader::point_of(const Path& path, const SurfaceHit& hit) const {
 
 void Shader::share_light(Point& point) const {
     const Material& material = *point.material;
-    const double cosine = std::min(1.0, glm::dot(point.to_viewer, point.normal));
+    const double cosine = std::min(1.0, glm::dot(point.to_viewer, point.facet));
     point.mirrors = material.reflection;
     if (material.has_coat()) {
         if (point.mirrors > 0)

@@ -39,15 +39,16 @@ struct SkyChoice;
 /// what is transparent has so much less of the light that does not shine or mirror. With an index of
 /// refraction the reflection goes by Fresnel's formula, and what it takes is left out of all that does not
 /// shine; so is the reflection of what lets light through. Metals give highlights and reflections their
-/// colour. Within a solid, light fades as its interior says. Lights shine through on straight lines, coloured
-/// by each surface and interior. Shadowless lights are not shadowed and have no specular part. Light from
-/// discs and from the sky is the sum of the same over what is in them, e = L dw / pi: estimated by one
-/// direction for each (two where the sky is a picture with bright parts, by the balance heuristic: Veach
-/// 1997, 9.2.2), or by a list of lights (light_list.h), to which the estimate converges as the list grows. Of
-/// a sky that asks for bounces, surfaces light each other diffusely, and `ambient` is 0. A picture shows up
-/// to 32 surfaces one in the other; what the last of them shows is black. Nothing is clamped. (POV-Ray's
-/// trace.cpp: TraceRay, ComputeLightedTexture, ComputeOneDiffuseLight, ComputeSpecularColour,
-/// ComputeReflection, ComputeRefraction, ComputeShadowColour, ComputeSky.)
+/// colour. What is blurred mirrors and refracts by facets (facets.h), one for each sample. Within a solid,
+/// light fades as its interior says. Lights shine through on straight lines, coloured by each surface and
+/// interior. Shadowless lights are not shadowed and have no specular part. Light from discs and from the sky
+/// is the sum of the same over what is in them, e = L dw / pi: estimated by one direction for each (two where
+/// the sky is a picture with bright parts, by the balance heuristic: Veach 1997, 9.2.2), or by a list of
+/// lights (light_list.h), to which the estimate converges as the list grows. Of a sky that asks for bounces,
+/// surfaces light each other diffusely, and `ambient` is 0. A picture shows up to 32 surfaces one in the
+/// other; what the last of them shows is black. Nothing is clamped. (POV-Ray's trace.cpp: TraceRay,
+/// ComputeLightedTexture, ComputeOneDiffuseLight, ComputeSpecularColour, ComputeReflection,
+/// ComputeRefraction, ComputeShadowColour, ComputeSky.)
 class Shader {
   public:
     /// Keeps references to the view and the surfaces. `ground_texture`: of the ground's material; null: the
@@ -96,7 +97,9 @@ class Shader {
     static bool meet_level(double height, const Ray& ray, const RayRange& range, double& t);
     double meet_catcher(const Ray& ray, const RayRange& range, SurfaceHit& hit) const;
     const Texture::Texel& ground_texel(Vec3 point) const;
-    Point point_of(const Path& path, const SurfaceHit& hit) const;
+    /// Whether the surface mirrors and refracts by facets: of the list of lights, POV-Ray's are sharp.
+    bool is_blurred(const Material& material) const;
+    Point point_of(const Path& path, const SurfaceHit& hit, SampleStream& random) const;
     void share_light(Point& point) const;
     Rgb lit(const Point& point, SampleStream& random);
     Rgb from_sky(const Point& point, double least, SampleStream& random);

@@ -73,5 +73,28 @@ TEST_F(Materials, PicturesWithHolesAreNoSolids) {
     EXPECT_THAT(result.err, HasSubstr("leave out 'ior' and 'absorption'"));
 }
 
+TEST_F(Materials, BlurIsDrawnByTheNativeEngineAlone) {
+    const std::string model = "camera { location: 0, 1, 4  look_at: 0, 0, 0 }\nlight { sun: 1, 2, 1 }\n"
+                              "background { zenith: 0, 0, 1  horizon: 1, 1, 1 }\n"
+                              "material satin { from: gold  blur: ";
+    write("sharp.inst", model + "0 }\nobject a { sphere material: satin }\n");
+    write("satin.inst", model + "0.3 }\nobject a { sphere material: satin }\n");
+    write("matt.inst", "material a { blur: 0.3  reflection: 0 }\nobject a { sphere material: a }\n");
+    EXPECT_THAT(graftal("check matt.inst").err,
+                HasSubstr("matt.inst:1:14: error: 'blur' blurs what a surface "));
+    const std::string small = " -q --size 48x36 ";
+    const RunResult by_povray = graftal("render satin.inst --size 48x36 -o p.png");
+    EXPECT_EQ(by_povray.status, 0) << by_povray.err;
+    EXPECT_THAT(by_povray.err, HasSubstr("POV-Ray's picture shows all mirrors and glass sharp"));
+    EXPECT_EQ(graftal("render satin.inst --engine native --threads 1 -o a.png" + small).status, 0);
+    EXPECT_EQ(graftal("render satin.inst --engine native --threads 3 -o b.png" + small).status, 0);
+    EXPECT_EQ(graftal("render sharp.inst --engine native -o c.png" + small).status, 0);
+    EXPECT_EQ(graftal("render satin.inst --engine native --listed-lights -o d.png" + small).status, 0);
+    EXPECT_EQ(read("a.png"), read("b.png"));
+    EXPECT_GT(compare_images(picture("a.png"), picture("c.png")).max, 0.1);
+    EXPECT_EQ(compare_images(picture("c.png"), picture("d.png")).max, 0);
+    EXPECT_EQ(compare_images(picture("p.png"), picture("d.png"), 2.0 / 255).over_threshold, 0);
+}
+
 } // namespace
 } // namespace graftal

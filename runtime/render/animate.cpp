@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cmath>
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <utility>
 
@@ -11,10 +12,13 @@
 
 #include "compiler/session/shared_framing.h"
 #include "compiler/session/stages.h"
+#include "runtime/image/develop.h"
 #include "runtime/render/frame_clock.h"
 #include "runtime/render/frame_store.h"
+#include "runtime/render/samplings.h"
 #include "runtime/render/scene_files.h"
 #include "runtime/render/video.h"
+#include "runtime/system/temporary_directory.h"
 
 namespace graftal {
 
@@ -43,6 +47,7 @@ class Animation {
   public:
     Animation(PictureSession& session, const AnimateOptions& options)
         : session_(session), options_(options), kind_(*animation_kind(options.output)),
+          parts_(options.shutter > 0 ? moments_of_exposure(options.render.compile.view.quality) : 1),
           store_(frames_directory(options.output), options.frames) {}
 
     AnimationOutcome run() {
@@ -63,12 +68,13 @@ class Animation {
         std::string name; ///< for messages
     };
 
-    Moment moment(std::size_t frame) const {
+    /// `part`: of the exposure, from 0.
+    Moment moment(std::size_t frame, int part = 0) const {
         const std::size_t last = std::max<std::size_t>(options_.frames - 1, 1);
-        const auto at = static_cast<double>(frame);
-        const double t = eased(options_.ease, at / static_cast<double>(last));
+        const double at = static_cast<double>(frame) + options_.shutter * part / parts_;
+        const double t = eased(options_.ease, std::min(1.0, at / static_cast<double>(last)));
         Moment moment{options_.render.compile, {}};
-        moment.compile.view.turn_deg = turn(frame);
+        moment.compile.view.turn_deg = turn(at);
         for (const Sweep& sweep : options_.sweeps) {
             const std::string words = sweep.apply(t, moment.compile);
             moment.name += (moment.name.empty() ? "" : " ") + words;
@@ -80,10 +86,10 @@ class Animation {
 
     /// Whole turns end where they began, so that the frame after the last would be the first; others end
     /// where they lead to.
-    double turn(std::size_t frame) const {
+    double turn(double at) const {
         const bool closed = std::fmod(options_.turn_deg, 360.0) == 0;
-        const std::size_t whole = std::max<std::size_t>(options_.frames - (closed ? 0 : 1), 1);
-        const auto at = static_cast<double>(frame), end = static_cast<double>(whole);
+        const auto end = static_cast<double>(std::max<std::size_t>(options_.frames - (closed ? 0 : 1), 1));
+        at = std::min(at, end);
         // Multiplied first, so that whole turns come out exactly.
         if (options_.ease == Ease::linear) return options_.turn_deg * at / end;
         return options_.turn_deg * eased(options_.ease, at / end);
@@ -95,7 +101,8 @@ class Animation {
         for (std::size_t frame = 0; frame < options_.frames; ++frame) {
             if (cancelled()) return fail("", Status::failure("interrupted"));
             show({Stage::measuring, frame, options_.frames, {}, {}});
-            if (!measure_model(moment(frame), *framing)) return false;
+            for (int part = 0; part < parts_; ++part)
+                if (!measure_model(moment(frame, part), *framing)) return false;
         }
         const ViewOptions view = moment(0).compile.view;
         framing->settle(view.camera, view.size, options_.turn_deg != 0);
@@ -159,26 +166,64 @@ class Animation {
     bool draw_frame(std::size_t frame, std::optional<double> seconds_left) {
         if (cancelled()) return fail("", Status::failure("interrupted"));
         show({Stage::drawing, frame, options_.frames, seconds_left, {}});
-        Moment now = moment(frame);
-        now.compile.view.framing = framing_;
         RenderOptions render = options_.render;
-        render.compile = now.compile;
         render.output = store_.path(frame);
         render.metadata.stamp = stamp(frame);
+        if (parts_ == 1) return draw_moment(frame, 0, seconds_left, render);
+        return expose(frame, seconds_left, render);
+    }
+
+    /// The mean light of some moments, developed as one picture.
+    bool expose(std::size_t frame, std::optional<double> seconds_left, const RenderOptions& picture) {
+        TemporaryDirectory folder;
+        if (Status status = folder.create(); !status.ok()) return fail("", status);
+        RenderOptions render = picture;
+        render.output = folder.path() + "/moment.exr";
+        render.metadata = {};
+        // Moments that differ are samples, too.
+        if (render.samples) render.samples = std::max(1, *render.samples / parts_);
+        render.noise_255 =
+            std::sqrt(parts_) * render.noise_255.value_or(sample_goal(render.compile.view.quality).noise_255);
+        std::vector<double> sums;
+        Image image;
+        for (int part = 0; part < parts_; ++part) {
+            if (cancelled()) return fail("", Status::failure("interrupted"));
+            if (!draw_moment(frame, part, seconds_left, render)) return false;
+            if (Status status = read_image(render.output, image); !status.ok()) return fail("", status);
+            sums.resize(image.pixels.size());
+            std::transform(sums.begin(), sums.end(), image.pixels.begin(), sums.begin(), std::plus<>());
+        }
+        std::transform(sums.begin(), sums.end(), image.pixels.begin(),
+                       [&](double sum) { return static_cast<float>(sum / parts_); });
+        Compilation compilation;
+        const auto viewed = session_.viewed(moment(frame).compile, compilation);
+        if (!viewed) return fail(moment(frame).name, std::move(compilation));
+        Developer(viewed->view.film, picture.format).develop(image, 0, image.height);
+        const Status status = write_image(picture.output, image, picture.format, picture.metadata);
+        return status.ok() || fail("", status);
+    }
+
+    bool draw_moment(std::size_t frame, int part, std::optional<double> seconds_left, RenderOptions render) {
+        Moment now = moment(frame, part);
+        now.compile.view.framing = framing_;
+        render.compile = now.compile;
+        render.sequence = static_cast<std::uint64_t>(part); // or all moments would have one noise
         render.on_progress = [&](const DrawProgress& progress) {
             if (progress.fraction)
-                show({Stage::drawing, frame, options_.frames, seconds_left, progress.fraction});
+                show({Stage::drawing, frame, options_.frames, seconds_left,
+                      (part + *progress.fraction) / parts_});
         };
         Compilation compilation;
-        if (!draw_picture(frame, render, compilation)) return fail(now.name, std::move(compilation));
+        const std::size_t picture = frame * static_cast<std::size_t>(parts_) + static_cast<std::size_t>(part);
+        if (!draw_picture(picture, render, compilation)) return fail(now.name, std::move(compilation));
         if (options_.on_compiled) options_.on_compiled(compilation); // not before: drawing has warnings, too
         add_times(compilation.times, outcome_.compilation.times);
         return true;
     }
 
-    bool draw_picture(std::size_t frame, const RenderOptions& render, Compilation& compilation) {
+    bool draw_picture(std::size_t picture, const RenderOptions& render, Compilation& compilation) {
         const Engine& engine = *options_.engine;
-        if (!engine.compile(session_, render.compile, compilation) || !unchanged(frame, compilation))
+        if (!engine.compile(session_, render.compile, compilation) || !unchanged(picture, compilation))
             return false;
         const std::optional<DrawReport> report = engine.draw(session_, render, compilation);
         if (report) outcome_.report += *report;
@@ -186,8 +231,8 @@ class Animation {
     }
 
     /// Between the compiler and what draws: the model is still the one that was measured.
-    bool unchanged(std::size_t frame, Compilation& compilation) const {
-        if (Digest().add(compilation.sources) == sources_[frame]) return true;
+    bool unchanged(std::size_t picture, Compilation& compilation) const {
+        if (Digest().add(compilation.sources) == sources_[picture]) return true;
         compilation.status = Status::failure("the model changed during the animation; start again");
         return false;
     }
@@ -238,12 +283,13 @@ class Animation {
     PictureSession& session_;
     const AnimateOptions& options_;
     AnimationKind kind_;
+    int parts_; ///< moments of a frame
     FrameStore store_;
     std::shared_ptr<const SharedFraming> framing_;
     std::optional<unsigned> steps_; ///< of the model measured last
     Digest model_sources_;
     Digest all_sources_;
-    std::vector<Digest> sources_; ///< by frame
+    std::vector<Digest> sources_; ///< by frame and moment
     AnimationOutcome outcome_;
 };
 
@@ -266,6 +312,10 @@ std::string frames_directory(const std::string& output) {
     std::filesystem::path path(output);
     if (*animation_kind(output) != AnimationKind::frames) return path.replace_extension(".frames").string();
     return path.has_filename() ? output : path.parent_path().string();
+}
+
+int moments_of_exposure(Quality quality) {
+    return by_quality(quality, 8, 16, 32);
 }
 
 AnimationOutcome animate_model(PictureSession& session, const AnimateOptions& options) {

@@ -38,6 +38,9 @@ struct AnimateOptions {
     double turn_deg = 0; ///< of the camera about the model's vertical axis, over the whole animation
     std::vector<Sweep> sweeps;
     Ease ease = Ease::linear;
+    /// How long each frame is exposed, as a share of the time between two, in [0, 1]; 0: it shows a moment.
+    /// Others are the mean light of as many moments as moments_of_exposure() gives.
+    double shutter = 0;
     bool keep_frames = false; ///< after they have been assembled
     std::string identity;     ///< what the frames depend on besides the model: the program and its options
     std::function<void(const AnimationProgress&)> on_progress;
@@ -56,6 +59,9 @@ struct AnimationOutcome {
     DrawReport report;         ///< of all frames drawn
     double seconds = 0;
 };
+
+/// How many moments a frame of moving things is the mean of.
+int moments_of_exposure(Quality quality);
 
 /// Draws the frames that are not there yet and puts them together. All models that are shown are analysed
 /// first, and the frames of one model share its analysis and preparation: they are framed together, and a

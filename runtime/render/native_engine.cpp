@@ -230,6 +230,7 @@ class Drawing {
         std::size_t traced = 0;
         TraceControl control;
         control.threads = options_.threads;
+        control.sequence = options_.sequence;
         control.cancelled = [this] { return cancel_.raised(); };
         control.on_tile = [&](const Tile& tile) {
             traced += static_cast<std::size_t>(tile.width) * static_cast<std::size_t>(tile.height);

@@ -29,6 +29,7 @@ struct RenderOptions {
     std::optional<double> noise_255;           ///< that may be left; nothing: by the quality
     /// In place of the work of the detail, where soft light is sampled; nothing: by the quality.
     std::optional<double> soft_work_seconds;
+    std::uint64_t sequence = 0; ///< TraceControl::sequence
     bool listed_lights = false; ///< soft light from a list of lights (light_list.h)
     int threads = 0;            ///< 0: as many as the engine likes
     bool aovs = false;          ///< of an EXR: further channels (aov_channels.h)

@@ -44,10 +44,10 @@ int steps_of(const Sampling& sampling) {
 /// One thread's tools, and what it keeps for their memory.
 class Worker {
   public:
-    Worker(const TraceModel& model, const ShaderLimits& limits, const std::function<bool()>& cancelled)
+    Worker(const TraceModel& model, const ShaderLimits& limits, const TraceControl& control)
         : rays_(model.view), traversal_(model),
           shader_(model.view, traversal_, limits, model.textures.of_ground), film_(model.view.film),
-          view_(model.view), cancelled_(cancelled) {}
+          view_(model.view), control_(control) {}
 
     /// False if it was cancelled before the last ray. `aovs` may be null.
     bool trace(const Sampling& sampling, const Tile& tile, Image& picture, AovPicture* aovs) {
@@ -90,7 +90,7 @@ class Worker {
                                  static_cast<std::uint32_t>(std::bit_cast<std::uint64_t>(y) >> 20)));
     }
 
-    bool cancelled() const { return cancelled_ && cancelled_(); }
+    bool cancelled() const { return control_.cancelled && control_.cancelled(); }
 
     static void set(Image& picture, int x, int y, const Rgb& rgb) {
         const std::size_t first = 3 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(picture.width) +
@@ -127,7 +127,8 @@ class Worker {
         static const PixelFilter filter;
         for (int y = tile.y; y < tile.y + tile.height; ++y)
             for (int x = tile.x; x < tile.x + tile.width; ++x) {
-                const auto seed = static_cast<std::uint64_t>(y) << 32 | static_cast<std::uint32_t>(x);
+                const auto seed = (static_cast<std::uint64_t>(y) << 32 | static_cast<std::uint32_t>(x)) ^
+                                  control_.sequence << 48;
                 NoiseMeter meter(film_);
                 AovSum sum;
                 bool calm = false;
@@ -212,7 +213,7 @@ class Worker {
     Shader shader_;
     const Film& film_;
     const View& view_;
-    const std::function<bool()>& cancelled_;
+    const TraceControl& control_;
     std::uint64_t camera_rays_ = 0, noisy_pixels_ = 0;
     std::vector<Rgb> row_, sums_;
     AovPicture* aovs_ = nullptr; ///< null: none are wanted
@@ -257,7 +258,7 @@ bool PictureTracer::run(std::uint64_t tasks, const TraceControl& control, const 
     threads.for_each(tasks, [&](int thread, std::uint64_t number) {
         if (!complete) return;
         std::unique_ptr<Worker>& worker = workers[static_cast<std::size_t>(thread)];
-        if (!worker) worker = std::make_unique<Worker>(model_, limits_, control.cancelled);
+        if (!worker) worker = std::make_unique<Worker>(model_, limits_, control);
         if (!task(*worker, number)) complete = false;
     });
     for (const std::unique_ptr<Worker>& worker : workers)

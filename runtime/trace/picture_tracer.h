@@ -40,6 +40,8 @@ struct TraceStatistics {
 
 struct TraceControl {
     int threads = 0; ///< 0: as many as the machine has
+    /// Of the samples' random numbers: pictures of different sequences differ in their noise.
+    std::uint64_t sequence = 0;
     /// Asked before every ray, by all threads at once: one tile may hold millions of rays. Once it says true,
     /// no further ray is traced.
     std::function<bool()> cancelled;

@@ -167,6 +167,32 @@ TEST_F(Animate, SweepsRunTogetherWithTheCamera) {
     EXPECT_THAT(shorter.err, HasSubstr("graftal: 'b' also holds 1 frame of another animation\n"));
 }
 
+TEST_F(Animate, ShutterShowsTheMeanOfItsMoments) {
+    // A bright bar goes a quarter of the picture in a frame: exposed all the time, it leaves an even trace.
+    write("bar.inst",
+          "let x = 0\nlet speed = 1\ncamera { location: 2, 0, 9  look_at: 2, 0, 0  orthographic  width: 4 }\n"
+          "background { zenith: 0, 0, 0  horizon: 0, 0, 0 }\n"
+          "material lamp { color: 1, 1, 1  ambient: 0  diffuse: 0  specular: 0  emission: 0.8 }\n"
+          "object a { cube  scale: 0.125, 2, 0.1  translate: x + 0.14, 0, 0  material: lamp }\n");
+    const std::string bar =
+        "bar.inst --engine native --plain-light -q --antialias off --size 32x8 --frames 5 --set x=0..4 ";
+    EXPECT_EQ(graftal("animate " + bar + "-o sharp/").status, 0);
+    EXPECT_EQ(graftal("animate " + bar + "--shutter 1 -o blurred/").status, 0);
+    EXPECT_EQ(graftal("animate " + bar + "--shutter 1 --threads 1 -o again/").status, 0);
+    const auto at = [](const Image& image, int x) {
+        return image.pixels[static_cast<std::size_t>(3 * (4 * image.width + x))];
+    };
+    const Image sharp = picture("sharp/frame_0002.png"), blurred = picture("blurred/frame_0002.png");
+    EXPECT_EQ(at(sharp, 8), at(sharp, 9));
+    EXPECT_GT(at(sharp, 8), 0.8);
+    EXPECT_EQ(at(sharp, 10), 0);
+    EXPECT_EQ(at(blurred, 7), 0);
+    for (int x = 10; x < 16; ++x) // 0.8 of the light, a fourth of the time
+        EXPECT_NEAR(at(blurred, x), srgb_encoded(0.2f), 0.01) << x;
+    EXPECT_EQ(read("blurred/frame_0002.png"), read("again/frame_0002.png"));
+    EXPECT_EQ(graftal("animate bar.inst --shutter 2").status, 2);
+}
+
 TEST_F(Animate, GifIsTheDefaultAndQuietIsSilent) {
     const RunResult result = shell("\"$graftal\" animate --quiet --frames 2 " + two_steps + few_pixels);
     EXPECT_EQ(result.status, 0);

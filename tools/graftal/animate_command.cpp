@@ -57,6 +57,7 @@ AnimateOptions animate_options(const Options& options) {
     animate.turn_deg = *options.animation.turn_deg;
     animate.sweeps = options.animation.sweeps;
     animate.ease = options.animation.ease;
+    animate.shutter = options.animation.shutter;
     animate.keep_frames = options.animation.keep_frames;
     animate.identity = options.animation.identity;
     return animate;

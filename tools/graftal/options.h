@@ -22,6 +22,7 @@ struct AnimationOptions {
     std::optional<double> turn_deg; ///< nothing: once round where nothing else moves
     std::vector<Sweep> sweeps;
     Ease ease = Ease::linear;
+    double shutter = 0; ///< share of a frame's time
     bool keep_frames = false;
     std::string identity; ///< the options that change what the frames show, and the version
 };

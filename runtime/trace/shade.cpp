@@ -80,6 +80,7 @@ struct Shader::Path {
     double counts = 1; ///< how much it counts, for POV-Ray's bailout; no haze takes from that
     RayRange range;
     unsigned surfaces = 0, bounces = 0;
+    bool takes_sky = true; ///< if it ends in the sky: else the surface that it was scattered by has its light
     Inside inside;
 };
 
@@ -200,7 +201,7 @@ Rgb Shader::follow(Path& path, SampleStream& random, SurfaceHit* first) {
         if (caught > 0) {
             path.weight *= path.inside.left_after(hit.t);
             const Point point = point_of(path, hit, random);
-            sum += caught * path.weight * lit(point, random);
+            sum += caught * path.weight * lit(point, false, random);
             path.weight *= 1 - caught;
             path.counts *= 1 - caught;
             path.ray.origin = point.position;
@@ -208,14 +209,18 @@ Rgb Shader::follow(Path& path, SampleStream& random, SurfaceHit* first) {
             continue;
         }
         if (!found) {
-            // The surfaces that light is scattered by have taken the sky's already.
-            if (path.bounces == 0) sum += path.weight * sky(path.ray.direction);
+            if (path.takes_sky)
+                sum += path.weight *
+                       (path.bounces == 0 ? sky(path.ray.direction) : sky_->radiance(path.ray.direction));
             break;
         }
         path.weight *= path.inside.left_after(hit.t);
         const Point point = point_of(path, hit, random);
-        sum += path.weight * lit(point, random);
-        if (!goes_on(path, point, random)) break;
+        const double scattered = path.bounces < bounces_ ? scattered_by(point) : 0;
+        // A ray that finds either a surface or the sky tells more than one for each.
+        const bool sky_later = !bright_sky_ && path.counts * scattered >= limits_.least_weight;
+        sum += path.weight * lit(point, sky_later, random);
+        if (!goes_on(path, point, scattered, sky_later, random)) break;
         path.range.least = least_distance(point.position, path.bounces > 0 ? shadow_pixels : mirror_pixels);
     }
     return sum;
@@ -223,8 +228,9 @@ Rgb Shader::follow(Path& path, SampleStream& random, SurfaceHit* first) {
 
 /// The way on from a surface, backwards along the light: its refracted ray, while the mirrored one waits.
 /// Where light may bounce, or has, it is one of them or one by the cosine, each with the chance that its
-/// light is of the three. False at the end.
-bool Shader::goes_on(Path& path, const Point& point, SampleStream& random) {
+/// light is of the three. False at the end. `scattered`: how much is by the cosine; `sky_later`: with the
+/// sky's light.
+bool Shader::goes_on(Path& path, const Point& point, double scattered, bool sky_later, SampleStream& random) {
     const double along = glm::dot(point.to_viewer, point.facet);
     const Material& material = *point.material;
     Way mirror{point.mirrored, point.mirrors, 2 * along * point.facet - point.to_viewer};
@@ -246,14 +252,11 @@ bool Shader::goes_on(Path& path, const Point& point, SampleStream& random) {
         mirror.roughen(point.normal, material.blur);
         pane.roughen(-point.normal, material.blur);
     }
-    const double scattered =
-        path.bounces < bounces_ ? point.body * (material.diffuse + material.translucency) * largest(point.rgb)
-                                : 0;
     if (scattered > 0 || (path.bounces > 0 && mirror.counts > 0 && pane.counts > 0)) {
         const glm::dvec2 choice = random.next();
         const double all = mirror.counts + pane.counts + scattered;
         // The weight tells how much of the path's light there is left to look for.
-        const double going_on = std::min(1.0, all);
+        const double going_on = sky_later ? 1 : std::min(1.0, all);
         if (choice.x >= going_on) return false;
         const double mirror_chance = going_on * mirror.counts / all;
         const double pane_chance = going_on * pane.counts / all;
@@ -261,6 +264,7 @@ bool Shader::goes_on(Path& path, const Point& point, SampleStream& random) {
         if (choice.x < scatter_chance) {
             path.counts *= scattered / scatter_chance;
             path.weight /= scatter_chance;
+            path.takes_sky = sky_later;
             return scatter(path, point, choice.y, random);
         }
         const bool mirrors = !(pane_chance > 0) || choice.x < scatter_chance + mirror_chance;
@@ -276,6 +280,10 @@ bool Shader::goes_on(Path& path, const Point& point, SampleStream& random) {
     }
     if (pane.counts > 0) path.inside = beyond;
     return (pane.counts > 0 ? pane : mirror).lead(path, point.position);
+}
+
+double Shader::scattered_by(const Point& point) {
+    return point.body * (point.material->diffuse + point.material->translucency) * largest(point.rgb);
 }
 
 /// By the cosine, to either side. `choice`: of the side, in [0, 1).
@@ -384,7 +392,7 @@ double Shader::least_distance(Vec3 point, double pixels) const {
     return std::max(pixels * pixel, least_share * (largest_entry(point) + distance));
 }
 
-Rgb Shader::lit(const Point& point, SampleStream& random) {
+Rgb Shader::lit(const Point& point, bool sky_later, SampleStream& random) {
     const double least = least_distance(point.position, shadow_pixels);
     Rgb sum = point.body * point.material->ambient * ambient_light_ * point.rgb;
     if (point.material->emission > 0) sum += point.body * point.material->emission * point.rgb;
@@ -403,30 +411,33 @@ Rgb Shader::lit(const Point& point, SampleStream& random) {
         if (part.sun) part.at = glm::normalize(part.at);
         sum += light_of(part, point, least);
     }
-    if (sky_) sum += from_sky(point, least, random);
+    if (sky_) sum += from_sky(point, least, sky_later, random);
     return sum;
 }
 
-Rgb Shader::from_sky(const Point& point, double least, SampleStream& random) {
+/// `shine_only`: without what is scattered.
+Rgb Shader::from_sky(const Point& point, double least, bool shine_only, SampleStream& random) {
     const Material& material = *point.material;
-    const double front = point.body * material.diffuse + material.specular;
-    const double back = point.body * material.translucency;
+    const double body = shine_only ? 0 : point.body;
+    const double front = body * material.diffuse + material.specular;
+    const double back = body * material.translucency;
     if (!(front + back > 0)) return Rgb(0.0);
     const SkyChoice choice{front / (front + back), material.specular > 0};
-    Rgb light = sky_light(choice, point, choice.direction(point.normal, random.next()), least);
+    Rgb light = sky_light(choice, point, body, choice.direction(point.normal, random.next()), least);
     if (bright_sky_)
-        light +=
-            sky_light(choice, point, bright_sky_->direction(random.next()) * sky_->picture_from_world, least);
+        light += sky_light(choice, point, body,
+                           bright_sky_->direction(random.next()) * sky_->picture_from_world, least);
     return light;
 }
 
 /// Of the sky in one direction, over what the strategies that may have chosen it give to it.
-Rgb Shader::sky_light(const SkyChoice& choice, const Point& point, Vec3 direction, double least) {
+Rgb Shader::sky_light(const SkyChoice& choice, const Point& point, double body, Vec3 direction,
+                      double least) {
     const Material& material = *point.material;
     const double along = glm::dot(point.normal, direction);
     if (!(std::abs(along) >= least_cosine)) return Rgb(0.0);
     const bool behind = along < 0;
-    Rgb share = point.body * (behind ? -material.translucency : material.diffuse) * along * point.rgb;
+    Rgb share = body * (behind ? -material.translucency : material.diffuse) * along * point.rgb;
     if (!behind && choice.shines) share += shine(point, direction);
     if (!(largest(share) > 0)) return Rgb(0.0);
     const Rgb light = sky_->radiance(direction);

@@ -45,7 +45,8 @@ struct SkyChoice;
 /// is the sum of the same over what is in them, e = L dw / pi: estimated by one direction for each (two where
 /// the sky is a picture with bright parts, by the balance heuristic: Veach 1997, 9.2.2), or by a list of
 /// lights (light_list.h), to which the estimate converges as the list grows. Of a sky that asks for bounces,
-/// surfaces light each other diffusely, and `ambient` is 0. A picture shows up to 32 surfaces one in the
+/// surfaces light each other diffusely, and `ambient` is 0; the
+/// ray that looks for another surface looks for the sky too. A picture shows up to 32 surfaces one in the
 /// other; what the last of them shows is black. Nothing is clamped. (POV-Ray's trace.cpp: TraceRay,
 /// ComputeLightedTexture, ComputeOneDiffuseLight, ComputeSpecularColour, ComputeReflection,
 /// ComputeRefraction, ComputeShadowColour, ComputeSky.)
@@ -101,12 +102,13 @@ class Shader {
     bool is_blurred(const Material& material) const;
     Point point_of(const Path& path, const SurfaceHit& hit, SampleStream& random) const;
     void share_light(Point& point) const;
-    Rgb lit(const Point& point, SampleStream& random);
-    Rgb from_sky(const Point& point, double least, SampleStream& random);
-    Rgb sky_light(const SkyChoice& choice, const Point& point, Vec3 direction, double least);
+    Rgb lit(const Point& point, bool sky_later, SampleStream& random);
+    Rgb from_sky(const Point& point, double least, bool shine_only, SampleStream& random);
+    Rgb sky_light(const SkyChoice& choice, const Point& point, double body, Vec3 direction, double least);
     Rgb shine(const Point& point, Vec3 to_light) const;
     Rgb follow(Path& path, SampleStream& random, SurfaceHit* first = nullptr);
-    bool goes_on(Path& path, const Point& point, SampleStream& random);
+    static double scattered_by(const Point& point);
+    bool goes_on(Path& path, const Point& point, double scattered, bool sky_later, SampleStream& random);
     bool scatter(Path& path, const Point& point, double choice, SampleStream& random) const;
     Rgb light_of(const Lamp& lamp, const Point& point, double least);
     Rgb light_through(Ray to_light, RayRange range, const Inside& start);

@@ -44,6 +44,38 @@ TEST(SoftLight, WhiteBallsThatTouchVanishAsTheBouncesGrow) {
     EXPECT_LT(before, 0.01);
 }
 
+/// One ray finds the other ball or the sky, and both send as much.
+TEST(SoftLight, ABounceAndTheSkyAreOneEstimate) {
+    Scene scene;
+    for (const double x : {-1.0, 1.0})
+        scene.balls.push_back({{x, 0, 0}, 1, Rgb(1.0), matt});
+    const View view = in_furnace(Rgb(1.0), 16);
+    Shader shader(view, scene);
+    int noisy = 0;
+    for (std::uint32_t i = 0; i < 4096; ++i) {
+        SampleStream random(0, i);
+        noisy += std::abs(shader.radiance({{0.1, 0, 10}, {0, 0, -1}}, random).g - 1) > 1e-9;
+    }
+    EXPECT_LT(noisy, 4096 / 20) << "only paths that are cut off at the last bounce";
+}
+
+TEST(SoftLight, GlossTakesItsOwnShareOfTheSkyWhereLightBounces) {
+    Scene scene;
+    Material glossy = matt;
+    glossy.diffuse = 0.5;
+    glossy.specular = 0.5;
+    glossy.roughness = 0.5;
+    scene.balls.push_back({{0, 0, 0}, 1, Rgb(0.6), glossy});
+    const Ray ray{{0.4, 0.2, 10}, {0, 0, -1}};
+    const auto light = [&](unsigned bounces) {
+        const View view = in_furnace(Rgb(1.0), bounces);
+        Shader shader(view, scene);
+        return mean_light(shader, ray, 1 << 15).g;
+    };
+    EXPECT_GT(light(0), 0.35);
+    EXPECT_NEAR(light(2), light(0), 0.004) << "a lone ball lights nothing else";
+}
+
 /// Of an even sky, a point that sees the part above a wall of height h at distance d with an endless edge.
 TEST(SoftLight, AWallTakesHalfOfTheSky) {
     View view = in_furnace(Rgb(1.0));

@@ -1,0 +1,149 @@
+"""Run by Blender: blender -b --python scene.py -- JOB.json. Builds the solids that `graftal print` has written, to a
+depth, as one mesh or as instances of one, lights them, and renders them with Cycles at each number of samples. Prints a
+line of JSON for the set-up and for each picture."""
+import json
+import math
+import os
+import re
+import sys
+
+import bpy
+import mathutils
+import numpy
+
+JOB = json.load(open(sys.argv[sys.argv.index('--') + 1]))
+
+# Of the cube [-1, 1]^3 and of the tetrahedron in it: corners, and faces that look outwards.
+SOLIDS = {
+    'cube': ([(x, y, z) for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)],
+             [(0, 1, 3), (0, 3, 2), (4, 6, 7), (4, 7, 5), (0, 4, 5), (0, 5, 1), (2, 3, 7), (2, 7, 6), (0, 2, 6), (0, 6, 4),
+              (1, 5, 7), (1, 7, 3)]),
+    'tetrahedron': ([(1, 1, 1), (1, -1, -1), (-1, 1, -1), (-1, -1, 1)], [(0, 1, 2), (0, 2, 3), (0, 3, 1), (1, 3, 2)]),
+}
+
+
+def matrices(text):
+    """Name -> ([(member, matrix)], (solid, matrix) or None), and the last name, which is the root's."""
+    objects = {}
+    for name, body in re.findall(r'^(?:canonical )?object (\S+) \{\n(.*?)^\}', text, re.S | re.M):
+        members, terminal = [], None
+        for kind, names, rest in re.findall(r'^  (union|instance|terminal): ([^\n]+)\n((?:    [^\n]*\n)*)', body, re.M):
+            found = re.search(r'matrix: ([^\n]+)', rest)
+            matrix = numpy.identity(4)
+            if found:
+                matrix[:3] = numpy.array([float(x) for x in found[1].split(',')]).reshape(3, 4)
+            pairs = [(member.strip(), matrix) for member in names.split(',')]
+            if kind == 'terminal':
+                terminal = pairs[0]
+            else:
+                members += pairs
+        objects[name] = (members, terminal)
+    return objects, name
+
+
+def leaves(objects, name, depth, known):
+    """Matrices of all solids of an object so many levels down, (n, 4, 4)."""
+    if name in SOLIDS:
+        return numpy.identity(4)[None]
+    if (name, depth) not in known:
+        members, terminal = objects[name]
+        if depth == 0 and terminal:
+            known[name, depth] = terminal[1][None]
+        else:
+            parts = [matrix @ leaves(objects, member, depth - 1, known) for member, matrix in members]
+            known[name, depth] = numpy.concatenate(parts)
+    return known[name, depth]
+
+
+def mesh_of(transforms, solid):
+    corners, faces = (numpy.array(rows) for rows in SOLIDS[solid])
+    points = numpy.einsum('nij,kj->nki', transforms[:, :3, :3], corners) + transforms[:, None, :3, 3]
+    triangles = faces[None] + (len(corners) * numpy.arange(len(transforms)))[:, None, None]
+    points, triangles = points.reshape(-1, 3), triangles.reshape(-1, 3)
+    mesh = bpy.data.meshes.new('solids')
+    mesh.vertices.add(len(points))
+    mesh.vertices.foreach_set('co', points.astype(numpy.float32).ravel())
+    mesh.loops.add(3 * len(triangles))
+    mesh.loops.foreach_set('vertex_index', triangles.astype(numpy.int32).ravel())
+    mesh.polygons.add(len(triangles))
+    mesh.polygons.foreach_set('loop_start', 3 * numpy.arange(len(triangles), dtype=numpy.int32))
+    mesh.polygons.foreach_set('loop_total', numpy.full(len(triangles), 3, dtype=numpy.int32))
+    mesh.update()
+    material = bpy.data.materials.new('matt')
+    material.use_nodes = True
+    nodes = material.node_tree.nodes
+    nodes.clear()
+    diffuse, output = nodes.new('ShaderNodeBsdfDiffuse'), nodes.new('ShaderNodeOutputMaterial')
+    diffuse.inputs['Color'].default_value = (*[JOB['albedo']] * 3, 1)
+    material.node_tree.links.new(diffuse.outputs[0], output.inputs[0])
+    mesh.materials.append(material)
+    return mesh
+
+
+def looking(location, target):
+    back = (mathutils.Vector(location) - mathutils.Vector(target)).normalized()
+    right = mathutils.Vector((0, 1, 0)).cross(back).normalized()
+    up = back.cross(right)
+    matrix = mathutils.Matrix((right, up, back)).transposed().to_4x4()
+    matrix.translation = location
+    return matrix
+
+
+def place(name, data, matrix):
+    thing = bpy.data.objects.new(name, data)
+    thing.matrix_world = matrix
+    bpy.context.collection.objects.link(thing)
+    return thing
+
+
+def build():
+    bpy.ops.wm.read_factory_settings(use_empty=True)
+    objects, root = matrices(open(JOB['graph']).read())
+    mesh = mesh_of(leaves(objects, JOB.get('of', root), JOB['depth'], {}), JOB['solid'])
+    places = [matrix for _, matrix in objects[root][0]] if 'of' in JOB else [numpy.identity(4)]
+    for matrix in places:
+        place('part', mesh, mathutils.Matrix(matrix.tolist()))
+    scene = bpy.context.scene
+    camera = bpy.data.cameras.new('camera')
+    camera.sensor_fit, camera.angle = 'HORIZONTAL', math.radians(JOB['angle_deg'])
+    camera.clip_end = 1e6
+    scene.camera = place('camera', camera, looking(JOB['location'], JOB['look_at']))
+    sun = bpy.data.lights.new('sun', 'SUN')
+    sun.angle, sun.energy = math.radians(JOB['sun_angle_deg']), math.pi * JOB['sun_brightness']
+    place('sun', sun, looking(JOB['sun'], (0, 0, 0)))
+    world = bpy.data.worlds.new('sky')
+    world.use_nodes = True
+    world.node_tree.nodes['Background'].inputs['Color'].default_value = (*[JOB['sky']] * 3, 1)
+    scene.world = world
+    scene.render.engine = 'CYCLES'
+    scene.render.resolution_x, scene.render.resolution_y = JOB['size']
+    scene.render.image_settings.file_format = 'OPEN_EXR'
+    scene.render.image_settings.color_depth = '32'
+    scene.render.threads_mode, scene.render.threads = 'FIXED', 2
+    cycles = scene.cycles
+    cycles.device, cycles.use_denoising, cycles.use_adaptive_sampling = 'CPU', False, False
+    cycles.max_bounces = cycles.diffuse_bounces = JOB['bounces']
+    cycles.sample_clamp_indirect = cycles.sample_clamp_direct = 0
+    cycles.light_sampling_threshold = 0
+    scene.render.use_persistent_data = False
+    return len(mesh.polygons), len(places)
+
+
+def seconds():
+    now = os.times()
+    return now.user + now.system
+
+
+def peak_mib():
+    return int(re.search(r'VmHWM:\s+(\d+)', open('/proc/self/status').read())[1]) / 1024
+
+
+triangles, instances = build()
+print('JSON', json.dumps({'triangles': triangles, 'instances': instances, 'seconds': seconds()}), flush=True)
+for samples in JOB['samples']:
+    scene = bpy.context.scene
+    scene.cycles.samples = samples
+    scene.render.filepath = f'{JOB["folder"]}/cycles_{samples}.exr'
+    before = seconds()
+    bpy.ops.render.render(write_still=True)
+    print('JSON', json.dumps({'samples': samples, 'seconds': seconds() - before, 'mib': peak_mib()}), flush=True)

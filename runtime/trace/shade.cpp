@@ -69,6 +69,7 @@ struct Shader::Point {
     double mirrors = 0;   ///< how much that counts
     double body = 1;      ///< share of what scatters by the surface's colour
     Rgb through{0.0};     ///< share that goes through
+    double shone_on = 1;  ///< share of what shines on it that is left (SurfaceHit::light_share)
 };
 
 /// A way that light may have come, seen from the camera.
@@ -233,8 +234,9 @@ bool Shader::goes_on(Path& path, const Point& point, SampleStream& random) {
         }
     }
     const double scattered =
-        path.bounces < bounces_ ? point.body * (material.diffuse + material.translucency) * largest(point.rgb)
-                                : 0;
+        path.bounces < bounces_
+            ? point.shone_on * point.body * (material.diffuse + material.translucency) * largest(point.rgb)
+            : 0;
     if (scattered > 0 || (path.bounces > 0 && mirror.counts > 0 && pane.counts > 0)) {
         const glm::dvec2 choice = random.next();
         const double all = mirror.counts + pane.counts + scattered;
@@ -267,7 +269,7 @@ bool Shader::goes_on(Path& path, const Point& point, SampleStream& random) {
 /// By the cosine, to either side. `choice`: of the side, in [0, 1).
 bool Shader::scatter(Path& path, const Point& point, double choice, SampleStream& random) const {
     const double through = point.material->translucency, diffuse = point.material->diffuse + through;
-    path.weight *= point.body * diffuse * point.rgb;
+    path.weight *= point.shone_on * point.body * diffuse * point.rgb;
     const Vec3 pole = choice * diffuse < through ? -point.normal : point.normal;
     path.ray = {point.position, cosine_direction(pole, random.next())};
     ++path.bounces;
@@ -324,6 +326,7 @@ Shader::Point Shader::point_of(const Path& path, const SurfaceHit& hit) const {
     // Exactly on the ground, its own shadow cannot begin on the way to a low sun.
     if (view_.ground && hit.material == &view_.ground->material) point.position.y = view_.ground->height;
     if (hit.material == &catcher_paper_) point.position.y = view_.catcher->centre.y;
+    point.shone_on = hit.light_share;
     share_light(point);
     return point;
 }
@@ -367,8 +370,9 @@ Rgb Shader::lit(const Point& point, SampleStream& random) {
     const double least = least_distance(point.position, shadow_pixels);
     Rgb sum = point.body * point.material->ambient * ambient_light_ * point.rgb;
     if (point.material->emission > 0) sum += point.body * point.material->emission * point.rgb;
+    Rgb shining(0.0);
     for (const Lamp& lamp : lamps_)
-        sum += light_of(lamp, point, least);
+        shining += light_of(lamp, point, least);
     for (const Area& area : areas_) {
         glm::dvec2 place = random.next();
         if (area.round) {
@@ -380,10 +384,10 @@ Rgb Shader::lit(const Point& point, SampleStream& random) {
         Lamp part = area.middle;
         part.at += place.x * area.a + place.y * area.b;
         if (part.sun) part.at = glm::normalize(part.at);
-        sum += light_of(part, point, least);
+        shining += light_of(part, point, least);
     }
-    if (sky_) sum += from_sky(point, least, random);
-    return sum;
+    if (sky_) shining += from_sky(point, least, random);
+    return sum + point.shone_on * shining;
 }
 
 Rgb Shader::from_sky(const Point& point, double least, SampleStream& random) {

@@ -108,7 +108,7 @@ class Measurer {
             const double own = seen.hits() / (seen.hits() + rays_of_doubt);
             logs[node] = static_cast<float>(own * seen.octave_log() + (1 - own) * mean);
         }
-        return SelfShadows(std::move(logs));
+        return {std::move(logs), culled_.work() + whole_.work()};
     }
 
   private:
@@ -195,6 +195,12 @@ class Measurer {
 double SelfShadows::share(NodeId node, double size_px) const {
     if (octave_logs_.empty() || !(size_px > lit_as_px)) return 1;
     return std::exp2(static_cast<double>(octave_logs_[node]) * std::log2(size_px / lit_as_px));
+}
+
+double SelfShadows::share_within(double outer, NodeId node, double detail, double error_px) const {
+    constexpr double steps = 128;
+    if (outer != 1 || !(detail <= 1)) return outer;
+    return std::round(steps * share(node, detail * error_px)) / steps;
 }
 
 SelfShadows measure_self_shadows(const CutGraph& cut, std::uint32_t root_steps, const View& view,

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <mutex>
+#include <utility>
 #include <vector>
 
 #include "compiler/detail/cut_graph.h"
@@ -19,15 +20,26 @@ class SelfShadows {
     static constexpr double lit_as_px = 0.5;
 
     SelfShadows() = default;
-    /// `octave_logs`: by node the logarithm to base 2 of the share for twice the size.
-    explicit SelfShadows(std::vector<float> octave_logs) : octave_logs_(std::move(octave_logs)) {}
+    /// `octave_logs`: by node the logarithm to base 2 of the share for twice the size. `work`: that measuring
+    /// them took.
+    SelfShadows(std::vector<float> octave_logs, std::uint64_t work)
+        : octave_logs_(std::move(octave_logs)), work_(work) {}
 
     /// The share of the light of lamps, suns and the sky that is left where a part of this diameter is
     /// culled. 1 up to `lit_as_px`.
     double share(NodeId node, double size_px) const;
 
+    /// What stands for a node shows by its place: `outer`, the share of what is culled above it, if that is
+    /// less than 1; else its own if its detail, a length in errors, is at most 1. In steps of 1/128, that
+    /// finishes be few.
+    double share_within(double outer, NodeId node, double detail, double error_px) const;
+
+    /// Parts that rays went by to measure them.
+    std::uint64_t work() const { return work_; }
+
   private:
     std::vector<float> octave_logs_;
+    std::uint64_t work_ = 0;
 };
 
 /// Measures the shares for the lights and the camera of a view: some thousands of camera rays meet the parts

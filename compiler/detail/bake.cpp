@@ -48,6 +48,7 @@ struct PartKey {
     std::int64_t material = -1; ///< none: -1
     bool textured = false;
     std::array<double, 4> tint{}; ///< of what has a texture
+    double light_share = 1;
     auto operator<=>(const PartKey&) const = default;
 };
 
@@ -56,6 +57,7 @@ struct BakedPart {
     std::optional<MaterialId> material;
     bool textured = false;
     PathTint tint;
+    double light_share = 1;
     bool smooth = false; ///< some leaf is curved
     std::vector<KeptLeaf> leaves;
     SlotTable slots; ///< of the leaves' colours
@@ -210,6 +212,7 @@ class Baker {
         PartKey key;
         if (leaf.material) key.material = static_cast<std::int64_t>(*leaf.material);
         key.textured = textured(leaf);
+        key.light_share = leaf.light_share;
         if (!key.textured) return key;
         const PathTint tint = rounded(leaf.tint, texture_tint_grain);
         key.tint = {tint.premultiplied.r, tint.premultiplied.g, tint.premultiplied.b, tint.alpha};
@@ -220,6 +223,7 @@ class Baker {
         parts_.push_back({.material = leaf.material,
                           .textured = textured(leaf),
                           .tint = rounded(leaf.tint, texture_tint_grain),
+                          .light_share = leaf.light_share,
                           .slots = SlotTable(request_.painters.size())});
         if (parts_.size() > 1) return;
         parts_.back().leaves.reserve(expected_leaves());
@@ -264,7 +268,8 @@ class Baker {
         if (part.mesh.triangles.empty()) return;
         if (part.textured) {
             GRAFTAL_CHECK(request_.painters.size() == 1, "bake: a picture has one painter");
-            baked_.parts.push_back({part.material, std::move(part.mesh), {{Rgb(1.0)}}, true, part.tint});
+            baked_.parts.push_back(
+                {part.material, std::move(part.mesh), {{Rgb(1.0)}}, true, part.tint, part.light_share});
             return;
         }
         part.mesh.slot_count = part.slots.slot_count();
@@ -273,7 +278,8 @@ class Baker {
             for (const std::uint32_t leaf : part.leaf_of_triangle)
                 part.mesh.slot_of_triangle.push_back(part.slots.slot_of(leaf));
         }
-        baked_.parts.push_back({part.material, std::move(part.mesh), part.slots.take_palettes(), false, {}});
+        baked_.parts.push_back(
+            {part.material, std::move(part.mesh), part.slots.take_palettes(), false, {}, part.light_share});
     }
 
     int fineness(const Primitive& primitive, const KeptLeaf& leaf) {

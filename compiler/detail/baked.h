@@ -8,6 +8,7 @@
 
 #include "compiler/detail/cut_graph.h"
 #include "compiler/detail/mesh.h"
+#include "compiler/detail/self_shadow.h"
 
 namespace graftal {
 
@@ -34,6 +35,7 @@ struct BakeRequest {
     std::vector<Painter> painters;
     double expected_leaves = 0;                 ///< about; what is known of it saves memory
     bool limit_normals = false;                 ///< of proxies, where nothing was crushed
+    const SelfShadows* self_shadows = nullptr;  ///< none: whatever stands for parts has its own light
     std::uint64_t most_shell_work = UINT64_MAX; ///< points moved for a shell: it gets coarser by that
     bool shell = false; ///< a shell (shell.h) of this very node, of whose painters the colour alone counts
     ShellStore* shells = nullptr;           ///< where its points are kept; none: they are made anew
@@ -48,6 +50,7 @@ struct BakedPart {
     std::vector<Palette> palettes; ///< by painter
     bool textured = false;         ///< by the material's picture, behind this tint; requires one painter
     PathTint tint;
+    double light_share = 1; ///< of what shines on it (self_shadow.h)
 };
 
 struct Baked {

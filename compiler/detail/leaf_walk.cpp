@@ -22,6 +22,7 @@ constexpr std::uint64_t visits_of_a_comparison = 4;
 LeafWalk::LeafWalk(const CutGraph& cut, const Symmetry& symmetry, const BakeRequest& request,
                    std::span<const Painter> painters)
     : cut_(cut), symmetry_(symmetry), detail_per_unit_(request.detail_per_unit), error_px_(request.error_px),
+      self_shadows_(request.self_shadows),
       limit_normals_(request.limit_normals), visit_{request.representative, request.steps, {}, 1, 0},
       cells_from_unit_(request.half_widths_from_unit / cell_half_widths) {
     for (const Painter& painter : painters)
@@ -43,6 +44,7 @@ bool LeafWalk::next(WalkedLeaf& leaf) {
         leaf.proxy = !shape.primitive;
         leaf.tint = paints_.front().tint;
         leaf.turns = visit_.turns;
+        leaf.light_share = visit_.light_share;
         if (shape.primitive) {
             leaf.primitive = *shape.primitive;
             leaf.representative_from_leaf = visit_.representative_from_node;
@@ -59,6 +61,7 @@ bool LeafWalk::next(WalkedLeaf& leaf) {
                 leaf.colours.push_back(paint.tint.over(colours_of(paint).mean.over(paint.inherited)));
             leaf.culled_detail = detail <= 1 ? detail : 0;
             leaf.normals = normals();
+            leaf.light_share = light_share(detail);
             return true;
         }
         enter_ball(shape);
@@ -90,6 +93,12 @@ NormalField LeafWalk::normals() const {
         field.add(static_cast<int>(level), ball.centre, ball.radius);
     }
     return field;
+}
+
+/// Of what stands for the node that is visited.
+double LeafWalk::light_share(double detail) const {
+    if (!self_shadows_) return visit_.light_share;
+    return self_shadows_->share_within(visit_.light_share, visit_.shape, detail, error_px_);
 }
 
 void LeafWalk::push_children(bool is_cut, double detail) {
@@ -144,6 +153,7 @@ void LeafWalk::fill_child(const CutEdge& edge, bool is_cut, double detail, Visit
     child.depth = visit_.depth;
     if (cut_.nodes[edge.child].primitive) child.turns = length_in_turns(edge.node_from_child.linear);
     child.culled_detail = is_cut && detail <= 1 ? detail : visit_.culled_detail;
+    child.light_share = is_cut ? light_share(detail) : visit_.light_share;
     child.crushed = visit_.crushed || cut_.nodes[visit_.shape].sealed;
     child.faint = visit_.faint || (is_cut && detail <= 1 && cut_.nodes[visit_.shape].shadowless);
 }

@@ -23,8 +23,9 @@ struct WalkedLeaf {
     bool faint = false;                 ///< of a set without area (least_width.h)
     NormalField normals;                ///< of a proxy, in the representative's frame, if asked for
     bool proxy = false;
-    PathTint tint;    ///< all tints of the walk, by the first painter
-    double turns = 1; ///< length_in_turns() of its instance
+    double light_share = 1; ///< of what shines on it (self_shadow.h)
+    PathTint tint;          ///< all tints of the walk, by the first painter
+    double turns = 1;       ///< length_in_turns() of its instance
 };
 
 /// Visits the leaves of a baked subtree in one fixed order: geometry as the representative has it, colours as
@@ -52,6 +53,7 @@ class LeafWalk {
         bool faint = false;
         std::uint32_t depth = 0; ///< unending nodes above it
         double turns = 1;        ///< of a primitive
+        double light_share = 1;
     };
     /// What one painter makes of a visit.
     struct Paint {
@@ -65,6 +67,7 @@ class LeafWalk {
     void pop();
     void enter_ball(const CutNode& shape);
     NormalField normals() const;
+    double light_share(double detail) const;
     void push_children(bool is_cut, double detail);
     void push_items();
     bool is_new(const Visit& child);
@@ -76,6 +79,7 @@ class LeafWalk {
     const Symmetry& symmetry_;
     double detail_per_unit_;
     double error_px_;
+    const SelfShadows* self_shadows_;
     bool limit_normals_;
     std::vector<Visit> stack_;
     std::vector<Paint> paint_stack_; ///< as many for each visit as there are painters

@@ -16,6 +16,7 @@ Piece descend(const CutGraph& cut, const Piece& piece, const CutEdge& edge, bool
     child.scale = size_below(piece.scale, edge, child.world_from_node.linear);
     look_through(cut, cut.nodes[piece.node], piece_is_cut, edge, piece, child);
     child.faint = piece.faint;
+    child.light_share = piece.light_share;
     if (cut.nodes[edge.child].primitive) child.turns = length_in_turns(edge.node_from_child.linear);
     return child;
 }

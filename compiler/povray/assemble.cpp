@@ -17,9 +17,10 @@ namespace {
 
 std::optional<Cut> assemble_within(AssemblyLimits& limits, const CutGraph& cut, const Symmetry& symmetry,
                                    const Projection& projection, const Piece& root, const Choice& choice,
-                                   Weights& weights, bool limit_normals, ShellStore& shells) {
+                                   Weights& weights, bool limit_normals, ShellStore& shells,
+                                   const SelfShadows* self_shadows) {
     std::optional<PlacedPieces> pieces =
-        place_pieces(cut, symmetry, projection, root, choice, weights, limits);
+        place_pieces(cut, symmetry, projection, root, choice, weights, limits, self_shadows);
     if (!pieces) return std::nullopt;
     ShellShares shell_shares(cut, pieces->requests);
     std::vector<Baked> baked;
@@ -29,6 +30,7 @@ std::optional<Cut> assemble_within(AssemblyLimits& limits, const CutGraph& cut, 
     for (BakeRequest& request : pieces->requests) {
         request.limit_normals = limit_normals;
         request.shells = &shells;
+        request.self_shadows = self_shadows;
         std::size_t most_triangles = limits.max_triangles - triangles;
         if (request.shell) {
             const ShellShare share = shell_shares.take(request, limits.work_seconds, most_triangles);
@@ -68,10 +70,10 @@ std::optional<Cut> assemble_within(AssemblyLimits& limits, const CutGraph& cut, 
 
 std::optional<Cut> assemble(const CutGraph& cut, const Symmetry& symmetry, const Projection& projection,
                             const Piece& root, const Choice& choice, Weights& weights, bool limit_normals,
-                            ShellStore& shells, AssemblyLimits& limits) {
+                            ShellStore& shells, AssemblyLimits& limits, const SelfShadows* self_shadows) {
     try {
         return assemble_within(limits, cut, symmetry, projection, root, choice, weights, limit_normals,
-                               shells);
+                               shells, self_shadows);
     } catch (const std::bad_alloc&) {
         return std::nullopt; // the work is taken off nevertheless
     }

@@ -10,6 +10,7 @@
 #include "compiler/detail/coverage.h"
 #include "compiler/detail/cut_graph.h"
 #include "compiler/detail/prepare.h"
+#include "compiler/detail/self_shadow.h"
 #include "compiler/detail/work.h"
 #include "compiler/povray/assemble.h"
 #include "compiler/povray/calibrate.h"
@@ -168,8 +169,8 @@ class Cutter {
                               static_cast<std::size_t>(std::max(0.0, memory) / PovrayCosts::triangle) + 1,
                               work_seconds, slowness_of_graph(prepared_.instances), &meter_};
         std::optional<Cut> cut =
-            assemble(cut_, symmetry_, projection, root, choice_, weights,
-                     options_.limit_normals && !cut_options_.flatten, *prepared_.shells, limits);
+            assemble(cut_, symmetry_, projection, root, choice_, weights, limit_normals(), *prepared_.shells,
+                     limits, self_shadows(projection));
         if (options_.culls()) work_seconds_left_ -= work_seconds - std::max(0.0, limits.work_seconds);
         if (!cut) return failed(limits.work_seconds < 0);
         const double bytes = povray_bytes(*cut);
@@ -177,6 +178,15 @@ class Cutter {
         if (bytes <= memory) return cut;
         choice_.bytes = bytes;
         return failed(false);
+    }
+
+    bool limit_normals() const { return options_.limit_normals && !cut_options_.flatten; }
+
+    /// Null where all that is culled shows its own light.
+    const SelfShadows* self_shadows(const Projection& projection) {
+        if (!(projection.error_px() > SelfShadows::lit_as_px)) return nullptr;
+        return &self_shadows_.get(
+            [this] { return measure_self_shadows(cut_, prepared_.root_steps, view_, limit_normals()); });
     }
 
     void spend(double seconds) { work_seconds_left_ = std::max(0.0, work_seconds_left_ - seconds); }
@@ -292,6 +302,7 @@ class Cutter {
     const Symmetry& symmetry_;
     double cube_triangles_ = 0; ///< visible_cube_triangles(), whatever the error
     int grain_ = 1;             ///< of the last weights
+    SelfShadowStore self_shadows_;
     double work_seconds_left_ = 0;
     WorkMeter meter_;             ///< of pieces that are chosen and unfolded, in all tries
     bool failed_by_work_ = false; ///< the last try that failed ended for its work

@@ -57,13 +57,13 @@ void Grouping::add(const Placed& thing) {
         const Palette& palette = baked.parts[p].palettes[thing.painter];
         const std::uint32_t body = first_body_[thing.request] + p;
         const Affine world_from_body = thing.world_from_thing * baked.representative_from_body;
-        const auto& material = baked.parts[p].material;
+        const Finish finish{baked.parts[p].material, thing.light_share * baked.parts[p].light_share};
         if (baked.parts[p].textured)
-            place_picture(body, world_from_body, thing.tint * baked.parts[p].tint, *material);
+            place_picture(body, world_from_body, thing.tint * baked.parts[p].tint, finish);
         else if (palette.size() == 1)
-            place(body, world_from_body, colour(thing.tint.over(palette[0])), {}, material);
+            place(body, world_from_body, colour(thing.tint.over(palette[0])), {}, finish);
         else
-            place(body, world_from_body, palette_id(thing.request, p, thing.painter), thing.tint, material);
+            place(body, world_from_body, palette_id(thing.request, p, thing.painter), thing.tint, finish);
         include(transformed(world_from_body, box_[body]));
     }
 }
@@ -87,8 +87,8 @@ void Grouping::add(const PlacedRuns::Range& range) {
         const std::optional<MaterialId>& own = range.source->materials[colour_number];
         const Rgb base = own ? cut_.materials[*own].rgb : range.piece.inherited;
         parts.colour = static_cast<std::uint16_t>(colour_number);
-        group_of(colour(range.piece.tint.over(base)), {}, own ? own : range.piece.material)
-            .runs.push_back(parts);
+        const Finish finish{own ? own : range.piece.material, range.piece.light_share};
+        group_of(colour(range.piece.tint.over(base)), {}, finish).runs.push_back(parts);
         result_.placement_count += part_count(parts);
     }
 }
@@ -114,20 +114,20 @@ void Grouping::add_textured_body(const TexturedPrimitive& shape) {
 }
 
 void Grouping::add_textured(const Placed& thing) {
-    place_picture(*thing.textured, thing.world_from_thing, thing.tint, *thing.material);
+    place_picture(*thing.textured, thing.world_from_thing, thing.tint, {thing.material, thing.light_share});
     include(transformed(thing.world_from_thing, box_[*thing.textured]));
 }
 
 void Grouping::place_picture(std::uint32_t body, const Affine& world_from_body, const PathTint& tint,
-                             MaterialId material) {
-    group_of(colour(Rgb(1.0)), rounded(tint, texture_tint_grain), cut_.materials[material])
+                             const Finish& finish) {
+    group_of(colour(Rgb(1.0)), rounded(tint, texture_tint_grain), material_of(finish))
         .placements.push_back({body, world_from_body});
     ++result_.placement_count;
 }
 
 void Grouping::add_primitive(const Placed& thing) {
     const std::uint32_t body = body_of(primitives_[thing.primitive]);
-    place(body, thing.world_from_thing, colour(thing.rgb), {}, thing.material);
+    place(body, thing.world_from_thing, colour(thing.rgb), {}, {thing.material, thing.light_share});
     include(transformed(thing.world_from_thing, box_[body]));
 }
 
@@ -142,17 +142,24 @@ std::uint32_t Grouping::body_of(const Primitive& primitive) {
 }
 
 void Grouping::place(std::uint32_t body, const Affine& world_from_body, std::uint32_t palette,
-                     const PathTint& exact_tint, const std::optional<MaterialId>& material) {
-    group_of(palette, exact_tint, material).placements.push_back({body, world_from_body});
+                     const PathTint& exact_tint, const Finish& finish) {
+    group_of(palette, exact_tint, finish).placements.push_back({body, world_from_body});
     ++result_.placement_count;
 }
 
-PlacementGroup& Grouping::group_of(std::uint32_t palette, const PathTint& exact_tint,
-                                   const std::optional<MaterialId>& material) {
-    Material finish;
-    if (material) finish = cut_.materials[*material];
-    finish.texture.clear(); // pictures are placed by place_picture()
-    return group_of(palette, rounded(exact_tint, tint_grain), finish);
+PlacementGroup& Grouping::group_of(std::uint32_t palette, const PathTint& exact_tint, const Finish& finish) {
+    Material material = material_of(finish);
+    material.texture.clear(); // pictures are placed by place_picture()
+    return group_of(palette, rounded(exact_tint, tint_grain), material);
+}
+
+Material Grouping::material_of(const Finish& finish) const {
+    Material material;
+    if (finish.material) material = cut_.materials[*finish.material];
+    material.diffuse *= finish.light_share;
+    material.translucency *= finish.light_share;
+    material.specular *= finish.light_share;
+    return material;
 }
 
 PlacementGroup& Grouping::group_of(std::uint32_t palette, const PathTint& tint, const Material& finish) {

@@ -28,17 +28,23 @@ class Grouping {
   private:
     static constexpr std::uint32_t no_palette = UINT32_MAX;
 
+    /// Of a material, less what shades itself takes from it.
+    struct Finish {
+        std::optional<MaterialId> material;
+        double light_share = 1;
+    };
+
     void include(const Box& box);
     void add_textured_body(const TexturedPrimitive& shape);
     void add_textured(const Placed& thing);
     void place_picture(std::uint32_t body, const Affine& world_from_body, const PathTint& tint,
-                       MaterialId material);
+                       const Finish& finish);
+    Material material_of(const Finish& finish) const;
     void add_primitive(const Placed& thing);
     std::uint32_t body_of(const Primitive& primitive);
     void place(std::uint32_t body, const Affine& world_from_body, std::uint32_t palette,
-               const PathTint& exact_tint, const std::optional<MaterialId>& material);
-    PlacementGroup& group_of(std::uint32_t palette, const PathTint& exact_tint,
-                             const std::optional<MaterialId>& material);
+               const PathTint& exact_tint, const Finish& finish);
+    PlacementGroup& group_of(std::uint32_t palette, const PathTint& exact_tint, const Finish& finish);
     PlacementGroup& group_of(std::uint32_t palette, const PathTint& tint, const Material& finish);
     std::uint32_t colour(const Rgb& rgb);
     std::uint32_t palette_id(std::uint32_t request, std::uint32_t part, std::uint32_t painter);

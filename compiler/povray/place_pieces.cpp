@@ -46,9 +46,9 @@ bool nearly_as_wide(const Mat3& a, const Mat3& b) {
 class Placing {
   public:
     Placing(const CutGraph& cut, const Symmetry& symmetry, const Projection& projection, const Choice& choice,
-            Weights& weights, WorkMeter* meter)
+            Weights& weights, const SelfShadows* self_shadows, WorkMeter* meter)
         : cut_(cut), symmetry_(symmetry), projection_(projection), choice_(choice), weights_(weights),
-          walk_({.meter = meter}), seen_(cut.nodes[cut.root].ball.radius) {}
+          self_shadows_(self_shadows), walk_({.meter = meter}), seen_(cut.nodes[cut.root].ball.radius) {}
 
     bool run(const Piece& root, AssemblyLimits& limits) {
         walk_.push(root);
@@ -86,7 +86,7 @@ class Placing {
         const bool bakes = !hair && !choice_.spelt_out;
         if (node.sealed && bakes && place_mesh(piece, kind)) return;
         if (edge_count(node, cut) == 0 && node.unbounded) return; // of a plane that became a line
-        if (edge_count(node, cut) == 0) return place_proxy(node, piece);
+        if (edge_count(node, cut) == 0) return place_proxy(node, piece, light_share(piece, detail));
         const Weights::Weight weight = weights_.of(kind);
         if (!node.unbounded && !piece.faint && !hair && weight.leaves > 1 &&
             (weight.triangles <= choice_.threshold || weights_.is_shell(kind)) && place_mesh(piece, kind))
@@ -96,6 +96,7 @@ class Placing {
         for_each_edge(node, cut, [&](const CutEdge& edge) {
             Piece child = descend(cut_, piece, edge, cut);
             child.faint = piece.faint || (cut && detail <= 1 && node.shadowless);
+            if (cut) child.light_share = light_share(piece, detail);
             placeable = placeable && (edge.similarity || is_placeable(child));
             walk_.push(child);
         });
@@ -103,6 +104,12 @@ class Placing {
         if (!hair && !spells_out_specks_) return;
         more_work_ += work_of_comparison * static_cast<double>(walk_.children());
         walk_.drop_children_if([&](const Piece& child) { return !is_new(child); });
+    }
+
+    /// Of what stands for the piece if it is cut.
+    double light_share(const Piece& piece, double detail) const {
+        if (!self_shadows_) return piece.light_share;
+        return self_shadows_->share_within(piece.light_share, piece.node, detail, projection_.error_px());
     }
 
     /// Whether the piece is drawn wider than it is, and so much flatter than its node that few would share
@@ -135,8 +142,9 @@ class Placing {
         more_work_ += work_of_placing;
     }
 
-    void place_proxy(const CutNode& node, const Piece& piece) {
+    void place_proxy(const CutNode& node, const Piece& piece, double light_share) {
         Piece proxy = piece;
+        proxy.light_share = light_share;
         proxy.faint = piece.faint || node.shadowless;
         place_primitive(PrimitiveKind::sphere, piece.world_from_node * node.node_from_proxy, proxy,
                         node.mean.over(piece.inherited));
@@ -163,6 +171,7 @@ class Placing {
         note_finest(ball);
         thing.rgb = piece.tint.over(base);
         thing.material = piece.material;
+        thing.light_share = piece.light_share;
         keep(thing);
     }
 
@@ -191,6 +200,7 @@ class Placing {
         thing.textured = place->second;
         thing.tint = piece.tint;
         thing.material = piece.material;
+        thing.light_share = piece.light_share;
         keep(thing);
     }
 
@@ -261,6 +271,7 @@ class Placing {
         thing.painter = painter(request, shell ? 0 : symmetry_.pair[piece.node], piece.inherited);
         thing.tint = piece.tint;
         thing.material = piece.material;
+        thing.light_share = piece.light_share;
         keep(thing);
         return true;
     }
@@ -291,6 +302,7 @@ class Placing {
     const Projection& projection_;
     const Choice& choice_;
     Weights& weights_;
+    const SelfShadows* self_shadows_;
     PlacedPieces out_;
     Walk<Piece> walk_;
     std::map<TexturedPrimitive, std::uint32_t> textured_of_;
@@ -306,8 +318,9 @@ class Placing {
 
 std::optional<PlacedPieces> place_pieces(const CutGraph& cut, const Symmetry& symmetry,
                                          const Projection& projection, const Piece& root,
-                                         const Choice& choice, Weights& weights, AssemblyLimits& limits) {
-    Placing placing(cut, symmetry, projection, choice, weights, limits.meter);
+                                         const Choice& choice, Weights& weights, AssemblyLimits& limits,
+                                         const SelfShadows* self_shadows) {
+    Placing placing(cut, symmetry, projection, choice, weights, self_shadows, limits.meter);
     if (!placing.run(root, limits)) return std::nullopt;
     return std::move(placing).take();
 }

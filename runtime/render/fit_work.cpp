@@ -111,8 +111,8 @@ class Fitting {
         work_seconds_ = work_beside_graph(options_.work_seconds, instances);
         slowness_ = slowness_of_graph(instances);
         try {
-            fitted.model =
-                std::make_unique<TraceModel>(prepared_, view_, options, textures_, std::move(shell_sizes));
+            fitted.model = std::make_unique<TraceModel>(prepared_, view_, options, textures_,
+                                                        std::move(shell_sizes), self_shadow_store_);
             tried_seconds_ += slowness_ * static_cast<double>(fitted.model->weighed) / WorkRates::kinds;
             fitted.error_px = options.error_px;
             fitted.seconds = seconds_for(*fitted.model);
@@ -205,6 +205,7 @@ class Fitting {
     double second_of_steps() const { return slowness_ / WorkRates::ray_steps; }
 
     const std::shared_ptr<const PreparedCut> prepared_;
+    const std::shared_ptr<SelfShadowStore> self_shadow_store_ = std::make_shared<SelfShadowStore>();
     const View& view_;
     const DetailOptions& options_;
     const ModelTextures& textures_;

@@ -346,12 +346,15 @@ std::uint32_t TraceRun::edge_of(RunShape shape, std::uint16_t colour) const {
 
 TraceModel::TraceModel(std::shared_ptr<const PreparedCut> ready, const View& seen,
                        const DetailOptions& cut_options, ModelTextures read_textures,
-                       std::vector<ShellSizes> known_shell_sizes)
+                       std::vector<ShellSizes> known_shell_sizes,
+                       std::shared_ptr<SelfShadowStore> known_self_shadows)
     : shared(std::move(ready)), prepared(*shared), layers(layered(prepared.cut, prepared.root_steps)),
       view(seen), options(cut_options),
       projection(view, options, options.error_px, nearest_to_eye(prepared.cut)),
-      meshes(prepared, most_shell_work(options)), textures(std::move(read_textures)),
-      shell_sizes(std::move(known_shell_sizes)) {
+      meshes(prepared, most_shell_work(options)),
+      self_shadow_store(known_self_shadows ? std::move(known_self_shadows)
+                                           : std::make_shared<SelfShadowStore>()),
+      textures(std::move(read_textures)), shell_sizes(std::move(known_shell_sizes)) {
     least_detail_per_unit = least_detail(*this);
     const CutNode& root = prepared.cut.nodes[prepared.cut.root];
     for (const CutNode& node : prepared.cut.nodes)
@@ -365,6 +368,12 @@ TraceModel::TraceModel(std::shared_ptr<const PreparedCut> ready, const View& see
     terminal_reach = farthest_terminal(*this);
     find_shells(*this);
     add_unrollings(*this);
+}
+
+const SelfShadows& TraceModel::self_shadows() const {
+    return self_shadow_store->get([this] {
+        return measure_self_shadows(prepared.cut, prepared.root_steps, view, options.limit_normals);
+    });
 }
 
 double TraceModel::near_enough(const Ray& ray, double share) const {

@@ -11,6 +11,7 @@
 #include "compiler/detail/prepare.h"
 #include "compiler/detail/projection.h"
 #include "compiler/detail/run_cells.h"
+#include "compiler/detail/self_shadow.h"
 #include "compiler/detail/shell_sizes.h"
 #include "compiler/scene/scene.h"
 #include "compiler/support/ray.h"
@@ -157,9 +158,10 @@ struct TraceModel {
     std::vector<PackedNode> packed_boxes; ///< of runs
     std::vector<Unrolling> unrollings;
     std::vector<TraceRun> runs;
-    std::vector<Affine> graph_from_frame; ///< by node
-    mutable MeshStore meshes;             ///< of shells
-    ModelTextures textures;               ///< of_material has all materials
+    std::vector<Affine> graph_from_frame;               ///< by node
+    mutable MeshStore meshes;                           ///< of shells
+    std::shared_ptr<SelfShadowStore> self_shadow_store; ///< never null; models of other errors share it
+    ModelTextures textures;                             ///< of_material has all materials
     /// Nodes and primitives that one ray may go into. Sound models need some tens or hundreds; where
     /// thousands of parts coincide, a ray would not come to an end.
     std::uint64_t most_visits = 1 << 17;
@@ -177,13 +179,17 @@ struct TraceModel {
     /// in a plane that is drawn in specks; else before all.
     double near_enough(const Ray& ray, double share) const;
 
+    /// Of the view's lights; measured when they are first asked for.
+    const SelfShadows& self_shadows() const;
+
     /// The node as the cut has it.
     const CutNode& source(std::uint32_t node) const { return prepared.cut.nodes[layers.source[node]]; }
 
     /// Materials without a texture of theirs show their colour. `known_shell_sizes`: of a model of the same
-    /// graph and view with another error, or empty.
+    /// graph and view with another error, or empty; `self_shadow_store` likewise, or null.
     TraceModel(std::shared_ptr<const PreparedCut> prepared, const View& view, const DetailOptions& options,
-               ModelTextures textures = {}, std::vector<ShellSizes> known_shell_sizes = {});
+               ModelTextures textures = {}, std::vector<ShellSizes> known_shell_sizes = {},
+               std::shared_ptr<SelfShadowStore> self_shadow_store = nullptr);
     TraceModel(const TraceModel&) = delete;
     TraceModel& operator=(const TraceModel&) = delete;
 };

@@ -4,6 +4,7 @@
 #include <array>
 
 #include "compiler/primitives/texture_space.h"
+#include "compiler/support/stretch.h"
 #include "runtime/trace/surface_normal.h"
 #include "runtime/trace/traversal_kernel.h"
 #include "runtime/trace/traversal_leaves.h"
@@ -151,6 +152,25 @@ Vec3 Traversal::normal_at_best() const {
     return limit_normal_in_world(model_, path_, normal, ray_(best_.t));
 }
 
+/// Of what stands for a part that is culled.
+double Traversal::light_share_at_best() const {
+    const double error_px = model_.projection.error_px();
+    if (!(error_px > SelfShadows::lit_as_px)) return 1;
+    const auto from_culled = [](std::uint32_t step) { return (step & from_cut) != 0; };
+    const auto end = std::ranges::find_if(path_, from_culled);
+    if (end == path_.begin() || (end == path_.end() && best_.proxy_node == no_edge)) return 1;
+    Affine world_from_node;
+    for (auto step = path_.begin(); step != end; ++step)
+        world_from_node = world_from_node * model_.edges[*step & ~from_cut].parent_from_child.affine();
+    const std::uint32_t number = model_.edges[end[-1] & ~from_cut].child;
+    const TraceNode& node = model_.nodes[number];
+    const Ball ball{world_from_node(vec3_of(node.ball_centre)),
+                    largest_stretch(world_from_node.linear) * node.ball_radius};
+    const double detail = 2 * ball.radius * model_.projection.detail_per_unit(ball);
+    if (!(detail <= 1)) return 1; // no level was left, or the model names a shape
+    return model_.self_shadows().share(model_.layers.source[number], detail * error_px);
+}
+
 void Traversal::surface_at_best(SurfaceHit& hit) const {
     static const Material plain;
     const std::vector<Material>& materials = model_.prepared.cut.materials;
@@ -188,6 +208,7 @@ void Traversal::surface_at_best(SurfaceHit& hit) const {
     hit.t = best_.t;
     hit.rgb = tint.over(inherited);
     hit.normal = normal_at_best();
+    hit.light_share = light_share_at_best();
 }
 
 } // namespace graftal

@@ -164,6 +164,7 @@ class Traversal final : public Surfaces {
     void append_to_path(std::uint32_t edge);
     void surface_at_best(SurfaceHit& hit) const;
     Vec3 normal_at_best() const;
+    double light_share_at_best() const;
     /// The material that an edge gives, the nearest to its child if it stands for several.
     std::optional<MaterialId> material_of(std::uint32_t edge) const;
     const Texture::Texel& texel(MaterialId material, std::uint32_t edge, double turns, Vec3 point) const;

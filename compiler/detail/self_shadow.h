@@ -1,0 +1,71 @@
+#pragma once
+
+#include <cstdint>
+#include <mutex>
+#include <utility>
+#include <vector>
+
+#include "compiler/detail/cut_graph.h"
+#include "compiler/scene/scene.h"
+
+namespace graftal {
+
+/// What is culled shades itself, and what is drawn in its place hardly does: by how much that is to be
+/// darker. A part that measures 2^k of `lit_as_px` gets the power k of its object's share, since each level
+/// of a fractal takes the same share of the light. So the picture of any error has the light of the default
+/// one.
+class SelfShadows {
+  public:
+    /// What measures so much shows its own light: the default error.
+    static constexpr double lit_as_px = 0.5;
+
+    SelfShadows() = default;
+    /// `octave_logs`: by node the logarithm to base 2 of the share for twice the size. `work`: that measuring
+    /// them took.
+    SelfShadows(std::vector<float> octave_logs, std::uint64_t work)
+        : octave_logs_(std::move(octave_logs)), work_(work) {}
+
+    /// The share of the light of lamps, suns and the sky that is left where a part of this diameter is
+    /// culled. 1 up to `lit_as_px`.
+    double share(NodeId node, double size_px) const;
+
+    /// What stands for a node shows by its place: `outer`, the share of what is culled above it, if that is
+    /// less than 1; else its own if its detail, a length in errors, is at most 1. In steps of 1/128, that
+    /// finishes be few.
+    double share_within(double outer, NodeId node, double detail, double error_px) const;
+
+    /// Parts that rays went by to measure them.
+    std::uint64_t work() const { return work_; }
+
+  private:
+    std::vector<float> octave_logs_;
+    std::uint64_t work_ = 0;
+};
+
+/// Measures the shares for the lights and the camera of a view: some thousands of camera rays meet the parts
+/// once as they are culled at `measured_px`, and once as at SelfShadows::lit_as_px, both in their own
+/// shadows. An object's share makes the mean light on its parts equal. Objects that few rays meet take the
+/// mean of all. Ambient light does not count; of light from all directions a list stands for it. Nothing is
+/// measured without lights that throw shadows.
+///
+/// Requires fit_proxies(). Work: at most `most_self_shadow_work` parts are gone by.
+SelfShadows measure_self_shadows(const CutGraph& cut, std::uint32_t root_steps, const View& view,
+                                 bool limit_normals);
+
+inline constexpr double self_shadow_measured_px = 4;
+inline constexpr std::uint64_t most_self_shadow_work = 8'000'000;
+
+/// Measures when it is first asked, by whichever thread.
+class SelfShadowStore {
+  public:
+    template<typename Measure> const SelfShadows& get(const Measure& measure) {
+        std::call_once(once_, [&] { shadows_ = measure(); });
+        return shadows_;
+    }
+
+  private:
+    std::once_flag once_;
+    SelfShadows shadows_;
+};
+
+} // namespace graftal

@@ -1,0 +1,43 @@
+#pragma once
+
+// Private to the shader: what its paths (shade.cpp) and its light (shade_light.cpp) share.
+
+#include <algorithm>
+
+#include "runtime/trace/shade.h"
+
+namespace graftal {
+
+/// POV-Ray takes smaller cosines and lights for 0 (its EPSILON).
+inline constexpr double least_cosine = 1e-10;
+inline constexpr double least_light = 1e-10;
+/// How close to where they start rays meet nothing, in pixels. Where two surfaces touch, light leaks through
+/// so narrow a gap.
+inline constexpr double shadow_pixels = 1e-3;
+
+/// What a surface makes of white light on its way through. An interior that absorbs has the colour in itself.
+inline Rgb colour_of_pane(const Material& material, Rgb rgb) {
+    return material.transparency * (material.absorption > 0 ? Rgb(1.0) : rgb);
+}
+
+inline double largest(Rgb rgb) {
+    return std::max({rgb.r, rgb.g, rgb.b});
+}
+
+/// A point of a surface as the viewer sees it, and what becomes of light there.
+struct Shader::Point {
+    Vec3 position;
+    Vec3 normal; ///< towards the viewer
+    Vec3 facet;  ///< normal of what mirrors and refracts
+    Vec3 to_viewer;
+    Rgb rgb;
+    const Material* material;
+    const Inside* inside; ///< on the viewer's side
+    Rgb mirrored{0.0};    ///< share of light that is
+    double mirrors = 0;   ///< how much that counts
+    double body = 1;      ///< share of what scatters by the surface's colour
+    Rgb through{0.0};     ///< share that goes through
+    double shone_on = 1;  ///< share of what shines on it that is left (SurfaceHit::light_share)
+};
+
+} // namespace graftal

@@ -105,7 +105,7 @@ void PartRays::go_below(const At& at, bool cut) {
         if (!child.unbounded) {
             Ball ball{at.world_from_node(edge.node_from_child(child.ball.centre)),
                       at.scale * edge.stretch * child.ball.radius};
-            if (2 * ball.radius * per_unit <= cut_detail(child, projection_.error_px()))
+            if (ball.radius * per_unit <= cut_detail(child, projection_.error_px())) // or nearly
                 ball.radius *= reach_of_proxies;
             if (at.faint || child.widens) ball.radius += 2 * projection_.most_half_width(ball);
             const Vec3 to_centre = ball.centre - ray_.origin;

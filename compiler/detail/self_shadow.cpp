@@ -33,6 +33,11 @@ double brightness(Rgb rgb) {
     return (rgb.r + rgb.g + rgb.b) / 3;
 }
 
+/// By node its class's representative. Of a copy: classes are found while the graph is in the making.
+std::vector<NodeId> shapes_of(CutGraph cut) {
+    return find_symmetry(cut).representative;
+}
+
 /// What rays have seen of the parts of an object.
 struct Seen {
     double culled_hits = 0, whole_hits = 0;
@@ -78,7 +83,7 @@ class Measurer {
           whole_projection_(projection(SelfShadows::lit_as_px)),
           culled_(cut, culled_projection_, root_steps, self_shadow_measured_px, limit_normals),
           whole_(cut, whole_projection_, root_steps, self_shadow_measured_px, limit_normals),
-          shape_of_(find_symmetry(cut).representative) {
+          shape_of_(shapes_of(cut)) {
         for (const Light& light : listed_lights(view, lights_of_areas)) {
             if (!(brightness(light.rgb) > 0)) continue;
             (light.shadowless ? bare_ : lights_).push_back(light);

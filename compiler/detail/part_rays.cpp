@@ -94,6 +94,7 @@ void PartRays::enter(At at) {
 void PartRays::go_below(const At& at, bool cut) {
     const CutNode& node = cut_.nodes[at.node];
     std::vector<Waiting>& waiting = waiting_[at.depth];
+    const double per_unit = node.unbounded ? 0 : projection_.detail_per_unit(ball_of(at));
     waiting.clear();
     std::deque<CutEdge> items; // of a run: they are made here
     const bool is_run = node.cell && !cut;
@@ -104,7 +105,8 @@ void PartRays::go_below(const At& at, bool cut) {
         if (!child.unbounded) {
             Ball ball{at.world_from_node(edge.node_from_child(child.ball.centre)),
                       at.scale * edge.stretch * child.ball.radius};
-            if (!child.primitive) ball.radius *= reach_of_proxies;
+            if (ball.radius * per_unit <= cut_detail(child, projection_.error_px())) // or nearly
+                ball.radius *= reach_of_proxies;
             if (at.faint || child.widens) ball.radius += 2 * projection_.most_half_width(ball);
             const Vec3 to_centre = ball.centre - ray_.origin;
             const double along = glm::dot(to_centre, ray_.direction);

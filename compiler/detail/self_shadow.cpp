@@ -10,6 +10,7 @@
 
 #include "compiler/detail/part_rays.h"
 #include "compiler/detail/prepare.h"
+#include "compiler/detail/symmetry.h"
 #include "compiler/scene/light_list.h"
 
 namespace graftal {
@@ -30,6 +31,11 @@ constexpr double darkest_log = -1, brightest_log = 0.25;
 
 double brightness(Rgb rgb) {
     return (rgb.r + rgb.g + rgb.b) / 3;
+}
+
+/// By node its class's representative. Of a copy: classes are found while the graph is in the making.
+std::vector<NodeId> shapes_of(CutGraph cut) {
+    return find_symmetry(cut).representative;
 }
 
 /// What rays have seen of the parts of an object.
@@ -76,7 +82,8 @@ class Measurer {
         : cut_(cut), view_(view), culled_projection_(projection(self_shadow_measured_px)),
           whole_projection_(projection(SelfShadows::lit_as_px)),
           culled_(cut, culled_projection_, root_steps, self_shadow_measured_px, limit_normals),
-          whole_(cut, whole_projection_, root_steps, self_shadow_measured_px, limit_normals) {
+          whole_(cut, whole_projection_, root_steps, self_shadow_measured_px, limit_normals),
+          shape_of_(shapes_of(cut)) {
         for (const Light& light : listed_lights(view, lights_of_areas)) {
             if (!(brightness(light.rgb) > 0)) continue;
             (light.shadowless ? bare_ : lights_).push_back(light);
@@ -104,10 +111,12 @@ class Measurer {
             all += seen;
         const double mean = all.octave_log();
         std::vector<float> logs(cut_.nodes.size(), static_cast<float>(mean));
-        for (const auto& [node, seen] : seen_) {
+        for (const auto& [shape, seen] : seen_) {
             const double own = seen.hits() / (seen.hits() + rays_of_doubt);
-            logs[node] = static_cast<float>(own * seen.octave_log() + (1 - own) * mean);
+            logs[shape] = static_cast<float>(own * seen.octave_log() + (1 - own) * mean);
         }
+        for (NodeId id = 0; id < logs.size(); ++id)
+            logs[id] = logs[shape_of_[id]];
         return {std::move(logs), culled_.work() + whole_.work()};
     }
 
@@ -134,14 +143,14 @@ class Measurer {
         const bool meets_culled = culled_.closest(ray, 0, culled) && culled.part != PartHit::none;
         const bool meets_whole = whole_.closest(ray, 0, whole) && whole.part != PartHit::none;
         if (meets_culled) {
-            Seen& seen = seen_[culled.part];
+            Seen& seen = seen_[shape_of_[culled.part]];
             const double octaves = std::log2(culled.part_px / SelfShadows::lit_as_px);
             const double bin = std::clamp(4 * octaves, 0.0, bins - 1.0);
             seen.culled_light[static_cast<std::size_t>(bin)] += light(culled_, ray, culled, light_choice);
             ++seen.culled_hits;
         }
         if (meets_whole) {
-            Seen& seen = seen_[whole.part];
+            Seen& seen = seen_[shape_of_[whole.part]];
             seen.whole_light += light(whole_, ray, whole, light_choice);
             ++seen.whole_hits;
         }
@@ -187,7 +196,8 @@ class Measurer {
     std::vector<Light> lights_, bare_;
     std::vector<double> up_to_; ///< brightness of the lights, added up
     double total_ = 0;
-    std::map<NodeId, Seen> seen_;
+    const std::vector<NodeId> shape_of_; ///< by node: mirror images share a mesh, and so a share
+    std::map<NodeId, Seen> seen_;        ///< by shape
 };
 
 } // namespace

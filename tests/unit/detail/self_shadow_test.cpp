@@ -17,7 +17,7 @@
 namespace graftal {
 namespace {
 
-CutGraph fitted(const Graph& graph) {
+CutGraph with_proxies(const Graph& graph) {
     CutGraph cut = test::cut_of(graph);
     fit_proxies(cut, find_symmetry(cut));
     return cut;
@@ -93,13 +93,13 @@ std::optional<double> nearest_leaf(const CutGraph& cut, NodeId id, const Affine&
 }
 
 TEST(PartRays, MeetWhatTheLeavesOneByOneDo) {
-    const CutGraph cut = fitted(nested(PrimitiveKind::cube, sponge(), 3));
+    const CutGraph cut = with_proxies(nested(PrimitiveKind::cube, sponge(), 3));
     const View view = view_of(1);
     DetailOptions options;
     options.error_px = 1e-3; // nothing is culled
     const Projection projection(view, options, options.error_px, nearest_to_eye(cut));
     PartRays rays(cut, projection, unlimited_steps, 0, true);
-    int hits = 0, ties = 0;
+    int hits = 0;
     for (int i = 0; i < 400; ++i) {
         const double angle = 2.4 * i, height = std::sin(1.7 * i);
         const Vec3 from = 5.0 * Vec3(std::cos(angle), height, std::sin(angle));
@@ -115,24 +115,21 @@ TEST(PartRays, MeetWhatTheLeavesOneByOneDo) {
         EXPECT_EQ(hit.part, PartHit::none);
         EXPECT_LT(glm::dot(hit.normal, ray.direction), 0) << i;
         EXPECT_FALSE(rays.meets_any(ray, {0, hit.t - 1e-6})) << i;
-        ties += std::abs(glm::length(hit.normal) - 1) < 1e-9 ? 0 : 1;
+        EXPECT_NEAR(glm::length(hit.normal), 1, 1e-9) << i;
     }
     EXPECT_GT(hits, 100);
-    EXPECT_EQ(ties, 0);
 }
 
-// A unit of 1/32 of the picture is 4 pixels: the cubes measure 1 to 2, and what is culled is of several.
+// The cubes measure 1.6 pixels, and what is culled at 4 consists of several.
 TEST(SelfShadow, AFlatPlateKeepsItsLight) {
-    const CutGraph cut = fitted(nested(PrimitiveKind::cube, plate(), 6));
-    CutGraph flat = cut;
-    const View view = view_of(2.5);
-    const SelfShadows shadows = measure_self_shadows(flat, unlimited_steps, view, true);
-    for (NodeId id = 0; id < flat.nodes.size(); ++id)
-        if (!flat.nodes[id].primitive) EXPECT_NEAR(shadows.share(id, 4), 1, 0.05) << flat.nodes[id].name;
+    const CutGraph cut = with_proxies(nested(PrimitiveKind::cube, plate(), 6));
+    const SelfShadows shadows = measure_self_shadows(cut, unlimited_steps, view_of(2.5), true);
+    for (NodeId id = 0; id < cut.nodes.size(); ++id)
+        EXPECT_NEAR(shadows.share(id, 4), 1, 0.05) << cut.nodes[id].name;
 }
 
-TEST(SelfShadow, ASpongeKeepsLessTheLargerItIs) {
-    const CutGraph cut = fitted(nested(PrimitiveKind::cube, sponge(), 5));
+TEST(SelfShadow, APoundSignKeepsLessTheLargerItIs) {
+    const CutGraph cut = with_proxies(test::pound_sign(3, false));
     const SelfShadows shadows = measure_self_shadows(cut, unlimited_steps, view_of(3), true);
     const double one = shadows.share(cut.root, 1), two = shadows.share(cut.root, 2);
     EXPECT_LT(one, 0.99);
@@ -148,7 +145,7 @@ TEST(SelfShadow, ASpongeKeepsLessTheLargerItIs) {
 
 // By other rays than those it was measured by: the mean light at 4 pixels, with the shares, and at 0.5.
 TEST(SelfShadow, MakesTheMeanLightThatOfFinerParts) {
-    const CutGraph cut = fitted(nested(PrimitiveKind::cube, sponge(), 5));
+    const CutGraph cut = with_proxies(test::pound_sign(3, false));
     const View view = view_of(3);
     const SelfShadows shadows = measure_self_shadows(cut, unlimited_steps, view, true);
     const auto light = [&](double error_px, bool shared) {
@@ -173,11 +170,11 @@ TEST(SelfShadow, MakesTheMeanLightThatOfFinerParts) {
     };
     const double fine = light(SelfShadows::lit_as_px, false);
     EXPECT_GT(light(4, false), 1.05 * fine) << "there is something to mend";
-    EXPECT_NEAR(light(4, true), fine, 0.025 * fine);
+    EXPECT_NEAR(light(4, true), fine, 0.03 * fine);
 }
 
 TEST(SelfShadow, WithoutLightsThatThrowShadowsNothingIsTaken) {
-    const CutGraph cut = fitted(nested(PrimitiveKind::cube, sponge(), 3));
+    const CutGraph cut = with_proxies(nested(PrimitiveKind::cube, sponge(), 3));
     View view = view_of(3);
     view.lights[0].shadowless = true;
     const SelfShadows shadows = measure_self_shadows(cut, unlimited_steps, view, true);

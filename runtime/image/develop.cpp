@@ -39,13 +39,19 @@ Developer::Developer(const Film& film, SampleFormat format)
 void Developer::develop(Image& picture, int first, int end) const {
     const bool dithered = !film_.plain();
     const bool grey = picture.channels < 3;
+    struct Shown {
+        float light = NAN;
+        double value = 0;
+    } last[3]; // of coarse pictures and plain backgrounds most pixels are as the one before
     for (int y = first; y < end; ++y)
         for (int x = 0; x < picture.width; ++x) {
             const std::size_t pixel = static_cast<std::size_t>(y) * static_cast<std::size_t>(picture.width) +
                                       static_cast<std::size_t>(x);
             float* const samples = picture.pixels.data() + pixel * static_cast<std::size_t>(picture.channels);
             for (int c = 0; c < (grey ? 1 : 3); ++c) {
-                const double value = developed((grey ? 1 : gains_[c]) * samples[c], film_);
+                if (samples[c] != last[c].light)
+                    last[c] = {samples[c], developed((grey ? 1 : gains_[c]) * samples[c], film_)};
+                const double value = last[c].value;
                 samples[c] = static_cast<float>(dithered ? value + dither(x, y, c) / largest_level_ : value);
             }
         }

@@ -42,10 +42,11 @@ class Fitting {
     Fitting(std::shared_ptr<const PreparedCut> prepared, const View& view, const DetailOptions& options,
             const ModelTextures& textures, double samples_a_pixel,
             const std::function<ShaderLimits(const TraceModel&)>& limits_of, int threads,
-            const std::function<bool()>& cancelled)
+            const std::function<bool()>& cancelled,
+            const std::function<void(const TraceModel&, double)>& on_first_look)
         : prepared_(std::move(prepared)), view_(view), options_(options), textures_(textures),
           samples_(samples_a_pixel * view.size.width * view.size.height), limits_of_(limits_of),
-          threads_(threads), cancelled_(cancelled) {}
+          threads_(threads), cancelled_(cancelled), on_first_look_(on_first_look) {}
 
     FittedModel run() {
         FittedModel fitted = fit();
@@ -147,6 +148,7 @@ class Fitting {
         const std::uint64_t last = std::max(pixels / pixels_of_last_look, second);
         const int broken_before = broken_looks_;
         double seconds = look_briefly(model, first);
+        if (!std::exchange(looked_, true) && on_first_look_) on_first_look_(model, seconds);
         if (broken_looks_ > broken_before || excess(seconds) > clear_factor) return seconds;
         PictureTracer tracer(model, limits_of_(model));
         for (std::uint64_t done = 0; done < last; done += second) {
@@ -213,6 +215,8 @@ class Fitting {
     const std::function<ShaderLimits(const TraceModel&)>& limits_of_;
     const int threads_;
     const std::function<bool()>& cancelled_;
+    const std::function<void(const TraceModel&, double)>& on_first_look_;
+    bool looked_ = false;
     double work_seconds_ = 0;   ///< for the rays, and for what is tried
     double slowness_ = 1;       ///< of their steps
     double failed_seconds_ = 0; ///< that models took for which the memory did not suffice
@@ -225,9 +229,10 @@ class Fitting {
 FittedModel fit_work(std::shared_ptr<const PreparedCut> prepared, const View& view,
                      const DetailOptions& options, const ModelTextures& textures, double samples_a_pixel,
                      const std::function<ShaderLimits(const TraceModel&)>& limits_of, int threads,
-                     const std::function<bool()>& cancelled) {
+                     const std::function<bool()>& cancelled,
+                     const std::function<void(const TraceModel&, double)>& on_first_look) {
     return Fitting(std::move(prepared), view, options, textures, samples_a_pixel, limits_of, threads,
-                   cancelled)
+                   cancelled, on_first_look)
         .run();
 }
 

@@ -28,10 +28,13 @@ struct FittedModel {
 /// then rays are given up sooner. What is culled grows also where a model takes more memory than there is
 /// (`out_of_memory`); if none fits, std::bad_alloc is thrown. Nothing but
 /// counts decides, so the result is the same whatever the machine and its threads. `cancelled` is asked
-/// often; once it says true, any model comes back.
+/// often; once it says true, any model comes back. `on_first_look`, if it is set, is called once, after the
+/// first few rays: with a model, and the seconds that a picture of it seems to take. Nothing that it does
+/// with the model changes the result, unless it has shells made.
 FittedModel fit_work(std::shared_ptr<const PreparedCut> prepared, const View& view,
                      const DetailOptions& options, const ModelTextures& textures, double samples_a_pixel,
                      const std::function<ShaderLimits(const TraceModel&)>& limits_of, int threads,
-                     const std::function<bool()>& cancelled);
+                     const std::function<bool()>& cancelled,
+                     const std::function<void(const TraceModel&, double)>& on_first_look = {});
 
 } // namespace graftal

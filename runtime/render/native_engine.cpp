@@ -170,23 +170,36 @@ void report_shells(const TraceModel& model, const Asked& asked, Diagnostics& dia
 /// One picture, from the first sample to the last file.
 class Drawing {
   public:
-    Drawing(const TraceModel& model, std::vector<Sampling> samplings, const RenderOptions& options,
-            const PictureSink& sink, const CancelFlag& cancel)
-        : options_(options), sink_(sink), cancel_(cancel), samplings_(std::move(samplings)),
-          tracer_(model, limits_of(model, options)), size_(model.view.size), film_(model.view.film) {
+    Drawing(const View& view, const CutGraph& cut, const RenderOptions& options, const PictureSink& sink,
+            const CancelFlag& cancel)
+        : options_(options), sink_(sink), cancel_(cancel), size_(view.size), film_(view.film) {
         picture_.width = size_.width;
         picture_.height = size_.height;
         picture_.channels = 3;
         picture_.pixels.resize(3 * pixels());
-        work_ = samples_a_pixel(samplings_);
         if (!options.aovs) return;
         aovs_.resize(pixels());
-        numbers_.emplace(model.prepared.cut);
+        numbers_.emplace(cut);
     }
 
-    Status run() {
-        for (const Sampling& sampling : samplings_) {
-            const std::size_t traced = trace(sampling);
+    /// One look after the other. `work`: samples a pixel of all looks, earlier and later ones too.
+    Status run(const TraceModel& model, const std::vector<Sampling>& samplings, double work) {
+        work_ = work;
+        PictureTracer tracer(model, limits_of(model, options_));
+        const Status status = run(tracer, samplings);
+        report_.rays += tracer.statistics();
+        return status;
+    }
+
+    double done() const { return done_; } ///< samples a pixel
+
+    const NativeReport& report() const { return report_; }
+
+  private:
+    Status run(PictureTracer& tracer, const std::vector<Sampling>& samplings) {
+        report_.finished = false;
+        for (const Sampling& sampling : samplings) {
+            const std::size_t traced = trace(tracer, sampling);
             const bool complete = traced == pixels();
             if (!complete && !worth_leaving()) return interrupted();
             const Status status = write();
@@ -198,13 +211,6 @@ class Drawing {
         return {};
     }
 
-    NativeReport report() const {
-        NativeReport report = report_;
-        report.rays = tracer_.statistics();
-        return report;
-    }
-
-  private:
     std::size_t pixels() const {
         return static_cast<std::size_t>(size_.width) * static_cast<std::size_t>(size_.height);
     }
@@ -225,7 +231,7 @@ class Drawing {
     }
 
     /// Returns the number of finished pixels: all, unless it was interrupted.
-    std::size_t trace(const Sampling& sampling) {
+    std::size_t trace(PictureTracer& tracer, const Sampling& sampling) {
         const Stopwatch watch;
         std::size_t traced = 0;
         TraceControl control;
@@ -237,7 +243,7 @@ class Drawing {
             const double share = static_cast<double>(traced) / static_cast<double>(pixels());
             tell((done_ + share * sampling.samples_a_pixel()) / work_);
         };
-        tracer_.trace(sampling, control, picture_, numbers_ ? &aovs_ : nullptr);
+        tracer.trace(sampling, control, picture_, numbers_ ? &aovs_ : nullptr);
         done_ += sampling.samples_a_pixel();
         report_.seconds += watch.seconds();
         return traced;
@@ -276,8 +282,6 @@ class Drawing {
     const RenderOptions& options_;
     const PictureSink& sink_;
     const CancelFlag& cancel_;
-    const std::vector<Sampling> samplings_;
-    PictureTracer tracer_;
     ImageSize size_;
     Film film_;
     Image picture_;
@@ -287,6 +291,15 @@ class Drawing {
     Stopwatch watch_;
     double work_ = 0, done_ = 0; ///< samples a pixel
 };
+
+/// The first of progressive pictures, before anything is known but what a few rays took: so coarse that it is
+/// soon there. Nothing if that is not so.
+std::optional<Sampling> first_draft(const TraceModel& model, const Sampling& first, double seconds_a_sample) {
+    constexpr double soon = 0.05, too_late = 1; // seconds of one processor
+    if (model.has_shells) return std::nullopt;  // to make them takes time that nobody knows
+    const Sampling draft = draft_before(first, seconds_a_sample, soon).value_or(first);
+    return draft.samples_a_pixel() * seconds_a_sample < too_late ? std::optional(draft) : std::nullopt;
+}
 
 /// "4 samples per pixel", "1 sample per pixel", "1 sample per 8x8 pixels"
 std::string samples_text(double a_pixel) {
@@ -386,10 +399,22 @@ std::optional<NativeReport> trace_model(const PreparedView& prepared, const Rend
     Sampling& finest = looks.tried.back();
     if (sampled && detail.culls()) finest.most_samples = std::min(finest.most_samples, fewest_soft_samples);
     const double samples = samples_a_pixel(looks.tried);
+    const double least_a_sample = least_seconds({{.block = 1}}, view.size);
+    Drawing drawing(view, prepared.prepared->cut, options, sink, cancel);
+    const double seconds_before = preparing.seconds();
+    std::optional<Sampling> draft;
+    const auto draw_draft = [&](const TraceModel& tried, double seconds) {
+        draft = first_draft(tried, looks.wanted.front(), seconds / samples + least_a_sample);
+        if (!draft) return;
+        compilation.status = drawing.run(tried, {*draft}, samples_a_pixel(looks.wanted));
+    };
+    std::function<void(const TraceModel&, double)> on_first_look;
+    if (options.progressive) on_first_look = draw_draft;
     const FittedModel fitted = fit_work(
         prepared.prepared, view, detail, prepared.textures, samples,
         [&](const TraceModel& tried) { return limits_of(tried, options); }, options.threads,
-        [&] { return cancel.raised(); });
+        [&] { return cancel.raised() || !compilation.status.ok(); }, on_first_look);
+    if (!compilation.status.ok() && !cancel.raised()) return std::nullopt;
     const TraceModel& model = *fitted.model;
     looks.affordable = looks.tried;
     if (fitted.rays_cut)
@@ -403,20 +428,21 @@ std::optional<NativeReport> trace_model(const PreparedView& prepared, const Rend
     compilation.times.push_back({"prepare", preparing.seconds()});
     if (detail.culls() && !detail.steps) note_shadowless(model.prepared.cut, graph, compilation.diagnostics);
     std::vector<Sampling> samplings = looks.affordable;
-    if (options.draft_seconds) {
-        const double seconds_a_sample = fitted.seconds / samples + least_seconds({{.block = 1}}, view.size);
-        if (const auto draft = draft_before(samplings.front(), seconds_a_sample, *options.draft_seconds))
-            samplings.insert(samplings.begin(), *draft);
+    if (draft && samplings.size() > 1 && samplings.front().block == draft->block)
+        samplings.erase(samplings.begin());
+    if (options.draft_seconds && !draft) {
+        const double seconds_a_sample = fitted.seconds / samples + least_a_sample;
+        if (const auto before = draft_before(samplings.front(), seconds_a_sample, *options.draft_seconds))
+            samplings.insert(samplings.begin(), *before);
     }
     const Stopwatch drawing_watch;
-    Drawing drawing(model, std::move(samplings), options, sink, cancel);
-    compilation.status = drawing.run();
+    compilation.status = drawing.run(model, samplings, drawing.done() + samples_a_pixel(samplings));
     compilation.times.push_back({"trace", drawing_watch.seconds()});
     report_shells(model, asked, compilation.diagnostics);
     NativeReport report = drawing.report();
     const bool by_default = !options.samples && !options.noise_255 && view.quality == Quality::normal;
     report_noise(report.rays, looks, asked, by_default, compilation.diagnostics);
-    report.first_picture_seconds += preparing.seconds() - drawing_watch.seconds();
+    report.first_picture_seconds += seconds_before;
     if (!compilation.status.ok() && report.pictures == 0) return std::nullopt;
     return report;
 }

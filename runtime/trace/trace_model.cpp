@@ -66,6 +66,7 @@ class ModelBuilder {
     void add_root_edge() {
         TraceEdge edge;
         edge.child = cut_.root;
+        edge.to_primitive = cut_.nodes[cut_.root].primitive.has_value();
         const Affine& world_from_root = model_.graph_from_frame[cut_.root];
         set_map(edge, world_from_root, norm(world_from_root.linear));
         edge.box = bounds_.node[cut_.root];
@@ -155,6 +156,7 @@ class ModelBuilder {
         if (run.edge_of(shape, colour) != no_edge) return;
         TraceEdge edge;
         edge.child = source.child[shape.index()];
+        edge.to_primitive = true;
         edge.material = source.materials[colour];
         run.looks.push_back({shape, colour, static_cast<std::uint32_t>(model_.edges.size())});
         model_.edges.push_back(edge);
@@ -168,6 +170,7 @@ class ModelBuilder {
             if (!met.insert(key_of(part.edge)).second) continue;
             TraceEdge edge;
             edge.child = part.edge.child;
+            edge.to_primitive = cut_.nodes[edge.child].primitive.has_value();
             edge.holder = part.holder.value_or(id);
             edge.levels = part.edge.levels;
             edge.similarity = part.edge.similarity;
@@ -288,6 +291,28 @@ double farthest_terminal(const TraceModel& model) {
     return farthest;
 }
 
+/// TraceModel::even.
+bool is_even(const TraceModel& model) {
+    // Where nothing is culled, only what is flat is drawn wider than it is.
+    constexpr double flat = 1e-3;
+    const auto has_flat_proxy = [](const TraceNode& node) {
+        const Vec3 sigma = singular_values(linear_of(node.node_from_proxy));
+        return node.stop_tree == no_tree && !(sigma.z > flat * sigma.x);
+    };
+    const auto is_plain = [&](const TraceNode& node) {
+        const bool widens = node.widens || node.faint;
+        if (node.kind == TraceNode::Kind::primitive)
+            return !is_endless(node) && !(widens && model.projection.culls());
+        return node.kind == TraceNode::Kind::parts &&
+               !(widens && (model.projection.culls() || has_flat_proxy(node)));
+    };
+    const auto is_plain_edge = [](const TraceEdge& edge) {
+        return edge.to_primitive ? edge.flatness > flattest_placement : edge.upright;
+    };
+    return !model.has_shells && std::ranges::all_of(model.nodes, is_plain) &&
+           std::ranges::all_of(model.edges, is_plain_edge);
+}
+
 /// By node of the cut; none if rays come through everywhere.
 std::vector<ShellSizes> found_shell_sizes(TraceModel& model) {
     const CutGraph& cut = model.prepared.cut;
@@ -368,6 +393,7 @@ TraceModel::TraceModel(std::shared_ptr<const PreparedCut> ready, const View& see
     terminal_reach = farthest_terminal(*this);
     find_shells(*this);
     add_unrollings(*this);
+    even = is_even(*this);
 }
 
 const SelfShadows& TraceModel::self_shadows() const {

@@ -48,6 +48,7 @@ struct alignas(64) TraceEdge {
     bool similarity = false;       ///< then a path's norm is the product of its stretches
     bool upright = false;          ///< only scales evenly and moves
     bool keeps_directions = false; ///< and to the last bit those of rays: scales by a power of two
+    bool to_primitive = false;     ///< leads to one
     LaneMap parent_from_child;
     LaneMap child_from_parent;
     Box box; ///< of what the child draws, in the parent's frame
@@ -78,6 +79,10 @@ struct Unrolling {
     /// primitives that are only scaled evenly and moved, or too many.
     std::uint32_t leaf_tree = no_tree;
     double most_size = -1; ///< the largest diameter of such a part, likewise; negative if there is none
+    /// Levels that are left where no such part has any left; no_steps: never.
+    std::uint32_t last_steps = no_steps;
+
+    static constexpr std::uint32_t no_steps = std::numeric_limits<std::uint32_t>::max() - 1;
 };
 
 struct alignas(64) TraceNode {
@@ -174,6 +179,9 @@ struct TraceModel {
     bool has_shells = false;   ///< some node may be drawn as one
     std::uint64_t weighed = 0; ///< edges of kinds followed to find where (Weights)
     bool clear_texels = false; ///< some texture has them
+    /// All is bounded, drawn no wider than it is, and only scaled evenly and moved down to the primitives:
+    /// rays go through it sooner (traversal_even.h).
+    bool even = false;
 
     /// Up to where a hit will do, if none can be nearer by more than this share of the half width: of a model
     /// in a plane that is drawn in specks; else before all.

@@ -6,6 +6,7 @@
 #include "compiler/primitives/texture_space.h"
 #include "compiler/support/stretch.h"
 #include "runtime/trace/surface_normal.h"
+#include "runtime/trace/traversal_even.h"
 #include "runtime/trace/traversal_kernel.h"
 #include "runtime/trace/traversal_leaves.h"
 #include "runtime/trace/traversal_runs.h"
@@ -33,12 +34,16 @@ Traversal::Traversal(const TraceModel& model, Instructions instructions)
 
 namespace {
 
-template<typename Kernel> bool run_portable(Kernel&& kernel, const Ray& ray) {
-    return kernel.run(ray);
+// The kernel is made in here: what nobody else has the address of stays in registers.
+template<typename Kernel>
+bool run_portable(Traversal& traversal, const TraceModel& model, const RayRange& range, const Ray& ray) {
+    return Kernel{traversal, model, range}.run(ray);
 }
 
-template<typename Kernel> GRAFTAL_AVX2 bool run_avx2(Kernel&& kernel, const Ray& ray) {
-    return kernel.run(ray);
+template<typename Kernel>
+GRAFTAL_AVX2 bool run_avx2(Traversal& traversal, const TraceModel& model, const RayRange& range,
+                           const Ray& ray) {
+    return Kernel{traversal, model, range}.run(ray);
 }
 
 } // namespace
@@ -57,10 +62,14 @@ Rgb colour_of(const Texture::Texel& texel) {
 
 } // namespace
 
-template<bool any> bool Traversal::run(const Ray& ray, const RayRange& range) {
+template<bool any, bool even> bool Traversal::run(const Ray& ray, const RayRange& range) {
     if (instructions_ == Instructions::avx2)
-        return run_avx2(Kernel<Instructions::avx2, any>{*this, model_, range}, ray);
-    return run_portable(Kernel<Instructions::portable, any>{*this, model_, range}, ray);
+        return run_avx2<Kernel<Instructions::avx2, any, even>>(*this, model_, range, ray);
+    return run_portable<Kernel<Instructions::portable, any, even>>(*this, model_, range, ray);
+}
+
+template<bool any> bool Traversal::run(const Ray& ray, const RayRange& range) {
+    return model_.even ? run<any, true>(ray, range) : run<any, false>(ray, range);
 }
 
 bool Traversal::goes_on() {
@@ -180,18 +189,19 @@ void Traversal::surface_at_best(SurfaceHit& hit) const {
     hit.material = &plain;
     hit.node = SurfaceHit::no_node;
     hit.levels = 0;
-    const CutNode* parent = nullptr; // as in descend() (detail/piece.h)
+    std::uint32_t parent = no_edge; // as in descend() (detail/piece.h)
     for (const std::uint32_t step : path_) {
         const TraceEdge& edge = model_.edges[step & ~from_cut];
-        if (parent && (step & from_cut) && parent->terminal) inherited = parent->mean.over(inherited);
+        if (step & from_cut && parent != no_edge && model_.source(parent).terminal)
+            inherited = model_.source(parent).mean.over(inherited);
         tint = tint * edge.tint;
         if (edge.material) {
             material = edge.material;
             hit.material = &materials[*edge.material];
             inherited = hit.material->rgb;
         }
-        parent = &model_.source(edge.child);
-        if (!parent->primitive)
+        parent = edge.child;
+        if (!edge.to_primitive)
             hit.node = model_.layers.source[edge.child];
         else if (edge.holder != no_edge)
             hit.node = model_.layers.source[edge.holder];

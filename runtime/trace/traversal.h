@@ -60,7 +60,7 @@ class Traversal final : public Surfaces {
     std::uint64_t given_up() const { return given_up_; }
 
   private:
-    template<Instructions instructions, bool any>
+    template<Instructions instructions, bool any, bool even>
     struct Kernel; ///< the traversal proper (traversal_kernel.h)
 
     /// The ray in some frame: origin + (t - base) / unit * direction.
@@ -157,6 +157,7 @@ class Traversal final : public Surfaces {
     bool meet_drawn(const Primitive& primitive, const Affine& drawn, const RayRange& range);
     /// The edges to a frame's node.
     void keep_way(std::uint32_t frame_number);
+    template<bool any, bool even> bool run(const Ray& ray, const RayRange& range);
     template<bool any> bool run(const Ray& ray, const RayRange& range);
     /// False once the ray went into too many parts, and hurrying did not help.
     bool goes_on();

@@ -18,8 +18,8 @@
 
 namespace graftal {
 
-/// `any`: whatever is met first will do, and only that it is.
-template<Instructions instructions, bool any> struct Traversal::Kernel {
+/// `any`: whatever is met first will do, and only that it is. `even`: the model is (TraceModel::even).
+template<Instructions instructions, bool any, bool even> struct Traversal::Kernel {
     Traversal& self;
     const TraceModel& model;
     const RayRange range;
@@ -34,11 +34,20 @@ template<Instructions instructions, bool any> struct Traversal::Kernel {
         self.patience_ = self.visits_ + most_patience;
         self.hurries_ = false;
         if (!self.flat_met_.empty()) self.flat_met_.clear();
+        Entry entry;
+        if constexpr (even) {
+            if (!enter_world(ray, entry)) return false;
+            for (bool more = true; more || pop(0, entry);) {
+                more = entry.entry & BoxNode::inner ? go_into(entry) : enter_even(entry);
+                if (any && self.best_.found) return true;
+                if (self.visits_ > self.visit_limit_ && !self.goes_on()) break;
+            }
+            return self.best_.found;
+        }
         const double enough = model.near_enough(ray, near_enough_share),
                      plenty = model.near_enough(ray, plenty_share);
         push_world(ray);
         try_edge(self.frames_.front(), 0);
-        Entry entry;
         bool more = false;
         while (more || pop(0, entry)) {
             more = go_into(entry);
@@ -67,7 +76,7 @@ template<Instructions instructions, bool any> struct Traversal::Kernel {
     GRAFTAL_INLINE bool go_into(Entry& entry) {
         if (!(entry.entry & BoxNode::inner)) return enter(entry);
         self.depth_ = entry.frame + 1;
-        if (entry.entry & BoxNode::packed)
+        if (!even && (entry.entry & BoxNode::packed))
             return test_packed(entry.entry & ~(BoxNode::inner | BoxNode::packed), entry.frame, entry);
         return test_boxes(model.boxes, entry.entry & ~BoxNode::inner, entry.frame, entry);
     }
@@ -156,8 +165,8 @@ template<Instructions instructions, bool any> struct Traversal::Kernel {
             // Lanes of no numbers stay so by the last axis.
             enters = greater(enters,
                              (side_of(in, axis) - spread<instructions>(frame.origin_in[axis])) * reciprocal);
-            leaves = lesser(leaves, (side_of(1 - in, axis) - spread<instructions>(frame.origin_out[axis])) *
-                                        reciprocal);
+            const float origin_out = (even ? frame.origin_in : frame.origin_out)[axis];
+            leaves = lesser(leaves, (side_of(1 - in, axis) - spread<instructions>(origin_out)) * reciprocal);
         }
         std::uint32_t lanes = bits_of<instructions>(enters <= leaves) & used;
         if (lanes == 0) return false;
@@ -345,6 +354,9 @@ template<Instructions instructions, bool any> struct Traversal::Kernel {
     }
 
     GRAFTAL_INLINE Ball world_ball(const TraceNode& node, const Frame& frame, double radius) const {
+        if constexpr (even)
+            return {vec3_of(node.ball_centre * splat(even_scale(frame)) + frame.world_from_node.translation),
+                    frame.scale * radius};
         return {vec3_of(point_through(frame.world_from_node, node.ball_centre)), frame.scale * radius};
     }
 
@@ -384,6 +396,7 @@ template<Instructions instructions, bool any> struct Traversal::Kernel {
             if (!(frame.flatness * unrolling.flattest_edge > flattest_placement)) continue;
             const double size = frame.scale * unrolling.least_size;
             const bool has_leaves = unrolling.leaf_tree != no_tree && !frame.faint;
+            if (has_leaves && frame.steps == unrolling.last_steps) return unrolling.leaf_tree;
             if (!known && (has_leaves || !(size * frame.least_detail > 1))) {
                 const auto details = model.projection.detail_range(world_ball(node, frame, node.reach));
                 frame.least_detail = surely_more * details.least;
@@ -460,8 +473,7 @@ template<Instructions instructions, bool any> struct Traversal::Kernel {
         self.best_.point = ray(hit.t);
         self.best_.turns = model.edges[entry.entry].turns;
         self.best_.proxy_node = no_edge;
-        compose(parent.world_from_node, model.edges[entry.entry].parent_from_child,
-                self.best_.world_from_leaf);
+        place_leaf(parent, model.edges[entry.entry].parent_from_child, self.best_.world_from_leaf);
         self.keep_way(entry.frame);
         self.way_.push_back(entry.entry | (parent.cut ? from_cut : 0));
     }
@@ -471,6 +483,13 @@ template<Instructions instructions, bool any> struct Traversal::Kernel {
     /// `ray`: from where the entry begins, in units of the frame's.
     void meet_body(RunShape shape, const Affine& run_from_body, const TraceRun& run, const RunItem& item,
                    const Ray& ray, const Entry& entry);
+
+    // In models that are even (traversal_even.h):
+    GRAFTAL_INLINE static double even_scale(const Frame& frame) { return frame.world_from_node.column[0][0]; }
+    /// The first entry, or false if there is none.
+    bool enter_world(const Ray& ray, Entry& entry);
+    bool enter_even(Entry& entry);
+    void place_leaf(const Frame& parent, const LaneMap& parent_from_leaf, LaneMap& world_from_leaf) const;
 
     // What is met in other ways (traversal_leaves.h):
     void meet_shell(const TraceMesh& mesh, std::uint32_t frame_number);

@@ -94,6 +94,7 @@ class Unroller {
     void add_leaves(Parts& parts) {
         parts.unrolling.leaf_tree = no_tree;
         parts.unrolling.most_size = -1;
+        parts.unrolling.last_steps = Unrolling::no_steps;
         std::size_t count = 0;
         for (const std::uint32_t edge : parts.edges) {
             const std::size_t leaves = leaves_of(model_.edges[edge]);
@@ -117,6 +118,21 @@ class Unroller {
         }
         leaves_in_all_ += count;
         parts.unrolling.leaf_tree = tree_over(leaves);
+        parts.unrolling.last_steps = last_steps(parts);
+    }
+
+    /// With so many levels left all of the parts have none.
+    std::uint32_t last_steps(const Parts& parts) const {
+        std::uint32_t steps = Unrolling::no_steps;
+        for (const std::uint32_t number : parts.edges) {
+            const TraceEdge& edge = model_.edges[number];
+            const TraceNode& child = model_.nodes[edge.child];
+            if (is_solid(child) || child.edge_count == 0) continue;
+            if (!child.unending || (steps != Unrolling::no_steps && steps != edge.levels))
+                return Unrolling::no_steps;
+            steps = edge.levels;
+        }
+        return steps;
     }
 
     /// Primitives that are drawn of a part as it is, or cut; 0 if there is more to it. Those that are turned
@@ -212,6 +228,7 @@ class Unroller {
         edge.last = last;
         edge.turns = second.turns;
         edge.child = second.child;
+        edge.to_primitive = second.to_primitive;
         edge.levels = first.levels + second.levels;
         const Affine parent_from_middle = first.parent_from_child.affine();
         const Affine parent_from_child = parent_from_middle * second.parent_from_child.affine();

@@ -2,7 +2,7 @@
 // out as one mesh; and rays that leave the surfaces that those meet. See tools/bench/tracer.
 //   tracer_bench graph MODEL STEPS ERROR_PX       STEPS: a number, or - for as deep as the error asks
 //   tracer_bench light MODEL STEPS ERROR_PX
-//   tracer_bench mesh MODEL STEPS
+//   tracer_bench mesh|mesh_light MODEL STEPS
 
 #include <algorithm>
 #include <cmath>
@@ -113,9 +113,14 @@ std::vector<Ray> scattered_rays(const TraceModel& model) {
     return rays;
 }
 
+/// Where they begin, so that they do not meet the surface that they leave.
+double least_distance(const TraceModel& model) {
+    return 1e-5 * glm::length(model.prepared.bounds.size());
+}
+
 void light(const TraceModel& model) {
     const std::vector<Ray> rays = scattered_rays(model);
-    const double least = 1e-5 * glm::length(model.prepared.bounds.size());
+    const double least = least_distance(model);
     Traversal traversal(model);
     std::printf("closest:");
     measure(rays, [&] {
@@ -178,8 +183,8 @@ Flat flatten(const TraceModel& model) {
     return flat;
 }
 
-void mesh(const TraceModel& model) {
-    const std::vector<Ray> rays = camera_rays(model.view);
+/// The rays as Embree meets them, from `least` on.
+void mesh(const TraceModel& model, const std::vector<Ray>& rays, double least, bool coherent) {
     Flat flat = flatten(model);
     flat.vertices.push_back(0); // Embree reads a little beyond
     const double start = now();
@@ -198,7 +203,8 @@ void mesh(const TraceModel& model) {
     measure(rays, [&] {
         RTCIntersectContext context;
         rtcInitIntersectContext(&context);
-        context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+        context.flags =
+            coherent ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
         std::size_t hits = 0;
         for (const Ray& ray : rays) {
             RTCRayHit query{};
@@ -208,6 +214,7 @@ void mesh(const TraceModel& model) {
             query.ray.dir_x = static_cast<float>(ray.direction.x);
             query.ray.dir_y = static_cast<float>(ray.direction.y);
             query.ray.dir_z = static_cast<float>(ray.direction.z);
+            query.ray.tnear = static_cast<float>(least);
             query.ray.tfar = INFINITY;
             query.ray.mask = UINT32_MAX;
             query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
@@ -230,9 +237,14 @@ int main(int argc, char** argv) {
     } else if (mode == "light" && argc == 5) {
         graftal::light(*graftal::load(argv[2], argv[3], std::strtod(argv[4], nullptr)));
     } else if (mode == "mesh" && argc == 4) {
-        graftal::mesh(*graftal::load(argv[2], argv[3], 0));
+        const auto model = graftal::load(argv[2], argv[3], 0);
+        graftal::mesh(*model, graftal::camera_rays(model->view), 0, true);
+    } else if (mode == "mesh_light" && argc == 4) {
+        const auto model = graftal::load(argv[2], argv[3], 0);
+        graftal::mesh(*model, graftal::scattered_rays(*model), graftal::least_distance(*model), false);
     } else {
-        std::fputs("usage: tracer_bench graph|light MODEL STEPS ERROR_PX | mesh MODEL STEPS\n", stderr);
+        std::fputs("usage: tracer_bench graph|light MODEL STEPS ERROR_PX | mesh|mesh_light MODEL STEPS\n",
+                   stderr);
         return 2;
     }
 }

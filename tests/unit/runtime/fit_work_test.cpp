@@ -36,7 +36,8 @@ class FitWork : public testing::Test {
             if (too_large(model.options.error_px)) throw std::bad_alloc();
             return ShaderLimits();
         };
-        return fit_work(prepared, view_, options, {}, 1, limits, 1, [] { return false; });
+        return fit_work(
+            prepared, view_, options, {}, 1, limits, 1, [] { return false; }, on_first_look_);
     }
 
     /// Cubes of all sizes that lie in each other.
@@ -79,6 +80,7 @@ class FitWork : public testing::Test {
     }
 
     View view_{.size = {64, 48}};
+    std::function<void(const TraceModel&, double)> on_first_look_;
     int tries_ = 0; ///< models of different errors, one after the other
     double tried_px_ = 0;
 };
@@ -90,6 +92,28 @@ TEST_F(FitWork, KeepsWhatFits) {
     EXPECT_FALSE(model.out_of_memory);
     EXPECT_FALSE(model.rays_cut);
     EXPECT_EQ(model.seconds, model.whole_seconds);
+}
+
+TEST_F(FitWork, ShowsTheFirstModelOnceAndComesToTheSame) {
+    for (const double work_seconds : {100.0, 1e-3}) {
+        DetailOptions options;
+        options.work_seconds = work_seconds;
+        on_first_look_ = {};
+        const FittedModel alone = fitted(0, options);
+        int looks = 0;
+        on_first_look_ = [&](const TraceModel& model, double seconds) {
+            ++looks;
+            EXPECT_EQ(model.options.error_px, options.error_px);
+            EXPECT_GT(seconds, 0);
+            Image picture{64, 48, 3, std::vector<float>(64 * 48 * 3)};
+            EXPECT_TRUE(PictureTracer(model).trace({.block = 8}, {}, picture));
+        };
+        const FittedModel model = fitted(0, options);
+        EXPECT_EQ(looks, 1);
+        EXPECT_EQ(model.seconds, alone.seconds);
+        EXPECT_EQ(model.tried_seconds, alone.tried_seconds);
+        EXPECT_EQ(model.error_px, alone.error_px);
+    }
 }
 
 TEST_F(FitWork, CoarsensWhatTakesTooMuchMemory) {

@@ -25,7 +25,7 @@ constexpr std::size_t lights_a_hit = 3;
 /// An object that so many rays meet is believed as much as all objects together.
 constexpr double rays_of_doubt = 64;
 /// Sizes are told apart by quarters of an octave.
-constexpr std::size_t bins = 4 * 16;
+constexpr std::size_t bins = 64;
 /// A level takes half of the light at most.
 constexpr double darkest_log = -1, brightest_log = 0.25;
 
@@ -208,7 +208,7 @@ double SelfShadows::share(NodeId node, double size_px) const {
 }
 
 double SelfShadows::share_within(double outer, NodeId node, double detail, double error_px) const {
-    constexpr double steps = 128;
+    constexpr double steps = 16;
     if (outer != 1 || !(detail <= 1)) return outer;
     return std::round(steps * share(node, detail * error_px)) / steps;
 }

@@ -30,7 +30,7 @@ class SelfShadows {
     double share(NodeId node, double size_px) const;
 
     /// What stands for a node shows by its place: `outer`, the share of what is culled above it, if that is
-    /// less than 1; else its own if its detail, a length in errors, is at most 1. In steps of 1/128, that
+    /// less than 1; else its own if its detail, a length in errors, is at most 1. In steps of 1/16, that
     /// finishes be few.
     double share_within(double outer, NodeId node, double detail, double error_px) const;
 

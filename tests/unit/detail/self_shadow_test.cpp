@@ -138,7 +138,7 @@ TEST(SelfShadow, APoundSignKeepsLessTheLargerItIs) {
     EXPECT_EQ(shadows.share(cut.root, SelfShadows::lit_as_px), 1);
     EXPECT_EQ(shadows.share_within(1, cut.root, 1.01, 4), 1) << "not culled";
     EXPECT_EQ(shadows.share_within(0.5, cut.root, 1, 4), 0.5) << "what is culled above it decides";
-    EXPECT_NEAR(shadows.share_within(1, cut.root, 0.5, 4), two, 1.0 / 256);
+    EXPECT_NEAR(shadows.share_within(1, cut.root, 0.5, 4), two, 1.0 / 32);
     const SelfShadows again = measure_self_shadows(cut, unlimited_steps, view_of(3), true);
     EXPECT_EQ(again.share(cut.root, 2), two);
 }

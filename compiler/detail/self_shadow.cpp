@@ -204,13 +204,14 @@ class Measurer {
 
 double SelfShadows::share(NodeId node, double size_px) const {
     if (octave_logs_.empty() || !(size_px > lit_as_px)) return 1;
-    return std::exp2(static_cast<double>(octave_logs_[node]) * std::log2(size_px / lit_as_px));
+    constexpr double steps = 16;
+    const double exact = std::exp2(static_cast<double>(octave_logs_[node]) * std::log2(size_px / lit_as_px));
+    return std::round(steps * exact) / steps;
 }
 
 double SelfShadows::share_within(double outer, NodeId node, double detail, double error_px) const {
-    constexpr double steps = 16;
     if (outer != 1 || !(detail <= 1)) return outer;
-    return std::round(steps * share(node, detail * error_px)) / steps;
+    return share(node, detail * error_px);
 }
 
 SelfShadows measure_self_shadows(const CutGraph& cut, std::uint32_t root_steps, const View& view,

@@ -52,7 +52,7 @@ SelfShadows measure_self_shadows(const CutGraph& cut, std::uint32_t root_steps, 
                                  bool limit_normals);
 
 inline constexpr double self_shadow_measured_px = 4;
-inline constexpr std::uint64_t most_self_shadow_work = 16'000'000;
+inline constexpr std::uint64_t most_self_shadow_work = 8'000'000;
 
 /// Measures when it is first asked, by whichever thread.
 class SelfShadowStore {

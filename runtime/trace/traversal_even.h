@@ -26,24 +26,12 @@ GRAFTAL_INLINE void Traversal::Kernel<instructions, any, even>::place_leaf(const
 
 template<Instructions instructions, bool any, bool even>
 GRAFTAL_INLINE bool Traversal::Kernel<instructions, any, even>::enter_world(const Ray& ray, Entry& entry) {
-    Frame& frame = push();
-    frame.origin = lanes_of(ray.origin);
-    frame.direction = lanes_of(ray.direction);
-    frame.speed = largest_component(frame.direction);
-    frame.unit = 1 / frame.speed;
-    frame.direction = frame.direction * splat(frame.unit);
-    frame.base = 0;
+    Frame& frame = push_ray(ray);
     const RayRange within{(range.least - frame.base) * frame.speed,
                           (self.best_.t - frame.base) * frame.speed};
     const RayRange inside = range_in(enlarged(model.edges.front().box, Vec3(0.0)),
                                      {vec3_of(frame.origin), vec3_of(frame.direction)}, within);
     if (!(inside.least <= inside.most)) return false;
-    frame.world_from_node = LaneMap();
-    frame.scale = 1;
-    frame.edge = no_edge;
-    frame.steps = model.prepared.root_steps;
-    frame.cut = false;
-    frame.least_detail = model.least_detail_per_unit;
     ready_direction(frame);
     entry = {inside.least, 0, 0};
     return true;

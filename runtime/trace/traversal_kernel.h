@@ -86,7 +86,8 @@ template<Instructions instructions, bool any, bool even> struct Traversal::Kerne
         return self.frames_[self.depth_++];
     }
 
-    GRAFTAL_INLINE void push_world(const Ray& ray) {
+    /// What every frame of the world has; ready_direction() is left.
+    GRAFTAL_INLINE Frame& push_ray(const Ray& ray) {
         Frame& frame = push();
         frame.world_from_node = LaneMap();
         frame.origin = lanes_of(ray.origin);
@@ -99,11 +100,16 @@ template<Instructions instructions, bool any, bool even> struct Traversal::Kerne
         frame.edge = no_edge;
         frame.steps = model.prepared.root_steps;
         frame.cut = false;
+        frame.least_detail = model.least_detail_per_unit;
+        return frame;
+    }
+
+    GRAFTAL_INLINE void push_world(const Ray& ray) {
+        Frame& frame = push_ray(ray);
         frame.items = false;
         frame.flatness = 1;
         frame.faint = false;
         frame.margin = Vec3(model.widest * model.most_half_width);
-        frame.least_detail = model.least_detail_per_unit;
         ready_direction(frame);
     }
 

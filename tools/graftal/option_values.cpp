@@ -49,6 +49,11 @@ std::optional<double> parse_at_least(std::string_view text, double least) {
     return value && std::isfinite(*value) && *value >= least ? value : std::nullopt;
 }
 
+std::optional<double> parse_share(std::string_view text) {
+    const std::optional<double> value = parse_number(text);
+    return value && *value >= 0 && *value <= 1 ? value : std::nullopt;
+}
+
 std::optional<StepsValue> parse_steps(std::string_view text, std::uint64_t most) {
     if (const auto whole = parse_whole(text, 0, most)) return StepsValue{whole, static_cast<double>(*whole)};
     if (text.find_first_not_of("0123456789.") != std::string_view::npos) return std::nullopt;

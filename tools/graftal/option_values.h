@@ -22,6 +22,9 @@ std::optional<std::uint64_t> parse_bytes(std::string_view text);
 /// "0.5": a finite number, at least `least`.
 std::optional<double> parse_at_least(std::string_view text, double least);
 
+/// A number in [0, 1].
+std::optional<double> parse_share(std::string_view text);
+
 /// A whole number in [least, most].
 std::optional<std::uint64_t> parse_whole(std::string_view text, std::uint64_t least, std::uint64_t most);
 

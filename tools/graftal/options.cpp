@@ -89,14 +89,8 @@ void add_animate(CLI::App& app, Options& options) {
     add_value(
         app, "--shutter", "SHARE",
         "Motion blur: expose each frame for this share of its time, as 8, 16 or 32 moments by --quality "
-        "(default "
-        "0: none)",
-        "a number from 0 to 1",
-        [](const std::string& text) {
-            const std::optional<double> share = parse_number(text);
-            return share && *share >= 0 && *share <= 1 ? share : std::nullopt;
-        },
-        [&animation](double share) { animation.shutter = share; });
+        "(default 0: none)",
+        "a number from 0 to 1", parse_share, [&animation](double share) { animation.shutter = share; });
     app.add_flag("--keep-frames", animation.keep_frames, "Keep the frames in the directory NAME.frames");
     add_view(app, options);
     add_common(app, options);

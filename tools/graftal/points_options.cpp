@@ -9,6 +9,7 @@
 #include "compiler/support/number.h"
 #include "runtime/points/card.h"
 #include "runtime/points/draw_points.h"
+#include "tools/graftal/option_values.h"
 #include "tools/graftal/shared_options.h"
 
 namespace graftal {
@@ -50,17 +51,11 @@ void add_measure(CLI::App& app, Tone& tone) {
               "black, white or a colour such as #102040", parse_colour,
               [&tone](Rgb rgb) { tone.ground = rgb; });
     app.add_flag("--light", tone.light, "The points shine, on black unless --ground names another colour");
-    add_value(
-        app, "--glow", "SHARE", "Like --light, and this share of the light spreads around the points",
-        "a number from 0 to 1",
-        [](const std::string& text) {
-            const std::optional<double> share = parse_number(text);
-            return share && *share >= 0 && *share <= 1 ? share : std::nullopt;
-        },
-        [&tone](double share) {
-            tone.glow = share;
-            tone.light = true;
-        });
+    add_value(app, "--glow", "SHARE", "Like --light, and this share of the light spreads around the points",
+              "a number from 0 to 1", parse_share, [&tone](double share) {
+                  tone.glow = share;
+                  tone.light = true;
+              });
 }
 
 /// What `--card` leaves out, and what is wrong with it, or "".
@@ -171,17 +166,10 @@ void add_collage_options(CLI::App& app, Options& options) {
     app.add_option_function<std::string>("MODEL", set, "Model file of a flat iterated function system, or -")
         ->required()
         ->type_name("");
-    const auto threshold = [&options](const std::string& text) {
-        const std::optional<double> value = parse_number(text);
-        if (!value || !(*value >= 0 && *value <= 1))
-            throw CLI::ValidationError(fmt::format("--threshold: '{}' is not a number from 0 to 1", text));
-        options.points.threshold = *value;
-    };
-    app.add_option_function<std::string>(
-           "--threshold", threshold,
-           "Pixels darker than this, or at least this opaque, belong to the target (default 0.5)")
-        ->type_name("T")
-        ->take_last();
+    add_value(app, "--threshold", "T",
+              "Pixels darker than this, or at least this opaque, belong to the target (default 0.5)",
+              "a number from 0 to 1", parse_share,
+              [&options](double threshold) { options.points.threshold = threshold; });
     app.add_flag("--light", options.points.light, "The lighter pixels belong to the target");
     app.add_flag("--json", options.json, "Print one JSON object on standard output");
     app.footer(

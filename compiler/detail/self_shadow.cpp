@@ -10,7 +10,6 @@
 
 #include "compiler/detail/part_rays.h"
 #include "compiler/detail/prepare.h"
-#include "compiler/detail/symmetry.h"
 #include "compiler/scene/light_list.h"
 
 namespace graftal {
@@ -31,11 +30,6 @@ constexpr double darkest_log = -1, brightest_log = 0.25;
 
 double brightness(Rgb rgb) {
     return (rgb.r + rgb.g + rgb.b) / 3;
-}
-
-/// By node its class's representative. Of a copy: classes are found while the graph is in the making.
-std::vector<NodeId> shapes_of(CutGraph cut) {
-    return find_symmetry(cut).representative;
 }
 
 /// What rays have seen of the parts of an object.
@@ -78,12 +72,13 @@ struct Seen {
 
 class Measurer {
   public:
-    Measurer(const CutGraph& cut, std::uint32_t root_steps, const View& view, bool limit_normals)
+    Measurer(const CutGraph& cut, const Symmetry& symmetry, std::uint32_t root_steps, const View& view,
+             bool limit_normals)
         : cut_(cut), view_(view), culled_projection_(projection(self_shadow_measured_px)),
           whole_projection_(projection(SelfShadows::lit_as_px)),
           culled_(cut, culled_projection_, root_steps, self_shadow_measured_px, limit_normals),
           whole_(cut, whole_projection_, root_steps, self_shadow_measured_px, limit_normals),
-          shape_of_(shapes_of(cut)) {
+          shape_of_(symmetry.representative) {
         for (const Light& light : listed_lights(view, lights_of_areas)) {
             if (!(brightness(light.rgb) > 0)) continue;
             (light.shadowless ? bare_ : lights_).push_back(light);
@@ -196,8 +191,8 @@ class Measurer {
     std::vector<Light> lights_, bare_;
     std::vector<double> up_to_; ///< brightness of the lights, added up
     double total_ = 0;
-    const std::vector<NodeId> shape_of_; ///< by node: mirror images share a mesh, and so a share
-    std::map<NodeId, Seen> seen_;        ///< by shape
+    const std::vector<NodeId>& shape_of_; ///< by node: mirror images share a mesh, and so a share
+    std::map<NodeId, Seen> seen_;         ///< by shape
 };
 
 } // namespace
@@ -214,9 +209,9 @@ double SelfShadows::share_within(double outer, NodeId node, double detail, doubl
     return share(node, detail * error_px);
 }
 
-SelfShadows measure_self_shadows(const CutGraph& cut, std::uint32_t root_steps, const View& view,
-                                 bool limit_normals) {
-    return Measurer(cut, root_steps, view, limit_normals).run();
+SelfShadows measure_self_shadows(const CutGraph& cut, const Symmetry& symmetry, std::uint32_t root_steps,
+                                 const View& view, bool limit_normals) {
+    return Measurer(cut, symmetry, root_steps, view, limit_normals).run();
 }
 
 } // namespace graftal

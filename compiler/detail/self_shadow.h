@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "compiler/detail/cut_graph.h"
+#include "compiler/detail/symmetry.h"
 #include "compiler/scene/scene.h"
 
 namespace graftal {
@@ -48,8 +49,8 @@ class SelfShadows {
 /// measured without lights that throw shadows.
 ///
 /// Requires fit_proxies(). Work: at most `most_self_shadow_work` parts are gone by.
-SelfShadows measure_self_shadows(const CutGraph& cut, std::uint32_t root_steps, const View& view,
-                                 bool limit_normals);
+SelfShadows measure_self_shadows(const CutGraph& cut, const Symmetry& symmetry, std::uint32_t root_steps,
+                                 const View& view, bool limit_normals);
 
 inline constexpr double self_shadow_measured_px = 4;
 inline constexpr std::uint64_t most_self_shadow_work = 8'000'000;

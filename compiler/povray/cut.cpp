@@ -185,8 +185,9 @@ class Cutter {
     /// Null where all that is culled shows its own light.
     const SelfShadows* self_shadows(const Projection& projection) {
         if (!(projection.error_px() > SelfShadows::lit_as_px)) return nullptr;
-        return &self_shadows_.get(
-            [this] { return measure_self_shadows(cut_, prepared_.root_steps, view_, limit_normals()); });
+        return &self_shadows_.get([this] {
+            return measure_self_shadows(cut_, symmetry_, prepared_.root_steps, view_, limit_normals());
+        });
     }
 
     void spend(double seconds) { work_seconds_left_ = std::max(0.0, work_seconds_left_ - seconds); }

@@ -398,7 +398,8 @@ TraceModel::TraceModel(std::shared_ptr<const PreparedCut> ready, const View& see
 
 const SelfShadows& TraceModel::self_shadows() const {
     return self_shadow_store->get([this] {
-        return measure_self_shadows(prepared.cut, prepared.root_steps, view, options.limit_normals);
+        return measure_self_shadows(prepared.cut, prepared.symmetry, prepared.root_steps, view,
+                                    options.limit_normals);
     });
 }
 

@@ -23,6 +23,11 @@ CutGraph with_proxies(const Graph& graph) {
     return cut;
 }
 
+SelfShadows measured(CutGraph cut, const View& view) {
+    const Symmetry symmetry = find_symmetry(cut);
+    return measure_self_shadows(cut, symmetry, unlimited_steps, view, true);
+}
+
 /// A parallel view from above, of so many scene units on 128 pixels, in the light of one sun.
 View view_of(double width, Vec3 from = {1, 2, 3}) {
     View view;
@@ -123,14 +128,14 @@ TEST(PartRays, MeetWhatTheLeavesOneByOneDo) {
 // The cubes measure 1.6 pixels, and what is culled at 4 consists of several.
 TEST(SelfShadow, AFlatPlateKeepsItsLight) {
     const CutGraph cut = with_proxies(nested(PrimitiveKind::cube, plate(), 6));
-    const SelfShadows shadows = measure_self_shadows(cut, unlimited_steps, view_of(2.5), true);
+    const SelfShadows shadows = measured(cut, view_of(2.5));
     for (NodeId id = 0; id < cut.nodes.size(); ++id)
         EXPECT_NEAR(shadows.share(id, 4), 1, 1.0 / 16) << cut.nodes[id].name;
 }
 
 TEST(SelfShadow, APoundSignKeepsLessTheLargerItIs) {
     const CutGraph cut = with_proxies(test::pound_sign(3, false));
-    const SelfShadows shadows = measure_self_shadows(cut, unlimited_steps, view_of(3), true);
+    const SelfShadows shadows = measured(cut, view_of(3));
     const double one = shadows.share(cut.root, 1), two = shadows.share(cut.root, 2);
     EXPECT_LT(one, 0.99);
     EXPECT_GT(one, 0.7);
@@ -139,7 +144,7 @@ TEST(SelfShadow, APoundSignKeepsLessTheLargerItIs) {
     EXPECT_EQ(shadows.share_within(1, cut.root, 1.01, 4), 1) << "not culled";
     EXPECT_EQ(shadows.share_within(0.5, cut.root, 1, 4), 0.5) << "what is culled above it decides";
     EXPECT_NEAR(shadows.share_within(1, cut.root, 0.5, 4), two, 1e-9);
-    const SelfShadows again = measure_self_shadows(cut, unlimited_steps, view_of(3), true);
+    const SelfShadows again = measured(cut, view_of(3));
     EXPECT_EQ(again.share(cut.root, 2), two);
 }
 
@@ -147,7 +152,7 @@ TEST(SelfShadow, APoundSignKeepsLessTheLargerItIs) {
 TEST(SelfShadow, MakesTheMeanLightThatOfFinerParts) {
     const CutGraph cut = with_proxies(test::pound_sign(3, false));
     const View view = view_of(3);
-    const SelfShadows shadows = measure_self_shadows(cut, unlimited_steps, view, true);
+    const SelfShadows shadows = measured(cut, view);
     const auto light = [&](double error_px, bool shared) {
         DetailOptions options;
         const Projection projection(view, options, error_px, nearest_to_eye(cut));
@@ -177,7 +182,7 @@ TEST(SelfShadow, WithoutLightsThatThrowShadowsNothingIsTaken) {
     const CutGraph cut = with_proxies(nested(PrimitiveKind::cube, sponge(), 3));
     View view = view_of(3);
     view.lights[0].shadowless = true;
-    const SelfShadows shadows = measure_self_shadows(cut, unlimited_steps, view, true);
+    const SelfShadows shadows = measured(cut, view);
     EXPECT_EQ(shadows.share(cut.root, 4), 1);
     EXPECT_EQ(shadows.work(), 0u);
 }
@@ -190,7 +195,7 @@ TEST(SelfShadow, WorkIsLimited) {
         crowd.instances.push_back({graph.root, Affine::scale(Vec3(1 - 1e-6 * i)), {}, {}, {}});
     graph.root = graph.add(std::move(crowd));
     CutGraph cut = test::cut_of(graph);
-    const SelfShadows shadows = measure_self_shadows(cut, unlimited_steps, view_of(3), true);
+    const SelfShadows shadows = measured(cut, view_of(3));
     EXPECT_GT(shadows.work(), 0u);
     EXPECT_LT(shadows.work(), most_self_shadow_work + 1'000'000);
 }

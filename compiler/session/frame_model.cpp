@@ -1,5 +1,6 @@
 #include "compiler/session/frame_model.h"
 
+#include <map>
 #include <utility>
 
 #include "compiler/graph/unfold.h"
@@ -17,9 +18,12 @@ std::vector<Vec3> corners_of_levels(const AnalysedModel& model, unsigned steps) 
     constexpr unsigned most_steps = 200; // a leaf may lie that deep
     if (steps > most_steps) return {};
     std::vector<Vec3> points;
+    std::map<ObjectId, std::vector<Vec3>> corners_of; // many leaves place one object
     const auto add = [&](const UnfoldedLeaf& leaf) {
-        for (const Vec3& corner :
-             hull_points(model.graph.objects[leaf.object], model.bounds[leaf.object].box))
+        const auto [corners, is_new] = corners_of.try_emplace(leaf.object);
+        if (is_new)
+            corners->second = hull_points(model.graph.objects[leaf.object], model.bounds[leaf.object].box);
+        for (const Vec3& corner : corners->second)
             points.push_back(leaf.world_from_object(corner));
         return true;
     };

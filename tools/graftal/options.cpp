@@ -13,6 +13,7 @@
 #include "runtime/render/native_engine.h"
 #include "tools/graftal/animate_options.h"
 #include "tools/graftal/commands.h"
+#include "tools/graftal/documents.h"
 #include "tools/graftal/option_values.h"
 #include "tools/graftal/picture_description.h"
 #include "tools/graftal/points_options.h"
@@ -304,6 +305,7 @@ ParsedCommandLine parse_command_line(int argc, const char* const* argv) {
         "the graphs into pictures and POV-Ray scenes.",
         "graftal");
     app.set_version_flag("--version", "graftal " GRAFTAL_VERSION);
+    app.require_subcommand(0, 1); // 'graftal help render' names one command, and explains another
     bool help_passes = false;
     app.add_flag("--help-passes", help_passes, "List the passes of the compiler");
     app.footer(
@@ -315,8 +317,9 @@ ParsedCommandLine parse_command_line(int argc, const char* const* argv) {
         entry.add(*command, options);
         command->callback([&options, &entry] { options.command = entry.command; });
     }
+    const Documents documents(app);
 
-    std::vector<std::string> names;
+    std::vector<std::string> names = Documents::commands();
     for (const CommandEntry& entry : commands)
         names.emplace_back(entry.name);
     const std::string wrong = wrong_command(argc, argv, names);
@@ -326,6 +329,8 @@ ParsedCommandLine parse_command_line(int argc, const char* const* argv) {
     };
     try {
         app.parse(argc, argv);
+        if (const std::optional<std::string> text = documents.text())
+            return {std::nullopt, print_output(*text)};
     } catch (const CLI::CallForHelp&) {
         const std::string name = chosen();
         return {std::nullopt,

@@ -203,9 +203,9 @@ void add_view(CLI::App& app, Options& options) {
         "--plain-light", [&options] { options.render.compile.view.light = DefaultLight::plain; },
         "Where the model names no light: one sun and no sky, which is many times faster to draw");
     app.add_option("--quality", options.render.compile.view.quality,
-                   "How closely soft light is followed: draft, normal or best (default normal)")
+                   "How closely soft light is followed (default normal)")
         ->transform(CLI::CheckedTransformer(qualities).description(""))
-        ->type_name("QUALITY")
+        ->type_name("draft|normal|best")
         ->take_last();
     app.add_flag("--flatten", compile.cut.flatten,
                  "Write every part in its place, without sharing (for comparison)");

@@ -61,6 +61,10 @@ std::string extra_words(const CLI::App& command) {
 
 } // namespace
 
+std::string unknown_command(const std::string& word, const std::vector<std::string>& commands) {
+    return fmt::format("there is no command '{}' ({})", word, choices(word, commands));
+}
+
 std::string wrong_command(int argc, const char* const* argv, const std::vector<std::string>& commands) {
     if (argc < 2) return "no command given: try 'graftal render MODEL'";
     const std::string word = argv[1];
@@ -68,7 +72,7 @@ std::string wrong_command(int argc, const char* const* argv, const std::vector<s
     if (word.empty() || word.front() == '-' || known) return {};
     if (word.find_first_of("./") != std::string::npos)
         return fmt::format("name a command first, such as 'graftal render {}'", word);
-    return fmt::format("there is no command '{}' ({})", word, choices(word, commands));
+    return unknown_command(word, commands);
 }
 
 std::string usage_message(const CLI::ParseError& error, const CLI::App& command) {
@@ -83,6 +87,8 @@ std::string usage_message(const CLI::ParseError& error, const CLI::App& command)
     if (option) return fmt::format("{} needs a value: {}", option->get_name(), option_text(*option));
     const std::string operands = operands_text(command);
     if (operands == "A B") return "'compare' takes two pictures: 'graftal compare A B'";
+    if (operands.find("MODEL") == std::string::npos)
+        return fmt::format("'{0}' needs {1}: 'graftal {0} {1}'", command.get_name(), operands);
     return fmt::format("no model given: try 'graftal {} {}'", command.get_name(), operands);
 }
 

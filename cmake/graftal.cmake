@@ -38,6 +38,13 @@ function(graftal_precompiled name)
 endfunction()
 graftal_precompiled(graftal_headers)
 
+# What goes into programs and into the shared library alike, which shows its public face only.
+function(graftal_hidden target)
+  set_target_properties(${target} PROPERTIES POSITION_INDEPENDENT_CODE ON CXX_VISIBILITY_PRESET hidden
+                        VISIBILITY_INLINES_HIDDEN ON)
+endfunction()
+graftal_hidden(graftal_headers)
+
 # graftal_targets(RESULT folder...): the libraries of the layers in these folders; compiler/graph's is
 # graftal_compiler_graph.
 function(graftal_targets result)
@@ -57,6 +64,7 @@ function(graftal_layer folder)
   set_property(GLOBAL APPEND PROPERTY GRAFTAL_LAYERS ${name})
   target_include_directories(${name} PUBLIC ${PROJECT_SOURCE_DIR})
   target_link_libraries(${name} PUBLIC ${layers} ${arg_LINK} PRIVATE ${arg_PRIVATE_LINK} graftal_flags)
+  graftal_hidden(${name})
   target_precompile_headers(${name} REUSE_FROM graftal_headers)
 endfunction()
 

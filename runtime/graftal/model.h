@@ -11,6 +11,9 @@
 #include <string_view>
 #include <vector>
 
+/// Seen from outside of the shared library.
+#define GRAFTAL_API __attribute__((visibility("default")))
+
 namespace graftal::v1 {
 
 struct Vector {
@@ -39,7 +42,7 @@ struct Message {
 };
 
 /// One a line, "crystal.rifs:3:5: error: ..."; hints have lines of their own.
-std::string text_of(const std::vector<Message>& messages);
+GRAFTAL_API std::string text_of(const std::vector<Message>& messages);
 
 /// What a function gives, or why it gives nothing. With a value there may be warnings and notes.
 template<typename Value> struct Result {
@@ -87,7 +90,7 @@ using OnProgress = std::function<void(std::string_view stage, std::optional<doub
 /// A model and what is asked of it. Each function does again only what the changes since make necessary: a
 /// new camera does not read, analyse or prepare the model again. To be used by one thread at a time, except
 /// cancel(). Objects that were moved from may only be destroyed or assigned to.
-class Model {
+class GRAFTAL_API Model {
   public:
     /// A file `.lsys`, `.rifs` or `.inst`. It is read when it is needed first.
     static Model from_file(std::string path);

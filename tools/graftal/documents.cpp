@@ -45,12 +45,16 @@ const CommandTree& tree_named(const CommandTree& tree, const std::vector<std::st
     return *found;
 }
 
-std::string version_as_json() {
+std::string version_as_json(const CommandTree& tree) {
     nlohmann::ordered_json object = {{"name", "graftal"}, {"version", GRAFTAL_VERSION}};
     for (const Engine& engine : engines())
         object["engines"].push_back(engine.name);
     for (const Language& language : languages())
         object["languages"].push_back(language.extension);
+    for (const CommandTree* const command : all_commands(tree))
+        if (command != &tree)
+            object["commands"].push_back(command->name(" ").substr(tree.path.front().size() + 1));
+    object["shells"] = completed_shells();
     return object.dump(2) + "\n";
 }
 
@@ -93,10 +97,12 @@ std::optional<std::string> Documents::text() const {
             &command, fmt::format("graftal{}{}", command_.empty() ? "" : " ", fmt::join(command_, " ")),
             CLI::AppFormatMode::Normal);
     }
-    if (app_.got_subcommand("version")) return json_ ? version_as_json() : "graftal " GRAFTAL_VERSION "\n";
-    if (!app_.got_subcommand("completion") && !app_.got_subcommand("manual")) return std::nullopt;
+    const bool is_version = app_.got_subcommand("version"), is_completion = app_.got_subcommand("completion");
+    if (is_version && !json_) return "graftal " GRAFTAL_VERSION "\n";
+    if (!is_version && !is_completion && !app_.got_subcommand("manual")) return std::nullopt;
     const CommandTree tree = option_tree(app_);
-    if (app_.got_subcommand("completion")) return completion_script(shell_, tree);
+    if (is_version) return version_as_json(tree);
+    if (is_completion) return completion_script(shell_, tree);
     command_named(app_, command_);
     return manual_page(tree_named(tree, command_), tree);
 }

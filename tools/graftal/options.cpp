@@ -1,7 +1,9 @@
 #include "tools/graftal/options.h"
 
+#include <algorithm>
 #include <filesystem>
 #include <functional>
+#include <iterator>
 #include <span>
 
 #include <CLI/CLI.hpp>
@@ -319,9 +321,10 @@ ParsedCommandLine parse_command_line(int argc, const char* const* argv) {
     }
     const Documents documents(app);
 
-    std::vector<std::string> names = Documents::commands();
+    std::vector<std::string> names;
     for (const CommandEntry& entry : commands)
         names.emplace_back(entry.name);
+    std::ranges::copy(Documents::commands(), std::back_inserter(names));
     const std::string wrong = wrong_command(argc, argv, names);
     if (!wrong.empty()) return {std::nullopt, usage_error(wrong, "")};
     const auto chosen = [&]() -> std::string {

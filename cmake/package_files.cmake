@@ -1,0 +1,28 @@
+# CPack runs this on what it has installed for the packages, before it packs: what Debian wants of each package (copyright,
+# changelog, compressed pages of the manual), and one time for all files, so that two builds give the same bytes.
+file(GLOB components ${CPACK_TEMPORARY_INSTALL_DIRECTORY}/*)
+foreach(component ${components})
+  cmake_path(GET component FILENAME name)
+  string(TOUPPER ${name} upper)
+  set(package ${CPACK_DEBIAN_${upper}_PACKAGE_NAME})
+  if(NOT package)
+    continue()
+  endif()
+  set(doc ${component}/usr/share/doc/${package})
+  file(READ ${CMAKE_CURRENT_LIST_DIR}/../LICENSE license)
+  string(REGEX REPLACE "\n\n" "\n.\n" license "${license}")
+  string(STRIP "${license}" license)
+  string(REPLACE "\n" "\n " license "${license}")
+  file(WRITE ${doc}/copyright "Format: https://www.debian.org/doc/packaging-manuals/copyright-format/1.0/\n"
+       "Upstream-Name: graftal\n\nFiles: *\nCopyright: 2026 The graftal authors\nLicense: MIT\n ${license}\n")
+  string(TIMESTAMP date "%a, %d %b %Y %H:%M:%S +0000" UTC)
+  file(WRITE ${doc}/changelog "graftal (${CPACK_PACKAGE_VERSION}) unstable; urgency=medium\n\n"
+       "  * The changes stand in CHANGELOG.md.\n\n -- ${CPACK_PACKAGE_CONTACT}  ${date}\n")
+  file(GLOB pages ${component}/usr/share/man/man1/*.1)
+  foreach(file ${doc}/changelog ${pages})
+    execute_process(COMMAND gzip -9nf ${file} COMMAND_ERROR_IS_FATAL ANY)
+  endforeach()
+  if(DEFINED ENV{SOURCE_DATE_EPOCH})
+    execute_process(COMMAND find ${component} -exec touch -h -d @$ENV{SOURCE_DATE_EPOCH} {} + COMMAND_ERROR_IS_FATAL ANY)
+  endif()
+endforeach()

@@ -1,0 +1,1 @@
+autocmd BufRead,BufNewFile *.lsys,*.rifs,*.inst setfiletype graftal

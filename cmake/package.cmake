@@ -3,7 +3,6 @@ set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME graftal)
 set(CPACK_PACKAGE_VENDOR "The graftal authors")
 set(CPACK_PACKAGE_CONTACT "The graftal authors <graftal@graftal.org>")
-set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "pictures of fractals and plants from small models")
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_STRIP_FILES ON)
 set(CPACK_DEB_COMPONENT_INSTALL ON)
@@ -15,8 +14,6 @@ set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS_PRIVATE_DIRS ${PROJECT_BINARY_DIR})
 set(CPACK_DEBIAN_PACKAGE_SECTION graphics)
 set(CPACK_DEBIAN_PACKAGE_PRIORITY optional)
 set(CPACK_DEBIAN_DEBUGINFO_PACKAGE OFF)
-set(CPACK_DEBIAN_PACKAGE_GENERATE_SHLIBS ON)
-set(CPACK_DEBIAN_PACKAGE_GENERATE_SHLIBS_POLICY ">=")
 set(CPACK_PRE_BUILD_SCRIPTS ${PROJECT_SOURCE_DIR}/cmake/package_files.cmake)
 
 # graftal_package(COMPONENT NAME SECTION SUMMARY DESCRIPTION [depends])
@@ -28,18 +25,20 @@ macro(graftal_package component name section summary description)
   set(CPACK_DEBIAN_${upper}_PACKAGE_DEPENDS "${ARGN}")
 endmacro()
 
-set(about "graftal compiles small text models (parametric L-systems, recurrent iterated function systems, objects made of \
-instances of objects) into pictures of enormous things, and into scenes for POV-Ray.")
+set(about "graftal compiles small text models (parametric L-systems, recurrent
+iterated function systems, objects made of instances of objects) into pictures
+of enormous things, and into scenes for POV-Ray.")
 set(same "(= ${PROJECT_VERSION})")
 graftal_package(program graftal graphics "pictures of fractals and plants from small models"
                 "${about}" "libgraftal1 ${same}")
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_RECOMMENDS "povray, ffmpeg")
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_SUGGESTS "graftal-doc")
 graftal_package(library libgraftal1 libs "pictures of fractals and plants: shared library"
-                "${about}\n.\nThis package has the shared library, and its reader and writer of picture files.")
-set(CPACK_DEBIAN_LIBRARY_PACKAGE_CONTROL_EXTRA ${PROJECT_SOURCE_DIR}/cmake/triggers)
+                "${about}\n.\nThis package has the shared library, and its reader and writer of picture\nfiles.")
+set(CPACK_DEBIAN_LIBRARY_PACKAGE_CONTROL_EXTRA "${PROJECT_SOURCE_DIR}/cmake/triggers;${PROJECT_BINARY_DIR}/shlibs")
+file(CONFIGURE OUTPUT shlibs CONTENT "libgraftal 1 libgraftal1 (>= @PROJECT_VERSION@)\n" @ONLY)
 graftal_package(development libgraftal-dev libdevel "pictures of fractals and plants: headers of the library"
-                "${about}\n.\nThis package has the headers and the files for CMake's find_package(graftal)."
+                "${about}\n.\nThis package has the headers, and the files for CMake's find_package(graftal)."
                 "libgraftal1 ${same}")
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SHLIBDEPS OFF)
 graftal_package(documentation graftal-doc doc "pictures of fractals and plants: documentation and scenes"

@@ -7,6 +7,9 @@ set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_STRIP_FILES ON)
 set(CPACK_DEB_COMPONENT_INSTALL ON)
 set(CPACK_COMPONENTS_ALL program library development documentation)
+if(GRAFTAL_PYTHON)
+  list(APPEND CPACK_COMPONENTS_ALL python)
+endif()
 set(CPACK_COMPONENTS_GROUPING IGNORE)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
@@ -22,12 +25,16 @@ macro(graftal_package component name section summary description)
   set(CPACK_DEBIAN_${upper}_PACKAGE_NAME ${name})
   set(CPACK_DEBIAN_${upper}_PACKAGE_SECTION ${section})
   set(CPACK_DEBIAN_${upper}_DESCRIPTION "${summary}\n${description}")
-  set(CPACK_DEBIAN_${upper}_PACKAGE_DEPENDS "${ARGN}")
+  string(REPLACE ";" ", " depends "${ARGN}")
+  set(CPACK_DEBIAN_${upper}_PACKAGE_DEPENDS "${depends}")
 endmacro()
 
 set(about "graftal compiles small text models (parametric L-systems, recurrent
 iterated function systems, objects made of instances of objects) into pictures
 of enormous things, and into scenes for POV-Ray.")
+if(GRAFTAL_PYTHON)
+  math(EXPR next_minor "${Python_VERSION_MINOR} + 1")
+endif()
 set(same "(= ${PROJECT_VERSION})")
 graftal_package(program graftal graphics "pictures of fractals and plants from small models"
                 "${about}" "libgraftal1 ${same}")
@@ -41,6 +48,10 @@ graftal_package(development libgraftal-dev libdevel "pictures of fractals and pl
                 "${about}\n.\nThis package has the headers, and the files for CMake's find_package(graftal)."
                 "libgraftal1 ${same}")
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SHLIBDEPS OFF)
+graftal_package(python python3-graftal python "pictures of fractals and plants: Python package"
+                "${about}\n.\nThis package has the module for Python 3: pictures and points as NumPy arrays."
+                "libgraftal1 ${same}" "python3 (>= ${Python_VERSION_MAJOR}.${Python_VERSION_MINOR})"
+                "python3 (<< ${Python_VERSION_MAJOR}.${next_minor})" python3-numpy)
 graftal_package(documentation graftal-doc doc "pictures of fractals and plants: documentation and scenes"
                 "${about}\n.\nThis package has the documentation with its gallery, and the scenes.")
 set(CPACK_DEBIAN_DOCUMENTATION_PACKAGE_ARCHITECTURE all)

@@ -9,7 +9,9 @@
 #include "compiler/analysis/counts.h"
 #include "compiler/session/stages.h"
 #include "compiler/session/stats.h"
+#include "runtime/graftal/listed_graph.h"
 #include "runtime/image/image.h"
+#include "runtime/points/draw_points.h"
 #include "runtime/render/native_engine.h"
 #include "runtime/render/render.h"
 #include "runtime/render/scene_files.h"
@@ -65,6 +67,8 @@ Picture picture_of(const Image& image) {
         picture.rgb.push_back(level8_of(sample));
     return picture;
 }
+
+constexpr std::uint64_t most_points = 1'000'000'000;
 
 } // namespace
 
@@ -191,6 +195,12 @@ void Model::antialias(std::optional<int> depth) {
     parts_->options.antialias = depth;
 }
 
+void Model::quality(Quality quality) {
+    static constexpr graftal::Quality qualities[] = {graftal::Quality::draft, graftal::Quality::normal,
+                                                     graftal::Quality::best};
+    parts_->options.compile.view.quality = qualities[static_cast<std::size_t>(quality)];
+}
+
 void Model::root(std::string folder) {
     parts_->options.compile.lower.root = std::move(folder);
 }
@@ -224,6 +234,40 @@ Result<Stats> Model::stats() {
         }
         stats.json = stats_json(*model, levels, compilation.sources);
         return stats;
+    });
+}
+
+Result<ObjectGraph> Model::graph() {
+    return parts_->run<ObjectGraph>([this](Compilation& compilation) -> std::optional<ObjectGraph> {
+        const auto model = parts_->session.analysed(parts_->options.compile, compilation, true);
+        if (!model) return std::nullopt;
+        return listed_graph(model->graph, compilation.status);
+    });
+}
+
+Result<Points> Model::points(std::uint64_t count) {
+    return parts_->run<Points>([&](Compilation& compilation) -> std::optional<Points> {
+        if (count > most_points) {
+            compilation.status =
+                Status::failure(fmt::format("{} points at once: ask for at most {}", count, most_points));
+            return std::nullopt;
+        }
+        PointsOptions options;
+        options.compile = parts_->options.compile;
+        options.threads = parts_->options.threads;
+        options.points = count;
+        options.on_progress = [this](double share) { parts_->tell("points", share); };
+        Points points;
+        points.places.reserve(3 * count);
+        points.rgb.reserve(3 * count);
+        options.take = [&](std::span<const CloudPoint> cloud) {
+            for (const CloudPoint& point : cloud) {
+                points.places.insert(points.places.end(), point.place, point.place + 3);
+                points.rgb.insert(points.rgb.end(), point.rgb, point.rgb + 3);
+            }
+        };
+        if (!draw_points(parts_->session, options, compilation)) return std::nullopt;
+        return points;
     });
 }
 

@@ -67,6 +67,30 @@ struct Stats {
     std::string json;                  ///< all of it, as `graftal stats --json` prints it
 };
 
+/// An instance of the graph: a part of an object.
+struct GraphInstance {
+    std::size_t parent = 0, child = 0; ///< objects
+    double parent_from_child[12] = {}; ///< an affine map, by rows: x' = m[0] x + m[1] y + m[2] z + m[3]
+    double tint[4] = {}; ///< red, green, blue (linear) and alpha, in front of what the child has
+};
+
+/// The graph that a model becomes, after the passes. Objects with instances of each other, perhaps in
+/// circles.
+struct ObjectGraph {
+    std::size_t root = 0;
+    std::vector<std::string> objects;    ///< names
+    std::vector<std::string> primitives; ///< what each object is: "sphere", or "" of a union of instances
+    std::vector<GraphInstance> instances;
+};
+
+/// Points of a model by random iteration.
+struct Points {
+    std::vector<float> places;     ///< x, y, z of each
+    std::vector<std::uint8_t> rgb; ///< of each, as sRGB
+};
+
+enum class Quality { draft, normal, best };
+
 /// A picture as sRGB, 8 bits a sample, row by row, the top first.
 struct Picture {
     int width = 0, height = 0;
@@ -117,12 +141,17 @@ class GRAFTAL_API Model {
     void work(double seconds);                ///< of one processor that a picture may take
     void threads(int count);                  ///< 0, as before: one a processor
     void antialias(std::optional<int> depth); ///< up to 4^(depth - 1) samples a pixel; nothing: one
+    void quality(Quality quality);            ///< how closely soft light is followed; normal before
     /// Files that the model names, and the model itself, must lie in this folder; "": anywhere.
     void root(std::string folder);
 
     // What comes of it.
 
     Result<Stats> stats();
+    /// At most 10^7 instances.
+    Result<ObjectGraph> graph();
+    /// The points that `graftal points -o FILE.ply` writes, as many as were asked for; at most 10^9.
+    Result<Points> points(std::uint64_t count);
     /// Draws into memory, by the native engine: the pixels of the `.png` that render_to() writes.
     Result<Picture> render();
     /// Draws into a file, `.png` or `.exr`, which appears whole or not at all.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <cstring>
 #include <filesystem>
 #include <memory>
 #include <utility>
@@ -138,6 +139,24 @@ PointWork work_for(const PointsOptions& options, const CancelFlag& cancel) {
             [&cancel] { return cancel.raised(); }};
 }
 
+Status take_cloud(const PointSource& source, const PointWork& work, const Canvas& canvas,
+                  const std::function<void(std::span<const CloudPoint>)>& take) {
+    const auto make = [&](std::span<const ChaosPoint> points, std::vector<char>& bytes) {
+        std::vector<CloudPoint> cloud;
+        for (const ChaosPoint& point : points)
+            cloud.push_back(cloud_point(point.place, canvas.colour_of(point)));
+        const char* const begin = reinterpret_cast<const char*>(cloud.data());
+        bytes.insert(bytes.end(), begin, begin + cloud.size() * sizeof(CloudPoint));
+    };
+    const auto write = [&](const std::vector<char>& bytes) {
+        std::vector<CloudPoint> cloud(bytes.size() / sizeof(CloudPoint));
+        std::memcpy(cloud.data(), bytes.data(), bytes.size());
+        take(cloud);
+        return true;
+    };
+    return write_points(source, work, make, write) ? Status() : Status::failure("interrupted");
+}
+
 /// `card`: appears with the picture, or neither does.
 Status write_picture(Canvas& canvas, const View& view, const PointsOptions& options, PendingFile* card,
                      PointsReport& report) {
@@ -172,19 +191,26 @@ bool is_cloud_name(const std::string& path) {
 
 std::uint64_t point_count(const PointsOptions& options) {
     if (options.points) return *options.points;
-    if (is_cloud_name(options.output)) return points_of_cloud;
+    if (is_cloud_name(options.output) || options.take) return points_of_cloud;
     const ImageSize size = options.compile.view.size;
     return points_a_pixel * static_cast<std::uint64_t>(size.width) * static_cast<std::uint64_t>(size.height);
 }
 
 Status place_points(const PointSource& source, const View& view, const PointsOptions& options,
                     PendingFile* card, const CancelFlag& cancel, PointsReport& report) {
-    Status status = check_writable(options.output);
+    Status status;
+    if (!options.take) status = check_writable(options.output);
     if (!status.ok()) return status;
     const PointWork work = work_for(options, cancel);
     Canvas canvas(view, options, report.maps);
     report.points = work.points;
     const Stopwatch watch;
+    if (options.take) {
+        status = take_cloud(source, work, canvas, options.take);
+        report.seconds = watch.seconds();
+        report.inside = work.points;
+        return status;
+    }
     if (is_cloud_name(options.output)) {
         status = write_ply(options.output, source, work, options.metadata,
                            [&](const ChaosPoint& point) { return canvas.colour_of(point); });

@@ -3,10 +3,12 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
+#include <span>
 #include <string>
 
 #include "compiler/support/file.h"
 #include "runtime/image/image.h"
+#include "runtime/points/ply_file.h"
 #include "runtime/points/point_source.h"
 #include "runtime/points/tone.h"
 #include "runtime/render/picture_session.h"
@@ -18,7 +20,9 @@ bool is_cloud_name(const std::string& path);
 
 struct PointsOptions {
     StageOptions compile;
-    std::string output;                        ///< is_picture_name() or is_cloud_name()
+    std::string output; ///< is_picture_name() or is_cloud_name()
+    /// In place of an output: gets the points of the cloud in order, some at a time, from any thread.
+    std::function<void(std::span<const CloudPoint>)> take;
     SampleFormat format = SampleFormat::srgb8; ///< of a PNG
     ImageMetadata metadata;
     std::optional<std::uint64_t> points; ///< nothing: 100 a pixel, or a million of a cloud

@@ -67,13 +67,13 @@ void append(float value, std::vector<char>& bytes) {
         bytes.push_back(static_cast<char>(bits >> shift & 0xff));
 }
 
-char byte_of(double linear) {
+std::uint8_t byte_of(double linear) {
     // A table: the power of sRGB would take longer than the point.
-    static const std::vector<char> table = [] {
-        std::vector<char> levels;
+    static const std::vector<std::uint8_t> table = [] {
+        std::vector<std::uint8_t> levels;
         for (int i = 0; i <= 4095; ++i)
-            levels.push_back(static_cast<char>(
-                static_cast<std::uint8_t>(255 * srgb_encoded(static_cast<float>(i) / 4095) + 0.5f)));
+            levels.push_back(
+                static_cast<std::uint8_t>(255 * srgb_encoded(static_cast<float>(i) / 4095) + 0.5f));
         return levels;
     }();
     const double level = linear > 0 ? std::min(linear, 1.0) * 4095 + 0.5 : 0;
@@ -81,6 +81,15 @@ char byte_of(double linear) {
 }
 
 } // namespace
+
+CloudPoint cloud_point(Vec3 place, Rgb rgb) {
+    CloudPoint point;
+    for (int i = 0; i < 3; ++i) {
+        point.place[i] = static_cast<float>(place[i]);
+        point.rgb[i] = byte_of(rgb[i]);
+    }
+    return point;
+}
 
 Status write_ply(const std::string& path, const PointSource& source, const PointWork& work,
                  const ImageMetadata& metadata, const std::function<Rgb(const ChaosPoint&)>& coloured) {
@@ -97,11 +106,11 @@ Status write_ply(const std::string& path, const PointSource& source, const Point
     };
     const auto make = [&](std::span<const ChaosPoint> points, std::vector<char>& bytes) {
         for (const ChaosPoint& point : points) {
-            for (int axis = 0; axis < 3; ++axis)
-                append(static_cast<float>(point.place[axis]), bytes);
-            const Rgb rgb = coloured(point);
-            for (int c = 0; c < 3; ++c)
-                bytes.push_back(byte_of(rgb[c]));
+            const CloudPoint shown = cloud_point(point.place, coloured(point));
+            for (const float coordinate : shown.place)
+                append(coordinate, bytes);
+            for (const std::uint8_t level : shown.rgb)
+                bytes.push_back(static_cast<char>(level));
         }
     };
     const std::string head = header(work.points, metadata);

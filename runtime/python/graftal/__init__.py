@@ -1,0 +1,216 @@
+"""graftal: pictures of fractals and plants, from models of a few lines.
+
+    import graftal
+    fern = graftal.load("fern.rifs", steps=8)
+    picture = fern.render((640, 360))         # NumPy array, shape (360, 640, 3), sRGB bytes
+    places, colours = fern.points(1_000_000)  # arrays of shape (1000000, 3)
+    fern.stats()["leaves"]
+
+A model is loaded from a file, or from a string by lsys(), rifs() or inst(). Functions that work release Python's lock. Ctrl-C
+ends them. One model is for one thread at a time; several models may run in several threads.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import tempfile
+from dataclasses import dataclass
+from typing import Any, Callable, Optional, Sequence, Tuple, Union
+
+import numpy as np
+
+from . import _graftal
+from ._graftal import Message
+
+__all__ = ["Cancelled", "Graph", "Message", "Model", "ModelError", "inst", "load", "lsys", "rifs"]
+
+Progress = Callable[[str, Optional[float]], None]
+Vector = Tuple[float, float, float]
+
+
+class ModelError(Exception):
+    """A model, or the files that it needs, are at fault.
+
+    `messages`: what graftal says, each with severity ("error", "warning", "note"), file, line, column (from 1; 0 without a
+    file), text and hint.
+    """
+
+    def __init__(self, text: str, messages: Sequence[Message] = ()) -> None:
+        super().__init__(text.rstrip("\n"))
+        self.messages = list(messages)
+
+
+class Cancelled(ModelError):
+    """Model.cancel() ended the work."""
+
+
+@dataclass(frozen=True)
+class Graph:
+    """The object-instance graph of a model, of N objects and M instances.
+
+    An object is a primitive, or the union of its instances. The graph may have cycles.
+    """
+
+    root: int
+    objects: "list[str]"
+    """names of the N objects"""
+    primitives: "list[str]"
+    """of each object, such as "sphere"; "" of a union"""
+    parents: np.ndarray
+    """(M,) int64: the object that has the instance"""
+    children: np.ndarray
+    """(M,) int64: the object that is placed"""
+    parent_from_child: np.ndarray
+    """(M, 3, 4) float64: affine maps, x' = A[:, :3] @ x + A[:, 3]"""
+    tints: np.ndarray
+    """(M, 4) float64: linear red, green, blue and alpha, in front of what the child has"""
+
+
+class Model:
+    """A model, and what is asked of it. What has not changed is not made again: a new camera reads nothing."""
+
+    def __init__(self, model: _graftal.Model) -> None:
+        self._model = model
+
+    def set(self, *, steps: Optional[int] = None, seed: Optional[int] = None, **lets: float) -> "Model":
+        """Sets the depth, the seed of random models, and values of `let` in the model."""
+        if steps is not None:
+            self._model.steps(steps)
+        if seed is not None:
+            self._model.seed(seed)
+        for name, value in lets.items():
+            self._model.set(name, float(value))
+        return self
+
+    def camera(
+        self,
+        location: Optional[Vector] = None,
+        look_at: Optional[Vector] = None,
+        up: Optional[Vector] = None,
+        angle_deg: Optional[float] = None,
+        orthographic: bool = False,
+        width: Optional[float] = None,
+    ) -> "Model":
+        """Where the camera stands; the model says, or graftal chooses, what is left open.
+
+        `angle_deg`: horizontal angle of view. `width`: of an orthographic view, in the model's units.
+        """
+        self._model.camera(location, look_at, up, angle_deg, orthographic, width)
+        return self
+
+    def zoom(self, factor: Optional[float]) -> "Model":
+        """Enlarges so many times, about the point that the camera looks at."""
+        self._model.zoom(factor)
+        return self
+
+    def limits(
+        self, *, error_px: float = 0.5, memory_bytes: int = 2 << 30, work_s: Optional[float] = None, threads: int = 0
+    ) -> "Model":
+        """What is smaller than `error_px` pixels is left out. `threads` 0: one a processor."""
+        self._model.error_px(error_px)
+        self._model.memory(memory_bytes)
+        if work_s is not None:
+            self._model.work(work_s)
+        self._model.threads(threads)
+        return self
+
+    def edit(self, text: str) -> "Model":
+        """A new text in place of the model's own."""
+        self._model.edit(text)
+        return self
+
+    def reload(self) -> "Model":
+        """Reads the file, and those that it names, again."""
+        self._model.reload()
+        return self
+
+    def cancel(self) -> None:
+        """Ends, from another thread, what is under way: it raises Cancelled."""
+        self._model.cancel()
+
+    def stats(self, progress: Optional[Progress] = None) -> "dict[str, Any]":
+        """What `graftal stats --json` prints."""
+        return json.loads(self._model.stats(progress))
+
+    @property
+    def graph(self) -> Graph:
+        """The graph after the compiler's passes; at most 10^7 instances."""
+        return Graph(**self._model.graph(None))
+
+    def render(
+        self, size: "tuple[int, int]" = (1280, 720), quality: str = "normal", progress: Optional[Progress] = None
+    ) -> np.ndarray:
+        """A picture by graftal's own ray tracer: (height, width, 3) uint8, sRGB, the top row first.
+
+        `size`: width and height in pixels. `quality`: "draft", "normal" or "best". `progress`: is called with the name of a
+        stage and a share from 0 to 1, or None.
+        """
+        self._ask(size, quality)
+        return self._model.render(progress)
+
+    def points(self, count: int, progress: Optional[Progress] = None) -> "tuple[np.ndarray, np.ndarray]":
+        """Points by random iteration: places (count, 3) float32 in the model's units, and colours (count, 3) uint8, sRGB.
+
+        The same as `graftal points -o FILE.ply` writes.
+        """
+        return self._model.points(count, progress)
+
+    def export(
+        self,
+        path: "Union[str, os.PathLike[str]]",
+        size: "tuple[int, int]" = (1280, 720),
+        quality: str = "normal",
+        engine: str = "native",
+        progress: Optional[Progress] = None,
+    ) -> None:
+        """Writes a picture (.png, .exr) or a scene for POV-Ray (.pov, .inc). `engine`, of pictures: "native" or "povray"."""
+        if engine not in ("native", "povray"):
+            raise ValueError(f"engine: {engine!r} is neither 'native' nor 'povray'")
+        self._ask(size, quality)
+        name = os.fspath(path)
+        if name.endswith((".pov", ".inc")):
+            self._model.compile_to(name, progress)
+        else:
+            self._model.render_to(name, engine, progress)
+
+    def _repr_png_(self) -> bytes:
+        """The picture that a notebook shows of a model."""
+        with tempfile.TemporaryDirectory() as folder:
+            path = os.path.join(folder, "picture.png")
+            self.export(path, (480, 270), "draft")
+            with open(path, "rb") as file:
+                return file.read()
+
+    def _ask(self, size: "tuple[int, int]", quality: str) -> None:
+        if quality not in ("draft", "normal", "best"):
+            raise ValueError(f"quality: {quality!r} is none of 'draft', 'normal', 'best'")
+        width, height = size
+        if not (1 <= width <= 32768 and 1 <= height <= 32768):
+            raise ValueError(f"size: {size!r} is not two numbers of pixels from 1 to 32768")
+        self._model.size(width, height)
+        self._model.quality(quality)
+
+
+def load(path: "Union[str, os.PathLike[str]]", *, steps: Optional[int] = None, seed: Optional[int] = None, **lets: float) -> Model:
+    """A model from a file: .lsys, .rifs or .inst. It is read when it is needed first."""
+    return Model(_graftal.Model.from_file(os.fspath(path))).set(steps=steps, seed=seed, **lets)
+
+
+def _from_text(language: str, text: str, name: str, steps: Optional[int], seed: Optional[int], lets: "dict[str, float]") -> Model:
+    return Model(_graftal.Model.from_text(f"{name}.{language}", text)).set(steps=steps, seed=seed, **lets)
+
+
+def lsys(text: str, *, name: str = "model", steps: Optional[int] = None, seed: Optional[int] = None, **lets: float) -> Model:
+    """A parametric L-system from a string. Files that it names are looked up beside `name`."""
+    return _from_text("lsys", text, name, steps, seed, lets)
+
+
+def rifs(text: str, *, name: str = "model", steps: Optional[int] = None, seed: Optional[int] = None, **lets: float) -> Model:
+    """A recurrent iterated function system from a string."""
+    return _from_text("rifs", text, name, steps, seed, lets)
+
+
+def inst(text: str, *, name: str = "model", steps: Optional[int] = None, seed: Optional[int] = None, **lets: float) -> Model:
+    """Objects and instances from a string."""
+    return _from_text("inst", text, name, steps, seed, lets)

@@ -1,0 +1,175 @@
+// The Python module graftal._graftal: the library's public face (graftal/model.h) for
+// graftal/__init__.py, which has the documentation.
+
+#include <cstring>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <pybind11/functional.h>
+#include <pybind11/numpy.h>
+#include <pybind11/pybind11.h>
+#include <pybind11/stl.h>
+
+#include <graftal/model.h>
+
+namespace py = pybind11;
+using namespace graftal::v1;
+
+namespace {
+
+/// The exception of graftal/__init__.py, which carries the messages.
+[[noreturn]] void raise_error(const std::vector<Message>& messages, bool cancelled) {
+    py::object error = py::module_::import("graftal").attr(cancelled ? "Cancelled" : "ModelError");
+    PyErr_SetObject(error.ptr(), error(text_of(messages), messages).ptr());
+    throw py::error_already_set();
+}
+
+template<typename Value> Value value_of(Result<Value> result) {
+    if (!result) {
+        if (PyErr_Occurred()) throw py::error_already_set();
+        raise_error(result.messages, result.cancelled);
+    }
+    return std::move(*result.value);
+}
+
+/// Runs without Python's lock; Ctrl-C ends it.
+template<typename Work> auto unlocked(Model& model, const py::object& progress, const Work& work) {
+    bool interrupted = false;
+    model.on_progress([&](std::string_view stage, std::optional<double> share) {
+        const py::gil_scoped_acquire lock;
+        if (interrupted) return;
+        try {
+            if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+            if (!progress.is_none()) progress(std::string(stage), share);
+        } catch (py::error_already_set& error) {
+            interrupted = true;
+            error.restore();
+            model.cancel();
+        }
+    });
+    auto result = [&] {
+        const py::gil_scoped_release unlock;
+        return work();
+    }();
+    model.on_progress({});
+    return result;
+}
+
+/// An array that owns what a vector had.
+template<typename Value>
+py::array_t<Value> array_of(std::vector<Value> values, std::vector<py::ssize_t> shape) {
+    auto owner = std::make_unique<std::vector<Value>>(std::move(values));
+    Value* const data = owner->data();
+    const py::capsule capsule(owner.release(),
+                              [](void* held) { delete static_cast<std::vector<Value>*>(held); });
+    return py::array_t<Value>(std::move(shape), data, capsule);
+}
+
+py::dict graph_of(const ObjectGraph& graph) {
+    const auto count = static_cast<py::ssize_t>(graph.instances.size());
+    py::array_t<std::int64_t> parents(count), children(count);
+    py::array_t<double> maps({count, py::ssize_t{3}, py::ssize_t{4}}), tints({count, py::ssize_t{4}});
+    for (py::ssize_t i = 0; i < count; ++i) {
+        const GraphInstance& instance = graph.instances[static_cast<std::size_t>(i)];
+        parents.mutable_at(i) = static_cast<std::int64_t>(instance.parent);
+        children.mutable_at(i) = static_cast<std::int64_t>(instance.child);
+        std::memcpy(maps.mutable_data(i), instance.parent_from_child, sizeof instance.parent_from_child);
+        std::memcpy(tints.mutable_data(i), instance.tint, sizeof instance.tint);
+    }
+    py::dict dict;
+    dict["root"] = graph.root;
+    dict["objects"] = graph.objects;
+    dict["primitives"] = graph.primitives;
+    dict["parents"] = parents;
+    dict["children"] = children;
+    dict["parent_from_child"] = maps;
+    dict["tints"] = tints;
+    return dict;
+}
+
+std::optional<Vector> vector_of(const std::optional<std::array<double, 3>>& v) {
+    return v ? std::optional(Vector{(*v)[0], (*v)[1], (*v)[2]}) : std::nullopt;
+}
+
+} // namespace
+
+PYBIND11_MODULE(_graftal, module) {
+    py::class_<Message>(module, "Message")
+        .def_property_readonly("severity",
+                               [](const Message& message) {
+                                   static constexpr const char* names[] = {"error", "warning", "note"};
+                                   return names[static_cast<std::size_t>(message.severity)];
+                               })
+        .def_readonly("file", &Message::file)
+        .def_readonly("line", &Message::line)
+        .def_readonly("column", &Message::column)
+        .def_readonly("text", &Message::text)
+        .def_readonly("hint", &Message::hint)
+        .def("__repr__", [](const Message& message) { return text_of({message}); });
+
+    py::class_<Model>(module, "Model")
+        .def_static("from_file", &Model::from_file)
+        .def_static("from_text", &Model::from_text)
+        .def("reload", &Model::reload)
+        .def("edit", &Model::edit)
+        .def("set", &Model::set)
+        .def("unset", &Model::unset)
+        .def("steps", &Model::steps)
+        .def("seed", &Model::seed)
+        .def("size", &Model::size)
+        .def("zoom", &Model::zoom)
+        .def("error_px", &Model::error_px)
+        .def("memory", &Model::memory)
+        .def("work", &Model::work)
+        .def("threads", &Model::threads)
+        .def("antialias", &Model::antialias)
+        .def("root", &Model::root)
+        .def("cancel", &Model::cancel)
+        .def("quality",
+             [](Model& model, const std::string& name) {
+                 model.quality(name == "draft"  ? Quality::draft
+                               : name == "best" ? Quality::best
+                                                : Quality::normal);
+             })
+        .def("camera",
+             [](Model& model, const std::optional<std::array<double, 3>>& location,
+                const std::optional<std::array<double, 3>>& look_at,
+                const std::optional<std::array<double, 3>>& up, std::optional<double> angle_deg,
+                bool orthographic, std::optional<double> width) {
+                 model.camera({vector_of(location), vector_of(look_at), vector_of(up), angle_deg,
+                               orthographic, width});
+             })
+        .def("stats",
+             [](Model& model, const py::object& progress) {
+                 return value_of(unlocked(model, progress, [&] { return model.stats(); })).json;
+             })
+        .def("graph",
+             [](Model& model, const py::object& progress) {
+                 return graph_of(value_of(unlocked(model, progress, [&] { return model.graph(); })));
+             })
+        .def("points",
+             [](Model& model, std::uint64_t count, const py::object& progress) {
+                 Points points = value_of(unlocked(model, progress, [&] { return model.points(count); }));
+                 const auto rows = static_cast<py::ssize_t>(points.rgb.size() / 3);
+                 return py::make_tuple(array_of(std::move(points.places), {rows, 3}),
+                                       array_of(std::move(points.rgb), {rows, 3}));
+             })
+        .def("render",
+             [](Model& model, const py::object& progress) {
+                 Picture picture = value_of(unlocked(model, progress, [&] { return model.render(); }));
+                 return array_of(std::move(picture.rgb), {picture.height, picture.width, 3});
+             })
+        .def(
+            "render_to",
+            [](Model& model, const std::string& path, const std::string& engine, const py::object& progress) {
+                value_of(unlocked(model, progress, [&] {
+                    return model.render_to(path, engine == "povray" ? Engine::povray : Engine::native);
+                }));
+            })
+        .def("compile_to", [](Model& model, const std::string& path, const py::object& progress) {
+            value_of(unlocked(model, progress, [&] { return model.compile_to(path); }));
+        });
+}

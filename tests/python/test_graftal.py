@@ -1,0 +1,215 @@
+"""The Python package against the program: GRAFTAL_PROGRAM and GRAFTAL_SOURCE name it and the project."""
+
+import json
+import os
+import pathlib
+import resource
+import struct
+import subprocess
+import tempfile
+import threading
+import unittest
+import zlib
+
+import numpy as np
+
+import graftal
+
+PROGRAM = os.environ["GRAFTAL_PROGRAM"]
+SOURCE = os.environ["GRAFTAL_SOURCE"]
+
+
+def scene(name):
+    return os.path.join(SOURCE, "scenes", name)
+
+
+def png(path):
+    """An RGB PNG of 8 bits without interlacing."""
+    data = pathlib.Path(path).read_bytes()
+    at, packed, size = 8, b"", None
+    while at < len(data):
+        length, kind = struct.unpack(">I4s", data[at : at + 8])
+        body = data[at + 8 : at + 8 + length]
+        if kind == b"IHDR":
+            size = struct.unpack(">II", body[:8])
+            assert body[8:10] == b"\x08\x02"
+        if kind == b"IDAT":
+            packed += body
+        at += 12 + length
+    width, height = size
+    rows = np.frombuffer(zlib.decompress(packed), np.uint8).reshape(height, 1 + 3 * width)
+    picture = np.zeros((height, 3 * width), np.uint8)
+    for y, row in enumerate(rows):
+        above = picture[y - 1].astype(int) if y else np.zeros(3 * width, int)
+        if row[0] in (0, 2):
+            picture[y] = row[1:] + (above if row[0] == 2 else 0)
+            continue
+        done = picture[y]
+        for x in range(3 * width):
+            left = int(done[x - 3]) if x >= 3 else 0
+            corner = int(above[x - 3]) if x >= 3 else 0
+            guess = left + int(above[x]) - corner
+            nearest = min((left, int(above[x]), corner), key=lambda v: abs(guess - v))
+            done[x] = (int(row[1 + x]) + {1: left, 3: (left + int(above[x])) // 2, 4: nearest}[int(row[0])]) & 255
+    return picture.reshape(height, width, 3)
+
+
+class Package(unittest.TestCase):
+    def setUp(self):
+        self.folder = tempfile.TemporaryDirectory()
+        self.addCleanup(self.folder.cleanup)
+
+    def path(self, name):
+        return os.path.join(self.folder.name, name)
+
+    def program(self, *words):
+        return subprocess.run([PROGRAM, *words], check=True, capture_output=True, text=True).stdout
+
+    def test_stats_are_those_of_the_program(self):
+        for name in ("hart/pound_sign.rifs", "abop/fig1_25.lsys", "hart/elm.inst"):
+            printed = json.loads(self.program("stats", scene(name), "--steps", "5", "--json"))
+            self.assertEqual(graftal.load(scene(name), steps=5).stats(), printed)
+
+    def test_pictures_are_those_of_the_program_to_the_bit(self):
+        for name in ("hart/pound_sign.rifs", "abop/fig1_24e.lsys"):
+            self.program("render", scene(name), "--engine", "native", "--steps", "4", "--size", "96x54", "--quality", "draft",
+                         "-q", "-o", self.path("a.png"))
+            drawn = graftal.load(scene(name), steps=4).render((96, 54), "draft")
+            np.testing.assert_array_equal(drawn, png(self.path("a.png")))
+            self.assertGreater(len(np.unique(drawn)), 10)
+
+    def test_points_are_those_of_the_program_to_the_bit(self):
+        self.program("points", scene("ifs/fern.rifs"), "--points", "300000", "--seed", "7", "-q", "-o", self.path("a.ply"))
+        data = pathlib.Path(self.path("a.ply")).read_bytes()
+        record = np.dtype([("place", "<f4", 3), ("rgb", "u1", 3)])
+        written = np.frombuffer(data[data.index(b"end_header\n") + 11 :], record)
+        places, colours = graftal.load(scene("ifs/fern.rifs"), seed=7).points(300_000)
+        np.testing.assert_array_equal(places, written["place"])
+        np.testing.assert_array_equal(colours, written["rgb"])
+
+    def test_the_graph_unfolds_to_what_stats_count(self):
+        for name, steps in (("ifs/menger_sponge.rifs", None), ("abop/fig1_25.lsys", 4), ("abop/fig1_27.lsys", 5)):
+            model = graftal.load(scene(name), steps=steps)
+            graph, stats = model.graph, model.stats()
+            self.assertEqual(graph.parent_from_child.shape, (len(graph.parents), 3, 4))
+            self.assertEqual(len(graph.objects), len(graph.primitives))
+            if name.endswith(".lsys"):
+                leaves = [None] * len(graph.objects)
+
+                def count(o):
+                    if leaves[o] is None:
+                        below = graph.children[graph.parents == o]
+                        leaves[o] = 1 if graph.primitives[o] else sum(count(int(c)) for c in below)
+                    return leaves[o]
+
+                self.assertEqual(str(count(graph.root)), str(stats["leaves"]))
+            else:
+                scales = np.abs(np.linalg.det(graph.parent_from_child[graph.parents == graph.children][:, :, :3]))
+                np.testing.assert_allclose(scales, 1 / 27)
+                self.assertEqual(len(scales), 20)
+
+    def test_faults_carry_their_place(self):
+        with self.assertRaises(graftal.ModelError) as caught:
+            graftal.rifs("rifs x {\n  map a { scal 0.5 }\n}\n").stats()
+        message = caught.exception.messages[0]
+        self.assertEqual((message.severity, message.line, message.column), ("error", 2, 11))
+        self.assertIn("scale", message.text + message.hint)
+        with self.assertRaises(graftal.ModelError):
+            graftal.load(self.path("none.rifs")).render()
+        for wrong in (lambda m: m.render((0, 9)), lambda m: m.render(quality="fine"), lambda m: m.export("a.png", engine="x")):
+            with self.assertRaises(ValueError):
+                wrong(graftal.load(scene("ifs/fern.rifs")))
+
+    def test_a_let_a_depth_and_a_text_change_the_picture(self):
+        text = "let k = 0.5\nrifs x { map a { scale k } map b { scale 0.4 translate <1, 0, 0> } terminal sphere }"
+        model = graftal.rifs(text, steps=3)
+        first = model.render((64, 36), "draft")
+        self.assertFalse(np.array_equal(first, model.set(k=0.3).render((64, 36), "draft")))
+        self.assertTrue(np.array_equal(first, model.set(k=0.5).render((64, 36), "draft")))
+        model.edit(text.replace("sphere", "cube"))
+        self.assertFalse(np.array_equal(first, model.render((64, 36), "draft")))
+
+    def test_export_writes_pictures_and_scenes(self):
+        model = graftal.load(scene("hart/pound_sign.rifs"), steps=2)
+        for name in ("a.png", "a.exr", "a.pov", "a.inc"):
+            model.export(self.path(name), (32, 18), "draft")
+            self.assertGreater(os.path.getsize(self.path(name)), 100)
+        with self.assertRaises(graftal.ModelError):
+            model.export(self.path("a.txt"))
+        self.assertTrue(model._repr_png_().startswith(b"\x89PNG"))
+
+    def test_progress_is_told_cancelled_and_may_raise(self):
+        seen = []
+        model = graftal.load(scene("ifs/menger_sponge.rifs"))
+        model.render((64, 36), "draft", progress=lambda stage, share: seen.append((stage, share)))
+        self.assertIn("draw", {stage for stage, share in seen})
+
+        def cancel(stage, share):
+            model.cancel()
+
+        with self.assertRaises(graftal.Cancelled):
+            model.render((64, 36), "normal", progress=cancel)
+
+        def fail(stage, share):
+            raise KeyError("mine")
+
+        with self.assertRaises(KeyError):
+            model.render((64, 36), "best", progress=fail)
+        model.render((32, 18), "draft")
+
+    def test_threads_draw_side_by_side(self):
+        alone = graftal.load(scene("ifs/fern.rifs")).render((64, 36), "draft")
+        drawn = []
+        threads = [
+            threading.Thread(target=lambda: drawn.append(graftal.load(scene("ifs/fern.rifs")).render((64, 36), "draft")))
+            for _ in range(4)
+        ]
+        for thread in threads:
+            thread.start()
+        for thread in threads:
+            thread.join()
+        self.assertEqual(len(drawn), 4)
+        for picture in drawn:
+            np.testing.assert_array_equal(picture, alone)
+
+    def test_calls_leave_no_memory_behind(self):
+        calls = int(os.environ.get("GRAFTAL_CALLS", "3000"))
+        model = graftal.load(scene("hart/pound_sign.rifs"), steps=2)
+
+        def call():
+            model.camera((1, 2, 5), (0, 0, 0)).set(steps=2)
+            model.stats()
+            model.graph
+            try:
+                graftal.rifs("rifs").stats()
+            except graftal.ModelError:
+                pass
+
+        for _ in range(500):
+            call()
+        before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+        for _ in range(calls):
+            call()
+        grown_kib = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before
+        self.assertLess(grown_kib, 2048)
+
+
+class Notebook(unittest.TestCase):
+    def test_its_cells_run(self):
+        notebook = json.loads(pathlib.Path(SOURCE, "docs", "python.ipynb").read_text())
+        names = {}
+        old = os.getcwd()
+        with tempfile.TemporaryDirectory() as folder:
+            os.symlink(os.path.join(SOURCE, "scenes"), os.path.join(folder, "scenes"))
+            os.chdir(folder)
+            try:
+                for cell in notebook["cells"]:
+                    if cell["cell_type"] == "code":
+                        exec("".join(cell["source"]), names)
+            finally:
+                os.chdir(old)
+        self.assertGreater(sum(cell["cell_type"] == "code" for cell in notebook["cells"]), 4)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <mutex>
 #include <utility>
 
 #include <fmt/format.h>
@@ -95,6 +96,7 @@ struct Model::Parts {
     }
 
     void tell(std::string_view stage, std::optional<double> share) const {
+        const std::lock_guard one_at_a_time(telling);
         if (listener) listener(stage, share ? std::optional(std::clamp(*share, 0.0, 1.0)) : std::nullopt);
     }
 
@@ -117,6 +119,7 @@ struct Model::Parts {
     PictureSession session;
     RenderOptions options;
     OnProgress listener;
+    mutable std::mutex telling;
     std::atomic<bool> cancelled = false;
 };
 

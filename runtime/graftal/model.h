@@ -159,7 +159,8 @@ class GRAFTAL_API Model {
     /// Writes a POV-Ray scene: `.pov`, or `.inc` to be included, and the pictures that it needs.
     Result<Drawn> compile_to(const std::string& path);
 
-    /// Called now and then by the functions above, from the thread that called them. Empty: nobody listens.
+    /// Called now and then while the functions above work, perhaps from a thread of theirs, never twice at a
+    /// time. Empty: nobody listens.
     void on_progress(OnProgress listener);
     /// Ends what another thread, or the listener, has under way, soon; does nothing if there is nothing.
     void cancel();

@@ -1,7 +1,9 @@
 // The Python module graftal._graftal: the library's public face (graftal/model.h) for
 // graftal/__init__.py, which has the documentation.
 
+#include <array>
 #include <cstring>
+#include <exception>
 #include <memory>
 #include <optional>
 #include <string>
@@ -27,26 +29,17 @@ namespace {
     throw py::error_already_set();
 }
 
-template<typename Value> Value value_of(Result<Value> result) {
-    if (!result) {
-        if (PyErr_Occurred()) throw py::error_already_set();
-        raise_error(result.messages, result.cancelled);
-    }
-    return std::move(*result.value);
-}
-
-/// Runs without Python's lock; Ctrl-C ends it.
-template<typename Work> auto unlocked(Model& model, const py::object& progress, const Work& work) {
-    bool interrupted = false;
+/// Runs without Python's lock. Ctrl-C, and what `progress` throws, end it.
+template<typename Work> auto value_of(Model& model, const py::object& progress, const Work& work) {
+    std::exception_ptr thrown; // perhaps in another thread than this
     model.on_progress([&](std::string_view stage, std::optional<double> share) {
         const py::gil_scoped_acquire lock;
-        if (interrupted) return;
+        if (thrown) return;
         try {
             if (PyErr_CheckSignals() != 0) throw py::error_already_set();
             if (!progress.is_none()) progress(std::string(stage), share);
-        } catch (py::error_already_set& error) {
-            interrupted = true;
-            error.restore();
+        } catch (const py::error_already_set&) {
+            thrown = std::current_exception();
             model.cancel();
         }
     });
@@ -55,7 +48,9 @@ template<typename Work> auto unlocked(Model& model, const py::object& progress, 
         return work();
     }();
     model.on_progress({});
-    return result;
+    if (thrown) std::rethrow_exception(thrown);
+    if (!result) raise_error(result.messages, result.cancelled);
+    return std::move(*result.value);
 }
 
 /// An array that owns what a vector had.
@@ -144,32 +139,32 @@ PYBIND11_MODULE(_graftal, module) {
              })
         .def("stats",
              [](Model& model, const py::object& progress) {
-                 return value_of(unlocked(model, progress, [&] { return model.stats(); })).json;
+                 return value_of(model, progress, [&] { return model.stats(); }).json;
              })
         .def("graph",
              [](Model& model, const py::object& progress) {
-                 return graph_of(value_of(unlocked(model, progress, [&] { return model.graph(); })));
+                 return graph_of(value_of(model, progress, [&] { return model.graph(); }));
              })
         .def("points",
              [](Model& model, std::uint64_t count, const py::object& progress) {
-                 Points points = value_of(unlocked(model, progress, [&] { return model.points(count); }));
+                 Points points = value_of(model, progress, [&] { return model.points(count); });
                  const auto rows = static_cast<py::ssize_t>(points.rgb.size() / 3);
                  return py::make_tuple(array_of(std::move(points.places), {rows, 3}),
                                        array_of(std::move(points.rgb), {rows, 3}));
              })
         .def("render",
              [](Model& model, const py::object& progress) {
-                 Picture picture = value_of(unlocked(model, progress, [&] { return model.render(); }));
+                 Picture picture = value_of(model, progress, [&] { return model.render(); });
                  return array_of(std::move(picture.rgb), {picture.height, picture.width, 3});
              })
         .def(
             "render_to",
             [](Model& model, const std::string& path, const std::string& engine, const py::object& progress) {
-                value_of(unlocked(model, progress, [&] {
+                value_of(model, progress, [&] {
                     return model.render_to(path, engine == "povray" ? Engine::povray : Engine::native);
-                }));
+                });
             })
         .def("compile_to", [](Model& model, const std::string& path, const py::object& progress) {
-            value_of(unlocked(model, progress, [&] { return model.compile_to(path); }));
+            value_of(model, progress, [&] { return model.compile_to(path); });
         });
 }

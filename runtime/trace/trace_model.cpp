@@ -392,6 +392,7 @@ TraceModel::TraceModel(std::shared_ptr<const PreparedCut> ready, const View& see
     ModelBuilder(*this).build();
     terminal_reach = farthest_terminal(*this);
     find_shells(*this);
+    add_specks(*this);
     add_unrollings(*this);
     even = is_even(*this);
 }

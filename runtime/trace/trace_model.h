@@ -20,6 +20,7 @@
 #include "runtime/trace/lanes.h"
 #include "runtime/trace/layers.h"
 #include "runtime/trace/mesh_store.h"
+#include "runtime/trace/specks.h"
 
 namespace graftal {
 
@@ -79,6 +80,9 @@ struct Unrolling {
     /// primitives that are only scaled evenly and moved, or too many.
     std::uint32_t leaf_tree = no_tree;
     double most_size = -1; ///< the largest diameter of such a part, likewise; negative if there is none
+    /// The largest diameter of a part that is a speck where it is cut, by what it must measure to be one;
+    /// infinite if some part is none.
+    double most_speck_size = std::numeric_limits<double>::infinity();
     /// Levels that are left where no such part has any left; no_steps: never.
     std::uint32_t last_steps = no_steps;
 
@@ -112,7 +116,9 @@ struct alignas(64) TraceNode {
     std::uint32_t stop_edge_count = 0; ///< which follow those
     std::uint32_t first_unrolling = 0; ///< the deepest first
     std::uint32_t unrolling_count = 0;
-    std::uint32_t run = 0; ///< of TraceModel::runs
+    std::uint32_t run = 0;         ///< of TraceModel::runs
+    std::uint32_t first_speck = 0; ///< of TraceModel::specks: of what is drawn where it is cut and faint
+    std::uint32_t speck_count = 0;
     ShellSizes shell;
     Primitive primitive = PrimitiveKind::sphere;
     double flattest_edge = 1; ///< least flatness of its edges
@@ -162,6 +168,7 @@ struct TraceModel {
     std::vector<BoxNode> boxes;
     std::vector<PackedNode> packed_boxes; ///< of runs
     std::vector<Unrolling> unrollings;
+    std::vector<SpeckLanes> specks;
     std::vector<TraceRun> runs;
     std::vector<Affine> graph_from_frame;               ///< by node
     mutable MeshStore meshes;                           ///< of shells

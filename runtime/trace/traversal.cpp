@@ -10,6 +10,7 @@
 #include "runtime/trace/traversal_kernel.h"
 #include "runtime/trace/traversal_leaves.h"
 #include "runtime/trace/traversal_runs.h"
+#include "runtime/trace/traversal_specks.h"
 
 namespace graftal {
 

@@ -80,11 +80,12 @@ class Traversal final : public Surfaces {
         std::uint32_t edge = 0;
         std::uint32_t node = 0;
         std::uint32_t steps = 0;
-        bool cut = false;   ///< drawn by its stop edges
-        bool items = false; ///< its entries are items of a run, not edges
-        bool faint = false; ///< they stand for a set without area (least_width.h)
-        Vec3 margin{0.0};   ///< by which parts may reach out of their boxes
-        float least = 0;    ///< where the ray begins, in units from the base
+        bool cut = false;    ///< drawn by its stop edges
+        bool items = false;  ///< its entries are items of a run, not edges
+        bool faint = false;  ///< they stand for a set without area (least_width.h)
+        bool specks = false; ///< they lead to nodes that are cut and faint
+        Vec3 margin{0.0};    ///< by which parts may reach out of their boxes
+        float least = 0;     ///< where the ray begins, in units from the base
         /// By axis: the side of boxes where the ray goes in, the origin less the margin as that and the other
         /// side see it, and the reciprocal of the direction.
         Int4 side_in;

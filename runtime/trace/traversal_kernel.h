@@ -107,6 +107,7 @@ template<Instructions instructions, bool any, bool even> struct Traversal::Kerne
     GRAFTAL_INLINE void push_world(const Ray& ray) {
         Frame& frame = push_ray(ray);
         frame.items = false;
+        frame.specks = false;
         frame.flatness = 1;
         frame.faint = false;
         frame.margin = Vec3(model.widest * model.most_half_width);
@@ -220,9 +221,15 @@ template<Instructions instructions, bool any, bool even> struct Traversal::Kerne
                 return false;
             }
         }
+        LocalRay ray;
+        if (self.frames_[entry.frame].specks && node.speck_count > 0) {
+            const Frame& parent = self.frames_[entry.frame];
+            if (!take_ray(edge, parent, entry, ray) ||
+                misses_specks(node, ray, parent.margin.x * edge.growth))
+                return false;
+        }
         if (node.kind == TraceNode::Kind::primitive) {
             const Frame& parent = self.frames_[entry.frame];
-            LocalRay ray;
             if (parent.faint && node.primitive != PrimitiveKind::plane)
                 meet_faint(node, edge, parent, entry);
             else if (take_ray(edge, parent, entry, ray))
@@ -300,6 +307,7 @@ template<Instructions instructions, bool any, bool even> struct Traversal::Kerne
         frame.cut = is_cut(node, frame, parent.least_detail, detail);
         frame.least_detail = model.least_detail_per_unit;
         frame.items = node.kind == TraceNode::Kind::run;
+        frame.specks = false;
         if (frame.cut && node.stop_tree == no_tree) {
             if (frame.faint || node.faint)
                 meet_faint_proxy(node, frame);
@@ -325,6 +333,10 @@ template<Instructions instructions, bool any, bool even> struct Traversal::Kerne
             frame.margin = Vec3(shell_margin(node, frame));
             ready_for_boxes(frame);
             meet_shell(self.shell_of(frame), number);
+            return false;
+        }
+        if (frame.cut && frame.faint && node.speck_count > 0 && frame.flatness == 1) {
+            meet_specks(node, number);
             return false;
         }
         ready_for_boxes(frame);
@@ -403,13 +415,15 @@ template<Instructions instructions, bool any, bool even> struct Traversal::Kerne
             const double size = frame.scale * unrolling.least_size;
             const bool has_leaves = unrolling.leaf_tree != no_tree && !frame.faint;
             if (has_leaves && frame.steps == unrolling.last_steps) return unrolling.leaf_tree;
-            if (!known && (has_leaves || !(size * frame.least_detail > 1))) {
+            const bool has_specks = unrolling.most_speck_size < INFINITY && frame.flatness == 1;
+            if (!known && (has_leaves || has_specks || !(size * frame.least_detail > 1))) {
                 const auto details = model.projection.detail_range(world_ball(node, frame, node.reach));
                 frame.least_detail = surely_more * details.least;
                 most = details.most;
                 known = true;
             }
             if (!(size * frame.least_detail > 1)) continue;
+            frame.specks = has_specks && frame.scale * unrolling.most_speck_size * most <= surely_more;
             const bool all_cut = has_leaves && frame.scale * unrolling.most_size * most <= surely_more;
             return all_cut ? unrolling.leaf_tree : unrolling.tree;
         }
@@ -500,6 +514,10 @@ template<Instructions instructions, bool any, bool even> struct Traversal::Kerne
     // What is met in other ways (traversal_leaves.h):
     void meet_shell(const TraceMesh& mesh, std::uint32_t frame_number);
     void meet_triangle(const TraceMesh& mesh, std::uint32_t triangle, const Entry& entry);
+    /// Which of the specks in whose node's frame the ray is it may meet; `half_width`: by TraceModel::widest.
+    std::uint32_t specks_near(const SpeckLanes& specks, const LocalRay& ray, double half_width) const;
+    bool misses_specks(const TraceNode& node, const LocalRay& ray, double half_width) const;
+    void meet_specks(const TraceNode& node, std::uint32_t frame_number);
     /// A primitive of what stands for a set without area.
     void meet_faint(const TraceNode& node, const TraceEdge& edge, const Frame& parent, const Entry& entry);
     void meet_faint_proxy(const TraceNode& node, const Frame& frame);

@@ -61,6 +61,13 @@ template<Instructions instructions> GRAFTAL_INLINE Float8 spread(float x) {
     return x - Float8{};
 }
 
+/// Where it is 0 something small: far beyond all boxes, but a number, and 0 times it is 0.
+GRAFTAL_INLINE Float4 never_zero(const Float4& direction) {
+    constexpr Float4 least = {1e-18f, 1e-18f, 1e-18f, 1e-18f};
+    const Float4 magnitude = direction < 0 ? -direction : direction;
+    return magnitude > least ? direction : least;
+}
+
 /// The range of t in which a ray is within a box; empty where least > most.
 GRAFTAL_INLINE RayRange range_in(const Box& box, const Ray& ray, RayRange range) {
     for (int axis = 0; axis < 3; ++axis) {

@@ -309,7 +309,7 @@ bool is_even(const TraceModel& model) {
     const auto is_plain_edge = [](const TraceEdge& edge) {
         return edge.to_primitive ? edge.flatness > flattest_placement : edge.upright;
     };
-    return !model.has_shells && std::ranges::all_of(model.nodes, is_plain) &&
+    return !model.has_shells && !model.clear_texels && std::ranges::all_of(model.nodes, is_plain) &&
            std::ranges::all_of(model.edges, is_plain_edge);
 }
 
@@ -359,8 +359,6 @@ void TraceEdge::find_upright() {
     const auto scales = [](const Mat3& m) { return m == Mat3(m[0][0]) && m[0][0] > 0; };
     const Mat3 linear = parent_from_child.affine().linear, inverse = child_from_parent.affine().linear;
     upright = similarity && scales(linear) && scales(inverse);
-    int exponent = 0;
-    keeps_directions = upright && std::frexp(stretch, &exponent) == 0.5 && inverse[0][0] * stretch == 1;
 }
 
 std::uint32_t TraceRun::edge_of(RunShape shape, std::uint16_t colour) const {
@@ -395,6 +393,7 @@ TraceModel::TraceModel(std::shared_ptr<const PreparedCut> ready, const View& see
     add_specks(*this);
     add_unrollings(*this);
     even = is_even(*this);
+    if (even) even_parts = graftal::even_parts(*this);
 }
 
 const SelfShadows& TraceModel::self_shadows() const {

@@ -17,6 +17,7 @@
 #include "compiler/support/ray.h"
 #include "runtime/image/texture.h"
 #include "runtime/trace/box_tree.h"
+#include "runtime/trace/even_parts.h"
 #include "runtime/trace/lanes.h"
 #include "runtime/trace/layers.h"
 #include "runtime/trace/mesh_store.h"
@@ -46,10 +47,9 @@ struct alignas(64) TraceEdge {
                          ///< it is not too little
     std::uint32_t child = 0;
     unsigned levels = 0;
-    bool similarity = false;       ///< then a path's norm is the product of its stretches
-    bool upright = false;          ///< only scales evenly and moves
-    bool keeps_directions = false; ///< and to the last bit those of rays: scales by a power of two
-    bool to_primitive = false;     ///< leads to one
+    bool similarity = false;   ///< then a path's norm is the product of its stretches
+    bool upright = false;      ///< only scales evenly and moves
+    bool to_primitive = false; ///< leads to one
     LaneMap parent_from_child;
     LaneMap child_from_parent;
     Box box; ///< of what the child draws, in the parent's frame
@@ -59,10 +59,11 @@ struct alignas(64) TraceEdge {
     /// before.
     std::uint32_t holder = no_edge;
     double turns = 1; ///< of a primitive: length_in_turns() of the graph's instance
-    /// Of an unrolling's edges that lead several levels down, which have no tint and material of their own:
-    /// the way is one of its edges or the node's, and then one of that child's.
-    /// `last` may be marked as one from a cut node.
+    /// Of an unrolling's edges that lead several levels down: the way is one of its edges or the node's, and
+    /// then one of that child's. `last` may be marked as one from a cut node.
     std::uint32_t before = no_edge, last = no_edge;
+    std::uint32_t length = 1; ///< of the way, in edges
+    bool as_one = true;       ///< its tint, material and holder are those of the whole way; no mark is on it
 
     void find_upright();
 };
@@ -186,9 +187,10 @@ struct TraceModel {
     bool has_shells = false;   ///< some node may be drawn as one
     std::uint64_t weighed = 0; ///< edges of kinds followed to find where (Weights)
     bool clear_texels = false; ///< some texture has them
-    /// All is bounded, drawn no wider than it is, and only scaled evenly and moved down to the primitives:
-    /// rays go through it sooner (traversal_even.h).
+    /// All is bounded, drawn no wider than it is, opaque, and only scaled evenly and moved down to the
+    /// primitives: rays go through it sooner (traversal_even.h).
     bool even = false;
+    std::vector<EvenPart> even_parts; ///< by edge, if it is
 
     /// Up to where a hit will do, if none can be nearer by more than this share of the half width: of a model
     /// in a plane that is drawn in specks; else before all.

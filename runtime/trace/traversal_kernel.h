@@ -18,8 +18,8 @@
 
 namespace graftal {
 
-/// `any`: whatever is met first will do, and only that it is. `even`: the model is (TraceModel::even).
-template<Instructions instructions, bool any, bool even> struct Traversal::Kernel {
+/// `any`: whatever is met first will do, and only that it is.
+template<Instructions instructions, bool any> struct Traversal::Kernel {
     Traversal& self;
     const TraceModel& model;
     const RayRange range;
@@ -34,20 +34,11 @@ template<Instructions instructions, bool any, bool even> struct Traversal::Kerne
         self.patience_ = self.visits_ + most_patience;
         self.hurries_ = false;
         if (!self.flat_met_.empty()) self.flat_met_.clear();
-        Entry entry;
-        if constexpr (even) {
-            if (!enter_world(ray, entry)) return false;
-            for (bool more = true; more || pop(0, entry);) {
-                more = entry.entry & BoxNode::inner ? go_into(entry) : enter_even(entry);
-                if (any && self.best_.found) return true;
-                if (self.visits_ > self.visit_limit_ && !self.goes_on()) break;
-            }
-            return self.best_.found;
-        }
         const double enough = model.near_enough(ray, near_enough_share),
                      plenty = model.near_enough(ray, plenty_share);
         push_world(ray);
         try_edge(self.frames_.front(), 0);
+        Entry entry;
         bool more = false;
         while (more || pop(0, entry)) {
             more = go_into(entry);
@@ -76,7 +67,7 @@ template<Instructions instructions, bool any, bool even> struct Traversal::Kerne
     GRAFTAL_INLINE bool go_into(Entry& entry) {
         if (!(entry.entry & BoxNode::inner)) return enter(entry);
         self.depth_ = entry.frame + 1;
-        if (!even && (entry.entry & BoxNode::packed))
+        if (entry.entry & BoxNode::packed)
             return test_packed(entry.entry & ~(BoxNode::inner | BoxNode::packed), entry.frame, entry);
         return test_boxes(model.boxes, entry.entry & ~BoxNode::inner, entry.frame, entry);
     }
@@ -172,8 +163,8 @@ template<Instructions instructions, bool any, bool even> struct Traversal::Kerne
             // Lanes of no numbers stay so by the last axis.
             enters = greater(enters,
                              (side_of(in, axis) - spread<instructions>(frame.origin_in[axis])) * reciprocal);
-            const float origin_out = (even ? frame.origin_in : frame.origin_out)[axis];
-            leaves = lesser(leaves, (side_of(1 - in, axis) - spread<instructions>(origin_out)) * reciprocal);
+            leaves = lesser(leaves, (side_of(1 - in, axis) - spread<instructions>(frame.origin_out[axis])) *
+                                        reciprocal);
         }
         std::uint32_t lanes = bits_of<instructions>(enters <= leaves) & used;
         if (lanes == 0) return false;
@@ -239,7 +230,7 @@ template<Instructions instructions, bool any, bool even> struct Traversal::Kerne
         Frame& frame = push(); // parents may move, but no more after this
         const Frame& parent = self.frames_[entry.frame];
         if (!take_ray(edge, parent, entry, frame)) return false;
-        if (edge.keeps_directions) {
+        if (edge.upright) {
             frame.reciprocal = parent.reciprocal;
             frame.side_in = parent.side_in;
         } else {
@@ -257,8 +248,7 @@ template<Instructions instructions, bool any, bool even> struct Traversal::Kerne
         if (edge.upright) {
             const double growth = edge.child_from_parent.column[0][0];
             ray.origin = near * splat(growth) + edge.child_from_parent.translation;
-            ray.direction = edge.keeps_directions ? parent.direction
-                                                  : parent.direction * splat(growth) * splat(edge.stretch);
+            ray.direction = parent.direction; // `unit` tells how it grows
             ray.speed = parent.speed * edge.growth;
             ray.unit = parent.unit * edge.stretch;
             return true;
@@ -353,10 +343,7 @@ template<Instructions instructions, bool any, bool even> struct Traversal::Kerne
 
     GRAFTAL_INLINE void ready_direction(Frame& frame) const {
         const Float4 direction = __builtin_convertvector(frame.direction, Float4);
-        // Where it is 0 something small: far beyond all boxes, but a number, and 0 times it is 0.
-        constexpr Float4 least = {1e-18f, 1e-18f, 1e-18f, 1e-18f};
-        const Float4 magnitude = direction < 0 ? -direction : direction;
-        frame.reciprocal = 1 / (magnitude > least ? direction : least);
+        frame.reciprocal = 1 / never_zero(direction);
         frame.side_in = -(frame.reciprocal < 0);
     }
 
@@ -372,9 +359,6 @@ template<Instructions instructions, bool any, bool even> struct Traversal::Kerne
     }
 
     GRAFTAL_INLINE Ball world_ball(const TraceNode& node, const Frame& frame, double radius) const {
-        if constexpr (even)
-            return {vec3_of(node.ball_centre * splat(even_scale(frame)) + frame.world_from_node.translation),
-                    frame.scale * radius};
         return {vec3_of(point_through(frame.world_from_node, node.ball_centre)), frame.scale * radius};
     }
 
@@ -493,7 +477,8 @@ template<Instructions instructions, bool any, bool even> struct Traversal::Kerne
         self.best_.point = ray(hit.t);
         self.best_.turns = model.edges[entry.entry].turns;
         self.best_.proxy_node = no_edge;
-        place_leaf(parent, model.edges[entry.entry].parent_from_child, self.best_.world_from_leaf);
+        compose(parent.world_from_node, model.edges[entry.entry].parent_from_child,
+                self.best_.world_from_leaf);
         self.keep_way(entry.frame);
         self.way_.push_back(entry.entry | (parent.cut ? from_cut : 0));
     }
@@ -503,13 +488,6 @@ template<Instructions instructions, bool any, bool even> struct Traversal::Kerne
     /// `ray`: from where the entry begins, in units of the frame's.
     void meet_body(RunShape shape, const Affine& run_from_body, const TraceRun& run, const RunItem& item,
                    const Ray& ray, const Entry& entry);
-
-    // In models that are even (traversal_even.h):
-    GRAFTAL_INLINE static double even_scale(const Frame& frame) { return frame.world_from_node.column[0][0]; }
-    /// The first entry, or false if there is none.
-    bool enter_world(const Ray& ray, Entry& entry);
-    bool enter_even(Entry& entry);
-    void place_leaf(const Frame& parent, const LaneMap& parent_from_leaf, LaneMap& world_from_leaf) const;
 
     // What is met in other ways (traversal_leaves.h):
     void meet_shell(const TraceMesh& mesh, std::uint32_t frame_number);

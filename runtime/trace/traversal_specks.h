@@ -8,10 +8,10 @@
 
 namespace graftal {
 
-template<Instructions instructions, bool any, bool even>
-GRAFTAL_INLINE std::uint32_t
-Traversal::Kernel<instructions, any, even>::specks_near(const SpeckLanes& specks, const LocalRay& ray,
-                                                        double half_width) const {
+template<Instructions instructions, bool any>
+GRAFTAL_INLINE std::uint32_t Traversal::Kernel<instructions, any>::specks_near(const SpeckLanes& specks,
+                                                                               const LocalRay& ray,
+                                                                               double half_width) const {
     // What the world's coordinates may be off by, in the frame.
     const double rounding =
         1e-9 + 1e-14 * ray.speed * (std::abs(ray.base) + largest_component(lanes_of(self.ray_.origin)));
@@ -43,18 +43,18 @@ Traversal::Kernel<instructions, any, even>::specks_near(const SpeckLanes& specks
                                  (dot(aside, specks.side[2]) <= half));
 }
 
-template<Instructions instructions, bool any, bool even>
-GRAFTAL_INLINE bool Traversal::Kernel<instructions, any, even>::misses_specks(const TraceNode& node,
-                                                                              const LocalRay& ray,
-                                                                              double half_width) const {
+template<Instructions instructions, bool any>
+GRAFTAL_INLINE bool Traversal::Kernel<instructions, any>::misses_specks(const TraceNode& node,
+                                                                        const LocalRay& ray,
+                                                                        double half_width) const {
     for (std::uint32_t i = 0; i < node.speck_count; ++i)
         if (specks_near(model.specks[node.first_speck + i], ray, half_width) != 0) return false;
     return true;
 }
 
-template<Instructions instructions, bool any, bool even>
-GRAFTAL_INLINE void Traversal::Kernel<instructions, any, even>::meet_specks(const TraceNode& node,
-                                                                            std::uint32_t frame_number) {
+template<Instructions instructions, bool any>
+GRAFTAL_INLINE void Traversal::Kernel<instructions, any>::meet_specks(const TraceNode& node,
+                                                                      std::uint32_t frame_number) {
     const std::uint32_t first_edge = node.first_edge + node.edge_count;
     for (std::uint32_t i = 0; i < node.speck_count; ++i) {
         const Frame& frame = self.frames_[frame_number];

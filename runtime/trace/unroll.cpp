@@ -240,6 +240,11 @@ class Unroller {
         edge.before = before;
         edge.last = last;
         edge.turns = second.turns;
+        edge.length = first.length + second.length;
+        edge.as_one = first.as_one && second.as_one && !(last & from_cut);
+        edge.tint = first.tint * second.tint;
+        edge.material = second.material ? second.material : first.material;
+        edge.holder = second.holder != no_edge ? second.holder : first.child;
         edge.child = second.child;
         edge.to_primitive = second.to_primitive;
         edge.levels = first.levels + second.levels;

@@ -458,38 +458,16 @@ template<Instructions instructions, bool any> struct Traversal::Kernel {
         return !any;
     }
 
-    /// Meets a child in whose frame the ray is `local`.
-    GRAFTAL_INLINE void meet_primitive(const Primitive& primitive, const Frame& parent, const LocalRay& local,
-                                       const Entry& entry) {
-        const Ray ray{vec3_of(local.origin), vec3_of(local.direction)};
-        RayRange near = range_from(local.base, local.speed);
-        PrimitiveHit hit;
-        if (!intersect(primitive, ray, near, hit)) return;
-        for (int crossing = 0;
-             model.clear_texels &&
-             self.is_clear(entry.entry, entry.frame, model.edges[entry.entry].turns, ray(hit.t));
-             ++crossing) {
-            near.least = hit.t;
-            if (crossing == most_crossings || !intersect(primitive, ray, near, hit)) return;
-        }
-        if (!set_best(local.base + hit.t * local.unit)) return;
-        self.best_.normal = hit.normal;
-        self.best_.point = ray(hit.t);
-        self.best_.turns = model.edges[entry.entry].turns;
-        self.best_.proxy_node = no_edge;
-        compose(parent.world_from_node, model.edges[entry.entry].parent_from_child,
-                self.best_.world_from_leaf);
-        self.keep_way(entry.frame);
-        self.way_.push_back(entry.entry | (parent.cut ? from_cut : 0));
-    }
-
     /// Meets an item of the frame's run (traversal_runs.h).
     void meet_item(const Entry& entry);
     /// `ray`: from where the entry begins, in units of the frame's.
     void meet_body(RunShape shape, const Affine& run_from_body, const TraceRun& run, const RunItem& item,
                    const Ray& ray, const Entry& entry);
 
-    // What is met in other ways (traversal_leaves.h):
+    // What is met (traversal_leaves.h):
+    /// A child in whose frame the ray is `local`.
+    void meet_primitive(const Primitive& primitive, const Frame& parent, const LocalRay& local,
+                        const Entry& entry);
     void meet_shell(const TraceMesh& mesh, std::uint32_t frame_number);
     void meet_triangle(const TraceMesh& mesh, std::uint32_t triangle, const Entry& entry);
     /// Which of the specks in whose node's frame the ray is it may meet; `half_width`: by TraceModel::widest.

@@ -1,11 +1,35 @@
 #pragma once
 
-// How the traversal meets shells, proxies and what stands for sets without area; only traversal.cpp includes
-// it.
+// How the traversal meets primitives, shells, proxies and what stands for sets without area; only
+// traversal.cpp includes it.
 
 #include "runtime/trace/traversal_kernel.h"
 
 namespace graftal {
+
+template<Instructions instructions, bool any>
+GRAFTAL_INLINE void
+Traversal::Kernel<instructions, any>::meet_primitive(const Primitive& primitive, const Frame& parent,
+                                                     const LocalRay& local, const Entry& entry) {
+    const Ray ray{vec3_of(local.origin), vec3_of(local.direction)};
+    RayRange near = range_from(local.base, local.speed);
+    PrimitiveHit hit;
+    if (!intersect(primitive, ray, near, hit)) return;
+    for (int crossing = 0; model.clear_texels && self.is_clear(entry.entry, entry.frame,
+                                                               model.edges[entry.entry].turns, ray(hit.t));
+         ++crossing) {
+        near.least = hit.t;
+        if (crossing == most_crossings || !intersect(primitive, ray, near, hit)) return;
+    }
+    if (!set_best(local.base + hit.t * local.unit)) return;
+    self.best_.normal = hit.normal;
+    self.best_.point = ray(hit.t);
+    self.best_.turns = model.edges[entry.entry].turns;
+    self.best_.proxy_node = no_edge;
+    compose(parent.world_from_node, model.edges[entry.entry].parent_from_child, self.best_.world_from_leaf);
+    self.keep_way(entry.frame);
+    self.way_.push_back(entry.entry | (parent.cut ? from_cut : 0));
+}
 
 template<Instructions instructions, bool any>
 GRAFTAL_INLINE void Traversal::Kernel<instructions, any>::meet_shell(const TraceMesh& mesh,

@@ -1,9 +1,8 @@
 #pragma once
 
 // How rays go through models whose parts are only scaled evenly and moved, and drawn no wider than they are:
-// the general way (traversal_kernel.h) without what such models never ask for, with the same bits where that
-// has no margins. The ray has one direction in all frames; of a frame's place a scale and an offset are left.
-// Only traversal.cpp includes this.
+// the general way (traversal_kernel.h) without what such models never ask for. The ray has one direction in
+// all frames; of a frame's place a scale and an offset are left. Only traversal.cpp includes this.
 
 #include "compiler/primitives/passage.h"
 #include "runtime/trace/even_parts.h"

@@ -230,7 +230,7 @@ template<Instructions instructions, bool any> struct Traversal::Kernel {
         Frame& frame = push(); // parents may move, but no more after this
         const Frame& parent = self.frames_[entry.frame];
         if (!take_ray(edge, parent, entry, frame)) return false;
-        if (edge.upright) {
+        if (edge.keeps_directions) {
             frame.reciprocal = parent.reciprocal;
             frame.side_in = parent.side_in;
         } else {
@@ -248,7 +248,8 @@ template<Instructions instructions, bool any> struct Traversal::Kernel {
         if (edge.upright) {
             const double growth = edge.child_from_parent.column[0][0];
             ray.origin = near * splat(growth) + edge.child_from_parent.translation;
-            ray.direction = parent.direction; // `unit` tells how it grows
+            ray.direction = edge.keeps_directions ? parent.direction
+                                                  : parent.direction * splat(growth) * splat(edge.stretch);
             ray.speed = parent.speed * edge.growth;
             ray.unit = parent.unit * edge.stretch;
             return true;

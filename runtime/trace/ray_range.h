@@ -34,6 +34,20 @@ template<Instructions instructions> GRAFTAL_INLINE std::uint32_t bits_of(const I
     return bits;
 }
 
+template<Instructions instructions> GRAFTAL_INLINE std::uint32_t bits_of(const Long4& lanes) {
+#if defined(__x86_64__) && !defined(__clang__)
+    if constexpr (instructions == Instructions::avx2) {
+        std::uint32_t bits;
+        __asm__("vmovmskpd %1, %0" : "=r"(bits) : "x"(lanes));
+        return bits;
+    }
+#endif
+    std::uint32_t bits = 0;
+    for (int lane = 0; lane < 4; ++lane)
+        bits |= static_cast<std::uint32_t>(lanes[lane] & 1) << lane;
+    return bits;
+}
+
 /// The same number in all lanes.
 template<Instructions instructions> GRAFTAL_INLINE Float8 spread(float x) {
 #if defined(__x86_64__) && !defined(__clang__)
@@ -45,6 +59,13 @@ template<Instructions instructions> GRAFTAL_INLINE Float8 spread(float x) {
     }
 #endif
     return x - Float8{};
+}
+
+/// Where it is 0 something small: far beyond all boxes, but a number, and 0 times it is 0.
+GRAFTAL_INLINE Float4 never_zero(const Float4& direction) {
+    constexpr Float4 least = {1e-18f, 1e-18f, 1e-18f, 1e-18f};
+    const Float4 magnitude = direction < 0 ? -direction : direction;
+    return magnitude > least ? direction : least;
 }
 
 /// The range of t in which a ray is within a box; empty where least > most.

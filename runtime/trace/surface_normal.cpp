@@ -12,6 +12,7 @@ namespace graftal {
 
 Vec3 transformed_normal(const LaneMap& map, Vec3 normal) {
     Mat3 m = map.affine().linear;
+    if (m == Mat3(m[0][0]) && m[0][0] > 0) return glm::normalize(normal);
     const double largest = largest_entry(m);
     m /= largest;
     // The cofactors are the inverse transposed, up to a factor, the determinant.

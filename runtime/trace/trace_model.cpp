@@ -309,7 +309,7 @@ bool is_even(const TraceModel& model) {
     const auto is_plain_edge = [](const TraceEdge& edge) {
         return edge.to_primitive ? edge.flatness > flattest_placement : edge.upright;
     };
-    return !model.has_shells && std::ranges::all_of(model.nodes, is_plain) &&
+    return !model.has_shells && !model.clear_texels && std::ranges::all_of(model.nodes, is_plain) &&
            std::ranges::all_of(model.edges, is_plain_edge);
 }
 
@@ -392,8 +392,10 @@ TraceModel::TraceModel(std::shared_ptr<const PreparedCut> ready, const View& see
     ModelBuilder(*this).build();
     terminal_reach = farthest_terminal(*this);
     find_shells(*this);
+    add_specks(*this);
     add_unrollings(*this);
     even = is_even(*this);
+    if (even) even_parts = graftal::even_parts(*this);
 }
 
 const SelfShadows& TraceModel::self_shadows() const {

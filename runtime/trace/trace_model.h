@@ -17,9 +17,11 @@
 #include "compiler/support/ray.h"
 #include "runtime/image/texture.h"
 #include "runtime/trace/box_tree.h"
+#include "runtime/trace/even_parts.h"
 #include "runtime/trace/lanes.h"
 #include "runtime/trace/layers.h"
 #include "runtime/trace/mesh_store.h"
+#include "runtime/trace/specks.h"
 
 namespace graftal {
 
@@ -58,10 +60,11 @@ struct alignas(64) TraceEdge {
     /// before.
     std::uint32_t holder = no_edge;
     double turns = 1; ///< of a primitive: length_in_turns() of the graph's instance
-    /// Of an unrolling's edges that lead several levels down, which have no tint and material of their own:
-    /// the way is one of its edges or the node's, and then one of that child's.
-    /// `last` may be marked as one from a cut node.
+    /// Of an unrolling's edges that lead several levels down: the way is one of its edges or the node's, and
+    /// then one of that child's. `last` may be marked as one from a cut node.
     std::uint32_t before = no_edge, last = no_edge;
+    std::uint32_t length = 1; ///< of the way, in edges
+    bool as_one = true;       ///< its tint, material and holder are those of the whole way; no mark is on it
 
     void find_upright();
 };
@@ -79,6 +82,9 @@ struct Unrolling {
     /// primitives that are only scaled evenly and moved, or too many.
     std::uint32_t leaf_tree = no_tree;
     double most_size = -1; ///< the largest diameter of such a part, likewise; negative if there is none
+    /// The largest diameter of a part that is a speck where it is cut, by what it must measure to be one;
+    /// infinite if some part is none.
+    double most_speck_size = std::numeric_limits<double>::infinity();
     /// Levels that are left where no such part has any left; no_steps: never.
     std::uint32_t last_steps = no_steps;
 
@@ -112,7 +118,9 @@ struct alignas(64) TraceNode {
     std::uint32_t stop_edge_count = 0; ///< which follow those
     std::uint32_t first_unrolling = 0; ///< the deepest first
     std::uint32_t unrolling_count = 0;
-    std::uint32_t run = 0; ///< of TraceModel::runs
+    std::uint32_t run = 0;         ///< of TraceModel::runs
+    std::uint32_t first_speck = 0; ///< of TraceModel::specks: of what is drawn where it is cut and faint
+    std::uint32_t speck_count = 0;
     ShellSizes shell;
     Primitive primitive = PrimitiveKind::sphere;
     double flattest_edge = 1; ///< least flatness of its edges
@@ -162,6 +170,7 @@ struct TraceModel {
     std::vector<BoxNode> boxes;
     std::vector<PackedNode> packed_boxes; ///< of runs
     std::vector<Unrolling> unrollings;
+    std::vector<SpeckLanes> specks;
     std::vector<TraceRun> runs;
     std::vector<Affine> graph_from_frame;               ///< by node
     mutable MeshStore meshes;                           ///< of shells
@@ -179,9 +188,10 @@ struct TraceModel {
     bool has_shells = false;   ///< some node may be drawn as one
     std::uint64_t weighed = 0; ///< edges of kinds followed to find where (Weights)
     bool clear_texels = false; ///< some texture has them
-    /// All is bounded, drawn no wider than it is, and only scaled evenly and moved down to the primitives:
-    /// rays go through it sooner (traversal_even.h).
+    /// All is bounded, drawn no wider than it is, opaque, and only scaled evenly and moved down to the
+    /// primitives: rays go through it sooner (traversal_even.h).
     bool even = false;
+    std::vector<EvenPart> even_parts; ///< by edge, if it is
 
     /// Up to where a hit will do, if none can be nearer by more than this share of the half width: of a model
     /// in a plane that is drawn in specks; else before all.

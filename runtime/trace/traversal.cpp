@@ -10,6 +10,7 @@
 #include "runtime/trace/traversal_kernel.h"
 #include "runtime/trace/traversal_leaves.h"
 #include "runtime/trace/traversal_runs.h"
+#include "runtime/trace/traversal_specks.h"
 
 namespace graftal {
 
@@ -24,6 +25,9 @@ Traversal::Traversal(const TraceModel& model, Instructions instructions)
     : model_(model), instructions_(instructions) {
     frames_.resize(16);
     entries_.resize(128);
+    if (!model.even) return;
+    even_frames_.resize(16);
+    even_entries_.resize(128);
 }
 
 #if defined(__x86_64__)
@@ -62,14 +66,15 @@ Rgb colour_of(const Texture::Texel& texel) {
 
 } // namespace
 
-template<bool any, bool even> bool Traversal::run(const Ray& ray, const RayRange& range) {
+template<template<Instructions, bool> typename AnyKernel, bool any>
+bool Traversal::run(const Ray& ray, const RayRange& range) {
     if (instructions_ == Instructions::avx2)
-        return run_avx2<Kernel<Instructions::avx2, any, even>>(*this, model_, range, ray);
-    return run_portable<Kernel<Instructions::portable, any, even>>(*this, model_, range, ray);
+        return run_avx2<AnyKernel<Instructions::avx2, any>>(*this, model_, range, ray);
+    return run_portable<AnyKernel<Instructions::portable, any>>(*this, model_, range, ray);
 }
 
 template<bool any> bool Traversal::run(const Ray& ray, const RayRange& range) {
-    return model_.even ? run<any, true>(ray, range) : run<any, false>(ray, range);
+    return model_.even ? run<EvenKernel, any>(ray, range) : run<Kernel, any>(ray, range);
 }
 
 bool Traversal::goes_on() {
@@ -85,9 +90,13 @@ bool Traversal::goes_on() {
 bool Traversal::closest(const Ray& ray, const RayRange& range, SurfaceHit& hit) {
     if (!run<false>(ray, range)) return false;
     path_.clear();
+    std::size_t length = 0;
     for (const std::uint32_t edge : way_)
-        append_to_path(edge);
-    more_work_ += RayWork::shaded * path_.size();
+        length += model_.edges[edge & ~from_cut].length;
+    more_work_ += RayWork::shaded * length;
+    if (best_.proxy_node != no_edge || model_.projection.error_px() > SelfShadows::lit_as_px)
+        for (const std::uint32_t edge : way_)
+            append_to_path(edge);
     surface_at_best(hit);
     return true;
 }
@@ -180,40 +189,48 @@ double Traversal::light_share_at_best() const {
     return model_.self_shadows().share(model_.layers.source[number], detail * error_px);
 }
 
+/// As descend() (detail/piece.h), several edges at once where an unrolling knows what comes of them.
+void Traversal::look_along(std::uint32_t step, WayLook& look, SurfaceHit& hit) const {
+    const TraceEdge& edge = model_.edges[step & ~from_cut];
+    if (edge.length > 1 && !edge.as_one) {
+        look_along(edge.before, look, hit);
+        return look_along(edge.last, look, hit);
+    }
+    if (step & from_cut && look.parent != no_edge && model_.source(look.parent).terminal)
+        look.inherited = model_.source(look.parent).mean.over(look.inherited);
+    look.tint = look.tint * edge.tint;
+    if (edge.material) {
+        look.material = edge.material;
+        hit.material = &model_.prepared.cut.materials[*edge.material];
+        look.inherited = hit.material->rgb;
+    }
+    look.parent = edge.child;
+    if (!edge.to_primitive)
+        hit.node = model_.layers.source[edge.child];
+    else if (edge.holder != no_edge)
+        hit.node = model_.layers.source[edge.holder];
+    hit.levels += edge.levels;
+}
+
 void Traversal::surface_at_best(SurfaceHit& hit) const {
     static const Material plain;
     const std::vector<Material>& materials = model_.prepared.cut.materials;
-    PathTint tint;
-    Rgb inherited = plain.rgb;
-    std::optional<MaterialId> material;
     hit.material = &plain;
     hit.node = SurfaceHit::no_node;
     hit.levels = 0;
-    std::uint32_t parent = no_edge; // as in descend() (detail/piece.h)
-    for (const std::uint32_t step : path_) {
-        const TraceEdge& edge = model_.edges[step & ~from_cut];
-        if (step & from_cut && parent != no_edge && model_.source(parent).terminal)
-            inherited = model_.source(parent).mean.over(inherited);
-        tint = tint * edge.tint;
-        if (edge.material) {
-            material = edge.material;
-            hit.material = &materials[*edge.material];
-            inherited = hit.material->rgb;
-        }
-        parent = edge.child;
-        if (!edge.to_primitive)
-            hit.node = model_.layers.source[edge.child];
-        else if (edge.holder != no_edge)
-            hit.node = model_.layers.source[edge.holder];
-        hit.levels += edge.levels;
-    }
+    WayLook look{.inherited = plain.rgb};
+    for (const std::uint32_t step : way_)
+        look_along(step, look, hit);
+    const PathTint& tint = look.tint;
+    Rgb inherited = look.inherited;
+    const std::optional<MaterialId> material = look.material;
     if (best_.mesh_colour) {
         inherited = best_.mesh_colour->fixed + best_.mesh_colour->open * inherited;
         if (best_.mesh_colour->material) hit.material = &materials[*best_.mesh_colour->material];
         if (model_.projection.culls())
             model_.meshes.note(best_.cell * model_.projection.detail_per_unit({ray_(best_.t), 0}));
     } else if (best_.proxy_node == no_edge && material && model_.textures.of_material[*material])
-        inherited = colour_of(texel(*material, path_.back(), best_.turns, best_.point));
+        inherited = colour_of(texel(*material, way_.back(), best_.turns, best_.point));
     if (best_.proxy_node != no_edge) inherited = model_.source(best_.proxy_node).mean.over(inherited);
     hit.t = best_.t;
     hit.rgb = tint.over(inherited);

@@ -60,8 +60,10 @@ class Traversal final : public Surfaces {
     std::uint64_t given_up() const { return given_up_; }
 
   private:
-    template<Instructions instructions, bool any, bool even>
+    template<Instructions instructions, bool any>
     struct Kernel; ///< the traversal proper (traversal_kernel.h)
+    template<Instructions instructions, bool any>
+    struct EvenKernel; ///< through even models (traversal_even.h)
 
     /// The ray in some frame: origin + (t - base) / unit * direction.
     struct LocalRay {
@@ -80,11 +82,12 @@ class Traversal final : public Surfaces {
         std::uint32_t edge = 0;
         std::uint32_t node = 0;
         std::uint32_t steps = 0;
-        bool cut = false;   ///< drawn by its stop edges
-        bool items = false; ///< its entries are items of a run, not edges
-        bool faint = false; ///< they stand for a set without area (least_width.h)
-        Vec3 margin{0.0};   ///< by which parts may reach out of their boxes
-        float least = 0;    ///< where the ray begins, in units from the base
+        bool cut = false;    ///< drawn by its stop edges
+        bool items = false;  ///< its entries are items of a run, not edges
+        bool faint = false;  ///< they stand for a set without area (least_width.h)
+        bool specks = false; ///< they lead to nodes that are cut and faint
+        Vec3 margin{0.0};    ///< by which parts may reach out of their boxes
+        float least = 0;     ///< where the ray begins, in units from the base
         /// By axis: the side of boxes where the ray goes in, the origin less the margin as that and the other
         /// side see it, and the reciprocal of the direction.
         Int4 side_in;
@@ -94,6 +97,25 @@ class Traversal final : public Surfaces {
     /// An edge or a node of boxes to go into, and from where on.
     struct Entry {
         double at = 0; ///< in units from the frame's base
+        std::uint32_t entry = 0;
+        std::uint32_t frame = 0;
+    };
+
+    /// The same in even models, whose rays have one direction in all frames.
+    struct alignas(64) EvenFrame {
+        Double4 origin;
+        Double4 offset;   ///< translation of world_from_node
+        double entry = 1; ///< and its scale; `scale`, a product of norms, may differ by a rounding
+        double scale = 1;
+        double base = 0, unit = 1, speed = 1;
+        double least_detail = 0;
+        Float4 near; ///< the origin
+        float least = 0;
+        std::uint32_t edge = 0, node = 0, steps = 0;
+        bool cut = false;
+    };
+    struct EvenEntry {
+        float at = 0;
         std::uint32_t entry = 0;
         std::uint32_t frame = 0;
     };
@@ -157,12 +179,21 @@ class Traversal final : public Surfaces {
     bool meet_drawn(const Primitive& primitive, const Affine& drawn, const RayRange& range);
     /// The edges to a frame's node.
     void keep_way(std::uint32_t frame_number);
-    template<bool any, bool even> bool run(const Ray& ray, const RayRange& range);
+    template<template<Instructions, bool> typename AnyKernel, bool any>
+    bool run(const Ray& ray, const RayRange& range);
     template<bool any> bool run(const Ray& ray, const RayRange& range);
     /// False once the ray went into too many parts, and hurrying did not help.
     bool goes_on();
     /// Appends an edge to the path; of an unrolling's edge those that it stands for.
     void append_to_path(std::uint32_t edge);
+    /// What a way has given to its end.
+    struct WayLook {
+        PathTint tint = {};
+        Rgb inherited;
+        std::optional<MaterialId> material = {};
+        std::uint32_t parent = no_edge;
+    };
+    void look_along(std::uint32_t step, WayLook& look, SurfaceHit& hit) const;
     void surface_at_best(SurfaceHit& hit) const;
     Vec3 normal_at_best() const;
     double light_share_at_best() const;
@@ -177,7 +208,9 @@ class Traversal final : public Surfaces {
     std::vector<Frame> frames_;
     std::size_t depth_ = 0; ///< frames in use
     std::vector<Entry> entries_;
-    std::size_t entry_count_ = 0; ///< in use
+    std::vector<EvenFrame> even_frames_;
+    std::vector<EvenEntry> even_entries_;
+    std::size_t entry_count_ = 0; ///< in use, of either
     Best best_;
     /// Shells asked for lately, by a hash of their keys: the store has to be locked.
     std::array<std::pair<MeshStore::Key, const TraceMesh*>, 64> meshes_{};

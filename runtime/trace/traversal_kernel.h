@@ -18,8 +18,8 @@
 
 namespace graftal {
 
-/// `any`: whatever is met first will do, and only that it is. `even`: the model is (TraceModel::even).
-template<Instructions instructions, bool any, bool even> struct Traversal::Kernel {
+/// `any`: whatever is met first will do, and only that it is.
+template<Instructions instructions, bool any> struct Traversal::Kernel {
     Traversal& self;
     const TraceModel& model;
     const RayRange range;
@@ -34,20 +34,11 @@ template<Instructions instructions, bool any, bool even> struct Traversal::Kerne
         self.patience_ = self.visits_ + most_patience;
         self.hurries_ = false;
         if (!self.flat_met_.empty()) self.flat_met_.clear();
-        Entry entry;
-        if constexpr (even) {
-            if (!enter_world(ray, entry)) return false;
-            for (bool more = true; more || pop(0, entry);) {
-                more = entry.entry & BoxNode::inner ? go_into(entry) : enter_even(entry);
-                if (any && self.best_.found) return true;
-                if (self.visits_ > self.visit_limit_ && !self.goes_on()) break;
-            }
-            return self.best_.found;
-        }
         const double enough = model.near_enough(ray, near_enough_share),
                      plenty = model.near_enough(ray, plenty_share);
         push_world(ray);
         try_edge(self.frames_.front(), 0);
+        Entry entry;
         bool more = false;
         while (more || pop(0, entry)) {
             more = go_into(entry);
@@ -76,7 +67,7 @@ template<Instructions instructions, bool any, bool even> struct Traversal::Kerne
     GRAFTAL_INLINE bool go_into(Entry& entry) {
         if (!(entry.entry & BoxNode::inner)) return enter(entry);
         self.depth_ = entry.frame + 1;
-        if (!even && (entry.entry & BoxNode::packed))
+        if (entry.entry & BoxNode::packed)
             return test_packed(entry.entry & ~(BoxNode::inner | BoxNode::packed), entry.frame, entry);
         return test_boxes(model.boxes, entry.entry & ~BoxNode::inner, entry.frame, entry);
     }
@@ -107,6 +98,7 @@ template<Instructions instructions, bool any, bool even> struct Traversal::Kerne
     GRAFTAL_INLINE void push_world(const Ray& ray) {
         Frame& frame = push_ray(ray);
         frame.items = false;
+        frame.specks = false;
         frame.flatness = 1;
         frame.faint = false;
         frame.margin = Vec3(model.widest * model.most_half_width);
@@ -171,8 +163,8 @@ template<Instructions instructions, bool any, bool even> struct Traversal::Kerne
             // Lanes of no numbers stay so by the last axis.
             enters = greater(enters,
                              (side_of(in, axis) - spread<instructions>(frame.origin_in[axis])) * reciprocal);
-            const float origin_out = (even ? frame.origin_in : frame.origin_out)[axis];
-            leaves = lesser(leaves, (side_of(1 - in, axis) - spread<instructions>(origin_out)) * reciprocal);
+            leaves = lesser(leaves, (side_of(1 - in, axis) - spread<instructions>(frame.origin_out[axis])) *
+                                        reciprocal);
         }
         std::uint32_t lanes = bits_of<instructions>(enters <= leaves) & used;
         if (lanes == 0) return false;
@@ -220,9 +212,15 @@ template<Instructions instructions, bool any, bool even> struct Traversal::Kerne
                 return false;
             }
         }
+        LocalRay ray;
+        if (self.frames_[entry.frame].specks && node.speck_count > 0) {
+            const Frame& parent = self.frames_[entry.frame];
+            if (!take_ray(edge, parent, entry, ray) ||
+                misses_specks(node, ray, parent.margin.x * edge.growth))
+                return false;
+        }
         if (node.kind == TraceNode::Kind::primitive) {
             const Frame& parent = self.frames_[entry.frame];
-            LocalRay ray;
             if (parent.faint && node.primitive != PrimitiveKind::plane)
                 meet_faint(node, edge, parent, entry);
             else if (take_ray(edge, parent, entry, ray))
@@ -300,6 +298,7 @@ template<Instructions instructions, bool any, bool even> struct Traversal::Kerne
         frame.cut = is_cut(node, frame, parent.least_detail, detail);
         frame.least_detail = model.least_detail_per_unit;
         frame.items = node.kind == TraceNode::Kind::run;
+        frame.specks = false;
         if (frame.cut && node.stop_tree == no_tree) {
             if (frame.faint || node.faint)
                 meet_faint_proxy(node, frame);
@@ -327,6 +326,10 @@ template<Instructions instructions, bool any, bool even> struct Traversal::Kerne
             meet_shell(self.shell_of(frame), number);
             return false;
         }
+        if (frame.cut && frame.faint && node.speck_count > 0 && frame.flatness == 1) {
+            meet_specks(node, number);
+            return false;
+        }
         ready_for_boxes(frame);
         if (frame.cut && node.stop_edge_count == 1) { // about as large as the node: no box to test
             entry = {0, node.first_edge + node.edge_count, number};
@@ -341,10 +344,7 @@ template<Instructions instructions, bool any, bool even> struct Traversal::Kerne
 
     GRAFTAL_INLINE void ready_direction(Frame& frame) const {
         const Float4 direction = __builtin_convertvector(frame.direction, Float4);
-        // Where it is 0 something small: far beyond all boxes, but a number, and 0 times it is 0.
-        constexpr Float4 least = {1e-18f, 1e-18f, 1e-18f, 1e-18f};
-        const Float4 magnitude = direction < 0 ? -direction : direction;
-        frame.reciprocal = 1 / (magnitude > least ? direction : least);
+        frame.reciprocal = 1 / never_zero(direction);
         frame.side_in = -(frame.reciprocal < 0);
     }
 
@@ -360,9 +360,6 @@ template<Instructions instructions, bool any, bool even> struct Traversal::Kerne
     }
 
     GRAFTAL_INLINE Ball world_ball(const TraceNode& node, const Frame& frame, double radius) const {
-        if constexpr (even)
-            return {vec3_of(node.ball_centre * splat(even_scale(frame)) + frame.world_from_node.translation),
-                    frame.scale * radius};
         return {vec3_of(point_through(frame.world_from_node, node.ball_centre)), frame.scale * radius};
     }
 
@@ -403,13 +400,15 @@ template<Instructions instructions, bool any, bool even> struct Traversal::Kerne
             const double size = frame.scale * unrolling.least_size;
             const bool has_leaves = unrolling.leaf_tree != no_tree && !frame.faint;
             if (has_leaves && frame.steps == unrolling.last_steps) return unrolling.leaf_tree;
-            if (!known && (has_leaves || !(size * frame.least_detail > 1))) {
+            const bool has_specks = unrolling.most_speck_size < INFINITY && frame.flatness == 1;
+            if (!known && (has_leaves || has_specks || !(size * frame.least_detail > 1))) {
                 const auto details = model.projection.detail_range(world_ball(node, frame, node.reach));
                 frame.least_detail = surely_more * details.least;
                 most = details.most;
                 known = true;
             }
             if (!(size * frame.least_detail > 1)) continue;
+            frame.specks = has_specks && frame.scale * unrolling.most_speck_size * most <= surely_more;
             const bool all_cut = has_leaves && frame.scale * unrolling.most_size * most <= surely_more;
             return all_cut ? unrolling.leaf_tree : unrolling.tree;
         }
@@ -460,46 +459,22 @@ template<Instructions instructions, bool any, bool even> struct Traversal::Kerne
         return !any;
     }
 
-    /// Meets a child in whose frame the ray is `local`.
-    GRAFTAL_INLINE void meet_primitive(const Primitive& primitive, const Frame& parent, const LocalRay& local,
-                                       const Entry& entry) {
-        const Ray ray{vec3_of(local.origin), vec3_of(local.direction)};
-        RayRange near = range_from(local.base, local.speed);
-        PrimitiveHit hit;
-        if (!intersect(primitive, ray, near, hit)) return;
-        for (int crossing = 0;
-             model.clear_texels &&
-             self.is_clear(entry.entry, entry.frame, model.edges[entry.entry].turns, ray(hit.t));
-             ++crossing) {
-            near.least = hit.t;
-            if (crossing == most_crossings || !intersect(primitive, ray, near, hit)) return;
-        }
-        if (!set_best(local.base + hit.t * local.unit)) return;
-        self.best_.normal = hit.normal;
-        self.best_.point = ray(hit.t);
-        self.best_.turns = model.edges[entry.entry].turns;
-        self.best_.proxy_node = no_edge;
-        place_leaf(parent, model.edges[entry.entry].parent_from_child, self.best_.world_from_leaf);
-        self.keep_way(entry.frame);
-        self.way_.push_back(entry.entry | (parent.cut ? from_cut : 0));
-    }
-
     /// Meets an item of the frame's run (traversal_runs.h).
     void meet_item(const Entry& entry);
     /// `ray`: from where the entry begins, in units of the frame's.
     void meet_body(RunShape shape, const Affine& run_from_body, const TraceRun& run, const RunItem& item,
                    const Ray& ray, const Entry& entry);
 
-    // In models that are even (traversal_even.h):
-    GRAFTAL_INLINE static double even_scale(const Frame& frame) { return frame.world_from_node.column[0][0]; }
-    /// The first entry, or false if there is none.
-    bool enter_world(const Ray& ray, Entry& entry);
-    bool enter_even(Entry& entry);
-    void place_leaf(const Frame& parent, const LaneMap& parent_from_leaf, LaneMap& world_from_leaf) const;
-
-    // What is met in other ways (traversal_leaves.h):
+    // What is met (traversal_leaves.h):
+    /// A child in whose frame the ray is `local`.
+    void meet_primitive(const Primitive& primitive, const Frame& parent, const LocalRay& local,
+                        const Entry& entry);
     void meet_shell(const TraceMesh& mesh, std::uint32_t frame_number);
     void meet_triangle(const TraceMesh& mesh, std::uint32_t triangle, const Entry& entry);
+    /// Which of the specks in whose node's frame the ray is it may meet; `half_width`: by TraceModel::widest.
+    std::uint32_t specks_near(const SpeckLanes& specks, const LocalRay& ray, double half_width) const;
+    bool misses_specks(const TraceNode& node, const LocalRay& ray, double half_width) const;
+    void meet_specks(const TraceNode& node, std::uint32_t frame_number);
     /// A primitive of what stands for a set without area.
     void meet_faint(const TraceNode& node, const TraceEdge& edge, const Frame& parent, const Entry& entry);
     void meet_faint_proxy(const TraceNode& node, const Frame& frame);

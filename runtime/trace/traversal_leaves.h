@@ -1,15 +1,39 @@
 #pragma once
 
-// How the traversal meets shells, proxies and what stands for sets without area; only traversal.cpp includes
-// it.
+// How the traversal meets primitives, shells, proxies and what stands for sets without area; only
+// traversal.cpp includes it.
 
 #include "runtime/trace/traversal_kernel.h"
 
 namespace graftal {
 
-template<Instructions instructions, bool any, bool even>
-GRAFTAL_INLINE void Traversal::Kernel<instructions, any, even>::meet_shell(const TraceMesh& mesh,
-                                                                           std::uint32_t frame_number) {
+template<Instructions instructions, bool any>
+GRAFTAL_INLINE void
+Traversal::Kernel<instructions, any>::meet_primitive(const Primitive& primitive, const Frame& parent,
+                                                     const LocalRay& local, const Entry& entry) {
+    const Ray ray{vec3_of(local.origin), vec3_of(local.direction)};
+    RayRange near = range_from(local.base, local.speed);
+    PrimitiveHit hit;
+    if (!intersect(primitive, ray, near, hit)) return;
+    for (int crossing = 0; model.clear_texels && self.is_clear(entry.entry, entry.frame,
+                                                               model.edges[entry.entry].turns, ray(hit.t));
+         ++crossing) {
+        near.least = hit.t;
+        if (crossing == most_crossings || !intersect(primitive, ray, near, hit)) return;
+    }
+    if (!set_best(local.base + hit.t * local.unit)) return;
+    self.best_.normal = hit.normal;
+    self.best_.point = ray(hit.t);
+    self.best_.turns = model.edges[entry.entry].turns;
+    self.best_.proxy_node = no_edge;
+    compose(parent.world_from_node, model.edges[entry.entry].parent_from_child, self.best_.world_from_leaf);
+    self.keep_way(entry.frame);
+    self.way_.push_back(entry.entry | (parent.cut ? from_cut : 0));
+}
+
+template<Instructions instructions, bool any>
+GRAFTAL_INLINE void Traversal::Kernel<instructions, any>::meet_shell(const TraceMesh& mesh,
+                                                                     std::uint32_t frame_number) {
     const std::size_t others = self.entry_count_;
     Entry entry;
     bool more = mesh.tree != no_tree && test_boxes(mesh.boxes, mesh.tree, frame_number, entry);
@@ -20,10 +44,10 @@ GRAFTAL_INLINE void Traversal::Kernel<instructions, any, even>::meet_shell(const
     }
 }
 
-template<Instructions instructions, bool any, bool even>
-GRAFTAL_INLINE void Traversal::Kernel<instructions, any, even>::meet_triangle(const TraceMesh& mesh,
-                                                                              std::uint32_t triangle,
-                                                                              const Entry& entry) {
+template<Instructions instructions, bool any>
+GRAFTAL_INLINE void Traversal::Kernel<instructions, any>::meet_triangle(const TraceMesh& mesh,
+                                                                        std::uint32_t triangle,
+                                                                        const Entry& entry) {
     ++self.visits_;
     const Frame& frame = self.frames_[entry.frame];
     const Double4 near = frame.origin + splat(entry.at) * frame.direction;
@@ -41,10 +65,10 @@ GRAFTAL_INLINE void Traversal::Kernel<instructions, any, even>::meet_triangle(co
     self.keep_way(entry.frame);
 }
 
-template<Instructions instructions, bool any, bool even>
+template<Instructions instructions, bool any>
 GRAFTAL_INLINE void
-Traversal::Kernel<instructions, any, even>::meet_faint(const TraceNode& node, const TraceEdge& edge,
-                                                       const Frame& parent, const Entry& entry) {
+Traversal::Kernel<instructions, any>::meet_faint(const TraceNode& node, const TraceEdge& edge,
+                                                 const Frame& parent, const Entry& entry) {
     const TraceNode& speck = model.nodes[parent.node];
     const Ball ball = world_ball(speck, parent, speck.ball_radius);
     if (edge.similarity) { // most are missed: a ball about it tells, as wide as any is drawn
@@ -63,11 +87,11 @@ Traversal::Kernel<instructions, any, even>::meet_faint(const TraceNode& node, co
     self.way_.push_back(entry.entry | (parent.cut ? from_cut : 0));
 }
 
-template<Instructions instructions, bool any, bool even>
-GRAFTAL_INLINE void Traversal::Kernel<instructions, any, even>::meet_faint_proxy(const TraceNode& node,
-                                                                                 const Frame& frame) {
+template<Instructions instructions, bool any>
+GRAFTAL_INLINE void Traversal::Kernel<instructions, any>::meet_faint_proxy(const TraceNode& node,
+                                                                           const Frame& frame) {
     LaneMap place;
-    place_leaf(frame, node.node_from_proxy, place);
+    compose(frame.world_from_node, node.node_from_proxy, place);
     if (!self.meet_leaf(PrimitiveKind::sphere, place.affine(), true,
                         world_ball(node, frame, node.ball_radius), range))
         return;
@@ -75,9 +99,9 @@ GRAFTAL_INLINE void Traversal::Kernel<instructions, any, even>::meet_faint_proxy
     self.keep_way(static_cast<std::uint32_t>(self.depth_ - 1));
 }
 
-template<Instructions instructions, bool any, bool even>
-GRAFTAL_INLINE void Traversal::Kernel<instructions, any, even>::meet_proxy(const TraceNode& node,
-                                                                           const Frame& frame) {
+template<Instructions instructions, bool any>
+GRAFTAL_INLINE void Traversal::Kernel<instructions, any>::meet_proxy(const TraceNode& node,
+                                                                     const Frame& frame) {
     const Double4 origin = point_through(node.proxy_from_node, frame.origin);
     const Double4 direction = direction_through(node.proxy_from_node, frame.direction);
     const double largest = largest_component(direction), unit = 1 / largest;
@@ -88,7 +112,7 @@ GRAFTAL_INLINE void Traversal::Kernel<instructions, any, even>::meet_proxy(const
     if (!set_best(frame.base + hit.t * (frame.unit * unit))) return;
     self.best_.normal = hit.normal;
     self.best_.proxy_node = frame.node;
-    place_leaf(frame, node.node_from_proxy, self.best_.world_from_leaf);
+    compose(frame.world_from_node, node.node_from_proxy, self.best_.world_from_leaf);
     self.keep_way(static_cast<std::uint32_t>(self.depth_ - 1));
 }
 

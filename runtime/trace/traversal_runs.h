@@ -7,8 +7,8 @@
 
 namespace graftal {
 
-template<Instructions instructions, bool any, bool even>
-void Traversal::Kernel<instructions, any, even>::meet_item(const Entry& entry) {
+template<Instructions instructions, bool any>
+void Traversal::Kernel<instructions, any>::meet_item(const Entry& entry) {
     self.depth_ = entry.frame + 1;
     const Frame& frame = self.frames_[entry.frame];
     const TraceRun& run = model.runs[model.nodes[frame.node].run];
@@ -25,10 +25,10 @@ void Traversal::Kernel<instructions, any, even>::meet_item(const Entry& entry) {
                   item, ray, entry);
 }
 
-template<Instructions instructions, bool any, bool even>
-void Traversal::Kernel<instructions, any, even>::meet_body(RunShape shape, const Affine& run_from_body,
-                                                           const TraceRun& run, const RunItem& item,
-                                                           const Ray& ray, const Entry& entry) {
+template<Instructions instructions, bool any>
+void Traversal::Kernel<instructions, any>::meet_body(RunShape shape, const Affine& run_from_body,
+                                                     const TraceRun& run, const RunItem& item, const Ray& ray,
+                                                     const Entry& entry) {
     const Frame& frame = self.frames_[entry.frame];
     // Its axes are at right angles: dividing by the squares of their lengths turns the map round.
     const Mat3& m = run_from_body.linear;

@@ -77,6 +77,7 @@ class Unroller {
             for (const std::uint32_t edge : parts.edges)
                 include_in_reach(node, model_.edges[edge]);
             add_leaves(parts);
+            parts.unrolling.most_speck_size = most_speck_size(parts);
             if (deeper || parts.unrolling.leaf_tree != no_tree) {
                 parts.unrolling.tree = deeper ? tree_over(parts.edges) : node.tree;
                 unrollings.push_back(parts.unrolling);
@@ -119,6 +120,18 @@ class Unroller {
         leaves_in_all_ += count;
         parts.unrolling.leaf_tree = tree_over(leaves);
         parts.unrolling.last_steps = last_steps(parts);
+    }
+
+    double most_speck_size(const Parts& parts) const {
+        double most = 0;
+        for (const std::uint32_t number : parts.edges) {
+            const TraceEdge& edge = model_.edges[number];
+            const TraceNode& child = model_.nodes[edge.child];
+            if (child.speck_count == 0 || !child.cullable || !edge.similarity)
+                return std::numeric_limits<double>::infinity();
+            most = std::max(most, 2 * child.ball_radius * edge.stretch / std::min(1.0, child.cut_detail));
+        }
+        return most;
     }
 
     /// With so many levels left all of the parts have none.
@@ -227,6 +240,11 @@ class Unroller {
         edge.before = before;
         edge.last = last;
         edge.turns = second.turns;
+        edge.length = first.length + second.length;
+        edge.as_one = first.as_one && second.as_one && !(last & from_cut);
+        edge.tint = first.tint * second.tint;
+        edge.material = second.material ? second.material : first.material;
+        edge.holder = second.holder != no_edge ? second.holder : first.child;
         edge.child = second.child;
         edge.to_primitive = second.to_primitive;
         edge.levels = first.levels + second.levels;

@@ -2,7 +2,7 @@
 // out as one mesh; and rays that leave the surfaces that those meet. See tools/bench/tracer.
 //   tracer_bench graph MODEL STEPS ERROR_PX       STEPS: a number, or - for as deep as the error asks
 //   tracer_bench light MODEL STEPS ERROR_PX
-//   tracer_bench mesh|mesh_light MODEL STEPS
+//   tracer_bench compare MODEL STEPS
 
 #include <algorithm>
 #include <cmath>
@@ -10,19 +10,17 @@
 #include <cstdlib>
 #include <ctime>
 #include <fstream>
+#include <functional>
 #include <numbers>
 #include <string>
 #include <vector>
 
-#include <embree3/rtcore.h>
-
-#include "compiler/detail/piece.h"
-#include "compiler/primitives/tessellate.h"
 #include "compiler/session/session.h"
 #include "compiler/session/stages.h"
 #include "compiler/support/counter_random.h"
 #include "runtime/trace/camera_rays.h"
 #include "runtime/trace/traversal.h"
+#include "tests/bench/embree_rays.h"
 
 namespace graftal {
 namespace {
@@ -143,88 +141,49 @@ void light(const TraceModel& model) {
                 static_cast<double>(traversal.visits() - before) / all);
 }
 
-/// All leaves as triangles; curved ones as coarsely as can be.
-struct Flat {
-    std::vector<float> vertices;
-    std::vector<unsigned> corners;
-};
-
-Flat flatten(const TraceModel& model) {
-    const CutGraph& cut = model.prepared.cut;
-    Flat flat;
-    Piece root;
-    root.node = cut.root;
-    root.steps = model.prepared.root_steps;
-    std::vector<Piece> stack = {root};
-    const auto add = [&](const Primitive& kind, const Affine& place) {
-        const TessellatedPrimitive& mesh = tessellated(kind, 0);
-        const auto first = static_cast<unsigned>(flat.vertices.size() / 3);
-        for (const Vec3& vertex : mesh.vertices)
-            for (int i = 0; i < 3; ++i)
-                flat.vertices.push_back(static_cast<float>(place(vertex)[i]));
-        for (const auto& triangle : mesh.triangles)
-            for (const std::uint32_t corner : triangle)
-                flat.corners.push_back(first + corner);
-    };
-    while (!stack.empty()) {
-        const Piece piece = stack.back();
-        stack.pop_back();
-        const CutNode& node = cut.nodes[piece.node];
-        const bool is_cut = graftal::is_cut(node, piece.steps, detail_of(cut, model.projection, piece),
-                                            model.projection.error_px());
-        if (node.primitive)
-            add(*node.primitive, piece.world_from_node);
-        else if (followed_edges(node, is_cut).empty())
-            add(PrimitiveKind::sphere, piece.world_from_node * node.node_from_proxy);
-        else
-            for (const CutEdge& edge : followed_edges(node, is_cut))
-                stack.push_back(descend(cut, piece, edge, is_cut));
-    }
-    return flat;
-}
-
-/// The rays as Embree meets them, from `least` on.
-void mesh(const TraceModel& model, const std::vector<Ray>& rays, double least, bool coherent) {
-    Flat flat = flatten(model);
-    flat.vertices.push_back(0); // Embree reads a little beyond
-    const double start = now();
-    const RTCDevice device = rtcNewDevice("threads=2");
-    const RTCScene scene = rtcNewScene(device);
-    const RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
-    rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, flat.vertices.data(),
-                               0, 3 * sizeof(float), flat.vertices.size() / 3);
-    rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, flat.corners.data(), 0,
-                               3 * sizeof(unsigned), flat.corners.size() / 3);
-    rtcCommitGeometry(geometry);
-    rtcAttachGeometry(scene, geometry);
-    rtcReleaseGeometry(geometry);
-    rtcCommitScene(scene);
-    std::printf("%zu triangles, built in %.2f s:", flat.corners.size() / 3, now() - start);
-    measure(rays, [&] {
-        RTCIntersectContext context;
-        rtcInitIntersectContext(&context);
-        context.flags =
-            coherent ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
+/// Rays of both kinds by Embree, in all its ways, and by the traversal, one after the other in each of some
+/// rounds; prints the best of each.
+void compare(const TraceModel& model) {
+    const std::vector<Ray> camera = camera_rays(model.view), scattered = scattered_rays(model);
+    const double least = least_distance(model);
+    const EmbreeScene mesh(model, EmbreeScene::Form::mesh), placed(model, EmbreeScene::Form::instances);
+    Traversal traversal(model);
+    const auto traced = [&](const std::vector<Ray>& rays, double from) {
         std::size_t hits = 0;
-        for (const Ray& ray : rays) {
-            RTCRayHit query{};
-            query.ray.org_x = static_cast<float>(ray.origin.x);
-            query.ray.org_y = static_cast<float>(ray.origin.y);
-            query.ray.org_z = static_cast<float>(ray.origin.z);
-            query.ray.dir_x = static_cast<float>(ray.direction.x);
-            query.ray.dir_y = static_cast<float>(ray.direction.y);
-            query.ray.dir_z = static_cast<float>(ray.direction.z);
-            query.ray.tnear = static_cast<float>(least);
-            query.ray.tfar = INFINITY;
-            query.ray.mask = UINT32_MAX;
-            query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-            rtcIntersect1(scene, &context, &query);
-            hits += query.hit.geomID != RTC_INVALID_GEOMETRY_ID;
-        }
+        SurfaceHit hit;
+        for (const Ray& ray : rays)
+            hits += traversal.closest(ray, {from}, hit);
         return hits;
-    });
-    rtcReleaseScene(scene);
-    rtcReleaseDevice(device);
+    };
+    struct Contest {
+        const char* name;
+        const std::vector<Ray>& rays;
+        std::function<std::size_t()> trace;
+        double best = 1e300;
+        std::size_t hits = 0;
+    };
+    constexpr auto width = static_cast<std::size_t>(size.width);
+    std::vector<Contest> contests = {
+        {"mesh", camera, [&] { return mesh.hits(camera, 0, true); }},
+        {"mesh_bounce", scattered, [&] { return mesh.hits(scattered, least, false); }},
+        {"by_8", camera, [&] { return mesh.hits_by_8(camera, width); }},
+        {"by_16", camera, [&] { return mesh.hits_by_16(camera, width); }},
+        {"instances", camera, [&] { return placed.hits(camera, 0, true); }},
+        {"instances_bounce", scattered, [&] { return placed.hits(scattered, least, false); }},
+        {"graph", camera, [&] { return traced(camera, 0); }},
+        {"graph_bounce", scattered, [&] { return traced(scattered, least); }},
+    };
+    for (int round = 0; round < repeats; ++round)
+        for (Contest& contest : contests) {
+            const double start = now();
+            contest.hits = contest.trace();
+            contest.best = std::min(contest.best, now() - start);
+        }
+    std::printf("triangles %zu\nbuild %.2f\nmesh_mib %.0f\ninstances_mib %.1f\n", mesh.triangles(),
+                mesh.build_seconds(), mesh.mib(), placed.mib());
+    for (const Contest& contest : contests)
+        std::printf("%s %.2f %zu\n", contest.name,
+                    1e-6 * static_cast<double>(contest.rays.size()) / contest.best, contest.hits);
 }
 
 } // namespace
@@ -236,15 +195,10 @@ int main(int argc, char** argv) {
         graftal::graph(*graftal::load(argv[2], argv[3], std::strtod(argv[4], nullptr)));
     } else if (mode == "light" && argc == 5) {
         graftal::light(*graftal::load(argv[2], argv[3], std::strtod(argv[4], nullptr)));
-    } else if (mode == "mesh" && argc == 4) {
-        const auto model = graftal::load(argv[2], argv[3], 0);
-        graftal::mesh(*model, graftal::camera_rays(model->view), 0, true);
-    } else if (mode == "mesh_light" && argc == 4) {
-        const auto model = graftal::load(argv[2], argv[3], 0);
-        graftal::mesh(*model, graftal::scattered_rays(*model), graftal::least_distance(*model), false);
+    } else if (mode == "compare" && argc == 4) {
+        graftal::compare(*graftal::load(argv[2], argv[3], 0));
     } else {
-        std::fputs("usage: tracer_bench graph|light MODEL STEPS ERROR_PX | mesh|mesh_light MODEL STEPS\n",
-                   stderr);
+        std::fputs("usage: tracer_bench graph|light MODEL STEPS ERROR_PX | compare MODEL STEPS\n", stderr);
         return 2;
     }
 }

@@ -17,8 +17,9 @@ using test::empty_graph;
 using test::place;
 using test::traced;
 
-/// The twenty cubes along the edges of a cube cut in 27, in two colours, each again; with a terminal or balls
-/// for what is culled. Thirds are rounded, so that the order of operations shows.
+/// The twenty cubes along the edges of a cube, in two colours, each again; with a terminal or balls for what
+/// is culled. Sevenths of ten are rounded, so that the order of operations shows; quarters keep directions in
+/// the general way, too.
 Graph sponge(bool terminal) {
     Graph graph = empty_graph();
     const ObjectId cube = graph.primitive(PrimitiveKind::cube);
@@ -28,7 +29,7 @@ Graph sponge(bool terminal) {
             for (int z = -1; z <= 1; ++z)
                 if (x * x + y * y + z * z >= 2)
                     place(graph, self, self,
-                          Affine::translate(Vec3(x, y, z) / 1.5) * Affine::scale(Vec3(1.0 / 3)),
+                          Affine::translate(0.7 * Vec3(x, y, z)) * Affine::scale(Vec3(0.25)),
                           {{x == 0, y == 0, 1}, 0.3});
     if (terminal) graph.objects[self].terminal = Instance{cube, {}, {}, {}, {}};
     place(graph, graph.root, self, {});

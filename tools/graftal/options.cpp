@@ -40,6 +40,12 @@ void add_render(CLI::App& app, Options& options) {
     app.add_flag("--progressive", options.render.progressive,
                  "With --engine native: write coarse pictures first, then finer ones under the same name; "
                  "Ctrl-C keeps the last one");
+    add_value(
+        app, "--tile", "X,Y,WxH",
+        "With --engine native: draw only this part of the picture, W by H pixels from X,Y on (0,0 is the top "
+        "left); they are those of the whole, to the last bit",
+        "a part such as 640,0,640x360", parse_tile, [&](const Tile& tile) { options.render.tile = tile; })
+        ->needs("--size");
     app.add_flag("--aovs", options.render.aovs,
                  "With --engine native and an EXR: write the channels A, coverage, Z, normal, albedo, id and "
                  "levels too");
@@ -57,7 +63,8 @@ void add_render(CLI::App& app, Options& options) {
                "  graftal render fern.rifs --engine native              # the same picture, much sooner\n"
                "  graftal render forest.inst --engine native --progressive --size 1920x1080\n"
                "  graftal render tree.inst --engine native --aovs -o tree.exr  # depth, normals, ... too\n"
-               "  graftal render fern.rifs --watch                      # and again after each save");
+               "  graftal render fern.rifs --watch                      # and again after each save\n"
+               "  graftal render fern.rifs --engine native --size 40000x30000 --tile 0,0,1000x1000");
 }
 
 void add_animate(CLI::App& app, Options& options) {
@@ -264,6 +271,25 @@ std::string refusal_to_watch(const Options& options) {
     return {};
 }
 
+/// What is wrong with the size of a picture, or with the part of it that is wanted; or "".
+std::string refusal_of_size(const Options& options) {
+    const ImageSize size = options.render.compile.view.size;
+    if (!options.render.tile) {
+        if (is_drawn_at_once(size)) return {};
+        return fmt::format("--size: a picture of {}x{} is too large to be drawn at once (at most 32768 a "
+                           "side, and 2^28 pixels): draw it in tiles with 'graftal farm plan', or a part of "
+                           "it with --tile",
+                           size.width, size.height);
+    }
+    if (!options.render.tile->lies_in(size))
+        return fmt::format("--tile: this part is not within the {}x{} pixels of the picture", size.width,
+                           size.height);
+    if (options.render.progressive || options.watch)
+        return fmt::format("--tile draws once, at its finest: leave out {}",
+                           options.watch ? "--watch" : "--progressive");
+    return {};
+}
+
 /// What is wrong with options that are each right, or "".
 std::string complete(Options& options) {
     if (const std::string refused = options.watch ? refusal_to_watch(options) : ""; !refused.empty())
@@ -274,6 +300,8 @@ std::string complete(Options& options) {
     const std::string extension = std::filesystem::path(options.render.output).extension().string();
     const bool from_stdin = options.operands.front() == "-";
     if (options.command == Command::render) {
+        if (const std::string refused_size = refusal_of_size(options); !refused_size.empty())
+            return refused_size;
         if (options.render.output.empty() && from_stdin)
             return "a model from standard input has no name: name the picture with '-o FILE'";
         if (options.render.output.empty())

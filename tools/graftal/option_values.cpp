@@ -42,11 +42,14 @@ std::optional<ImageSize> parse_size(std::string_view text) {
 
 std::optional<Tile> parse_tile(std::string_view text) {
     constexpr std::uint64_t most = INT32_MAX;
-    const std::size_t first = text.find(','), second = text.find(',', first + 1);
-    if (first == std::string_view::npos || second == std::string_view::npos) return std::nullopt;
+    const std::size_t first = text.find(',');
+    if (first == std::string_view::npos) return std::nullopt;
+    const std::string_view rest = text.substr(first + 1);
+    const std::size_t second = rest.find(',');
+    if (second == std::string_view::npos) return std::nullopt;
     const auto x = parse_whole(text.substr(0, first), 0, most);
-    const auto y = parse_whole(text.substr(first + 1, second - first - 1), 0, most);
-    const auto size = parse_size(text.substr(second + 1));
+    const auto y = parse_whole(rest.substr(0, second), 0, most);
+    const auto size = parse_size(rest.substr(second + 1));
     if (!x || !y || !size) return std::nullopt;
     return Tile{static_cast<int>(*x), static_cast<int>(*y), size->width, size->height};
 }

@@ -239,6 +239,7 @@ constexpr CommandEntry commands[] = {
     {Command::print, "print", "Print the graph of a model as .inst text", add_print},
     {Command::graph, "graph", "Draw the graph of a model", add_graph},
     {Command::compare, "compare", "Measure how much two pictures differ", add_compare},
+    {Command::farm, "farm", "Draw gigapixels, films and sweeps in tasks, on many machines", add_farm},
 };
 
 int usage_error(const std::string& message, const std::string& command) {
@@ -261,7 +262,7 @@ std::string passes_text() {
 
 /// What is wrong with options beside --watch, or "".
 std::string refusal_to_watch(const Options& options) {
-    if (options.engine && options.engine != &native_engine)
+    if (options.engine && options.engine->name != native_engine.name)
         return fmt::format("--watch draws with '--engine native': leave out '--engine {}'",
                            options.engine->name);
     if (options.operands.front() == "-")
@@ -272,10 +273,10 @@ std::string refusal_to_watch(const Options& options) {
 }
 
 /// What is wrong with the size of a picture, or with the part of it that is wanted; or "".
-std::string refusal_of_size(const Options& options) {
+std::string refusal_of_size(const Options& options, bool in_parts) {
     const ImageSize size = options.render.compile.view.size;
     if (!options.render.tile) {
-        if (is_drawn_at_once(size)) return {};
+        if (in_parts || is_drawn_at_once(size)) return {};
         return fmt::format("--size: a picture of {}x{} is too large to be drawn at once (at most 32768 a "
                            "side, and 2^28 pixels): draw it in tiles with 'graftal farm plan', or a part of "
                            "it with --tile",
@@ -291,7 +292,11 @@ std::string refusal_of_size(const Options& options) {
 }
 
 /// What is wrong with options that are each right, or "".
-std::string complete(Options& options) {
+std::string complete(Options& options, bool in_parts) {
+    if (options.command == Command::farm) {
+        options.engine = &native_engine;
+        return complete_farm(options);
+    }
     if (const std::string refused = options.watch ? refusal_to_watch(options) : ""; !refused.empty())
         return refused;
     if (!options.engine) options.engine = options.watch ? &native_engine : &engines().front();
@@ -300,7 +305,7 @@ std::string complete(Options& options) {
     const std::string extension = std::filesystem::path(options.render.output).extension().string();
     const bool from_stdin = options.operands.front() == "-";
     if (options.command == Command::render) {
-        if (const std::string refused_size = refusal_of_size(options); !refused_size.empty())
+        if (const std::string refused_size = refusal_of_size(options, in_parts); !refused_size.empty())
             return refused_size;
         if (options.render.output.empty() && from_stdin)
             return "a model from standard input has no name: name the picture with '-o FILE'";
@@ -326,7 +331,16 @@ std::string complete(Options& options) {
 } // namespace
 
 ParsedCommandLine parse_command_line(int argc, const char* const* argv) {
+    return parse_command_line(std::vector<std::string>(argv, argv + argc));
+}
+
+ParsedCommandLine parse_command_line(std::vector<std::string> words, bool in_parts) {
     Options options;
+    options.farm.words = take_foreign_words(words);
+    std::vector<const char*> argv;
+    for (const std::string& word : words)
+        argv.push_back(word.c_str());
+    const int argc = static_cast<int>(argv.size());
     CLI::App app(
         "graftal compiles small text models of fractals and plants into object-instance graphs, and\n"
         "the graphs into pictures and POV-Ray scenes.",
@@ -347,26 +361,38 @@ ParsedCommandLine parse_command_line(int argc, const char* const* argv) {
     std::vector<std::string> names;
     for (const CommandEntry& entry : commands)
         names.emplace_back(entry.name);
-    const std::string wrong = wrong_command(argc, argv, names);
+    const std::string wrong = wrong_command(argc, argv.data(), names);
     if (!wrong.empty()) return {std::nullopt, usage_error(wrong, "")};
     const auto chosen = [&]() -> std::string {
-        return app.get_subcommands().empty() ? "" : app.get_subcommands().front()->get_name();
+        std::string name;
+        for (const CLI::App* command = &app; !command->get_subcommands().empty();) {
+            command = command->get_subcommands().front();
+            name += (name.empty() ? "" : " ") + command->get_name();
+        }
+        return name;
+    };
+    const auto chosen_command = [&]() -> const CLI::App& {
+        const CLI::App* command = &app;
+        while (!command->get_subcommands().empty())
+            command = command->get_subcommands().front();
+        return *command;
     };
     try {
-        app.parse(argc, argv);
+        app.parse(argc, argv.data());
     } catch (const CLI::CallForHelp&) {
         const std::string name = chosen();
-        return {std::nullopt,
-                print_output(name.empty() ? app.help() : app.get_subcommand(name)->help("graftal"))};
+        const std::string before = name.starts_with("farm ") ? "graftal farm" : "graftal";
+        return {std::nullopt, print_output(name.empty() ? app.help() : chosen_command().help(before))};
     } catch (const CLI::CallForVersion& version) {
         return {std::nullopt, print_output(std::string(version.what()) + "\n")};
     } catch (const CLI::ParseError& error) {
-        const CLI::App& command = chosen().empty() ? app : *app.get_subcommand(chosen());
-        return {std::nullopt, usage_error(usage_message(error, command), chosen())};
+        return {std::nullopt, usage_error(usage_message(error, chosen_command()), chosen())};
     }
     if (help_passes) return {std::nullopt, print_output(passes_text())};
     if (chosen().empty()) return {std::nullopt, usage_error("which command?", "")};
-    const std::string problem = complete(options);
+    if (chosen() == "farm")
+        return {std::nullopt, usage_error("farm: name a step: plan, submit, status, merge or clean", "farm")};
+    const std::string problem = complete(options, in_parts);
     if (!problem.empty()) return {std::nullopt, usage_error(problem, chosen())};
 
     options.animation.identity = frame_identity(*app.get_subcommands().front(), *options.engine);

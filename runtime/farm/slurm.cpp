@@ -17,22 +17,22 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr double least_group_seconds = 60;
-
 std::string arrays_file(const JobFolder& folder) {
     return slurm_folder(folder) + "/arrays.json";
 }
 
 } // namespace
 
+std::uint64_t minute_of_tasks(double task_seconds) {
+    constexpr double minute = 60;
+    return static_cast<std::uint64_t>(
+        std::clamp(minute / std::max(task_seconds, 1e-3), 1.0, static_cast<double>(most_tasks)));
+}
+
 std::vector<std::vector<std::uint64_t>> group_tasks(const std::vector<std::uint64_t>& tasks,
-                                                    std::uint64_t most_groups, double task_seconds) {
+                                                    std::uint64_t most_groups, std::uint64_t group) {
     std::vector<std::vector<std::uint64_t>> groups;
-    if (tasks.empty()) return groups;
-    const auto count = static_cast<double>(tasks.size());
-    const double by_time = std::max(1.0, std::ceil(count * task_seconds / least_group_seconds));
-    const auto wanted = static_cast<std::uint64_t>(
-        std::clamp(by_time, 1.0, std::min(count, static_cast<double>(most_groups))));
+    const std::uint64_t wanted = std::min((tasks.size() + group - 1) / group, most_groups);
     for (std::uint64_t i = 0; i < wanted; ++i) {
         const auto first = static_cast<std::ptrdiff_t>(i * tasks.size() / wanted);
         const auto end = static_cast<std::ptrdiff_t>((i + 1) * tasks.size() / wanted);

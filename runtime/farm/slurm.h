@@ -16,10 +16,13 @@ namespace graftal {
 /// What Slurm takes at once where nobody has set MaxArraySize: indices from 1 to 1000.
 inline constexpr std::uint64_t usual_array_size = 1000;
 
-/// Cuts tasks into the groups of an array job: at most `most_groups`, each of one piece of the list, and none
-/// that takes less than a minute or so while fewer groups would do. `task_seconds`: of one task.
+/// How many tasks make a group of a minute or so, by the estimate of one.
+std::uint64_t minute_of_tasks(double task_seconds);
+
+/// Cuts tasks into the groups of an array job, of `group` tasks each: pieces of the list. There are at most
+/// `most_groups`, so groups may be larger.
 std::vector<std::vector<std::uint64_t>> group_tasks(const std::vector<std::uint64_t>& tasks,
-                                                    std::uint64_t most_groups, double task_seconds);
+                                                    std::uint64_t most_groups, std::uint64_t group);
 
 /// The time that one group may take, as Slurm has it, in minutes: ten times the estimate, and ten minutes
 /// more, since tiles differ and machines too.

@@ -94,6 +94,12 @@ void add_submit(CLI::App& farm, Options& options) {
         "a whole number from 1 to 100000",
         [](const std::string& text) { return parse_whole(text, 1, 100'000); },
         [&own](std::uint64_t count) { own.at_once = static_cast<int>(count); });
+    add_value(
+        app, "--group", "N",
+        "With --slurm: so many tasks in each index of the array (default: a minute's worth by the estimate)",
+        "a whole number from 1 to 100000",
+        [](const std::string& text) { return parse_whole(text, 1, 100'000); },
+        [&own](std::uint64_t count) { own.group = count; });
     add_quiet(app, options);
     app.footer("Tasks that are done are never run again, so the same command goes on after anything.\n"
                "Slurm is asked for one processor a task, and for time and memory by the plan's estimate.\n"
@@ -224,8 +230,8 @@ std::string complete_farm(const Options& options) {
     if (own.action == FarmAction::plan) return refusal_of_plan(own);
     if (own.action != FarmAction::submit) return {};
     if (own.local.has_value() == own.slurm) return "give one of --local N and --slurm";
-    if (own.local && (own.resume || own.at_once > 0 || !own.words.empty()))
-        return "--resume, --at-once and options for sbatch go with --slurm";
+    if (own.local && (own.resume || own.at_once > 0 || own.group > 0 || !own.words.empty()))
+        return "--resume, --at-once, --group and options for sbatch go with --slurm";
     return {};
 }
 

@@ -29,7 +29,8 @@ struct FarmOptions {
     std::optional<int> local;
     bool slurm = false;
     bool resume = false;
-    int at_once = 0; ///< tasks of Slurm; 0: as many as it likes
+    int at_once = 0;         ///< of Slurm; 0: as many as it likes
+    std::uint64_t group = 0; ///< tasks of an index of the array; 0: a minute's worth
     // task
     std::string tasks;
     // clean

@@ -131,7 +131,9 @@ class SlurmSubmission {
     bool submit(const std::vector<std::uint64_t>& missing) {
         const auto config = ask({"scontrol", "show", "config"}, false);
         SlurmArray array;
-        array.groups = group_tasks(missing, parse_array_size(*config), job_.task_seconds);
+        array.groups =
+            group_tasks(missing, parse_array_size(*config),
+                        options_.farm.group > 0 ? options_.farm.group : minute_of_tasks(job_.task_seconds));
         std::vector<std::string> command = task_command(folder_, "");
         command.pop_back(); // the tasks come from the script
         std::string script;

@@ -197,22 +197,25 @@ TEST(TaskLists, AreAsSlurmHasThem) {
         EXPECT_FALSE(parse_task_list(text, 10)) << text;
 }
 
-TEST(Slurm, GroupsHoldEachTaskOnceAndTakeAMinuteOrSo) {
+TEST(Slurm, GroupsHoldEachTaskOnceInOrder) {
     std::vector<std::uint64_t> tasks;
     for (std::uint64_t i = 1; i <= 2500; ++i)
         tasks.push_back(i);
-    for (const double seconds : {0.0, 0.5, 30.0, 600.0}) {
-        const auto groups = group_tasks(tasks, 1000, seconds);
+    for (const std::uint64_t size : {1, 3, 100, 5000}) {
+        const auto groups = group_tasks(tasks, 1000, size);
         std::vector<std::uint64_t> all;
         for (const auto& group : groups)
             all.insert(all.end(), group.begin(), group.end());
         EXPECT_EQ(all, tasks);
         EXPECT_LE(groups.size(), 1000u);
     }
-    EXPECT_EQ(group_tasks(tasks, 1000, 0).size(), 1u);
-    EXPECT_EQ(group_tasks(tasks, 1000, 0.6).size(), 25u);
-    EXPECT_EQ(group_tasks({4, 9}, 1000, 600).size(), 2u);
-    EXPECT_TRUE(group_tasks({}, 1000, 600).empty());
+    EXPECT_EQ(group_tasks(tasks, 1000, 5000).size(), 1u);
+    EXPECT_EQ(group_tasks(tasks, 1000, 100).size(), 25u);
+    EXPECT_EQ(group_tasks(tasks, 1000, 1).size(), 1000u);
+    EXPECT_TRUE(group_tasks({}, 1000, 1).empty());
+    EXPECT_EQ(minute_of_tasks(0.6), 100u);
+    EXPECT_EQ(minute_of_tasks(600), 1u);
+    EXPECT_EQ(minute_of_tasks(0), 60'000u);
     EXPECT_EQ(minutes_for(10, 60), 110u);
 }
 

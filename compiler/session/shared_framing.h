@@ -1,6 +1,8 @@
 #pragma once
 
+#include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "compiler/scene/extremes.h"
@@ -26,6 +28,11 @@ class SharedFraming {
     View view(const AnalysedModel& model, const ViewOptions& options) const;
 
     bool turning() const { return turning_; }
+
+    /// As a JSON object, from which another process reads the very same. Requires settle().
+    std::string json() const;
+    /// Nothing for any other text.
+    static std::shared_ptr<const SharedFraming> from_json(const std::string& text);
 
   private:
     Camera frame(const CameraSetting& setting) const;

@@ -29,8 +29,8 @@ double developed(double light, const Film& film) {
     return srgb_encoded(static_cast<float>(rolled_off(film.exposure * light, film.soft)));
 }
 
-Developer::Developer(const Film& film, SampleFormat format)
-    : film_(film), largest_level_(largest_level(format)) {
+Developer::Developer(const Film& film, SampleFormat format, int left, int top)
+    : film_(film), largest_level_(largest_level(format)), left_(left), top_(top) {
     const double neutral_k = Film().white_k;
     if (film.white_k != neutral_k)
         gains_ = blackbody_rgb(neutral_k) / glm::max(blackbody_rgb(film.white_k), Rgb(1e-3));
@@ -52,7 +52,8 @@ void Developer::develop(Image& picture, int first, int end) const {
                 if (samples[c] != last[c].light)
                     last[c] = {samples[c], developed((grey ? 1 : gains_[c]) * samples[c], film_)};
                 const double value = last[c].value;
-                samples[c] = static_cast<float>(dithered ? value + dither(x, y, c) / largest_level_ : value);
+                samples[c] = static_cast<float>(
+                    dithered ? value + dither(left_ + x, top_ + y, c) / largest_level_ : value);
             }
         }
 }

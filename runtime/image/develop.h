@@ -17,7 +17,8 @@ double developed(double light, const Film& film);
 /// pictures, and those of random points, go through here.
 class Developer {
   public:
-    Developer(const Film& film, SampleFormat format);
+    /// `left` and `top`: where the picture lies in the whole that it is a part of, in pixels.
+    Developer(const Film& film, SampleFormat format, int left = 0, int top = 0);
 
     /// Rows `first` to `end`; threads may share it for rows of their own.
     void develop(Image& picture, int first, int end) const;
@@ -25,6 +26,7 @@ class Developer {
   private:
     Film film_;
     int largest_level_;
+    int left_, top_;
     Rgb gains_{1.0};
 };
 

@@ -148,6 +148,14 @@ void ImageSink::take(const float* samples) {
     image_.pixels.insert(image_.pixels.end(), samples, samples + row_samples_);
 }
 
+std::string ImageRows::give(float* samples) {
+    const std::size_t count =
+        static_cast<std::size_t>(image_.width) * static_cast<std::size_t>(image_.channels);
+    std::copy_n(image_.pixels.begin() + static_cast<std::ptrdiff_t>(given_), count, samples);
+    given_ += count;
+    return {};
+}
+
 Status read_image(const std::string& path, Image& image) {
     ImageSink sink(image, most_samples);
     return read_rows(path, sink);
@@ -167,6 +175,22 @@ Status write_image(const PendingFile& pending, const Image& image, SampleFormat 
     GRAFTAL_CHECK(!more || is_exr_name(pending.path()), pending.path());
     const std::string error = write(pending.temporary_path(), image, format, metadata, more);
     return error.empty() ? Status() : failure("write", pending.path(), error);
+}
+
+Status write_rows(const std::string& path, const RowShape& shape, RowSource& rows, SampleFormat format,
+                  const ImageMetadata& metadata) {
+    GRAFTAL_CHECK(is_picture_name(path) && 1 <= shape.channels && shape.channels <= 4, path);
+    PendingFile pending(path);
+    if (!pending.status().ok()) return pending.status();
+    std::string error;
+    if (!is_exr_name(path))
+        error = write_png_rows(pending.temporary_path(), shape, rows, format, metadata);
+    else if (module().files)
+        error = module().files->write_exr_rows(pending.temporary_path(), shape, rows, metadata);
+    else
+        error = module().error;
+    if (error == "interrupted") return Status::failure(error);
+    return error.empty() ? pending.commit() : failure("write", path, error);
 }
 
 Status write_gif(const std::string& path, const std::vector<std::string>& frames, FrameRate rate,

@@ -83,6 +83,17 @@ Status read_rows(const std::string& path, RowSink& sink);
 /// The same, all of it; refuses pictures of more than 2^28 samples (1 GiB).
 Status read_image(const std::string& path, Image& image);
 
+/// Gives the rows of a picture that outlives it.
+class ImageRows : public RowSource {
+  public:
+    explicit ImageRows(const Image& image) : image_(image) {}
+    std::string give(float* samples) override;
+
+  private:
+    const Image& image_;
+    std::size_t given_ = 0; ///< samples
+};
+
 /// Writes `.png` or `.exr`, whole or not at all. Requires is_picture_name(path). The bytes depend on the
 /// arguments only. Samples are clamped to [0, 1] in PNG. `more`: null, or requires an EXR.
 Status write_image(const std::string& path, const Image& image, SampleFormat format,
@@ -90,6 +101,11 @@ Status write_image(const std::string& path, const Image& image, SampleFormat for
 /// The same without the commit.
 Status write_image(const PendingFile& pending, const Image& image, SampleFormat format,
                    const ImageMetadata& metadata = {}, const MoreChannels* more = nullptr);
+
+/// write_image() of rows that come one after the other: the same bytes, whatever the size, in memory for a
+/// few rows. Requires 1 to 4 channels.
+Status write_rows(const std::string& path, const RowShape& shape, RowSource& rows, SampleFormat format,
+                  const ImageMetadata& metadata = {});
 
 /// Writes a 16-bit PNG of linear values for an SDL image_map with `gamma 1.0`: sample = round(65535 value).
 /// Pixels that are missing at the end are filled with the last. Does not commit. Requires

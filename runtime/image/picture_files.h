@@ -15,6 +15,9 @@ struct PictureFiles {
     std::string (*read)(const std::string& path, RowSink& sink);
     std::string (*write_exr)(const std::string& path, const Image& image, const ImageMetadata& metadata,
                              const MoreChannels* more);
+    /// The same file of rows that come one after the other.
+    std::string (*write_exr_rows)(const std::string& path, const RowShape& shape, RowSource& rows,
+                                  const ImageMetadata& metadata);
     /// Pictures of one size as an animated GIF. `on_frame` is called before each; false gives up, with
     /// "interrupted".
     std::string (*write_gif)(const std::string& path, const std::vector<std::string>& frames,

@@ -76,7 +76,7 @@ class Writer {
     Writer(const Writer&) = delete;
     Writer& operator=(const Writer&) = delete;
 
-    /// `fill(y, row)` gives the bytes of each row, and may not throw.
+    /// `fill(y, row)` gives the bytes of each row, and says whether there are any.
     template<typename Fill>
     std::string write(const Kind& kind, const ImageMetadata& metadata, const Fill& fill) {
         if (!info_) return std::strerror(ENOMEM);
@@ -85,7 +85,7 @@ class Writer {
         const bool well = succeeds(png_, [&] {
             put_head(kind, metadata);
             for (int y = 0; y < kind.height; ++y) {
-                fill(y, row.data());
+                if (!fill(y, row.data())) return;
                 png_write_row(png_, row.data());
             }
             png_write_end(png_, nullptr);
@@ -271,15 +271,25 @@ std::string read_png(const std::string& path, RowSink& sink) {
 
 std::string write_png(const std::string& path, const Image& image, SampleFormat format,
                       const ImageMetadata& metadata) {
-    GRAFTAL_CHECK(1 <= image.channels && image.channels <= 4, path);
-    const bool linear = format == SampleFormat::linear16;
-    const Kind kind{image.width, image.height, image.channels, format == SampleFormat::srgb8 ? 8 : 16,
-                    linear};
-    const std::size_t row_samples =
-        static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.channels);
-    return write(path, kind, metadata, [&](int y, png_byte* row) {
-        put_row(image.pixels.data() + static_cast<std::size_t>(y) * row_samples, row_samples, kind.bits, row);
+    ImageRows rows(image);
+    return write_png_rows(path, {image.width, image.height, image.channels}, rows, format, metadata);
+}
+
+std::string write_png_rows(const std::string& path, const RowShape& shape, RowSource& rows,
+                           SampleFormat format, const ImageMetadata& metadata) {
+    GRAFTAL_CHECK(1 <= shape.channels && shape.channels <= 4, path);
+    const Kind kind{shape.width, shape.height, shape.channels, format == SampleFormat::srgb8 ? 8 : 16,
+                    format == SampleFormat::linear16};
+    std::vector<float> samples(static_cast<std::size_t>(shape.width) *
+                               static_cast<std::size_t>(shape.channels));
+    std::string problem;
+    const std::string error = write(path, kind, metadata, [&](int, png_byte* row) {
+        problem = rows.give(samples.data());
+        if (!problem.empty()) return false;
+        put_row(samples.data(), samples.size(), kind.bits, row);
+        return true;
     });
+    return problem.empty() ? error : problem;
 }
 
 std::string write_png_levels(const std::string& path, int width, int height,
@@ -290,6 +300,7 @@ std::string write_png_levels(const std::string& path, int width, int height,
     return write(path, kind, {}, [&](int y, png_byte* row) {
         for (std::size_t i = 0; i < row_samples; ++i)
             put_level16(row + 2 * i, levels[static_cast<std::size_t>(y) * row_samples + i]);
+        return true;
     });
 }
 

@@ -29,6 +29,10 @@ std::string read_png(const std::string& path, RowSink& sink);
 std::string write_png(const std::string& path, const Image& image, SampleFormat format,
                       const ImageMetadata& metadata);
 
+/// The same of rows that come one after the other.
+std::string write_png_rows(const std::string& path, const RowShape& shape, RowSource& rows,
+                           SampleFormat format, const ImageMetadata& metadata);
+
 /// 16-bit RGB of linear values, not compressed: as quick to write as it can be. Requires the levels of all
 /// pixels.
 std::string write_png_levels(const std::string& path, int width, int height,

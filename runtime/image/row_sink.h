@@ -20,4 +20,19 @@ class RowSink {
     virtual void take(const float* samples) = 0;
 };
 
+/// What a picture is like, without its samples.
+struct RowShape {
+    int width = 0;
+    int height = 0;
+    int channels = 0;
+};
+
+/// Gives a picture row by row, the top one first, to what writes it: nobody holds all of it.
+class RowSource {
+  public:
+    virtual ~RowSource() = default;
+    /// Fills in width * channels samples. "", or what went wrong; no row is asked for after that.
+    virtual std::string give(float* samples) = 0;
+};
+
 } // namespace graftal

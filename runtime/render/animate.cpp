@@ -48,16 +48,23 @@ class Animation {
     Animation(PictureSession& session, const AnimateOptions& options)
         : session_(session), options_(options), kind_(*animation_kind(options.output)),
           parts_(options.shutter > 0 ? moments_of_exposure(options.render.compile.view.quality) : 1),
-          store_(frames_directory(options.output), options.frames) {}
+          store_(options.frames_folder.empty() ? frames_directory(options.output) : options.frames_folder,
+                 options.frames) {}
 
     AnimationOutcome run() {
         const Clock::time_point begin = Clock::now();
-        outcome_.done = measure() && prepare() && draw() && assemble();
-        if (outcome_.done)
-            clean_up();
-        else
+        outcome_.done = know_models() && prepare() && draw() && (options_.only || assemble());
+        if (!outcome_.done)
             store_.discard_if_empty();
+        else if (!options_.only)
+            clean_up();
         outcome_.seconds = seconds_since(begin);
+        return std::move(outcome_);
+    }
+
+    AnimationOutcome run_measure(MeasuredAnimation& measured) {
+        outcome_.done = measure();
+        if (outcome_.done) measured = {framing_, all_sources_.text()};
         return std::move(outcome_);
     }
 
@@ -95,6 +102,13 @@ class Animation {
         return options_.turn_deg * eased(options_.ease, at / end);
     }
 
+    bool know_models() {
+        if (!options_.measured) return measure();
+        framing_ = options_.measured->framing;
+        sources_text_ = options_.measured->sources;
+        return true;
+    }
+
     /// Analyses the models of all frames.
     bool measure() {
         auto framing = std::make_shared<SharedFraming>();
@@ -107,6 +121,7 @@ class Animation {
         const ViewOptions view = moment(0).compile.view;
         framing->settle(view.camera, view.size, options_.turn_deg != 0);
         framing_ = std::move(framing);
+        sources_text_ = all_sources_.text();
         return true;
     }
 
@@ -133,7 +148,7 @@ class Animation {
         Status status = options_.engine->available();
         if (status.ok() && kind_ == AnimationKind::video) status = video_available();
         if (status.ok() && kind_ != AnimationKind::frames) status = check_writable(options_.output);
-        if (status.ok()) status = store_.create();
+        if (status.ok()) status = options_.only ? store_.join() : store_.create();
         if (status.ok()) status = check_writable(store_.path(0));
         return status.ok() || fail("", status);
     }
@@ -142,17 +157,20 @@ class Animation {
     std::string stamp(std::size_t frame) const {
         return Digest()
             .add(options_.identity)
-            .add(all_sources_.text())
+            .add(sources_text_)
             .add(std::to_string(options_.frames))
             .add(std::to_string(frame))
             .text();
     }
 
     bool draw() {
-        std::vector<std::size_t> missing;
-        for (std::size_t frame = 0; frame < options_.frames; ++frame)
+        std::vector<std::size_t> wanted = options_.only.value_or(std::vector<std::size_t>()), missing;
+        if (!options_.only)
+            for (std::size_t frame = 0; frame < options_.frames; ++frame)
+                wanted.push_back(frame);
+        for (const std::size_t frame : wanted)
             if (!store_.has(frame, stamp(frame))) missing.push_back(frame);
-        outcome_.found = options_.frames - missing.size();
+        outcome_.found = wanted.size() - missing.size();
         FrameClock clock;
         for (std::size_t i = 0; i < missing.size(); ++i) {
             const Clock::time_point begin = Clock::now();
@@ -232,7 +250,7 @@ class Animation {
 
     /// Between the compiler and what draws: the model is still the one that was measured.
     bool unchanged(std::size_t picture, Compilation& compilation) const {
-        if (Digest().add(compilation.sources) == sources_[picture]) return true;
+        if (options_.measured || Digest().add(compilation.sources) == sources_[picture]) return true;
         compilation.status = Status::failure("the model changed during the animation; start again");
         return false;
     }
@@ -289,6 +307,7 @@ class Animation {
     std::optional<unsigned> steps_; ///< of the model measured last
     Digest model_sources_;
     Digest all_sources_;
+    std::string sources_text_;    ///< of that, once all are known
     std::vector<Digest> sources_; ///< by frame and moment
     AnimationOutcome outcome_;
 };
@@ -320,6 +339,11 @@ int moments_of_exposure(Quality quality) {
 
 AnimationOutcome animate_model(PictureSession& session, const AnimateOptions& options) {
     return Animation(session, options).run();
+}
+
+AnimationOutcome measure_animation(PictureSession& session, const AnimateOptions& options,
+                                   MeasuredAnimation& measured) {
+    return Animation(session, options).run_measure(measured);
 }
 
 } // namespace graftal

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -29,6 +30,12 @@ struct AnimationProgress {
     std::optional<double> fraction;     ///< of this frame, once its pixels are being drawn
 };
 
+/// What measure_animation() has found: with it, any frame can be drawn by itself.
+struct MeasuredAnimation {
+    std::shared_ptr<const SharedFraming> framing;
+    std::string sources; ///< a digest of all models that are shown
+};
+
 struct AnimateOptions {
     RenderOptions render; ///< of every frame, except moving values, the output and the stamp
     const Engine* engine = &engines().front();
@@ -41,8 +48,14 @@ struct AnimateOptions {
     /// How long each frame is exposed, as a share of the time between two, in [0, 1]; 0: it shows a moment.
     /// Others are the mean light of as many moments as moments_of_exposure() gives.
     double shutter = 0;
-    bool keep_frames = false; ///< after they have been assembled
-    std::string identity;     ///< what the frames depend on besides the model: the program and its options
+    bool keep_frames = false;  ///< after they have been assembled
+    std::string frames_folder; ///< "": frames_directory(output)
+    /// The models are known: they are not looked at before a frame is drawn.
+    std::optional<MeasuredAnimation> measured;
+    /// These frames, from 0 on, are drawn, and nothing is put together; others may draw in the folder at the
+    /// same time. Nothing: all. Requires `measured`.
+    std::optional<std::vector<std::size_t>> only;
+    std::string identity; ///< what the frames depend on besides the model: the program and its options
     std::function<void(const AnimationProgress&)> on_progress;
     /// After each model, and each frame, that is without errors: warnings.
     std::function<void(const Compilation&)> on_compiled;
@@ -69,5 +82,9 @@ int moments_of_exposure(Quality quality);
 /// stay for the next run until the output is there, and the output is whole or not there. Cancelled as
 /// for Engine::draw.
 AnimationOutcome animate_model(PictureSession& session, const AnimateOptions& options);
+
+/// The beginning of animate_model(), which draws nothing. If it is done, `measured` is filled in.
+AnimationOutcome measure_animation(PictureSession& session, const AnimateOptions& options,
+                                   MeasuredAnimation& measured);
 
 } // namespace graftal

@@ -42,7 +42,7 @@ FrameStore::FrameStore(std::string directory, std::size_t count)
     : directory_(std::move(directory)), count_(count),
       digits_(std::max(4, static_cast<int>(std::to_string(count).size()))) {}
 
-Status FrameStore::create() {
+Status FrameStore::join() {
     std::error_code error;
     made_ = fs::create_directories(directory_, error);
     if (!error && !fs::is_directory(directory_, error))
@@ -50,6 +50,12 @@ Status FrameStore::create() {
     if (error)
         return Status::failure(
             fmt::format("cannot make the directory '{}': {}", directory_, error.message()));
+    return {};
+}
+
+Status FrameStore::create() {
+    if (Status status = join(); !status.ok()) return status;
+    std::error_code error;
     lock_ = lock_path(fs::canonical(directory_, error).string());
     // The run that had the lock may have removed it just now.
     if (lock_ >= 0 && fs::exists(directory_, error)) return {};

@@ -21,6 +21,8 @@ class FrameStore {
 
     /// Makes the directory if it is missing, and locks it (flock): fails where another run is at work in it.
     Status create();
+    /// The same without the lock: many may draw in it, each its own frames.
+    Status join();
 
     const std::string& directory() const { return directory_; }
     std::size_t count() const { return count_; }

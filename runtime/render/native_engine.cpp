@@ -8,11 +8,10 @@
 #include <fmt/format.h>
 
 #include "compiler/detail/coarser.h"
-#include "compiler/povray/povray_units.h"
 #include "compiler/session/stages.h"
 #include "runtime/image/develop.h"
 #include "runtime/render/aov_channels.h"
-#include "runtime/render/fit_work.h"
+#include "runtime/render/fit_picture.h"
 #include "runtime/render/samplings.h"
 #include "runtime/render/scene_files.h"
 #include "runtime/render/stopwatch.h"
@@ -21,50 +20,6 @@
 namespace graftal {
 
 namespace {
-
-/// Of the work, what may go to samples that meet nothing: what is seen takes the rest.
-constexpr double most_for_samples = 0.5;
-
-/// Where POV-Ray's pictures end, and whether soft light is listed.
-ShaderLimits limits_of(const TraceModel& model, const RenderOptions& options) {
-    constexpr double farthest_in_povray = 1e7;
-    const Ball& ball = model.prepared.cut.nodes[model.prepared.cut.root].ball;
-    DrawnExtent drawn;
-    if (ball.radius > 0) {
-        drawn.bounds.include(ball.centre - Vec3(ball.radius));
-        drawn.bounds.include(ball.centre + Vec3(ball.radius));
-    }
-    ShaderLimits limits;
-    limits.farthest = farthest_in_povray / choose_units(drawn, model.view.camera).scale;
-    if (options.listed_lights) limits.list = list_size(model.view.quality);
-    return limits;
-}
-
-/// Whether pixels are estimated, by samples that differ.
-bool is_sampled(const Graph& graph, const View& view, const RenderOptions& options) {
-    if (view.lens.radius > 0) return true;
-    return !options.listed_lights && (view.has_soft_light() || shows_blur(graph, view));
-}
-
-std::vector<Sampling> samplings_for(bool sampled, const View& view, const RenderOptions& options) {
-    if (!sampled) return samplings_of(options.antialias, options.progressive);
-    const SampleGoal goal = sample_goal(view.quality);
-    return samplings_of_soft_light(options.samples.value_or(goal.most_samples),
-                                   options.noise_255.value_or(options.samples ? 0 : goal.noise_255),
-                                   options.progressive);
-}
-
-/// A pixel's, before more is culled to save work.
-constexpr int fewest_soft_samples = 2;
-
-/// How closely a picture is looked at.
-struct Looks {
-    std::vector<Sampling> wanted;
-    std::vector<Sampling> tried;      ///< for which the model was fitted
-    std::vector<Sampling> affordable; ///< with that model
-
-    bool fewer() const { return samples_a_pixel(affordable) < samples_a_pixel(wanted); }
-};
 
 std::string samples_in_words(const std::vector<Sampling>& samplings) {
     const double samples = samplings.back().samples_a_pixel();
@@ -87,6 +42,7 @@ double work_as_asked(const FittedModel& fitted, const Looks& looks, ImageSize si
 struct Asked {
     Span span; ///< of the model
     ImageSize size;
+    std::uint64_t drawn_pixels; ///< of them
     const DetailOptions& detail;
 };
 
@@ -136,7 +92,7 @@ void report_work(const FittedModel& fitted, const Looks& looks, const Asked& ask
 void report_noise(const TraceStatistics& rays, const Looks& looks, const Asked& asked, bool by_default,
                   Diagnostics& diagnostics) {
     const double noticed = by_default ? 0.25 : 0.01; // of the picture
-    const double share = static_cast<double>(rays.noisy_pixels) / asked.size.width / asked.size.height;
+    const double share = static_cast<double>(rays.noisy_pixels) / static_cast<double>(asked.drawn_pixels);
     if (!looks.fewer() || !(share > noticed)) return;
     const Limit limit = limit_of_work(asked.detail.work_seconds);
     diagnostics
@@ -167,14 +123,20 @@ void report_shells(const TraceModel& model, const Asked& asked, Diagnostics& dia
         warn_of_shells(asked.span, {coarsest * model.options.error_px, asked.detail.error_px}, diagnostics);
 }
 
+/// What of the picture is drawn.
+Tile window_of(const RenderOptions& options, ImageSize size) {
+    return options.tile.value_or(whole_of(size));
+}
+
 /// One picture, from the first sample to the last file.
 class Drawing {
   public:
     Drawing(const View& view, const CutGraph& cut, const RenderOptions& options, const PictureSink& sink,
             const CancelFlag& cancel)
-        : options_(options), sink_(sink), cancel_(cancel), size_(view.size), film_(view.film) {
-        picture_.width = size_.width;
-        picture_.height = size_.height;
+        : options_(options), sink_(sink), cancel_(cancel), window_(window_of(options, view.size)),
+          film_(view.film) {
+        picture_.width = window_.width;
+        picture_.height = window_.height;
         picture_.channels = 3;
         picture_.pixels.resize(3 * pixels());
         if (!options.aovs) return;
@@ -211,9 +173,7 @@ class Drawing {
         return {};
     }
 
-    std::size_t pixels() const {
-        return static_cast<std::size_t>(size_.width) * static_cast<std::size_t>(size_.height);
-    }
+    std::size_t pixels() const { return window_.pixels(); }
 
     static Status interrupted() { return Status::failure("interrupted"); }
 
@@ -239,11 +199,11 @@ class Drawing {
         control.sequence = options_.sequence;
         control.cancelled = [this] { return cancel_.raised(); };
         control.on_tile = [&](const Tile& tile) {
-            traced += static_cast<std::size_t>(tile.width) * static_cast<std::size_t>(tile.height);
+            traced += tile.pixels();
             const double share = static_cast<double>(traced) / static_cast<double>(pixels());
             tell((done_ + share * sampling.samples_a_pixel()) / work_);
         };
-        tracer.trace(sampling, control, picture_, numbers_ ? &aovs_ : nullptr);
+        tracer.trace(sampling, control, window_, picture_, numbers_ ? &aovs_ : nullptr);
         done_ += sampling.samples_a_pixel();
         report_.seconds += watch.seconds();
         return traced;
@@ -269,7 +229,7 @@ class Drawing {
     Image encoded() const {
         Image image = picture_;
         constexpr int rows = 16;
-        const Developer developer(film_, options_.format);
+        const Developer developer(film_, options_.format, window_.x, window_.y);
         const auto encode = [&](int, std::uint64_t piece) {
             const int begin = static_cast<int>(piece) * rows;
             developer.develop(image, begin, std::min(begin + rows, image.height));
@@ -282,7 +242,7 @@ class Drawing {
     const RenderOptions& options_;
     const PictureSink& sink_;
     const CancelFlag& cancel_;
-    ImageSize size_;
+    Tile window_; ///< of the picture
     Film film_;
     Image picture_;
     AovPicture aovs_;
@@ -324,6 +284,44 @@ std::string in_words(const NativeReport& report) {
     return text;
 }
 
+StageOptions stages_of(const RenderOptions& options) {
+    StageOptions stages = options.compile;
+    stages.detail.keeps_objects = options.aovs;
+    return stages;
+}
+
+bool view_model(PictureSession& session, const StageOptions& stages, PreparedView& model,
+                Compilation& compilation) {
+    model.viewed = session.viewed(stages, compilation);
+    if (!model.viewed) return false;
+    compilation.status = load_textures(model.viewed->model->graph.materials, model.viewed->view,
+                                       session.textures(), model.textures);
+    return compilation.status.ok();
+}
+
+bool prepare_model(PictureSession& session, const StageOptions& stages, PreparedView& model,
+                   Compilation& compilation) {
+    model.detail = resolved(stages.detail, *model.viewed);
+    model.prepared = session.prepared(stages, compilation);
+    return model.prepared != nullptr;
+}
+
+/// As trace_model(), by a fit that is known: whoever found it has said what the work has cost.
+std::optional<NativeReport> trace_fitted(const PreparedView& prepared, const RenderOptions& options,
+                                         const Stopwatch& preparing, const CancelFlag& cancel,
+                                         Compilation& compilation, const PictureSink& sink) {
+    const PicturePlan plan = plan_picture(prepared, options);
+    const std::unique_ptr<TraceModel> model = model_of(*options.fit, prepared, plan.detail);
+    Drawing drawing(prepared.viewed->view, prepared.prepared->cut, options, sink, cancel);
+    compilation.times.push_back({"prepare", preparing.seconds()});
+    const Stopwatch drawing_watch;
+    const Sampling& sampling = options.fit->sampling;
+    compilation.status = drawing.run(*model, {sampling}, sampling.samples_a_pixel());
+    compilation.times.push_back({"trace", drawing_watch.seconds()});
+    if (!compilation.status.ok()) return std::nullopt;
+    return drawing.report();
+}
+
 } // namespace
 
 constinit const Engine native_engine = {
@@ -360,22 +358,15 @@ constinit const Engine native_engine = {
 std::optional<NativeReport> render_natively(PictureSession& session, const RenderOptions& options,
                                             Compilation& compilation, const PictureSink& sink) {
     const Stopwatch whole;
-    StageOptions stages = options.compile;
-    stages.detail.keeps_objects = options.aovs;
+    const StageOptions stages = stages_of(options);
     PreparedView model;
-    model.viewed = session.viewed(stages, compilation);
-    if (!model.viewed) return std::nullopt;
-    compilation.status = sink ? Status() : check_writable(options.output);
-    if (compilation.status.ok())
-        compilation.status = load_textures(model.viewed->model->graph.materials, model.viewed->view,
-                                           session.textures(), model.textures);
+    if (!view_model(session, stages, model, compilation)) return std::nullopt;
+    if (!sink) compilation.status = check_writable(options.output);
     if (!compilation.status.ok()) return std::nullopt;
 
     const Stopwatch preparing;
     const double before = whole.seconds();
-    model.detail = resolved(stages.detail, *model.viewed);
-    model.prepared = session.prepared(stages, compilation);
-    if (!model.prepared) return std::nullopt;
+    if (!prepare_model(session, stages, model, compilation)) return std::nullopt;
     std::optional<NativeReport> report =
         trace_model(model, options, preparing, session.control().cancel, compilation, sink);
     if (report) report->first_picture_seconds += before;
@@ -387,17 +378,10 @@ std::optional<NativeReport> trace_model(const PreparedView& prepared, const Rend
                                         Compilation& compilation, const PictureSink& sink) {
     const Graph& graph = prepared.viewed->model->graph;
     const View& view = prepared.viewed->view;
-    const bool sampled = is_sampled(graph, view, options);
-    DetailOptions detail = prepared.detail;
-    if (sampled) detail.work_seconds = options.soft_work(view.quality);
-    Looks looks;
-    looks.wanted = samplings_for(sampled, view, options);
-    looks.tried = detail.culls()
-                      ? with_fewer_samples(looks.wanted, view.size, most_for_samples * detail.work_seconds)
-                      : looks.wanted;
-    // Noise is better than parts that are missing.
-    Sampling& finest = looks.tried.back();
-    if (sampled && detail.culls()) finest.most_samples = std::min(finest.most_samples, fewest_soft_samples);
+    if (options.fit) return trace_fitted(prepared, options, preparing, cancel, compilation, sink);
+    PicturePlan plan = plan_picture(prepared, options);
+    const DetailOptions& detail = plan.detail;
+    const Looks& looks = plan.looks;
     const double samples = samples_a_pixel(looks.tried);
     const double least_a_sample = least_seconds({{.block = 1}}, view.size);
     Drawing drawing(view, prepared.prepared->cut, options, sink, cancel);
@@ -410,19 +394,12 @@ std::optional<NativeReport> trace_model(const PreparedView& prepared, const Rend
     };
     std::function<void(const TraceModel&, double)> on_first_look;
     if (options.progressive) on_first_look = draw_draft;
-    const FittedModel fitted = fit_work(
-        prepared.prepared, view, detail, prepared.textures, samples,
-        [&](const TraceModel& tried) { return limits_of(tried, options); }, options.threads,
-        [&] { return cancel.raised() || !compilation.status.ok(); }, on_first_look);
+    const FittedModel fitted = fit_picture(
+        prepared, options, [&] { return cancel.raised() || !compilation.status.ok(); }, on_first_look, plan);
     if (!compilation.status.ok() && !cancel.raised()) return std::nullopt;
     const TraceModel& model = *fitted.model;
-    looks.affordable = looks.tried;
-    if (fitted.rays_cut)
-        looks.affordable = within_seconds(looks.tried, fitted.seconds / samples, fitted.allowed_seconds);
-    else if (sampled)
-        looks.affordable = with_more_samples(looks.tried, looks.wanted.back(), fitted.seconds / samples,
-                                             fitted.allowed_seconds);
-    const Asked asked{graph.objects[graph.root].span, view.size, detail};
+    const Asked asked{graph.objects[graph.root].span, view.size, window_of(options, view.size).pixels(),
+                      detail};
     report_work(fitted, looks, asked, compilation.diagnostics);
     report_size(looks, asked, compilation.diagnostics);
     compilation.times.push_back({"prepare", preparing.seconds()});
@@ -445,6 +422,31 @@ std::optional<NativeReport> trace_model(const PreparedView& prepared, const Rend
     report.first_picture_seconds += seconds_before;
     if (!compilation.status.ok() && report.pictures == 0) return std::nullopt;
     return report;
+}
+
+std::optional<PictureFit> fit_natively(PictureSession& session, const RenderOptions& options,
+                                       Compilation& compilation) {
+    const StageOptions stages = stages_of(options);
+    PreparedView model;
+    if (!view_model(session, stages, model, compilation) ||
+        !prepare_model(session, stages, model, compilation))
+        return std::nullopt;
+    const CancelFlag cancel = session.control().cancel;
+    PicturePlan plan = plan_picture(model, options);
+    const FittedModel fitted = fit_picture(
+        model, options, [&] { return cancel.raised(); }, {}, plan);
+    if (cancel.raised()) {
+        compilation.status = Status::failure("interrupted");
+        return std::nullopt;
+    }
+    const Graph& graph = model.viewed->model->graph;
+    const ImageSize size = model.viewed->view.size;
+    const Asked asked{graph.objects[graph.root].span, size, whole_of(size).pixels(), plan.detail};
+    report_work(fitted, plan.looks, asked, compilation.diagnostics);
+    report_size(plan.looks, asked, compilation.diagnostics);
+    PictureFit fit = fit_of(fitted, plan, size);
+    fit.size = size;
+    return fit;
 }
 
 } // namespace graftal

@@ -33,6 +33,11 @@ using PictureSink = std::function<Status(const Image& image)>;
 std::optional<NativeReport> render_natively(PictureSession& session, const RenderOptions& options,
                                             Compilation& compilation, const PictureSink& sink = {});
 
+/// The beginning of render_natively(), which fits the model to the work and draws nothing. A picture, or a
+/// part of it, that is drawn with RenderOptions::fit of this is the very picture that it is without.
+std::optional<PictureFit> fit_natively(PictureSession& session, const RenderOptions& options,
+                                       Compilation& compilation);
+
 /// What rays go through: the detail is resolved() for the view, and the graph prepared for both.
 struct PreparedView {
     std::shared_ptr<const ViewedModel> viewed;

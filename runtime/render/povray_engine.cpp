@@ -271,6 +271,9 @@ constinit const Engine povray_engine = {
     .summary = "POV-Ray 3.7",
     .available = []() -> Status { return povray_available(); },
     .refusal = [](const RenderOptions& options) -> std::string {
+        if (options.tile)
+            return "--tile needs '--engine native': POV-Ray smooths the edges of a part otherwise than those "
+                   "of the whole";
         if (options.aovs) return "--aovs needs '--engine native': POV-Ray gives colours only";
         return options.progressive
                    ? "--progressive needs '--engine native': POV-Ray shows nothing before its "

@@ -18,6 +18,19 @@ struct DrawProgress {
     std::optional<double> fraction; ///< of the stage, in [0, 1], where it is known
 };
 
+/// How much is culled of a model, and how many rays its picture takes, so that its work is within limits
+/// (fit_work.h). To find that takes rays all over the picture; who draws parts of it finds it once.
+struct PictureFit {
+    ImageSize size; ///< of the whole picture
+    double error_px = 0;
+    std::optional<double> error_world;
+    std::uint64_t most_visits = 0; ///< TraceModel::most_visits
+    Sampling sampling;
+    double seconds = 0; ///< of one processor that the whole picture will take, about
+
+    bool operator==(const PictureFit&) const = default;
+};
+
 /// A picture that is asked for, whatever engine draws it.
 struct RenderOptions {
     StageOptions compile;
@@ -30,10 +43,13 @@ struct RenderOptions {
     /// In place of the work of the detail, where soft light is sampled; nothing: by the quality.
     std::optional<double> soft_work_seconds;
     std::uint64_t sequence = 0; ///< TraceControl::sequence
-    bool listed_lights = false; ///< soft light from a list of lights (light_list.h)
-    int threads = 0;            ///< 0: as many as the engine likes
-    bool aovs = false;          ///< of an EXR: further channels (aov_channels.h)
-    bool progressive = false;   ///< write coarse pictures first, each in place of the last
+    /// The part to be drawn, in pixels of the picture: with the bits that they have in the whole.
+    std::optional<Tile> tile;
+    std::optional<PictureFit> fit; ///< of the native engine: known already; requires `progressive` to be off
+    bool listed_lights = false;    ///< soft light from a list of lights (light_list.h)
+    int threads = 0;               ///< 0: as many as the engine likes
+    bool aovs = false;             ///< of an EXR: further channels (aov_channels.h)
+    bool progressive = false;      ///< write coarse pictures first, each in place of the last
     /// Of one processor, about: a coarse picture that takes so long comes before the first that takes longer.
     std::optional<double> draft_seconds;
     bool unconfined = false; ///< PovrayJob::unconfined

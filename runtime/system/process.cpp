@@ -83,7 +83,8 @@ class ExecTables {
     for (const int number : {SIGINT, SIGTERM, SIGHUP, SIGPIPE, SIGXFSZ})
         std::signal(number, SIG_DFL);
     ready = ready && (options.directory.empty() || ::chdir(options.directory.c_str()) == 0);
-    ready = ready && ::dup2(null_device, STDIN_FILENO) >= 0 && ::dup2(null_device, STDOUT_FILENO) >= 0 &&
+    const int output = options.output_with_errors ? error_text : null_device;
+    ready = ready && ::dup2(null_device, STDIN_FILENO) >= 0 && ::dup2(output, STDOUT_FILENO) >= 0 &&
             ::dup2(error_text, STDERR_FILENO) >= 0;
     ready = ready && (!confinement || confinement->apply());
     if (ready) ::execve(program, tables.argv(), tables.envp());

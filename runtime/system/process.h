@@ -23,7 +23,8 @@ struct ProcessOptions {
     std::optional<Confinement> confinement; ///< nothing: as free as we are
     /// Receives standard error as it comes. Standard input and output of the child are /dev/null.
     std::function<void(std::string_view)> on_error_text;
-    CancelFlag cancel; ///< ends the child
+    bool output_with_errors = false; ///< standard output is received with standard error
+    CancelFlag cancel;               ///< ends the child
     /// From when that is raised to SIGKILL.
     double grace_seconds = 10;
 };

@@ -49,12 +49,17 @@ class Worker {
           shader_(model.view, traversal_, limits, model.textures.of_ground), film_(model.view.film),
           view_(model.view), control_(control) {}
 
-    /// False if it was cancelled before the last ray. `aovs` may be null.
-    bool trace(const Sampling& sampling, const Tile& tile, Image& picture, AovPicture* aovs) {
+    /// The tile of the whole picture, as far as it lies in the window, which `picture` and `aovs` show; the
+    /// latter may be null. False if it was cancelled before the last ray.
+    bool trace(const Sampling& sampling, const Tile& tile, const Tile& window, Image& picture,
+               AovPicture* aovs) {
         aovs_ = aovs;
-        if (sampling.block == 1 && sampling.most_samples > 0) return trace_samples(sampling, tile, picture);
-        if (sampling.block > 1 || !sampling.antialias) return trace_blocks(sampling.block, tile, picture);
-        return trace_lattice(steps_of(sampling), tile, picture);
+        window_ = window;
+        if (sampling.block > 1) return trace_blocks(sampling.block, tile, picture);
+        const Tile seen = common(tile, window);
+        if (sampling.most_samples > 0) return trace_samples(sampling, seen, picture);
+        if (!sampling.antialias) return trace_blocks(1, seen, picture);
+        return trace_lattice(steps_of(sampling), seen, picture);
     }
 
     /// As trace(), through points of the whole picture.
@@ -92,29 +97,34 @@ class Worker {
 
     bool cancelled() const { return control_.cancelled && control_.cancelled(); }
 
-    static void set(Image& picture, int x, int y, const Rgb& rgb) {
-        const std::size_t first = 3 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(picture.width) +
-                                       static_cast<std::size_t>(x));
+    /// Of a pixel of the whole picture.
+    std::size_t index_in_window(int x, int y) const {
+        return static_cast<std::size_t>(y - window_.y) * static_cast<std::size_t>(window_.width) +
+               static_cast<std::size_t>(x - window_.x);
+    }
+
+    void set(Image& picture, int x, int y, const Rgb& rgb) const {
+        const std::size_t first = 3 * index_in_window(x, y);
         for (int c = 0; c < 3; ++c)
             picture.pixels[first + static_cast<std::size_t>(c)] = static_cast<float>(rgb[c]);
     }
 
-    void set(int x, int y, const AovSum& sum) {
-        (*aovs_)[static_cast<std::size_t>(y) * static_cast<std::size_t>(view_.size.width) +
-                 static_cast<std::size_t>(x)] = sum.pixel();
-    }
+    void set(int x, int y, const AovSum& sum) { (*aovs_)[index_in_window(x, y)] = sum.pixel(); }
 
+    /// A block has its middle in the whole picture, however little of it is in the window.
     bool trace_blocks(int block, const Tile& tile, Image& picture) {
         for (int y = tile.y; y < tile.y + tile.height; y += block)
             for (int x = tile.x; x < tile.x + tile.width; x += block) {
-                if (cancelled()) return false;
                 const int right = std::min(x + block, tile.x + tile.width);
                 const int below = std::min(y + block, tile.y + tile.height);
+                const Tile shown = common({x, y, right - x, below - y}, window_);
+                if (shown.pixels() == 0) continue;
+                if (cancelled()) return false;
                 const Rgb rgb = look(0.5 * (x + right), 0.5 * (y + below));
                 AovSum sum;
                 sum.add(seen_, 1, 0);
-                for (int j = y; j < below; ++j)
-                    for (int i = x; i < right; ++i) {
+                for (int j = shown.y; j < shown.y + shown.height; ++j)
+                    for (int i = shown.x; i < shown.x + shown.width; ++i) {
                         set(picture, i, j, rgb);
                         if (aovs_) set(i, j, sum);
                     }
@@ -216,21 +226,29 @@ class Worker {
     const TraceControl& control_;
     std::uint64_t camera_rays_ = 0, noisy_pixels_ = 0;
     std::vector<Rgb> row_, sums_;
+    Tile window_;
     AovPicture* aovs_ = nullptr; ///< null: none are wanted
     AovSample seen_;             ///< by the last look, if they are
     std::vector<AovSum> aov_sums_;
 };
 
-std::vector<Tile> tiles_of(ImageSize size, int block) {
+/// Those of the whole picture that have pixels in the window.
+std::vector<Tile> tiles_of(ImageSize size, int block, const Tile& window) {
     const int side = std::max(1, tile_size / block) * block;
     std::vector<Tile> tiles;
-    for (int y = 0; y < size.height; y += side)
-        for (int x = 0; x < size.width; x += side)
+    for (int y = window.y / side * side; y < window.y + window.height; y += side)
+        for (int x = window.x / side * side; x < window.x + window.width; x += side)
             tiles.push_back({x, y, std::min(side, size.width - x), std::min(side, size.height - y)});
     return tiles;
 }
 
 } // namespace
+
+Tile common(const Tile& a, const Tile& b) {
+    const int left = std::max(a.x, b.x), top = std::max(a.y, b.y);
+    return {left, top, std::max(0, std::min(a.x + a.width, b.x + b.width) - left),
+            std::max(0, std::min(a.y + a.height, b.y + b.height) - top)};
+}
 
 double Sampling::samples_a_pixel() const {
     if (block == 1 && most_samples > 0) return most_samples;
@@ -268,17 +286,22 @@ bool PictureTracer::run(std::uint64_t tasks, const TraceControl& control, const 
 
 bool PictureTracer::trace(const Sampling& sampling, const TraceControl& control, Image& picture,
                           AovPicture* aovs) {
-    GRAFTAL_CHECK(picture.channels == 3 && picture.width == model_.view.size.width &&
-                      picture.height == model_.view.size.height,
+    return trace(sampling, control, whole_of(model_.view.size), picture, aovs);
+}
+
+bool PictureTracer::trace(const Sampling& sampling, const TraceControl& control, const Tile& window,
+                          Image& picture, AovPicture* aovs) {
+    GRAFTAL_CHECK(window.lies_in(model_.view.size), "trace: a window beyond the picture");
+    GRAFTAL_CHECK(picture.channels == 3 && picture.width == window.width && picture.height == window.height,
                   "trace: a picture of another size");
     GRAFTAL_CHECK(!aovs || 3 * aovs->size() == picture.pixels.size(), "trace: AOVs of another size");
-    const std::vector<Tile> tiles = tiles_of(model_.view.size, sampling.block);
+    const std::vector<Tile> tiles = tiles_of(model_.view.size, sampling.block, window);
     std::mutex telling;
     return run(tiles.size(), control, [&](Worker& worker, std::uint64_t number) {
-        if (!worker.trace(sampling, tiles[number], picture, aovs)) return false;
+        if (!worker.trace(sampling, tiles[number], window, picture, aovs)) return false;
         if (!control.on_tile) return true;
         const std::lock_guard lock(telling);
-        control.on_tile(tiles[number]);
+        control.on_tile(common(tiles[number], window));
         return true;
     });
 }

@@ -14,7 +14,23 @@ namespace graftal {
 /// A rectangle of pixels.
 struct Tile {
     int x = 0, y = 0, width = 0, height = 0;
+
+    std::uint64_t pixels() const {
+        return static_cast<std::uint64_t>(width) * static_cast<std::uint64_t>(height);
+    }
+    bool lies_in(ImageSize size) const {
+        return x >= 0 && y >= 0 && width > 0 && height > 0 && x <= size.width - width &&
+               y <= size.height - height;
+    }
+    bool operator==(const Tile&) const = default;
 };
+
+inline Tile whole_of(ImageSize size) {
+    return {0, 0, size.width, size.height};
+}
+
+/// What both hold; no pixels where that is nothing.
+Tile common(const Tile& a, const Tile& b);
 
 /// How finely a picture is looked at: blocks of pixels that show what their middle does, or samples within
 /// each pixel, on a lattice or at random.
@@ -26,6 +42,7 @@ struct Sampling {
 
     /// Rays through a pixel, those that neighbours share counted once.
     double samples_a_pixel() const;
+    bool operator==(const Sampling&) const = default;
 };
 
 struct TraceStatistics {
@@ -45,7 +62,8 @@ struct TraceControl {
     /// Asked before every ray, by all threads at once: one tile may hold millions of rays. Once it says true,
     /// no further ray is traced.
     std::function<bool()> cancelled;
-    std::function<void(const Tile&)> on_tile; ///< after each whole one; by one thread at a time
+    /// After each whole one, with what of it lies in the window; by one thread at a time.
+    std::function<void(const Tile&)> on_tile;
 };
 
 /// Makes pictures of a model by the traversal. The samples are the same, to the last bit, whatever the number
@@ -59,6 +77,11 @@ class PictureTracer {
     /// they were; then false. Requires three channels and the size of the view. `aovs`, if it is not null,
     /// has a pixel for each of the picture, and is filled likewise.
     bool trace(const Sampling& sampling, const TraceControl& control, Image& picture,
+               AovPicture* aovs = nullptr);
+
+    /// The same for a window of the picture, whose pixels have the very bits that they have in the whole:
+    /// `picture` and `aovs` hold nothing else. Requires a window that lies in the view.
+    bool trace(const Sampling& sampling, const TraceControl& control, const Tile& window, Image& picture,
                AovPicture* aovs = nullptr);
 
     /// Traces the camera rays number `begin` to `end` of a sequence that covers the picture evenly at any

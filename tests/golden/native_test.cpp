@@ -304,6 +304,7 @@ TEST_F(Native, CommandsOfThePageWork) {
     for (std::string words : commands) {
         words.resize(std::min(words.find(" #"), words.size()));
         if (words.starts_with("animate")) words += " --frames 2";
+        if (words.find("--tile") != std::string::npos) words += " --tile 20,9,16x9";
         const bool draws = !words.starts_with("compare");
         const RunResult result =
             graftal(words + (draws ? " -q --size 48x27 --antialias off --error 2 --plain-light" : ""));

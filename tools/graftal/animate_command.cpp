@@ -7,6 +7,7 @@
 #include "runtime/render/frame_clock.h"
 #include "runtime/render/frame_store.h"
 #include "runtime/system/interruption.h"
+#include "tools/graftal/animate_options.h"
 #include "tools/graftal/commands.h"
 #include "tools/graftal/progress_bar.h"
 #include "tools/graftal/report.h"
@@ -46,22 +47,6 @@ class Warnings {
     ProgressBar& bar_;
     std::set<std::string> said_;
 };
-
-AnimateOptions animate_options(const Options& options) {
-    AnimateOptions animate;
-    animate.render = options.render;
-    animate.engine = options.engine;
-    animate.output = options.render.output;
-    animate.frames = options.animation.frames;
-    animate.rate = options.animation.rate;
-    animate.turn_deg = *options.animation.turn_deg;
-    animate.sweeps = options.animation.sweeps;
-    animate.ease = options.animation.ease;
-    animate.shutter = options.animation.shutter;
-    animate.keep_frames = options.animation.keep_frames;
-    animate.identity = options.animation.identity;
-    return animate;
-}
 
 std::string done_text(const Options& options, const AnimationOutcome& outcome) {
     std::string text = fmt::format("{}: {} frames, {:g} per second", options.render.output,

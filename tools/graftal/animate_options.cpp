@@ -32,6 +32,22 @@ std::string complete_animation(Options& options) {
     return {};
 }
 
+AnimateOptions animate_options(const Options& options) {
+    AnimateOptions animate;
+    animate.render = options.render;
+    animate.engine = options.engine;
+    animate.output = options.render.output;
+    animate.frames = options.animation.frames;
+    animate.rate = options.animation.rate;
+    animate.turn_deg = *options.animation.turn_deg;
+    animate.sweeps = options.animation.sweeps;
+    animate.ease = options.animation.ease;
+    animate.shutter = options.animation.shutter;
+    animate.keep_frames = options.animation.keep_frames;
+    animate.identity = options.animation.identity;
+    return animate;
+}
+
 std::string frame_identity(const CLI::App& command, const Engine& engine) {
     static const std::set<std::string> harmless = {"MODEL",    "--output", "--fps",        "--keep-frames",
                                                    "--time",   "--quiet",  "--dump-after", "--threads",

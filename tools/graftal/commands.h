@@ -27,4 +27,12 @@ int run_print(const Options& options);
 int run_graph(const Options& options);
 int run_compare(const Options& options);
 
+int run_farm(const Options& options);
+int run_farm_plan(const Options& options);
+int run_farm_task(const Options& options);
+int run_farm_submit(const Options& options);
+int run_farm_status(const Options& options);
+int run_farm_merge(const Options& options);
+int run_farm_clean(const Options& options);
+
 } // namespace graftal

@@ -19,14 +19,39 @@ std::optional<std::uint64_t> parse_whole(std::string_view text, std::uint64_t le
     return value;
 }
 
-std::optional<ImageSize> parse_size(std::string_view text) {
-    constexpr std::uint64_t longest_side = 32768, most_pixels = 1u << 28;
+std::optional<ImageSize> parse_large_size(std::string_view text) {
+    constexpr std::uint64_t longest_side = 131'072;
     const std::size_t cross = text.find('x');
     if (cross == std::string_view::npos) return std::nullopt;
     const auto width = parse_whole(text.substr(0, cross), 1, longest_side);
     const auto height = parse_whole(text.substr(cross + 1), 1, longest_side);
-    if (!width || !height || *width * *height > most_pixels) return std::nullopt;
+    if (!width || !height) return std::nullopt;
     return ImageSize{static_cast<int>(*width), static_cast<int>(*height)};
+}
+
+bool is_drawn_at_once(ImageSize size) {
+    constexpr int longest_side = 32'768;
+    constexpr std::uint64_t most_pixels = 1u << 28;
+    return std::max(size.width, size.height) <= longest_side && whole_of(size).pixels() <= most_pixels;
+}
+
+std::optional<ImageSize> parse_size(std::string_view text) {
+    const std::optional<ImageSize> size = parse_large_size(text);
+    return size && is_drawn_at_once(*size) ? size : std::nullopt;
+}
+
+std::optional<Tile> parse_tile(std::string_view text) {
+    constexpr std::uint64_t most = INT32_MAX;
+    const std::size_t first = text.find(',');
+    if (first == std::string_view::npos) return std::nullopt;
+    const std::string_view rest = text.substr(first + 1);
+    const std::size_t second = rest.find(',');
+    if (second == std::string_view::npos) return std::nullopt;
+    const auto x = parse_whole(text.substr(0, first), 0, most);
+    const auto y = parse_whole(rest.substr(0, second), 0, most);
+    const auto size = parse_size(rest.substr(second + 1));
+    if (!x || !y || !size) return std::nullopt;
+    return Tile{static_cast<int>(*x), static_cast<int>(*y), size->width, size->height};
 }
 
 std::optional<std::uint64_t> parse_bytes(std::string_view text) {

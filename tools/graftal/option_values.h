@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "compiler/scene/scene.h"
+#include "runtime/trace/picture_tracer.h"
 
 namespace graftal {
 
@@ -15,6 +16,13 @@ namespace graftal {
 
 /// "1280x720"; each side 1..32768, at most 2^28 pixels.
 std::optional<ImageSize> parse_size(std::string_view text);
+/// The same of a picture that is drawn in parts: each side 1..131072.
+std::optional<ImageSize> parse_large_size(std::string_view text);
+/// Whether parse_size() takes it.
+bool is_drawn_at_once(ImageSize size);
+
+/// "X,Y,WxH": a part of a picture, the place of its top left pixel and its size, which parse_size() takes.
+std::optional<Tile> parse_tile(std::string_view text);
 
 /// "2G", "500M", "64K" (powers of 1024) or a plain number of bytes.
 std::optional<std::uint64_t> parse_bytes(std::string_view text);

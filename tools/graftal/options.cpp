@@ -43,6 +43,12 @@ void add_render(CLI::App& app, Options& options) {
     app.add_flag("--progressive", options.render.progressive,
                  "With --engine native: write coarse pictures first, then finer ones under the same name; "
                  "Ctrl-C keeps the last one");
+    add_value(
+        app, "--tile", "X,Y,WxH",
+        "With --engine native: draw only this part of the picture, W by H pixels from X,Y on (0,0 is the top "
+        "left); they are those of the whole, to the last bit",
+        "a part such as 640,0,640x360", parse_tile, [&](const Tile& tile) { options.render.tile = tile; })
+        ->needs("--size");
     app.add_flag("--aovs", options.render.aovs,
                  "With --engine native and an EXR: write the channels A, coverage, Z, normal, albedo, id and "
                  "levels too");
@@ -60,7 +66,8 @@ void add_render(CLI::App& app, Options& options) {
                "  graftal render fern.rifs --engine native              # the same picture, much sooner\n"
                "  graftal render forest.inst --engine native --progressive --size 1920x1080\n"
                "  graftal render tree.inst --engine native --aovs -o tree.exr  # depth, normals, ... too\n"
-               "  graftal render fern.rifs --watch                      # and again after each save");
+               "  graftal render fern.rifs --watch                      # and again after each save\n"
+               "  graftal render fern.rifs --engine native --size 40000x30000 --tile 0,0,1000x1000");
 }
 
 void add_animate(CLI::App& app, Options& options) {
@@ -235,6 +242,7 @@ constexpr CommandEntry commands[] = {
     {Command::print, "print", "Print the graph of a model as .inst text", add_print},
     {Command::graph, "graph", "Draw the graph of a model", add_graph},
     {Command::compare, "compare", "Measure how much two pictures differ", add_compare},
+    {Command::farm, "farm", "Draw gigapixels, films and sweeps in tasks, on many machines", add_farm},
 };
 
 int usage_error(const std::string& message, const std::string& command) {
@@ -257,7 +265,7 @@ std::string passes_text() {
 
 /// What is wrong with options beside --watch, or "".
 std::string refusal_to_watch(const Options& options) {
-    if (options.engine && options.engine != &native_engine)
+    if (options.engine && options.engine->name != native_engine.name)
         return fmt::format("--watch draws with '--engine native': leave out '--engine {}'",
                            options.engine->name);
     if (options.operands.front() == "-")
@@ -267,8 +275,31 @@ std::string refusal_to_watch(const Options& options) {
     return {};
 }
 
+/// What is wrong with the size of a picture, or with the part of it that is wanted; or "".
+std::string refusal_of_size(const Options& options, bool in_parts) {
+    const ImageSize size = options.render.compile.view.size;
+    if (!options.render.tile) {
+        if (in_parts || is_drawn_at_once(size)) return {};
+        return fmt::format("--size: a picture of {}x{} is too large to be drawn at once (at most 32768 a "
+                           "side, and 2^28 pixels): draw it in tiles with 'graftal farm plan', or a part of "
+                           "it with --tile",
+                           size.width, size.height);
+    }
+    if (!options.render.tile->lies_in(size))
+        return fmt::format("--tile: this part is not within the {}x{} pixels of the picture", size.width,
+                           size.height);
+    if (options.render.progressive || options.watch)
+        return fmt::format("--tile draws once, at its finest: leave out {}",
+                           options.watch ? "--watch" : "--progressive");
+    return {};
+}
+
 /// What is wrong with options that are each right, or "".
-std::string complete(Options& options) {
+std::string complete(Options& options, bool in_parts) {
+    if (options.command == Command::farm) {
+        options.engine = &native_engine;
+        return complete_farm(options);
+    }
     if (const std::string refused = options.watch ? refusal_to_watch(options) : ""; !refused.empty())
         return refused;
     if (!options.engine) options.engine = options.watch ? &native_engine : &engines().front();
@@ -277,6 +308,8 @@ std::string complete(Options& options) {
     const std::string extension = std::filesystem::path(options.render.output).extension().string();
     const bool from_stdin = options.operands.front() == "-";
     if (options.command == Command::render) {
+        if (const std::string refused_size = refusal_of_size(options, in_parts); !refused_size.empty())
+            return refused_size;
         if (options.render.output.empty() && from_stdin)
             return "a model from standard input has no name: name the picture with '-o FILE'";
         if (options.render.output.empty())
@@ -301,7 +334,16 @@ std::string complete(Options& options) {
 } // namespace
 
 ParsedCommandLine parse_command_line(int argc, const char* const* argv) {
+    return parse_command_line(std::vector<std::string>(argv, argv + argc));
+}
+
+ParsedCommandLine parse_command_line(std::vector<std::string> words, bool in_parts) {
     Options options;
+    options.farm.words = take_foreign_words(words);
+    std::vector<const char*> argv;
+    for (const std::string& word : words)
+        argv.push_back(word.c_str());
+    const int argc = static_cast<int>(argv.size());
     CLI::App app(
         "graftal compiles small text models of fractals and plants into object-instance graphs, and\n"
         "the graphs into pictures and POV-Ray scenes.",
@@ -325,28 +367,40 @@ ParsedCommandLine parse_command_line(int argc, const char* const* argv) {
     for (const CommandEntry& entry : commands)
         names.emplace_back(entry.name);
     std::ranges::copy(Documents::commands(), std::back_inserter(names));
-    const std::string wrong = wrong_command(argc, argv, names);
+    const std::string wrong = wrong_command(argc, argv.data(), names);
     if (!wrong.empty()) return {std::nullopt, usage_error(wrong, "")};
     const auto chosen = [&]() -> std::string {
-        return app.get_subcommands().empty() ? "" : app.get_subcommands().front()->get_name();
+        std::string name;
+        for (const CLI::App* command = &app; !command->get_subcommands().empty();) {
+            command = command->get_subcommands().front();
+            name += (name.empty() ? "" : " ") + command->get_name();
+        }
+        return name;
+    };
+    const auto chosen_command = [&]() -> const CLI::App& {
+        const CLI::App* command = &app;
+        while (!command->get_subcommands().empty())
+            command = command->get_subcommands().front();
+        return *command;
     };
     try {
-        app.parse(argc, argv);
+        app.parse(argc, argv.data());
         if (const std::optional<std::string> text = documents.text())
             return {std::nullopt, print_output(*text)};
     } catch (const CLI::CallForHelp&) {
         const std::string name = chosen();
-        return {std::nullopt,
-                print_output(name.empty() ? app.help() : app.get_subcommand(name)->help("graftal"))};
+        const std::string before = name.starts_with("farm ") ? "graftal farm" : "graftal";
+        return {std::nullopt, print_output(name.empty() ? app.help() : chosen_command().help(before))};
     } catch (const CLI::CallForVersion& version) {
         return {std::nullopt, print_output(std::string(version.what()) + "\n")};
     } catch (const CLI::ParseError& error) {
-        const CLI::App& command = chosen().empty() ? app : *app.get_subcommand(chosen());
-        return {std::nullopt, usage_error(usage_message(error, command), chosen())};
+        return {std::nullopt, usage_error(usage_message(error, chosen_command()), chosen())};
     }
     if (help_passes) return {std::nullopt, print_output(passes_text())};
     if (chosen().empty()) return {std::nullopt, usage_error("which command?", "")};
-    const std::string problem = complete(options);
+    if (chosen() == "farm")
+        return {std::nullopt, usage_error("farm: name a step: plan, submit, status, merge or clean", "farm")};
+    const std::string problem = complete(options, in_parts);
     if (!problem.empty()) return {std::nullopt, usage_error(problem, chosen())};
 
     options.animation.identity = frame_identity(*app.get_subcommands().front(), *options.engine);

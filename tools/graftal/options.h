@@ -10,10 +10,11 @@
 #include "runtime/points/tone.h"
 #include "runtime/render/render.h"
 #include "runtime/render/sweep.h"
+#include "tools/graftal/farm_options.h"
 
 namespace graftal {
 
-enum class Command { render, animate, points, collage, compile, check, stats, print, graph, compare };
+enum class Command { render, animate, points, collage, compile, check, stats, print, graph, compare, farm };
 
 /// What `animate` takes besides what `render` does.
 struct AnimationOptions {
@@ -52,6 +53,7 @@ struct Options {
     std::string identifier;         ///< of `compile` to an .inc; "": as the model's file
     AnimationOptions animation;
     PointsSettings points;
+    FarmOptions farm;
     bool json = false;
     double threshold = 0;
 };
@@ -63,5 +65,8 @@ struct ParsedCommandLine {
 
 /// Reads the command line; help goes to standard output, complaints in the GNU form to standard error.
 ParsedCommandLine parse_command_line(int argc, const char* const* argv);
+/// The same of words in place of argv. `in_parts`: the picture of `render` may be larger than what is drawn
+/// at once.
+ParsedCommandLine parse_command_line(std::vector<std::string> words, bool in_parts = false);
 
 } // namespace graftal

@@ -24,6 +24,8 @@ int run_command(const Options& options) {
         return run_graph(options);
     case Command::compare:
         return run_compare(options);
+    case Command::farm:
+        return run_farm(options);
     }
     return exit_usage;
 }

@@ -129,12 +129,15 @@ void add_common(CLI::App& app, Options& options) {
 void add_camera(CLI::App& app, Options& options) {
     StageOptions& compile = options.render.compile;
     compile.view.shaped = !can_sweep(app); // a film keeps the shape of screens
+    const bool in_parts = app.get_name() == "render";
     add_value(app, "--size", "WxH",
               compile.view.shaped
                   ? "Size of the picture in pixels (default: as many as 1280x720 has, in a shape "
                     "that suits the model)"
                   : "Size of the picture in pixels (default 1280x720)",
-              "a size such as 1280x720, at most 32768 a side", parse_size, [&](ImageSize size) {
+              in_parts ? "a size such as 1280x720, at most 131072 a side"
+                       : "a size such as 1280x720, at most 32768 a side",
+              in_parts ? parse_large_size : parse_size, [&](ImageSize size) {
                   compile.view.size = size;
                   compile.view.shaped = false;
               });

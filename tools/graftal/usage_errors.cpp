@@ -87,6 +87,10 @@ std::string usage_message(const CLI::ParseError& error, const CLI::App& command)
     if (option) return fmt::format("{} needs a value: {}", option->get_name(), option_text(*option));
     const std::string operands = operands_text(command);
     if (operands == "A B") return "'compare' takes two pictures: 'graftal compare A B'";
+    if (operands.starts_with("JOB"))
+        return fmt::format("no {} given: try 'graftal farm {} {}'",
+                           message.find("TASKS") != std::string::npos ? "tasks" : "job", command.get_name(),
+                           operands);
     if (operands.find("MODEL") == std::string::npos)
         return fmt::format("'{0}' needs {1}: 'graftal {0} {1}'", command.get_name(), operands);
     return fmt::format("no model given: try 'graftal {} {}'", command.get_name(), operands);

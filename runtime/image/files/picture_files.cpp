@@ -194,22 +194,50 @@ std::vector<float> joined(const Image& image, const MoreChannels& more, OIIO::Im
     return samples;
 }
 
+void tag(OIIO::ImageSpec& spec, const char* name, const std::string& value) {
+    if (!value.empty()) spec.attribute(name, value);
+}
+
+OIIO::ImageSpec exr_spec(const RowShape& shape, const ImageMetadata& metadata) {
+    OIIO::ImageSpec spec(shape.width, shape.height, shape.channels, OIIO::TypeDesc::FLOAT);
+    spec.attribute("oiio:ColorSpace", "Linear"); // and colour belongs to alpha already, as EXR has it
+    spec.attribute("DateTime", ""); // else OpenImageIO writes the time, and no two files would be the same
+    tag(spec, "Software", metadata.software);
+    tag(spec, stamp_keyword, metadata.stamp);
+    tag(spec, "ImageDescription", metadata.description);
+    return spec;
+}
+
+std::string write_exr_rows(const std::string& path, const RowShape& shape, RowSource& rows,
+                           const ImageMetadata& metadata) {
+    const OIIO::ImageSpec spec = exr_spec(shape, metadata);
+    constexpr int band = 16; // rows that OpenEXR compresses together
+    const std::size_t row_samples =
+        static_cast<std::size_t>(shape.width) * static_cast<std::size_t>(shape.channels);
+    std::vector<float> samples(band * row_samples);
+    std::string problem;
+    const std::string error = write_checked(path, [&](OIIO::ImageOutput& output) {
+        if (!output.open(path, spec)) return false;
+        for (int y = 0; y < shape.height; y += band) {
+            const int end = std::min(y + band, shape.height);
+            for (int row = y; row < end && problem.empty(); ++row)
+                problem = rows.give(samples.data() + static_cast<std::size_t>(row - y) * row_samples);
+            if (!problem.empty() || !output.write_scanlines(y, end, 0, OIIO::TypeDesc::FLOAT, samples.data()))
+                return false;
+        }
+        return true;
+    });
+    return problem.empty() ? error : problem;
+}
+
 std::string write_exr(const std::string& path, const Image& image, const ImageMetadata& metadata,
                       const MoreChannels* more) {
-    OIIO::ImageSpec spec(image.width, image.height, image.channels, OIIO::TypeDesc::FLOAT);
-    spec.attribute("oiio:ColorSpace", "Linear"); // and colour belongs to alpha already, as EXR has it
-    const auto tag = [&](const char* name, const std::string& value) {
-        if (!value.empty()) spec.attribute(name, value);
-    };
-    spec.attribute("DateTime", ""); // else OpenImageIO writes the time, and no two files would be the same
-    tag("Software", metadata.software);
-    tag(stamp_keyword, metadata.stamp);
-    tag("ImageDescription", metadata.description);
+    OIIO::ImageSpec spec = exr_spec({image.width, image.height, image.channels}, metadata);
     std::vector<float> all;
     if (more) {
         all = joined(image, *more, spec);
         for (const auto& [name, text] : more->tags)
-            tag(name.c_str(), text);
+            tag(spec, name.c_str(), text);
     }
     const float* const samples = more ? all.data() : image.pixels.data();
     return write_checked(path, [&](OIIO::ImageOutput& output) {
@@ -258,6 +286,7 @@ extern "C" const graftal::PictureFiles* graftal_picture_files() {
     // Pictures are small; a pool of threads would outlive main(), where leak checkers stumble over it.
     static const bool single_threaded = OIIO::attribute("threads", 1);
     static_cast<void>(single_threaded);
-    static constexpr graftal::PictureFiles files{graftal::read, graftal::write_exr, graftal::write_gif};
+    static constexpr graftal::PictureFiles files{graftal::read, graftal::write_exr, graftal::write_exr_rows,
+                                                 graftal::write_gif};
     return &files;
 }

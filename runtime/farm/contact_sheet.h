@@ -1,0 +1,21 @@
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "compiler/support/control.h"
+#include "compiler/support/status.h"
+#include "runtime/image/image.h"
+
+namespace graftal {
+
+/// Puts many pictures on one, row by row from the top left: each reduced by a whole factor until it fits into
+/// a cell, by the mean light of its pixels, and set in the middle of it on white. The sheet is at most 8192
+/// pixels wide, and holds one row of pictures in memory. The pictures are sRGB PNGs, `columns` in each row.
+/// `on_picture` hears how many are done. A raised flag ends it: "interrupted".
+Status write_contact_sheet(const std::string& path, const std::vector<std::string>& pictures,
+                           std::uint64_t columns, const ImageMetadata& metadata, const CancelFlag& cancel,
+                           const std::function<void(std::size_t)>& on_picture = {});
+
+} // namespace graftal

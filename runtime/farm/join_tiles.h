@@ -1,0 +1,23 @@
+#pragma once
+
+#include <functional>
+
+#include "compiler/support/control.h"
+#include "runtime/farm/job.h"
+#include "runtime/image/image.h"
+
+namespace graftal {
+
+/// What a row of tiles takes while it is joined.
+std::uint64_t band_bytes(ImageSize size, int tile_height);
+
+/// The most that it may: whoever plans tiles keeps to it.
+inline constexpr std::uint64_t most_band_bytes = 256u << 20;
+
+/// Joins the parts of a job of tiles: the bytes of the file that one run would have written. Holds one row of
+/// tiles at a time, whatever the picture's size. `on_rows` hears how many rows of pixels are done. A raised
+/// flag ends it: "interrupted".
+Status join_tiles(const JobFolder& folder, const Job& job, SampleFormat format, const ImageMetadata& metadata,
+                  const CancelFlag& cancel, const std::function<void(int rows)>& on_rows = {});
+
+} // namespace graftal

@@ -1,0 +1,71 @@
+#include "runtime/farm/model_copy.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <set>
+#include <system_error>
+
+#include <fmt/format.h>
+
+namespace graftal {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// As models name files: symbolic links stay, so that the copies lie to each other as the names say.
+fs::path whole_path(const std::string& path) {
+    return fs::absolute(path).lexically_normal();
+}
+
+/// The longest path that all lie below.
+fs::path common_folder(const std::set<fs::path>& paths) {
+    fs::path common = paths.begin()->parent_path();
+    for (const fs::path& path : paths) {
+        const auto [end, ignored] = std::mismatch(common.begin(), common.end(), path.begin(), path.end());
+        fs::path shared;
+        for (auto part = common.begin(); part != end; ++part)
+            shared /= *part;
+        common = shared;
+    }
+    return common;
+}
+
+Status copy_whole(const fs::path& from, const fs::path& to) {
+    std::error_code error;
+    fs::create_directories(to.parent_path(), error);
+    if (!error) fs::copy_file(from, to, fs::copy_options::overwrite_existing, error);
+    if (!error) return {};
+    return Status::failure(
+        fmt::format("cannot copy '{}' to '{}': {}", from.string(), to.string(), error.message()));
+}
+
+} // namespace
+
+Status copy_model(const std::string& model, const std::vector<std::string>& used, const std::string& folder,
+                  ModelCopy& copy) {
+    std::set<fs::path> paths = {whole_path(model)};
+    for (const std::string& path : used)
+        paths.insert(whole_path(path));
+    const fs::path common = common_folder(paths);
+    copy.model = whole_path(model).lexically_relative(common).string();
+    for (const fs::path& path : paths) {
+        const std::string name = path.lexically_relative(common).string();
+        const fs::path target = fs::path(folder) / name;
+        if (Status status = copy_whole(path, target); !status.ok()) return status;
+        copy.files.push_back({name, file_digest(target.string())});
+    }
+    return {};
+}
+
+Status check_files(const std::string& folder, const std::vector<JobFile>& files) {
+    for (const JobFile& file : files) {
+        const std::string path = folder + "/" + file.name;
+        if (file_digest(path) != file.digest)
+            return Status::failure(
+                fmt::format("'{}' is not the file that the job was planned with; plan the job again", path));
+    }
+    return {};
+}
+
+} // namespace graftal

@@ -80,7 +80,7 @@ TEST_F(Watch, FollowsUsedModelsTexturesAndMeshes) {
     replace("parts/part.inst", two_balls);
     expect_follows(run);
     expect_says(run, "parts/part.inst changed: m.png: ");
-    ASSERT_EQ(shell("cp '" + source_path("docs/gallery/pound_sign.png") + "' parts/leaf.png").status, 0);
+    ASSERT_EQ(shell("cp '" + source_path("scenes/plants/bark.png") + "' parts/leaf.png").status, 0);
     expect_follows(run);
     expect_says(run, "parts/leaf.png changed: m.png: ");
     write("parts/mesh.obj", "v 0 0 0\nv 1 0 0\nv 0 2 0\nf 1 2 3\n");

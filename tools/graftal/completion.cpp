@@ -41,10 +41,10 @@ std::string quoted(const std::string& text, std::string_view quote) {
 }
 
 std::string names_of(const std::vector<CommandTree>& commands) {
-    std::vector<std::string> names;
+    std::string names;
     for (const CommandTree& command : commands)
-        names.push_back(command.path.back());
-    return fmt::format("{}", fmt::join(names, " "));
+        names += (names.empty() ? "" : " ") + command.path.back();
+    return names;
 }
 
 // ---------------------------------------------------------------------------------------------------- bash

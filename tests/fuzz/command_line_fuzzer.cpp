@@ -21,7 +21,13 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         return 0;
     }
     const Options& options = *parsed.options;
+    if (options.command == Command::farm) {
+        GRAFTAL_CHECK(!options.farm.folder.empty(), "command line fuzzer: a job");
+        return 0;
+    }
     GRAFTAL_CHECK(!options.operands.empty(), "command line fuzzer: a model");
+    GRAFTAL_CHECK(!options.render.tile || options.render.tile->lies_in(options.render.compile.view.size),
+                  "command line fuzzer: a part of the picture");
     GRAFTAL_CHECK(options.render.compile.view.size.width > 0 && options.render.compile.view.size.height > 0,
                   "command line fuzzer: a picture has pixels");
     GRAFTAL_CHECK(options.render.compile.detail.error_px >= 0 &&

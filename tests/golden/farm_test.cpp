@@ -186,6 +186,34 @@ TEST_F(Farm, FailuresAreShownWithTheirLastLine) {
     EXPECT_THAT(graftal("farm status job").out, HasSubstr("2 of 2 tasks done\n"));
 }
 
+TEST_F(Farm, TheFolderThatAModelMayReadIsThatOfItsCopy) {
+    shell("mkdir garden");
+    write("garden/leaf.inst", "object leaf {\n    sphere\n}\n");
+    write("garden/tree.inst",
+          "use leaf = \"leaf.inst\"\nobject tree {\n    instance: leaf translate: 1, 0, 0\n    sphere\n}\n");
+    succeed("farm plan garden/tree.inst " + farm_pixels + "--root garden --tiles 50x50 -o job -q");
+    shell("rm -r garden");
+    EXPECT_EQ(shell("sh job/commands.txt").status, 0);
+    succeed("farm merge job -q");
+}
+
+/// Every command of docs/farm.md works, of small pictures; Slurm's need Slurm, and say so.
+TEST_F(Farm, CommandsOfThePageWork) {
+    const std::vector<std::string> commands = commands_of("docs/farm.md");
+    for (const std::string& words : commands) {
+        const bool slurm = words.find("--slurm") != std::string::npos;
+        std::string more;
+        if (words.starts_with("farm plan")) more = " -q --size 48x27 --plain-light --antialias off";
+        if (words.find("--tiles") != std::string::npos) more += " --tiles 20x20";
+        const RunResult result =
+            slurm ? shell("PATH=/nowhere '" GRAFTAL_PROGRAM "' " + words) : graftal(words + more);
+        EXPECT_EQ(result.status, slurm ? 3 : 0) << words << "\n" << result.err;
+        EXPECT_EQ(result.err.find("cannot find the program 'sbatch'") != std::string::npos, slurm) << words;
+    }
+    EXPECT_GE(commands.size(), 6u);
+    EXPECT_TRUE(exists("poster/elm.png"));
+}
+
 TEST_F(Farm, AFaultyPlanLeavesNothing) {
     write("bad.inst", "object top {\n    union: nowhere\n}\n");
     EXPECT_EQ(graftal("farm plan bad.inst --tiles 50x50 -o job").status, 1);
@@ -247,6 +275,7 @@ TEST_F(Farm, UsageErrors) {
         {"farm submit job --local 2 --slurm", "give one of --local N and --slurm"},
         {"farm submit job --local 2 --resume", "go with --slurm"},
         {"farm submit job --local 0", "--local: '0' is not a whole number"},
+        {"farm status ''", "JOB: name a folder"},
         {"farm status", "no job given: try 'graftal farm status JOB'"},
         {"farm task job", "no tasks given: try 'graftal farm task JOB TASKS'"},
     };

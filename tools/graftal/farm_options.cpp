@@ -227,6 +227,7 @@ std::vector<std::string> take_foreign_words(std::vector<std::string>& words) {
 
 std::string complete_farm(const Options& options) {
     const FarmOptions& own = options.farm;
+    if (own.folder.empty()) return "JOB: name a folder";
     if (own.action == FarmAction::plan) return refusal_of_plan(own);
     if (own.action != FarmAction::submit) return {};
     if (own.local.has_value() == own.slurm) return "give one of --local N and --slurm";

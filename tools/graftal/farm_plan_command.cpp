@@ -30,6 +30,17 @@ bool has_option(const std::vector<std::string>& words, const std::string& name) 
                        [&](const std::string& word) { return word == name || word.starts_with(name + "="); });
 }
 
+void drop_root(std::vector<std::string>& words) {
+    for (std::size_t i = 0; i < words.size();)
+        if (words[i] == "--root" && i + 1 < words.size())
+            words.erase(words.begin() + static_cast<std::ptrdiff_t>(i),
+                        words.begin() + static_cast<std::ptrdiff_t>(i + 2));
+        else if (words[i].starts_with("--root="))
+            words.erase(words.begin() + static_cast<std::ptrdiff_t>(i));
+        else
+            ++i;
+}
+
 JobKind kind_of(const FarmOptions& farm) {
     if (farm.tile) return JobKind::tiles;
     return farm.sweeps.empty() ? JobKind::frames : JobKind::sweep;
@@ -159,6 +170,7 @@ class Planning {
         job_.files = copy.files;
         job_.words = whole_command(options_.farm);
         job_.words.erase(job_.words.begin()); // graftal
+        drop_root(job_.words);                // the copy has its own
         const auto named = std::find(job_.words.begin() + 1, job_.words.end(), model);
         job_.words.erase(named);
         job_.words.insert(job_.words.begin() + 1, copy.model);

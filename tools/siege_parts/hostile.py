@@ -6,7 +6,7 @@ NUMBERS = ['0', '1', '-1', '2', '0.5', '1e-3', '1e-100', '1e100', '1e101', '1e30
 SMALL = ['64x36', '1x1', '160x90', '3x200', '200x3']
 OPTIONS = {
     'render': ['--size', '--error', '--error-world', '--work', '--zoom', '--at', '--camera', '--antialias', '--linear',
-               '--progressive', '--flatten', '--visible-only', '--keep', '--aovs'],
+               '--progressive', '--flatten', '--visible-only', '--keep', '--aovs', '--tile'],
     'compile': ['--size', '--error', '--error-world', '--work', '--zoom', '--at', '--camera', '--flatten', '--visible-only', '--name'],
     'points': ['--size', '--points', '--color', '--exposure', '--camera', '--zoom', '--at', '--transparent', '--card'],
     'animate': ['--frames', '--fps', '--turn', '--ease', '--camera', '--zoom', '--keep-frames'],
@@ -18,6 +18,7 @@ FLAGS = {'--linear', '--progressive', '--aovs', '--flatten', '--visible-only', '
          '--keep-frames'}
 VALUES = {
     '--size': [*SMALL, *SMALL, '32768x1', '0x0', '64', '99999x99999'],
+    '--tile': ['0,0,8x8', '60,30,9x9', '0,0,1x1', '-1,0,1x1', '0,0,0x0', '1,2', '2147483647,0,1x1', ',,x'],
     '--at': ['a', 'a.b.(c)*40', '(a)*', 'top#2', '(', 'w1.(w2.w1)*', '#1', '.', 'o0#1.(o1#1)*1000000000'],
     '--camera': ['location=0,0,5 look_at=0,0,0', 'width=1e-99 orthographic', 'angle=179.9', 'location=1e100,0,0', 'up=0,0,0', 'angle=0',
                  'location=0,0,0 look_at=0,0,0', 'orthographic', 'look_at=nan,0,0'],

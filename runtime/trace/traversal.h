@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <utility>
@@ -182,6 +183,8 @@ class Traversal final : public Surfaces {
     template<template<Instructions, bool> typename AnyKernel, bool any>
     bool run(const Ray& ray, const RayRange& range);
     template<bool any> bool run(const Ray& ray, const RayRange& range);
+    /// As visits to so many parts would take it, which lanes saw are not met.
+    void lose_patience(std::uint64_t parts) { patience_ -= std::min(patience_, parts); }
     /// False once the ray went into too many parts, and hurrying did not help.
     bool goes_on();
     /// Appends an edge to the path; of an unrolling's edge those that it stands for.

@@ -49,6 +49,7 @@ GRAFTAL_INLINE bool Traversal::Kernel<instructions, any>::misses_specks(const Tr
                                                                         double half_width) const {
     for (std::uint32_t i = 0; i < node.speck_count; ++i)
         if (specks_near(model.specks[node.first_speck + i], ray, half_width) != 0) return false;
+    self.lose_patience(node.stop_edge_count);
     return true;
 }
 
@@ -59,6 +60,8 @@ GRAFTAL_INLINE void Traversal::Kernel<instructions, any>::meet_specks(const Trac
     for (std::uint32_t i = 0; i < node.speck_count; ++i) {
         const Frame& frame = self.frames_[frame_number];
         std::uint32_t lanes = specks_near(model.specks[node.first_speck + i], frame, frame.margin.x);
+        const std::uint32_t held = std::min(4u, node.stop_edge_count - std::min(node.stop_edge_count, 4 * i));
+        self.lose_patience(held - std::min(held, static_cast<std::uint32_t>(std::popcount(lanes))));
         for (; lanes != 0; lanes &= lanes - 1) {
             ++self.visits_;
             const std::uint32_t edge =

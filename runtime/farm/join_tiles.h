@@ -12,7 +12,7 @@ namespace graftal {
 std::uint64_t band_bytes(ImageSize size, int tile_height);
 
 /// The most that it may: whoever plans tiles keeps to it.
-inline constexpr std::uint64_t most_band_bytes = 256u << 20;
+inline constexpr std::uint64_t most_band_bytes = 192u << 20;
 
 /// Joins the parts of a job of tiles: the bytes of the file that one run would have written. Holds one row of
 /// tiles at a time, whatever the picture's size. `on_rows` hears how many rows of pixels are done. A raised

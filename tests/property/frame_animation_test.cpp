@@ -134,6 +134,30 @@ TEST(SharedFraming, GrowthHappensInThePicture) {
     EXPECT_GT(std::max(largest.x, largest.y), 0.85);
 }
 
+TEST(SharedFraming, AnotherProcessReadsTheVerySame) {
+    for (const bool turning : {false, true})
+        for (const char* scene : {"hart/pound_sign.rifs", "abop/fig1_24f.lsys"}) {
+            const Shown model = analysed(scene, {.lower = {.steps = 4}});
+            const SharedFraming framing = framed({model}, turning);
+            const auto read = SharedFraming::from_json(framing.json());
+            ASSERT_TRUE(read) << scene;
+            EXPECT_EQ(read->json(), framing.json());
+            EXPECT_EQ(read->turning(), turning);
+            // A camera that is half given is completed by what the framing holds.
+            for (const ViewOptions& options :
+                 {ViewOptions{.turn_deg = 77},
+                  ViewOptions{.camera = {.location = Vec3(1, 2, 9)}, .turn_deg = 5}}) {
+                const View ours = framing.view(*model.model, options),
+                           theirs = read->view(*model.model, options);
+                EXPECT_TRUE(same(ours.camera, theirs.camera)) << scene;
+                EXPECT_EQ(ours.size, theirs.size);
+                EXPECT_EQ(ours.sky.zenith, theirs.sky.zenith);
+            }
+        }
+    for (const char* text : {"", "{}", "[]", "{\"size\": [1]}", "nonsense"})
+        EXPECT_FALSE(SharedFraming::from_json(text)) << text;
+}
+
 TEST(SharedFraming, WhatIsLeftOpenIsAsInTheFirstFrame) {
     const Shown model = analysed("hart/pound_sign.rifs");
     const CameraOverride wide{.angle_deg = 40}, narrow{.angle_deg = 10};

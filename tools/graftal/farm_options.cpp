@@ -72,7 +72,7 @@ void add_plan(CLI::App& farm, Options& options) {
         "the\n"
         "very bytes that one run of 'graftal render' or 'graftal animate' with these options writes.\n"
         "Examples:\n"
-        "  graftal farm plan elm.inst --tiles 1024x1024 --size 40000x30000 --work 1e6 -o poster/\n"
+        "  graftal farm plan elm.inst --tiles 1000x300 --size 40000x30000 --work 1e6 -o poster/\n"
         "  graftal farm plan plant.lsys --frames 3000 --steps 1..12 --result growth.mp4 -o film/\n"
         "  graftal farm plan plant.lsys --sweep seed=1..10000 --size 160x160 -o seeds/\n"
         "  graftal farm plan tree.inst --sweep \"k=0..1 by 0.1\" --sweep a=10,20,30 -o grid/");

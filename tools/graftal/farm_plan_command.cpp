@@ -197,6 +197,9 @@ class Planning {
 
     int measure(const Options& planned, ProgressBar& bar) {
         if (job_.kind == JobKind::frames) return measure_frames(planned, bar);
+        const ViewOptions& view = planned.render.compile.view;
+        if (job_.kind == JobKind::tiles && !view.shaped) // then the size is known before all work
+            if (const int status = divide(view.size); status != exit_done) return status;
         CommandSession session(planned, planned.operands.front());
         session.set_control({cancel_, {}});
         Compilation compilation;
@@ -204,10 +207,10 @@ class Planning {
         if (const int status = conclude(planned, compilation); status != exit_done) return status;
         job_.task_seconds = fit->seconds;
         std::uint64_t pixels = whole_of(fit->size).pixels();
-        job_.tasks = point_count(job_.axes);
+        if (job_.kind == JobKind::sweep) job_.tasks = point_count(job_.axes);
         if (job_.kind == JobKind::tiles) {
             job_.fit = fit;
-            if (const int status = divide(); status != exit_done) return status;
+            if (const int status = divide(fit->size); status != exit_done) return status;
             pixels = whole_of(job_.tile).pixels();
             job_.task_seconds /= static_cast<double>(job_.tasks);
         }
@@ -215,16 +218,18 @@ class Planning {
         return exit_done;
     }
 
-    int divide() {
-        const ImageSize size = job_.fit->size, asked = *options_.farm.tile;
+    int divide(ImageSize size) {
+        const ImageSize asked = *options_.farm.tile;
         job_.tile = {std::min(asked.width, size.width), std::min(asked.height, size.height)};
         if (band_bytes(size, job_.tile.height) > most_band_bytes)
             return usage_error(fmt::format(
                 "--tiles: the merge of a picture {} wide holds at most {} MiB of rows: tiles may be {} high",
                 size.width, most_band_bytes >> 20,
                 std::max<std::uint64_t>(1, most_band_bytes / band_bytes(size, 1))));
-        const auto rows = static_cast<std::uint64_t>((size.height + job_.tile.height - 1) / job_.tile.height);
-        job_.tasks = rows * job_.tile_columns();
+        const auto count = [](int whole, int part) {
+            return static_cast<std::uint64_t>((whole + part - 1) / part);
+        };
+        job_.tasks = count(size.height, job_.tile.height) * count(size.width, job_.tile.width);
         if (job_.tasks > most_tasks)
             return usage_error(fmt::format(
                 "--tiles: {}x{} makes {} tiles of a picture of {}x{}, more than {}", job_.tile.width,

@@ -58,6 +58,19 @@ bool runs(pid_t process) {
     return (file >> number >> name >> state) && state != "Z" && state != "X";
 }
 
+TEST(Process, StandardOutputComesWithTheErrorsWhereItIsWanted) {
+    ProcessOptions options;
+    std::string text;
+    options.arguments = {"sh", "-c", "echo out; echo err >&2"};
+    options.on_error_text = [&](std::string_view piece) { text += piece; };
+    EXPECT_TRUE(run_process(options).succeeded());
+    EXPECT_EQ(text, "err\n");
+    text.clear();
+    options.output_with_errors = true;
+    EXPECT_TRUE(run_process(options).succeeded());
+    EXPECT_EQ(text, "out\nerr\n");
+}
+
 TEST(Process, ReportsTheExitStatusAndStandardError) {
     const Outcome outcome = shell("printf 'one\\rtwo\\n' >&2; echo lost; exit 7");
     EXPECT_TRUE(outcome.result.status.ok());

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "runtime/farm/job.h"
+#include "runtime/render/animate.h"
 #include "tools/graftal/options.h"
 
 namespace graftal {

@@ -268,7 +268,7 @@ class Planning {
 
     /// This process has held what a task holds, except for the pixels: as light, and as they are shown.
     void estimate_memory(std::uint64_t pixels) {
-        constexpr std::uint64_t bytes_a_pixel = 2 * 3 * sizeof(float), reserve = 256u << 20;
+        constexpr std::uint64_t bytes_a_pixel = 6 * sizeof(float), reserve = 256u << 20;
         job_.task_bytes = memory_of("self", "VmHWM:") * 3 / 2 + bytes_a_pixel * pixels + reserve;
     }
 

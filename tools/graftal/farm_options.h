@@ -6,6 +6,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "compiler/scene/scene.h"
 #include "runtime/farm/sweep_axes.h"
 
 namespace graftal {

@@ -52,6 +52,7 @@ graftal_package(python python3-graftal python "pictures of fractals and plants: 
                 "${about}\n.\nThis package has the module for Python 3: pictures and points as NumPy arrays."
                 "libgraftal1 ${same}" "python3 (>= ${Python_VERSION_MAJOR}.${Python_VERSION_MINOR})"
                 "python3 (<< ${Python_VERSION_MAJOR}.${next_minor})" python3-numpy)
+set(CPACK_DEBIAN_PYTHON_PACKAGE_CONTROL_EXTRA ${PROJECT_SOURCE_DIR}/cmake/prerm)
 graftal_package(documentation graftal-doc doc "pictures of fractals and plants: documentation and scenes"
                 "${about}\n.\nThis package has the documentation with its gallery, and the scenes.")
 set(CPACK_DEBIAN_DOCUMENTATION_PACKAGE_ARCHITECTURE all)

@@ -47,6 +47,15 @@ std::string names_of(const std::vector<CommandTree>& commands) {
     return names;
 }
 
+/// The words of each command below the program, in quotes.
+std::string quoted_paths(const CommandTree& tree, const char* separator) {
+    std::string paths;
+    for (const CommandTree* const command : all_commands(tree))
+        if (command != &tree)
+            paths += (paths.empty() ? "'" : separator + std::string("'")) + command->name(" ") + "'";
+    return paths;
+}
+
 // ---------------------------------------------------------------------------------------------------- bash
 
 /// The case of a value or an operand, as commands of the script.
@@ -104,11 +113,8 @@ constexpr const char* bash_head =
 std::string bash_script(const CommandTree& tree) {
     std::string script = bash_head;
     const std::vector<const CommandTree*> all = all_commands(tree);
-    std::vector<std::string> paths;
-    for (const CommandTree* const command : all)
-        if (command != &tree) paths.push_back("'" + command->name(" ") + "'");
-    script +=
-        fmt::format("        {}) command+=\" $word\" ;;\n        esac\n    done\n", fmt::join(paths, " | "));
+    script += fmt::format("        {}) command+=\" $word\" ;;\n        esac\n    done\n",
+                          quoted_paths(tree, " | "));
 
     script += "    case \"$command $previous\" in\n";
     for (const CommandTree* const command : all) {
@@ -169,11 +175,8 @@ std::string fish_script(const CommandTree& tree) {
                          "    for word in (commandline -opc)[2..]\n"
                          "        switch \"$command $word\"\n";
     const std::vector<const CommandTree*> all = all_commands(tree);
-    std::vector<std::string> paths;
-    for (const CommandTree* const command : all)
-        if (command != &tree) paths.push_back("'" + command->name(" ") + "'");
     script += fmt::format("            case {}\n                set command \"$command $word\"\n",
-                          fmt::join(paths, " "));
+                          quoted_paths(tree, " "));
     script += "        end\n    end\n    test \"$command\" = \"$argv\"\nend\n\n"
               "function __graftal_files # EXTENSION|EXTENSION...\n"
               "    set -l start (commandline -ct)\n"

@@ -199,7 +199,7 @@ class Measurer {
 
 double SelfShadows::share(NodeId node, double size_px) const {
     if (octave_logs_.empty() || !(size_px > lit_as_px)) return 1;
-    constexpr double steps = 16;
+    constexpr double steps = 64;
     const double exact = std::exp2(static_cast<double>(octave_logs_[node]) * std::log2(size_px / lit_as_px));
     return std::round(steps * exact) / steps;
 }

@@ -27,7 +27,7 @@ class SelfShadows {
         : octave_logs_(std::move(octave_logs)), work_(work) {}
 
     /// The share of the light of lamps, suns and the sky that is left where a part of this diameter is
-    /// culled. 1 up to `lit_as_px`. In sixteenths: POV-Ray has a finish for each.
+    /// culled. 1 up to `lit_as_px`. In 64ths: POV-Ray has a finish for each.
     double share(NodeId node, double size_px) const;
 
     /// What stands for a node shows by its place: `outer`, the share of what is culled above it, if that is

@@ -48,7 +48,7 @@ PicturePlan plan_picture(const PreparedView& prepared, const RenderOptions& opti
     PicturePlan plan;
     plan.sampled = is_sampled(prepared.viewed->model->graph, view, options);
     plan.detail = prepared.detail;
-    if (plan.sampled) plan.detail.work_seconds = options.soft_work(view.quality);
+    plan.detail.work_seconds = options.work(view.quality, plan.sampled);
     Looks& looks = plan.looks;
     looks.wanted = samplings_for(plan.sampled, view, options);
     looks.tried = plan.detail.culls() ? with_fewer_samples(looks.wanted, view.size,
@@ -67,12 +67,13 @@ FittedModel fit_picture(const PreparedView& prepared, const RenderOptions& optio
                         PicturePlan& plan) {
     Looks& looks = plan.looks;
     const double samples = samples_a_pixel(looks.tried);
+    const double fewest = samples_a_pixel(with_fewer_samples(looks.tried, prepared.viewed->view.size, 0));
     FittedModel fitted = fit_work(
-        prepared.prepared, prepared.viewed->view, plan.detail, prepared.textures, samples,
+        prepared.prepared, prepared.viewed->view, plan.detail, prepared.textures, samples, fewest,
         [&](const TraceModel& tried) { return limits_of(tried, options); }, options.threads, cancelled,
         on_first_look);
     looks.affordable = looks.tried;
-    if (fitted.rays_cut)
+    if (fitted.samples_cut || fitted.rays_cut)
         looks.affordable = within_seconds(looks.tried, fitted.seconds / samples, fitted.allowed_seconds);
     else if (plan.sampled)
         looks.affordable = with_more_samples(looks.tried, looks.wanted.back(), fitted.seconds / samples,

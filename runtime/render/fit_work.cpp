@@ -40,12 +40,13 @@ constexpr int most_broken_looks = 2;
 class Fitting {
   public:
     Fitting(std::shared_ptr<const PreparedCut> prepared, const View& view, const DetailOptions& options,
-            const ModelTextures& textures, double samples_a_pixel,
+            const ModelTextures& textures, double samples_a_pixel, double fewest_a_pixel,
             const std::function<ShaderLimits(const TraceModel&)>& limits_of, int threads,
             const std::function<bool()>& cancelled,
             const std::function<void(const TraceModel&, double)>& on_first_look)
         : prepared_(std::move(prepared)), view_(view), options_(options), textures_(textures),
-          samples_(samples_a_pixel * view.size.width * view.size.height), limits_of_(limits_of),
+          samples_(samples_a_pixel * view.size.width * view.size.height),
+          least_share_(fewest_a_pixel / samples_a_pixel), limits_of_(limits_of),
           threads_(threads), cancelled_(cancelled), on_first_look_(on_first_look) {}
 
     FittedModel run() {
@@ -63,9 +64,15 @@ class Fitting {
         fitted.whole_seconds = fitted.seconds;
         fitted.allowed_seconds = std::numeric_limits<double>::infinity();
         if (!options.culls()) return fitted;
-        fitted.work_cut = too_much(fitted.seconds);
         while (steps_left > 0 && too_much(fitted.seconds)) {
             const double steps = std::log(excess(fitted.seconds)) / std::log(most_gain);
+            const double error_px = options.error_px * std::pow(coarser, std::max(std::ceil(steps), 1.0));
+            if (error_px > most_before_samples * options_.error_px && share_ > least_share_) {
+                share_ = std::max(share_ / excess(fitted.seconds), least_share_);
+                fitted.samples_cut = true;
+                continue;
+            }
+            fitted.work_cut = true;
             // Each look that is broken off takes much of the time there is: there are to be few.
             const int least = broken_looks_ < most_broken_looks ? 1 << broken_looks_ : most_coarser_steps;
             for (int i = 0; (i < least || i < steps) && (i == 0 || steps_left > 0); ++i)
@@ -80,7 +87,7 @@ class Fitting {
         while (too_much(fitted.seconds) && fitted.model->most_visits > fewest_visits) {
             const std::uint64_t fewer = excess(fitted.seconds) > 4 ? 4 : 2;
             fitted.model->most_visits = std::max(fitted.model->most_visits / fewer, fewest_visits);
-            fitted.rays_cut = true;
+            fitted.work_cut = fitted.rays_cut = true;
             fitted.seconds = seconds_for(*fitted.model);
         }
         fitted.allowed_seconds = allowed();
@@ -127,11 +134,11 @@ class Fitting {
 
     /// Trying and samples that meet nothing take their share, too; the rest keeps half in any case.
     double allowed() const {
-        const double spent = tried_seconds_ + samples_ / WorkRates::samples;
+        const double spent = tried_seconds_ + share_ * samples_ / WorkRates::samples;
         return std::max(work_seconds_ - spent, 0.5 * work_seconds_);
     }
 
-    double excess(double seconds) const { return seconds / allowed(); }
+    double excess(double seconds) const { return share_ * seconds / allowed(); }
 
     bool too_much(double seconds) const { return excess(seconds) > 1 && !cancelled_(); }
 
@@ -194,7 +201,7 @@ class Fitting {
         if (too_many_shells()) { // how many there are by now depends on the threads
             tried_seconds_ += most_shells;
             ++broken_looks_;
-            return broken_off * allowed();
+            return broken_off * allowed() / share_;
         }
         const TraceStatistics& tried = tracer.statistics();
         const double shells = shell_seconds(model);
@@ -211,7 +218,8 @@ class Fitting {
     const View& view_;
     const DetailOptions& options_;
     const ModelTextures& textures_;
-    const double samples_;
+    const double samples_, least_share_;
+    double share_ = 1; ///< of the samples that are taken
     const std::function<ShaderLimits(const TraceModel&)>& limits_of_;
     const int threads_;
     const std::function<bool()>& cancelled_;
@@ -228,11 +236,11 @@ class Fitting {
 
 FittedModel fit_work(std::shared_ptr<const PreparedCut> prepared, const View& view,
                      const DetailOptions& options, const ModelTextures& textures, double samples_a_pixel,
-                     const std::function<ShaderLimits(const TraceModel&)>& limits_of, int threads,
+                     double fewest_a_pixel, const std::function<ShaderLimits(const TraceModel&)>& limits_of, int threads,
                      const std::function<bool()>& cancelled,
                      const std::function<void(const TraceModel&, double)>& on_first_look) {
-    return Fitting(std::move(prepared), view, options, textures, samples_a_pixel, limits_of, threads,
-                   cancelled, on_first_look)
+    return Fitting(std::move(prepared), view, options, textures, samples_a_pixel, fewest_a_pixel, limits_of,
+                   threads, cancelled, on_first_look)
         .run();
 }
 

@@ -69,11 +69,11 @@ void report_work(const FittedModel& fitted, const Looks& looks, const Asked& ask
     limit.need = fmt::format("the picture as asked would take about {} seconds of one processor",
                              readable_seconds(work_as_asked(fitted, looks, asked.size)));
     const std::string samples = samples_in_words(looks.affordable);
+    const std::string samples_with_noun = samples == "one" ? "one sample" : samples + " samples";
     if (!fitted.work_cut) {
         if (looks.fewer() && !(looks.wanted.back().noise_255 > 0)) // else see report_noise()
             diagnostics
-                .warning(span, fmt::format("{} allow {} per pixel, not {}", limit.allowed,
-                                           samples == "one" ? "one sample" : samples + " samples",
+                .warning(span, fmt::format("{} allow {} per pixel, not {}", limit.allowed, samples_with_noun,
                                            samples_in_words(looks.wanted)))
                 .with_hint(limit.need + ": give them with " + limit.option +
                            ", or ask for fewer samples with --antialias");
@@ -84,7 +84,8 @@ void report_work(const FittedModel& fitted, const Looks& looks, const Asked& ask
     if (block > 1)
         limit.besides += fmt::format(", one per {0} by {0} pixels", block);
     else if (looks.fewer())
-        limit.besides += (fitted.rays_cut ? ", " : ", by ") + samples + " per pixel";
+        limit.besides += fitted.rays_cut ? fmt::format(", {} per pixel", samples)
+                                         : fmt::format(", by {} per pixel", samples_with_noun);
     warn_of_limit(span, limit, {fitted.error_px, asked.detail.error_px}, diagnostics);
 }
 

@@ -318,7 +318,7 @@ std::optional<PovrayReport> render_by_povray(PictureSession& session, const Rend
     note_lacks(*model, compilation.diagnostics);
     const double light_seconds = seconds_a_light(job, mean_overlap(model->cut, model->view));
     const FollowedLights lights = followed_lights(
-        *model, light_seconds, options.soft_work(model->view.quality), compilation.diagnostics);
+        *model, light_seconds, options.work(model->view.quality, true), compilation.diagnostics);
     const auto emit = [&] {
         return prepare(*model, options, session.textures(), temporary, lights.size, job);
     };

@@ -40,8 +40,7 @@ struct RenderOptions {
     std::optional<int> antialias = 2;          ///< up to 4^(N-1) samples a pixel; nothing: one
     std::optional<int> samples;                ///< of soft light, the most a pixel; nothing: by the quality
     std::optional<double> noise_255;           ///< that may be left; nothing: by the quality
-    /// In place of the work of the detail, where soft light is sampled; nothing: by the quality.
-    std::optional<double> soft_work_seconds;
+    std::optional<double> work_seconds; ///< that limit_work() has set; nothing: by the quality
     std::uint64_t sequence = 0; ///< TraceControl::sequence
     /// The part to be drawn, in pixels of the picture: with the bits that they have in the whole.
     std::optional<Tile> tile;
@@ -59,12 +58,13 @@ struct RenderOptions {
     /// that it will take: within a factor of two or so where they are many.
     std::function<void(double seconds)> on_start;
 
-    /// Seconds of one processor that a picture under soft light may take.
-    double soft_work(Quality quality) const {
-        return soft_work_seconds.value_or(by_quality(quality, 60.0, 120.0, 1200.0));
+    /// Seconds of one processor that a picture may take: more where soft light is sampled.
+    double work(Quality quality, bool soft) const {
+        const double unasked =
+            soft ? by_quality(quality, 60.0, 120.0, 1200.0) : by_quality(quality, 30.0, 30.0, 300.0);
+        return work_seconds.value_or(unasked);
     }
-    /// The same of a picture under whatever light.
-    void limit_work(double seconds) { compile.detail.work_seconds = soft_work_seconds.emplace(seconds); }
+    void limit_work(double seconds) { compile.detail.work_seconds = work_seconds.emplace(seconds); }
 };
 
 /// What came of one picture, or of many.

@@ -195,7 +195,7 @@ void add_view(CLI::App& app, Options& options) {
     add_value(
         app, "--work", "SECONDS",
         "Limit of the work for a picture, roughly in seconds of one processor; graftal draws coarser where a "
-        "picture would take more (default 30; under soft light 60, 120 or 1200 by --quality)",
+        "picture would take more (default by --quality: 30, 30 or 300; under soft light 60, 120 or 1200)",
         "a number of seconds above 0", [](const std::string& text) { return parse_at_least(text, 1e-3); },
         [&](double seconds) { options.render.limit_work(seconds); });
     app.add_flag("--visible-only", compile.detail.visible_only,

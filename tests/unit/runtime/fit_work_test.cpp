@@ -37,7 +37,7 @@ class FitWork : public testing::Test {
             return ShaderLimits();
         };
         return fit_work(
-            prepared, view_, options, {}, 1, limits, 1, [] { return false; }, on_first_look_);
+            prepared, view_, options, {}, samples_, fewest_, limits, 1, [] { return false; }, on_first_look_);
     }
 
     /// Cubes of all sizes that lie in each other.
@@ -80,6 +80,7 @@ class FitWork : public testing::Test {
     }
 
     View view_{.size = {64, 48}};
+    double samples_ = 1, fewest_ = 1; ///< a pixel
     std::function<void(const TraceModel&, double)> on_first_look_;
     int tries_ = 0; ///< models of different errors, one after the other
     double tried_px_ = 0;
@@ -197,6 +198,28 @@ TEST_F(FitWork, SeesWhatIsThin) {
     const double seconds = static_cast<double>(tracer.statistics().work) / WorkRates::ray_steps;
     EXPECT_GT(model.seconds, seconds / 1.5);
     EXPECT_LT(model.seconds, seconds * 1.5);
+}
+
+// A forest of a hundred thousand trees was drawn by balls of 19 pixels, with four samples for each.
+TEST_F(FitWork, SamplesGoBeforePartsGrowLarge) {
+    DetailOptions options;
+    options.error_px = 0.05;
+    options.steps = 6;
+    const auto fits = [](double) { return false; };
+    view_.size = {320, 240};
+    samples_ = 16;
+    const double whole_seconds = fitted(inner_cubes(), options, fits).seconds;
+    options.work_seconds = whole_seconds / 4;
+    fewest_ = samples_;
+    const FittedModel coarse = fitted(inner_cubes(), options, fits);
+    EXPECT_FALSE(coarse.samples_cut);
+    EXPECT_TRUE(coarse.error_px > most_before_samples * options.error_px || coarse.rays_cut);
+    fewest_ = 1;
+    const FittedModel sparse = fitted(inner_cubes(), options, fits);
+    EXPECT_TRUE(sparse.samples_cut);
+    EXPECT_FALSE(sparse.rays_cut);
+    EXPECT_LE(sparse.error_px, most_before_samples * options.error_px);
+    EXPECT_LE(sparse.seconds / samples_, options.work_seconds);
 }
 
 TEST_F(FitWork, ALargeGraphLeavesLessForThePicture) {

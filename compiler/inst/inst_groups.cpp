@@ -295,7 +295,7 @@ std::optional<ObjectId> InstLowerer::resolve(const InstReference& reference) {
             .error(reference.span, fmt::format("no definition of '{}' matches '{}'", reference.name, name))
             .with_note(other->span, "defined here");
     else if (by_name_.contains(use_of(reference.name)->first))
-        unknown_object(reference.span, name);
+        return part_of_used(reference.name, arguments, reference.span);
     return std::nullopt;
 }
 

@@ -63,6 +63,12 @@ class InstLowerer {
 
     void import_used(const UseStatement& use);
     void add_family(const UseStatement& use, FileId file);
+    /// `m.bough(2)` of `use m = "wood.inst"`, where it is not in the graph yet; nothing, after an error, if
+    /// there is no such object.
+    std::optional<ObjectId> part_of_used(std::string_view name, const std::vector<double>& arguments,
+                                         Span place);
+    /// The same without a message where there is none: Lowering::part_missing.
+    std::optional<ObjectId> import_called(std::string_view name, const std::vector<double>& arguments);
     /// How many arguments a used model takes at most.
     std::size_t inner_count(std::string_view name) const;
     /// The used model that a name stands for or lies in; null for the file's own names.
@@ -85,6 +91,11 @@ class InstLowerer {
     /// breadth first. Canonical objects that are random come only where a reference reaches them.
     void enumerate();
     void call_for(const InstDefinition& definition);
+    /// The one object that another file asks for.
+    void call_for(const PartCall& part);
+    /// An object that nothing in the file refers to.
+    std::optional<ObjectId> add_called(const InstDefinition& definition, std::vector<double> arguments,
+                                       const std::string& name);
     std::optional<ObjectId> add_object(Reached reached, const std::string& name);
     /// Ends the enumeration, naming the chain that leads to `name`.
     std::nullopt_t stop(Span use, const InstDefinition& definition, std::size_t parent, std::string_view name,
@@ -152,6 +163,7 @@ class InstLowerer {
     Environment lets_;
     Graph graph_;
     std::map<std::string, Span, std::less<>> uses_;
+    std::size_t parts_ = 0;                                    ///< of used models, that were asked for
     std::map<std::string, ModelFamily, std::less<>> families_; ///< of the used models with inner parameters
     std::unordered_map<std::string, ObjectId> by_name_;
     std::unordered_map<std::string, ObjectId> variants_; ///< of random objects, by name and variant

@@ -1,6 +1,7 @@
 // The names of an `.inst` file: its used models, its definitions and its references.
 
 #include <algorithm>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -15,6 +16,8 @@ namespace {
 
 /// Names that are compared with misspelt ones.
 constexpr std::size_t max_suggestion_work = 100'000;
+/// Objects that a file may ask its used models for: each is a look at the whole file.
+constexpr std::size_t max_parts_of_used = 1000;
 
 } // namespace
 
@@ -56,6 +59,38 @@ void InstLowerer::add_family(const UseStatement& use, FileId file) {
     };
     const std::string name(use.name.text);
     families_.emplace(name, ModelFamily(name, std::move(parameters), make));
+}
+
+std::optional<ObjectId> InstLowerer::part_of_used(std::string_view name, const std::vector<double>& arguments,
+                                                  Span place) {
+    if (++parts_ > max_parts_of_used) {
+        scratch_
+            .error(place,
+                   fmt::format("the model asks its used models for more than {} objects", max_parts_of_used))
+            .with_hint("define the object here, or round its arguments");
+        stopped_ = true;
+        return std::nullopt;
+    }
+    const std::optional<ObjectId> part = import_called(name, arguments);
+    if (!part && std::exchange(lowering_.part_missing, false))
+        unknown_object(place, inst_object_name(name, arguments));
+    return part;
+}
+
+std::optional<ObjectId> InstLowerer::import_called(std::string_view name,
+                                                   const std::vector<double>& arguments) {
+    const std::string_view model = name.substr(0, name.find('.'));
+    const auto use =
+        std::ranges::find(module_.uses, model, [](const UseStatement& one) { return one.name.text; });
+    const std::size_t known = graph_.objects.size();
+    const std::optional<ObjectId> part =
+        import_part(graph_, *use, {std::string(name.substr(model.size() + 1)), arguments}, lowering_);
+    for (std::size_t id = known; id < graph_.objects.size(); ++id) {
+        by_name_.emplace(graph_.objects[id].name, static_cast<ObjectId>(id));
+        instance_count_ += graph_.objects[id].instances.size();
+    }
+    if (part) by_name_.emplace(inst_object_name(name, arguments), *part);
+    return part;
 }
 
 std::size_t InstLowerer::inner_count(std::string_view name) const {

@@ -53,8 +53,12 @@ std::optional<Graph> InstLowerer::run() && {
 }
 
 void InstLowerer::enumerate() {
-    for (const InstDefinition& definition : module_.definitions)
-        if (definition.rendered || index_.always_exists(definition)) call_for(definition);
+    if (const std::optional<PartCall>& part = lowering_.loading.back().part) {
+        call_for(*part);
+    } else {
+        for (const InstDefinition& definition : module_.definitions)
+            if (definition.rendered || index_.always_exists(definition)) call_for(definition);
+    }
     for (std::size_t i = 0; i < reached_.size() && !stopped_ && !diagnostics_.full(); ++i)
         lower_object(i);
 }
@@ -66,16 +70,35 @@ void InstLowerer::call_for(const InstDefinition& definition) {
     const std::string name = inst_object_name(definition.name, arguments);
     if (index_.match(definition.name, arguments, name) != &definition) return; // a duplicate
     if (stopped_ || by_name_.contains(name)) return;
-    if (!chance_.is_random(definition.name)) {
-        add_object({0, &definition, std::move(arguments), Span(), reached_.size()}, name);
-    } else if (definition.rendered) {
-        const std::uint64_t key = key_of(name);
-        const InstDefinition* const chosen = choose(definition, arguments, key, 0);
-        for (const Diagnostic& found : scratch_.all())
-            diagnostics_.error(found.span, found.message).with_hint(found.hint);
-        scratch_ = Diagnostics();
-        if (chosen) add_object({0, chosen, std::move(arguments), Span(), reached_.size(), 0, key}, name);
+    if (definition.rendered || !chance_.is_random(definition.name))
+        add_called(definition, std::move(arguments), name);
+}
+
+void InstLowerer::call_for(const PartCall& part) {
+    const std::string name = inst_object_name(part.name, part.arguments);
+    std::optional<ObjectId> root;
+    if (const InstDefinition* const definition = index_.match(part.name, part.arguments, name)) {
+        root = add_called(*definition, part.arguments, name);
+    } else if (use_of(part.name)) {
+        root = import_called(part.name, part.arguments);
+    } else {
+        lowering_.part_missing = true;
+        ++lowering_.known_failures;
     }
+    graph_.root = root.value_or(0);
+}
+
+std::optional<ObjectId> InstLowerer::add_called(const InstDefinition& definition,
+                                                std::vector<double> arguments, const std::string& name) {
+    if (!chance_.is_random(definition.name))
+        return add_object({0, &definition, std::move(arguments), Span(), reached_.size()}, name);
+    const std::uint64_t key = key_of(name);
+    const InstDefinition* const chosen = choose(definition, arguments, key, 0);
+    for (const Diagnostic& found : scratch_.all())
+        diagnostics_.error(found.span, found.message).with_hint(found.hint);
+    scratch_ = Diagnostics();
+    if (!chosen) return std::nullopt;
+    return add_object({0, chosen, std::move(arguments), Span(), reached_.size(), 0, key}, name);
 }
 
 std::optional<ObjectId> InstLowerer::add_object(Reached reached, const std::string& name) {
@@ -176,6 +199,7 @@ void InstLowerer::report(std::size_t index) {
 }
 
 void InstLowerer::choose_root() {
+    if (lowering_.loading.back().part) return;
     std::vector<const Reached*> rendered;
     for (const Reached& reached : reached_)
         if (reached.definition->rendered) rendered.push_back(&reached);

@@ -93,14 +93,15 @@ std::shared_ptr<const Graph> lower_used(FileId file, const LoadingFile& loading,
         result = std::make_shared<const Graph>(std::move(*graph));
     lowering.loading.pop_back();
     GRAFTAL_CHECK(result || lowering.failures() > failures, "lower: " + loading.path);
-    if (!loading.inner.empty()) lowering.diagnostics.drop_repeated_remarks(known);
+    if (!loading.inner.empty() || loading.part) lowering.diagnostics.drop_repeated_remarks(known);
     return result;
 }
 
-std::shared_ptr<const Graph> load(const UseStatement& use, const Environment& inner, Lowering& lowering) {
+std::shared_ptr<const Graph> load(const UseStatement& use, const Environment& inner,
+                                  const std::optional<PartCall>& part, Lowering& lowering) {
     const std::string path = path_beside(use.path_span, use.path, lowering.sources);
     if (!check_chain(use.path_span, path, lowering)) return nullptr;
-    const auto key = std::pair(path, inner);
+    const LoweredKey key{path, inner, part};
     const auto known = lowering.lowered.find(key);
     if (known != lowering.lowered.end()) {
         if (!known->second) ++lowering.known_failures;
@@ -108,7 +109,7 @@ std::shared_ptr<const Graph> load(const UseStatement& use, const Environment& in
     }
     std::shared_ptr<const Graph> result;
     if (const std::optional<FileId> file = read_used(use.path_span, path, lowering))
-        result = lower_used(*file, {path, use.path_span, inner}, lowering);
+        result = lower_used(*file, {path, use.path_span, inner, part}, lowering);
     lowering.lowered[key] = result;
     return result;
 }
@@ -139,16 +140,24 @@ std::vector<MaterialId> append_materials(Graph& into, const Graph& from, std::st
     return ids;
 }
 
+/// `known`: objects of `into` that may stand for those of `from` that would have their names.
 ObjectId append_objects(Graph& into, const Graph& from, std::string_view prefix,
-                        const std::vector<MaterialId>& materials) {
+                        const std::vector<MaterialId>& materials,
+                        const std::unordered_map<std::string, ObjectId>& known = {}) {
+    const std::size_t before = into.objects.size();
     std::vector<ObjectId> ids;
     for (const Object& object : from.objects) {
         if (object.primitive) {
             ids.push_back(into.primitive(*object.primitive));
             continue;
         }
+        std::string name = fmt::format("{}.{}", prefix, object.name);
+        if (const auto same = known.find(name); same != known.end()) {
+            ids.push_back(same->second);
+            continue;
+        }
         Object copy = object;
-        copy.name = fmt::format("{}.{}", prefix, object.name);
+        copy.name = std::move(name);
         ids.push_back(into.add(std::move(copy)));
     }
     const auto translate = [&](Instance& instance) {
@@ -156,7 +165,7 @@ ObjectId append_objects(Graph& into, const Graph& from, std::string_view prefix,
         if (instance.material) instance.material = materials[*instance.material];
     };
     for (std::size_t i = 0; i < ids.size(); ++i) {
-        if (from.objects[i].primitive) continue;
+        if (from.objects[i].primitive || ids[i] < before) continue;
         Object& object = into.objects[ids[i]];
         for (Instance& instance : object.instances)
             translate(instance);
@@ -239,7 +248,7 @@ std::optional<FileId> read_model(const UseStatement& use, Lowering& lowering) {
 }
 
 std::optional<ObjectId> import_model(Graph& into, const UseStatement& use, Lowering& lowering) {
-    const std::shared_ptr<const Graph> model = load(use, {}, lowering);
+    const std::shared_ptr<const Graph> model = load(use, {}, {}, lowering);
     if (!model || !has_room(into, *model, use.path_span, lowering)) return std::nullopt;
     lowering.meter.add(model->objects.size());
     return append_objects(into, *model, use.name.text, append_materials(into, *model, use.name.text, false));
@@ -247,11 +256,26 @@ std::optional<ObjectId> import_model(Graph& into, const UseStatement& use, Lower
 
 std::optional<ObjectId> import_member(Graph& into, const UseStatement& use, const Environment& inner,
                                       Lowering& lowering) {
-    const std::shared_ptr<const Graph> model = load(use, inner, lowering);
+    const std::shared_ptr<const Graph> model = load(use, inner, {}, lowering);
     if (!model || !has_room(into, *model, use.path_span, lowering)) return std::nullopt;
     lowering.meter.add(model->objects.size());
     return append_objects(into, *model, free_prefix(into, use.name.text),
                           append_materials(into, *model, use.name.text, true));
+}
+
+std::optional<ObjectId> import_part(Graph& into, const UseStatement& use, const PartCall& part,
+                                    Lowering& lowering) {
+    lowering.part_missing = std::filesystem::path(use.path).extension() != ".inst";
+    if (lowering.part_missing) return std::nullopt;
+    const std::shared_ptr<const Graph> model = load(use, {}, part, lowering);
+    if (!model || !has_room(into, *model, use.path_span, lowering)) return std::nullopt;
+    lowering.meter.add(model->objects.size());
+    const std::string begin = fmt::format("{}.", use.name.text);
+    std::unordered_map<std::string, ObjectId> known;
+    for (ObjectId id = 0; id < into.objects.size(); ++id)
+        if (into.objects[id].name.starts_with(begin)) known.emplace(into.objects[id].name, id);
+    return append_objects(into, *model, use.name.text, append_materials(into, *model, use.name.text, false),
+                          known);
 }
 
 } // namespace graftal

@@ -20,12 +20,30 @@
 
 namespace graftal {
 
+/// An object of a used `.inst` file that another file asks for, `m.bough(2)` as `bough` with 2.
+struct PartCall {
+    std::string name;
+    std::vector<double> arguments;
+
+    auto operator<=>(const PartCall&) const = default;
+};
+
 /// A file that is being lowered: the root model, or one on the chain of `use` statements below it.
 struct LoadingFile {
-    std::string path;                ///< normalised, so that a cycle is noticed
-    Span use_span;                   ///< of the `use` that asked for it; unknown for the root
-    Environment inner = {};          ///< values of its inner parameters, where they are given
-    std::size_t failures_before = 0; ///< Lowering::failures() before it was parsed
+    std::string path;                  ///< normalised, so that a cycle is noticed
+    Span use_span;                     ///< of the `use` that asked for it; unknown for the root
+    Environment inner = {};            ///< values of its inner parameters, where they are given
+    std::optional<PartCall> part = {}; ///< what is asked for, if it is not the whole picture
+    std::size_t failures_before = 0;   ///< Lowering::failures() before it was parsed
+};
+
+/// What a used file has been lowered for.
+struct LoweredKey {
+    std::string path;
+    Environment inner;
+    std::optional<PartCall> part;
+
+    auto operator<=>(const LoweredKey&) const = default;
 };
 
 /// What lowering one model shares between its files and front-ends.
@@ -37,9 +55,9 @@ struct Lowering {
     WorkMeter& meter;                      ///< of modules, parts and objects
     std::span<const Language> languages;   ///< that models may be written in
     std::vector<LoadingFile> loading = {}; ///< from the root model to the file being lowered
-    /// Models already lowered, by path and inner parameters; null after errors. A model used twice is read
-    /// and reported once.
-    std::map<std::pair<std::string, Environment>, std::shared_ptr<const Graph>> lowered = {};
+    /// Models already lowered; null after errors. A model used twice is read and reported once.
+    std::map<LoweredKey, std::shared_ptr<const Graph>> lowered = {};
+    bool part_missing = false; ///< the part that was asked for last does not exist; nothing was said
     std::map<std::string, FileId> files = {};                    ///< used files that were read, by path
     std::map<std::string, std::optional<Primitive>> meshes = {}; ///< by path; nothing after an error
     std::size_t use_count = 0;                                   ///< `use` statements so far, in all files
@@ -77,6 +95,13 @@ std::optional<ObjectId> import_model(Graph& into, const UseStatement& use, Lower
 /// is equal is there already. For `into` that may have objects by any names.
 std::optional<ObjectId> import_member(Graph& into, const UseStatement& use, const Environment& inner,
                                       Lowering& lowering);
+
+/// The object that a part of a used model stands for, with what it contains: named `NAME.object`, and what
+/// `into` has under these names already is taken, so all parts share it. A part that does not exist is an
+/// error without a message, and sets Lowering::part_missing. Other languages have no parts. Requires that
+/// import_model() was given this `use`.
+std::optional<ObjectId> import_part(Graph& into, const UseStatement& use, const PartCall& part,
+                                    Lowering& lowering);
 
 /// The most instances that one model may have, as a multiple of LowerOptions::max_objects.
 inline constexpr std::size_t max_instances_per_object = 4;

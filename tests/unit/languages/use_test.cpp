@@ -67,6 +67,50 @@ TEST_F(Use, objects_are_prefixed_primitives_shared_and_settings_ignored) {
     EXPECT_EQ(instances[1].master, object("leaf.tip(2)").instances[0].master);
 }
 
+TEST_F(Use, parts_take_arguments_from_outside) {
+    write("wood.inst", "let k = 3 canonical object twig { cylinder scale: 1, k, 1 }\n"
+                       "canonical object bough(0) { twig }\n"
+                       "canonical object bough(n) { twig scale: n instance: bough(n - 1) }\n"
+                       "canonical object knot(k) { sphere scale: k*random(1, 2) }\n"
+                       "object wood { bough(1) }");
+    write("park.inst", "use w = \"wood.inst\" object park { w }");
+    write("a.inst", "use w = \"wood.inst\" use p = \"park.inst\"\n"
+                    "object a { union: w, w.bough(2), w.knot(5), w.bough(2), p.w.bough(1), p.w.bough(2) }");
+    lower("a.inst");
+    ASSERT_TRUE(graph_) << errors();
+    EXPECT_THAT(names(), UnorderedElementsAre("cylinder", "sphere", "a", "w.wood", "w.twig", "w.bough(0)",
+                                              "w.bough(1)", "w.bough(2)", "w.knot(5)", "p.park", "p.w.wood",
+                                              "p.w.twig", "p.w.bough(0)", "p.w.bough(1)", "p.w.bough(2)"));
+    EXPECT_EQ(object("w.twig").instances[0].parent_from_child.linear[1][1], 3);
+    EXPECT_EQ(graph_->objects[object("w.bough(2)").instances[1].master].name, "w.bough(1)");
+    const double knot = object("w.knot(5)").instances[0].parent_from_child.linear[0][0];
+    EXPECT_GE(knot, 5);
+    EXPECT_LE(knot, 10);
+    LowerOptions options;
+    options.seed = 7;
+    lower("a.inst", options);
+    EXPECT_NE(object("w.knot(5)").instances[0].parent_from_child.linear[0][0], knot);
+}
+
+TEST_F(Use, parts_that_are_not_there_are_errors_of_the_user) {
+    write("wood.inst", "canonical object bough(n) { cylinder scale: n } \n"
+                       "object wood { bough(1) }");
+    write("plant.lsys", "lsys plant {\nsteps 1\naxiom F\n}");
+    write("a.inst", "use w = \"wood.inst\" object a { w.bow(2) }");
+    lower("a.inst");
+    EXPECT_THAT(errors(), HasSubstr("a.inst:1:32: error: unknown object 'w.bow(2)'"));
+    write("a.inst", "use p = \"plant.lsys\" object a { p.F(2) }");
+    lower("a.inst");
+    EXPECT_THAT(errors(), HasSubstr("a.inst:1:33: error: unknown object 'p.F(2)'"));
+    write("a.inst", "use w = \"wood.inst\" object a { w.bough(0) }");
+    lower("a.inst");
+    EXPECT_THAT(errors(), HasSubstr("wood.inst:1:38: error: this scale"));
+    write("a.inst", "use w = \"wood.inst\" canonical object f(0) { w } canonical object f(n) { w.bough(n) "
+                    "instance: f(n - 1) } object a { f(5000) }");
+    lower("a.inst");
+    EXPECT_THAT(errors(), HasSubstr("asks its used models for more than 1000 objects"));
+}
+
 TEST_F(Use, paths_start_at_the_using_file) {
     write("parts/leaf.inst", "use vein = \"vein.inst\" object leaf { vein }");
     write("parts/vein.inst", "object vein { cylinder }");

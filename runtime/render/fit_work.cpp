@@ -46,8 +46,8 @@ class Fitting {
             const std::function<void(const TraceModel&, double)>& on_first_look)
         : prepared_(std::move(prepared)), view_(view), options_(options), textures_(textures),
           samples_(samples_a_pixel * view.size.width * view.size.height),
-          least_share_(fewest_a_pixel / samples_a_pixel), limits_of_(limits_of),
-          threads_(threads), cancelled_(cancelled), on_first_look_(on_first_look) {}
+          least_share_(fewest_a_pixel / samples_a_pixel), limits_of_(limits_of), threads_(threads),
+          cancelled_(cancelled), on_first_look_(on_first_look) {}
 
     FittedModel run() {
         FittedModel fitted = fit();
@@ -236,8 +236,8 @@ class Fitting {
 
 FittedModel fit_work(std::shared_ptr<const PreparedCut> prepared, const View& view,
                      const DetailOptions& options, const ModelTextures& textures, double samples_a_pixel,
-                     double fewest_a_pixel, const std::function<ShaderLimits(const TraceModel&)>& limits_of, int threads,
-                     const std::function<bool()>& cancelled,
+                     double fewest_a_pixel, const std::function<ShaderLimits(const TraceModel&)>& limits_of,
+                     int threads, const std::function<bool()>& cancelled,
                      const std::function<void(const TraceModel&, double)>& on_first_look) {
     return Fitting(std::move(prepared), view, options, textures, samples_a_pixel, fewest_a_pixel, limits_of,
                    threads, cancelled, on_first_look)

@@ -25,9 +25,10 @@ struct FittedModel {
 };
 
 /// Tries rays over the whole picture, one for some pixels, and predicts what all of them take:
-/// `samples_a_pixel` in the end. Where that is more than the view's work_seconds, first what is culled grows by
-/// most_before_samples, then samples go, down to `fewest_a_pixel`, then what is culled grows on, and at last
-/// rays are given up sooner. The seconds are those of all samples. What is culled grows also where a model takes more memory than there is
+/// `samples_a_pixel` in the end. Where that is more than the view's work_seconds, first what is culled grows
+/// by most_before_samples, then samples go, down to `fewest_a_pixel`, then what is culled grows on, and at
+/// last rays are given up sooner. The seconds are those of all samples. What is culled grows also where a
+/// model takes more memory than there is
 /// (`out_of_memory`); if none fits, std::bad_alloc is thrown. Nothing but
 /// counts decides, so the result is the same whatever the machine and its threads. `cancelled` is asked
 /// often; once it says true, any model comes back. `on_first_look`, if it is set, is called once, after the
@@ -35,12 +36,12 @@ struct FittedModel {
 /// with the model changes the result, unless it has shells made.
 FittedModel fit_work(std::shared_ptr<const PreparedCut> prepared, const View& view,
                      const DetailOptions& options, const ModelTextures& textures, double samples_a_pixel,
-                     double fewest_a_pixel, const std::function<ShaderLimits(const TraceModel&)>& limits_of, int threads,
-                     const std::function<bool()>& cancelled,
+                     double fewest_a_pixel, const std::function<ShaderLimits(const TraceModel&)>& limits_of,
+                     int threads, const std::function<bool()>& cancelled,
                      const std::function<void(const TraceModel&, double)>& on_first_look = {});
 
-/// By so much parts that are left out may grow before samples go: a ragged edge is seen sooner than a part of a
-/// pixel's width, and later than one of two.
+/// By so much parts that are left out may grow before samples go: a ragged edge is seen sooner than a part of
+/// a pixel's width, and later than one of two.
 inline constexpr double most_before_samples = 2.3;
 
 } // namespace graftal

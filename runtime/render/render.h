@@ -40,8 +40,8 @@ struct RenderOptions {
     std::optional<int> antialias = 2;          ///< up to 4^(N-1) samples a pixel; nothing: one
     std::optional<int> samples;                ///< of soft light, the most a pixel; nothing: by the quality
     std::optional<double> noise_255;           ///< that may be left; nothing: by the quality
-    std::optional<double> work_seconds; ///< that limit_work() has set; nothing: by the quality
-    std::uint64_t sequence = 0; ///< TraceControl::sequence
+    std::optional<double> work_seconds;        ///< that limit_work() has set; nothing: by the quality
+    std::uint64_t sequence = 0;                ///< TraceControl::sequence
     /// The part to be drawn, in pixels of the picture: with the bits that they have in the whole.
     std::optional<Tile> tile;
     std::optional<PictureFit> fit; ///< of the native engine: known already; requires `progressive` to be off

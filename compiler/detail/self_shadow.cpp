@@ -88,7 +88,7 @@ class Measurer {
         }
     }
 
-    SelfShadows run() {
+    SelfShadows run(int steps) {
         if (lights_.empty()) return {};
         // The R2 sequence covers the picture evenly at any length.
         const double g = 1.32471795724474602596;
@@ -112,7 +112,7 @@ class Measurer {
         }
         for (NodeId id = 0; id < logs.size(); ++id)
             logs[id] = logs[shape_of_[id]];
-        return {std::move(logs), culled_.work() + whole_.work()};
+        return {std::move(logs), steps, culled_.work() + whole_.work()};
     }
 
   private:
@@ -199,9 +199,8 @@ class Measurer {
 
 double SelfShadows::share(NodeId node, double size_px) const {
     if (octave_logs_.empty() || !(size_px > lit_as_px)) return 1;
-    constexpr double steps = 64;
     const double exact = std::exp2(static_cast<double>(octave_logs_[node]) * std::log2(size_px / lit_as_px));
-    return std::round(steps * exact) / steps;
+    return std::round(steps_ * exact) / steps_;
 }
 
 double SelfShadows::share_within(double outer, NodeId node, double detail, double error_px) const {
@@ -210,8 +209,8 @@ double SelfShadows::share_within(double outer, NodeId node, double detail, doubl
 }
 
 SelfShadows measure_self_shadows(const CutGraph& cut, const Symmetry& symmetry, std::uint32_t root_steps,
-                                 const View& view, bool limit_normals) {
-    return Measurer(cut, symmetry, root_steps, view, limit_normals).run();
+                                 const View& view, bool limit_normals, int steps) {
+    return Measurer(cut, symmetry, root_steps, view, limit_normals).run(steps);
 }
 
 } // namespace graftal

@@ -21,13 +21,13 @@ class SelfShadows {
     static constexpr double lit_as_px = 0.5;
 
     SelfShadows() = default;
-    /// `octave_logs`: by node the logarithm to base 2 of the share for twice the size. `work`: that measuring
-    /// them took.
-    SelfShadows(std::vector<float> octave_logs, std::uint64_t work)
-        : octave_logs_(std::move(octave_logs)), work_(work) {}
+    /// `octave_logs`: by node the logarithm to base 2 of the share for twice the size. `steps`: shares are
+    /// rounded to so many. `work`: that measuring them took.
+    SelfShadows(std::vector<float> octave_logs, int steps, std::uint64_t work)
+        : octave_logs_(std::move(octave_logs)), steps_(steps), work_(work) {}
 
     /// The share of the light of lamps, suns and the sky that is left where a part of this diameter is
-    /// culled. 1 up to `lit_as_px`. In 64ths: POV-Ray has a finish for each.
+    /// culled. 1 up to `lit_as_px`.
     double share(NodeId node, double size_px) const;
 
     /// What stands for a node shows by its place: `outer`, the share of what is culled above it, if that is
@@ -39,18 +39,19 @@ class SelfShadows {
 
   private:
     std::vector<float> octave_logs_;
+    int steps_ = 1;
     std::uint64_t work_ = 0;
 };
 
 /// Measures the shares for the lights and the camera of a view: some thousands of camera rays meet the parts
 /// once as they are culled at `measured_px`, and once as at SelfShadows::lit_as_px, both in their own
 /// shadows. An object's share makes the mean light on its parts equal. Objects that few rays meet take the
-/// mean of all. Ambient light does not count; of light from all directions a list stands for it. Nothing is
-/// measured without lights that throw shadows.
+/// mean of all. Shares are rounded to `steps`. Ambient light does not count; of light from all directions a
+/// list stands for it. Nothing is measured without lights that throw shadows.
 ///
 /// Requires fit_proxies(). Work: at most `most_self_shadow_work` parts are gone by.
 SelfShadows measure_self_shadows(const CutGraph& cut, const Symmetry& symmetry, std::uint32_t root_steps,
-                                 const View& view, bool limit_normals);
+                                 const View& view, bool limit_normals, int steps);
 
 inline constexpr double self_shadow_measured_px = 4;
 inline constexpr std::uint64_t most_self_shadow_work = 8'000'000;

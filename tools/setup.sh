@@ -3,9 +3,10 @@ root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 
 # Installs the packages of tools/packages.txt that are missing; asks for nothing if none is.
 install_packages() {
-    local package missing=()
-    while read -r package; do
+    local package command missing=()
+    while read -r package command; do
         [[ $package == ''  || $package == '#'* ]] && continue
+        [[ $command ]] && command -v "$command" >/dev/null && continue
         [[ $(dpkg-query -W -f '${db:Status-Status}' "$package" 2>/dev/null) == installed ]] ||
             missing+=("$package")
     done <"$root/tools/packages.txt"
@@ -16,6 +17,16 @@ install_packages() {
     echo "installing: ${missing[*]}" >&2
     "${as_root[@]}" apt-get update -qq >&2 &&
         DEBIAN_FRONTEND=noninteractive "${as_root[@]}" apt-get install -qq -y --no-install-recommends "${missing[@]}" >&2
+}
+
+# Installs what tests/grammar needs of npm, into build/npm.
+install_npm_packages() {
+    local wanted=$root/tests/grammar/package-lock.json folder=$root/build/npm
+    cmp -s "$wanted" "$folder/package-lock.json" && [[ -d $folder/node_modules ]] && return 0
+    mkdir -p "$folder"
+    cp "${wanted%-lock.json}.json" "$folder"
+    cp "$wanted" "$folder"
+    npm ci --prefix "$folder" --ignore-scripts --no-audit --no-fund --loglevel error >&2
 }
 
 # Where ccache is installed, CMake is to use it.

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "runtime/image/small_text.h"
 #include "runtime/image/texture.h"
 
 namespace graftal {
@@ -11,6 +12,7 @@ namespace graftal {
 namespace {
 
 constexpr int channels = 3, most_sheet_width = 8192, largest_cell = 320, gap = 4;
+constexpr int label_height = letter_height_px + 2;
 
 /// Reads nothing but the head of a picture.
 class HeadSink : public RowSink {
@@ -75,63 +77,76 @@ class ReducedSink : public RowSink {
     std::vector<int> counts_;
 };
 
+/// As much of a label as fits.
+std::string fitting(const std::string& label, int width) {
+    const auto room = static_cast<std::size_t>(width / letter_width_px);
+    if (label.size() <= room) return label;
+    return room < 3 ? "" : label.substr(0, room - 2) + "..";
+}
+
 class SheetRows : public RowSource {
   public:
-    SheetRows(const std::vector<std::string>& pictures, std::uint64_t columns, Cell cell,
+    SheetRows(const std::vector<SheetPicture>& pictures, std::uint64_t columns, Cell cell,
               const CancelFlag& cancel, const std::function<void(std::size_t)>& on_picture)
         : pictures_(pictures), columns_(columns), cell_(cell), cancel_(cancel), on_picture_(on_picture) {}
 
     RowShape shape() const {
         const int rows = static_cast<int>((pictures_.size() + columns_ - 1) / columns_);
-        return {static_cast<int>(columns_) * (cell_.width + gap) + gap, rows * (cell_.height + gap) + gap,
-                channels};
+        return {static_cast<int>(columns_) * (cell_.width + gap) + gap, rows * pitch() + gap, channels};
     }
 
     std::string give(float* samples) override {
-        const int pitch = cell_.height + gap;
-        const int in_band = row_ % pitch;
+        const int in_band = row_ % pitch();
         if (in_band == 0)
-            if (std::string problem = read_band(row_ / pitch); !problem.empty()) return problem;
+            if (std::string problem = read_band(row_ / pitch()); !problem.empty()) return problem;
         const auto count = static_cast<std::size_t>(shape().width * channels);
-        std::copy_n(band_.begin() + static_cast<std::ptrdiff_t>(count) * in_band, count, samples);
+        std::copy_n(band_.pixels.begin() + static_cast<std::ptrdiff_t>(count) * in_band, count, samples);
         ++row_;
         return {};
     }
 
   private:
-    /// A row of cells, with the gap above them.
+    int pitch() const { return gap + cell_.height + label_height; }
+
+    /// A row of cells with their labels, and the gap above them.
     std::string read_band(int number) {
-        const std::size_t width = static_cast<std::size_t>(shape().width);
-        band_.assign(channels * width * static_cast<std::size_t>(cell_.height + gap), 1);
+        band_.width = shape().width;
+        band_.height = pitch();
+        band_.channels = channels;
+        band_.pixels.assign(static_cast<std::size_t>(channels) * static_cast<std::size_t>(band_.width) *
+                                static_cast<std::size_t>(band_.height),
+                            1);
         const std::size_t first = static_cast<std::size_t>(number) * columns_;
         const std::size_t end = std::min<std::size_t>(first + columns_, pictures_.size());
         for (std::size_t i = first; i < end; ++i) {
             if (cancel_.raised()) return "interrupted";
             ReducedSink sink(cell_);
-            if (Status status = read_rows(pictures_[i], sink); !status.ok()) return status.message();
+            if (Status status = read_rows(pictures_[i].path, sink); !status.ok()) return status.message();
             sink.finish();
-            set(sink.picture, static_cast<int>(i - first));
+            set(sink.picture, pictures_[i].label, static_cast<int>(i - first));
             if (on_picture_) on_picture_(i + 1);
         }
         return {};
     }
 
-    void set(const Image& picture, int column) {
-        const int left = gap + column * (cell_.width + gap) + (cell_.width - picture.width) / 2;
+    void set(const Image& picture, const std::string& label, int column) {
+        const int cell_left = gap + column * (cell_.width + gap);
+        const int left = cell_left + (cell_.width - picture.width) / 2;
         const int top = gap + (cell_.height - picture.height) / 2;
         const std::ptrdiff_t row = static_cast<std::ptrdiff_t>(channels) * picture.width;
         for (int y = 0; y < picture.height; ++y)
             std::copy_n(picture.pixels.begin() + y * row, row,
-                        band_.begin() +
-                            channels * (static_cast<std::ptrdiff_t>(top + y) * shape().width + left));
+                        band_.pixels.begin() +
+                            channels * (static_cast<std::ptrdiff_t>(top + y) * band_.width + left));
+        write_small_text(fitting(label, cell_.width), cell_left, band_.height - letter_height_px, 0, band_);
     }
 
-    const std::vector<std::string>& pictures_;
+    const std::vector<SheetPicture>& pictures_;
     std::uint64_t columns_;
     Cell cell_;
     const CancelFlag& cancel_;
     const std::function<void(std::size_t)>& on_picture_;
-    std::vector<float> band_;
+    Image band_; ///< one row of cells
     int row_ = 0;
 };
 
@@ -149,12 +164,12 @@ Status choose_cell(const std::string& first, std::uint64_t columns, Cell& cell) 
 
 } // namespace
 
-Status write_contact_sheet(const std::string& path, const std::vector<std::string>& pictures,
+Status write_contact_sheet(const std::string& path, const std::vector<SheetPicture>& pictures,
                            std::uint64_t columns, const ImageMetadata& metadata, const CancelFlag& cancel,
                            const std::function<void(std::size_t)>& on_picture) {
     columns = std::clamp<std::uint64_t>(columns, 1, most_sheet_width / (gap + 1));
     Cell cell{};
-    if (Status status = choose_cell(pictures.front(), columns, cell); !status.ok()) return status;
+    if (Status status = choose_cell(pictures.front().path, columns, cell); !status.ok()) return status;
     SheetRows rows(pictures, columns, cell, cancel, on_picture);
     return write_rows(path, rows.shape(), rows, SampleFormat::srgb8, metadata);
 }

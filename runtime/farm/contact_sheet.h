@@ -10,11 +10,16 @@
 
 namespace graftal {
 
+struct SheetPicture {
+    std::string path;  ///< an sRGB PNG
+    std::string label; ///< what it shows: "seed=12"
+};
+
 /// Puts many pictures on one, row by row from the top left: each reduced by a whole factor until it fits into
-/// a cell, by the mean light of its pixels, and set in the middle of it on white. The sheet is at most 8192
-/// pixels wide, and holds one row of pictures in memory. The pictures are sRGB PNGs, `columns` in each row.
-/// `on_picture` hears how many are done. A raised flag ends it: "interrupted".
-Status write_contact_sheet(const std::string& path, const std::vector<std::string>& pictures,
+/// a cell, by the mean light of its pixels, and set in the middle of it on white, above its label. A label
+/// that does not fit ends with "..". The sheet is at most 8192 pixels wide, and holds one row of pictures in
+/// memory, `columns` in each. `on_picture` hears how many are done. A raised flag ends it: "interrupted".
+Status write_contact_sheet(const std::string& path, const std::vector<SheetPicture>& pictures,
                            std::uint64_t columns, const ImageMetadata& metadata, const CancelFlag& cancel,
                            const std::function<void(std::size_t)>& on_picture = {});
 

@@ -91,6 +91,14 @@ std::vector<std::string> values_at(const std::vector<SweepAxis>& axes, std::uint
     return values;
 }
 
+std::string label_at(const std::vector<SweepAxis>& axes, std::uint64_t point) {
+    const std::vector<std::string> values = values_at(axes, point);
+    std::string label;
+    for (std::size_t i = 0; i < axes.size(); ++i)
+        label += (i == 0 ? "" : " ") + axes[i].name + "=" + values[i];
+    return label;
+}
+
 std::uint64_t column_count(const std::vector<SweepAxis>& axes) {
     if (axes.size() > 1) return axes.back().values.size();
     return static_cast<std::uint64_t>(std::ceil(std::sqrt(static_cast<double>(point_count(axes)))));

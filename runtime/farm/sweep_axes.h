@@ -29,6 +29,9 @@ std::uint64_t point_count(const std::vector<SweepAxis>& axes);
 /// The value of each axis at the point of this number, from 0 on: the last axis runs fastest.
 std::vector<std::string> values_at(const std::vector<SweepAxis>& axes, std::uint64_t point);
 
+/// The same as text: "k=0.5 seed=3".
+std::string label_at(const std::vector<SweepAxis>& axes, std::uint64_t point);
+
 /// Columns of a table that shows all points: the last axis of several has a row for itself, and one alone is
 /// broken into rows so that there are about as many as columns.
 std::uint64_t column_count(const std::vector<SweepAxis>& axes);

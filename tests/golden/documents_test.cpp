@@ -105,6 +105,25 @@ TEST_F(DocumentsTest, EveryPageOfTheManualIsSetWithoutAWarning) {
         EXPECT_THAT(render, HasSubstr(option));
 }
 
+TEST_F(DocumentsTest, ThePageOfGraftalItselfLeadsToAPicture) {
+    const RunResult set = shell("'" GRAFTAL_PROGRAM "' manual | groff -man -Tascii -P-cbou");
+    for (const char* language : {".lsys", ".rifs", ".inst"})
+        EXPECT_THAT(set.out, HasSubstr(language));
+    const std::size_t model = set.out.find("       rifs crystal {"),
+                      end = set.out.find("\n       }\n", model);
+    ASSERT_NE(end, std::string::npos) << set.out;
+    write("crystal.rifs", set.out.substr(model, end + 10 - model));
+    ASSERT_THAT(set.out, HasSubstr("\n       graftal render crystal.rifs --engine native\n"));
+    const RunResult drawn = graftal("render crystal.rifs --engine native -q --size 64x48");
+    EXPECT_EQ(drawn.status, 0) << drawn.err;
+    EXPECT_TRUE(std::filesystem::exists(path("crystal.png")));
+}
+
+TEST_F(DocumentsTest, WhatIsIndentedInHelpStandsSoInTheManual) {
+    const std::string page = shell("'" GRAFTAL_PROGRAM "' manual farm plan | groff -man -Tascii -P-cbou").out;
+    EXPECT_THAT(page, HasSubstr("by all options of 'graftal render'; up to 131072 pixels a side\n"));
+}
+
 TEST_F(DocumentsTest, AllShellsOfferTheCommands) {
     for (const char* const name : shells) {
         EXPECT_THAT(offers(name, "graftal "), IsSupersetOf(commands())) << name;

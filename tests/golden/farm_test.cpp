@@ -92,7 +92,7 @@ TEST_F(Farm, SweepsMakeASheetAndATable) {
     EXPECT_EQ(std::count(table.begin(), table.end(), '\n'), 7);
     const Image sheet = picture("job/fig1_27.png");
     EXPECT_EQ(sheet.width, 3 * (40 + 4) + 4);
-    EXPECT_EQ(sheet.height, 2 * (60 + 4) + 4);
+    EXPECT_EQ(sheet.height, 2 * (60 + 4 + 12) + 4);
     succeed("render " + weed_of_farm +
             "--size 40x60 --plain-light --seed 2 --set angle=30 --engine native -q -o one.png");
     expect_same("job/parts/picture_000006.png", "one.png");

@@ -102,9 +102,9 @@ class Merging {
     std::string table() const { return fs::path(folder_.result(job_)).replace_extension(".csv").string(); }
 
     Status join_sweep(const CancelFlag& cancel) {
-        std::vector<std::string> pictures;
+        std::vector<SheetPicture> pictures;
         for (std::uint64_t task = 1; task <= job_.tasks; ++task)
-            pictures.push_back(folder_.part(job_, task));
+            pictures.push_back({folder_.part(job_, task), label_at(job_.axes, task - 1)});
         Status status = write_contact_sheet(
             folder_.result(job_), pictures, column_count(job_.axes), planned_.render.metadata, cancel,
             [&](std::size_t done) {

@@ -192,12 +192,12 @@ void add_farm(CLI::App& app, Options& options) {
     add_task(app, options);
     app.footer(
         "'plan' makes the folder of a job, 'submit' runs its tasks here or by Slurm, 'status' says how\n"
-        "far they are, 'merge' makes the result, 'clean' removes the rest.\n"
+        "far they are, 'merge' makes the result, 'clean' removes the rest. 'graftal farm COMMAND --help'\n"
+        "explains each; docs/farm.md tells the whole story.\n"
         "Example:\n"
         "  graftal farm plan elm.inst --tiles 512x512 --size 8192x8192 -o poster/\n"
         "  graftal farm submit poster/ --local 4\n"
-        "  graftal farm merge poster/                            # makes poster/elm.png\n"
-        "'graftal farm COMMAND --help' explains each; docs/farm.md tells the whole story.");
+        "  graftal farm merge poster/                            # makes poster/elm.png");
 }
 
 std::vector<std::string> take_foreign_words(std::vector<std::string>& words) {

@@ -3,17 +3,23 @@ if exists("b:current_syntax")
   finish
 endif
 
-syntax keyword graftalStatement camera light background ground material steps sky haze film object canonical use let rifs map follow terminal condense lsys main axiom ignore angle step width seed interpret decompose modules tropism inner start colors repeat union instance scatter count over except by condense codes orbit texture below
-syntax keyword graftalShape sphere cube cylinder cone torus disc square triangle frustum plane superellipsoid polygon bezier_patch sphere_sweep torus mesh leaf
-syntax keyword graftalChange scale translate rotate matrix shear reflect tint color rgb hsv
-syntax keyword graftalFunction sin cos tan asin acos atan atan2 sqrt exp log floor ceil abs sign min max mod pow lerp smooth logistic random normal
+syntax keyword graftalStatement angle apart background below by camera canonical chance codes colors condense consider count decompose decomposition except film follow ground haze homomorphism hue ignore inner instance interpret lean let light lsys main map material modules object orbit over probability repeat rifs scatter seed size sky start step steps terminal texture tropism turn union use weights width
+syntax keyword graftalShape bicubic_patch cone cube cylinder frustum mesh plane polygon sphere sphere_sweep superellipsoid torus triangle
+syntax keyword graftalChange color hsv matrix projection rgb rotate scale shear tint translate
+syntax keyword graftalFunction abs acos asin atan atan2 ceil cos exp floor lerp log logistic max min mod normal pow random sign sin smooth sqrt tan
 syntax match graftalField "\<[a-z_]\+\ze\s*:"
 syntax match graftalNumber "\<\d\+\%(\.\d*\)\=\%([eE][+-]\=\d\+\)\="
 syntax match graftalNumber "\.\d\+\%([eE][+-]\=\d\+\)\="
-syntax match graftalArrow "--\=>"
 syntax match graftalComment "\%(#\|//\).*$"
 syntax region graftalComment start="/\*" end="\*/"
 syntax region graftalString start=+"+ end=+"+ oneline
+
+" The strings of L-systems: only # begins a comment, and open brackets hold lines together.
+syntax region graftalWord matchgroup=graftalArrow start="-\{1,2}>" start="\<axiom\>:\=" end="$" contains=graftalRemark,graftalBranch,graftalArguments,graftalTurtle
+syntax region graftalBranch matchgroup=graftalTurtle start="\[" end="\]" contained contains=graftalRemark,graftalBranch,graftalArguments,graftalTurtle
+syntax region graftalArguments start="(" end=")" contained contains=graftalArguments,graftalComment,graftalNumber,graftalFunction
+syntax match graftalTurtle "[-+&^/\\|!~;@%$'.{}]" contained
+syntax match graftalRemark "#.*$" contained
 
 highlight default link graftalStatement Statement
 highlight default link graftalShape Type
@@ -22,6 +28,8 @@ highlight default link graftalFunction Function
 highlight default link graftalField Identifier
 highlight default link graftalNumber Number
 highlight default link graftalArrow Operator
+highlight default link graftalTurtle Operator
+highlight default link graftalRemark Comment
 highlight default link graftalComment Comment
 highlight default link graftalString String
 

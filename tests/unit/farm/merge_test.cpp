@@ -1,6 +1,7 @@
 // What is written row by row has the bytes of what is written at once.
 
 #include <numeric>
+#include <set>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -8,6 +9,7 @@
 #include "compiler/support/file.h"
 #include "runtime/farm/contact_sheet.h"
 #include "runtime/farm/join_tiles.h"
+#include "runtime/image/small_text.h"
 #include "runtime/system/temporary_directory.h"
 
 namespace graftal {
@@ -84,31 +86,74 @@ TEST_F(Merges, ABandIsWhatOneRowOfTilesHolds) {
 
 TEST_F(Merges, AContactSheetHasEachPictureInItsCell) {
     // Of 1 by 1 squares: a reduced one keeps its light, which a mean of encoded samples would not.
-    std::vector<std::string> pictures;
+    std::vector<SheetPicture> pictures;
     for (int i = 0; i < 5; ++i) {
         Image image{640, 320, 3, {}};
         for (int y = 0; y < image.height; ++y)
             for (int x = 0; x < image.width; ++x)
                 for (int c = 0; c < 3; ++c)
                     image.pixels.push_back(c == i % 3 && (x + y) % 2 == 0 ? 1.0f : 0.0f);
-        pictures.push_back(path("picture" + std::to_string(i) + ".png"));
-        ASSERT_TRUE(write_image(pictures.back(), image, SampleFormat::srgb8).ok());
+        pictures.push_back(
+            {path("picture" + std::to_string(i) + ".png"), i == 3 ? "" : "k=" + std::to_string(i)});
+        ASSERT_TRUE(write_image(pictures.back().path, image, SampleFormat::srgb8).ok());
     }
     ASSERT_TRUE(write_contact_sheet(path("sheet.png"), pictures, 2, {}, {}).ok());
     Image sheet;
     ASSERT_TRUE(read_image(path("sheet.png"), sheet).ok());
     ASSERT_EQ(sheet.width, 2 * (320 + 4) + 4);
-    ASSERT_EQ(sheet.height, 3 * (160 + 4) + 4);
+    ASSERT_EQ(sheet.height, 3 * (160 + 4 + 12) + 4);
     const auto sample = [&](int column, int row, int c) {
-        const int x = 4 + column * 324 + 160, y = 4 + row * 164 + 80;
+        const int x = 4 + column * 324 + 160, y = 4 + row * 176 + 80;
         return sheet.pixels[static_cast<std::size_t>(3 * (y * sheet.width + x) + c)];
     };
     for (int i = 0; i < 5; ++i)
         for (int c = 0; c < 3; ++c)
             EXPECT_NEAR(sample(i % 2, i / 2, c), c == i % 3 ? srgb_encoded(0.5f) : 0, 0.003) << i << " " << c;
     EXPECT_EQ(sample(1, 2, 0), 1); // the cell that is left over
-    EXPECT_EQ(sheet.pixels[0], 1); // a gap
-    EXPECT_FALSE(write_contact_sheet(path("none.png"), {path("nothing.png")}, 1, {}, {}).ok());
+    // Labels stand below, black on white.
+    const auto ink = [&](int column, int row) {
+        int count = 0;
+        for (int y = 4 + row * 176 + 160; y < 4 + row * 176 + 172; ++y)
+            for (int x = 4 + column * 324; x < 4 + column * 324 + 320; ++x)
+                count += sheet.pixels[static_cast<std::size_t>(3 * (y * sheet.width + x))] == 0;
+        return count;
+    };
+    EXPECT_GT(ink(0, 0), 20);
+    EXPECT_NE(ink(0, 0), ink(1, 0)); // k=0 and k=1
+    EXPECT_EQ(ink(1, 1), 0);         // no label
+    EXPECT_EQ(sheet.pixels[0], 1);   // a gap
+    EXPECT_FALSE(write_contact_sheet(path("none.png"), {{path("nothing.png"), ""}}, 1, {}, {}).ok());
+}
+
+TEST_F(Merges, ALabelThatDoesNotFitEndsWithDots) {
+    const std::string picture = path("narrow.png");
+    ASSERT_TRUE(write_image(picture, colourful(60, 20), SampleFormat::srgb8).ok());
+    const auto sheet = [&](const std::string& label) {
+        EXPECT_TRUE(write_contact_sheet(path("sheet.png"), {{picture, label}}, 1, {}, {}).ok());
+        return bytes("sheet.png");
+    };
+    EXPECT_EQ(sheet("name=1234567"), sheet("name=123..")); // ten letters of six pixels
+    EXPECT_NE(sheet("name=12345"), sheet("name=123.."));
+}
+
+TEST(SmallText, EveryLetterHasItsOwnShapeInItsOwnBox) {
+    std::set<std::vector<float>> shapes;
+    for (char letter = ' '; letter <= '~'; ++letter) {
+        Image picture{letter_width_px + 8, letter_height_px + 8, 1, {}};
+        picture.pixels.assign(static_cast<std::size_t>(picture.width * picture.height), 1);
+        write_small_text(std::string(1, letter), 4, 4, 0, picture);
+        EXPECT_TRUE(shapes.insert(picture.pixels).second) << letter;
+        for (int y = 0; y < picture.height; ++y)
+            for (int x = 0; x < picture.width; ++x)
+                if (x < 4 || y < 4 || x >= 4 + letter_width_px || y >= 4 + letter_height_px) {
+                    EXPECT_EQ(picture.pixels[static_cast<std::size_t>(y * picture.width + x)], 1) << letter;
+                }
+    }
+    // Outside of the picture, in part or wholly; bytes that are no letters.
+    Image small{3, 3, 3, std::vector<float>(27, 1)};
+    write_small_text("\xc3\n", -4, -4, 0, small);
+    write_small_text("far", 1000, -1000, 0, small);
+    EXPECT_EQ(small.pixels.size(), 27U);
 }
 
 } // namespace

@@ -9,6 +9,7 @@
 #include "compiler/detail/baked.h"
 #include "compiler/detail/least_width.h"
 #include "compiler/detail/piece_kind.h"
+#include "compiler/detail/placed_set.h"
 #include "compiler/detail/projection.h"
 #include "compiler/graph/path.h"
 #include "compiler/primitives/tessellate.h"
@@ -25,7 +26,10 @@ constexpr double most_unequal = 1.5;
 constexpr double least_unshared = 8;
 /// Steps an octave in which sizes are told apart: what is culled has to be small enough, meshes nearly so.
 constexpr int culling_grain = 64;
-constexpr int meshing_grains[] = {4, 1, 0};
+constexpr int meshing_grains[] = {2, 1, 0};
+/// Sizes that the view gives are rounded up to so many steps an octave, so that parts at distances of all
+/// kinds share what is below them.
+constexpr int view_grain = 2;
 /// A part without thickness gets this share of its size, where nothing is culled.
 constexpr double given_thickness = 1e-4;
 constexpr std::size_t most_crushed_leaves = 1'000'000;
@@ -113,9 +117,12 @@ class SceneBuilder {
         return even || !culls_ || (!node.unbounded && 2 * ball.radius * range.most <= least_unshared);
     }
 
+    /// Of a node that the view sees at this size.
     std::int32_t size_step(double errors) const {
         if (grain_ == 0) return 0;
-        const double step = std::floor(std::log2(std::max(errors, 1e-300)) * grain_ + 1e-6);
+        const int grain = detail_.error_world ? grain_ : view_grain;
+        const double rounded = std::ceil(std::log2(std::max(errors, 1e-300)) * grain - 1e-6) / grain;
+        const double step = std::floor(rounded * grain_ + 1e-6);
         return static_cast<std::int32_t>(std::clamp<double>(step, -largest_size_step, largest_size_step));
     }
 
@@ -222,6 +229,7 @@ class SceneBuilder {
 
     void fill(const SceneTask& task) {
         const CutNode& node = cut_.nodes[task.key.node];
+        scene_.nodes[task.id].whole = node.mean;
         double errors = errors_of(task);
         if (task.placed) errors *= task.placed->scale;
         if (node.sealed) return fill_crushed(task, errors);
@@ -281,6 +289,8 @@ class SceneBuilder {
             SceneLook look;
         };
         std::size_t leaves = 0;
+        // What a singular map crushes piles up: of leaves that lie alike one will do.
+        PlacedSet seen(std::max(cut_.nodes[task.key.node].ball.radius, 1e-280));
         std::vector<Crushed> stack{{task.key.node, task.key.steps, {}, 1, {}}};
         const auto add = [&](const Crushed& at, const Primitive& primitive, const Affine& place,
                              const MeanColour& mean) {
@@ -289,6 +299,11 @@ class SceneBuilder {
             if (!(size > 0) && !culls_) return;
             const double least = std::max(half_width(errors), given_thickness * size);
             const DrawnLeaf drawn = drawn_leaf(primitive, place, false, least);
+            const Affine mark = culls_ && drawn.half_width > 0
+                                    ? Affine::scale(Vec3(cut_.nodes[task.key.node].ball.radius)) *
+                                          speck_mark(drawn.place, drawn.half_width)
+                                    : drawn.place;
+            if (!seen.insert(static_cast<std::uint32_t>(primitive.kind()), mark)) return;
             ScenePart inner;
             inner.node_from_part = drawn.place;
             inner.node = leaf(primitive, errors * largest_stretch(drawn.place.linear));

@@ -40,6 +40,8 @@ struct ScenePart {
     PathTint tint;
     std::optional<MaterialId> material;
     double turns = 1; ///< of a leaf: length_in_turns() of its instance
+    /// Once looks are resolved: of all leaves below that are colourless (SceneLook).
+    std::optional<Rgb> colour;
 };
 
 /// What holds at the end of a path from the root.
@@ -48,6 +50,7 @@ struct SceneLook {
     Rgb inherited{0.8}; ///< the colour of what is not tinted
     std::optional<MaterialId> material;
     double turns = 1;
+    bool colourless = false; ///< its colour is the one that a part on the way has
 
     /// Linear, in [0, 1].
     Rgb colour() const;
@@ -58,6 +61,7 @@ struct SceneNode {
     std::string name;                    ///< of the model's object; not unique
     std::optional<std::uint32_t> shape;  ///< a leaf, which has no parts
     std::vector<ScenePart> parts;        ///< in the order of the model
+    MeanColour whole{Rgb(0.0), 1};       ///< what it looks like from afar
     MeanColour mean{Rgb(0.0), 1};        ///< what the node makes of the colour that it inherits
     std::shared_ptr<const RunCell> cell; ///< in place of parts: a range of a run
     double errors_per_unit = 1;          ///< of a cell: decides how fine its shapes are

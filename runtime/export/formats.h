@@ -24,7 +24,8 @@ struct ExportOptions {
     std::optional<unsigned> levels;                    ///< instances within instances, at most
     bool instancing = false;
     bool plotter = false;
-    std::size_t most_nodes = 30'000; ///< of formats that share meshes only
+    std::uint64_t memory_bytes = std::uint64_t{2} << 30; ///< that may be used
+    std::size_t most_nodes = 30'000;                     ///< of formats that share meshes only
     ImageMetadata metadata;
 };
 

@@ -4,7 +4,8 @@
 #include <cmath>
 #include <map>
 #include <numbers>
-#include <sstream>
+#include <ostream>
+#include <streambuf>
 
 #include <tiny_gltf.h>
 
@@ -26,6 +27,25 @@ constexpr double triangles_of_gltf_node = 100, triangles_of_instance = 2;
 constexpr double most_gltf_instances = 2e6;
 /// Lights shine over a half sphere: what POV-Ray calls 1 is pi times as much to a surface.
 constexpr double light_of_one = std::numbers::pi;
+
+/// What a library writes to a stream, into a file.
+class FileStream : public std::streambuf {
+  public:
+    explicit FileStream(OutputFile& file) : file_(file) {}
+
+  protected:
+    std::streamsize xsputn(const char* bytes, std::streamsize count) override {
+        file_.text({bytes, static_cast<std::size_t>(count)});
+        return file_.ok() ? count : 0;
+    }
+    int_type overflow(int_type byte) override {
+        if (byte != traits_type::eof()) file_.byte(static_cast<std::uint8_t>(byte));
+        return file_.ok() ? traits_type::not_eof(byte) : traits_type::eof();
+    }
+
+  private:
+    OutputFile& file_;
+};
 
 class GltfWriter {
   public:
@@ -68,12 +88,11 @@ class GltfWriter {
         return pictures_.status();
     }
 
-    /// The bytes of the file.
-    std::string bytes(bool binary) {
+    void write(OutputFile& file, bool binary) {
         if (model_.buffers[0].data.empty()) model_.buffers.clear();
-        std::ostringstream stream;
+        FileStream buffer(file);
+        std::ostream stream(&buffer);
         tinygltf::TinyGLTF().WriteGltfSceneToStream(&model_, stream, !binary, binary);
-        return stream.str();
     }
 
     std::string summary() const {
@@ -84,19 +103,25 @@ class GltfWriter {
     const MeshGroups& groups() const { return groups_; }
 
   private:
-    /// Of one mesh vertex with normal and colour, and of a triangle.
+    /// About: with the corners, normals and colours that it has for itself.
     static constexpr double bytes_of_triangle = 60;
+    /// In memory, for each byte of the file.
+    static constexpr double copies_in_memory = 4;
 
     bool refuse_groups() const {
         const double bytes = groups_.triangles * bytes_of_triangle;
-        if (bytes <= static_cast<double>(job_.options.most_bytes)) return false;
+        const auto most = static_cast<double>(job_.options.most_bytes);
+        const bool fits = bytes <= most;
+        if (fits && bytes * copies_in_memory <= static_cast<double>(job_.options.memory_bytes)) return false;
         job_.diagnostics
             .error(job_.model,
                    fmt::format("with {:.0f} nodes, '{}' would have meshes of {:.3g} triangles, about {:.3g} "
                                "bytes",
                                groups_.nodes, job_.options.output, groups_.triangles, bytes))
-            .with_hint("allow more nodes with --nodes or a larger file with --limit, leave out more with a "
-                       "larger --error or fewer --steps, or choose .usda, which nests parts");
+            .with_hint(fmt::format("allow more nodes with --nodes, {} with {}, or tables of places with "
+                                   "--instancing; leave out more with a larger --error or fewer --steps; or "
+                                   "choose .usda, which nests parts",
+                                   fits ? "more memory" : "a larger file", fits ? "--memory" : "--limit"));
         return true;
     }
 
@@ -456,14 +481,14 @@ Status write_gltf_file(const ExportJob& job, ExportReport& report, bool binary) 
     if (refuse_range(job, job.options.unit_mm.value_or(1000) / 1000)) return {};
     constexpr std::size_t most_looks = 1'000'000;
     const std::optional<ExportedScene> scene =
-        resolve_looks(job.scene, most_looks, job.model, job.diagnostics);
+        resolve_looks(job.scene, {most_looks}, job.model, job.diagnostics);
     if (!scene) return {};
     GltfWriter writer(job, *scene);
     const Status made = writer.make();
     if (!made.ok() || job.diagnostics.has_errors()) return made;
     OutputFile file(job.options.output, job.options.most_bytes);
     if (!file.ok()) return file.status();
-    file.text(writer.bytes(binary));
+    writer.write(file, binary);
     const Status status = file.close();
     if (!status.ok()) return status;
     report.summary = writer.summary();
@@ -484,6 +509,7 @@ const ExportFormat gltf_format = {
     .extension = ".gltf",
     .name = "glTF 2.0",
     .summary = "shared meshes and nodes, for web pages and Blender; one text file",
+    .meshes = SceneMeshes::by_size,
     .has_unit = true,
     .has_instancing = true,
     .has_nodes = true,
@@ -494,6 +520,7 @@ const ExportFormat glb_format = {
     .extension = ".glb",
     .name = "glTF 2.0 (binary)",
     .summary = "the same, in one binary file",
+    .meshes = SceneMeshes::by_size,
     .has_unit = true,
     .has_instancing = true,
     .has_nodes = true,

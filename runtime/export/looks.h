@@ -7,19 +7,23 @@
 
 namespace graftal {
 
-struct ResolvedLooks {
-    ExportedScene scene; ///< every leaf has its look, and no node has a cell
-    double grain = 0;    ///< tints are told apart by this share
+/// Where a file has colours.
+enum class TintsOn {
+    leaves,    ///< a part looks the same wherever it is placed
+    instances, ///< or an instance colours all below it that has no colour of its own
 };
 
-/// A scene whose leaves know how they look, for files where a part looks the same wherever it is placed. A
-/// node is there once for each tint and material that it is placed with; tints are told apart by 1/255, or
-/// less finely where that makes too many nodes. Nothing if even that is too many.
-std::optional<ResolvedLooks> resolve_looks(const ExportedScene& scene, std::size_t most_nodes,
-                                           std::size_t most_parts);
+struct LookLimits {
+    std::size_t nodes = 1'000'000;
+    std::size_t wanted_parts = SIZE_MAX; ///< more only where tints can be told apart no less
+    TintsOn tints = TintsOn::leaves;
+};
 
-/// The same, or an error; warns where tints are coarser.
-std::optional<ExportedScene> resolve_looks(const ExportedScene& scene, std::size_t most_nodes, Span model,
+/// A scene whose leaves know how they look: a node is there once for each tint and material that it is placed
+/// with, and none has a cell. Where that makes too much, tints are told apart less finely, and what lies
+/// below a tint that covers nearly all of it is shown in its mean colour; a warning says so. Nothing, after
+/// an error, if even that is too much.
+std::optional<ExportedScene> resolve_looks(const ExportedScene& scene, const LookLimits& limits, Span model,
                                            Diagnostics& diagnostics);
 
 } // namespace graftal

@@ -290,6 +290,7 @@ const ExportFormat mitsuba_format = {
     .extension = ".xml",
     .name = "Mitsuba 3",
     .summary = "the same for Mitsuba; the meshes are in a .serialized file beside it",
+    .meshes = SceneMeshes::by_size,
     .write = write_mitsuba,
 };
 

@@ -209,6 +209,7 @@ const ExportFormat pbrt_format = {
     .extension = ".pbrt",
     .name = "pbrt-v4",
     .summary = "shared meshes with one level of instances, camera, lights and materials",
+    .meshes = SceneMeshes::by_size,
     .write = write_pbrt,
 };
 

@@ -20,7 +20,7 @@ constexpr double most_renderer_places = 2e6;
 std::optional<RendererScene> RendererScene::make(const ExportJob& job, double bytes_of_triangle,
                                                  double bytes_of_place) {
     std::optional<ExportedScene> resolved =
-        resolve_looks(job.scene, most_renderer_nodes, job.model, job.diagnostics);
+        resolve_looks(job.scene, {most_renderer_nodes}, job.model, job.diagnostics);
     if (!resolved) return std::nullopt;
     RendererScene made;
     made.scene_ = std::move(*resolved);

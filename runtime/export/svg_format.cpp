@@ -201,7 +201,7 @@ Status write_nested(const ExportJob& job, ExportReport& report) {
     const std::optional<PlanePage> page = page_of(job, std::nullopt);
     if (!page) return {};
     const std::optional<ExportedScene> scene =
-        resolve_looks(job.scene, most_svg_nodes, job.model, job.diagnostics);
+        resolve_looks(job.scene, {most_svg_nodes}, job.model, job.diagnostics);
     if (!scene) return {};
     OutputFile file(job.options.output, job.options.most_bytes);
     if (!file.ok()) return file.status();

@@ -26,6 +26,8 @@ constexpr std::size_t fewest_points = 64;
 constexpr std::uint64_t usd_part_bytes = 380, usd_point_bytes = 150;
 constexpr std::size_t most_usd_parts = 8'000'000;
 constexpr std::size_t most_usd_looks = 1'000'000;
+/// So many parts are wanted at most in a file that has few, or so many times those of the graph.
+constexpr std::uint64_t fewest_wanted_parts = 2000, most_times_parts = 8;
 
 /// A name that USD takes, and no other prim has: numbered.
 std::string usd_name(std::string_view name, std::size_t number) {
@@ -104,12 +106,14 @@ class UsdWriter {
         file_.text("            uniform token[] xformOpOrder = [\"xformOp:transform\"]\n");
     }
 
-    void instance(std::string_view name, SceneId of, const std::optional<Affine>& place) {
+    void instance(std::string_view name, const ScenePart& part) {
         file_.print(
             "        def Xform \"{}\" (\n            instanceable = true\n            prepend references "
             "= <{}>\n        )\n        {{\n",
-            name, path(of));
-        if (place) transform(*place);
+            name, path(part.node));
+        if (part.colour)
+            file_.print("            color3f[] primvars:displayColor = [{}]\n", vector_text(*part.colour));
+        transform(part.node_from_part);
         file_.text("        }\n");
         ++instances_;
     }
@@ -122,7 +126,8 @@ class UsdWriter {
         std::vector<MoveTurnScale> places;
         if (node.parts.size() >= fewest_points)
             for (std::size_t i = 0; i < node.parts.size(); ++i)
-                if (const auto place = move_turn_scale(node.parts[i].node_from_part)) {
+                if (const auto place =
+                        node.parts[i].colour ? std::nullopt : move_turn_scale(node.parts[i].node_from_part)) {
                     points.push_back(i);
                     places.push_back(*place);
                 }
@@ -132,7 +137,7 @@ class UsdWriter {
             if (next < points.size() && points[next] == i)
                 ++next;
             else
-                instance(fmt::format("p{}", i), node.parts[i].node, node.parts[i].node_from_part);
+                instance(fmt::format("p{}", i), node.parts[i]);
         }
         if (!points.empty()) instancer(id, points, places);
         file_.text("    }\n");
@@ -202,11 +207,12 @@ class UsdWriter {
                         "references = <{}/mesh>\n        )\n        {{\n",
                         path(known->second));
         }
-        file_.print("            color3f[] primvars:displayColor = [{}]\n", vector_text(colour));
+        if (!node.look.colourless)
+            file_.print("            color3f[] primvars:displayColor = [{}]\n", vector_text(colour));
         const bool has_material = node.look.material.has_value();
         if (has_material) file_.print("            rel material:binding = <{}/look>\n", path(id));
         file_.text("        }\n");
-        if (has_material) material(id, *node.look.material, colour);
+        if (has_material) material(id, *node.look.material, node.look);
         file_.text("    }\n");
     }
 
@@ -235,7 +241,8 @@ class UsdWriter {
         file_.text("            uniform token subdivisionScheme = \"none\"\n");
     }
 
-    void material(SceneId id, MaterialId number, Rgb colour) {
+    void material(SceneId id, MaterialId number, const SceneLook& shown) {
+        const Rgb colour = shown.colour();
         const Material& material = scene_.materials[number];
         const PbrMaterial look = pbr_of(material);
         const std::string here = path(id) + "/look";
@@ -250,7 +257,10 @@ class UsdWriter {
             line(fmt::format("float inputs:opacity.connect = <{}/picture.outputs:a>", here));
             line("float inputs:opacityThreshold = 0.5");
         } else {
-            line("color3f inputs:diffuseColor = " + vector_text(colour));
+            if (shown.colourless)
+                line(fmt::format("color3f inputs:diffuseColor.connect = <{}/colour.outputs:result>", here));
+            else
+                line("color3f inputs:diffuseColor = " + vector_text(colour));
             if (look.transmission > 0) line("float inputs:opacity = " + float_text(1 - look.transmission));
         }
         line("float inputs:metallic = " + float_text(look.metallic));
@@ -259,6 +269,11 @@ class UsdWriter {
         if (look.emission > 0) line("color3f inputs:emissiveColor = " + vector_text(look.emission * colour));
         line("token outputs:surface");
         file_.text("            }\n");
+        if (shown.colourless && !pictured)
+            file_.text(
+                "            def Shader \"colour\"\n            {\n                uniform token info:id "
+                "= \"UsdPrimvarReader_float3\"\n                string inputs:varname = "
+                "\"displayColor\"\n                float3 outputs:result\n            }\n");
         if (pictured) {
             file_.print(
                 "            def Shader \"place\"\n            {{\n                uniform token info:id "
@@ -358,7 +373,10 @@ bool refuse_usd_size(const ExportJob& job, const ExportedScene& scene) {
 
 Status write_usd(const ExportJob& job, ExportReport& report) {
     if (refuse_range(job, 1)) return {};
-    std::optional<ExportedScene> scene = resolve_looks(job.scene, most_usd_looks, job.model, job.diagnostics);
+    // Tints shall not make the file much larger than the graph is.
+    const std::uint64_t wanted = std::max(fewest_wanted_parts, most_times_parts * count(job.scene).parts);
+    std::optional<ExportedScene> scene =
+        resolve_looks(job.scene, {most_usd_looks, wanted, TintsOn::instances}, job.model, job.diagnostics);
     if (!scene) return {};
     if (job.options.levels) {
         // The file's root places the model's.

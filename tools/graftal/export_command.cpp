@@ -13,6 +13,7 @@ int run_export(const Options& options) {
     wanted.compile = options.render.compile;
     wanted.error_asked = options.error_asked;
     wanted.file = options.file;
+    wanted.file.memory_bytes = options.render.compile.detail.memory_bytes;
     wanted.file.output = options.render.output;
     wanted.file.metadata = options.render.metadata;
 

@@ -23,11 +23,11 @@ namespace {
 /// From so many parts on that move, turn and scale only, a node lists them in a PointInstancer.
 constexpr std::size_t fewest_points = 64;
 /// A part takes so many bytes, about, by itself and in such a list.
-constexpr std::uint64_t usd_part_bytes = 380, usd_point_bytes = 150;
+constexpr std::uint64_t usd_part_bytes = 250, usd_point_bytes = 150;
 constexpr std::size_t most_usd_parts = 8'000'000;
 constexpr std::size_t most_usd_looks = 1'000'000;
 /// So many parts are wanted at most in a file that has few, or so many times those of the graph.
-constexpr std::uint64_t fewest_wanted_parts = 2000, most_times_parts = 8;
+constexpr std::uint64_t fewest_wanted_parts = 2000, most_times_parts = 2;
 
 /// A name that USD takes, and no other prim has: numbered.
 std::string usd_name(std::string_view name, std::size_t number) {
@@ -81,15 +81,15 @@ class UsdWriter {
   private:
     void head() {
         const double metres = job_.options.unit_mm.value_or(1000) / 1000;
-        file_.print("#usda 1.0\n(\n    defaultPrim = \"model\"\n    metersPerUnit = {}\n    upAxis = \"Y\"\n",
+        file_.print("#usda 1.0\n(\n defaultPrim = \"model\"\n metersPerUnit = {}\n upAxis = \"Y\"\n",
                     shortest(metres));
         file_.text(")\n\n");
         for (const std::string& line : comment_lines(job_.options.metadata))
             file_.print("# {}\n", line);
         file_.text("\ndef Xform \"model\"\n{\n");
         if (!scene_.nodes[scene_.root].parts.empty() || scene_.nodes[scene_.root].shape) {
-            file_.print("    def Xform \"root\" (\n        instanceable = true\n        prepend references = "
-                        "<{}>\n    )\n    {{\n    }}\n",
+            file_.print(" def Xform \"root\" (\n  instanceable = true\n  prepend references = "
+                        "<{}>\n )\n {{\n }}\n",
                         path(scene_.root));
             ++instances_;
         }
@@ -101,27 +101,28 @@ class UsdWriter {
     std::string path(SceneId id) const { return "/prototypes/" + name(id); }
     std::string name(SceneId id) const { return usd_name(scene_.nodes[id].name, id); }
 
-    void transform(const Affine& map) {
-        file_.print("            matrix4d xformOp:transform = {}\n", matrix_text(map));
-        file_.text("            uniform token[] xformOpOrder = [\"xformOp:transform\"]\n");
+    /// Whoever references a prototype says only where it lies.
+    void at_origin() {
+        file_.print("  matrix4d xformOp:transform = {}\n", matrix_text({}));
+        file_.text("  uniform token[] xformOpOrder = [\"xformOp:transform\"]\n");
     }
 
     void instance(std::string_view name, const ScenePart& part) {
-        file_.print(
-            "        def Xform \"{}\" (\n            instanceable = true\n            prepend references "
-            "= <{}>\n        )\n        {{\n",
-            name, path(part.node));
+        file_.print("  def Xform \"{}\" (\n   instanceable = true\n   prepend references "
+                    "= <{}>\n  )\n  {{\n",
+                    name, path(part.node));
         if (part.colour)
-            file_.print("            color3f[] primvars:displayColor = [{}]\n", vector_text(*part.colour));
-        transform(part.node_from_part);
-        file_.text("        }\n");
+            file_.print("   color3f[] primvars:displayColor = [{}]\n", vector_text(*part.colour));
+        file_.print("   matrix4d xformOp:transform = {}\n", matrix_text(part.node_from_part));
+        file_.text("  }\n");
         ++instances_;
     }
 
     void unite(SceneId id) {
         const SceneNode& node = scene_.nodes[id];
         ++prototypes_;
-        file_.print("    class Xform \"{}\"\n    {{\n", name(id));
+        file_.print(" class Xform \"{}\"\n {{\n", name(id));
+        at_origin();
         std::vector<std::size_t> points;
         std::vector<MoveTurnScale> places;
         if (node.parts.size() >= fewest_points)
@@ -140,16 +141,15 @@ class UsdWriter {
                 instance(fmt::format("p{}", i), node.parts[i]);
         }
         if (!points.empty()) instancer(id, points, places);
-        file_.text("    }\n");
+        file_.text(" }\n");
     }
 
-    static constexpr std::string_view by_vertex =
-        " (\n                interpolation = \"vertex\"\n            )";
+    static constexpr std::string_view by_vertex = " (\n    interpolation = \"vertex\"\n   )";
 
     template<typename Text>
     void list(std::string_view declaration, std::size_t count, const Text& text,
               std::string_view after = "") {
-        file_.print("            {} = [", declaration);
+        file_.print("   {} = [", declaration);
         for (std::size_t i = 0; i < count; ++i)
             file_.print("{}{}", i == 0 ? "" : ", ", text(i));
         file_.print("]{}\n", after);
@@ -163,7 +163,7 @@ class UsdWriter {
         for (const std::size_t i : points)
             if (number_of.try_emplace(node.parts[i].node, masters.size()).second)
                 masters.push_back(node.parts[i].node);
-        file_.text("        def PointInstancer \"points\"\n        {\n");
+        file_.text("  def PointInstancer \"points\"\n  {\n");
         list("rel prototypes", masters.size(),
              [&](std::size_t i) { return fmt::format("<{}/points/m{}>", path(id), i); });
         list("int[] protoIndices", points.size(),
@@ -180,12 +180,11 @@ class UsdWriter {
         list("quatf[] orientationsf", points.size(), turn);
         list("float3[] scales", points.size(), [&](std::size_t i) { return vector_text(places[i].scale); });
         for (std::size_t i = 0; i < masters.size(); ++i) {
-            file_.print(
-                "            def Xform \"m{}\" (\n                instanceable = true\n                "
-                "prepend references = <{}>\n            )\n            {{\n            }}\n",
-                i, path(masters[i]));
+            file_.print("   def Xform \"m{}\" (\n    instanceable = true\n    "
+                        "prepend references = <{}>\n   )\n   {{\n   }}\n",
+                        i, path(masters[i]));
         }
-        file_.text("        }\n");
+        file_.text("  }\n");
         points_ += points.size();
         instances_ += points.size();
     }
@@ -195,33 +194,34 @@ class UsdWriter {
         ++prototypes_;
         const ShapeMesh& mesh = meshes_.of(*node.shape, node.look);
         const Rgb colour = node.look.colour();
-        file_.print("    class Xform \"{}\"\n    {{\n        def Mesh \"mesh\"", name(id));
+        file_.print(" class Xform \"{}\"\n {{\n", name(id));
+        at_origin();
+        file_.text("  def Mesh \"mesh\"");
         // Looks of one shape share its mesh.
         const auto [known, is_new] = mesh_of_.try_emplace(&mesh, id);
         if (is_new) {
-            file_.text(
-                " (\n            prepend apiSchemas = [\"MaterialBindingAPI\"]\n        )\n        {\n");
+            file_.text(" (\n   prepend apiSchemas = [\"MaterialBindingAPI\"]\n  )\n  {\n");
             mesh_text(mesh);
         } else {
-            file_.print(" (\n            prepend apiSchemas = [\"MaterialBindingAPI\"]\n            prepend "
-                        "references = <{}/mesh>\n        )\n        {{\n",
+            file_.print(" (\n   prepend apiSchemas = [\"MaterialBindingAPI\"]\n   prepend "
+                        "references = <{}/mesh>\n  )\n  {{\n",
                         path(known->second));
         }
         if (!node.look.colourless)
-            file_.print("            color3f[] primvars:displayColor = [{}]\n", vector_text(colour));
+            file_.print("   color3f[] primvars:displayColor = [{}]\n", vector_text(colour));
         const bool has_material = node.look.material.has_value();
-        if (has_material) file_.print("            rel material:binding = <{}/look>\n", path(id));
-        file_.text("        }\n");
+        if (has_material) file_.print("   rel material:binding = <{}/look>\n", path(id));
+        file_.text("  }\n");
         if (has_material) material(id, *node.look.material, node.look);
-        file_.text("    }\n");
+        file_.text(" }\n");
     }
 
     void mesh_text(const ShapeMesh& mesh) {
         Box box;
         for (const Vec3& vertex : mesh.vertices)
             box.include(vertex);
-        file_.text("            uniform bool doubleSided = 1\n");
-        file_.print("            float3[] extent = [{}, {}]\n", vector_text(box.min), vector_text(box.max));
+        file_.text("   uniform bool doubleSided = 1\n");
+        file_.print("   float3[] extent = [{}, {}]\n", vector_text(box.min), vector_text(box.max));
         list("int[] faceVertexCounts", mesh.triangles.size(), [](std::size_t) { return "3"; });
         list("int[] faceVertexIndices", 3 * mesh.triangles.size(),
              [&](std::size_t i) { return fmt::to_string(mesh.triangles[i / 3][i % 3]); });
@@ -238,7 +238,7 @@ class UsdWriter {
                 },
                 by_vertex);
         }
-        file_.text("            uniform token subdivisionScheme = \"none\"\n");
+        file_.text("   uniform token subdivisionScheme = \"none\"\n");
     }
 
     void material(SceneId id, MaterialId number, const SceneLook& shown) {
@@ -247,10 +247,10 @@ class UsdWriter {
         const PbrMaterial look = pbr_of(material);
         const std::string here = path(id) + "/look";
         const bool pictured = !material.texture.empty();
-        file_.print("        def Material \"look\"\n        {{\n            token outputs:surface.connect = "
-                    "<{}/surface.outputs:surface>\n            def Shader \"surface\"\n            {{\n",
+        file_.print("  def Material \"look\"\n  {{\n   token outputs:surface.connect = "
+                    "<{}/surface.outputs:surface>\n   def Shader \"surface\"\n   {{\n",
                     here);
-        const auto line = [&](const std::string& text) { file_.print("                {}\n", text); };
+        const auto line = [&](const std::string& text) { file_.print("    {}\n", text); };
         line("uniform token info:id = \"UsdPreviewSurface\"");
         if (pictured) {
             line(fmt::format("color3f inputs:diffuseColor.connect = <{}/picture.outputs:rgb>", here));
@@ -268,30 +268,28 @@ class UsdWriter {
         line("float inputs:ior = " + float_text(look.ior));
         if (look.emission > 0) line("color3f inputs:emissiveColor = " + vector_text(look.emission * colour));
         line("token outputs:surface");
-        file_.text("            }\n");
+        file_.text("   }\n");
         if (shown.colourless && !pictured)
-            file_.text(
-                "            def Shader \"colour\"\n            {\n                uniform token info:id "
-                "= \"UsdPrimvarReader_float3\"\n                string inputs:varname = "
-                "\"displayColor\"\n                float3 outputs:result\n            }\n");
+            file_.text("   def Shader \"colour\"\n   {\n    uniform token info:id "
+                       "= \"UsdPrimvarReader_float3\"\n    string inputs:varname = "
+                       "\"displayColor\"\n    float3 outputs:result\n   }\n");
         if (pictured) {
-            file_.print(
-                "            def Shader \"place\"\n            {{\n                uniform token info:id "
-                "= \"UsdPrimvarReader_float2\"\n                string inputs:varname = \"st\"\n"
-                "                float2 outputs:result\n            }}\n"
-                "            def Shader \"picture\"\n            {{\n                uniform token "
-                "info:id = \"UsdUVTexture\"\n                asset inputs:file = @{}@\n"
-                "                token inputs:wrapS = \"repeat\"\n                token inputs:wrapT = "
-                "\"repeat\"\n                float2 inputs:st.connect = <{}/place.outputs:result>\n"
-                "                float3 outputs:rgb\n                float outputs:a\n            }}\n",
-                pictures_.name(number), here);
+            file_.print("   def Shader \"place\"\n   {{\n    uniform token info:id "
+                        "= \"UsdPrimvarReader_float2\"\n    string inputs:varname = \"st\"\n"
+                        "    float2 outputs:result\n   }}\n"
+                        "   def Shader \"picture\"\n   {{\n    uniform token "
+                        "info:id = \"UsdUVTexture\"\n    asset inputs:file = @{}@\n"
+                        "    token inputs:wrapS = \"repeat\"\n    token inputs:wrapT = "
+                        "\"repeat\"\n    float2 inputs:st.connect = <{}/place.outputs:result>\n"
+                        "    float3 outputs:rgb\n    float outputs:a\n   }}\n",
+                        pictures_.name(number), here);
         }
-        file_.text("        }\n");
+        file_.text("  }\n");
     }
 
     void placed(const Affine& place) {
-        file_.print("        matrix4d xformOp:transform = {}\n", matrix_text(place));
-        file_.text("        uniform token[] xformOpOrder = [\"xformOp:transform\"]\n    }\n");
+        file_.print("  matrix4d xformOp:transform = {}\n", matrix_text(place));
+        file_.text("  uniform token[] xformOpOrder = [\"xformOp:transform\"]\n }\n");
     }
 
     void camera() {
@@ -301,16 +299,16 @@ class UsdWriter {
         const double aspect = static_cast<double>(view.size.width) / view.size.height;
         const double radius = scene_.bounds.empty() ? 1 : 0.5 * glm::length(scene_.bounds.size());
         const double away = scene_.bounds.empty() ? 1 : glm::length(scene_.bounds.centre() - eye.location);
-        file_.text("    def Camera \"camera\"\n    {\n");
+        file_.text(" def Camera \"camera\"\n {\n");
         const double width = eye.orthographic ? 10 * eye.width : film_mm;
         const double focal = eye.orthographic
                                  ? film_mm
                                  : 0.5 * film_mm / std::tan(0.5 * eye.angle_deg * std::numbers::pi / 180);
-        file_.print("        token projection = \"{}\"\n", eye.orthographic ? "orthographic" : "perspective");
-        file_.print("        float focalLength = {}\n        float horizontalAperture = {}\n        float "
+        file_.print("  token projection = \"{}\"\n", eye.orthographic ? "orthographic" : "perspective");
+        file_.print("  float focalLength = {}\n  float horizontalAperture = {}\n  float "
                     "verticalAperture = {}\n",
                     float_text(focal), float_text(width), float_text(width / aspect));
-        file_.print("        float2 clippingRange = ({}, {})\n", float_text(1e-3 * (away + radius)),
+        file_.print("  float2 clippingRange = ({}, {})\n", float_text(1e-3 * (away + radius)),
                     float_text(4 * (away + radius)));
         placed({Mat3(eye.right, eye.up, -eye.direction), eye.location});
     }
@@ -322,16 +320,16 @@ class UsdWriter {
                                : light.round     ? "DiskLight"
                                : light.is_area() ? "RectLight"
                                                  : "SphereLight";
-            file_.print("    def {} \"light_{}\"\n    {{\n", kind, number++);
-            file_.print("        color3f inputs:color = {}\n", vector_text(light.rgb));
-            if (light.sun) file_.print("        float inputs:angle = {}\n", float_text(light.angle_deg));
+            file_.print(" def {} \"light_{}\"\n {{\n", kind, number++);
+            file_.print("  color3f inputs:color = {}\n", vector_text(light.rgb));
+            if (light.sun) file_.print("  float inputs:angle = {}\n", float_text(light.angle_deg));
             if (light.is_area() && light.round)
-                file_.print("        float inputs:radius = {}\n", float_text(glm::length(light.a)));
+                file_.print("  float inputs:radius = {}\n", float_text(glm::length(light.a)));
             if (light.is_area() && !light.round)
-                file_.print("        float inputs:width = {}\n        float inputs:height = {}\n",
+                file_.print("  float inputs:width = {}\n  float inputs:height = {}\n",
                             float_text(2 * glm::length(light.a)), float_text(2 * glm::length(light.b)));
             if (!light.sun && !light.is_area())
-                file_.text("        float inputs:radius = 0.01\n        bool treatAsPoint = 1\n");
+                file_.text("  float inputs:radius = 0.01\n  bool treatAsPoint = 1\n");
             // Light goes along -z.
             Vec3 back(0, 0, 1);
             if (light.sun)
@@ -344,8 +342,8 @@ class UsdWriter {
             placed({Mat3(right, glm::cross(back, right), back), light.sun ? Vec3(0.0) : light.location});
         }
         if (!job_.view.sky_light) return;
-        file_.text("    def DomeLight \"sky\"\n    {\n");
-        file_.print("        color3f inputs:color = {}\n    }}\n", vector_text(job_.view.ambient_light()));
+        file_.text(" def DomeLight \"sky\"\n {\n");
+        file_.print("  color3f inputs:color = {}\n }}\n", vector_text(job_.view.ambient_light()));
     }
 
     const ExportJob& job_;

@@ -9,6 +9,7 @@
 #include "compiler/primitives/primitive_cache.h"
 #include "compiler/primitives/tessellate.h"
 #include "compiler/support/check.h"
+#include "compiler/support/normal_map.h"
 
 namespace graftal {
 
@@ -37,17 +38,6 @@ Vec3 unit_or(Vec3 sum, Vec3 otherwise) {
     return length > 1e-6 ? sum / length : otherwise;
 }
 
-/// The inverse transpose up to a positive factor, by the cofactors: a segment 1e100 times as long as thick
-/// has an inverse that doubles do not hold.
-Mat3 normals_by(const Mat3& linear) {
-    const double size = largest_entry(linear);
-    const Vec3 x = linear[0] / size, y = linear[1] / size, z = linear[2] / size;
-    const Mat3 cofactors(glm::cross(y, z), glm::cross(z, x), glm::cross(x, y));
-    const double largest = largest_entry(cofactors);
-    const double mirror = glm::dot(x, cofactors[0]) < 0 ? -1 : 1;
-    return cofactors * (mirror / largest);
-}
-
 } // namespace
 
 void MeshBuilder::add(const Primitive& primitive, int fineness, const Affine& body_from_leaf,
@@ -66,11 +56,11 @@ void MeshBuilder::add(const Primitive& primitive, int fineness, const Affine& bo
 void MeshBuilder::add_smooth(const Primitive& primitive, int fineness, const Affine& body_from_leaf,
                              std::uint32_t leaf, const NormalField& normals) {
     const TessellatedPrimitive& shape = tessellated(primitive, fineness);
-    const Mat3 normal_map = normals_by(body_from_leaf.linear);
+    const Mat3 normal_by_normal = normal_map(body_from_leaf.linear);
     const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
     for (std::size_t i = 0; i < shape.vertices.size(); ++i) {
         mesh.vertices.push_back(body_from_leaf(shape.vertices[i]));
-        const Vec3 own = glm::normalize(normal_map * shape.normals[i]);
+        const Vec3 own = glm::normalize(normal_by_normal * shape.normals[i]);
         mesh.normals.push_back(unit_or(own + normals.at(mesh.vertices.back()), own));
     }
     for (const auto& t : shape.triangles)
@@ -81,7 +71,7 @@ void MeshBuilder::add_textured(const Primitive& primitive, int fineness, const A
                                const TextureSpace& space, std::uint32_t leaf) {
     GRAFTAL_CHECK(smooth_, "texture in a flat mesh");
     const TessellatedPrimitive& shape = tessellated(primitive, fineness);
-    const Mat3 normal_map = normals_by(body_from_leaf.linear);
+    const Mat3 normal_by_normal = normal_map(body_from_leaf.linear);
     for (const auto& triangle : shape.triangles) {
         std::array<Vec3, 3> corner;
         for (std::size_t k = 0; k < 3; ++k)
@@ -93,7 +83,7 @@ void MeshBuilder::add_textured(const Primitive& primitive, int fineness, const A
         for (std::size_t k = 0; k < 3; ++k) {
             const Vec3 normal = shape.normals.empty() ? facet : shape.normals[triangle[k]];
             mesh.vertices.push_back(body_from_leaf(corner[k]));
-            mesh.normals.push_back(glm::normalize(normal_map * normal));
+            mesh.normals.push_back(glm::normalize(normal_by_normal * normal));
         }
         push({first, first + 1, first + 2}, leaf);
     }

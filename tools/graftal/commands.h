@@ -21,6 +21,7 @@ int run_animate(const Options& options);
 int run_points(const Options& options);
 int run_collage(const Options& options);
 int run_compile(const Options& options);
+int run_export(const Options& options);
 int run_check(const Options& options);
 int run_stats(const Options& options);
 int run_print(const Options& options);

@@ -16,6 +16,7 @@
 #include "tools/graftal/animate_options.h"
 #include "tools/graftal/commands.h"
 #include "tools/graftal/documents.h"
+#include "tools/graftal/export_options.h"
 #include "tools/graftal/option_values.h"
 #include "tools/graftal/picture_description.h"
 #include "tools/graftal/points_options.h"
@@ -237,6 +238,8 @@ constexpr CommandEntry commands[] = {
     {Command::points, "points", "Draw a model by random points, as a picture or a point cloud", add_points},
     {Command::collage, "collage", "Measure how well a model's maps cover a target picture", add_collage},
     {Command::compile, "compile", "Write a model as a POV-Ray scene", add_compile},
+    {Command::export_model, "export",
+     "Write a model for other programs: Blender, web pages, printers, renderers", add_export},
     {Command::check, "check", "Check models, and report what is wrong with them", add_check},
     {Command::stats, "stats", "Print the sizes, contraction, dimension and bounds of a model", add_stats},
     {Command::print, "print", "Print the graph of a model as .inst text", add_print},
@@ -319,6 +322,7 @@ std::string complete(Options& options, bool in_parts) {
     }
     if (options.command == Command::animate) return complete_animation(options);
     if (options.command == Command::points) return complete_points(options);
+    if (options.command == Command::export_model) return complete_export(options);
     if (options.render.output.empty()) options.render.output = "-";
     const bool to_stdout = options.render.output == "-";
     if (options.command == Command::compile && !to_stdout && extension != ".pov" && extension != ".inc")

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "compiler/session/stage_options.h"
+#include "runtime/export/formats.h"
 #include "runtime/image/animation.h"
 #include "runtime/image/image.h"
 #include "runtime/points/tone.h"
@@ -14,7 +15,20 @@
 
 namespace graftal {
 
-enum class Command { render, animate, points, collage, compile, check, stats, print, graph, compare, farm };
+enum class Command {
+    render,
+    animate,
+    points,
+    collage,
+    compile,
+    export_model,
+    check,
+    stats,
+    print,
+    graph,
+    compare,
+    farm
+};
 
 /// What `animate` takes besides what `render` does.
 struct AnimationOptions {
@@ -54,6 +68,9 @@ struct Options {
     AnimationOptions animation;
     PointsSettings points;
     FarmOptions farm;
+    bool error_asked = false; ///< --error or --error-world is given
+    bool nodes_asked = false; ///< --nodes is
+    ExportOptions file;       ///< of `export`; its output and metadata are those of `render`
     bool json = false;
     double threshold = 0;
 };

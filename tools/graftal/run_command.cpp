@@ -14,6 +14,8 @@ int run_command(const Options& options) {
         return run_collage(options);
     case Command::compile:
         return run_compile(options);
+    case Command::export_model:
+        return run_export(options);
     case Command::check:
         return run_check(options);
     case Command::stats:

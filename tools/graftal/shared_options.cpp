@@ -175,14 +175,16 @@ void add_camera(CLI::App& app, Options& options) {
         [&](Magnification zoom) { compile.view.zoom.zoom = zoom; });
 }
 
-void add_view(CLI::App& app, Options& options) {
-    add_camera(app, options);
+void add_error(CLI::App& app, Options& options) {
     StageOptions& compile = options.render.compile;
     CLI::Option* pixels = add_value(
         app, "--error", "PX",
         "Leave out parts smaller than this in the picture (default 0.5; 0 keeps every part)",
         "a number of pixels, 0 or more", [](const std::string& text) { return parse_at_least(text, 0); },
-        [&](double error) { compile.detail.error_px = error; });
+        [&](double error) {
+            compile.detail.error_px = error;
+            options.error_asked = true;
+        });
     add_value(
         app, "--error-world", "X", "Like --error, but a length in the model's units",
         "0, or a length from 1e-100 to 1e100",
@@ -190,8 +192,23 @@ void add_view(CLI::App& app, Options& options) {
             const std::optional<double> error = parse_at_least(text, 0);
             return error && (*error == 0 || is_size(*error)) ? error : std::nullopt;
         },
-        [&](double error) { compile.detail.error_world = error; })
+        [&](double error) {
+            compile.detail.error_world = error;
+            options.error_asked = true;
+        })
         ->excludes(pixels);
+}
+
+void add_plain_light(CLI::App& app, Options& options) {
+    app.add_flag_callback(
+        "--plain-light", [&options] { options.render.compile.view.light = DefaultLight::plain; },
+        "Where the model names no light: one sun and no sky, which is many times faster to draw");
+}
+
+void add_view(CLI::App& app, Options& options) {
+    add_camera(app, options);
+    add_error(app, options);
+    StageOptions& compile = options.render.compile;
     add_value(
         app, "--work", "SECONDS",
         "Limit of the work for a picture, roughly in seconds of one processor; graftal draws coarser where a "
@@ -202,9 +219,7 @@ void add_view(CLI::App& app, Options& options) {
                  "Leave out parts that the camera does not see, and their shadows too");
     static const std::map<std::string, Quality> qualities = {
         {"draft", Quality::draft}, {"normal", Quality::normal}, {"best", Quality::best}};
-    app.add_flag_callback(
-        "--plain-light", [&options] { options.render.compile.view.light = DefaultLight::plain; },
-        "Where the model names no light: one sun and no sky, which is many times faster to draw");
+    add_plain_light(app, options);
     app.add_option("--quality", options.render.compile.view.quality,
                    "How closely soft light is followed (default normal)")
         ->transform(CLI::CheckedTransformer(qualities).description(""))

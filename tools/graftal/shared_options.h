@@ -32,7 +32,11 @@ void add_model(CLI::App& app, Options& options);
 void add_common(CLI::App& app, Options& options);
 /// What those take that look at it from a camera.
 void add_camera(CLI::App& app, Options& options);
-/// The same, and how much of the model is drawn.
+/// How much of the model is left out for its size.
+void add_error(CLI::App& app, Options& options);
+/// The light of models that name none.
+void add_plain_light(CLI::App& app, Options& options);
+/// What add_camera() adds, and how much of the model is drawn.
 void add_view(CLI::App& app, Options& options);
 /// `--bits`, of a PNG for people.
 CLI::Option* add_bits(CLI::App& app, Options& options);

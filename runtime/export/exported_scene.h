@@ -1,0 +1,150 @@
+#pragma once
+
+// A model as all formats read it: shared shapes, and nodes that place each other. It has no cycles: what has
+// no end is cut already, by levels or by size. Nodes that are equal are one node, so that 10^30 leaves may be
+// a hundred nodes.
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <boost/multiprecision/cpp_int.hpp>
+
+#include "compiler/detail/cut_graph.h"
+#include "compiler/detail/run_cells.h"
+#include "compiler/graph/material.h"
+#include "compiler/scene/scene.h"
+#include "compiler/support/control.h"
+
+namespace graftal {
+
+using SceneId = std::uint32_t;
+using BigCount = boost::multiprecision::cpp_int;
+
+/// A primitive as a mesh (tessellate.h).
+struct SceneShape {
+    Primitive primitive;
+    int fineness = 0;
+    auto operator<=>(const SceneShape&) const = default;
+};
+
+/// A node within another.
+struct ScenePart {
+    SceneId node = 0;
+    Affine node_from_part;
+    PathTint tint;
+    std::optional<MaterialId> material;
+    double turns = 1; ///< of a leaf: length_in_turns() of its instance
+    /// Once looks are resolved: of all leaves below that are colourless (SceneLook).
+    std::optional<Rgb> colour;
+};
+
+/// What holds at the end of a path from the root.
+struct SceneLook {
+    PathTint tint;
+    Rgb inherited{0.8}; ///< the colour of what is not tinted
+    std::optional<MaterialId> material;
+    double turns = 1;
+    bool colourless = false; ///< its colour is the one that a part on the way has
+
+    /// Linear, in [0, 1].
+    Rgb colour() const;
+    bool is_tinted() const { return tint.alpha > 0; }
+};
+
+struct SceneNode {
+    std::string name;                    ///< of the model's object; not unique
+    std::optional<std::uint32_t> shape;  ///< a leaf, which has no parts
+    std::vector<ScenePart> parts;        ///< in the order of the model
+    MeanColour whole{Rgb(0.0), 1};       ///< what it looks like from afar
+    MeanColour mean{Rgb(0.0), 1};        ///< what the node makes of the colour that it inherits
+    std::shared_ptr<const RunCell> cell; ///< in place of parts: a range of a run
+    double errors_per_unit = 1;          ///< of a cell: decides how fine its shapes are
+    SceneLook look;                      ///< of a leaf, once looks are resolved (looks.h)
+};
+
+struct ExportedScene {
+    std::vector<SceneShape> shapes;
+    std::vector<SceneNode> nodes;
+    std::vector<SceneId> masters_first; ///< all nodes, parts before what holds them
+    SceneId root = 0;
+    std::vector<Material> materials;
+    std::map<SceneShape, SceneId> leaves; ///< by shape: what the parts of cells lead to
+    bool one_mesh = false;                ///< of a primitive: shapes are told apart by that alone
+    double tolerance_errors = 0.4;        ///< what a mesh may be off by, in errors
+    Box bounds;                           ///< of the model's limit set
+    bool left_out_planes = false;         ///< they have no end, so no mesh
+    std::uint64_t thickened = 0;          ///< parts that a map had left no thickness
+    bool culled = false;                  ///< parts are left out for their size
+
+    /// The key of `leaves` for a primitive where so many errors measure a unit.
+    SceneShape shape_for(const Primitive& primitive, double errors_per_unit) const;
+    /// The mesh that suits it.
+    int fineness(const Primitive& primitive, double errors_per_unit) const;
+};
+
+/// Calls `visit(part)` on the parts of a node in their order, those of its cell too.
+template<typename Visit> void for_each_part(const ExportedScene& scene, const SceneNode& node, Visit&& visit);
+
+/// Sets masters_first. False if some node leads back to itself.
+bool sort_masters_first(ExportedScene& scene);
+
+/// The sum over all leaves below the root, where a leaf of each shape counts so much.
+BigCount sum_over_leaves(const ExportedScene& scene,
+                         const std::function<std::uint64_t(const SceneShape&)>& value);
+
+struct SceneCounts {
+    BigCount leaves, triangles, vertices;
+    std::size_t nodes = 0;
+    std::uint64_t parts = 0;
+    unsigned depth = 0; ///< parts on the longest way from the root to a leaf
+};
+SceneCounts count(const ExportedScene& scene);
+
+/// "1024", or "1.07e+30" of a number with more than 15 digits.
+std::string in_words(const BigCount& number);
+
+struct SceneLeaf {
+    SceneId node = 0;
+    std::uint32_t shape = 0;
+    Affine world_from_shape;
+    SceneLook look;
+};
+
+/// Visits the leaves below a node, depth first in the order of the parts, looks composed on the way from
+/// `look` on. Stops and returns false when `visit` does. Memory O(depth).
+bool walk_leaves(const ExportedScene& scene, SceneId from, const Affine& world_from_node,
+                 const SceneLook& look, const std::function<bool(const SceneLeaf&)>& visit);
+
+/// The look one part further.
+SceneLook look_through(const ExportedScene& scene, const SceneLook& look, const SceneNode& node,
+                       const ScenePart& part);
+
+// Inlined.
+
+template<typename Visit>
+void for_each_part(const ExportedScene& scene, const SceneNode& node, Visit&& visit) {
+    for (const ScenePart& part : node.parts)
+        visit(part);
+    if (!node.cell) return;
+    const RunCell& cell = *node.cell;
+    const auto visit_edge = [&](const CutEdge& edge, const Primitive& primitive) {
+        ScenePart part;
+        part.node = scene.leaves.at(scene.shape_for(primitive, node.errors_per_unit * edge.stretch));
+        part.node_from_part = edge.node_from_child;
+        part.material = edge.material;
+        visit(part);
+    };
+    for (std::size_t i = cell.first; i < cell.first + cell.count; ++i) {
+        const RunItem& item = (*cell.source->run)[i];
+        visit_edge(edge_to_body(*cell.source, item), item.shape.primitive());
+        if (item.ball) visit_edge(edge_to_ball(*cell.source, item), PrimitiveKind::sphere);
+    }
+}
+
+} // namespace graftal

@@ -1,0 +1,31 @@
+#include "runtime/export/formats.h"
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+
+namespace graftal {
+
+std::span<const ExportFormat> export_formats() {
+    static const std::array table = {usd_format, gltf_format, glb_format,  obj_format,    ply_format,
+                                     stl_format, svg_format,  pbrt_format, mitsuba_format};
+    return table;
+}
+
+const ExportFormat* find_export_format(std::string_view path) {
+    std::string extension = std::filesystem::path(path).extension().string();
+    std::ranges::transform(extension, extension.begin(), [](unsigned char c) { return std::tolower(c); });
+    for (const ExportFormat& format : export_formats())
+        if (format.extension == extension) return &format;
+    return nullptr;
+}
+
+std::string export_endings() {
+    std::string text;
+    const std::span<const ExportFormat> all = export_formats();
+    for (std::size_t i = 0; i < all.size(); ++i)
+        text += std::string(i == 0 ? "" : i + 1 < all.size() ? ", " : " or ") + std::string(all[i].extension);
+    return text;
+}
+
+} // namespace graftal

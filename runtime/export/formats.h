@@ -1,0 +1,74 @@
+#pragma once
+
+// What a format is: a row of the table that the command, its help and the manual read.
+
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "compiler/support/diagnostics.h"
+#include "compiler/support/status.h"
+#include "runtime/export/build_scene.h"
+#include "runtime/export/exported_scene.h"
+#include "runtime/image/image.h"
+#include "runtime/image/texture.h"
+
+namespace graftal {
+
+/// What the command line says besides the model and its view.
+struct ExportOptions {
+    std::string output;
+    std::uint64_t most_bytes = std::uint64_t{1} << 30; ///< of a file
+    std::optional<double> unit_mm;                     ///< what a unit of the model measures
+    std::optional<unsigned> levels;                    ///< instances within instances, at most
+    bool instancing = false;
+    bool plotter = false;
+    std::uint64_t memory_bytes = std::uint64_t{2} << 30; ///< that may be used
+    std::size_t most_nodes = 30'000;                     ///< of formats that share meshes only
+    ImageMetadata metadata;
+};
+
+/// What a format is given.
+struct ExportJob {
+    ExportedScene& scene;
+    const View& view;
+    const ExportOptions& options;
+    Span model; ///< for diagnostics
+    TextureStore& textures;
+    const CancelFlag& cancel;
+    Diagnostics& diagnostics;
+};
+
+/// What it has written.
+struct ExportReport {
+    std::string summary; ///< such as "12 meshes, 1200 nodes"
+};
+
+struct ExportFormat {
+    std::string_view extension; ///< with its point
+    std::string_view name;
+    std::string_view summary;
+    SceneMeshes meshes = SceneMeshes::shared;
+    bool has_unit = false;       ///< takes --unit
+    bool has_levels = false;     ///< takes --levels
+    bool has_instancing = false; ///< takes --instancing
+    bool has_nodes = false;      ///< takes --nodes
+    bool has_plotter = false;    ///< takes --plotter
+    /// Writes the files, whole or not at all. A model that it cannot hold is an error among the diagnostics.
+    Status (*write)(const ExportJob& job, ExportReport& report);
+};
+
+std::span<const ExportFormat> export_formats();
+
+/// By the ending of a file's name; null if there is none.
+const ExportFormat* find_export_format(std::string_view path);
+
+/// ".obj, .ply or .stl"
+std::string export_endings();
+
+// Rows.
+extern const ExportFormat obj_format, ply_format, stl_format, gltf_format, glb_format, usd_format, svg_format,
+    pbrt_format, mitsuba_format;
+
+} // namespace graftal

@@ -1,0 +1,37 @@
+#pragma once
+
+// Which parts become one mesh, for formats that share meshes but no unions of them: a list of places of
+// shared meshes, as the cut for POV-Ray is.
+
+#include <vector>
+
+#include "runtime/export/exported_scene.h"
+
+namespace graftal {
+
+struct GroupOptions {
+    double most_nodes = 30'000;     ///< places of meshes and of what holds them
+    double triangles_of_node = 100; ///< what a node costs a reader, in triangles of a mesh
+};
+
+struct MeshGroups {
+    std::vector<bool> is_mesh; ///< by node: a mesh wherever it is placed; what is above it are unions
+    std::vector<SceneId> meshes;
+    double nodes = 0;     ///< places of both
+    double triangles = 0; ///< of the meshes, each once
+};
+
+/// Opens the largest meshes first, as long as the nodes suffice; of all states on the way the one that costs
+/// least. Requires resolved looks.
+MeshGroups group_meshes(const ExportedScene& scene, const GroupOptions& options);
+
+/// Where a mesh lies in the world.
+struct MeshPlace {
+    SceneId mesh = 0;
+    Affine world_from_mesh;
+};
+
+/// All of them, in the order of the parts.
+std::vector<MeshPlace> places_of(const ExportedScene& scene, const MeshGroups& groups);
+
+} // namespace graftal

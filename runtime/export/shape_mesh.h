@@ -1,0 +1,62 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "runtime/export/exported_scene.h"
+
+namespace graftal {
+
+/// A shape as files have it: each vertex with its normal, and with its place on the picture where there is
+/// one. A corner between flat faces is there once for each face.
+struct ShapeMesh {
+    std::vector<Vec3> vertices;
+    std::vector<Vec3> normals;                           ///< one a vertex, of unit length
+    std::vector<std::array<double, 2>> uv;               ///< empty, or one a vertex
+    std::vector<std::array<std::uint32_t, 3>> triangles; ///< counter-clockwise seen from outside
+};
+
+/// The meshes of shapes, each made when it is first asked for.
+class ShapeMeshes {
+  public:
+    explicit ShapeMeshes(const ExportedScene& scene) : scene_(scene) {}
+
+    /// As the look shows it: with places on the picture, if its material has one.
+    const ShapeMesh& of(std::uint32_t shape, const SceneLook& look);
+
+    bool has_picture(const SceneLook& look) const {
+        return look.material && !scene_.materials[*look.material].texture.empty();
+    }
+
+  private:
+    struct Key {
+        std::uint32_t shape = 0;
+        double around = 0, along = 0; ///< 0: no picture
+        auto operator<=>(const Key&) const = default;
+    };
+
+    const ExportedScene& scene_;
+    std::map<Key, ShapeMesh> known_;
+};
+
+/// A mesh at its place: corners still run counter-clockwise seen from outside.
+struct PlacedShape {
+    PlacedShape(const ShapeMesh& mesh, const Affine& place);
+
+    Vec3 vertex(std::size_t i) const { return place(mesh->vertices[i]); }
+    Vec3 normal(std::size_t i) const;
+    std::array<std::uint32_t, 3> triangle(std::size_t i) const {
+        const auto& t = mesh->triangles[i];
+        return mirrored ? std::array{t[0], t[2], t[1]} : t;
+    }
+
+    const ShapeMesh* mesh;
+    Affine place;
+    Mat3 normal_by_normal;
+    bool mirrored;
+};
+
+} // namespace graftal

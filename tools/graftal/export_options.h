@@ -1,0 +1,16 @@
+#pragma once
+
+#include <string>
+
+#include <CLI/CLI.hpp>
+
+#include "tools/graftal/options.h"
+
+namespace graftal {
+
+void add_export(CLI::App& app, Options& options);
+
+/// What is wrong with options that are each right, or "".
+std::string complete_export(const Options& options);
+
+} // namespace graftal

@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "compiler/import/cpfg.h"
 #include "compiler/import/foreign_text.h"
 #include "compiler/import/fractint_lsystem.h"
 #include "compiler/import/lparser.h"
@@ -36,7 +37,7 @@ std::vector<std::string> names_of(const std::vector<ForeignModel>& models) {
 
 std::span<const Importer> importers() {
     // Where two rows share an ending, the first that recognises the text has it.
-    static const Importer table[] = {fractint_lsystem_importer(), lparser_importer()};
+    static const Importer table[] = {cpfg_importer(), fractint_lsystem_importer(), lparser_importer()};
     return table;
 }
 

@@ -51,11 +51,11 @@ struct LsysFormal {
 
 /// `label : left < predecessor > right : condition -> successor : probability`.
 struct LsysProduction {
-    Name label;                    ///< an empty text if there is none
-    std::vector<LsysFormal> left;  ///< has no brackets
-    LsysFormal predecessor;        ///< neither a bracket nor a brace
-    std::vector<LsysFormal> right; ///< brackets are balanced
-    std::optional<Expression> condition;
+    Name label;                          ///< an empty text if there is none
+    std::vector<LsysFormal> left;        ///< has no brackets
+    LsysFormal predecessor;              ///< neither a bracket nor a brace
+    std::vector<LsysFormal> right;       ///< brackets are balanced
+    std::optional<Expression> condition; ///< this and those below have the local values written out
     LsysString successor;
     std::optional<Expression> probability;
     Span span; ///< from the label or the first module to the arrow

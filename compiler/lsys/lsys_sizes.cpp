@@ -73,6 +73,8 @@ Degree degree_of_call(const Expression& e, const SizeNames& sizes) {
     const bool mixes =
         e.text == "min" || e.text == "max" || e.text == "mod" || e.text == "normal" || e.text == "random";
     if (mixes && count == 2) return alike(operand(0), operand(1));
+    if (e.text == "choose" && count == 3)
+        return number_if(operand(0)).of ? alike(operand(1), operand(2)) : no_degree;
     if (e.text == "lerp" && count == 3)
         return number_if(operand(2)).of ? alike(operand(0), operand(1)) : no_degree;
     for (std::size_t i = 0; i < count; ++i)

@@ -2,13 +2,16 @@
 
 #include <algorithm>
 #include <array>
+#include <memory>
 #include <string>
 #include <utility>
 
 #include <fmt/format.h>
 
 #include "compiler/lsys/lsys_productions.h"
+#include "compiler/syntax/expression_functions.h"
 #include "compiler/syntax/expression_parser.h"
+#include "compiler/syntax/write_out.h"
 
 namespace graftal {
 
@@ -30,6 +33,7 @@ class BlockParser {
         const LsysOutline outline = scanner_.outline(at);
         parse_statements(outline.statements);
         text_.check_polygons();
+        connect_tables();
         if (!outline.closed && opened && !text_.stray_brace_said) report_open(outline.end);
         if (opened && !axiom_said_)
             diagnostics_.error(block_.name.span, fmt::format("'lsys {}' has no axiom", block_.name.text))
@@ -108,12 +112,16 @@ class BlockParser {
         if (word == "angle") return parse_value(statement, block_.angle);
         if (word == "step") return parse_value(statement, block_.step);
         if (word == "width") return parse_value(statement, block_.width);
+        if (word == "thickness") return parse_value(statement, block_.thickness);
+        if (word == "thinnest") return parse_value(statement, block_.thinnest);
         if (word == "seed") return parse_value(statement, block_.seed);
         if (word == "steps") return parse_steps(statement);
         if (word == "ignore" || word == "consider") return parse_filter(statement);
         if (word == "axiom") return parse_axiom(statement);
-        if (word == "tropism") return parse_tropism(statement);
+        if (word == "tropism") return parse_direction(statement, block_.tropism);
+        if (word == "vertical") return parse_direction(statement, block_.vertical);
         if (word == "colors") return parse_colors(statement);
+        if (word == "table") return parse_table(statement);
         if (text_of(statement).find("->") == std::string_view::npos) return parse_other(statement);
         std::optional<LsysProduction> production = parse_lsys_production(statement, text_);
         if (production) productions(statement.section).push_back(std::move(*production));
@@ -221,11 +229,59 @@ class BlockParser {
         return false;
     }
 
-    void parse_tropism(const LsysStatement& statement) {
+    void parse_direction(const LsysStatement& statement, std::optional<LsysDirection>& of) {
         TokenStream stream = values(statement);
-        std::optional<std::vector<Expression>> direction = parse_vector(stream, "'tropism'");
+        std::optional<std::vector<Expression>> direction =
+            parse_vector(stream, fmt::format("'{}'", statement.word));
         if (!direction || !text_.finish(stream)) return;
-        set_once(statement, block_.tropism, {std::move(*direction), scanner_.span(statement.word)});
+        set_once(statement, of, {std::move(*direction), scanner_.span(statement.word)});
+    }
+
+    /// `table NAME = number, number, ...`
+    void parse_table(const LsysStatement& statement) {
+        TokenStream stream = values(statement);
+        const std::optional<Token> name = stream.expect_name("the name of a table");
+        if (!name || !stream.expect("=", name->text)) return;
+        auto table = std::make_shared<std::vector<double>>();
+        do {
+            const std::optional<Expression> number = parse_expression(stream);
+            const std::optional<double> value = number ? evaluate(*number, {}, diagnostics_) : std::nullopt;
+            if (!value) return;
+            table->push_back(*value);
+        } while (stream.accept(","));
+        if (!text_.finish(stream)) return;
+        if (expression_function(name->text) || chance_function(name->text))
+            diagnostics_.error(name->span, fmt::format("the function '{}' already exists", name->text));
+        else if (table->size() < 2)
+            diagnostics_.error(name->span, "a table has two values or more");
+        else if (!tables_.emplace(name->text, std::move(table)).second)
+            diagnostics_.error(name->span, fmt::format("duplicate table '{}'", name->text));
+    }
+
+    void connect_tables() {
+        if (tables_.empty()) return;
+        const auto connect = [&](Expression& expression) { graftal::connect_tables(expression, tables_); };
+        for (SceneStatement& let : block_.lets)
+            for (SceneField& field : let.fields)
+                for (Expression& value : field.values)
+                    connect(value);
+        for (std::optional<LsysValue>* value :
+             {&block_.angle, &block_.step, &block_.width, &block_.thickness, &block_.thinnest})
+            if (*value) connect((*value)->value);
+        if (block_.axiom) connect_string(*block_.axiom);
+        for (std::vector<LsysProduction>* section :
+             {&block_.productions, &block_.interpret, &block_.decompose})
+            for (LsysProduction& production : *section) {
+                if (production.condition) connect(*production.condition);
+                if (production.probability) connect(*production.probability);
+                connect_string(production.successor);
+            }
+    }
+
+    void connect_string(LsysString& string) {
+        for (LsysModule& module : string.modules)
+            for (Expression& parameter : module.parameters)
+                graftal::connect_tables(parameter, tables_);
     }
 
     void parse_colors(const LsysStatement& statement) {
@@ -378,6 +434,7 @@ class BlockParser {
     LsysFile& file_;
     LsysBlock block_;
     Span open_;
+    ExpressionTables tables_;
     bool axiom_said_ = false; ///< there, or reported
 };
 

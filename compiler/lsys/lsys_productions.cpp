@@ -1,9 +1,13 @@
 #include "compiler/lsys/lsys_productions.h"
 
 #include <algorithm>
+#include <cctype>
 #include <utility>
 
 #include <fmt/format.h>
+
+#include "compiler/syntax/expression_parser.h"
+#include "compiler/syntax/write_out.h"
 
 namespace graftal {
 
@@ -24,6 +28,9 @@ bool is_label(std::string_view word) {
            word.find_first_not_of("0123456789", digits) == std::string_view::npos;
 }
 
+/// Expressions are evaluated by recursion.
+constexpr std::size_t most_written_depth = 1000;
+
 class ProductionParser {
   public:
     ProductionParser(const LsysStatement& statement, LsysText& text)
@@ -34,6 +41,7 @@ class ProductionParser {
         parse_label();
         bool good = parse_left_side() && parse_condition() && parse_arrow();
         if (good) good = parse_successor(); // its errors are independent of those of the parameters
+        if (good && !locals_.empty()) good = write_out_locals();
         return good && check_parameters() ? std::optional(std::move(production_)) : std::nullopt;
     }
 
@@ -132,10 +140,84 @@ class ProductionParser {
 
     bool parse_condition() {
         if (!reader_.accept(':')) return true;
-        if (reader_.accept('*')) return true;
         const std::optional<std::size_t> arrow = text_.scanner.find_arrow(reader_.position(), statement_.end);
+        if (const auto word = find_with(reader_.position(), arrow.value_or(statement_.end)))
+            return parse_locals(*word, arrow.value_or(statement_.end));
+        if (reader_.accept('*')) return true;
         production_.condition = reader_.read_expression(arrow.value_or(statement_.end), "'->'");
         return production_.condition.has_value();
+    }
+
+    /// The word `with` between these places, if it stands outside of parentheses.
+    std::optional<std::size_t> find_with(std::size_t begin, std::size_t end) const {
+        constexpr std::string_view word = "with";
+        const std::string_view text = text_.scanner.text();
+        const auto is_inside = [&](std::size_t at) {
+            return at < end && (std::isalnum(static_cast<unsigned char>(text[at])) || text[at] == '_');
+        };
+        int depth = 0;
+        for (std::size_t at = begin; at < end; ++at) {
+            depth += (text[at] == '(') - (text[at] == ')');
+            if (depth == 0 && text.substr(at, word.size()) == word && !is_inside(at + word.size()) &&
+                (at == begin || !is_inside(at - 1)))
+                return at;
+        }
+        return std::nullopt;
+    }
+
+    /// `condition with NAME = number, ...`
+    bool parse_locals(std::size_t word, std::size_t end) {
+        if (!reader_.accept('*') && reader_.position() < word) {
+            production_.condition = reader_.read_expression(word, "'with'");
+            if (!production_.condition) return false;
+        }
+        TokenStream stream = text_.tokens(word + 4, end, "'->'");
+        reader_.move_to(end);
+        do {
+            const std::optional<Token> name = stream.expect_name("the name of a local value");
+            if (!name || !stream.expect("=", name->text)) return false;
+            std::optional<Expression> value = parse_expression(stream);
+            if (!value) return false;
+            locals_.push_back({{name->text, name->span}, std::move(*value)});
+        } while (stream.accept(","));
+        if (stream.at_end()) return true;
+        stream.expected("'->'");
+        return false;
+    }
+
+    /// Each local value in place of its name; one may use those before it.
+    bool write_out_locals() {
+        ExpressionNames values;
+        for (auto& [name, value] : locals_) {
+            if (calls_chance(value)) {
+                diagnostics_
+                    .error(name.span, fmt::format("the local value '{}' must not be random", name.text))
+                    .with_hint(
+                        "give the random number to a module: A -> B(random(0, 1))  decompose B(r) -> ...");
+                return false;
+            }
+            write_out(value, values);
+            if (!has_room(value, name.span)) return false;
+            values.insert_or_assign(std::string(name.text), value);
+        }
+        const auto write = [&](Expression& expression) {
+            write_out(expression, values);
+            return has_room(expression, expression.span);
+        };
+        if (production_.condition && !write(*production_.condition)) return false;
+        if (production_.probability && !write(*production_.probability)) return false;
+        for (LsysModule& module : production_.successor.modules)
+            for (Expression& parameter : module.parameters)
+                if (!write(parameter)) return false;
+        return true;
+    }
+
+    bool has_room(const Expression& expression, Span span) {
+        const ExpressionExtent extent = extent_of(expression);
+        text_.words_left -= std::min(text_.words_left, extent.words);
+        if (extent.depth <= most_written_depth && text_.words_left > 0) return true;
+        diagnostics_.error(span, "the local values make too long an expression");
+        return false;
     }
 
     bool parse_arrow() {
@@ -204,6 +286,7 @@ class ProductionParser {
     Diagnostics& diagnostics_;
     LsysStringReader reader_;
     LsysProduction production_;
+    std::vector<std::pair<Name, Expression>> locals_;
 };
 
 } // namespace

@@ -58,6 +58,7 @@ class Evaluator {
 
     std::optional<double> call(const Expression& e) {
         const ExpressionFunction* function = expression_function(e.text);
+        if (e.table) return of_table(e);
         if (chance_function(e.text)) return chance(e);
         if (!function) {
             std::vector<std::string> candidates;
@@ -69,6 +70,11 @@ class Evaluator {
             return std::nullopt;
         }
         if (e.operands.size() != function->arity) return wrong_count(e, function->arity);
+        if (function->chooses) {
+            const std::optional<double> condition = value(e.operands[0]);
+            if (!condition) return std::nullopt;
+            return value(e.operands[*condition != 0 ? 1 : 2]);
+        }
         std::array<double, max_function_arity> arguments{};
         for (std::size_t i = 0; i < function->arity; ++i) {
             const std::optional<double> argument = value(e.operands[i]);
@@ -78,6 +84,13 @@ class Evaluator {
         const std::span<const double> used(arguments.data(), function->arity);
         if (e.text == "mod" && arguments[1] == 0) return division_by_zero(e);
         return finite(function->apply(used), e, [&] { return call_text(e.text, used); });
+    }
+
+    std::optional<double> of_table(const Expression& e) {
+        if (e.operands.size() != 1) return wrong_count(e, 1);
+        const std::optional<double> x = value(e.operands[0]);
+        if (!x) return std::nullopt;
+        return table_value(*e.table, *x);
     }
 
     std::nullopt_t wrong_count(const Expression& e, std::size_t arity) {

@@ -16,7 +16,8 @@ namespace graftal {
 /// An arithmetic expression over named values: + - * / % ^ (right associative, binds tighter than a sign on
 /// its left), comparisons and ! && || (giving 1 or 0), functions, and the constant pi. Trigonometric
 /// functions take and give degrees, as turtles and POV-Ray's users do: sin cos tan asin acos atan atan2;
-/// sqrt exp log floor ceil abs min max mod sign pow lerp smooth logistic.
+/// sqrt exp log floor ceil abs min max mod sign pow lerp smooth logistic, and choose, which evaluates the
+/// argument that it gives only.
 struct Expression {
     enum class Kind : std::uint8_t { number, name, call, unary, binary };
 
@@ -24,6 +25,8 @@ struct Expression {
     double number = 0;
     std::string text;                 ///< the name, function or operator
     std::vector<Expression> operands; ///< of a call, unary or binary
+    /// Of a call of a table: its values at even distances of [0, 1], straight between them; at least two.
+    std::shared_ptr<const std::vector<double>> table;
     Span span;
 };
 

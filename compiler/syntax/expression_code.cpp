@@ -66,6 +66,8 @@ class ExpressionCode::Compiler {
 
     std::optional<std::uint32_t> add_call(const Expression& e) {
         const ExpressionFunction* function = expression_function(e.text);
+        if (e.table && e.operands.size() == 1)
+            return add_operands(e, {.kind = Kind::call, .table = e.table.get()});
         if (chance_function(e.text) && draws_ && e.operands.size() == chance_arguments) return add_chance(e);
         if (!function || e.operands.size() != function->arity) {
             evaluate(e, constants_, diagnostics_);
@@ -168,6 +170,14 @@ double ExpressionCode::binary(const Node& node, std::span<const double> slots) c
 }
 
 double ExpressionCode::call(const Node& node, std::span<const double> slots) const {
+    if (node.table) {
+        const double x = value(node.operands[0], slots);
+        return std::isfinite(x) ? table_value(*node.table, x) : failed;
+    }
+    if (node.function->chooses) {
+        const double condition = value(node.operands[0], slots);
+        return std::isfinite(condition) ? value(node.operands[condition != 0 ? 1 : 2], slots) : failed;
+    }
     std::array<double, max_function_arity> arguments{};
     const std::size_t arity = node.function->arity;
     for (std::size_t i = 0; i < arity; ++i) {

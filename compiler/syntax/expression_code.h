@@ -47,6 +47,7 @@ class ExpressionCode {
         std::array<std::uint32_t, max_function_arity> operands{};
         double number = 0;
         const ExpressionFunction* function = nullptr;
+        const std::vector<double>* table = nullptr; ///< in place of a function
     };
 
     class Compiler;

@@ -70,6 +70,7 @@ constexpr std::array functions = {
     ExpressionFunction{"mod", 2, [](Arguments a) { return std::fmod(a[0], a[1]); }},
     ExpressionFunction{"pow", 2, [](Arguments a) { return std::pow(a[0], a[1]); }},
     ExpressionFunction{"lerp", 3, [](Arguments a) { return a[0] + a[2] * (a[1] - a[0]); }},
+    ExpressionFunction{"choose", 3, [](Arguments a) { return a[0] != 0 ? a[1] : a[2]; }, true},
     ExpressionFunction{"smooth", 3, [](Arguments a) { return smooth(a[0], a[1], a[2]); }},
     ExpressionFunction{"logistic", 4, [](Arguments a) { return logistic(a[0], a[1], a[2], a[3]); }},
 };
@@ -102,6 +103,14 @@ const ExpressionFunction* expression_function(std::string_view name) {
     const auto found = std::ranges::find_if(
         functions, [&](const ExpressionFunction& function) { return name == function.name; });
     return found == functions.end() ? nullptr : &*found;
+}
+
+double table_value(std::span<const double> table, double x) {
+    const auto pieces = static_cast<double>(table.size() - 1);
+    const double place = std::clamp(x, 0.0, 1.0) * pieces;
+    const double piece = std::min(std::floor(place), pieces - 1);
+    const auto at = static_cast<std::size_t>(piece);
+    return table[at] + (place - piece) * (table[at + 1] - table[at]);
 }
 
 const ExpressionFunction* chance_function(std::string_view name) {

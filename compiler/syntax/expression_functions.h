@@ -15,11 +15,16 @@ struct ExpressionFunction {
     const char* name;
     std::size_t arity;
     double (*apply)(std::span<const double> arguments);
+    bool chooses =
+        false; ///< the second argument, or the third where the first is 0; the other is not evaluated
 };
 
 std::span<const ExpressionFunction> expression_functions();
 /// The function of this name, or null.
 const ExpressionFunction* expression_function(std::string_view name);
+
+/// The value of a table at x; beyond [0, 1] that of its end.
+double table_value(std::span<const double> table, double x);
 
 /// `normal` or `random`: a function of a uniform number of [0, 1) and of its two written arguments; null for
 /// other names.

@@ -26,6 +26,7 @@ enum class Command {
     stats,
     print,
     graph,
+    import_foreign,
     compare,
     farm
 };

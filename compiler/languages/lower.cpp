@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "compiler/graph/verify.h"
+#include "compiler/import/importers.h"
 #include "compiler/languages/languages.h"
 #include "compiler/lower/check_graph.h"
 #include "compiler/lower/lowering.h"
@@ -19,8 +20,8 @@ namespace {
 /// Modules, parts and objects after which the control is asked: some milliseconds.
 constexpr std::uint64_t lowered_a_look = 10'000;
 
-LoweredText lower_root(FileId file, const LowerOptions& options, SourceMap& sources, Diagnostics& diagnostics,
-                       const LowerHelp& help) {
+LoweredText lower_root(FileId file, const std::string& path, const LowerOptions& options, SourceMap& sources,
+                       Diagnostics& diagnostics, const LowerHelp& help) {
     WorkMeter meter(help.control, "lower", lowered_a_look);
     Lowering lowering{.sources = sources,
                       .diagnostics = diagnostics,
@@ -36,8 +37,7 @@ LoweredText lower_root(FileId file, const LowerOptions& options, SourceMap& sour
             .with_hint("give a whole number");
         return {};
     }
-    const std::filesystem::path path(sources.name(file));
-    lowering.loading.push_back({path.lexically_normal().string(), Span()});
+    lowering.loading.push_back({std::filesystem::path(path).lexically_normal().string(), Span()});
     LoweredText model{lower_file(file, Span{file, 0, 0}, lowering), std::move(lowering.notes)};
     if (diagnostics.has_errors() || (model.graph && !check_graph(*model.graph, diagnostics))) return {};
     if (model.graph) check_verified(*model.graph, "lower");
@@ -46,7 +46,10 @@ LoweredText lower_root(FileId file, const LowerOptions& options, SourceMap& sour
 
 } // namespace
 
-std::string model_language(FileId file, const SourceMap& sources) {
+std::string model_language(const SourceMap& sources) {
+    FileId file = 0;
+    for (FileId made = 1; made < sources.size() && file == 0; ++made)
+        if (sources.original(made) == 0u) file = made;
     if (const Language* const language = language_of(file, sources, languages()))
         return std::string(language->extension);
     const std::string extension = std::filesystem::path(sources.name(file)).extension().string();
@@ -56,19 +59,24 @@ std::string model_language(FileId file, const SourceMap& sources) {
 LoweredText lower_model(const std::string& path, const LowerOptions& options, SourceMap& sources,
                         Diagnostics& diagnostics, Status& status, const LowerHelp& help) {
     std::string text;
-    if (path != "-" && !options.root.empty() && !lies_in(path, options.root)) {
-        diagnostics.error(Span(), fmt::format("'{}' leads out of --root '{}'", path, options.root));
+    const std::string file = model_path(path).file;
+    if (file != "-" && !options.root.empty() && !lies_in(file, options.root)) {
+        diagnostics.error(Span(), fmt::format("'{}' leads out of --root '{}'", file, options.root));
         return {};
     }
-    status = read_text(path, text);
+    status = read_text(file, text);
     if (!status.ok()) return {};
     return lower_text(path, std::move(text), options, sources, diagnostics, help);
 }
 
 LoweredText lower_text(const std::string& name, std::string text, const LowerOptions& options,
                        SourceMap& sources, Diagnostics& diagnostics, const LowerHelp& help) {
-    const FileId file = sources.add(name == "-" ? std::string(standard_input) : name, std::move(text));
-    return lower_root(file, options, sources, diagnostics, help);
+    const ModelPath path = model_path(name == "-" ? standard_input : name);
+    const FileId file = sources.add(path.file, std::move(text));
+    const std::optional<FileId> own =
+        own_text(file, path.model, sources, diagnostics, {options.root, help.on_file});
+    if (!own) return {};
+    return lower_root(*own, name, options, sources, diagnostics, help);
 }
 
 } // namespace graftal

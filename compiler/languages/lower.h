@@ -18,7 +18,8 @@ struct LoweredText {
     LowerNotes notes;
 };
 
-/// Reads a model, and all that it uses, and lowers it. The language follows the file name (languages.h), for
+/// Reads a model, and all that it uses, and lowers it. The path may name a model in a foreign file
+/// (importers.h), which is translated first. The language follows the file name (languages.h), for
 /// "-" (standard input) the text. Bad input is reported to `diagnostics` and gives nothing; a root file that
 /// cannot be read gives nothing and a failed `status`. Used files are looked up beside the file that names
 /// them. The flag of `help` ends it by Cancelled.
@@ -30,8 +31,8 @@ LoweredText lower_model(const std::string& path, const LowerOptions& options, So
 LoweredText lower_text(const std::string& name, std::string text, const LowerOptions& options,
                        SourceMap& sources, Diagnostics& diagnostics, const LowerHelp& help = {});
 
-/// The extension of a language of the table, by the name of the file, for standard input by its text; else
-/// whatever follows the dot of the name. The file of the model itself is the first in `sources`.
-std::string model_language(FileId file, const SourceMap& sources);
+/// The extension of the language of a model, whose file is the first in `sources`: by its name, for standard
+/// input by its text, for a foreign file by its translation; else whatever follows the dot of the name.
+std::string model_language(const SourceMap& sources);
 
 } // namespace graftal

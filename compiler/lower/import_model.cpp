@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "compiler/import/importers.h"
 #include "compiler/lower/lowering.h"
 #include "compiler/primitives/mesh_file.h"
 #include "compiler/support/check.h"
@@ -73,7 +74,7 @@ Status check_regular(const std::string& path, const Lowering& lowering) {
 }
 
 /// A regular file, read once.
-std::optional<FileId> read_used(Span use_span, const std::string& path, Lowering& lowering) {
+std::optional<FileId> read_file(Span use_span, const std::string& path, Lowering& lowering) {
     if (const auto known = lowering.files.find(path); known != lowering.files.end()) return known->second;
     std::string text;
     Status read = check_regular(path, lowering);
@@ -81,6 +82,20 @@ std::optional<FileId> read_used(Span use_span, const std::string& path, Lowering
     if (read.ok()) return lowering.files[path] = lowering.sources.add(path, std::move(text));
     add_chain(lowering.diagnostics.error(use_span, read.message()), lowering);
     return std::nullopt;
+}
+
+/// In one of our languages.
+std::optional<FileId> read_used(Span use_span, const std::string& path, Lowering& lowering) {
+    if (const auto known = lowering.own_texts.find(path); known != lowering.own_texts.end()) {
+        if (!known->second) ++lowering.known_failures;
+        return known->second;
+    }
+    const ModelPath parts = model_path(path);
+    std::optional<FileId> file = read_file(use_span, parts.file, lowering);
+    if (file)
+        file = own_text(*file, parts.model, lowering.sources, lowering.diagnostics,
+                        {lowering.options.root, lowering.help.on_file});
+    return lowering.own_texts[path] = file;
 }
 
 /// Warnings about the members of one family are said once.

@@ -40,7 +40,9 @@ struct Lowering {
     /// Models already lowered, by path and inner parameters; null after errors. A model used twice is read
     /// and reported once.
     std::map<std::pair<std::string, Environment>, std::shared_ptr<const Graph>> lowered = {};
-    std::map<std::string, FileId> files = {};                    ///< used files that were read, by path
+    std::map<std::string, FileId> files = {}; ///< used files that were read, by path
+    /// The texts of used models in our languages, by path; nothing after an error.
+    std::map<std::string, std::optional<FileId>> own_texts = {};
     std::map<std::string, std::optional<Primitive>> meshes = {}; ///< by path; nothing after an error
     std::size_t use_count = 0;                                   ///< `use` statements so far, in all files
     std::size_t known_failures = 0; ///< models that were asked for and had failed before

@@ -133,13 +133,16 @@ class LsysLowering {
             added.grammar = build_grammar(*added.source, std::move(lets), diagnostics_);
         }
         if (lowering_.at_root_model())
-            check_set_names(all_lets, {"angle", "step", "width", "steps", "seed"}, lowering_);
+            check_set_names(all_lets, {"angle", "step", "width", "thickness", "steps", "seed"}, lowering_);
     }
 
     /// `--set angle=40` speaks to the block that is the model.
     LsysBlock with_settings(LsysBlock block, const Environment& lets) {
-        const std::pair<const char*, std::optional<LsysValue>*> settings[] = {
-            {"angle", &block.angle}, {"step", &block.step}, {"width", &block.width}, {"seed", &block.seed}};
+        const std::pair<const char*, std::optional<LsysValue>*> settings[] = {{"angle", &block.angle},
+                                                                              {"step", &block.step},
+                                                                              {"width", &block.width},
+                                                                              {"thickness", &block.thickness},
+                                                                              {"seed", &block.seed}};
         const auto literal = [](double value) {
             Expression expression;
             expression.number = value;

@@ -61,7 +61,7 @@ struct LsysProduction {
     Span span; ///< from the label or the first module to the arrow
 };
 
-/// `angle`, `step`, `width` or `seed`.
+/// `angle`, `step`, `width`, `thickness` or `seed`.
 struct LsysValue {
     Expression value;
     Span span; ///< of the keyword
@@ -79,8 +79,8 @@ struct LsysContextFilter {
     Span span;                 ///< of the keyword
 };
 
-/// `tropism x, y, z`
-struct LsysTropism {
+/// `tropism x, y, z` or `vertical x, y, z`
+struct LsysDirection {
     std::vector<Expression> direction; ///< three
     Span span;                         ///< of the keyword
 };
@@ -92,10 +92,13 @@ struct LsysBlock {
     std::optional<LsysValue> angle;
     std::optional<LsysValue> step;
     std::optional<LsysValue> width;
+    std::optional<LsysValue> thickness;
+    std::optional<LsysValue> thinnest;
     std::optional<LsysValue> seed;
     std::optional<LsysSteps> steps;
     std::optional<LsysContextFilter> filter;
-    std::optional<LsysTropism> tropism;
+    std::optional<LsysDirection> tropism;
+    std::optional<LsysDirection> vertical;
     std::vector<Name> colors;  ///< materials of the colour indices 0, 1, 2, ...
     std::vector<Name> modules; ///< declared names, each once
     std::optional<LsysString> axiom;

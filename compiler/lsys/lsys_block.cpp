@@ -108,11 +108,14 @@ class BlockParser {
         if (word == "angle") return parse_value(statement, block_.angle);
         if (word == "step") return parse_value(statement, block_.step);
         if (word == "width") return parse_value(statement, block_.width);
+        if (word == "thickness") return parse_value(statement, block_.thickness);
+        if (word == "thinnest") return parse_value(statement, block_.thinnest);
         if (word == "seed") return parse_value(statement, block_.seed);
         if (word == "steps") return parse_steps(statement);
         if (word == "ignore" || word == "consider") return parse_filter(statement);
         if (word == "axiom") return parse_axiom(statement);
-        if (word == "tropism") return parse_tropism(statement);
+        if (word == "tropism") return parse_direction(statement, block_.tropism);
+        if (word == "vertical") return parse_direction(statement, block_.vertical);
         if (word == "colors") return parse_colors(statement);
         if (text_of(statement).find("->") == std::string_view::npos) return parse_other(statement);
         std::optional<LsysProduction> production = parse_lsys_production(statement, text_);
@@ -221,11 +224,12 @@ class BlockParser {
         return false;
     }
 
-    void parse_tropism(const LsysStatement& statement) {
+    void parse_direction(const LsysStatement& statement, std::optional<LsysDirection>& of) {
         TokenStream stream = values(statement);
-        std::optional<std::vector<Expression>> direction = parse_vector(stream, "'tropism'");
+        std::optional<std::vector<Expression>> direction =
+            parse_vector(stream, fmt::format("'{}'", statement.word));
         if (!direction || !text_.finish(stream)) return;
-        set_once(statement, block_.tropism, {std::move(*direction), scanner_.span(statement.word)});
+        set_once(statement, of, {std::move(*direction), scanner_.span(statement.word)});
     }
 
     void parse_colors(const LsysStatement& statement) {

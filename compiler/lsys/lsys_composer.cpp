@@ -49,7 +49,8 @@ LsysComposer::LsysComposer(LsysRewriter& rewriter, TurtleContext& turtle, Object
       stop_from_(limits.stop_from), max_bytes_(limits.max_bytes), snaps_(limits.snap_angle > 0),
       sizes_(limits.sizes), size_step_(limits.size_step), steps_unit_(limits.steps_unit),
       directions_(std::max(limits.snap_angle, DirectionTable::rounding)),
-      uses_directions_(rewriter.grammar().uses({TurtleCommand::level, TurtleCommand::tropism})),
+      uses_directions_(
+          rewriter.grammar().uses({TurtleCommand::level, TurtleCommand::tropism, TurtleCommand::bend_down})),
       decomposes_(rewriter.grammar().has_rules(RuleKind::decompose)),
       is_timed_(rewriter.grammar().time(RuleKind::interpret) != 0) {
     for (SymbolId symbol = 0; symbol < rewriter.grammar().symbols.size(); ++symbol)
@@ -257,6 +258,16 @@ bool LsysComposer::draw_piece(Task& task, ModuleId piece) {
     return false;
 }
 
+/// Of exits that differ by rounding only.
+void LsysComposer::clean_exit(TurtlePart& part) {
+    Mat3& exit = part.start_from_exit.linear;
+    if (part.mirrors) exit[0] = -exit[0];
+    exit = rotations_.representative(exit);
+    if (part.mirrors) exit[0] = -exit[0];
+    if (part.writes & reads_second) part.exit.second = rotations_.representative(part.exit.second);
+    part.exit_scale = sizes_known_.representative(part.exit_scale);
+}
+
 /// Places the last task, which has come to its end, in the one before.
 void LsysComposer::complete_piece() {
     Task task = std::move(tasks_.back());
@@ -264,7 +275,7 @@ void LsysComposer::complete_piece() {
     Task& parent = tasks_.back();
     const bool is_branch = FoldedWord::is_branch(task.module);
     TurtlePart part = std::move(task.turtle).finish();
-    part.start_from_exit.linear = rotations_.representative(part.start_from_exit.linear);
+    clean_exit(part);
     if (is_branch) part.modules += 2;
     std::optional<Instance> line = line_for(part, task);
     part.instances =
@@ -329,8 +340,12 @@ bool LsysComposer::resize(Lookup& found, const Task& task, bool absolute) {
             parameters[i] = stepped(parameters[i], placing.size_error);
     }
     if (!roles.empty()) found.module = modules.intern(symbol, parameters, modules.birth(found.module));
+    const double width = found.state.width;
     found.state = scaled(found.state, factor);
-    found.state.width = stepped(found.state.width, placing.width_error);
+    if (context_.relative_width)
+        found.state.width = width;
+    else
+        found.state.width = stepped(found.state.width, placing.width_error);
     found.state.control_width = sizes_known_.representative(found.state.control_width);
     if (found.state.in_cylinder) found.state.control_point = representative(found.state.control_point);
     found.state.unit = steps_unit_ ? stepped(found.state.unit, placing.unit_error)
@@ -368,7 +383,7 @@ bool LsysComposer::draw(Task& task, ModuleId module, bool absolute) {
             absolute = true;
         }
     }
-    if (sizes_ && size_role(command) && !parameters.empty() &&
+    if (sizes_ && size_role(rewriter_.grammar(), symbol) && !parameters.empty() &&
         sizes_->roles(symbol, parameters.size())[0] == ParameterRole::number) {
         resized.assign(1, unit * parameters[0]);
         parameters = resized;
@@ -442,7 +457,7 @@ void LsysComposer::complete_task() {
     Task task = std::move(tasks_.back());
     tasks_.pop_back();
     TurtlePart part = std::move(task.turtle).finish();
-    part.start_from_exit.linear = rotations_.representative(part.start_from_exit.linear);
+    clean_exit(part);
     if (task.interprets) part.modules = 1;
     std::optional<Instance> line = line_for(part, task);
     const Mat3 frame = context_.limit ? chord_frame(part.start_from_exit.translation) : Mat3(1.0);
@@ -463,6 +478,13 @@ Vec3 LsysComposer::representative(Vec3 point) {
 /// `snap`: the angle between the directions and those in their place.
 TurtleState LsysComposer::state_of(const Turtle& turtle, double& snap) {
     TurtleState state = turtle.state();
+    if (turtle.is_scaled() && !sizes_) {
+        state.width = sizes_known_.representative(state.width);
+        state.control_width = sizes_known_.representative(state.control_width);
+    }
+    if (context_.varies_step) state.ruler = sizes_known_.representative(state.ruler);
+    if (context_.varies_angle) state.angle_factor = sizes_known_.representative(state.angle_factor);
+    if (context_.two_headings) state.second = rotations_.representative(state.second);
     if (state.in_cylinder) state.control_point = representative(state.control_point);
     if (!uses_directions_) return state;
     const TurtleState exact = state;

@@ -142,6 +142,7 @@ class LsysComposer {
     bool start_task(ModuleId module, Stage stage, const TurtleState& start, const Unfolded& unfolded);
     std::optional<Instance> line_for(const TurtlePart& part, const Task& task);
     bool draw_piece(Task& task, ModuleId piece);
+    void clean_exit(TurtlePart& part);
     void complete_piece();
     void complete_task();
     TurtleState state_of(const Turtle& turtle, double& snap);

@@ -115,7 +115,7 @@ class Drawer {
                 return sixteens * (rounding.resizes ? most_resized_parts : most_sized_parts);
             };
             const auto exact = [](const Rounding&) { return most_exact_parts; };
-            if (sizes_.any() && !choose_rounding(graph, sized)) return std::nullopt;
+            if (has_sizes() && !choose_rounding(graph, sized)) return std::nullopt;
             // Variants that differ in their directions too would be too many to judge.
             if (uses_directions() && !choose_rounding(graph, exact)) return std::nullopt;
             if (!choose_variants(graph)) return std::nullopt;
@@ -137,9 +137,8 @@ class Drawer {
                           owner.diagnostics_) {}
         Composition(Drawer& owner, Graph& graph, ObjectPool& pool, bool lines, ModelPlacer placer,
                     std::size_t max_parts, Diagnostics& diagnostics)
-            : drawer(owner), models(std::move(placer)),
-              bodies(graph, owner.palette_), turtle{bodies, diagnostics, owner.grammar_.angle_deg,
-                                                    owner.grammar_.step, lines},
+            : drawer(owner), models(std::move(placer)), bodies(graph, owner.palette_),
+              turtle(owner.turtle_context(bodies, diagnostics, lines)),
               composer(owner.rewriter_, turtle, pool, models, Variants(owner.options_.seed, owner.variants_),
                        owner.limits(max_parts)) {}
 
@@ -160,6 +159,25 @@ class Drawer {
         TurtleContext turtle;
         LsysComposer composer;
     };
+
+    TurtleContext turtle_context(TurtleBodies& bodies, Diagnostics& diagnostics, bool lines) const {
+        return {.bodies = bodies,
+                .diagnostics = diagnostics,
+                .angle_deg = grammar_.angle_deg,
+                .step = grammar_.step,
+                .varies_step = grammar_.uses({TurtleCommand::step_by}),
+                .relative_width = grammar_.thickness.has_value(),
+                .thinnest = grammar_.thinnest,
+                .varies_angle = grammar_.uses({TurtleCommand::angle_by}),
+                .two_headings = grammar_.uses({TurtleCommand::exchange}),
+                .lines = lines};
+    }
+
+    /// Whether parts differ in their sizes only.
+    bool has_sizes() const {
+        return sizes_.any() ||
+               grammar_.uses({TurtleCommand::scale_by, TurtleCommand::scale_down_by, TurtleCommand::step_by});
+    }
 
     LsysLimits limits(std::size_t max_parts) const {
         const Rounding& rounding = roundings_.front();
@@ -193,7 +211,7 @@ class Drawer {
         TurtleState start;
         start.width = width_;
         start.tropism = grammar_.tropism;
-        start.vertical = up;
+        start.vertical = grammar_.vertical;
         return start;
     }
 
@@ -219,7 +237,7 @@ class Drawer {
     std::optional<LsysDrawing> draw_run(Graph& graph) {
         auto run = std::make_shared<Run>();
         TurtleBodies bodies(graph, palette_);
-        TurtleContext context{bodies, diagnostics_, grammar_.angle_deg, grammar_.step, draws_lines(grammar_)};
+        TurtleContext context = turtle_context(bodies, diagnostics_, draws_lines(grammar_));
         context.open_width = width_is_open_ && draws_lines(grammar_);
         context.tallies = width_is_open_;
         Turtle turtle(context, start(), run.get());
@@ -398,20 +416,22 @@ class Drawer {
         return draws ? draw_sets : fewest_variants;
     }
 
-    bool uses_directions() const { return grammar_.uses({TurtleCommand::level, TurtleCommand::tropism}); }
+    bool uses_directions() const {
+        return grammar_.uses({TurtleCommand::level, TurtleCommand::tropism, TurtleCommand::bend_down});
+    }
 
     /// From what is exact to what is coarse.
     void add_roundings() {
         roundings_.push_back({});
-        if (sizes_.any()) {
+        if (has_sizes()) {
             roundings_.push_back({.resizes = true});
             for (const double step : {1.0 / 64, 1.0 / 32, 1.0 / 16, 1.0 / 8, 1.0 / 4, 1.0 / 2, 1.0})
                 roundings_.push_back({.resizes = true, .size_step = step});
         }
         if (!uses_directions()) return;
-        const double size_step = sizes_.any() ? 1.0 / 16 : 0;
+        const double size_step = has_sizes() ? 1.0 / 16 : 0;
         for (const double angle_deg : {0.125, 0.25, 0.5, 1.0, 2.0, 4.0, 8.0})
-            roundings_.push_back({sizes_.any(), size_step, angle_deg});
+            roundings_.push_back({has_sizes(), size_step, angle_deg});
     }
 
     /// The first that keeps the parts few enough; those before are dropped. False after an error of the

@@ -92,11 +92,19 @@ class GrammarBuilder {
         grammar_.angle_deg = setting(block_.angle, any, "angle", "").value_or(grammar_.angle_deg);
         grammar_.step = size(block_.step, "step").value_or(grammar_.step);
         grammar_.width = size(block_.width, "width");
+        grammar_.thickness = size(block_.thickness, "thickness");
+        grammar_.thinnest = size(block_.thinnest, "thinnest").value_or(0);
+        if (block_.thinnest && !block_.thickness)
+            diagnostics_.error(block_.thinnest->span, "'thinnest' is the least width beside a 'thickness'");
+        if (block_.width && block_.thickness)
+            diagnostics_.error(block_.thickness->span, "a block has a 'width' or a 'thickness'")
+                .with_note(block_.width->span, "the width is here");
         const auto seed = setting(
             block_.seed, [](double x) { return x >= 0 && x <= largest_seed && x == std::floor(x); }, "seed",
             "be a whole number from 0 to 2^53");
         grammar_.seed = static_cast<std::uint64_t>(seed.value_or(0));
-        if (block_.tropism) add_tropism();
+        if (block_.tropism) set_direction(*block_.tropism, "tropism", grammar_.tropism);
+        if (block_.vertical) set_direction(*block_.vertical, "vertical", grammar_.vertical);
         if (!block_.steps) return;
         grammar_.infinite = !block_.steps->value;
         if (grammar_.infinite) return;
@@ -107,15 +115,14 @@ class GrammarBuilder {
         if (steps) grammar_.steps = static_cast<unsigned>(*steps);
     }
 
-    void add_tropism() {
-        const std::optional<Vec3> direction =
-            lower_vector(block_.tropism->direction, grammar_.lets, diagnostics_);
-        if (!direction) return;
-        const double length = glm::length(*direction);
+    void set_direction(const LsysDirection& statement, std::string_view name, Vec3& direction) {
+        const std::optional<Vec3> given = lower_vector(statement.direction, grammar_.lets, diagnostics_);
+        if (!given) return;
+        const double length = glm::length(*given);
         if (length > 0 && std::isfinite(length))
-            grammar_.tropism = *direction / length;
+            direction = *given / length;
         else
-            diagnostics_.error(block_.tropism->span, "'tropism' must have a direction");
+            diagnostics_.error(statement.span, fmt::format("'{}' must have a direction", name));
     }
 
     SymbolId symbol(std::string_view name, Span span) {

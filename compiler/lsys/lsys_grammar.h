@@ -90,8 +90,11 @@ struct LsysGrammar {
 
     double angle_deg = 90;
     double step = 1;
-    std::optional<double> width; ///< nothing: automatic
-    Vec3 tropism{0, -1, 0};      ///< unit vector that `T` bends towards, in world space
+    std::optional<double> width;     ///< nothing: automatic
+    std::optional<double> thickness; ///< of segments, per length: in place of a width
+    double thinnest = 0;             ///< then the least width
+    Vec3 tropism{0, -1, 0};          ///< unit vector that `T` bends towards, in world space
+    Vec3 vertical{0, 1, 0};          ///< the same, that `$` and `@B` look at
     std::uint64_t seed = 0;
     std::optional<unsigned> steps; ///< nothing: not given, or infinite
     bool infinite = false;

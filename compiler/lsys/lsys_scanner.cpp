@@ -30,8 +30,9 @@ std::optional<LsysSection> section_named(std::string_view word) {
 /// Statements that are made of the words of all languages, with their comments and strings.
 bool has_values(std::string_view word) {
     static const std::vector<std::string_view> words = {
-        "let",    "inner",   "angle",  "step",  "width",      "steps",  "seed",     "tropism",
-        "colors", "modules", "camera", "light", "background", "ground", "material", "use"};
+        "let",     "inner",      "angle",    "step",     "width",  "steps",   "seed",
+        "tropism", "thickness",  "thinnest", "vertical", "colors", "modules", "camera",
+        "light",   "background", "ground",   "material", "use"};
     return std::find(words.begin(), words.end(), word) != words.end();
 }
 
@@ -39,9 +40,9 @@ bool has_values(std::string_view word) {
 
 const std::vector<std::string>& lsys_keywords() {
     static const std::vector<std::string> keywords = {
-        "let",   "inner",     "angle",        "step",      "width",        "steps",
-        "seed",  "ignore",    "consider",     "tropism",   "colors",       "modules",
-        "axiom", "interpret", "homomorphism", "decompose", "decomposition"};
+        "let",      "inner",    "angle",     "step",         "width",     "steps",        "seed",
+        "ignore",   "consider", "tropism",   "colors",       "modules",   "thickness",    "thinnest",
+        "vertical", "axiom",    "interpret", "homomorphism", "decompose", "decomposition"};
     return keywords;
 }
 

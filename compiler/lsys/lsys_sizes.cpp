@@ -122,14 +122,16 @@ void gather_sizes(const Expression& e, const SizeNames& sizes, std::vector<std::
 
 } // namespace
 
-std::optional<ParameterRole> size_role(TurtleCommand command) {
-    switch (command) {
+std::optional<ParameterRole> size_role(const LsysGrammar& grammar, SymbolId symbol) {
+    switch (grammar.commands[symbol]) {
     case TurtleCommand::draw:
     case TurtleCommand::draw_unrecorded:
     case TurtleCommand::move:
     case TurtleCommand::move_unrecorded:
         return ParameterRole::length;
     case TurtleCommand::width:
+        if (grammar.thickness) return std::nullopt;
+        return ParameterRole::width;
     case TurtleCommand::sphere:
     case TurtleCommand::disc:
         return ParameterRole::width;
@@ -181,7 +183,7 @@ class LsysSizes::Inference {
             const auto inner = inner_.find(symbol);
             for (std::size_t i = inner == inner_.end() ? 0 : inner->second; i < arity; ++i)
                 roles[i] = ParameterRole::length;
-        } else if (const auto role = size_role(command); role && arity > 0) {
+        } else if (const auto role = size_role(grammar_, symbol); role && arity > 0) {
             if (grammar_.is_rewritten(symbol)) roles.assign(arity, ParameterRole::width);
             roles[0] = *role;
         }

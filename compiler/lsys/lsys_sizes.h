@@ -18,8 +18,8 @@ enum class ParameterRole : std::uint8_t {
     width,  ///< a size that reaches nothing but widths and diameters
 };
 
-/// What the first parameter of a command is, if it is a size.
-std::optional<ParameterRole> size_role(TurtleCommand command);
+/// What the first parameter of a symbol is to the turtle, if it is a size.
+std::optional<ParameterRole> size_role(const LsysGrammar& grammar, SymbolId symbol);
 
 /// Which parameters are sizes: multiplied by one factor, all sizes of a module make what becomes of it so
 /// many times as large, and change nothing else: no choice of a production, no number, no angle. They are

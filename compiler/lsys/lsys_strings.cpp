@@ -16,7 +16,8 @@ namespace {
 
 constexpr std::string_view turtle_brackets = "[]{}";
 /// The directives of cpfg that have two letters; all others have one.
-constexpr std::array<std::string_view, 7> long_directives = {"@Gs", "@Gc", "@Ge", "@Gr", "@Gt", "@PS", "@PD"};
+constexpr std::array<std::string_view, 9> long_directives = {"@Gs", "@Gc", "@Ge", "@Gr", "@Gt",
+                                                             "@PS", "@PD", "@Di", "@Dd"};
 
 bool is_letter(char c) {
     return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z');

@@ -19,7 +19,8 @@ bool has_lengths(const LsysGrammar& grammar) {
         return (command == TurtleCommand::draw || command == TurtleCommand::draw_unrecorded) &&
                !module.parameters.empty();
     };
-    return std::ranges::any_of(grammar.axiom, has_length) ||
+    return grammar.uses({TurtleCommand::scale_by, TurtleCommand::scale_down_by, TurtleCommand::step_by}) ||
+           std::ranges::any_of(grammar.axiom, has_length) ||
            std::ranges::any_of(grammar.rules, [&](const LsysRule& rule) {
                return std::ranges::any_of(rule.successor, has_length);
            });
@@ -28,14 +29,16 @@ bool has_lengths(const LsysGrammar& grammar) {
 } // namespace
 
 bool draws_lines(const LsysGrammar& grammar) {
-    return !grammar.width && !grammar.uses({TurtleCommand::width});
+    return !grammar.width && !grammar.thickness &&
+           !grammar.uses({TurtleCommand::width, TurtleCommand::width_by});
 }
 
 bool has_open_width(const LsysGrammar& grammar) {
-    return !grammar.width && (draws_lines(grammar) || has_lengths(grammar));
+    return !grammar.width && !grammar.thickness && (draws_lines(grammar) || has_lengths(grammar));
 }
 
 double stated_width(const LsysGrammar& grammar) {
+    if (grammar.thickness) return *grammar.thickness;
     return at_least_size(grammar.width.value_or(thinnest_in_segments * grammar.step));
 }
 

@@ -13,8 +13,8 @@ bool draws_lines(const LsysGrammar& grammar);
 /// Whether the width that the turtle starts with depends on the figure.
 bool has_open_width(const LsysGrammar& grammar);
 
-/// The width that the turtle starts with, if it is not open; else one to go on with until the figure is
-/// known.
+/// The width, or the thickness, that the turtle starts with, if it is not open; else one to go on with until
+/// the figure is known.
 double stated_width(const LsysGrammar& grammar);
 
 /// The width that the turtle starts with, of a figure with these segments that reaches so far from its start.

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
+#include <glm/gtc/quaternion.hpp>
 #include <glm/matrix.hpp>
 
 #include "compiler/support/angle.h"
@@ -45,6 +46,12 @@ const char* size_name(TurtleCommand command) {
         return "a diameter";
     case TurtleCommand::tropism:
         return "an elasticity";
+    case TurtleCommand::scale_by:
+    case TurtleCommand::scale_down_by:
+    case TurtleCommand::step_by:
+    case TurtleCommand::width_by:
+    case TurtleCommand::angle_by:
+        return "a factor";
     default:
         return nullptr;
     }
@@ -53,7 +60,7 @@ const char* size_name(TurtleCommand command) {
 } // namespace
 
 Turtle::Turtle(TurtleContext& context, const TurtleState& start, Run* run)
-    : context_(context), run_(run), state_(start) {}
+    : context_(context), run_(run), second_(glm::mat3_cast(start.second)), state_(start) {}
 
 bool Turtle::run(TurtleCommand command, std::span<const double> parameters,
                  const std::optional<PlacedModel>& model, Span span, bool absolute) {
@@ -61,7 +68,7 @@ bool Turtle::run(TurtleCommand command, std::span<const double> parameters,
     ++modules_;
     if (absolute) note(reads_unit);
     if (!in_range(command, parameters, model, span)) return false;
-    const double angle_deg = first_or(parameters, context_.angle_deg);
+    const auto angle_deg = [&] { return parameters.empty() ? usual_angle() : parameters[0]; };
     switch (command) {
     case TurtleCommand::none:
         return true;
@@ -78,22 +85,22 @@ bool Turtle::run(TurtleCommand command, std::span<const double> parameters,
         move(parameters, absolute, false, false, span);
         break;
     case TurtleCommand::turn_left:
-        turn(Axis::up, angle_deg);
+        turn(Axis::up, angle_deg());
         return true;
     case TurtleCommand::turn_right:
-        turn(Axis::up, -angle_deg);
+        turn(Axis::up, -angle_deg());
         return true;
     case TurtleCommand::pitch_down:
-        turn(Axis::right, -angle_deg);
+        turn(Axis::right, -angle_deg());
         return true;
     case TurtleCommand::pitch_up:
-        turn(Axis::right, angle_deg);
+        turn(Axis::right, angle_deg());
         return true;
     case TurtleCommand::roll_left:
-        turn(Axis::ahead, -angle_deg);
+        turn(Axis::ahead, -angle_deg());
         return true;
     case TurtleCommand::roll_right:
-        turn(Axis::ahead, angle_deg);
+        turn(Axis::ahead, angle_deg());
         return true;
     case TurtleCommand::turn_back:
         turn(Axis::up, 180);
@@ -146,6 +153,25 @@ bool Turtle::run(TurtleCommand command, std::span<const double> parameters,
     case TurtleCommand::disc:
         add_ball(command, parameters, absolute, span);
         break;
+    case TurtleCommand::scale_by:
+        return scale_by(first_or(parameters, 1), true, span);
+    case TurtleCommand::scale_down_by:
+        return scale_by(1 / first_or(parameters, 1), true, span);
+    case TurtleCommand::step_by:
+        return scale_by(first_or(parameters, 1), false, span);
+    case TurtleCommand::bend_down:
+        bend_down(first_or(parameters, 0));
+        return true;
+    case TurtleCommand::width_by:
+        return widen_by(first_or(parameters, 1), span);
+    case TurtleCommand::angle_by:
+        return multiply_angle(first_or(parameters, 1), span);
+    case TurtleCommand::exchange:
+        exchange();
+        return true;
+    case TurtleCommand::flip:
+        flip();
+        return true;
     case TurtleCommand::model:
         if (model) add_model(*model, absolute, span);
         break;
@@ -210,7 +236,8 @@ bool Turtle::within_limits(Span span) {
 
 void Turtle::move(std::span<const double> parameters, bool absolute, bool draw, bool record, Span span) {
     absolute = absolute || parameters.empty();
-    const double length = at_least_size(parameters.empty() ? context_.step * read_unit() : parameters[0]);
+    const double length =
+        at_least_size(parameters.empty() ? scale_ * context_.step * read_unit() : written(parameters[0]));
     const bool fills = !polygons_.empty() || (note(reads_polygons), state_.open_polygons > 0);
     if (draw) ++segments_;
     if (absolute) unit_shift_ += std::abs(length);
@@ -236,7 +263,89 @@ void Turtle::move(std::span<const double> parameters, bool absolute, bool draw, 
 
 double Turtle::line_width(double length) {
     constexpr double slenderness = 0.05;
+    if (context_.relative_width) {
+        const double least = context_.thinnest > 0 ? written(context_.thinnest) * read_unit() : 0;
+        return at_least_size(std::max(read_width() * std::abs(length), least));
+    }
     return context_.limit && context_.lines ? slenderness * std::abs(length) : read_width();
+}
+
+double Turtle::usual_angle() {
+    if (!context_.varies_angle) return context_.angle_deg;
+    note(reads_angle);
+    return state_.angle_factor * context_.angle_deg;
+}
+
+/// How long a length is that a string writes.
+double Turtle::written(double length) {
+    if (!context_.varies_step) return scale_ * length;
+    note(reads_ruler);
+    return state_.ruler * length;
+}
+
+/// Of what is as thick as a segment.
+double Turtle::usual_diameter() {
+    return context_.relative_width ? read_width() * scale_ * context_.step * read_unit() : read_width();
+}
+
+/// The width stays as it is, and so becomes another one as seen from the turtle. `written_too`: lengths that
+/// strings write go with the scale.
+bool Turtle::scale_by(double factor, bool written_too, Span span) {
+    const double scale = scale_ * factor;
+    const double ruler = state_.ruler * (written_too ? factor : 1);
+    const double largest = std::max(ruler, context_.relative_width ? 0 : state_.width) / std::min(1.0, scale);
+    if (scale >= least_size && scale <= largest_size && ruler >= least_size && largest <= largest_size) {
+        scale_ = scale;
+        if (!context_.varies_step || !written_too) return true;
+        note(reads_ruler);
+        writes_ |= reads_ruler;
+        state_.ruler = ruler;
+        return true;
+    }
+    if (factor > 0 && std::isfinite(factor))
+        context_.diagnostics.error(span, "the scale of the turtle leaves the range of numbers")
+            .with_hint("use fewer steps, or factors closer to 1");
+    else
+        context_.diagnostics.error(
+            span, fmt::format("a factor of the scale must be above 0, but is {}", shortest(factor)));
+    return false;
+}
+
+bool Turtle::widen_by(double factor, Span span) {
+    const double width = factor * read_width();
+    if (factor >= 0 && width <= largest_size) {
+        state_.width = at_least_size(width);
+        writes_ |= reads_width;
+        return true;
+    }
+    context_.diagnostics.error(span, fmt::format("a width must lie between 0 and {}, but is {}",
+                                                 shortest(largest_size), shortest(width)));
+    return false;
+}
+
+bool Turtle::multiply_angle(double factor, Span span) {
+    note(reads_angle);
+    const double product = state_.angle_factor * factor;
+    if (std::abs(product) <= largest_size) {
+        state_.angle_factor = product;
+        writes_ |= reads_angle;
+        return true;
+    }
+    context_.diagnostics.error(span, "the factor of the angle leaves the range of numbers");
+    return false;
+}
+
+void Turtle::exchange() {
+    note(reads_second);
+    std::swap(start_from_turtle_.linear, second_);
+    writes_ |= reads_second;
+}
+
+/// Both pairs of axes become mirror images, so that the second ones are seen from the first as before.
+void Turtle::flip() {
+    start_from_turtle_.linear[0] = -start_from_turtle_.linear[0];
+    second_[0] = -second_[0];
+    mirrored_ = !mirrored_;
 }
 
 /// By columns: what is not turned stays as it is, to the last bit.
@@ -260,7 +369,7 @@ void Turtle::level() {
     // The roll turns about the heading by the angle that the vertical turns about it.
     sensitivity_.turn = bounded(sensitivity_.turn + (1 + sensitivity_.turn) / glm::length(left));
     const Vec3 x = -glm::normalize(left);
-    start_from_turtle_.linear = Mat3(x, heading, glm::cross(x, heading));
+    start_from_turtle_.linear = Mat3(mirrored_ ? -x : x, heading, glm::cross(x, heading));
 }
 
 /// Turns about H x T by the angle e |H x T| (ABOP, section 2.2), in radians.
@@ -274,6 +383,14 @@ void Turtle::bend() {
     if (!(sine > 0)) return;
     const double angle_deg = state_.elasticity * sine * 180 / std::numbers::pi;
     start_from_turtle_.linear = Affine::rotate(axis, angle_deg).linear * start_from_turtle_.linear;
+}
+
+/// By e |H x V|, in radians, about the turtle's own axis: so L-Parser bends branches.
+void Turtle::bend_down(double elasticity) {
+    note(reads_vertical);
+    const double sine = glm::length(glm::cross(start_from_turtle_.linear[1], state_.vertical));
+    sensitivity_.turn = bounded(sensitivity_.turn + std::abs(elasticity) * (1 + sensitivity_.turn));
+    turn(Axis::right, -elasticity * sine * 180 / std::numbers::pi);
 }
 
 /// Of something round that is drawn here.
@@ -290,7 +407,7 @@ void Turtle::note_radius(double radius, WidthSource source) {
 void Turtle::add_ball(TurtleCommand command, std::span<const double> parameters, bool absolute, Span span) {
     part_.has_bodies = true;
     ++bodies_;
-    const double diameter = parameters.empty() ? read_width() : parameters[0];
+    const double diameter = parameters.empty() ? usual_diameter() : written(parameters[0]);
     if (command == TurtleCommand::sphere)
         context_.bodies.add_sphere(start_from_turtle_, diameter, read_colour(), span,
                                    sink(parameters.empty()));
@@ -305,14 +422,18 @@ void Turtle::add_ball(TurtleCommand command, std::span<const double> parameters,
 void Turtle::add_model(const PlacedModel& model, bool absolute, Span span) {
     part_.has_bodies = true;
     ++bodies_;
-    context_.bodies.add_model(model, start_from_turtle_, span, sink(false));
+    PlacedModel placed = model;
+    placed.scale *= written(1);
+    context_.bodies.add_model(placed, start_from_turtle_, span, sink(false));
     // Of primitives no point lies farther from their origin; with others the unit is never off.
     constexpr double farthest = 2;
-    if (absolute) note_radius(farthest * largest_entry(model.scale), WidthSource::unit);
+    if (absolute) note_radius(farthest * largest_entry(placed.scale), WidthSource::unit);
 }
 
 bool Turtle::set_width(std::span<const double> parameters, bool absolute, Span span) {
-    const double width = parameters.empty() ? thinning * read_width() : parameters[0];
+    const double width = parameters.empty()        ? thinning * read_width()
+                         : context_.relative_width ? parameters[0]
+                                                   : written(parameters[0]);
     if (width < 0) {
         context_.diagnostics.error(span,
                                    fmt::format("a width must not be negative, but is {}", shortest(width)));
@@ -342,7 +463,8 @@ void Turtle::cut() {
 
 void Turtle::open_branch() {
     branches_.push_back({start_from_turtle_, state_, writes_, error_, sensitivity_, way_, size_shift_,
-                         unit_shift_, width_error_, width_source_, polygons_.size()});
+                         unit_shift_, width_error_, scale_, second_, mirrored_, width_source_,
+                         polygons_.size()});
 }
 
 void Turtle::close_branch() {
@@ -358,6 +480,9 @@ void Turtle::close_branch() {
     size_shift_ = branches_.back().size_shift;
     unit_shift_ = branches_.back().unit_shift;
     width_error_ = branches_.back().width_error;
+    scale_ = branches_.back().scale;
+    second_ = branches_.back().second;
+    mirrored_ = branches_.back().mirrored;
     width_source_ = branches_.back().width_source;
     branches_.pop_back();
 }
@@ -390,7 +515,7 @@ void Turtle::close_polygon(int colour, Span span) {
 void Turtle::start_cylinder() {
     state_.in_cylinder = true;
     state_.control_point = start_from_turtle_.translation;
-    state_.control_width = read_width();
+    state_.control_width = usual_diameter();
     writes_ |= reads_cylinder | reads_control;
 }
 
@@ -399,7 +524,7 @@ void Turtle::add_control_point(Span span) {
     note(reads_cylinder);
     if (!state_.in_cylinder) return;
     note(reads_control);
-    const double width = read_width();
+    const double width = usual_diameter();
     context_.bodies.add_taper(start_from_turtle_, state_.control_point, state_.control_width, width,
                               read_colour(), span, sink(true));
     for (const WidthSource source : {WidthSource::start, WidthSource::unit, WidthSource::sizes})
@@ -415,12 +540,22 @@ TurtleState Turtle::state() const {
     result.open_polygons = state_.open_polygons + static_cast<std::uint32_t>(polygons_.size());
     if (state_.in_cylinder)
         result.control_point = turtle_from_start * (state_.control_point - start_from_turtle_.translation);
+    if (context_.two_headings) result.second = glm::quat_cast(turtle_from_start * second_);
+    if (scale_ == 1) return result;
+    result = scaled(result, 1 / scale_);
+    result.unit = state_.unit; // the step, too, is longer by the scale
+    result.ruler = state_.ruler / scale_;
+    if (context_.relative_width) result.width = state_.width;
     return result;
 }
 
 TurtlePart Turtle::finish() && {
     part_.start_from_exit = start_from_turtle_;
+    part_.exit_scale = scale_;
+    part_.mirrors = mirrored_;
     part_.exit = state_;
+    if (writes_ & reads_second)
+        part_.exit.second = glm::quat_cast(glm::transpose(start_from_turtle_.linear) * second_);
     part_.polygons = std::move(polygons_);
     part_.exit_way = way_;
     part_.error = {error_.turn, error_.shift, part_.error.farthest};

@@ -46,9 +46,11 @@ struct TurtlePart {
     std::vector<PolygonEnd> polygon_ends;
     std::vector<Vec3> vertices;              ///< for the polygon that is then the innermost
     std::vector<std::vector<Vec3>> polygons; ///< left open, with their vertices
-    Affine start_from_exit;
-    TurtleState exit;          ///< the members of `writes` only
-    TurtleStateMask reads = 0; ///< before they were written
+    Affine start_from_exit;                  ///< without the scale
+    double exit_scale = 1;                   ///< of what follows
+    bool mirrors = false;                    ///< the exit is a mirror image
+    TurtleState exit;                        ///< the members of `writes` only
+    TurtleStateMask reads = 0;               ///< before they were written
     TurtleStateMask writes = 0;
     bool cut = false;        ///< what follows in the branch is cut off
     double reach = 0;        ///< the turtle goes no farther from the start
@@ -90,7 +92,12 @@ struct TurtleContext {
     Diagnostics& diagnostics;
     double angle_deg = 90;
     double step = 1;
-    bool lines = false; ///< segments are strokes of a curve: small parts are drawn as lines
+    bool varies_step = false;    ///< symbols multiply it
+    bool relative_width = false; ///< widths are per length
+    double thinnest = 0;         ///< then the least
+    bool varies_angle = false;   ///< symbols multiply it
+    bool two_headings = false;   ///< symbols exchange them
+    bool lines = false;          ///< segments are strokes of a curve: small parts are drawn as lines
     bool limit = false; ///< only proportions count: lines are as thick as their lengths ask, and parts that
                         ///< differ by a rotation in the plane are made equal
     bool open_width = false;               ///< how thick lines are is not known yet (turtle_bodies.h)
@@ -138,6 +145,7 @@ class Turtle {
     /// The state of a part that begins here.
     TurtleState state() const;
     double unit() const { return state_.unit; }
+    bool is_scaled() const { return scale_ != 1; }
     const Affine& start_from_turtle() const { return start_from_turtle_; }
     /// True where modules are cut off: run() and append() pass over them, but watch the brackets.
     bool passing_over() const { return cut_depth_ > 0; }
@@ -161,7 +169,9 @@ class Turtle {
         TurtleState state;
         TurtleStateMask writes;
         Drift error, sensitivity;
-        double way, size_shift, unit_shift, width_error;
+        double way, size_shift, unit_shift, width_error, scale;
+        Mat3 second;
+        bool mirrored;
         WidthSource width_source;
         std::size_t polygons = 0; ///< open ones
     };
@@ -173,6 +183,16 @@ class Turtle {
                   const std::optional<PlacedModel>& model, Span span);
     bool pass_over(TurtleCommand command);
     void move(std::span<const double> parameters, bool absolute, bool draw, bool record, Span span);
+    double usual_angle();
+    double written(double length);
+    double usual_diameter();
+    bool scale_by(double factor, bool written_too, Span span);
+    void bend_down(double elasticity);
+    bool widen_by(double factor, Span span);
+    bool multiply_angle(double factor, Span span);
+    void exchange();
+    void flip();
+    Placing in_frame(Placing placing) const { return placing.scale *= scale_, placing; }
     void turn(Axis axis, double angle_deg);
     void level();
     void bend();
@@ -203,8 +223,11 @@ class Turtle {
 
     TurtleContext& context_;
     Run* run_;
-    Affine start_from_turtle_;
-    TurtleState state_; ///< directions in the frame of the start, as they came in
+    Affine start_from_turtle_; ///< by a rotation, or a mirrored one
+    double scale_ = 1;         ///< by which lengths are longer
+    Mat3 second_;              ///< the second axes, in the frame of the start
+    bool mirrored_ = false;    ///< as seen from the start
+    TurtleState state_;        ///< directions in the frame of the start, as they came in
     TurtleStateMask writes_ = 0;
     double way_ = 0;        ///< how far the turtle has gone to here
     double size_shift_ = 0; ///< the share of rounded sizes in error_.shift

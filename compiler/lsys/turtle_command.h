@@ -36,6 +36,14 @@ enum class TurtleCommand : std::uint8_t {
     start_cylinder,
     control_point,
     end_cylinder,
+    scale_by,      ///< all lengths, and widths that are set from here on
+    scale_down_by, ///< the inverse
+    step_by,       ///< the lengths that are not written
+    width_by,
+    angle_by,  ///< of turns without a parameter
+    exchange,  ///< the axes with the second ones
+    bend_down, ///< pitches, the more level it heads
+    flip,      ///< mirrors the turtle: left is right
 };
 
 struct TurtleSymbol {
@@ -75,6 +83,14 @@ inline constexpr TurtleSymbol turtle_symbols[] = {
     {"@Gs", TurtleCommand::start_cylinder},
     {"@Gc", TurtleCommand::control_point},
     {"@Ge", TurtleCommand::end_cylinder},
+    {"@Di", TurtleCommand::scale_by},
+    {"@Dd", TurtleCommand::scale_down_by},
+    {"@S", TurtleCommand::step_by},
+    {"@W", TurtleCommand::width_by},
+    {"@A", TurtleCommand::angle_by},
+    {"@X", TurtleCommand::exchange},
+    {"@F", TurtleCommand::flip},
+    {"@B", TurtleCommand::bend_down},
 };
 
 /// The command of a symbol as strings write it; `none` for what has no meaning.

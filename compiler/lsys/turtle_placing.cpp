@@ -4,13 +4,15 @@
 #include <utility>
 
 #include <glm/geometric.hpp>
+#include <glm/gtc/quaternion.hpp>
 
 // How a turtle places parts that are composed already.
 
 namespace graftal {
 
-void Turtle::append(const TurtlePart& part, Span span, const Placing& placing) {
-    append_branch(part, span, placing);
+void Turtle::append(const TurtlePart& part, Span span, const Placing& given) {
+    append_branch(part, span, given);
+    const Placing placing = in_frame(given);
     const double scale = placing.scale;
     const double length = scale * glm::length(part.start_from_exit.translation);
     const double stir = 1 + sensitivity_.turn; // of the part's directions
@@ -32,14 +34,22 @@ void Turtle::append(const TurtlePart& part, Span span, const Placing& placing) {
         state_.control_point = start_from_turtle_(scale * part.exit.control_point);
         state_.control_width = scale * part.exit.control_width;
     }
+    if (part.writes & reads_ruler) state_.ruler = scale_ * part.exit.ruler; // its frame is of the scale alone
+    if (part.writes & reads_angle) state_.angle_factor = part.exit.angle_factor;
     writes_ |= part.writes;
     const Affine& exit = part.start_from_exit;
     start_from_turtle_ = start_from_turtle_ * Affine{exit.linear, scale * exit.translation};
+    scale_ *= part.exit_scale;
+    mirrored_ = mirrored_ != part.mirrors;
+    if (part.writes & reads_second)
+        second_ = start_from_turtle_.linear * glm::mat3_cast(part.exit.second);
+    else if (part.mirrors)
+        second_[0] = -second_[0];
     if (part.cut) cut();
 }
 
 void Turtle::take_exit_width(const TurtlePart& part, const Placing& placing) {
-    state_.width = placing.scale * part.exit.width;
+    state_.width = (context_.relative_width ? 1 : placing.scale) * part.exit.width;
     switch (part.exit_width_source) {
     case WidthSource::start:
         width_error_ += placing.width_error + part.exit_width_error;
@@ -81,7 +91,8 @@ void Turtle::place_errors(const TurtlePart& part, const Placing& placing) {
     part_.thickest = std::max(part_.thickest, scale * part.thickest);
 }
 
-void Turtle::append_branch(const TurtlePart& part, Span span, const Placing& placing) {
+void Turtle::append_branch(const TurtlePart& part, Span span, const Placing& given) {
+    const Placing placing = in_frame(given);
     place_errors(part, placing);
     TurtleStateMask reads = part.reads;
     // Whether polygons are open outside of this part does not matter where enough were opened inside.

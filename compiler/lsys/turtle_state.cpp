@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include <glm/geometric.hpp>
+#include <glm/gtc/quaternion.hpp>
 
 namespace graftal {
 
@@ -39,6 +40,9 @@ bool equal(const TurtleState& a, const TurtleState& b, TurtleStateMask mask) {
            (!(mask & reads_polygons) || (a.open_polygons > 0) == (b.open_polygons > 0)) &&
            (!(mask & reads_polygon_count) || a.open_polygons == b.open_polygons) &&
            (!(mask & reads_variant) || a.variant == b.variant) &&
+           (!(mask & reads_ruler) || a.ruler == b.ruler) &&
+           (!(mask & reads_angle) || a.angle_factor == b.angle_factor) &&
+           (!(mask & reads_second) || a.second == b.second) &&
            (!(mask & reads_birth) || a.birth == b.birth) && (!(mask & reads_unit) || a.unit == b.unit) &&
            (!(mask & reads_cylinder) || a.in_cylinder == b.in_cylinder) &&
            (!(mask & reads_control) ||
@@ -57,6 +61,11 @@ std::uint64_t hash(const TurtleState& state, TurtleStateMask mask) {
     if (mask & reads_variant) hash = mixed(hash, state.variant);
     if (mask & reads_birth) hash = mixed(hash, state.birth);
     if (mask & reads_unit) hash = mixed_number(hash, state.unit);
+    if (mask & reads_ruler) hash = mixed_number(hash, state.ruler);
+    if (mask & reads_angle) hash = mixed_number(hash, state.angle_factor);
+    if (mask & reads_second)
+        hash = mixed_number(mixed_vector(hash, {state.second.x, state.second.y, state.second.z}),
+                            state.second.w);
     if (mask & reads_cylinder) hash = mixed(hash, state.in_cylinder);
     if (mask & reads_control)
         hash = mixed_number(mixed_vector(hash, state.control_point), state.control_width);
@@ -107,6 +116,11 @@ Mat3 RotationTable::representative(const Mat3& rotation) {
     ids_.add(mixed(0, static_cast<std::uint64_t>(cell)), static_cast<std::uint32_t>(known_.size()));
     known_.push_back(clean);
     return known_.back();
+}
+
+Quat RotationTable::representative(const Quat& rotation) {
+    const Quat same = glm::quat_cast(representative(glm::mat3_cast(rotation)));
+    return same + Quat(0, 0, 0, 0); // no negative zeros
 }
 
 } // namespace graftal

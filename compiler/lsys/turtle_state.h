@@ -3,10 +3,14 @@
 #include <cstdint>
 #include <vector>
 
+#include <glm/ext/quaternion_double.hpp>
+
 #include "compiler/support/affine.h"
 #include "compiler/support/id_table.h"
 
 namespace graftal {
+
+using Quat = glm::dquat;
 
 /// What a part of a model may depend on besides the place where it stands: the state of the turtle that
 /// comes in. Directions are given in the frame that the part starts in.
@@ -20,9 +24,12 @@ struct TurtleState {
     bool in_cylinder = false; ///< a generalised one
     Vec3 control_point{0.0};  ///< its last, in the frame of the start
     double control_width = 0;
-    std::uint32_t variant = 0; ///< of what is random (lsys_composer.h)
-    std::uint32_t birth = 0;   ///< the step in which the module came into being
-    double unit = 1;           ///< how long a length of 1 is that the model writes (lsys_composer.h)
+    std::uint32_t variant = 0;      ///< of what is random (lsys_composer.h)
+    std::uint32_t birth = 0;        ///< the step in which the module came into being
+    double unit = 1;                ///< how long a length of 1 is that the model writes (lsys_composer.h)
+    double ruler = 1;               ///< the same of one that does not go with the step, where the step varies
+    double angle_factor = 1;        ///< of turns without a parameter
+    Quat second = Quat(1, 0, 0, 0); ///< the second axes, from those of the turtle
 };
 
 /// The members of a TurtleState, as a set.
@@ -40,6 +47,9 @@ enum TurtleStateBit : TurtleStateMask {
     reads_control = 512, ///< its last control point, with the width there
     reads_unit = 1024,
     reads_polygon_count = 2048, ///< how many are open
+    reads_angle = 4096,         ///< its factor
+    reads_second = 8192,
+    reads_ruler = 16384,
 };
 
 /// The same in a frame in which all is this many times as long.
@@ -76,6 +86,8 @@ class RotationTable {
 
     /// Requires a rotation, up to rounding, and gives one.
     Mat3 representative(const Mat3& rotation);
+    /// The same; of equal rotations the numbers are equal.
+    Quat representative(const Quat& rotation);
 
   private:
     std::vector<Mat3> known_;

@@ -36,6 +36,7 @@ void Session::reload(bool textures_changed) {
     // A file that could not be used before may be there now.
     bool changed = textures_changed || lowered_.failed;
     for (FileId file = 1; file < sources_.size() && !changed; ++file) {
+        if (sources_.original(file)) continue; // a translation of another
         std::string text;
         const Status status = read_text(std::string(sources_.name(file)), text);
         changed = !status.ok() || text != sources_.text(file);

@@ -8,6 +8,7 @@
 
 #include "compiler/analysis/model_range.h"
 #include "compiler/graph/verify.h"
+#include "compiler/import/importers.h"
 #include "compiler/languages/lower.h"
 #include "compiler/session/frame_model.h"
 #include "compiler/session/shared_framing.h"
@@ -130,12 +131,13 @@ std::optional<ViewedModel> zoom_in(const AnalysedModel& model, std::optional<uns
 
 std::optional<Source> read_source(const std::string& path, const std::string& root, Diagnostics& diagnostics,
                                   Status& status) {
-    if (path != "-" && !root.empty() && !lies_in(path, root)) {
-        diagnostics.error(Span(), fmt::format("'{}' leads out of --root '{}'", path, root));
+    const std::string file = model_path(path).file;
+    if (file != "-" && !root.empty() && !lies_in(file, root)) {
+        diagnostics.error(Span(), fmt::format("'{}' leads out of --root '{}'", file, root));
         return std::nullopt;
     }
     Source source{path, {}};
-    status = read_text(path, source.text);
+    status = read_text(file, source.text);
     if (!status.ok()) return std::nullopt;
     return source;
 }

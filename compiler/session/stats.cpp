@@ -79,7 +79,7 @@ Json json_of(const AnalysedModel& model, std::optional<unsigned> steps, const So
         model.contraction.verdict == Verdict::proved || model.contraction.verdict == Verdict::acyclic;
     Json json = {
         {"model", model.path},
-        {"language", model_language(0, sources)},
+        {"language", model_language(sources)},
         {"objects", graph.objects.size()},
         {"instances", instance_count(graph) + run_part_count(graph)},
         {"written", {{"objects", model.written.objects}, {"instances", model.written.instances}}},

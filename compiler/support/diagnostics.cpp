@@ -128,6 +128,10 @@ std::string Diagnostics::render(const SourceMap& sources, bool quiet) const {
                                escaped(note.message, longest_message));
             append_excerpt(out, sources, note.span);
         }
+        if (const Span origin = sources.origin(diagnostic.span); origin.known()) {
+            out += fmt::format("{}: note: translated from here\n", place(sources, origin));
+            append_excerpt(out, sources, origin);
+        }
     }
     if (error_count_ > max_errors) out += fmt::format("graftal: {} more errors\n", error_count_ - max_errors);
     return out;

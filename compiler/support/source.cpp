@@ -23,7 +23,7 @@ Span join(Span a, Span b) {
 
 FileId SourceMap::add(std::string name, std::string text) {
     GRAFTAL_CHECK(text.size() < UINT32_MAX, "source text too long");
-    File file{std::move(name), std::move(text), {0}};
+    File file{std::move(name), std::move(text), {0}, {}, {}};
     // Lines that end with carriage returns alone, as on computers long ago, would be one line.
     if (file.text.find('\n') == std::string::npos)
         std::replace(file.text.begin(), file.text.end(), '\r', '\n');
@@ -31,6 +31,21 @@ FileId SourceMap::add(std::string name, std::string text) {
         if (file.text[i] == '\n') file.line_begins.push_back(static_cast<std::uint32_t>(i + 1));
     files_.push_back(std::move(file));
     return static_cast<FileId>(files_.size() - 1);
+}
+
+FileId SourceMap::add_translation(std::string name, std::string text, FileId original,
+                                  std::vector<Span> origins) {
+    const FileId file = add(std::move(name), std::move(text));
+    files_[file].original = original;
+    files_[file].origins = std::move(origins);
+    return file;
+}
+
+Span SourceMap::origin(Span span) const {
+    if (!span.known()) return {};
+    const std::vector<Span>& origins = files_[span.file].origins;
+    const std::size_t line = position(span.file, span.begin).line - 1;
+    return line < origins.size() ? origins[line] : Span();
 }
 
 std::string_view SourceMap::text(Span span) const {

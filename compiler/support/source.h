@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <deque>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -37,11 +38,19 @@ class SourceMap {
   public:
     /// Adds a text under the name that diagnostics print. Requires text.size() < 2^32 - 1.
     FileId add(std::string name, std::string text);
+    /// Adds a text that was made of another file of the map, with the place there that each of its lines
+    /// comes from, where it is known. Requires as many `origins` as lines, or fewer.
+    FileId add_translation(std::string name, std::string text, FileId original, std::vector<Span> origins);
 
     std::string_view name(FileId file) const { return files_[file].name; }
     std::string_view text(FileId file) const { return files_[file].text; }
     std::string_view text(Span span) const;
     std::size_t size() const { return files_.size(); }
+
+    /// The file that this one was made of; nothing of a file that was read.
+    std::optional<FileId> original(FileId file) const { return files_[file].original; }
+    /// Where the line of a place in a translation comes from; unknown elsewhere.
+    Span origin(Span span) const;
 
     /// Where a byte lies; an offset past the end gives the place just after the last character.
     Position position(FileId file, std::uint32_t offset) const;
@@ -54,6 +63,8 @@ class SourceMap {
         std::string name;
         std::string text;
         std::vector<std::uint32_t> line_begins;
+        std::optional<FileId> original;
+        std::vector<Span> origins; ///< of a translation, by lines
     };
     std::deque<File> files_; // a deque, so that views stay valid while files are added
 };

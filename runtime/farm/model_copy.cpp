@@ -7,6 +7,8 @@
 
 #include <fmt/format.h>
 
+#include "compiler/import/importers.h"
+
 namespace graftal {
 
 namespace {
@@ -44,11 +46,13 @@ Status copy_whole(const fs::path& from, const fs::path& to) {
 
 Status copy_model(const std::string& model, const std::vector<std::string>& used, const std::string& folder,
                   ModelCopy& copy) {
-    std::set<fs::path> paths = {whole_path(model)};
+    const ModelPath named = model_path(model);
+    std::set<fs::path> paths = {whole_path(named.file)};
     for (const std::string& path : used)
         paths.insert(whole_path(path));
     const fs::path common = common_folder(paths);
-    copy.model = whole_path(model).lexically_relative(common).string();
+    copy.model = whole_path(named.file).lexically_relative(common).string();
+    if (!named.model.empty()) copy.model += ":" + named.model;
     for (const fs::path& path : paths) {
         const std::string name = path.lexically_relative(common).string();
         const fs::path target = fs::path(folder) / name;

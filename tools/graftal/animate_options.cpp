@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "compiler/import/importers.h"
 #include "runtime/render/animate.h"
 #include "tools/graftal/option_values.h"
 
@@ -14,8 +15,7 @@ std::string complete_animation(Options& options) {
     AnimationOptions& animation = options.animation;
     if (options.operands.front() == "-")
         return "an animation reads its model more than once: give the model as a file, not on standard input";
-    if (options.render.output.empty())
-        options.render.output = std::filesystem::path(options.operands.front()).stem().string() + ".gif";
+    if (options.render.output.empty()) options.render.output = model_stem(options.operands.front()) + ".gif";
     const std::optional<AnimationKind> kind = animation_kind(options.render.output);
     if (!kind)
         return fmt::format("'{}': the name of an animation must end in .gif, .png, .apng, .mp4 or .webm; the "

@@ -25,6 +25,7 @@ int run_check(const Options& options);
 int run_stats(const Options& options);
 int run_print(const Options& options);
 int run_graph(const Options& options);
+int run_import(const Options& options);
 int run_compare(const Options& options);
 
 int run_farm(const Options& options);

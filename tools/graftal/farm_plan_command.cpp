@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "compiler/import/importers.h"
 #include "compiler/session/shared_framing.h"
 #include "compiler/support/file.h"
 #include "runtime/farm/join_tiles.h"
@@ -180,7 +181,7 @@ class Planning {
     void name_result(const Options& asked) {
         const std::string& given = options_.farm.result;
         const std::string ending = job_.kind == JobKind::frames ? ".gif" : ".png";
-        job_.result = given.empty() ? fs::path(asked.operands.front()).stem().string() + ending
+        job_.result = given.empty() ? model_stem(asked.operands.front()) + ending
                                     : fs::absolute(given).lexically_normal().string();
         job_.words.insert(job_.words.end(), {"-o", folder_.result(job_)});
     }

@@ -8,7 +8,9 @@
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include "compiler/import/importers.h"
 #include "compiler/passes/pipeline.h"
 #include "compiler/povray/emit_povray.h"
 #include "compiler/povray/povray_names.h"
@@ -191,6 +193,32 @@ void add_graph(CLI::App& app, Options& options) {
         "  graftal graph gasket.inst --after drop_unreachable     # before the merging of equal objects");
 }
 
+void add_import(CLI::App& app, Options& options) {
+    app.add_option_function<std::string>(
+           "FILE", [&options](const std::string& file) { options.operands = {file}; },
+           "File of another program, or FILE:NAME for one of its models")
+        ->required()
+        ->type_name("");
+    app.add_option(
+           "-o,--output", options.render.output,
+           "Model to write, or a folder for all models of FILE, which ends in / (default: a list of the "
+           "models; of a single one the text)")
+        ->type_name("FILE");
+    app.add_option("--root", options.render.compile.lower.root,
+                   "Read only files in this folder or below it, of those that FILE names")
+        ->type_name("DIR");
+    app.add_flag("-q,--quiet", options.quiet, "Print only errors and warnings");
+    std::string formats = "Formats:\n";
+    for (const Importer& importer : importers())
+        formats += fmt::format("  {:<20} .{}\n", importer.format, fmt::join(importer.endings, ", ."));
+    app.footer(formats +
+               "All other commands read these files too: graftal render fractint.l:Koch1\n"
+               "Examples:\n"
+               "  graftal import fractint.l                   # lists its models\n"
+               "  graftal import fractint.l:Koch1 -o koch.lsys\n"
+               "  graftal import fractint.l -o models/        # models/Koch1.lsys and all the others");
+}
+
 void add_compare(CLI::App& app, Options& options) {
     app.add_option("A B", options.operands, "Two pictures of the same size")
         ->required()
@@ -241,6 +269,8 @@ constexpr CommandEntry commands[] = {
     {Command::stats, "stats", "Print the sizes, contraction, dimension and bounds of a model", add_stats},
     {Command::print, "print", "Print the graph of a model as .inst text", add_print},
     {Command::graph, "graph", "Draw the graph of a model", add_graph},
+    {Command::import_foreign, "import", "Translate models of other programs into models of graftal",
+     add_import},
     {Command::compare, "compare", "Measure how much two pictures differ", add_compare},
     {Command::farm, "farm", "Draw gigapixels, films and sweeps in tasks, on many machines", add_farm},
 };
@@ -313,10 +343,11 @@ std::string complete(Options& options, bool in_parts) {
         if (options.render.output.empty() && from_stdin)
             return "a model from standard input has no name: name the picture with '-o FILE'";
         if (options.render.output.empty())
-            options.render.output = std::filesystem::path(options.operands.front()).stem().string() + ".png";
+            options.render.output = model_stem(options.operands.front()) + ".png";
         if (!is_picture_name(options.render.output))
             return fmt::format("'{}': the name of a picture must end in .png or .exr", options.render.output);
     }
+    if (options.command == Command::import_foreign) return {};
     if (options.command == Command::animate) return complete_animation(options);
     if (options.command == Command::points) return complete_points(options);
     if (options.render.output.empty()) options.render.output = "-";

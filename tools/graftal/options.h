@@ -14,7 +14,20 @@
 
 namespace graftal {
 
-enum class Command { render, animate, points, collage, compile, check, stats, print, graph, compare, farm };
+enum class Command {
+    render,
+    animate,
+    points,
+    collage,
+    compile,
+    check,
+    stats,
+    print,
+    graph,
+    import_foreign,
+    compare,
+    farm
+};
 
 /// What `animate` takes besides what `render` does.
 struct AnimationOptions {

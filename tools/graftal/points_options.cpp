@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "compiler/import/importers.h"
 #include "compiler/support/number.h"
 #include "runtime/points/card.h"
 #include "runtime/points/draw_points.h"
@@ -142,8 +143,7 @@ std::string complete_points(Options& options) {
         if (std::string wrong = complete_card(options); !wrong.empty()) return wrong;
     if (options.render.output.empty() && options.operands.front() == "-")
         return "a model from standard input has no name: name the picture with '-o FILE'";
-    if (options.render.output.empty())
-        options.render.output = std::filesystem::path(options.operands.front()).stem().string() + ".png";
+    if (options.render.output.empty()) options.render.output = model_stem(options.operands.front()) + ".png";
     if (!options.points.card.empty() && options.points.tone.light)
         return "--card: a card is no light: leave --light and --glow out";
     if (is_cloud_name(options.render.output))

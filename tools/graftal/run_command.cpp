@@ -22,6 +22,8 @@ int run_command(const Options& options) {
         return run_print(options);
     case Command::graph:
         return run_graph(options);
+    case Command::import_foreign:
+        return run_import(options);
     case Command::compare:
         return run_compare(options);
     case Command::farm:

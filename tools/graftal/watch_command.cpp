@@ -12,6 +12,7 @@
 #include <fmt/ranges.h>
 #include <poll.h>
 
+#include "compiler/import/importers.h"
 #include "runtime/render/scene_files.h"
 #include "runtime/system/file_watch.h"
 #include "runtime/system/interruption.h"
@@ -57,7 +58,7 @@ class Watching {
     }
 
     int run() {
-        watch(options_.operands.front());
+        watch(model_path(options_.operands.front()).file);
         if (const Status status = check_writable(render_.output); !status.ok()) {
             complain(status.message());
             return exit_environment;

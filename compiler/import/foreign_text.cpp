@@ -1,0 +1,62 @@
+#include "compiler/import/foreign_text.h"
+
+#include <algorithm>
+#include <cctype>
+#include <utility>
+
+namespace graftal {
+
+std::vector<TextLine> lines_of(std::string_view text, std::size_t begin, std::size_t end) {
+    std::vector<TextLine> lines;
+    while (begin < end) {
+        const std::size_t line_end = std::min(text.find('\n', begin), end);
+        std::string_view line = text.substr(begin, line_end - begin);
+        while (line.ends_with('\r'))
+            line.remove_suffix(1);
+        lines.push_back({begin, line});
+        begin = line_end + 1;
+    }
+    return lines;
+}
+
+std::string_view trimmed(std::string_view text) {
+    constexpr std::string_view blank = " \t\r\n\f\v";
+    const std::size_t first = text.find_first_not_of(blank);
+    if (first == std::string_view::npos) return {};
+    return text.substr(first, text.find_last_not_of(blank) - first + 1);
+}
+
+std::string in_small_letters(std::string_view text) {
+    std::string small(text);
+    std::ranges::transform(small, small.begin(), [](char c) {
+        return static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    });
+    return small;
+}
+
+std::string comment_text(std::string_view text) {
+    std::string plain(trimmed(text));
+    for (char& c : plain)
+        if (c < 0x20 || c > 0x7e) c = c == '\t' ? ' ' : '?';
+    return plain;
+}
+
+std::string symbol_name(char symbol) {
+    constexpr std::pair<char, const char*> names[] = {
+        {'$', "Dollar"}, {'%', "Percent"}, {'&', "And"},   {'^', "Caret"},  {'\'', "Quote"}, {',', "Comma"},
+        {'.', "Dot"},    {'#', "Hash"},    {':', "Colon"}, {';', "Semi"},   {'?', "Query"},  {'*', "Star"},
+        {'(', "Open"},   {')', "Shut"},    {'{', "Brace"}, {'~', "Tilde"},  {'"', "Mark"},   {'`', "Back"},
+        {'_', "Under"},  {'!', "Bang"},    {'/', "Slash"}, {'\\', "Slope"}, {'|', "Bar"},    {'<', "Less"},
+        {'>', "More"},   {'=', "Equal"},   {'+', "Plus"},  {'-', "Minus"},  {'@', "At"}};
+    for (const auto& [known, name] : names)
+        if (known == symbol) return name;
+    const auto byte = static_cast<unsigned char>(symbol);
+    if (byte < 0x80 && std::isalnum(byte)) return std::string(1, symbol);
+    return "Byte" + std::to_string(byte);
+}
+
+bool is_binary(std::string_view text) {
+    return text.find('\0') != std::string_view::npos;
+}
+
+} // namespace graftal

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace graftal {
+
+/// A line of a text, without its end.
+struct TextLine {
+    std::size_t begin = 0; ///< offset in the text
+    std::string_view text;
+};
+
+/// The lines from `begin` to `end`.
+std::vector<TextLine> lines_of(std::string_view text, std::size_t begin, std::size_t end);
+
+std::string_view trimmed(std::string_view text);
+
+std::string in_small_letters(std::string_view text);
+
+/// What stands in a comment of ours: one line of ASCII. Old files have other letters in code pages that they
+/// do not name.
+std::string comment_text(std::string_view text);
+
+/// The name of a module for a symbol of another program: the letter or digit itself; a word for what means
+/// something else, or nothing, in our strings.
+std::string symbol_name(char symbol);
+
+/// Whether a text has bytes that no text has: NUL. Pictures and programs have.
+bool is_binary(std::string_view text);
+
+} // namespace graftal

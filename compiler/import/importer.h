@@ -1,0 +1,64 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "compiler/support/diagnostics.h"
+#include "compiler/support/source.h"
+
+namespace graftal {
+
+/// A file of another program, and what its importer may ask for.
+struct ForeignFile {
+    FileId file = 0;
+    const SourceMap& sources;
+    Diagnostics& diagnostics;
+    /// The text of a file that this one names, looked up beside it; nothing, without an error, if there is
+    /// none. Texts stay valid.
+    std::function<std::optional<FileId>(std::string_view name)> read_beside;
+
+    std::string_view text() const { return sources.text(file); }
+    Span span(std::size_t begin, std::size_t end) const {
+        return {file, static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(end)};
+    }
+};
+
+/// A model in a foreign file.
+struct ForeignModel {
+    std::string name;
+    Span span; ///< of its text
+};
+
+/// A model as text of one of our languages.
+struct Translation {
+    std::string_view extension; ///< of the language: "lsys"
+    std::string text;
+    std::vector<Span> origins; ///< of each line of the text; unknown where the importer wrote it by itself
+
+    /// Adds a line, which may be empty. Requires that it holds no line end.
+    void line(std::string_view words, Span origin = {}) {
+        text += words;
+        text += '\n';
+        origins.push_back(origin);
+    }
+};
+
+/// One format: a row of the table in importers.cpp. An importer drops nothing silently: what it cannot
+/// translate is an error at its place, and what does not change the picture is at least a warning.
+struct Importer {
+    std::string_view format;                   ///< its name for people: "Fractint L-system"
+    std::span<const std::string_view> endings; ///< of file names, in small letters, without the dot
+    bool (*recognises)(
+        std::string_view text); ///< asked where formats share an ending; in a time linear in the text
+    /// In the order of the text. Reports what keeps it from telling the models apart.
+    std::vector<ForeignModel> (*models)(const ForeignFile& file);
+    /// Nothing after an error.
+    std::optional<Translation> (*translate)(const ForeignFile& file, const ForeignModel& model);
+};
+
+} // namespace graftal

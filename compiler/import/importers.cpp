@@ -1,0 +1,142 @@
+#include "compiler/import/importers.h"
+
+#include <algorithm>
+#include <cctype>
+#include <filesystem>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "compiler/import/foreign_text.h"
+#include "compiler/import/fractint_lsystem.h"
+#include "compiler/import/lparser.h"
+#include "compiler/support/file.h"
+
+namespace graftal {
+
+namespace {
+
+std::string ending_of(std::string_view file_name) {
+    const std::string ending = in_small_letters(std::filesystem::path(file_name).extension().string());
+    return ending.empty() ? ending : ending.substr(1);
+}
+
+bool has_ending(const Importer& importer, std::string_view ending) {
+    return std::ranges::find(importer.endings, ending) != importer.endings.end();
+}
+
+std::vector<std::string> names_of(const std::vector<ForeignModel>& models) {
+    std::vector<std::string> names;
+    for (const ForeignModel& model : models)
+        names.push_back(model.name);
+    return names;
+}
+
+} // namespace
+
+std::span<const Importer> importers() {
+    // Where two rows share an ending, the first that recognises the text has it.
+    static const Importer table[] = {fractint_lsystem_importer(), lparser_importer()};
+    return table;
+}
+
+bool is_foreign(std::string_view file_name) {
+    const std::string ending = ending_of(file_name);
+    return std::ranges::any_of(importers(), [&](const Importer& row) { return has_ending(row, ending); });
+}
+
+ModelPath model_path(std::string_view path) {
+    for (std::size_t colon = path.find(':'); colon != std::string_view::npos;
+         colon = path.find(':', colon + 1))
+        if (is_foreign(path.substr(0, colon)))
+            return {std::string(path.substr(0, colon)), std::string(path.substr(colon + 1))};
+    return {std::string(path), {}};
+}
+
+std::string model_stem(std::string_view path) {
+    const ModelPath parts = model_path(path);
+    return parts.model.empty() ? std::filesystem::path(parts.file).stem().string() : plain_name(parts.model);
+}
+
+ForeignFile foreign_file(FileId file, SourceMap& sources, Diagnostics& diagnostics, BesideOptions beside) {
+    const auto read_beside = [&sources, file,
+                              beside = std::move(beside)](std::string_view name) -> std::optional<FileId> {
+        const std::filesystem::path own(sources.name(file));
+        const std::string path = (own.parent_path() / name).lexically_normal().string();
+        if (!beside.root.empty() && !lies_in(path, beside.root)) return std::nullopt;
+        std::error_code code;
+        if (!std::filesystem::exists(path, code) || is_special_file(path)) return std::nullopt;
+        if (beside.on_file) beside.on_file(path);
+        std::string text;
+        if (!read_text(path, text).ok()) return std::nullopt;
+        return sources.add(path, std::move(text));
+    };
+    return {file, sources, diagnostics, read_beside};
+}
+
+const Importer* importer_of(const ForeignFile& file) {
+    const std::string ending = ending_of(file.sources.name(file.file));
+    std::string formats;
+    for (const Importer& importer : importers()) {
+        if (!has_ending(importer, ending)) continue;
+        if (importer.recognises(file.text())) return &importer;
+        formats += fmt::format("{}{}", formats.empty() ? "" : " or ", importer.format);
+    }
+    file.diagnostics.error(Span(), fmt::format("'{}' is no {}", file.sources.name(file.file), formats));
+    return nullptr;
+}
+
+std::optional<ForeignModel> find_model(const Importer& importer, const ForeignFile& file,
+                                       std::string_view name) {
+    const std::size_t errors = file.diagnostics.error_count();
+    const std::vector<ForeignModel> models = importer.models(file);
+    if (models.empty()) {
+        if (file.diagnostics.error_count() == errors)
+            file.diagnostics.error(Span(), fmt::format("'{}' holds no model", file.sources.name(file.file)));
+        return std::nullopt;
+    }
+    if (name.empty() && models.size() == 1) return models.front();
+    const auto named = [&](const auto& same) {
+        return std::ranges::find_if(models, [&](const ForeignModel& model) { return same(model.name); });
+    };
+    auto found = named([&](std::string_view other) { return other == name; });
+    const std::string small = in_small_letters(name);
+    if (found == models.end())
+        found = named([&](std::string_view other) { return in_small_letters(other) == small; });
+    if (found != models.end()) return *found;
+    const std::string_view file_name = file.sources.name(file.file);
+    if (name.empty())
+        file.diagnostics.error(Span(), fmt::format("'{}' holds {} models", file_name, models.size()))
+            .with_hint(fmt::format("name one, as {0}:{1}; 'graftal import {0}' lists them", file_name,
+                                   models.front().name));
+    else
+        file.diagnostics.error(Span(), fmt::format("'{}' holds no model '{}'", file_name, name))
+            .with_hint(choices(name, names_of(models)));
+    return std::nullopt;
+}
+
+std::optional<FileId> own_text(FileId file, std::string_view model, SourceMap& sources,
+                               Diagnostics& diagnostics, const BesideOptions& beside) {
+    if (!is_foreign(sources.name(file))) return file;
+    const ForeignFile foreign = foreign_file(file, sources, diagnostics, beside);
+    const Importer* const importer = importer_of(foreign);
+    if (!importer) return std::nullopt;
+    const std::optional<ForeignModel> found = find_model(*importer, foreign, model);
+    if (!found) return std::nullopt;
+    const std::size_t errors = diagnostics.error_count();
+    std::optional<Translation> translation = importer->translate(foreign, *found);
+    if (!translation || diagnostics.error_count() > errors) return std::nullopt;
+    const std::string name =
+        fmt::format("{}:{}.{}", sources.name(file), plain_name(found->name), translation->extension);
+    return sources.add_translation(name, std::move(translation->text), file, std::move(translation->origins));
+}
+
+std::string plain_name(std::string_view name) {
+    std::string plain;
+    for (const char c : name)
+        plain += std::isalnum(static_cast<unsigned char>(c)) ? c : '_';
+    const bool letter_first = !plain.empty() && std::isalpha(static_cast<unsigned char>(plain[0]));
+    return letter_first ? plain : "m_" + plain;
+}
+
+} // namespace graftal

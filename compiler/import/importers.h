@@ -1,0 +1,59 @@
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "compiler/import/importer.h"
+
+namespace graftal {
+
+/// The formats of other programs. To add one: its files in this folder, and a row of this table.
+std::span<const Importer> importers();
+
+/// How a command or a `use` names a model.
+struct ModelPath {
+    std::string file;
+    std::string model; ///< in a foreign file; "" where only the file is named
+};
+
+/// "trees.l:Tree1" names the model Tree1 in the foreign file trees.l. A path that holds no ending of the
+/// table before a colon is the file itself.
+ModelPath model_path(std::string_view path);
+
+/// The name for what is made of a model: "Tree1" of "lib/trees.l:Tree1", "fern" of "lib/fern.rifs".
+std::string model_stem(std::string_view path);
+
+/// Whether the name of a file has an ending of the table.
+bool is_foreign(std::string_view file_name);
+
+/// How files beside a foreign one are found.
+struct BesideOptions {
+    std::string root{};                                ///< they must lie in this folder; "": anywhere
+    std::function<void(const std::string&)> on_file{}; ///< hears of each that is asked for
+};
+
+/// A file of `sources` for importers. Both must outlive it.
+ForeignFile foreign_file(FileId file, SourceMap& sources, Diagnostics& diagnostics,
+                         BesideOptions beside = {});
+
+/// The importer with this ending that knows the text; null after the error that there is none.
+const Importer* importer_of(const ForeignFile& file);
+
+/// The model by its name, where capitals count only if they must; "" for the only one. Nothing after the
+/// error that lists the models.
+std::optional<ForeignModel> find_model(const Importer& importer, const ForeignFile& file,
+                                       std::string_view name);
+
+/// The text in one of our languages of a file: the file itself, or the translation of the model of this name
+/// in a foreign one, which becomes a file of `sources`. Nothing after an error.
+std::optional<FileId> own_text(FileId file, std::string_view model, SourceMap& sources,
+                               Diagnostics& diagnostics, const BesideOptions& beside = {});
+
+/// A name of letters, digits and '_' for a block, a material or a file, that begins with a letter.
+std::string plain_name(std::string_view name);
+
+} // namespace graftal

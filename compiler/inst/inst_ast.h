@@ -30,6 +30,35 @@ struct InstTint {
     Span span;
 };
 
+enum class InkChannel : std::uint8_t { hue, saturation, value, alpha };
+inline constexpr std::size_t ink_channels = 4;
+
+/// One change of the ink that is handed down: `ink: hsv(30, 1, 1)`, or a line of `ink { ... }`.
+struct InstInkStep {
+    enum class Kind : std::uint8_t {
+        set,    ///< values: a colour, as parse_color() has it
+        change, ///< values: degrees by which the hue turns, or a factor
+        toward  ///< values: a target, and the share of the way to it
+    };
+
+    Kind kind = Kind::set;
+    InkChannel channel = InkChannel::hue;
+    std::vector<Expression> values;
+    Span span;
+};
+
+/// `when test { ... } else { ... }`: the groups of the first block are there where the test is not 0.
+struct InstTest {
+    Expression test;
+    Span span;
+};
+
+/// A test that a group depends on.
+struct InstCondition {
+    std::shared_ptr<const InstTest> test;
+    bool wanted = true; ///< false after `else`
+};
+
 /// `repeat n { ... }` or `n * { ... }` makes n copies of the groups that follow it. Each copy applies the
 /// lines of the block once more than the copy before; the first copy does not apply them.
 struct InstRepeat {
@@ -37,6 +66,7 @@ struct InstRepeat {
     std::vector<TransformLine> transforms;
     std::vector<InstTint> tints;
     std::optional<Expression> hue;
+    std::vector<InstInkStep> ink;
     std::uint32_t size = 0; ///< tokens
     Span span;
 };
@@ -56,6 +86,8 @@ struct InstGroup {
     std::uint32_t size = 0;           ///< tokens without those of its repeats: the cost of evaluating it once
     std::optional<Expression> chance; ///< of each of the masters
     std::unique_ptr<Expression> hue;  ///< degrees by which the group turns the hues of its masters
+    std::vector<InstInkStep> ink;
+    std::vector<InstCondition> conditions;
     std::vector<std::shared_ptr<const InstRepeat>> repeats; ///< that contain the group, the outermost first
     Span span;
 };

@@ -1,6 +1,7 @@
 #include "compiler/inst/inst_body.h"
 
 #include <algorithm>
+#include <iterator>
 #include <memory>
 #include <optional>
 #include <string>
@@ -77,6 +78,9 @@ class BodyParser {
         if (at_below()) return parse_below();
         if (at_repeat(stream_)) return parse_repeat();
         if (at_hue(stream_)) return parse_hue();
+        if (at_ink(stream_)) return parse_ink();
+        if (at_when()) return parse_when();
+        if (at_nothing()) return parse_nothing();
         if (stream_.at("union") || stream_.at("instance") || stream_.at("terminal")) return parse_group();
         if (at_scatter()) return parse_group();
         if (in_scatter() && at_scatter_line(stream_)) return parse_line_of_scatter();
@@ -94,7 +98,8 @@ class BodyParser {
         const std::vector<std::string>& all = body_keywords();
         std::vector<std::string> lines(all.begin(),
                                        all.end() - static_cast<std::ptrdiff_t>(scatter_keywords().size()));
-        lines.emplace_back("repeat");
+        for (const char* word : {"repeat", "when", "nothing"})
+            lines.emplace_back(word);
         return lines;
     }
 
@@ -167,6 +172,70 @@ class BodyParser {
             diagnostics_.error(keyword.span, "duplicate 'hue'")
                 .with_note(group->hue->span, "first given here");
         group->hue = std::make_unique<Expression>(std::move(*hue));
+        return true;
+    }
+
+    bool parse_ink() {
+        const Token keyword = stream_.peek();
+        std::vector<InstInkStep> steps;
+        if (!parse_inst_ink(stream_, steps)) return false;
+        if (InstGroup* group = current(keyword))
+            std::ranges::move(steps, std::back_inserter(group->ink));
+        return true;
+    }
+
+    // Conditions
+
+    /// `when` and an expression; else an object may have that name.
+    bool at_when() const {
+        const Token& after = stream_.peek(1);
+        const bool value = after.kind == TokenKind::number || after.is("(") || after.is("-") || after.is("!") ||
+                           (after.kind == TokenKind::name && !is_body_keyword(after));
+        return stream_.at("when") && !after.first_on_line && value;
+    }
+
+    bool parse_when() {
+        const Token keyword = stream_.next();
+        std::optional<Expression> test = parse_expression(stream_);
+        if (!test || !stream_.expect("{", "the condition")) return false;
+        if (conditions_.size() == TokenStream::max_nesting) {
+            diagnostics_.error(keyword.span,
+                               fmt::format("conditions nest more than {} deep", TokenStream::max_nesting));
+            return false;
+        }
+        const auto shared = std::make_shared<const InstTest>(std::move(*test), stream_.span_from(keyword.span));
+        if (!parse_conditional({shared, true})) return false;
+        if (!stream_.accept("else")) return true;
+        if (stream_.at("when")) { // `else when`: the rest is inside of this one
+            conditions_.push_back({shared, false});
+            const bool good = at_when() && parse_when();
+            conditions_.pop_back();
+            return good;
+        }
+        return stream_.expect("{", "else") && parse_conditional({shared, false});
+    }
+
+    /// Requires that the '{' was just taken.
+    bool parse_conditional(InstCondition condition) {
+        conditional_ = true;
+        conditions_.push_back(std::move(condition));
+        sealed_ = true;
+        const bool good = !parse_lines("'}' at the end of the groups under a condition");
+        sealed_ = true;
+        conditions_.pop_back();
+        return good;
+    }
+
+    /// `nothing` on a line of its own.
+    bool at_nothing() const {
+        const Token& after = stream_.peek(1);
+        return stream_.at("nothing") && (after.first_on_line || after.is("}"));
+    }
+
+    bool parse_nothing() {
+        stream_.next();
+        conditional_ = true;
+        sealed_ = true;
         return true;
     }
 
@@ -289,6 +358,7 @@ class BodyParser {
                        fmt::format("a repeat cannot contain a {}", group.terminal ? "terminal" : "scatter"))
                 .with_hint("define an object that has it, and repeat that object");
         }
+        group.conditions = conditions_;
         group.repeats = repeats_;
         measure_group();
         group_begin_ = stream_.position();
@@ -404,9 +474,9 @@ class BodyParser {
     void check_not_empty() {
         const bool drawn = std::any_of(definition_.groups.begin(), definition_.groups.end(),
                                        [](const InstGroup& group) { return !group.terminal; });
-        if (drawn || failed_ || diagnostics_.full()) return;
+        if (drawn || conditional_ || failed_ || diagnostics_.full()) return;
         diagnostics_.error(definition_.span, fmt::format("object '{}' is empty", definition_.name))
-            .with_hint("give it a 'union:' or an 'instance:'");
+            .with_hint("give it a 'union:' or an 'instance:', or write 'nothing' if that is meant");
     }
 
     TokenStream& stream_;
@@ -419,7 +489,9 @@ class BodyParser {
     bool sealed_ = false;         ///< after the '{' or '}' of a block of repeated groups, a line has no group
     std::vector<std::shared_ptr<const InstRepeat>>
         repeats_;             ///< that contain the next group, the outermost first
-    bool lost_group_ = false; ///< the last group was in error
+    std::vector<InstCondition> conditions_; ///< of the next group, the outermost first
+    bool conditional_ = false;              ///< the object may draw nothing
+    bool lost_group_ = false;               ///< the last group was in error
 };
 
 } // namespace

@@ -32,6 +32,11 @@ void collect(const std::vector<TransformLine>& lines, const std::vector<InstTint
         collect(tint.values, calls);
 }
 
+void collect(const std::vector<InstInkStep>& steps, Calls& calls) {
+    for (const InstInkStep& step : steps)
+        collect(step.values, calls);
+}
+
 Calls calls_of(const InstGroup& group) {
     Calls calls;
     for (const InstReference& reference : group.masters)
@@ -41,10 +46,12 @@ Calls calls_of(const InstGroup& group) {
     for (const std::optional<Expression>* number : {&group.below, &group.chance})
         if (*number) collect(**number, calls);
     if (group.hue) collect(*group.hue, calls);
+    collect(group.ink, calls);
     for (const auto& repeat : group.repeats) {
         collect(repeat->count, calls);
         collect(repeat->transforms, repeat->tints, calls);
         if (repeat->hue) collect(*repeat->hue, calls);
+        collect(repeat->ink, calls);
     }
     return calls;
 }

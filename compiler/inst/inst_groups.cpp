@@ -24,7 +24,26 @@ bool same_parameters(const InstDefinition& a, const InstDefinition& b) {
 
 } // namespace
 
+void InstLowerer::Lowered::add(Instance instance, const Placement& placement) {
+    object.instances.push_back(std::move(instance));
+    hues.instances.push_back(placement.hue);
+    inks.instances.push_back(placement.ink);
+}
+
+bool InstLowerer::holds(const InstGroup& group) {
+    return std::ranges::all_of(group.conditions, [&](const InstCondition& condition) {
+        const auto [known, fresh] = tests_.try_emplace(condition.test.get(), false);
+        if (fresh) {
+            const std::optional<double> value = evaluate(condition.test->test, environment_, scratch_);
+            if (!value) return false;
+            known->second = *value != 0;
+        }
+        return known->second == condition.wanted;
+    });
+}
+
 void InstLowerer::lower_group(const InstGroup& group, Lowered& object) {
+    if (!holds(group)) return;
     if (group.scatter) return lower_scattered(group, object);
     lower_copies(group, 0, Placement(), object);
 }
@@ -47,7 +66,7 @@ void InstLowerer::lower_copies(const InstGroup& group, std::size_t depth, const 
         part.object.name = name;
         part.object.span = repeat.span;
         shared = by_name_[name] = graph_.add(std::move(part.object));
-        keep_hues(*shared, std::move(part.hues));
+        keep_colours(*shared, std::move(part));
     }
     Placement copy = around;
     std::optional<Placement> step;
@@ -64,8 +83,7 @@ void InstLowerer::lower_copies(const InstGroup& group, std::size_t depth, const 
         } else {
             if (!within_limits(graph_.objects.size(), ++instance_count_, repeat.span, lowering_))
                 stopped_ = true;
-            object.object.instances.push_back({*shared, copy.parent_from_child, copy.tint, {}, repeat.span});
-            object.hues.instances.push_back(copy.hue);
+            object.add({*shared, copy.parent_from_child, copy.tint, {}, repeat.span}, copy);
         }
         if (scratch_.has_errors()) return; // the other copies have them too
     }
@@ -89,8 +107,9 @@ std::optional<std::size_t> InstLowerer::repeat_count(const InstRepeat& repeat) {
 std::optional<InstLowerer::Placement> InstLowerer::lower_step(const InstRepeat& repeat) {
     const std::optional<Affine> map = lower_transforms(repeat.transforms, environment_, scratch_, draws_);
     const std::optional<Tint> tint = lower_tints(repeat.tints);
-    if (!map || !tint) return std::nullopt;
-    return Placement{*map, *tint, {}, repeat.hue ? lower_hue(*repeat.hue) : HueTurn()};
+    std::optional<InkChange> ink = lower_ink(repeat.ink, environment_, scratch_, draws_);
+    if (!map || !tint || !ink) return std::nullopt;
+    return Placement{*map, *tint, {}, repeat.hue ? lower_hue(*repeat.hue) : HueTurn(), std::move(*ink)};
 }
 
 std::optional<InstLowerer::Placement> InstLowerer::composed(const Placement& parent, const Placement& child,
@@ -99,9 +118,16 @@ std::optional<InstLowerer::Placement> InstLowerer::composed(const Placement& par
     const std::string fault = range_fault(map);
     const bool flattened = is_singular(map) && !is_singular(child.parent_from_child);
     const std::optional<HueTurn> hue = sum(child.hue, parent.hue);
-    if (fault.empty() && !flattened && hue)
-        return Placement{map, graftal::composed({child.tint, parent.tint}), child.material, *hue};
-    if (!hue)
+    InkChange ink = parent.ink;
+    ink.add(child.ink);
+    if (fault.empty() && !flattened && hue && ink.size() <= InkChange::most_steps)
+        return Placement{map, graftal::composed({child.tint, parent.tint}), child.material, *hue,
+                         std::move(ink)};
+    if (ink.size() > InkChange::most_steps)
+        scratch_.error(span, fmt::format("the copies of this repeat change the ink in more than {} ways",
+                                         InkChange::most_steps))
+            .with_hint("repeat fewer times, or change the ink of the repeated objects");
+    else if (!hue)
         scratch_.error(span, "the turns of these hues have no small common denominator")
             .with_hint("use fractions of a circle, such as 30 or 360/7 degrees");
     else
@@ -165,9 +191,9 @@ void InstLowerer::lower_instances(const InstGroup& group, const Placement& aroun
         if (group.terminal) {
             object.object.terminal = instance;
             object.hues.terminal = placement->hue;
+            object.inks.terminal = placement->ink;
         } else {
-            object.object.instances.push_back(instance);
-            object.hues.instances.push_back(placement->hue);
+            object.add(instance, *placement);
         }
     }
 }
@@ -201,9 +227,9 @@ void InstLowerer::lower_scattered(const InstGroup& group, Lowered& object) {
         const InstReference& reference = group.masters[place.master];
         const std::optional<ObjectId> master = random ? resolve(reference) : masters[place.master];
         if (!master) return;
-        instances.push_back({*master, map, place.tint, placement->material, reference.span});
-        instances.back().chance = chance;
-        object.hues.instances.push_back(placement->hue);
+        Instance instance{*master, map, place.tint, placement->material, reference.span};
+        instance.chance = chance;
+        object.add(std::move(instance), *placement);
     };
     lower_scatter(group, context, {begin, take}, scratch_);
     if (lost)
@@ -251,7 +277,9 @@ std::optional<InstLowerer::Placement> InstLowerer::lower_placement(const InstGro
     if (group.material && materials_.contains(*group.material))
         placement.material = materials_.at(*group.material);
     if (group.hue) placement.hue = lower_hue(*group.hue);
-    if (!map || !tint) return std::nullopt;
+    std::optional<InkChange> ink = lower_ink(group.ink, environment_, scratch_, draws_);
+    if (!map || !tint || !ink) return std::nullopt;
+    placement.ink = std::move(*ink);
     placement.parent_from_child = *map;
     placement.tint = *tint;
     return placement;

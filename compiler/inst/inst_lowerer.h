@@ -12,6 +12,7 @@
 #include "compiler/inst/inst_chance.h"
 #include "compiler/inst/inst_hues.h"
 #include "compiler/inst/inst_index.h"
+#include "compiler/inst/inst_ink.h"
 #include "compiler/lower/lowering.h"
 #include "compiler/lower/model_family.h"
 #include "compiler/support/counter_random.h"
@@ -38,12 +39,16 @@ class InstLowerer {
         Tint tint;
         std::optional<MaterialId> material;
         HueTurn hue;
+        InkChange ink;
     };
 
-    /// An object and how its instances turn hues.
+    /// An object and how its instances change colours.
     struct Lowered {
         Object object;
         ObjectHues hues;
+        ObjectInks inks;
+
+        void add(Instance instance, const Placement& placement);
     };
 
     /// An object of the file and how it was first reached.
@@ -113,11 +118,13 @@ class InstLowerer {
     void report(std::size_t index);
     void choose_root();
     void add_scene(const std::vector<const Reached*>& rendered);
-    void keep_hues(ObjectId id, ObjectHues hues);
+    void keep_colours(ObjectId id, Lowered lowered);
 
     // Groups
 
     void lower_group(const InstGroup& group, Lowered& object);
+    /// Whether the conditions of a group hold; false after an error.
+    bool holds(const InstGroup& group);
     /// Adds the copies that the repeats from `depth` on make, inside the copy `around` of the outer repeats.
     void lower_copies(const InstGroup& group, std::size_t depth, const Placement& around, Lowered& object);
     std::optional<std::size_t> repeat_count(const InstRepeat& repeat);
@@ -169,12 +176,14 @@ class InstLowerer {
     std::unordered_map<std::string, ObjectId> variants_; ///< of random objects, by name and variant
     std::unordered_map<std::string, MaterialId> materials_;
     HueTable hues_;
+    InkTable inks_;
 
     std::vector<Reached> reached_;
     std::size_t current_ = 0; ///< the index of the object being lowered
     std::uint64_t place_ = 0; ///< places of it that have random numbers so far
     Environment environment_; ///< of the object being lowered
     ChanceDraws draws_;       ///< of the copy of a group being lowered
+    std::unordered_map<const InstTest*, bool> tests_; ///< of the object being lowered, as far as they were asked
     Diagnostics scratch_;     ///< its errors
     std::set<const InstReference*> unknown_;
     std::unordered_map<const InstReference*, Primitive> meshes_;

@@ -21,7 +21,8 @@ constexpr std::size_t max_parameters = 100;
 std::span<const std::string_view> line_words() {
     static const std::vector<std::string_view> words = [] {
         std::vector<std::string_view> own = {"union", "instance", "terminal", "scatter",
-                                             "below", "object",   "repeat",   "hue"};
+                                             "below", "object",   "repeat",   "hue",
+                                             "ink",   "when",     "nothing"};
         own.insert(own.end(), scatter_keywords().begin(), scatter_keywords().end());
         return own;
     }();

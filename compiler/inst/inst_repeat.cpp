@@ -53,8 +53,10 @@ bool parse_repeat_block(TokenStream& stream, InstRepeat& repeat) {
             repeat.tints.push_back(std::move(*tint));
         } else if (at_hue(stream)) {
             if (!parse_hue_value(stream, repeat.hue)) return false;
+        } else if (at_ink(stream)) {
+            if (!parse_inst_ink(stream, repeat.ink)) return false;
         } else {
-            stream.expected("a transform, 'tint', 'hue' or '}'")
+            stream.expected("a transform, 'tint', 'hue', 'ink' or '}'")
                 .with_hint("write the objects after the braces: repeat 12 { rotate: y, 30 } leaf")
                 .with_note(open.span, "this '{' begins the lines that each copy adds");
             return false;
@@ -69,7 +71,7 @@ const std::vector<std::string>& body_keywords() {
     static const std::vector<std::string> keywords = [] {
         std::vector<std::string> words(transform_keywords.begin(), transform_keywords.end());
         for (const char* word :
-             {"union", "instance", "terminal", "scatter", "tint", "material", "chance", "below", "hue"})
+             {"union", "instance", "terminal", "scatter", "tint", "material", "chance", "below", "hue", "ink"})
             words.emplace_back(word);
         words.insert(words.end(), scatter_keywords().begin(), scatter_keywords().end());
         return words;

@@ -35,4 +35,10 @@ bool at_hue(const TokenStream& stream);
 /// Requires at_hue(). False after an error. It reports a second hue, and ignores it.
 bool parse_hue_value(TokenStream& stream, std::optional<Expression>& hue);
 
+/// True at `ink:` or `ink {`; else an object may have that name.
+bool at_ink(const TokenStream& stream);
+
+/// Requires at_ink(). Adds the steps of the line. False after an error, which it reports.
+bool parse_inst_ink(TokenStream& stream, std::vector<InstInkStep>& steps);
+
 } // namespace graftal

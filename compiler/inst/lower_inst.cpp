@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "compiler/inst/inst_empty.h"
 #include "compiler/inst/inst_lowerer.h"
 #include "compiler/lower/inner_parameters.h"
 #include "compiler/lower/lower_settings.h"
@@ -47,7 +48,14 @@ std::optional<Graph> InstLowerer::run() && {
     enumerate();
     choose_root();
     if (failed()) return std::nullopt;
-    if (!hues_.empty() && !apply_hues(graph_, hues_, graph_.objects[graph_.root].span, lowering_))
+    const Span place = graph_.objects[graph_.root].span;
+    if (!drop_empty(graph_, hues_, inks_)) {
+        diagnostics_.error(place, "the model draws nothing")
+            .with_hint("its conditions leave nothing of it");
+        return std::nullopt;
+    }
+    if (!inks_.empty() && !apply_inks(graph_, inks_, hues_, place, lowering_)) return std::nullopt;
+    if (!hues_.empty() && !apply_hues(graph_, hues_, place, lowering_))
         return std::nullopt;
     return std::move(graph_);
 }
@@ -144,6 +152,7 @@ void InstLowerer::lower_object(std::size_t index) {
     if (!work(definition.size + index_.patterns(definition.name, definition.parameters.size()).size()))
         return;
     environment_ = environment_of(definition, reached_[index].arguments);
+    tests_.clear();
     Lowered lowered;
     for (const InstGroup& group : definition.groups)
         lower_group(group, lowered);
@@ -152,7 +161,7 @@ void InstLowerer::lower_object(std::size_t index) {
     object.instances = std::move(lowered.object.instances);
     object.terminal = std::move(lowered.object.terminal);
     object.terminal_px = lowered.object.terminal_px;
-    keep_hues(reached_[index].id, std::move(lowered.hues));
+    keep_colours(reached_[index].id, std::move(lowered));
 }
 
 bool InstLowerer::count_work(std::size_t words) {
@@ -178,10 +187,13 @@ Environment InstLowerer::environment_of(const InstDefinition& definition,
     return environment;
 }
 
-void InstLowerer::keep_hues(ObjectId id, ObjectHues hues) {
+void InstLowerer::keep_colours(ObjectId id, Lowered lowered) {
     const auto turns = [](HueTurn turn) { return turn.part != 0; };
-    if (turns(hues.terminal) || std::ranges::any_of(hues.instances, turns))
-        hues_.emplace(id, std::move(hues));
+    if (turns(lowered.hues.terminal) || std::ranges::any_of(lowered.hues.instances, turns))
+        hues_.emplace(id, std::move(lowered.hues));
+    const auto changes = [](const InkChange& change) { return !change.empty(); };
+    if (changes(lowered.inks.terminal) || std::ranges::any_of(lowered.inks.instances, changes))
+        inks_.emplace(id, std::move(lowered.inks));
 }
 
 void InstLowerer::report(std::size_t index) {

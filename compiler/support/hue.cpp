@@ -27,6 +27,13 @@ Rgb rgb_from_hsv(double hue_deg, double saturation, double value) {
     return {component(5), component(3), component(1)};
 }
 
+Hsv hsv_from_rgb(Rgb rgb) {
+    const double largest = std::max({rgb.r, rgb.g, rgb.b}), least = std::min({rgb.r, rgb.g, rgb.b});
+    if (is_grey(rgb)) return {0, 0, largest};
+    const double sextant = sextants(rgb, largest, largest - least);
+    return {60 * (sextant < 0 ? sextant + 6 : sextant), (largest - least) / largest, largest};
+}
+
 Rgb hue_turned(Rgb rgb, double turns) {
     if (is_grey(rgb)) return rgb;
     const double largest = std::max({rgb.r, rgb.g, rgb.b}), least = std::min({rgb.r, rgb.g, rgb.b});

@@ -1,0 +1,19 @@
+#pragma once
+
+#include <optional>
+
+#include "compiler/import/cfdg_ast.h"
+#include "compiler/import/cfdg_expression.h"
+#include "compiler/support/affine.h"
+
+namespace graftal::cfdg {
+
+/// The adjustments that move, in the order in which they multiply: x y z, r, s, skew, f; as written where the
+/// modification keeps its order. The first is outermost.
+std::vector<const Adjustment*> moves_of(const Modification& modification);
+
+/// Their map, where all numbers are known. z is scaled by the geometric mean of x and y.
+std::optional<Affine> affine_of(const Modification& modification, const Expressions& expressions,
+                                const Numbers& known = {});
+
+} // namespace graftal::cfdg

@@ -1,0 +1,108 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "compiler/support/source.h"
+
+namespace graftal::cfdg {
+
+/// An expression of version 3; version 2 has numbers only.
+struct Expr {
+    enum class Kind : std::uint8_t { number, name, call, unary, binary, list, modification };
+
+    Kind kind = Kind::number;
+    double number = 0;
+    std::string text; ///< a name, or an operator: + - * / ^ _ < <= > >= == <> && || ^^ ! .. +/-
+    std::vector<Expr> operands;
+    Span span;
+};
+
+/// One adjustment: `x 1`, `hue 10`, `|sat 1`, `b 0.1|`.
+struct Adjustment {
+    std::string word; ///< its short name: x y z r s skew f h sat b a, trans, or another
+    std::vector<Expr> values;
+    bool sets_target = false; ///< `|hue 60`
+    bool to_target = false;   ///< `hue 0.5|`
+    Span span;
+};
+
+struct Modification {
+    std::vector<Adjustment> adjustments;
+    bool ordered = false; ///< as written; else x y z r s skew f
+    Span span;
+};
+
+struct Element;
+using Elements = std::vector<Element>;
+
+/// `case 1, 2: ...`; no values of `else:`.
+struct Case {
+    std::vector<Expr> values;
+    Elements body;
+};
+
+/// A line of a rule or a path.
+struct Element {
+    enum class Kind : std::uint8_t { shape, loop, condition, choice, transform, define, path_operation };
+
+    Kind kind = Kind::shape;
+    std::string name; ///< of a shape, an index, a variable or a path operation
+    std::vector<Expr> arguments; ///< of a shape or an operation; the count, condition or value of others
+    bool reuses_arguments = false; ///< `shape(=)`
+    Modification modification;
+    std::vector<Modification> modifications; ///< of transform
+    Elements body, other;                    ///< other: of finally or else
+    std::vector<Case> cases;
+    Span span;
+    std::vector<std::string> comments;
+};
+
+struct Parameter {
+    std::string type; ///< number, natural, adjustment, shape, vector2 and so on
+    std::string name;
+    Span span;
+};
+
+struct Rule {
+    std::optional<double> weight;
+    bool percent = false;
+    Elements body;
+    Span span;
+    std::vector<std::string> comments;
+};
+
+struct Shape {
+    std::string name;
+    bool is_path = false;
+    std::vector<Parameter> parameters;
+    std::vector<Rule> rules;
+    Span span;
+    std::vector<std::string> comments;
+};
+
+/// `name = value` or `name(a, b) = value`; of the whole file.
+struct Definition {
+    std::string name;
+    bool is_function = false;
+    std::vector<Parameter> parameters;
+    Expr value;
+    Modification modification; ///< where the value is one
+    Span span;
+    std::vector<std::string> comments;
+};
+
+struct Grammar {
+    std::vector<Shape> shapes; ///< in their order
+    std::vector<Definition> definitions;
+    std::optional<Element> start;          ///< startshape
+    std::optional<Element> included_start; ///< that of an included file, where this one has none
+    std::optional<Modification> background, size, tile;
+    std::vector<std::string> tail; ///< comments
+};
+
+} // namespace graftal::cfdg

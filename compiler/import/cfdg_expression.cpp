@@ -1,0 +1,333 @@
+#include "compiler/import/cfdg_expression.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "compiler/import/importers.h"
+#include "compiler/support/counter_random.h"
+#include "compiler/support/number.h"
+
+namespace graftal::cfdg {
+
+namespace {
+
+constexpr int deepest_calls = 32;
+constexpr std::size_t longest_text = 1'000'000;
+constexpr std::size_t most_work = 5'000'000;
+
+double sine(double degrees) {
+    return std::sin(degrees * std::numbers::pi / 180);
+}
+
+/// Functions of one number that are alike in both languages.
+const std::map<std::string, double (*)(double)>& plain_functions() {
+    static const std::map<std::string, double (*)(double)> table = {
+        {"sin", sine},
+        {"cos", [](double x) { return sine(x + 90); }},
+        {"tan", [](double x) { return std::tan(x * std::numbers::pi / 180); }},
+        {"asin", [](double x) { return std::asin(x) * 180 / std::numbers::pi; }},
+        {"acos", [](double x) { return std::acos(x) * 180 / std::numbers::pi; }},
+        {"atan", [](double x) { return std::atan(x) * 180 / std::numbers::pi; }},
+        {"sqrt", [](double x) { return std::sqrt(x); }},
+        {"exp", [](double x) { return std::exp(x); }},
+        {"log", [](double x) { return std::log(x); }},
+        {"floor", [](double x) { return std::floor(x); }},
+        {"ceiling", [](double x) { return std::ceil(x); }},
+        {"abs", [](double x) { return std::abs(x); }},
+        {"sg", [](double x) { return static_cast<double>((x > 0) - (x < 0)); }},
+        {"log10", [](double x) { return std::log10(x); }},
+    };
+    return table;
+}
+
+std::string our_name(const std::string& function) {
+    return function == "ceiling" ? "ceil" : function == "sg" ? "sign" : function;
+}
+
+double binary(const std::string& sign, double a, double b) {
+    if (sign == "+") return a + b;
+    if (sign == "-") return a - b;
+    if (sign == "*") return a * b;
+    if (sign == "/") return a / b;
+    if (sign == "^") return std::pow(a, b);
+    if (sign == "_") return std::max(0.0, a - b);
+    if (sign == "<") return a < b;
+    if (sign == "<=") return a <= b;
+    if (sign == ">") return a > b;
+    if (sign == ">=") return a >= b;
+    if (sign == "==") return a == b;
+    if (sign == "<>") return a != b;
+    if (sign == "&&") return a != 0 && b != 0;
+    if (sign == "||") return a != 0 || b != 0;
+    return (a != 0) != (b != 0);
+}
+
+} // namespace
+
+bool is_random(const std::string& text) {
+    return text.find("random(") != std::string::npos || text.find("normal(") != std::string::npos;
+}
+
+Expressions::Expressions(const ForeignFile& file, const Grammar& grammar) : file_(file), grammar_(grammar) {
+    for (const Definition& definition : grammar_.definitions)
+        definitions_.emplace(definition.name, &definition);
+    for (const Definition& definition : grammar_.definitions) {
+        if (definition.is_function || definition.name.starts_with("CF::")) continue;
+        const std::optional<double> value = evaluate(definition.value, {}, 0);
+        if (!value) continue;
+        values_.emplace(definition.name, *value);
+        constants_.push_back(&definition);
+    }
+}
+
+const Definition* Expressions::definition(const std::string& name) const {
+    const auto found = definitions_.find(name);
+    return found == definitions_.end() ? nullptr : found->second;
+}
+
+bool Expressions::mentions(const Expr& expression, const std::string& name) {
+    if (expression.kind == Expr::Kind::name && expression.text == name) return true;
+    return std::ranges::any_of(expression.operands, [&](const Expr& operand) { return mentions(operand, name); });
+}
+
+std::nullopt_t Expressions::fail(const Expr& expression, std::string message) {
+    file_.diagnostics.error(expression.span, std::move(message));
+    return std::nullopt;
+}
+
+std::optional<std::string> Expressions::text(const Expr& expression, const Scope& scope) {
+    const auto part = [&](std::size_t i) { return text(expression.operands[i], scope); };
+    std::optional<std::string> result;
+    switch (expression.kind) {
+    case Expr::Kind::number:
+        result = shortest(expression.number);
+        break;
+    case Expr::Kind::name: {
+        if (const auto known = scope.find(expression.text); known != scope.end()) {
+            result = known->second;
+            break;
+        }
+        if (values_.contains(expression.text)) {
+            result = shortest(values_.at(expression.text));
+            break;
+        }
+        const Definition* const global = definition(expression.text);
+        if (!global || global->is_function)
+            return fail(expression, fmt::format("'{}' has no counterpart here", expression.text));
+        if (++depth_ > deepest_calls) return fail(expression, fmt::format("'{}' depends on itself", expression.text));
+        const std::optional<std::string> value = text(global->value, {});
+        --depth_;
+        if (!value) return std::nullopt;
+        result = fmt::format("({})", *value);
+        break;
+    }
+    case Expr::Kind::unary: {
+        const std::optional<std::string> operand = part(0);
+        if (!operand) return std::nullopt;
+        result = expression.text == "!" ? fmt::format("!({})", *operand) : fmt::format("-{}", *operand);
+        if (expression.operands[0].kind != Expr::Kind::number && expression.text == "-")
+            result = fmt::format("-({})", *operand);
+        break;
+    }
+    case Expr::Kind::binary: {
+        const std::optional<std::string> a = part(0), b = part(1);
+        if (!a || !b) return std::nullopt;
+        const std::string& sign = expression.text;
+        if (sign == "..")
+            result = fmt::format("random({}, {})", *a, *b);
+        else if (sign == "+/-")
+            result = fmt::format("random({0} - ({1}), {0} + ({1}))", *a, *b);
+        else if (sign == "_")
+            result = fmt::format("max(0, {} - ({}))", *a, *b);
+        else if (sign == "^^")
+            result = fmt::format("((({}) != 0) != (({}) != 0))", *a, *b);
+        else
+            result = fmt::format("({} {} {})", *a, sign == "<>" ? "!=" : sign, *b);
+        break;
+    }
+    case Expr::Kind::call:
+        result = call(expression, scope);
+        break;
+    case Expr::Kind::list:
+        return fail(expression, "vectors are not translated");
+    case Expr::Kind::modification:
+        return fail(expression, "an adjustment as a value is not translated");
+    }
+    if (!result) return std::nullopt;
+    written_ += result->size();
+    if (written_ > longest_text) return fail(expression, "the expressions of the file become too long");
+    return result;
+}
+
+std::optional<std::string> Expressions::call(const Expr& expression, const Scope& scope) {
+    std::vector<std::string> arguments;
+    for (const Expr& operand : expression.operands) {
+        std::optional<std::string> argument = text(operand, scope);
+        if (!argument) return std::nullopt;
+        arguments.push_back(std::move(*argument));
+    }
+    const std::string& name = expression.text;
+    const std::size_t count = arguments.size();
+    const auto number_of = [&](std::size_t i) { return fmt::format("({})", arguments[i]); };
+    if (const Definition* const function = definition(name); function && function->is_function) {
+        if (function->parameters.size() != count)
+            return fail(expression, fmt::format("'{}' takes {} arguments", name, function->parameters.size()));
+        if (++depth_ > deepest_calls) {
+            depth_ = 0;
+            return fail(expression, fmt::format("'{}' calls itself: recursive functions are not translated", name));
+        }
+        Scope inner;
+        for (std::size_t i = 0; i < count; ++i) {
+            if (is_random(arguments[i]))
+                return fail(expression.operands[i], "a random number as the argument of a function is not translated");
+            inner[function->parameters[i].name] = number_of(i);
+        }
+        std::optional<std::string> value = text(function->value, inner);
+        --depth_;
+        if (value) value = fmt::format("({})", *value);
+        return value;
+    }
+    if (count == 1 && name == "log10") return fmt::format("(log({}) / {})", arguments[0], shortest(std::numbers::ln10));
+    if (count == 1 && plain_functions().contains(name)) return fmt::format("{}({})", our_name(name), arguments[0]);
+    if (count == 2 && (name == "atan2" || name == "mod")) return fmt::format("{}({}, {})", name, arguments[0], arguments[1]);
+    if (count == 2 && (name == "div" || name == "divides")) {
+        if (name == "div") return fmt::format("floor({} / {})", number_of(0), number_of(1));
+        return fmt::format("(mod({}, {}) == 0)", arguments[0], arguments[1]);
+    }
+    if (count >= 1 && (name == "min" || name == "max")) {
+        std::string result = arguments[0];
+        for (std::size_t i = 1; i < count; ++i)
+            result = fmt::format("{}({}, {})", name, result, arguments[i]);
+        return result;
+    }
+    if (name == "factorial" || name == "isNatural" || name == "ftime" || name == "frame") {
+        const std::optional<double> value = number(expression);
+        if (value) return shortest(*value);
+    }
+    if (name == "if" && count == 3) {
+        if (is_random(arguments[0])) return fail(expression, "a random condition is not translated");
+        return fmt::format("(({0}) != 0) * {1} + (({0}) == 0) * {2}", arguments[0], number_of(1), number_of(2));
+    }
+    if (name == "select" && count >= 2) {
+        if (is_random(arguments[0])) return fail(expression, "a random selection is not translated");
+        std::string sum;
+        for (std::size_t i = 1; i < count; ++i) {
+            const std::string test = i == 1           ? fmt::format("{} < 1", number_of(0))
+                                     : i + 1 == count ? fmt::format("{} >= {}", number_of(0), i - 1)
+                                                      : fmt::format("(floor({}) == {})", arguments[0], i - 1);
+            sum += fmt::format("{}({}) * {}", sum.empty() ? "" : " + ", test, number_of(i));
+        }
+        return fmt::format("({})", sum);
+    }
+    const bool fixed = name.starts_with("rand_static");
+    if (fixed || name == "rand" || name == "randint" || name == "rand_static" || name == "rand::normal") {
+        const std::string least = count == 2 ? arguments[0] : "0";
+        const std::string most = count == 0 ? (name == "randint" ? "2" : "1") : arguments[count - 1];
+        if (count > 2) return fail(expression, fmt::format("'{}' takes at most two numbers", name));
+        if (name == "rand::normal") return fmt::format("normal({}, {})", least, most);
+        if (fixed) {
+            const double share =
+                CounterRandom::unit(CounterRandom::scrambled(expression.span.begin)); // one for each place
+            return fmt::format("lerp({}, {}, {})", least, most, shortest(std::round(1e6 * share) / 1e6));
+        }
+        const std::string drawn = fmt::format("random({}, {})", least, most);
+        return name == "randint" ? fmt::format("floor({})", drawn) : drawn;
+    }
+    return fail(expression, fmt::format("the function '{}' is not translated", name));
+}
+
+std::optional<double> Expressions::number(const Expr& expression, const Numbers& known) const {
+    return evaluate(expression, known, 0);
+}
+
+std::optional<double> Expressions::evaluate(const Expr& expression, const Numbers& known, int depth) const {
+    if (depth > deepest_calls || ++work_ > most_work) return std::nullopt;
+    std::vector<double> operands;
+    for (const Expr& operand : expression.operands) {
+        const std::optional<double> value = evaluate(operand, known, depth);
+        if (!value) return std::nullopt;
+        operands.push_back(*value);
+    }
+    const auto finite = [](double value) { return std::isfinite(value) ? std::optional(value) : std::nullopt; };
+    const std::string& name = expression.text;
+    switch (expression.kind) {
+    case Expr::Kind::number:
+        return expression.number;
+    case Expr::Kind::name: {
+        if (const auto found = known.find(name); found != known.end()) return found->second;
+        if (const auto found = values_.find(name); found != values_.end()) return found->second;
+        const Definition* const global = definition(name);
+        return global && !global->is_function ? evaluate(global->value, {}, depth + 1) : std::nullopt;
+    }
+    case Expr::Kind::unary:
+        return name == "!" ? static_cast<double>(operands[0] == 0) : -operands[0];
+    case Expr::Kind::binary:
+        if (name == ".." || name == "+/-") return std::nullopt;
+        return finite(binary(name, operands[0], operands[1]));
+    case Expr::Kind::call: {
+        if (const Definition* const function = definition(name); function && function->is_function) {
+            Numbers inner;
+            if (function->parameters.size() != operands.size()) return std::nullopt;
+            for (std::size_t i = 0; i < operands.size(); ++i)
+                inner[function->parameters[i].name] = operands[i];
+            return evaluate(function->value, inner, depth + 1);
+        }
+        if (const auto plain = plain_functions().find(name); plain != plain_functions().end() && operands.size() == 1)
+            return finite(plain->second(operands[0]));
+        if (operands.size() == 2 && name == "mod")
+            return operands[1] == 0 ? std::nullopt
+                                    : finite(operands[0] - operands[1] * std::floor(operands[0] / operands[1]));
+        if (operands.size() == 2 && name == "atan2")
+            return std::atan2(operands[0], operands[1]) * 180 / std::numbers::pi;
+        if (operands.size() == 2 && name == "div") return finite(std::floor(operands[0] / operands[1]));
+        if (!operands.empty() && name == "min") return *std::ranges::min_element(operands);
+        if (!operands.empty() && name == "max") return *std::ranges::max_element(operands);
+        if (operands.size() == 3 && name == "if") return operands[0] != 0 ? operands[1] : operands[2];
+        if (operands.size() == 1 && name == "factorial") return finite(std::round(std::tgamma(operands[0] + 1)));
+        if (operands.size() == 1 && name == "isNatural") return operands[0] >= 0 && operands[0] == std::floor(operands[0]);
+        if (operands.empty() && (name == "ftime" || name == "frame")) return 0.0;
+        return std::nullopt;
+    }
+    default:
+        return std::nullopt;
+    }
+}
+
+std::optional<Interval> Expressions::range(const Expr& expression) const {
+    if (const std::optional<double> value = number(expression)) return Interval{*value, *value};
+    const auto hull = [](std::initializer_list<double> values) {
+        return Interval{std::min(values), std::max(values)};
+    };
+    if (expression.kind == Expr::Kind::unary && expression.text == "-") {
+        const std::optional<Interval> a = range(expression.operands[0]);
+        return a ? std::optional(hull({-a->least, -a->most})) : std::nullopt;
+    }
+    const bool drawn = expression.kind == Expr::Kind::call && expression.text.starts_with("rand") &&
+                       expression.text != "rand::normal";
+    if (drawn && expression.operands.empty()) return Interval{0, 1};
+    if (drawn && expression.operands.size() == 1) {
+        const std::optional<Interval> a = range(expression.operands[0]);
+        return a ? std::optional(hull({0, a->least, a->most})) : std::nullopt;
+    }
+    if (expression.operands.size() != 2) return std::nullopt;
+    const std::optional<Interval> a = range(expression.operands[0]), b = range(expression.operands[1]);
+    if (!a || !b) return std::nullopt;
+    if (drawn) return hull({a->least, a->most, b->least, b->most});
+    if (expression.kind != Expr::Kind::binary) return std::nullopt;
+    const std::string& sign = expression.text;
+    if (sign == "..") return hull({a->least, a->most, b->least, b->most});
+    if (sign == "+/-") return Interval{a->least - std::abs(b->most), a->most + std::abs(b->most)};
+    if (sign == "+") return Interval{a->least + b->least, a->most + b->most};
+    if (sign == "-") return Interval{a->least - b->most, a->most - b->least};
+    if (sign == "*")
+        return hull({a->least * b->least, a->least * b->most, a->most * b->least, a->most * b->most});
+    return std::nullopt;
+}
+
+} // namespace graftal::cfdg

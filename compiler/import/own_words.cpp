@@ -1,0 +1,21 @@
+#include "compiler/import/own_words.h"
+
+#include <functional>
+#include <set>
+
+namespace graftal {
+
+bool is_own_word(std::string_view word) {
+    static const std::set<std::string_view, std::less<>> words = {
+        "triangle", "sphere", "cube", "plane", "cylinder", "cone", "torus", "frustum", "superellipsoid", "polygon",
+        "bicubic_patch", "sphere_sweep", "mesh", "union", "instance", "terminal", "scatter", "below", "object",
+        "canonical", "repeat", "hue", "ink", "when", "else", "nothing", "tint", "material", "chance", "scale",
+        "rotate", "translate", "shear", "matrix", "projection", "use", "let", "inner", "camera", "light", "sky",
+        "haze", "film", "background", "ground", "steps", "count", "over", "except", "by", "apart", "seed", "turn",
+        "lean", "size", "weights", "weight", "x", "y", "z", "n", "pi", "rgb", "hsv", "to", "saturation", "value",
+        "alpha", "sin", "cos", "tan", "asin", "acos", "atan", "atan2", "sqrt", "exp", "log", "floor", "ceil", "abs",
+        "sign", "min", "max", "mod", "pow", "lerp", "smooth", "logistic", "random", "normal", "left"};
+    return words.contains(word);
+}
+
+} // namespace graftal

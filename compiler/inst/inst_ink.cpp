@@ -1,0 +1,326 @@
+#include "compiler/inst/inst_ink.h"
+
+#include <algorithm>
+#include <cmath>
+#include <deque>
+#include <set>
+#include <string>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "compiler/lower/lower_transform.h"
+#include "compiler/support/hue.h"
+#include "compiler/support/number.h"
+#include "compiler/support/srgb.h"
+
+namespace graftal {
+
+namespace {
+
+using StepKind = InstInkStep::Kind;
+
+/// Objects that a fine distinction of inks may make.
+constexpr std::size_t most_fine_objects = 100'000;
+/// How finely inks are told apart: the bits of each channel.
+constexpr std::array ink_bits = {16, 12, 9, 6};
+
+double wrapped_degrees(double degrees) {
+    const double inside = degrees - 360 * std::floor(degrees / 360);
+    return inside < 360 ? inside : 0;
+}
+
+/// Whether clamping between the two factors changes nothing.
+bool are_alike(double a, double b) {
+    return (a <= 1 && b <= 1) || (a >= 1 && b >= 1);
+}
+
+bool take_in(InkStep& step, const InkStep& later) {
+    if (step.kind != later.kind || step.channel != later.channel) return false;
+    switch (step.kind) {
+    case StepKind::set:
+        step = later;
+        return true;
+    case StepKind::change:
+        if (step.channel == InkChannel::hue) {
+            step.number = std::fmod(step.number + later.number, 360.0);
+            return true;
+        }
+        if (!are_alike(step.number, later.number)) return false;
+        step.number = std::min(step.number * later.number, 1e100);
+        return true;
+    case StepKind::toward:
+        if (step.channel == InkChannel::hue || step.number != later.number) return false;
+        step.share = 1 - (1 - step.share) * (1 - later.share);
+        return true;
+    }
+    return false;
+}
+
+/// The names of what a graph already has, and new ones.
+class FreeNames {
+  public:
+    void take(const std::string& name) { taken_.insert(name); }
+
+    /// `tip.ink7(2)` for `tip(2)`.
+    std::string like(const std::string& name) {
+        const std::size_t end = std::min(name.find('('), name.size());
+        std::string found;
+        do {
+            found = fmt::format("{}.ink{}{}", name.substr(0, end), ++numbers_[name.substr(0, end)],
+                                name.substr(end));
+        } while (!taken_.insert(found).second);
+        return found;
+    }
+
+  private:
+    std::set<std::string> taken_;
+    std::map<std::string, unsigned> numbers_;
+};
+
+/// One attempt to tell inks apart by so many bits.
+class InkStates {
+  public:
+    InkStates(const Graph& source, const InkTable& inks, const HueTable& hues, int bits, std::size_t most,
+              Lowering& lowering)
+        : source_(source), graph_(source), inks_(inks), hues_(hues), steps_(std::ldexp(1.0, bits)), most_(most),
+          lowering_(lowering) {
+        for (const Object& object : graph_.objects)
+            names_.take(object.name);
+        for (const Material& material : graph_.materials)
+            material_names_.take(material.name);
+        instances_ = instance_count(graph_);
+    }
+
+    /// False if the states make too many objects.
+    bool run() {
+        for (const auto& [id, changes] : inks_)
+            write(id, id, {});
+        while (!open_.empty() && good_) {
+            const Open next = open_.front();
+            open_.pop_front();
+            write(next.from, next.id, next.ink);
+        }
+        return good_;
+    }
+
+    Graph take_graph() { return std::move(graph_); }
+    HueTable take_hues() { return std::move(hues_); }
+
+  private:
+    using Key = std::array<std::int32_t, ink_channels>;
+
+    struct Open {
+        ObjectId from; ///< in the source
+        ObjectId id;
+        Ink ink;
+    };
+
+    Key key_of(const Ink& ink) const {
+        Key key{};
+        for (std::size_t i = 0; i < ink_channels; ++i) {
+            const double share = i == 0 ? ink.channels[i] / 360 : ink.channels[i];
+            key[i] = static_cast<std::int32_t>(std::lround(share * steps_));
+        }
+        key[0] %= static_cast<std::int32_t>(steps_);
+        return key;
+    }
+
+    /// Writes the object as it is under an ink into `id`.
+    void write(ObjectId from, ObjectId id, std::optional<Ink> ink) {
+        const auto changes = inks_.find(from);
+        const Object& source = source_.objects[from];
+        lowering_.meter.add(source.instances.size());
+        std::vector<Instance> instances = source.instances;
+        static const InkChange none;
+        for (std::size_t i = 0; i < instances.size() && good_; ++i)
+            hand_down(instances[i], changes == inks_.end() ? none : changes->second.instances[i], ink);
+        std::optional<Instance> terminal = source.terminal;
+        if (terminal) hand_down(*terminal, changes == inks_.end() ? none : changes->second.terminal, ink);
+        graph_.objects[id].instances = std::move(instances);
+        graph_.objects[id].terminal = std::move(terminal);
+    }
+
+    void hand_down(Instance& instance, const InkChange& change, const std::optional<Ink>& around) {
+        const std::optional<Ink> ink = change.apply(around);
+        if (!ink) return;
+        const Object& master = source_.objects[instance.master];
+        if (!master.primitive && !master.run) {
+            instance.master = state(instance.master, *ink);
+            return;
+        }
+        using enum InkChannel;
+        const Rgb screen = rgb_from_hsv((*ink)[hue], (*ink)[saturation], (*ink)[value]);
+        instance.tint = composed({Tint{linear_from_srgb(screen), 1}, instance.tint});
+        if ((*ink)[alpha] < 1) instance.material = sheer(instance.material, (*ink)[alpha]);
+    }
+
+    ObjectId state(ObjectId from, const Ink& ink) {
+        const auto [known, fresh] = states_.try_emplace({from, key_of(ink)}, 0);
+        if (!fresh) return known->second;
+        instances_ += source_.objects[from].instances.size();
+        if (graph_.objects.size() >= most_ || instances_ > most_ * max_instances_per_object) {
+            good_ = false;
+            return from;
+        }
+        Object copy = source_.objects[from];
+        copy.name = names_.like(copy.name);
+        known->second = graph_.add(std::move(copy));
+        if (const auto hues = hues_.find(from); hues != hues_.end()) hues_[known->second] = hues->second;
+        open_.push_back({from, known->second, ink});
+        return known->second;
+    }
+
+    /// The material, or a plain one, that lets the rest of the light through, to 1/64.
+    MaterialId sheer(const std::optional<MaterialId>& material, double alpha) {
+        const auto steps = static_cast<int>(std::lround(64 * alpha));
+        const auto [known, fresh] = sheer_.try_emplace({material, steps}, 0);
+        if (!fresh) return known->second;
+        Material copy = material ? source_.materials[*material] : Material();
+        if (!material) copy.name = "plain";
+        copy.transparency = 1 - (1 - copy.transparency) * steps / 64.0;
+        copy.name = material_names_.like(copy.name);
+        graph_.materials.push_back(std::move(copy));
+        return known->second = static_cast<MaterialId>(graph_.materials.size() - 1);
+    }
+
+    const Graph& source_;
+    Graph graph_;
+    const InkTable& inks_;
+    HueTable hues_;
+    double steps_;
+    std::size_t most_;
+    Lowering& lowering_;
+    std::map<std::pair<ObjectId, Key>, ObjectId> states_;
+    std::map<std::pair<std::optional<MaterialId>, int>, MaterialId> sheer_;
+    std::deque<Open> open_;
+    FreeNames names_, material_names_;
+    std::size_t instances_ = 0;
+    bool good_ = true;
+};
+
+class StepLowerer {
+  public:
+    StepLowerer(const Environment& environment, Diagnostics& diagnostics, const ChanceDraws& draws)
+        : environment_(environment), diagnostics_(diagnostics), draws_(draws) {}
+
+    std::optional<InkStep> lower(const InstInkStep& step) {
+        InkStep lowered{.kind = step.kind, .channel = step.channel};
+        if (step.kind == StepKind::set) return lower_set(step, lowered);
+        const bool hue = step.channel == InkChannel::hue;
+        const bool toward = step.kind == StepKind::toward;
+        const double most = hue ? 1e6 : toward ? 1 : 1e6;
+        const std::optional<double> number = in_range(step.values[0], hue ? -most : 0, most,
+                                                      hue      ? "a hue"
+                                                      : toward ? "this target"
+                                                               : "this factor");
+        if (!number) return std::nullopt;
+        lowered.number = toward && hue ? wrapped_degrees(*number) : *number;
+        if (!toward) return lowered;
+        const std::optional<double> share = in_range(step.values[1], 0, 1, "the share of the way");
+        if (!share) return std::nullopt;
+        lowered.share = *share;
+        return lowered;
+    }
+
+  private:
+    std::optional<double> in_range(const Expression& value, double least, double most, const char* what) {
+        const std::optional<double> number = evaluate(value, environment_, diagnostics_, draws_);
+        if (!number || (*number >= least && *number <= most)) return number;
+        diagnostics_.error(value.span, fmt::format("{} must lie between {} and {}, not at {}", what,
+                                                   shortest(least), shortest(most), shortest(*number)));
+        return std::nullopt;
+    }
+
+    std::optional<InkStep> lower_set(const InstInkStep& step, InkStep lowered) {
+        std::array<double, 3> numbers{};
+        const bool hsv = step.values.size() == 1;
+        const std::vector<Expression>& values = hsv ? step.values[0].operands : step.values;
+        for (std::size_t i = 0; i < numbers.size(); ++i) {
+            const bool hue = hsv && i == 0;
+            const std::optional<double> number =
+                in_range(values[i], hue ? -1e6 : 0, hue ? 1e6 : 1, hue ? "a hue" : "a number of a colour");
+            if (!number) return std::nullopt;
+            numbers[i] = hue ? wrapped_degrees(*number) : *number;
+        }
+        const Rgb given(numbers[0], numbers[1], numbers[2]);
+        const Hsv colour = hsv ? Hsv{given.r, given.g, given.b} : hsv_from_rgb(given);
+        lowered.ink.channels = {colour.hue_deg, colour.saturation, colour.value, 1};
+        return lowered;
+    }
+
+    const Environment& environment_;
+    Diagnostics& diagnostics_;
+    const ChanceDraws& draws_;
+};
+
+} // namespace
+
+void InkChange::add(const InkStep& step) {
+    if (step.kind == StepKind::set) steps_.clear();
+    // Steps of different channels can change places.
+    for (auto before = steps_.rbegin(); before != steps_.rend(); ++before) {
+        if (take_in(*before, step)) return;
+        if (before->kind == StepKind::set || before->channel == step.channel) break;
+    }
+    steps_.push_back(step);
+}
+
+void InkChange::add(const InkChange& later) {
+    for (const InkStep& step : later.steps_)
+        add(step);
+}
+
+std::optional<Ink> InkChange::apply(std::optional<Ink> ink) const {
+    for (const InkStep& step : steps_) {
+        if (step.kind == StepKind::set) {
+            ink = step.ink;
+            continue;
+        }
+        if (!ink) continue;
+        double& number = (*ink)[step.channel];
+        const bool hue = step.channel == InkChannel::hue;
+        if (step.kind == StepKind::toward)
+            number += step.share * (step.number - number);
+        else
+            number = hue ? number + step.number : number * step.number;
+        number = hue ? wrapped_degrees(number) : std::clamp(number, 0.0, 1.0);
+    }
+    return ink;
+}
+
+std::optional<InkChange> lower_ink(const std::vector<InstInkStep>& steps, const Environment& environment,
+                                   Diagnostics& diagnostics, const ChanceDraws& draws) {
+    InkChange change;
+    StepLowerer lowerer(environment, diagnostics, draws);
+    bool good = true;
+    for (const InstInkStep& step : steps) {
+        const std::optional<InkStep> lowered = lowerer.lower(step);
+        good = good && lowered;
+        if (lowered) change.add(*lowered);
+    }
+    if (!good) return std::nullopt;
+    return change;
+}
+
+bool apply_inks(Graph& graph, const InkTable& inks, HueTable& hues, Span place, Lowering& lowering) {
+    const std::size_t most = lowering.options.max_objects;
+    for (const int bits : ink_bits) {
+        const bool last = bits == ink_bits.back();
+        const std::size_t limit = last ? most : std::min(most, std::max(most_fine_objects, 2 * graph.objects.size()));
+        InkStates states(graph, inks, hues, bits, limit, lowering);
+        if (!states.run()) continue;
+        graph = states.take_graph();
+        hues = states.take_hues();
+        if (bits != ink_bits.front())
+            lowering.diagnostics.note(place, fmt::format("inks that differ by less than 1/{} are one here", 1 << bits));
+        return true;
+    }
+    lowering.diagnostics
+        .error(place, fmt::format("inks make more than {} objects or {} instances", most,
+                                  most * max_instances_per_object))
+        .with_hint("change the ink less often, or use changes that repeat, such as turns of 30 degrees");
+    return false;
+}
+
+} // namespace graftal

@@ -706,7 +706,9 @@ std::string Writer::transforms(const std::vector<Operator>& operators) {
             }
             text += fmt::format("  scale: {}", fmt::join(factors, ", "));
         } else {
-            const Affine map = map_of(Loop{.operators = {*op}});
+            Loop alone; // a temporary is a false alarm of GCC 12
+            alone.operators.push_back(*op);
+            const Affine map = map_of(alone);
             if (is_singular(map))
                 file_.diagnostics.error(op->span, "this matrix is singular: it flattens what it maps");
             text += "  matrix:";

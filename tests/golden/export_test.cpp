@@ -100,6 +100,16 @@ TEST_F(Export, AFolderThatIsNotThereIsTheEnvironments) {
     EXPECT_EQ(files(), "m.rifs");
 }
 
+/// With smaller models and pictures, and nobody asked what they take.
+TEST_F(Export, CommandsOfThePageWork) {
+    const std::vector<std::string> commands = commands_of("docs/export.md");
+    EXPECT_GE(commands.size(), 8u);
+    for (const std::string& command : commands) {
+        const RunResult result = graftal(command);
+        EXPECT_EQ(result.status, 0) << command << "\n" << result.err;
+    }
+}
+
 TEST_F(Export, ASquareOfStrokes) {
     write("square.lsys", "lsys square {\n axiom: F + F + F + F\n angle: 90\n}\n");
     ASSERT_EQ(graftal("export square.lsys --plotter --unit 10mm -o p.svg").status, 0);

@@ -134,10 +134,14 @@ TEST(ExportedScene, PlanesAreLeftOut) {
 }
 
 TEST(ExportedScene, WhatHasNoThicknessGetsALittle) {
-    Exporting exporting("m.inst", "object m {\n cube\n sphere scale: 1, 0, 1 translate: 3, 0, 0\n}\n");
+    Exporting exporting("m.rifs",
+                        "rifs m {\n codes 2d {\n stem: 0 0 0 .16 0 0 .1\n frond: .8 .1 -.1 .8 0 1.6 .9\n }\n"
+                        " terminal sphere\n}\n");
+    exporting.options.compile.lower.steps = 3;
     const auto scene = exporting.scene(SceneMeshes::shared);
     ASSERT_TRUE(scene) << exporting.said();
-    EXPECT_EQ(scene->thickened, 1u);
+    EXPECT_EQ(count(*scene).leaves, 8);
+    EXPECT_EQ(scene->thickened, 7u); // all but that of frond alone
     for (const SceneLeaf& leaf : leaves_of(*scene))
         EXPECT_FALSE(is_singular(leaf.world_from_shape));
 }

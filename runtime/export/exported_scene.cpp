@@ -83,6 +83,7 @@ SceneLook look_through(const ExportedScene& scene, const SceneLook& look, const 
     after.inherited = node.mean.over(look.inherited);
     after.material = look.material;
     after.turns = part.turns;
+    after.colourless = look.colourless;
     if (part.material) {
         after.material = part.material;
         after.inherited = scene.materials[*part.material].rgb;

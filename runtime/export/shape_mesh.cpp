@@ -1,5 +1,9 @@
 #include "runtime/export/shape_mesh.h"
 
+#include <algorithm>
+#include <numeric>
+#include <tuple>
+
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 
@@ -10,6 +14,30 @@
 namespace graftal {
 
 namespace {
+
+/// Corners that lie nearer to each other than this share of the mesh's size are one: the poles of some meshes
+/// are many corners, which rounding has taken apart.
+constexpr double one_corner = 1e-9;
+
+/// Gives them one place, to the last bit. O(n log n).
+void weld(std::vector<Vec3>& vertices) {
+    Box box;
+    for (const Vec3& vertex : vertices)
+        box.include(vertex);
+    if (box.empty()) return;
+    const double near = one_corner * largest_entry(box.size());
+    std::vector<std::uint32_t> order(vertices.size());
+    std::iota(order.begin(), order.end(), 0u);
+    std::ranges::sort(order, [&](std::uint32_t a, std::uint32_t b) {
+        return std::tie(vertices[a].x, a) < std::tie(vertices[b].x, b);
+    });
+    for (std::size_t i = 0; i < order.size(); ++i)
+        for (std::size_t j = i + 1; j < order.size(); ++j) {
+            const Vec3 apart = vertices[order[j]] - vertices[order[i]];
+            if (!(apart.x <= near)) break;
+            if (largest_entry(apart) <= near) vertices[order[j]] = vertices[order[i]];
+        }
+}
 
 /// Each triangle has its own corners.
 ShapeMesh cornered(const TessellatedPrimitive& shape, const Primitive& primitive, const TextureSpace* space) {
@@ -45,9 +73,13 @@ const ShapeMesh& ShapeMeshes::of(std::uint32_t number, const SceneLook& look) {
     const auto known = known_.find(key);
     if (known != known_.end()) return known->second;
     const TessellatedPrimitive& mesh = tessellated(shape.primitive, shape.fineness);
+    ShapeMesh& made = known_[key];
     if (!has_picture(look) && !mesh.normals.empty())
-        return known_[key] = {mesh.vertices, mesh.normals, {}, mesh.triangles};
-    return known_[key] = cornered(mesh, shape.primitive, has_picture(look) ? &space : nullptr);
+        made = {mesh.vertices, mesh.normals, {}, mesh.triangles};
+    else
+        made = cornered(mesh, shape.primitive, has_picture(look) ? &space : nullptr);
+    weld(made.vertices);
+    return made;
 }
 
 PlacedShape::PlacedShape(const ShapeMesh& shape_mesh, const Affine& at)

@@ -6,7 +6,8 @@ import re
 import sys
 from pathlib import Path
 
-TOKEN = re.compile(r'''\s*(?:\#(?P<comment>[^\n]*)|(?P<string>"(?:[^"\\\n]|\\.)*")|(?P<path><[^<>\n]*>)|(?P<asset>@[^@\n]*@)|
+TOKEN = re.compile(r'''\s*(?:\#(?P<comment>[^\n]*)|(?P<string>"(?:[^"\\\n]|\\.)*")|(?P<path><[^<>\n]*>)|
+                       (?P<numbers>\[[-+.,()eE\d\s]+\])|(?P<asset>@[^@\n]*@)|
                        (?P<number>-?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)(?![\w.])|(?P<word>[A-Za-z_][\w:.]*(?:\[\])?)|
                        (?P<sign>[()\[\]{}=,]))''', re.X)
 SPECIFIERS = {'def', 'class', 'over'}
@@ -67,6 +68,13 @@ class Reader:
 
     def value(self):
         kind, text, _ = self.tokens[self.next]
+        if kind == 'numbers':
+            self.next += 1
+            try:
+                return json.loads(text.replace('(', '[').replace(')', ']'))
+            except ValueError:
+                self.next -= 1
+                self.fault('no list of numbers')
         if text in ('(', '['):
             end = {'(': ')', '[': ']'}[text]
             self.next += 1
@@ -227,6 +235,8 @@ class Stage:
                 # An instance is its prototype, which all share.
                 target = child.metadata.get('references')
                 if child.metadata.get('instanceable'):
+                    if target not in self.prims:
+                        raise Fault(f'{child.path} references {target}, which is not there')
                     parts.append((target, 1, 1))
                 else:
                     parts.append((child.path, 1, 0))

@@ -1,0 +1,121 @@
+// The command `export`: what it says, and what it leaves.
+
+#include <filesystem>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/golden/command_line.h"
+
+namespace graftal {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::StartsWith;
+
+class Export : public CommandLine {
+  protected:
+    void SetUp() override {
+        CommandLine::SetUp();
+        write("m.rifs",
+              "rifs m {\n map a { scale 1/2 }\n map b { scale 1/2 translate <1, 0, 0> }\n map c { scale 1/2 "
+              "translate <0, 1, 0> }\n terminal cube\n}\n");
+    }
+};
+
+TEST_F(Export, WritesEachFormatAndSaysWhat) {
+    const std::pair<const char*, const char*> cases[] = {
+        {"a.obj", "a.obj: 27 leaves: 324 triangles, 1 materials\n"},
+        {"b.ply", "b.ply: 27 leaves: 324 triangles\n"},
+        {"c.stl", "c.stl: 27 leaves: 324 triangles, 3.75 x 0.25 x 2 mm\n"},
+        {"d.usda", "d.usda: 27 leaves: "},
+        {"e.glb", "e.glb: 27 leaves: "},
+        {"f.gltf", "f.gltf: 27 leaves: "},
+        {"g.pbrt", "g.pbrt: 27 leaves: "},
+        {"h.xml", "h.xml: 27 leaves: "},
+    };
+    for (const auto& [name, said] : cases) {
+        const RunResult result = graftal(std::string("export m.rifs --steps 3 -o ") + name);
+        EXPECT_EQ(result.status, 0) << name << result.err;
+        if (name != std::string("c.stl")) EXPECT_THAT(result.err, StartsWith(said));
+        EXPECT_EQ(result.out, "");
+    }
+    EXPECT_EQ(files(), "a.mtl a.obj b.ply c.stl d.usda e.glb f.gltf g.pbrt h.serialized h.xml m.rifs");
+    EXPECT_EQ(temporary_files(), "");
+}
+
+TEST_F(Export, RefusesWrongCommandLines) {
+    const std::pair<const char*, const char*> cases[] = {
+        {"export m.rifs", "--output is required"},
+        {"export m.rifs -o a.fbx", "graftal: 'a.fbx': the name must end in .usda, "},
+        {"export m.rifs -o a", "graftal: 'a': the name must end in .usda, "},
+        {"export m.rifs -o a.obj --unit 3mm",
+         "graftal: --unit is for .usda, .gltf, .glb, .stl, .svg, not for .obj"},
+        {"export m.rifs -o a.stl --unit 3",
+         "graftal: --unit: '3' is not a length such as 25mm, 1cm, 2m or 1in"},
+        {"export m.rifs -o a.stl --unit 0mm", "graftal: --unit: '0mm' is not a length"},
+        {"export m.rifs -o a.stl --unit nanmm", "graftal: --unit: 'nanmm' is not a length"},
+        {"export m.rifs -o a.stl --levels 3", "graftal: --levels is for .usda, not for .stl"},
+        {"export m.rifs -o a.usda --levels 1", "graftal: --levels: '1' is not a whole number from 2 to 1000"},
+        {"export m.rifs -o a.usda --nodes 3", "graftal: --nodes is for .gltf, .glb, not for .usda"},
+        {"export m.rifs -o a.obj --plotter", "graftal: --plotter is for .svg, not for .obj"},
+        {"export m.rifs -o a.ply --instancing", "graftal: --instancing is for .gltf, .glb, not for .ply"},
+        {"export m.rifs -o a.ply --limit 0", "graftal: --limit: '0' is not a number of bytes"},
+    };
+    for (const auto& [command, said] : cases) {
+        const RunResult result = graftal(command);
+        EXPECT_EQ(result.status, 2) << command;
+        EXPECT_THAT(result.err, HasSubstr(said)) << command;
+    }
+    EXPECT_EQ(files(), "m.rifs");
+}
+
+TEST_F(Export, RefusesModelsThatDoNotFit) {
+    const std::pair<const char*, const char*> cases[] = {
+        {"export m.rifs --steps 80 -o a.ply",
+         "error: 'a.ply' would have 1.47e+38 leaves with 1.77e+39 triangles"},
+        {"export m.rifs --steps 8 --limit 1K -o a.stl",
+         "error: 'a.stl' would have 6561 leaves with 78732 triangles, 3.75 MiB"},
+        {"export m.rifs --steps 80 -o a.glb", "error: with "},
+        {"export m.rifs --steps 80 --limit 1K -o a.usda", "error: 'a.usda' would have "},
+        {"export m.rifs --error 0 -o a.usda", "error: the recursion has no end"},
+        {"export m.rifs --steps 3 -o a.svg", "error: the model is in no plane"},
+        {"export none.rifs -o a.obj", "cannot read 'none.rifs'"},
+    };
+    for (const auto& [command, said] : cases) {
+        const RunResult result = graftal(command);
+        EXPECT_NE(result.status, 0) << command;
+        EXPECT_THAT(result.err, HasSubstr(said)) << command;
+    }
+    EXPECT_EQ(files(), "m.rifs");
+}
+
+TEST_F(Export, AFolderThatIsNotThereIsTheEnvironments) {
+    for (const char* name :
+         {"no/a.obj", "no/a.ply", "no/a.stl", "no/a.usda", "no/a.glb", "no/a.pbrt", "no/a.xml"}) {
+        const RunResult result = graftal(std::string("export m.rifs --steps 2 -o ") + name);
+        EXPECT_EQ(result.status, 3) << name;
+        EXPECT_THAT(result.err, HasSubstr("cannot write 'no/a.")) << result.err;
+    }
+    EXPECT_EQ(files(), "m.rifs");
+}
+
+/// With smaller models and pictures, and nobody asked what they take.
+TEST_F(Export, CommandsOfThePageWork) {
+    const std::vector<std::string> commands = commands_of("docs/export.md");
+    EXPECT_GE(commands.size(), 8u);
+    for (const std::string& command : commands) {
+        const RunResult result = graftal(command);
+        EXPECT_EQ(result.status, 0) << command << "\n" << result.err;
+    }
+}
+
+TEST_F(Export, ASquareOfStrokes) {
+    write("square.lsys", "lsys square {\n axiom: F + F + F + F\n angle: 90\n}\n");
+    ASSERT_EQ(graftal("export square.lsys --plotter --unit 10mm -o p.svg").status, 0);
+    const std::string text = read("p.svg");
+    EXPECT_EQ(text.find("<path"), text.rfind("<path")) << text; // one stroke
+}
+
+} // namespace
+} // namespace graftal

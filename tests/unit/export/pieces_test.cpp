@@ -1,0 +1,141 @@
+// The small pieces of exporting.
+
+#include <cmath>
+#include <random>
+
+#include <glm/matrix.hpp>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "runtime/export/pbr.h"
+#include "runtime/export/plotter.h"
+#include "runtime/export/rigid_parts.h"
+
+namespace graftal {
+namespace {
+
+Affine random_map(std::mt19937& random) {
+    std::uniform_real_distribution<double> number(-2, 2);
+    Affine map;
+    for (int i = 0; i < 3; ++i) {
+        for (int j = 0; j < 3; ++j)
+            map.linear[i][j] = number(random);
+        map.translation[i] = number(random);
+    }
+    return map;
+}
+
+Affine map_of(const MoveTurnScale& at) {
+    return Affine::translate(at.move) * Affine{glm::mat3_cast(at.turn), Vec3(0.0)} * Affine::scale(at.scale);
+}
+
+double apart(const Affine& a, const Affine& b) {
+    double most = largest_entry(a.translation - b.translation);
+    for (int i = 0; i < 3; ++i)
+        most = std::max(most, largest_entry(a.linear[i] - b.linear[i]));
+    return most;
+}
+
+TEST(RigidParts, TwoMovesAreAnyMap) {
+    std::mt19937 random(7);
+    for (int i = 0; i < 2000; ++i) {
+        Affine map = random_map(random);
+        if (i % 5 == 1) map.linear[1] = Vec3(0.0);                      // flat
+        if (i % 5 == 2) map.linear[2] = 2.0 * map.linear[0];            // flat another way
+        if (i % 25 == 3) map.linear[1] = map.linear[2] = map.linear[0]; // a line
+        if (i % 25 == 4) map.linear = Mat3(0.0);
+        if (i % 25 == 5) map.linear *= 1e-80;
+        const auto [outer, inner] = two_moves(map);
+        const double size = std::max(largest_entry(map.linear), 1e-300);
+        const Affine again = map_of(outer) * map_of(inner);
+        EXPECT_LT(apart({map.linear / size, map.translation}, {again.linear / size, again.translation}), 1e-9)
+            << i;
+        EXPECT_EQ(inner.scale, Vec3(1.0));
+    }
+}
+
+TEST(RigidParts, AMoveIsWhatKeepsRightAngles) {
+    std::mt19937 random(8);
+    std::uniform_real_distribution<double> number(-2, 2);
+    for (int i = 0; i < 2000; ++i) {
+        const Affine turned = Affine::rotate(Vec3(number(random), number(random), 1), 90 * number(random));
+        Affine map = Affine::translate(Vec3(number(random), 0, 1)) * turned *
+                     Affine::scale(Vec3(number(random), number(random), number(random)));
+        if (i % 7 == 0) map.linear[1] = Vec3(0.0);
+        const auto one = move_turn_scale(map);
+        ASSERT_TRUE(one);
+        EXPECT_LT(apart(map, map_of(*one)), 1e-9) << i;
+        const Affine sheared = turned * Affine::scale(Vec3(1, 2, 3)) * Affine::rotate(Vec3(1, 1, 1), 40);
+        EXPECT_FALSE(move_turn_scale(sheared));
+    }
+}
+
+TEST(PlaneView, PicturesOfPartsGoTogether) {
+    std::mt19937 random(9);
+    std::uniform_real_distribution<double> number(-2, 2);
+    for (int i = 0; i < 500; ++i) {
+        const SeenFrame world(Vec3(number(random), number(random), number(random) + 3));
+        const Affine a = random_map(random), b = random_map(random);
+        if (is_singular(a, 1e-3) || is_singular(b, 1e-3)) continue;
+        const SeenFrame in_a = world.of_part(a), in_b = in_a.of_part(b);
+        const Affine2 whole = world.picture_of(in_a, a) * in_a.picture_of(in_b, b);
+        const Vec3 point(number(random), number(random), number(random));
+        const Point2 direct = world((a * b)(point)), nested = whole(in_b(point));
+        for (std::size_t axis = 0; axis < 2; ++axis)
+            EXPECT_NEAR(direct[axis], nested[axis], 1e-6) << i;
+    }
+}
+
+TEST(PlaneView, AnOutlineIsConvex) {
+    const std::vector<Point2> outline =
+        convex_outline({{0, 0}, {1, 0}, {2, 0}, {2, 2}, {1, 1}, {0, 2}, {0, 1}, {0, 0}});
+    EXPECT_THAT(outline,
+                testing::UnorderedElementsAre(Point2{0, 0}, Point2{2, 0}, Point2{2, 2}, Point2{0, 2}));
+    EXPECT_TRUE(convex_outline({}).empty());
+    EXPECT_EQ(convex_outline({{1, 1}, {1, 1}}).size(), 1u);
+    EXPECT_EQ(convex_outline({{0, 0}, {1, 1}, {2, 2}}).size(), 2u);
+}
+
+TEST(Plotter, JoinsStrokesAndDropsThoseDrawn) {
+    const std::vector<PenStroke> path = pen_path(
+        {{{0, 0}, {1, 0}}, {{5, 5}, {6, 5}}, {{2, 0}, {1, 0}}, {{1, 0}, {0, 0}}, {{2, 0}, {2, 1}}}, 1e-6);
+    ASSERT_EQ(path.size(), 2u);
+    EXPECT_EQ(path[0], (PenStroke{{0, 0}, {1, 0}, {2, 0}, {2, 1}}));
+    EXPECT_EQ(path[1].size(), 2u);
+}
+
+TEST(Plotter, LiftsThePenForShorterWays) {
+    std::mt19937 random(10);
+    std::uniform_real_distribution<double> number(0, 100);
+    std::vector<PenStroke> strokes;
+    double length = 0;
+    for (int i = 0; i < 3000; ++i) {
+        const Point2 from{number(random), number(random)};
+        strokes.push_back({from, {from[0] + 1, from[1]}});
+        length += 1;
+    }
+    const std::vector<PenStroke> path = pen_path(strokes, 1e-6);
+    double drawn = 0;
+    for (const PenStroke& stroke : path)
+        for (std::size_t i = 1; i < stroke.size(); ++i)
+            drawn += std::hypot(stroke[i][0] - stroke[i - 1][0], stroke[i][1] - stroke[i - 1][1]);
+    EXPECT_NEAR(drawn, length, 1e-6);
+    EXPECT_LT(lifted_length(path), 0.05 * lifted_length(strokes));
+    EXPECT_TRUE(pen_path({}, 1).empty());
+}
+
+TEST(Pbr, FollowsHighlightsAndMirrors) {
+    Material dull, glossy, mirror;
+    dull.specular = 0;
+    glossy.specular = 0.8;
+    glossy.roughness = 0.001;
+    mirror.reflection = 0.9;
+    mirror.metallic = 1;
+    EXPECT_EQ(pbr_of(dull).roughness, 1);
+    EXPECT_LT(pbr_of(glossy).roughness, 0.4);
+    EXPECT_EQ(pbr_of(mirror).roughness, 0);
+    EXPECT_EQ(pbr_of(mirror).metallic, 1);
+}
+
+} // namespace
+} // namespace graftal

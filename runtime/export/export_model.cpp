@@ -22,6 +22,13 @@ StageOptions export_stages(const ExportModelOptions& options, const AnalysedMode
     return stages;
 }
 
+/// What a node and a part take, with all that is made of them.
+SceneLimits scene_limits(std::uint64_t memory_bytes) {
+    constexpr std::uint64_t bytes_of_node = 1024, bytes_of_part = 256;
+    return {static_cast<std::size_t>(memory_bytes / bytes_of_node),
+            static_cast<std::size_t>(memory_bytes / bytes_of_part)};
+}
+
 void note_what_is_missing(const ExportedScene& scene, Span model, Diagnostics& diagnostics) {
     if (scene.left_out_planes)
         diagnostics.note(model, "planes have no end, so that graftal leaves them out of the file");
@@ -48,7 +55,7 @@ std::optional<std::string> export_model(PictureSession& session, const ExportMod
     const Span root = graph.objects[graph.root].span;
     std::optional<ExportedScene> scene =
         build_scene(*prepared, viewed->view, resolved(stages.detail, *viewed), format->meshes, root,
-                    SceneLimits(), session.control(), compilation.diagnostics);
+                    scene_limits(options.file.memory_bytes), session.control(), compilation.diagnostics);
     if (!scene) return std::nullopt;
     note_what_is_missing(*scene, root, compilation.diagnostics);
     ExportReport report;

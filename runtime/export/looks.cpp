@@ -169,10 +169,11 @@ std::optional<ExportedScene> resolve_looks(const ExportedScene& scene, const Loo
         if (!resolved) continue;
         if (detail.least_open > 0)
             diagnostics.warning(
-                model, fmt::format("this model has so many tints that graftal tells them apart by "
-                                   "1/{:.0f}, and shows parts in their mean colour where tints leave "
-                                   "no more than 1/{:.0f} of it",
-                                   1 / detail.grain, 1 / detail.least_open));
+                model,
+                fmt::format("this model has so many tints that graftal tells them apart by 1/{:.0f}, and "
+                            "shows in its mean colour what lies behind tints{}",
+                            1 / detail.grain,
+                            last ? "" : fmt::format(" that leave 1/{:.0f} of it", 1 / detail.least_open)));
         return resolved;
     }
     diagnostics

@@ -53,6 +53,7 @@ void hold(Options& options, const fuzz::Scratch& scratch) {
     options.points.points = std::min<std::uint64_t>(options.points.points.value_or(2000), 2000);
     options.points.card.clear();
     options.render.keep.clear();
+    options.file.most_bytes = std::min<std::uint64_t>(options.file.most_bytes, 1u << 20);
 }
 
 /// What a command writes to, in the folder; "" where it says something.
@@ -64,6 +65,8 @@ std::string output_of(const Options& options) {
         return "out" + (ending.empty() ? ".png" : ending);
     case Command::compile:
         return ending == ".inc" ? "out.inc" : "out.pov";
+    case Command::export_model:
+        return "out" + ending;
     default:
         return {};
     }

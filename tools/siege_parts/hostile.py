@@ -9,13 +9,15 @@ OPTIONS = {
                '--progressive', '--flatten', '--visible-only', '--keep', '--aovs', '--tile'],
     'compile': ['--size', '--error', '--error-world', '--work', '--zoom', '--at', '--camera', '--flatten', '--visible-only', '--name'],
     'points': ['--size', '--points', '--color', '--exposure', '--camera', '--zoom', '--at', '--transparent', '--card'],
+    'export': ['--limit', '--unit', '--levels', '--nodes', '--instancing', '--plotter', '--size', '--error', '--error-world',
+               '--zoom', '--at', '--camera'],
     'animate': ['--frames', '--fps', '--turn', '--ease', '--camera', '--zoom', '--keep-frames'],
     'stats': ['--json'], 'check': [], 'print': ['--after'], 'graph': ['--after'], 'collage': ['--threshold', '--light', '--json'],
     'compare': ['--threshold', '-q'],
 }
 COMMON = ['--steps', '--set', '--seed', '--exact', '--memory', '--threads', '--dump-after', '--time', '-q', '--root']
 FLAGS = {'--linear', '--progressive', '--aovs', '--flatten', '--visible-only', '--transparent', '--json', '--light', '--exact', '--time', '-q',
-         '--keep-frames'}
+         '--keep-frames', '--instancing', '--plotter'}
 VALUES = {
     '--size': [*SMALL, *SMALL, '32768x1', '0x0', '64', '99999x99999'],
     '--tile': ['0,0,8x8', '60,30,9x9', '0,0,1x1', '-1,0,1x1', '0,0,0x0', '1,2', '2147483647,0,1x1', ',,x'],
@@ -31,16 +33,19 @@ VALUES = {
     '--ease': ['smooth', 'linear', 'x'], '--frames': ['1', '2', '0', '1e9'], '--threads': ['1', '2', '512', '0'],
     '--antialias': ['off', '1', '9', '10'], '--name': ['Far', 'far', 'A' * 25, 'A;B'], '--keep': ['kept', 'model.inst'],
     '--card': ['card.inst', 'card.rifs', '/x/card.inst'], '--root': ['.', '/', 'nowhere', '/tmp'],
+    '--limit': ['1', '1K', '1M', '64M', '0'], '--unit': ['1mm', '1e-100m', '1e97m', '0mm', '3', 'in'], '--levels': ['1', '2', '4', '1000'],
+    '--nodes': ['1', '3', '1000', '0'],
     '--work': ['0.01', '1', '1e9', '0', '1e-300'], '--error': ['0', '0.5', '2', '1000', '1e308', '-1'],
 }
-OUTPUTS = {'render': ['.png', '.exr'], 'compile': ['.pov', '.inc'], 'points': ['.png', '.exr', '.ply'], 'animate': ['.gif', '.png'],
+OUTPUTS = {'render': ['.png', '.exr'], 'compile': ['.pov', '.inc'], 'points': ['.png', '.exr', '.ply'],
+           'export': ['.usda', '.gltf', '.glb', '.obj', '.ply', '.stl', '.svg', '.pbrt', '.xml', '.fbx'], 'animate': ['.gif', '.png'],
            'graph': ['.dot']}
 
 
 def command(draw, model, others):
     """The words of a command line, and the name of the file that it writes, or ''."""
     name = draw.weighted({'check': 3, 'compile': 4, 'render': 4, 'stats': 2, 'print': 1, 'points': 2, 'graph': 1, 'collage': 1,
-                          'compare': 1, 'animate': 0.3})
+                          'compare': 1, 'animate': 0.3, 'export': 2})
     words = [name]
     if name == 'compare':
         words += [draw.pick(others), draw.pick(others)]
@@ -56,12 +61,12 @@ def command(draw, model, others):
             words.append(draw.pick(values if draw.chance(0.9) else NUMBERS))
     if name in ('render', 'animate'):
         words += ['--engine', 'native']
-    if name in ('render', 'animate', 'points', 'compile') and '--size' not in words and draw.chance(0.9):
+    if name in ('render', 'animate', 'points', 'compile', 'export') and '--size' not in words and draw.chance(0.9):
         words += ['--size', draw.pick(SMALL)]
     if name == 'animate' and '--frames' not in words:
         words += ['--frames', '2']
     output = ''
-    if name in OUTPUTS and (name in ('render', 'animate') or draw.chance(0.8)):
+    if name in OUTPUTS and (name in ('render', 'animate', 'export') or draw.chance(0.8)):
         output = 'out' + draw.pick(OUTPUTS[name])
         words += ['-o', output]
     elif name == 'points':

@@ -143,7 +143,7 @@ def is_due(name, words, output, code):
     if code not in (0, 1):
         return name.endswith('.frames') if 'animate' in words else name == output and '--progressive' in words
     scene = r'(model\.\w+)(_[IPT]_\d+\.png|_sky\.exr)$' if 'compile' in words and output else '$^'
-    stem = re.escape(output.rsplit('.', 1)[0]) + r'(_[IPT]_\d+|_sky)?\.\w+$' if output else '$^'
+    stem = re.escape(output.rsplit('.', 1)[0]) + r'(_[IPT]_\d+|_sky|_\d+)?\.\w+$' if output else '$^'
     cards = [file for option, card in zip(words, words[1:]) if option == '--card'
              for file in (card, card.rsplit('.', 1)[0] + '.png')]
     return bool(re.match(stem, name) or re.match(scene, name)) or name in cards

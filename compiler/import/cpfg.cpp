@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 #include <filesystem>
 #include <map>
 #include <set>
@@ -412,11 +413,42 @@ class CpfgTranslator {
 
     // -------------------------------------------------------------------------------------------- writing
 
+    /// cpfg chooses by the shares of the probabilities in their sum.
+    void share_probabilities() {
+        for (auto& [section, productions] : productions_) {
+            std::map<std::string, double> sums;
+            const auto key = [](const CpfgProduction& p) {
+                return p.predecessor.empty()
+                           ? ""
+                           : p.predecessor[0].symbol + std::to_string(p.predecessor[0].parameters.size());
+            };
+            const auto number = [](const std::string& text) {
+                char* end = nullptr;
+                const double value = std::strtod(text.c_str(), &end);
+                return end != text.c_str() && *end == '\0' && std::isfinite(value) ? value : -1;
+            };
+            bool plain = true;
+            for (const CpfgProduction& p : productions) {
+                if (p.probability.empty()) continue;
+                plain =
+                    plain && number(p.probability) >= 0 && p.condition.empty() && !p.has_left && !p.has_right;
+                sums[key(p)] += number(p.probability);
+            }
+            if (!plain) continue;
+            for (CpfgProduction& p : productions)
+                if (!p.probability.empty() && std::abs(sums[key(p)] - 1) > 1e-9 && sums[key(p)] > 0)
+                    p.probability += fmt::format("/{}", sums[key(p)]);
+        }
+    }
+
     Translation write() {
+        share_probabilities();
         Translation out{"lsys", {}, {}};
         comments(out, head_comments_, "");
-        out.line(fmt::format("lsys {} {{", block_name()), model_.span);
         const std::string body = strings_first();
+        for (const char letter : used_surfaces_)
+            out.line(fmt::format("use {} = \"{}\"", surface_name(letter), view_.surfaces[letter].file));
+        out.line(fmt::format("lsys {} {{", block_name()), model_.span);
         if (!declared_.empty()) out.line("  modules " + declared());
         for (const CpfgMacro& macro : source_.macros)
             if (lets_.contains(macro.name) && uses(body, macro.name))
@@ -492,12 +524,12 @@ class CpfgTranslator {
         const std::vector<double>& values = view_.functions[place].values;
         std::string text = fmt::format("  table {} =", table_name(place));
         for (std::size_t i = 0; i < values.size(); ++i) {
-            text += fmt::format("{} {:.6g}", i == 0 ? "" : ",", values[i]);
-            if (i % most_table_text == most_table_text - 1 && i + 1 < values.size()) {
-                out.line(text + ",");
-                text = "    ";
-                continue;
+            if (i > 0) text += ",";
+            if (i > 0 && i % most_table_text == 0) {
+                out.line(text);
+                text = "   ";
             }
+            text += fmt::format(" {:.6g}", values[i]);
         }
         out.line(text);
     }
@@ -627,10 +659,7 @@ class CpfgTranslator {
     std::string text_of(const CpfgModule& module, Span span, bool raw) {
         const std::string& symbol = module.symbol;
         if (symbol[0] == '@' && symbol.size() > 1) return directive(module, span);
-        if (symbol[0] == '~') {
-            error(span, fmt::format("the surface '{}' has no translation", symbol));
-            return "";
-        }
+        if (symbol[0] == '~') return surface(module, span);
         if (symbol == "?" || symbol == "$") {
             error(span, symbol == "?" ? "queries of the turtle or the environment (?) have no translation"
                                       : "sub-L-systems ($) have no translation");
@@ -648,18 +677,36 @@ class CpfgTranslator {
         return name_of(symbol) + parameters(module, span, raw);
     }
 
-    std::string width(const CpfgModule& module, Span span) {
-        if (module.parameters.empty()) {
-            if (view_.width_increment != 0)
-                error(span, fmt::format("'{}' without a width, which adds {} to it, has no translation",
-                                        module.symbol, view_.width_increment));
+    std::string surface(const CpfgModule& module, Span span) {
+        const auto known = view_.surfaces.find(module.symbol.size() > 1 ? module.symbol[1] : ' ');
+        if (known == view_.surfaces.end()) {
+            error(span, fmt::format("the view file names no surface for '{}'", module.symbol));
             return "";
         }
+        if (module.parameters.size() > 1) {
+            error(span, fmt::format("'{}' with a scale for each axis has no translation", module.symbol));
+            return "";
+        }
+        used_surfaces_.insert(known->first);
+        warn_once(span, "surfaces have the material of leaves, whatever the colour of the turtle");
+        const std::string scale = fmt::format("{}", known->second.scale);
+        if (module.parameters.empty()) return fmt::format("~{}({})", surface_name(known->first), scale);
+        return fmt::format("~{}({}*({}))", surface_name(known->first), scale,
+                           expression(module.parameters[0], span));
+    }
+
+    static std::string surface_name(char letter) { return "surface_" + std::string(1, letter); }
+
+    std::string width(const CpfgModule& module, Span span) {
         if (view_.width_in_pixels) {
             warn_once(span, "widths in pixels are left out: lines are as thick as the figure asks");
             return "";
         }
-        return "!" + parameters(module, span, false);
+        if (!module.parameters.empty()) return "!" + parameters(module, span, false);
+        if (view_.width_increment != 0)
+            error(span, fmt::format("'{}' without a width, which adds {} to it, has no translation",
+                                    module.symbol, view_.width_increment));
+        return "";
     }
 
     std::string directive(const CpfgModule& module, Span span) {
@@ -703,6 +750,7 @@ class CpfgTranslator {
     std::set<std::string> globals_;
     std::vector<std::pair<std::string, std::string>> globals_values_;
     std::set<std::size_t> used_tables_;
+    std::set<char> used_surfaces_;
     std::set<std::string> declared_;
 };
 

@@ -61,10 +61,9 @@ class ExpressionWriter {
                     ++end;
                 const std::string_view name = text.substr(i, end - i);
                 i = end;
-                while (i < text.size() && text[i] == ' ')
-                    ++i;
-                if (i < text.size() && text[i] == '(')
-                    out += call(name, text, i, depth);
+                const std::size_t next = text.find_first_not_of(' ', end);
+                if (next != std::string_view::npos && text[next] == '(')
+                    out += call(name, text, i = next, depth);
                 else
                     out += name;
             } else if (c == '(') {

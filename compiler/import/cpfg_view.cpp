@@ -106,7 +106,16 @@ class ViewReader {
             if (value.starts_with("cylinder") || value.starts_with("polygon")) view_.width_in_pixels = false;
             if (value.starts_with("pixel") || value.starts_with("wire")) view_.width_in_pixels = true;
         }
-        if (word == "tropism" || word == "stropism" || word == "torque") view_.has_tropism = true;
+        if (word == "surface") {
+            std::istringstream words(value);
+            char letter = 0;
+            CpfgSurface surface;
+            if (words >> letter >> surface.file) {
+                words >> surface.scale;
+                if (!std::isfinite(surface.scale) || surface.scale <= 0) surface.scale = 1;
+                view_.surfaces[letter] = surface;
+            }
+        }
         if (word == "function" || word == "function set") read_functions(value.substr(0, value.find(' ')));
     }
 

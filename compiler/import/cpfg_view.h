@@ -1,5 +1,6 @@
 #pragma once
 
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -15,6 +16,12 @@ struct CpfgFunction {
     std::vector<double> values;
 };
 
+/// A surface that `~` and a letter place.
+struct CpfgSurface {
+    std::string file;
+    double scale = 1;
+};
+
 /// What the view file of a model says of the turtle.
 struct CpfgView {
     double angle_deg = 45;
@@ -24,8 +31,8 @@ struct CpfgView {
     std::optional<double> width; ///< in the units of the model
     double width_increment = 0;
     bool width_in_pixels = true;
-    std::vector<CpfgFunction> functions; ///< number 1 is the first
-    bool has_tropism = false;
+    std::vector<CpfgFunction> functions;  ///< number 1 is the first
+    std::map<char, CpfgSurface> surfaces; ///< by their letters
 };
 
 /// Reads the view file that goes with a model, which has its name with another ending, and the files of

@@ -43,11 +43,12 @@ std::string comment_text(std::string_view text) {
 
 std::string symbol_name(char symbol) {
     constexpr std::pair<char, const char*> names[] = {
-        {'$', "Dollar"}, {'%', "Percent"}, {'&', "And"},   {'^', "Caret"},  {'\'', "Quote"}, {',', "Comma"},
-        {'.', "Dot"},    {'#', "Hash"},    {':', "Colon"}, {';', "Semi"},   {'?', "Query"},  {'*', "Star"},
-        {'(', "Open"},   {')', "Shut"},    {'{', "Brace"}, {'~', "Tilde"},  {'"', "Mark"},   {'`', "Back"},
-        {'_', "Under"},  {'!', "Bang"},    {'/', "Slash"}, {'\\', "Slope"}, {'|', "Bar"},    {'<', "Less"},
-        {'>', "More"},   {'=', "Equal"},   {'+', "Plus"},  {'-', "Minus"},  {'@', "At"}};
+        {'$', "Dollar"},    {'%', "Percent"}, {'&', "And"},    {'^', "Caret"}, {'\'', "Quote"},
+        {',', "Comma"},     {'.', "Dot"},     {'#', "Hash"},   {':', "Colon"}, {';', "Semi"},
+        {'?', "Query"},     {'*', "Star"},    {'(', "Open"},   {')', "Shut"},  {'{', "Brace"},
+        {'}', "Shutbrace"}, {'~', "Tilde"},   {'"', "Mark"},   {'`', "Back"},  {'_', "Under"},
+        {'!', "Bang"},      {'/', "Slash"},   {'\\', "Slope"}, {'|', "Bar"},   {'<', "Less"},
+        {'>', "More"},      {'=', "Equal"},   {'+', "Plus"},   {'-', "Minus"}, {'@', "At"}};
     for (const auto& [known, name] : names)
         if (known == symbol) return name;
     const auto byte = static_cast<unsigned char>(symbol);

@@ -512,7 +512,7 @@ std::vector<ForeignModel> fractint_models(const ForeignFile& file) {
     return models;
 }
 
-/// A block that has an axiom and no colon behind the word, as those of cpfg have.
+/// A block that has an axiom or an angle, and no colon behind the word, as those of cpfg have.
 bool is_fractint_lsystem(std::string_view text) {
     if (is_binary(text)) return false;
     bool found = false;
@@ -520,8 +520,9 @@ bool is_fractint_lsystem(std::string_view text) {
         if (found) return;
         for (const TextLine& line : lines_of(text, begin, end)) {
             const std::string small = in_small_letters(trimmed(line.text));
-            found = found || (small.starts_with("axiom") && small.size() > 5 &&
-                              std::isspace(static_cast<unsigned char>(small[5])));
+            const bool statement = small.starts_with("axiom") || small.starts_with("angle");
+            found = found ||
+                    (statement && small.size() > 5 && std::isspace(static_cast<unsigned char>(small[5])));
         }
     });
     return found;

@@ -11,6 +11,7 @@
 #include "compiler/import/foreign_text.h"
 #include "compiler/import/fractint_lsystem.h"
 #include "compiler/import/lparser.h"
+#include "compiler/import/vlab_surface.h"
 #include "compiler/support/file.h"
 
 namespace graftal {
@@ -37,7 +38,8 @@ std::vector<std::string> names_of(const std::vector<ForeignModel>& models) {
 
 std::span<const Importer> importers() {
     // Where two rows share an ending, the first that recognises the text has it.
-    static const Importer table[] = {cpfg_importer(), fractint_lsystem_importer(), lparser_importer()};
+    static const Importer table[] = {cpfg_importer(), fractint_lsystem_importer(), lparser_importer(),
+                                     vlab_surface_importer()};
     return table;
 }
 

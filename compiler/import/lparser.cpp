@@ -48,7 +48,7 @@ constexpr LparserCommand lparser_commands[] = {
     {'>', "/", "/(%)"},
     {'|', "|", ""},
     {'%', "/(180)", ""},
-    {'$', "$", ""},
+    {'$', "$@N(1)", ""}, // its axes are left-handed from then on
     {'t', "t", "t(%)"},
     {'~', "Shake", "Shake(%)"},
     {'!', "@W(0.7)", "@W(%)"},
@@ -78,7 +78,7 @@ constexpr LparserMeaning lparser_meanings[] = {
     {"z", "z(l) -> f(l)"},
     {"t", "t -> @B(0.2)"},
     {"t", "t(e) -> @B(e)"},
-    {"Shake", "Shake -> Shake(343.77)"},
+    {"Shake", "Shake -> Shake(343.77)"}, // 6 radians, where it means degrees
     {"Shake", "Shake(a) -> +(random(-a, a))&(random(-a, a))/(random(-a, a))"},
 };
 
@@ -296,6 +296,12 @@ class LparserReader {
             const char c = text[at++];
             if (std::isspace(static_cast<unsigned char>(c))) continue;
             LparserSymbol symbol{c, std::nullopt, {}};
+            if (c == '(' && string.empty()) {
+                file_.diagnostics.error(file_.span(begin + from, begin + at),
+                                        "a string that begins with a number for the symbol before it has no "
+                                        "translation");
+                return string;
+            }
             if (c == '(' || c == ')') {
                 file_.diagnostics.warning(
                     file_.span(begin + from, begin + at),
@@ -473,13 +479,11 @@ class LparserWriter {
         if (system_.least_thickness && system_.least_thickness->value > 0)
             number("thinnest", *system_.least_thickness, system_.least_thickness->value, "/100");
         if (!system_.has_keywords) out.line("  step 100");
-        if (used_.contains('$'))
-            out.line("  vertical 0, -1, 0   # L-Parser's '$' lays the turtle on its back");
     }
 
     void write_rule(Translation& out, const LparserRule& rule) {
         comments(out, rule.before, "  ");
-        if (std::string_view("[](){}.").find(rule.letter) != std::string_view::npos) {
+        if (std::string_view("[]()").find(rule.letter) != std::string_view::npos) {
             file_.diagnostics.error(rule.span,
                                     fmt::format("a rule for '{}' has no translation", rule.letter));
             return;
@@ -500,6 +504,7 @@ class LparserWriter {
 
     void write_meanings(Translation& out) {
         std::vector<std::string> lines;
+        if (draws_in_polygons()) lines.insert(lines.end(), {"F -> @E", "F(l) -> @E(l)"}); // and so do Z
         for (const LparserMeaning& meaning : lparser_meanings)
             if (uses_name(meaning.name)) lines.emplace_back(meaning.production);
         for (const char letter : ruled_) {
@@ -517,6 +522,24 @@ class LparserWriter {
         out.line("  }");
     }
 
+    /// Whether a block may be drawn between braces: there is more between them than moves and turns.
+    bool draws_in_polygons() const {
+        if (!used_.contains('F') && !used_.contains('Z')) return false;
+        const auto draws = [&](const LparserString& string) {
+            int depth = 0;
+            for (const LparserSymbol& symbol : string) {
+                depth += (symbol.letter == '{') - (symbol.letter == '}');
+                if (symbol.letter == 'F' || symbol.letter == 'Z' ||
+                    (has_rule(symbol.letter) && symbol.letter != 'f'))
+                    if (depth > 0) return true;
+            }
+            return depth != 0;
+        };
+        return draws(system_.axiom) || std::ranges::any_of(system_.rules, [&](const LparserRule& rule) {
+                   return draws(rule.successor);
+               });
+    }
+
     bool uses_name(std::string_view name) const {
         return std::ranges::any_of(used_, [&](char c) {
             const LparserCommand* const command = lparser_command(c);
@@ -526,7 +549,7 @@ class LparserWriter {
 
     /// Whether a command is one module of ours, that may have productions.
     static bool keeps_name(char letter) {
-        return std::string_view("FfgZzt+-&^|$").find(letter) != std::string_view::npos;
+        return std::string_view("FfgZzt+-&^|").find(letter) != std::string_view::npos;
     }
 
     std::string name_of(char letter) const {

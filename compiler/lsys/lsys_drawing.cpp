@@ -169,6 +169,7 @@ class Drawer {
                 .relative_width = grammar_.thickness.has_value(),
                 .thinnest = grammar_.thinnest,
                 .varies_angle = grammar_.uses({TurtleCommand::angle_by}),
+                .reverses_turns = grammar_.uses({TurtleCommand::reverse_turns}),
                 .two_headings = grammar_.uses({TurtleCommand::exchange}),
                 .lines = lines};
     }

@@ -30,6 +30,7 @@ bool is_label(std::string_view word) {
 
 /// Expressions are evaluated by recursion.
 constexpr std::size_t most_written_depth = 1000;
+constexpr std::size_t most_written_words = 10'000;
 
 class ProductionParser {
   public:
@@ -196,13 +197,14 @@ class ProductionParser {
                         "give the random number to a module: A -> B(random(0, 1))  decompose B(r) -> ...");
                 return false;
             }
+            if (!has_room(value, values, name.span)) return false;
             write_out(value, values);
-            if (!has_room(value, name.span)) return false;
             values.insert_or_assign(std::string(name.text), value);
         }
         const auto write = [&](Expression& expression) {
+            if (!has_room(expression, values, expression.span)) return false;
             write_out(expression, values);
-            return has_room(expression, expression.span);
+            return true;
         };
         if (production_.condition && !write(*production_.condition)) return false;
         if (production_.probability && !write(*production_.probability)) return false;
@@ -212,10 +214,11 @@ class ProductionParser {
         return true;
     }
 
-    bool has_room(const Expression& expression, Span span) {
-        const ExpressionExtent extent = extent_of(expression);
+    bool has_room(const Expression& expression, const ExpressionNames& values, Span span) {
+        const ExpressionExtent extent = extent_of(expression, values);
         text_.words_left -= std::min(text_.words_left, extent.words);
-        if (extent.depth <= most_written_depth && text_.words_left > 0) return true;
+        if (extent.depth <= most_written_depth && extent.words <= most_written_words && text_.words_left > 0)
+            return true;
         diagnostics_.error(span, "the local values make too long an expression");
         return false;
     }

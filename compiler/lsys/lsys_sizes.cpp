@@ -128,6 +128,7 @@ std::optional<ParameterRole> size_role(const LsysGrammar& grammar, SymbolId symb
     switch (grammar.commands[symbol]) {
     case TurtleCommand::draw:
     case TurtleCommand::draw_unrecorded:
+    case TurtleCommand::draw_always:
     case TurtleCommand::move:
     case TurtleCommand::move_unrecorded:
         return ParameterRole::length;

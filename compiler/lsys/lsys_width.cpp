@@ -16,7 +16,8 @@ constexpr double thinnest_in_figure = 1.0 / 400;
 bool has_lengths(const LsysGrammar& grammar) {
     const auto has_length = [&](const LsysTemplate& module) {
         const TurtleCommand command = grammar.commands[module.symbol];
-        return (command == TurtleCommand::draw || command == TurtleCommand::draw_unrecorded) &&
+        return (command == TurtleCommand::draw || command == TurtleCommand::draw_unrecorded ||
+                command == TurtleCommand::draw_always) &&
                !module.parameters.empty();
     };
     return grammar.uses({TurtleCommand::scale_by, TurtleCommand::scale_down_by, TurtleCommand::step_by}) ||

@@ -36,6 +36,7 @@ const char* size_name(TurtleCommand command) {
     switch (command) {
     case TurtleCommand::draw:
     case TurtleCommand::draw_unrecorded:
+    case TurtleCommand::draw_always:
     case TurtleCommand::move:
     case TurtleCommand::move_unrecorded:
         return "a length";
@@ -75,6 +76,9 @@ bool Turtle::run(TurtleCommand command, std::span<const double> parameters,
     case TurtleCommand::draw:
         move(parameters, absolute, true, true, span);
         break;
+    case TurtleCommand::draw_always:
+        move(parameters, absolute, true, false, span, true);
+        break;
     case TurtleCommand::draw_unrecorded:
         move(parameters, absolute, true, false, span);
         break;
@@ -85,10 +89,10 @@ bool Turtle::run(TurtleCommand command, std::span<const double> parameters,
         move(parameters, absolute, false, false, span);
         break;
     case TurtleCommand::turn_left:
-        turn(Axis::up, angle_deg());
+        turn(Axis::up, sense() * angle_deg());
         return true;
     case TurtleCommand::turn_right:
-        turn(Axis::up, -angle_deg());
+        turn(Axis::up, -sense() * angle_deg());
         return true;
     case TurtleCommand::pitch_down:
         turn(Axis::right, -angle_deg());
@@ -166,6 +170,9 @@ bool Turtle::run(TurtleCommand command, std::span<const double> parameters,
         return widen_by(first_or(parameters, 1), span);
     case TurtleCommand::angle_by:
         return multiply_angle(first_or(parameters, 1), span);
+    case TurtleCommand::reverse_turns:
+        reverse_turns(parameters);
+        return true;
     case TurtleCommand::exchange:
         exchange();
         return true;
@@ -234,11 +241,12 @@ bool Turtle::within_limits(Span span) {
     return false;
 }
 
-void Turtle::move(std::span<const double> parameters, bool absolute, bool draw, bool record, Span span) {
+void Turtle::move(std::span<const double> parameters, bool absolute, bool draw, bool record, Span span,
+                  bool always) {
     absolute = absolute || parameters.empty();
     const double length =
         at_least_size(parameters.empty() ? scale_ * context_.step * read_unit() : written(parameters[0]));
-    const bool fills = !polygons_.empty() || (note(reads_polygons), state_.open_polygons > 0);
+    const bool fills = !always && (!polygons_.empty() || (note(reads_polygons), state_.open_polygons > 0));
     if (draw) ++segments_;
     if (absolute) unit_shift_ += std::abs(length);
     if (draw && !fills && !(note(reads_cylinder), state_.in_cylinder)) {
@@ -333,6 +341,19 @@ bool Turtle::multiply_angle(double factor, Span span) {
     }
     context_.diagnostics.error(span, "the factor of the angle leaves the range of numbers");
     return false;
+}
+
+double Turtle::sense() {
+    if (!context_.reverses_turns) return 1;
+    note(reads_reversal);
+    return state_.turns_reversed ? -1 : 1;
+}
+
+/// With a parameter, so that turns are reversed where it is not 0; without, the other way than before.
+void Turtle::reverse_turns(std::span<const double> parameters) {
+    if (parameters.empty()) note(reads_reversal);
+    state_.turns_reversed = parameters.empty() ? !state_.turns_reversed : parameters[0] != 0;
+    writes_ |= reads_reversal;
 }
 
 void Turtle::exchange() {

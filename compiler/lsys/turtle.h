@@ -96,8 +96,9 @@ struct TurtleContext {
     bool relative_width = false; ///< widths are per length
     double thinnest = 0;         ///< then the least
     bool varies_angle = false;   ///< symbols multiply it
-    bool two_headings = false;   ///< symbols exchange them
-    bool lines = false;          ///< segments are strokes of a curve: small parts are drawn as lines
+    bool reverses_turns = false;
+    bool two_headings = false; ///< symbols exchange them
+    bool lines = false;        ///< segments are strokes of a curve: small parts are drawn as lines
     bool limit = false; ///< only proportions count: lines are as thick as their lengths ask, and parts that
                         ///< differ by a rotation in the plane are made equal
     bool open_width = false;               ///< how thick lines are is not known yet (turtle_bodies.h)
@@ -182,7 +183,8 @@ class Turtle {
     bool in_range(TurtleCommand command, std::span<const double> parameters,
                   const std::optional<PlacedModel>& model, Span span);
     bool pass_over(TurtleCommand command);
-    void move(std::span<const double> parameters, bool absolute, bool draw, bool record, Span span);
+    void move(std::span<const double> parameters, bool absolute, bool draw, bool record, Span span,
+              bool always = false);
     double usual_angle();
     double written(double length);
     double usual_diameter();
@@ -190,6 +192,8 @@ class Turtle {
     void bend_down(double elasticity);
     bool widen_by(double factor, Span span);
     bool multiply_angle(double factor, Span span);
+    double sense();
+    void reverse_turns(std::span<const double> parameters);
     void exchange();
     void flip();
     Placing in_frame(Placing placing) const { return placing.scale *= scale_, placing; }

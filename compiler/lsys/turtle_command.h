@@ -9,6 +9,7 @@ namespace graftal {
 enum class TurtleCommand : std::uint8_t {
     none, ///< a letter that the turtle passes over
     draw,
+    draw_always,     ///< in polygons too, and leaves no vertex in them
     draw_unrecorded, ///< leaves no vertex in a polygon
     move,
     move_unrecorded,
@@ -40,10 +41,11 @@ enum class TurtleCommand : std::uint8_t {
     scale_down_by, ///< the inverse
     step_by,       ///< the lengths that are not written
     width_by,
-    angle_by,  ///< of turns without a parameter
-    exchange,  ///< the axes with the second ones
-    bend_down, ///< pitches, the more level it heads
-    flip,      ///< mirrors the turtle: left is right
+    angle_by,      ///< of turns without a parameter
+    exchange,      ///< the axes with the second ones
+    bend_down,     ///< pitches, the more level it heads
+    reverse_turns, ///< exchanges left and right in turns, not in rolls
+    flip,          ///< mirrors the turtle: left is right
 };
 
 struct TurtleSymbol {
@@ -91,6 +93,8 @@ inline constexpr TurtleSymbol turtle_symbols[] = {
     {"@X", TurtleCommand::exchange},
     {"@F", TurtleCommand::flip},
     {"@B", TurtleCommand::bend_down},
+    {"@N", TurtleCommand::reverse_turns},
+    {"@E", TurtleCommand::draw_always},
 };
 
 /// The command of a symbol as strings write it; `none` for what has no meaning.

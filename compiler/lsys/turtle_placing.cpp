@@ -34,6 +34,7 @@ void Turtle::append(const TurtlePart& part, Span span, const Placing& given) {
         state_.control_point = start_from_turtle_(scale * part.exit.control_point);
         state_.control_width = scale * part.exit.control_width;
     }
+    if (part.writes & reads_reversal) state_.turns_reversed = part.exit.turns_reversed;
     if (part.writes & reads_ruler) state_.ruler = scale_ * part.exit.ruler; // its frame is of the scale alone
     if (part.writes & reads_angle) state_.angle_factor = part.exit.angle_factor;
     writes_ |= part.writes;

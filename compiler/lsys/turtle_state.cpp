@@ -40,6 +40,7 @@ bool equal(const TurtleState& a, const TurtleState& b, TurtleStateMask mask) {
            (!(mask & reads_polygons) || (a.open_polygons > 0) == (b.open_polygons > 0)) &&
            (!(mask & reads_polygon_count) || a.open_polygons == b.open_polygons) &&
            (!(mask & reads_variant) || a.variant == b.variant) &&
+           (!(mask & reads_reversal) || a.turns_reversed == b.turns_reversed) &&
            (!(mask & reads_ruler) || a.ruler == b.ruler) &&
            (!(mask & reads_angle) || a.angle_factor == b.angle_factor) &&
            (!(mask & reads_second) || a.second == b.second) &&
@@ -61,6 +62,7 @@ std::uint64_t hash(const TurtleState& state, TurtleStateMask mask) {
     if (mask & reads_variant) hash = mixed(hash, state.variant);
     if (mask & reads_birth) hash = mixed(hash, state.birth);
     if (mask & reads_unit) hash = mixed_number(hash, state.unit);
+    if (mask & reads_reversal) hash = mixed(hash, state.turns_reversed);
     if (mask & reads_ruler) hash = mixed_number(hash, state.ruler);
     if (mask & reads_angle) hash = mixed_number(hash, state.angle_factor);
     if (mask & reads_second)

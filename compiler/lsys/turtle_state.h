@@ -24,10 +24,11 @@ struct TurtleState {
     bool in_cylinder = false; ///< a generalised one
     Vec3 control_point{0.0};  ///< its last, in the frame of the start
     double control_width = 0;
-    std::uint32_t variant = 0;      ///< of what is random (lsys_composer.h)
-    std::uint32_t birth = 0;        ///< the step in which the module came into being
-    double unit = 1;                ///< how long a length of 1 is that the model writes (lsys_composer.h)
-    double ruler = 1;               ///< the same of one that does not go with the step, where the step varies
+    std::uint32_t variant = 0; ///< of what is random (lsys_composer.h)
+    std::uint32_t birth = 0;   ///< the step in which the module came into being
+    double unit = 1;           ///< how long a length of 1 is that the model writes (lsys_composer.h)
+    double ruler = 1;          ///< the same of one that does not go with the step, where the step varies
+    bool turns_reversed = false;
     double angle_factor = 1;        ///< of turns without a parameter
     Quat second = Quat(1, 0, 0, 0); ///< the second axes, from those of the turtle
 };
@@ -50,6 +51,7 @@ enum TurtleStateBit : TurtleStateMask {
     reads_angle = 4096,         ///< its factor
     reads_second = 8192,
     reads_ruler = 16384,
+    reads_reversal = 32768,
 };
 
 /// The same in a frame in which all is this many times as long.

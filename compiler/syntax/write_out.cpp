@@ -29,10 +29,13 @@ bool calls_chance(const Expression& expression) {
     return std::ranges::any_of(expression.operands, calls_chance);
 }
 
-ExpressionExtent extent_of(const Expression& expression) {
+ExpressionExtent extent_of(const Expression& expression, const ExpressionNames& values) {
+    if (expression.kind == Expression::Kind::name)
+        if (const auto value = values.find(expression.text); value != values.end())
+            return extent_of(value->second, {});
     ExpressionExtent extent{1, 1};
     for (const Expression& operand : expression.operands) {
-        const ExpressionExtent inner = extent_of(operand);
+        const ExpressionExtent inner = extent_of(operand, values);
         extent.words += inner.words;
         extent.depth = std::max(extent.depth, inner.depth + 1);
     }

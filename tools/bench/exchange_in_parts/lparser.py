@@ -124,4 +124,6 @@ def draw(text, steps, most):
             place, ahead, left, up, angle, full, half = saved.pop()
     if values.get('switch_yz', '').strip() == '1' and box.low:
         box.low[0], box.high[0] = -box.high[0], -box.low[0]
+    if is_random(text):
+        box.low = None  # only how many there are is no chance
     return box

@@ -35,7 +35,7 @@ class Grammar:
         self.weights = {'segment': 8, 'symbol': draw.uniform(4, 10), 'turn': 8, 'branch': draw.pick([0, 3, 3, 6]),
                         'move': 0.5}
         for state, weight in {'width': 2, 'colour': 2, 'sphere': 0.7, 'disc': 0.4, 'polygon': 0.8, 'cylinder': 0.6,
-                              'upright': 1, 'elasticity': 1, 'cut': 0.2, 'model': 1, 'about': 0.4}.items():
+                              'upright': 1, 'elasticity': 1, 'cut': 0.2, 'model': 1, 'about': 0.4, 'factor': 0.5}.items():
             if draw.chance(0.22):
                 self.weights[state] = weight
         self.growth = 0.0
@@ -114,6 +114,11 @@ class Grammar:
             return '%'
         if kind == 'about':
             return '|'
+        if kind == 'factor':
+            return draw.pick([f'@Di({number(draw.uniform(0.4, 1.2))})', f'@Dd({number(draw.uniform(0.8, 2))})',
+                              f'@S({number(draw.uniform(0.4, 1.2))})', f'@W({number(draw.uniform(0.4, 1.2))})',
+                              f'@A({number(draw.uniform(0.5, 1.5))})', f'@B({number(draw.uniform(-0.5, 0.5))})',
+                              '@X', '@F', '@N', '@N(1)', '@E'])
         size = length or number(draw.uniform(0.05, 1))
         return f'~{draw.pick(self.model.used + ["sphere", "cube", "cone", "petal"][:3 + self.has_petal])}({size})'
 

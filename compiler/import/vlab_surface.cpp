@@ -1,0 +1,128 @@
+#include "compiler/import/vlab_surface.h"
+
+#include <array>
+#include <cmath>
+#include <filesystem>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "compiler/import/foreign_text.h"
+#include "compiler/import/importers.h"
+
+namespace graftal {
+
+namespace {
+
+constexpr std::size_t most_patches = 1000;
+constexpr std::size_t patch_numbers = 48;
+
+using Point = std::array<double, 3>;
+
+double dot(const Point& a, const Point& b) {
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+Point cross(const Point& a, const Point& b) {
+    return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
+
+/// All numbers of a line, whatever stands between them.
+std::vector<double> numbers_in(std::string_view line) {
+    std::vector<double> numbers;
+    for (std::size_t i = 0; i < line.size() && numbers.size() < patch_numbers;) {
+        const std::size_t begin = std::min(line.find_first_of("+-.0123456789", i), line.size());
+        const std::size_t end = std::min(line.find_first_not_of("+-.0123456789eE", begin), line.size());
+        const std::string word(line.substr(begin, std::min<std::size_t>(end - begin, 40)));
+        char* rest = nullptr;
+        const double number = std::strtod(word.c_str(), &rest);
+        if (rest != word.c_str() && std::isfinite(number)) numbers.push_back(number);
+        i = end;
+    }
+    return numbers;
+}
+
+struct Surface {
+    Point contact{0, 0, 0}, heading{0, 1, 0}, up{0, 0, 1};
+    std::vector<std::vector<double>> patches;
+    std::vector<Span> places;
+};
+
+Surface read_surface(const ForeignFile& file) {
+    Surface surface;
+    for (const TextLine& line : lines_of(file.text(), 0, file.text().size())) {
+        const std::string_view words = trimmed(line.text);
+        const std::vector<double> numbers = numbers_in(words);
+        const auto point = [&](Point& to) {
+            if (numbers.size() == 3) to = {numbers[0], numbers[1], numbers[2]};
+        };
+        if (words.starts_with("CONTACT")) point(surface.contact);
+        if (words.starts_with("HEADING")) point(surface.heading);
+        if (words.starts_with("UP")) point(surface.up);
+        if (words == "patch" || words.starts_with("patch ")) {
+            if (surface.patches.size() == most_patches) {
+                file.diagnostics.error(file.span(line.begin, line.begin + line.text.size()),
+                                       fmt::format("a surface has at most {} patches", most_patches));
+                return surface;
+            }
+            surface.patches.emplace_back();
+            surface.places.push_back(file.span(line.begin, line.begin + line.text.size()));
+        }
+        const bool row = numbers.size() == 12 && !words.empty() &&
+                         std::string_view("+-.0123456789").find(words[0]) != std::string_view::npos;
+        if (row && !surface.patches.empty() && surface.patches.back().size() < patch_numbers)
+            surface.patches.back().insert(surface.patches.back().end(), numbers.begin(), numbers.end());
+    }
+    return surface;
+}
+
+std::vector<ForeignModel> surface_models(const ForeignFile& file) {
+    const std::string name = std::filesystem::path(file.sources.name(file.file)).stem().string();
+    return {{name, file.span(0, std::min(file.text().find('\n'), file.text().size()))}};
+}
+
+bool is_surface(std::string_view text) {
+    return !is_binary(text) && text.find("CONTACT POINT") != std::string_view::npos &&
+           text.find("patch") != std::string_view::npos;
+}
+
+/// In the frame of a turtle that takes hold of it: x right, y ahead, z up.
+std::optional<Translation> translate_surface(const ForeignFile& file, const ForeignModel& model) {
+    const Surface surface = read_surface(file);
+    const Point right = cross(surface.heading, surface.up);
+    Translation out{"inst", {}, {}};
+    out.line(fmt::format("# {}: a surface of the Virtual Laboratory", comment_text(model.name)), model.span);
+    out.line(fmt::format("object {} {{", plain_name(model.name) + "_surface"), model.span);
+    for (std::size_t i = 0; i < surface.patches.size(); ++i) {
+        const std::vector<double>& numbers = surface.patches[i];
+        if (numbers.size() != patch_numbers) {
+            file.diagnostics.error(surface.places[i], "a patch has four rows of four points");
+            return std::nullopt;
+        }
+        std::string text = "    bicubic_patch(";
+        for (std::size_t k = 0; k < patch_numbers; k += 3) {
+            Point p{};
+            for (std::size_t axis = 0; axis < 3; ++axis)
+                p[axis] = numbers[k + axis] - surface.contact[axis];
+            text += fmt::format("{}{:.6g}, {:.6g}, {:.6g}",
+                                k == 0        ? ""
+                                : k % 12 == 0 ? ",  "
+                                              : ", ",
+                                dot(p, right) + 0.0, dot(p, surface.heading) + 0.0, dot(p, surface.up) + 0.0);
+        }
+        out.line(text + ")", surface.places[i]);
+    }
+    out.line("}");
+    if (!surface.patches.empty()) return out;
+    file.diagnostics.error(model.span, "the surface has no patch");
+    return std::nullopt;
+}
+
+constexpr std::string_view surface_endings[] = {"s"};
+
+} // namespace
+
+Importer vlab_surface_importer() {
+    return {"vlab surface", surface_endings, is_surface, surface_models, translate_surface};
+}
+
+} // namespace graftal

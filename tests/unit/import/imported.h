@@ -1,0 +1,50 @@
+#pragma once
+
+#include <algorithm>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "compiler/graph/components.h"
+#include "compiler/graph/unfold.h"
+#include "compiler/import/importers.h"
+#include "compiler/languages/lower.h"
+
+namespace graftal::testing {
+
+/// A foreign text, translated and compiled.
+struct Imported {
+    Imported(const std::string& name, const std::string& text, LowerOptions options = {}) {
+        options.may_draw_nothing = true;
+        LoweredText lowered = lower_text(name, text, options, sources, diagnostics);
+        graph = std::move(lowered.graph);
+        derivation = std::move(lowered.notes.derivation);
+        for (FileId file = 0; file < sources.size(); ++file)
+            if (sources.original(file) && translation.empty()) translation = sources.text(file);
+    }
+
+    std::string said() const { return diagnostics.render(sources); }
+
+    /// The ends of all segments, without their balls.
+    std::vector<std::pair<Vec3, Vec3>> segments() const {
+        std::vector<std::pair<Vec3, Vec3>> all;
+        if (!graph) return all;
+        unfold(*graph, strong_components(*graph), std::nullopt, 100'000, [&](const UnfoldedLeaf& leaf) {
+            const Affine& place = leaf.world_from_object;
+            if (leaf.primitive && leaf.primitive->kind() == PrimitiveKind::cylinder)
+                all.emplace_back(place.translation, place.translation + place.linear[1]);
+            return true;
+        });
+        return all;
+    }
+
+    SourceMap sources;
+    Diagnostics diagnostics;
+    std::optional<Graph> graph;
+    std::optional<Derivation> derivation;
+    std::string translation; ///< of the model itself
+};
+
+} // namespace graftal::testing

@@ -7,7 +7,11 @@
 
 #include <fmt/format.h>
 
+#include "compiler/import/cfdg.h"
+#include "compiler/import/eisenscript.h"
+#include "compiler/import/flame.h"
 #include "compiler/import/foreign_text.h"
+#include "compiler/import/fractint_ifs.h"
 #include "compiler/import/fractint_lsystem.h"
 #include "compiler/import/lparser.h"
 #include "compiler/support/file.h"
@@ -36,7 +40,8 @@ std::vector<std::string> names_of(const std::vector<ForeignModel>& models) {
 
 std::span<const Importer> importers() {
     // Where two rows share an ending, the first that recognises the text has it.
-    static const Importer table[] = {fractint_lsystem_importer(), lparser_importer()};
+    static const Importer table[] = {fractint_lsystem_importer(), lparser_importer(), fractint_ifs_importer(),
+                                     eisenscript_importer(),      cfdg_importer(),    flame_importer()};
     return table;
 }
 

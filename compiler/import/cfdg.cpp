@@ -2,6 +2,7 @@
 
 #include "compiler/import/cfdg_parser.h"
 #include "compiler/import/cfdg_writer.h"
+#include "compiler/import/foreign_text.h"
 
 namespace graftal {
 
@@ -21,8 +22,8 @@ std::optional<Translation> translate(const ForeignFile& file, const ForeignModel
     return translation;
 }
 
-bool recognises(std::string_view) {
-    return true;
+bool recognises(std::string_view text) {
+    return !is_binary(text);
 }
 
 } // namespace cfdg

@@ -29,7 +29,8 @@ std::optional<std::string> Writer::text(const Expr& expression, const Scope& sco
     return expressions_.text(expression, scope);
 }
 
-std::optional<Writer::Lines> Writer::lines_of(const Modification& modification, const Scope& scope, std::size_t order) {
+std::optional<Writer::Lines> Writer::lines_of(const Modification& modification, const Scope& scope,
+                                              std::size_t order) {
     Lines lines;
     std::array<std::string, 3> moved;
     const auto flush = [&] {
@@ -39,11 +40,21 @@ std::optional<Writer::Lines> Writer::lines_of(const Modification& modification, 
         lines.moves += fmt::format("  translate: {}, {}, {}", moved[0], moved[1], moved[2]);
         moved = {};
     };
-    for (const Adjustment& adjustment : modification.adjustments)
-        if (adjustment.word == "trans") {
-            fail(adjustment.span, "an adjustment within an adjustment is not translated");
+    std::string inner_moves, inner_inks;
+    for (const Adjustment& adjustment : modification.adjustments) {
+        if (adjustment.word != "trans") continue;
+        const Definition* const inner = expressions_.modification(adjustment);
+        if (!inner || ++nested_ > 8) {
+            nested_ = 0;
+            fail(adjustment.span, "this adjustment within an adjustment is not translated");
             return std::nullopt;
         }
+        const std::optional<Lines> own = lines_of(inner->modification, constants_, 0);
+        --nested_;
+        if (!own) return std::nullopt;
+        inner_moves = own->moves + inner_moves;
+        inner_inks += own->inks;
+    }
     const std::vector<const Adjustment*> moves = moves_of(modification);
     double scale = 1;
     for (auto at = moves.rbegin(); at != moves.rend(); ++at) {
@@ -80,22 +91,27 @@ std::optional<Writer::Lines> Writer::lines_of(const Modification& modification, 
             lines.moves += plain ? fmt::format("  scale: {}", n[0])
                                  : fmt::format("  scale: {}, {}", n[0], n.size() > 1 ? n[1] : n[0]);
             if (!plain && n.size() == 1 && is_random(n[0]))
-                lines.moves = lines.moves.substr(0, lines.moves.rfind("  scale:")) + fmt::format("  scale: {}", n[0]);
+                lines.moves =
+                    lines.moves.substr(0, lines.moves.rfind("  scale:")) + fmt::format("  scale: {}", n[0]);
         } else if (move.word == "skew") {
             const std::string along = n[0], up = n.size() > 1 ? n[1] : "0";
-            lines.moves += up == "0" ? fmt::format("  shear: xy, tan({})", along)
-                                     : fmt::format("  matrix: 1, tan({}), 0, 0,  tan({}), 1, 0, 0,  0, 0, 1, 0", along, up);
+            lines.moves +=
+                up == "0"
+                    ? fmt::format("  shear: xy, tan({})", along)
+                    : fmt::format("  matrix: 1, tan({}), 0, 0,  tan({}), 1, 0, 0,  0, 0, 1, 0", along, up);
         } else {
             lines.moves += fmt::format("  rotate: z, -({0})  scale: 1, -1, 1  rotate: z, {0}", n[0]);
         }
     }
-    const double forward = std::round(1e8 * (lift * (1 - scale) + lift_of_order * static_cast<double>(order))) / 1e8;
+    const double forward =
+        std::round(1e8 * (lift * (1 - scale) + lift_of_order * static_cast<double>(order))) / 1e8;
     if (!moved[2].empty()) moved[2] = fmt::format("10*({})", moved[2]);
     if (forward != 0) moved[2] = sum_of(moved[2], shortest(forward));
     flush();
     std::optional<std::string> inks = inks_of(modification, scope);
     if (!inks) return std::nullopt;
-    lines.inks = std::move(*inks);
+    lines.inks = *inks + inner_inks;
+    lines.moves = inner_moves + lines.moves;
     return lines;
 }
 
@@ -109,7 +125,8 @@ std::optional<std::string> Writer::inks_of(const Modification& modification, con
         else if (word == "time" || word == "timescale")
             file_.diagnostics.note(adjustment.span, fmt::format("'{}' changes nothing here", word));
         else if (adjustment.sets_target || adjustment.to_target)
-            fail(adjustment.span, "colour targets ('|') are not translated", "write the target behind the change: sat 0.4 0.8");
+            fail(adjustment.span, "colour targets ('|') are not translated",
+                 "write the target behind the change: sat 0.4 0.8");
         else if (word == "h" || word == "sat" || word == "b" || word == "a")
             steps += colour_step(adjustment, scope);
     }
@@ -138,9 +155,9 @@ std::string Writer::colour_step(const Adjustment& adjustment, const Scope& scope
     if (hue) return fmt::format(" hue {}", *change);
     if (known && *known == 0) return "";
     if (known && *known > 0) return fmt::format(" {} to 1 by {}", channel, shortest(std::min(*known, 1.0)));
-    if (known) return fmt::format(" {} {}", channel, shortest(std::max(0.0, std::round(1e9 * (1 + *known)) / 1e9)));
-    if (!is_random(*change))
-        return fmt::format(" {0} to ({1} > 0) by min(1, abs({1}))", channel, *change);
+    if (known)
+        return fmt::format(" {} {}", channel, shortest(std::max(0.0, std::round(1e9 * (1 + *known)) / 1e9)));
+    if (!is_random(*change)) return fmt::format(" {0} to ({1} > 0) by min(1, abs({1}))", channel, *change);
     const std::optional<Interval> range = expressions_.range(adjustment.values[0]);
     if (range && range->least >= 0) return fmt::format(" {} to 1 by min(1, {})", channel, *change);
     if (range && range->most <= 0) return fmt::format(" {} max(0, 1 + {})", channel, *change);

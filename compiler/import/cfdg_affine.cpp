@@ -27,6 +27,8 @@ std::vector<const Adjustment*> moves_of(const Modification& modification) {
 std::optional<Affine> affine_of(const Modification& modification, const Expressions& expressions,
                                 const Numbers& known) {
     Affine map;
+    for (const Adjustment& adjustment : modification.adjustments)
+        if (adjustment.word == "trans") return std::nullopt;
     for (const Adjustment* const move : moves_of(modification)) {
         std::vector<double> n;
         for (const Expr& value : move->values) {
@@ -53,7 +55,8 @@ std::optional<Affine> affine_of(const Modification& modification, const Expressi
             step.linear[1][0] = tangent(n[0]);
             step.linear[0][1] = tangent(second);
         } else {
-            step = Affine::rotate({0, 0, 1}, n[0]) * Affine::scale({1, -1, 1}) * Affine::rotate({0, 0, 1}, -n[0]);
+            step = Affine::rotate({0, 0, 1}, n[0]) * Affine::scale({1, -1, 1}) *
+                   Affine::rotate({0, 0, 1}, -n[0]);
         }
         map = map * step;
     }

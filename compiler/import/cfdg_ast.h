@@ -51,8 +51,8 @@ struct Element {
     enum class Kind : std::uint8_t { shape, loop, condition, choice, transform, define, path_operation };
 
     Kind kind = Kind::shape;
-    std::string name; ///< of a shape, an index, a variable or a path operation
-    std::vector<Expr> arguments; ///< of a shape or an operation; the count, condition or value of others
+    std::string name;              ///< of a shape, an index, a variable or a path operation
+    std::vector<Expr> arguments;   ///< of a shape or an operation; the count, condition or value of others
     bool reuses_arguments = false; ///< `shape(=)`
     Modification modification;
     std::vector<Modification> modifications; ///< of transform

@@ -91,9 +91,16 @@ const Definition* Expressions::definition(const std::string& name) const {
     return found == definitions_.end() ? nullptr : found->second;
 }
 
+const Definition* Expressions::modification(const Adjustment& adjustment) const {
+    if (adjustment.values.size() != 1 || adjustment.values[0].kind != Expr::Kind::name) return nullptr;
+    const Definition* const found = definition(adjustment.values[0].text);
+    return found && found->value.kind == Expr::Kind::modification && !found->is_function ? found : nullptr;
+}
+
 bool Expressions::mentions(const Expr& expression, const std::string& name) {
     if (expression.kind == Expr::Kind::name && expression.text == name) return true;
-    return std::ranges::any_of(expression.operands, [&](const Expr& operand) { return mentions(operand, name); });
+    return std::ranges::any_of(expression.operands,
+                               [&](const Expr& operand) { return mentions(operand, name); });
 }
 
 std::nullopt_t Expressions::fail(const Expr& expression, std::string message) {
@@ -120,7 +127,8 @@ std::optional<std::string> Expressions::text(const Expr& expression, const Scope
         const Definition* const global = definition(expression.text);
         if (!global || global->is_function)
             return fail(expression, fmt::format("'{}' has no counterpart here", expression.text));
-        if (++depth_ > deepest_calls) return fail(expression, fmt::format("'{}' depends on itself", expression.text));
+        if (++depth_ > deepest_calls)
+            return fail(expression, fmt::format("'{}' depends on itself", expression.text));
         const std::optional<std::string> value = text(global->value, {});
         --depth_;
         if (!value) return std::nullopt;
@@ -165,7 +173,44 @@ std::optional<std::string> Expressions::text(const Expr& expression, const Scope
     return result;
 }
 
+std::optional<std::string> Expressions::element(const Expr& expression, const Scope& scope) {
+    const Definition* const vector = definition(expression.operands[0].text);
+    if (expression.operands[0].kind != Expr::Kind::name || !vector ||
+        vector->value.kind != Expr::Kind::list || scope.contains(expression.operands[0].text))
+        return fail(expression, "elements of this vector are not translated");
+    const std::vector<Expr>& parts = vector->value.operands;
+    if (const std::optional<double> index = number(expression.operands[1])) {
+        if (!(*index >= 0 && *index < static_cast<double>(parts.size())))
+            return fail(expression, fmt::format("the vector has {} elements", parts.size()));
+        return text(parts[static_cast<std::size_t>(*index)], {});
+    }
+    const std::optional<std::string> index = text(expression.operands[1], scope);
+    if (!index) return std::nullopt;
+    if (is_random(*index)) return fail(expression, "a random element of a vector is not translated");
+    std::string sum;
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+        const std::optional<std::string> part = text(parts[i], {});
+        if (!part) return std::nullopt;
+        sum += fmt::format("{}(floor({}) == {}) * ({})", sum.empty() ? "" : " + ", *index, i, *part);
+    }
+    return fmt::format("({})", sum);
+}
+
+std::optional<std::string> Expressions::let(const Expr& expression, const Scope& scope) {
+    Scope inner = scope;
+    for (const Expr& local : expression.operands) {
+        if (local.text != "=" || local.kind != Expr::Kind::binary) return text(local, inner);
+        const std::optional<std::string> value = text(local.operands[1], inner);
+        if (!value) return std::nullopt;
+        if (is_random(*value)) return fail(local, "a random number of 'let' is not translated");
+        inner[local.operands[0].text] = fmt::format("({})", *value);
+    }
+    return std::nullopt;
+}
+
 std::optional<std::string> Expressions::call(const Expr& expression, const Scope& scope) {
+    if (expression.text == "[]") return element(expression, scope);
+    if (expression.text == "let") return let(expression, scope);
     std::vector<std::string> arguments;
     for (const Expr& operand : expression.operands) {
         std::optional<std::string> argument = text(operand, scope);
@@ -177,15 +222,18 @@ std::optional<std::string> Expressions::call(const Expr& expression, const Scope
     const auto number_of = [&](std::size_t i) { return fmt::format("({})", arguments[i]); };
     if (const Definition* const function = definition(name); function && function->is_function) {
         if (function->parameters.size() != count)
-            return fail(expression, fmt::format("'{}' takes {} arguments", name, function->parameters.size()));
+            return fail(expression,
+                        fmt::format("'{}' takes {} arguments", name, function->parameters.size()));
         if (++depth_ > deepest_calls) {
             depth_ = 0;
-            return fail(expression, fmt::format("'{}' calls itself: recursive functions are not translated", name));
+            return fail(expression,
+                        fmt::format("'{}' calls itself: recursive functions are not translated", name));
         }
         Scope inner;
         for (std::size_t i = 0; i < count; ++i) {
             if (is_random(arguments[i]))
-                return fail(expression.operands[i], "a random number as the argument of a function is not translated");
+                return fail(expression.operands[i],
+                            "a random number as the argument of a function is not translated");
             inner[function->parameters[i].name] = number_of(i);
         }
         std::optional<std::string> value = text(function->value, inner);
@@ -193,9 +241,12 @@ std::optional<std::string> Expressions::call(const Expr& expression, const Scope
         if (value) value = fmt::format("({})", *value);
         return value;
     }
-    if (count == 1 && name == "log10") return fmt::format("(log({}) / {})", arguments[0], shortest(std::numbers::ln10));
-    if (count == 1 && plain_functions().contains(name)) return fmt::format("{}({})", our_name(name), arguments[0]);
-    if (count == 2 && (name == "atan2" || name == "mod")) return fmt::format("{}({}, {})", name, arguments[0], arguments[1]);
+    if (count == 1 && name == "log10")
+        return fmt::format("(log({}) / {})", arguments[0], shortest(std::numbers::ln10));
+    if (count == 1 && plain_functions().contains(name))
+        return fmt::format("{}({})", our_name(name), arguments[0]);
+    if (count == 2 && (name == "atan2" || name == "mod"))
+        return fmt::format("{}({}, {})", name, arguments[0], arguments[1]);
     if (count == 2 && (name == "div" || name == "divides")) {
         if (name == "div") return fmt::format("floor({} / {})", number_of(0), number_of(1));
         return fmt::format("(mod({}, {}) == 0)", arguments[0], arguments[1]);
@@ -212,7 +263,8 @@ std::optional<std::string> Expressions::call(const Expr& expression, const Scope
     }
     if (name == "if" && count == 3) {
         if (is_random(arguments[0])) return fail(expression, "a random condition is not translated");
-        return fmt::format("(({0}) != 0) * {1} + (({0}) == 0) * {2}", arguments[0], number_of(1), number_of(2));
+        return fmt::format("(({0}) != 0) * {1} + (({0}) == 0) * {2}", arguments[0], number_of(1),
+                           number_of(2));
     }
     if (name == "select" && count >= 2) {
         if (is_random(arguments[0])) return fail(expression, "a random selection is not translated");
@@ -248,13 +300,36 @@ std::optional<double> Expressions::number(const Expr& expression, const Numbers&
 
 std::optional<double> Expressions::evaluate(const Expr& expression, const Numbers& known, int depth) const {
     if (depth > deepest_calls || ++work_ > most_work) return std::nullopt;
+    if (expression.kind == Expr::Kind::call && expression.text == "let") {
+        Numbers inner = known;
+        for (const Expr& local : expression.operands) {
+            const bool last = local.text != "=" || local.kind != Expr::Kind::binary;
+            const std::optional<double> value = evaluate(last ? local : local.operands[1], inner, depth + 1);
+            if (!value || last) return value;
+            inner[local.operands[0].text] = *value;
+        }
+    }
+    if (expression.kind == Expr::Kind::call && expression.text == "[]") {
+        const Definition* const vector = definition(expression.operands[0].text);
+        const std::optional<double> index = evaluate(expression.operands[1], known, depth + 1);
+        if (!vector || !index || vector->value.kind != Expr::Kind::list) return std::nullopt;
+        if (!(*index >= 0 && *index < static_cast<double>(vector->value.operands.size())))
+            return std::nullopt;
+        return evaluate(vector->value.operands[static_cast<std::size_t>(*index)], {}, depth + 1);
+    }
+    if (expression.kind == Expr::Kind::call && expression.text == "if" && expression.operands.size() == 3) {
+        const std::optional<double> test = evaluate(expression.operands[0], known, depth);
+        return test ? evaluate(expression.operands[*test != 0 ? 1 : 2], known, depth) : std::nullopt;
+    }
     std::vector<double> operands;
     for (const Expr& operand : expression.operands) {
         const std::optional<double> value = evaluate(operand, known, depth);
         if (!value) return std::nullopt;
         operands.push_back(*value);
     }
-    const auto finite = [](double value) { return std::isfinite(value) ? std::optional(value) : std::nullopt; };
+    const auto finite = [](double value) {
+        return std::isfinite(value) ? std::optional(value) : std::nullopt;
+    };
     const std::string& name = expression.text;
     switch (expression.kind) {
     case Expr::Kind::number:
@@ -278,19 +353,22 @@ std::optional<double> Expressions::evaluate(const Expr& expression, const Number
                 inner[function->parameters[i].name] = operands[i];
             return evaluate(function->value, inner, depth + 1);
         }
-        if (const auto plain = plain_functions().find(name); plain != plain_functions().end() && operands.size() == 1)
+        if (const auto plain = plain_functions().find(name);
+            plain != plain_functions().end() && operands.size() == 1)
             return finite(plain->second(operands[0]));
         if (operands.size() == 2 && name == "mod")
-            return operands[1] == 0 ? std::nullopt
-                                    : finite(operands[0] - operands[1] * std::floor(operands[0] / operands[1]));
+            return operands[1] == 0
+                       ? std::nullopt
+                       : finite(operands[0] - operands[1] * std::floor(operands[0] / operands[1]));
         if (operands.size() == 2 && name == "atan2")
             return std::atan2(operands[0], operands[1]) * 180 / std::numbers::pi;
         if (operands.size() == 2 && name == "div") return finite(std::floor(operands[0] / operands[1]));
         if (!operands.empty() && name == "min") return *std::ranges::min_element(operands);
         if (!operands.empty() && name == "max") return *std::ranges::max_element(operands);
-        if (operands.size() == 3 && name == "if") return operands[0] != 0 ? operands[1] : operands[2];
-        if (operands.size() == 1 && name == "factorial") return finite(std::round(std::tgamma(operands[0] + 1)));
-        if (operands.size() == 1 && name == "isNatural") return operands[0] >= 0 && operands[0] == std::floor(operands[0]);
+        if (operands.size() == 1 && name == "factorial")
+            return finite(std::round(std::tgamma(operands[0] + 1)));
+        if (operands.size() == 1 && name == "isNatural")
+            return operands[0] >= 0 && operands[0] == std::floor(operands[0]);
         if (operands.empty() && (name == "ftime" || name == "frame")) return 0.0;
         return std::nullopt;
     }

@@ -37,8 +37,12 @@ class Expressions {
     /// The numbers of the file that become `let`s.
     const std::vector<const Definition*>& constants() const { return constants_; }
     const Definition* definition(const std::string& name) const;
+    /// The adjustment of the file that `trans NAME` names; null if there is none.
+    const Definition* modification(const Adjustment& adjustment) const;
 
   private:
+    std::optional<std::string> element(const Expr& expression, const Scope& scope);
+    std::optional<std::string> let(const Expr& expression, const Scope& scope);
     std::optional<std::string> call(const Expr& expression, const Scope& scope);
     std::nullopt_t fail(const Expr& expression, std::string message);
     std::optional<double> evaluate(const Expr& expression, const Numbers& known, int depth) const;

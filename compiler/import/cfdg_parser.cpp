@@ -19,17 +19,28 @@ constexpr int most_files = 32;
 /// The short name of an adjustment; "" if the word is none.
 std::string_view adjustment_word(std::string_view word) {
     static const std::map<std::string_view, std::string_view> words = {
-        {"x", "x"}, {"y", "y"}, {"z", "z"}, {"r", "r"}, {"rotate", "r"}, {"s", "s"}, {"size", "s"}, {"skew", "skew"},
-        {"f", "f"}, {"flip", "f"}, {"h", "h"}, {"hue", "h"}, {"sat", "sat"}, {"saturation", "sat"}, {"b", "b"},
-        {"brightness", "b"}, {"a", "a"}, {"alpha", "a"}, {"trans", "trans"}, {"transform", "trans"}, {"time", "time"},
-        {"timescale", "timescale"}, {"blend", "blend"}, {"width", "width"}, {"param", "p"}, {"p", "p"},
-        {"x1", "x1"}, {"y1", "y1"}, {"x2", "x2"}, {"y2", "y2"}, {"rx", "rx"}, {"ry", "ry"}};
+        {"x", "x"},         {"y", "y"},
+        {"z", "z"},         {"r", "r"},
+        {"rotate", "r"},    {"s", "s"},
+        {"size", "s"},      {"skew", "skew"},
+        {"f", "f"},         {"flip", "f"},
+        {"h", "h"},         {"hue", "h"},
+        {"sat", "sat"},     {"saturation", "sat"},
+        {"b", "b"},         {"brightness", "b"},
+        {"a", "a"},         {"alpha", "a"},
+        {"trans", "trans"}, {"transform", "trans"},
+        {"time", "time"},   {"timescale", "timescale"},
+        {"blend", "blend"}, {"width", "width"},
+        {"param", "p"},     {"p", "p"},
+        {"x1", "x1"},       {"y1", "y1"},
+        {"x2", "x2"},       {"y2", "y2"},
+        {"rx", "rx"},       {"ry", "ry"}};
     const auto found = words.find(word);
     return found == words.end() ? std::string_view() : found->second;
 }
 
 bool is_path_operation(std::string_view word) {
-    static const std::set<std::string_view> words = {"MOVETO", "LINETO",  "ARCTO",  "CURVETO", "MOVEREL",
+    static const std::set<std::string_view> words = {"MOVETO",  "LINETO", "ARCTO",    "CURVETO",  "MOVEREL",
                                                      "LINEREL", "ARCREL", "CURVEREL", "CLOSEPOLY"};
     return words.contains(word);
 }
@@ -47,7 +58,9 @@ class Parser {
     }
 
   private:
-    const Token& peek(std::size_t ahead = 0) const { return tokens_[std::min(at_ + ahead, tokens_.size() - 1)]; }
+    const Token& peek(std::size_t ahead = 0) const {
+        return tokens_[std::min(at_ + ahead, tokens_.size() - 1)];
+    }
     bool at_end() const { return peek().kind == TokenKind::end; }
     bool at(std::string_view text) const { return peek().is(text); }
 
@@ -64,8 +77,9 @@ class Parser {
     }
 
     bool expected(std::string_view what) {
-        file_.diagnostics.error(peek().span, fmt::format("expected {}, found {}", what,
-                                                         at_end() ? peek().text : fmt::format("'{}'", peek().text)));
+        file_.diagnostics.error(peek().span,
+                                fmt::format("expected {}, found {}", what,
+                                            at_end() ? peek().text : fmt::format("'{}'", peek().text)));
         return false;
     }
 
@@ -77,7 +91,8 @@ class Parser {
         explicit Level(Parser& parser) : parser_(parser), good_(++parser.depth_ <= deepest) {
             if (good_) return;
             if (!std::exchange(parser.too_deep_, true))
-                parser.file_.diagnostics.error(parser.peek().span, fmt::format("braces and brackets nest more than {} deep", deepest));
+                parser.file_.diagnostics.error(
+                    parser.peek().span, fmt::format("braces and brackets nest more than {} deep", deepest));
         }
         ~Level() { --parser_.depth_; }
         Level(const Level&) = delete;
@@ -90,13 +105,14 @@ class Parser {
     };
 
     void skip_to_statement() {
-        static const std::set<std::string_view> begins = {"rule", "shape", "path", "startshape", "include", "import",
-                                                          "background"};
+        static const std::set<std::string_view> begins = {"rule",    "shape",  "path",      "startshape",
+                                                          "include", "import", "background"};
         int braces = 0;
         do {
             braces += at("{") ? 1 : at("}") ? -1 : 0;
             next();
-        } while (!at_end() && !(braces <= 0 && peek().kind == TokenKind::word && begins.contains(peek().text)));
+        } while (!at_end() &&
+                 !(braces <= 0 && peek().kind == TokenKind::word && begins.contains(peek().text)));
     }
 
     // Statements
@@ -107,7 +123,8 @@ class Parser {
         if (at("shape")) return parse_shape();
         if (at("path")) return parse_path();
         if (at("rule")) return parse_rule();
-        if (peek().kind == TokenKind::word && (peek(1).is("{") || peek(1).is("["))) return parse_directive(included);
+        if (peek().kind == TokenKind::word && (peek(1).is("{") || peek(1).is("[")))
+            return parse_directive(included);
         if (peek().kind == TokenKind::word) return parse_definition();
         return expected("a statement");
     }
@@ -165,10 +182,10 @@ class Parser {
         const Token word = next();
         Modification modification;
         if (!parse_modification(modification)) return false;
-        std::optional<Modification>* const place = word.is("background") ? &grammar_.background
+        std::optional<Modification>* const place = word.is("background")             ? &grammar_.background
                                                    : word.is("size") || word.is("s") ? &grammar_.size
-                                                   : word.is("tile") ? &grammar_.tile
-                                                                     : nullptr;
+                                                   : word.is("tile")                 ? &grammar_.tile
+                                                                                     : nullptr;
         if (!place && !word.is("time")) {
             file_.diagnostics.error(word.span, fmt::format("unknown statement '{}'", word.text));
             return false;
@@ -205,8 +222,9 @@ class Parser {
         }();
         if (place) {
             if (!*place) *place = std::move(definition.modification);
-        } else if (std::ranges::none_of(grammar_.definitions,
-                                        [&](const Definition& other) { return other.name == definition.name; })) {
+        } else if (std::ranges::none_of(grammar_.definitions, [&](const Definition& other) {
+                       return other.name == definition.name;
+                   })) {
             grammar_.definitions.push_back(std::move(definition));
         }
         return true;
@@ -320,6 +338,7 @@ class Parser {
     }
 
     bool parse_element(Elements& elements) {
+        if (accept(";")) return true;
         Element element;
         element.comments = peek().comments;
         element.span = peek().span;
@@ -348,11 +367,13 @@ class Parser {
         }
         if (at("transform") || at("trans")) return parse_transform(element) && done();
         if (peek().kind != TokenKind::word) return expected("a shape");
-        if (peek(1).is("=") || (peek(1).kind == TokenKind::word && peek(2).is("="))) return parse_local(element) && done();
+        if (peek(1).is("=") || (peek(1).kind == TokenKind::word && peek(2).is("=")))
+            return parse_local(element) && done();
         accept("path");
         element.name = next().text;
         if (element.name.find("::") != std::string::npos) {
-            file_.diagnostics.error(element.span, fmt::format("the name space of '{}' is not translated", element.name));
+            file_.diagnostics.error(element.span,
+                                    fmt::format("the name space of '{}' is not translated", element.name));
             return false;
         }
         if (is_path_operation(element.name)) {
@@ -493,7 +514,7 @@ class Parser {
         std::string_view word = peek().text;
         adjustment.sets_target = word.starts_with('|');
         if (adjustment.sets_target) word.remove_prefix(1);
-        adjustment.word = adjustment_word(word);
+        adjustment.word = word_of(word);
         if (adjustment.word.empty()) return expected("an adjustment, such as x, s, r or hue");
         next();
         if (adjustment.word == "p") {
@@ -513,11 +534,17 @@ class Parser {
         return true;
     }
 
+    /// Some words are adjustments in paths of version 2 only.
+    std::string_view word_of(std::string_view word) const {
+        static const std::set<std::string_view> old = {"param", "p",  "width", "x1", "y1",
+                                                       "x2",    "y2", "rx",    "ry"};
+        return old.contains(word) && !version_2() ? std::string_view() : adjustment_word(word);
+    }
+
     /// Whether a number goes on: words of adjustments do not.
     bool begins_value() const {
         if (peek().kind == TokenKind::number || at("(") || at("-") || at("+")) return true;
-        return peek().kind == TokenKind::word && peek().text[0] != '|' &&
-               (adjustment_word(peek().text).empty() || peek(1).is("("));
+        return peek().kind == TokenKind::word && peek().text[0] != '|' && word_of(peek().text).empty();
     }
 
     // Expressions
@@ -550,8 +577,8 @@ class Parser {
 
     static int level_of(const Token& token) {
         static const std::map<std::string_view, int> levels = {
-            {"&&", 1}, {"||", 1}, {"^^", 1}, {"<", 2}, {"<=", 2}, {">", 2},  {">=", 2}, {"==", 2}, {"<>", 2},
-            {"..", 3}, {"+/-", 3}, {"+", 4}, {"-", 4}, {"_", 4}, {"--", 4}, {"*", 5},  {"/", 5},  {"^", 6}};
+            {"&&", 1}, {"||", 1},  {"^^", 1}, {"<", 2}, {"<=", 2}, {">", 2},  {">=", 2}, {"==", 2}, {"<>", 2},
+            {"..", 3}, {"+/-", 3}, {"+", 4},  {"-", 4}, {"_", 4},  {"--", 4}, {"*", 5},  {"/", 5},  {"^", 6}};
         if (token.kind != TokenKind::sign && token.text != "_") return 0;
         const auto found = levels.find(token.text);
         return found == levels.end() ? 0 : found->second;
@@ -629,12 +656,20 @@ class Parser {
         }
         Expr name{.kind = Expr::Kind::name, .text = peek().text, .span = peek().span};
         next();
-        if (at("[")) {
-            file_.diagnostics.error(name.span, "elements of vectors are not translated");
-            return std::nullopt;
+        if (at("[") && peek().span.begin == name.span.end) { // an element of a vector
+            next();
+            std::optional<Expr> index = parse_expression();
+            if (!index || !expect("]")) return std::nullopt;
+            Expr element{
+                .kind = Expr::Kind::call, .text = "[]", .span = join(name.span, tokens_[at_ - 1].span)};
+            element.operands.push_back(std::move(name));
+            element.operands.push_back(std::move(*index));
+            return element;
         }
-        if (!accept("(")) return name;
+        if (!at("(")) return name;
+        next();
         name.kind = Expr::Kind::call;
+        if (name.text == "let") return parse_let(std::move(name));
         if (!accept(")")) {
             do {
                 std::optional<Expr> argument = parse_expression();
@@ -645,6 +680,24 @@ class Parser {
         }
         name.span = join(name.span, tokens_[at_ - 1].span);
         return name;
+    }
+
+    /// `let(a = 1; b = 2; a + b)`, behind its '('.
+    std::optional<Expr> parse_let(Expr let) {
+        while (peek().kind == TokenKind::word && peek(1).is("=")) {
+            Expr local{.kind = Expr::Kind::binary, .text = "=", .span = peek().span};
+            local.operands.push_back({.kind = Expr::Kind::name, .text = next().text, .span = local.span});
+            next();
+            std::optional<Expr> value = parse_list();
+            if (!value || !expect(";")) return std::nullopt;
+            local.operands.push_back(std::move(*value));
+            let.operands.push_back(std::move(local));
+        }
+        std::optional<Expr> value = parse_list();
+        if (!value || !expect(")")) return std::nullopt;
+        let.operands.push_back(std::move(*value));
+        let.span = join(let.span, tokens_[at_ - 1].span);
+        return let;
     }
 
     const ForeignFile& file_;

@@ -49,7 +49,9 @@ class Follower {
 
     double number(const Expr& expression, const Numbers& known) {
         const std::optional<double> value = expressions_.number(expression, known);
-        if (!value) fail(expression.span, "the numbers of a path must be known: parameters and chance are not translated");
+        if (!value)
+            fail(expression.span,
+                 "the numbers of a path must be known: parameters and chance are not translated");
         return value.value_or(0);
     }
 
@@ -90,7 +92,8 @@ class Follower {
     void loop(const Element& element, Numbers known, Affine place) {
         const auto bound = [&](std::size_t i) { return number(element.arguments[i], known); };
         const std::size_t count = element.arguments.size();
-        const double begin = count > 1 ? bound(0) : 0, end = bound(count > 1 ? 1 : 0), step = count > 2 ? bound(2) : 1;
+        const double begin = count > 1 ? bound(0) : 0, end = bound(count > 1 ? 1 : 0),
+                     step = count > 2 ? bound(2) : 1;
         if (!good_) return;
         if (!(step > 0) || !((end - begin) / step <= 10'000))
             return fail(element.span, "a loop in a path has at most 10000 turns, upwards");
@@ -237,7 +240,8 @@ class Follower {
         double rx = n.size() > 2 ? n[2] : 1;
         double ry = n.size() > 4 ? n[3] : rx;
         const double angle = (n.size() > 4 ? n[4] : 0) * std::numbers::pi / 180;
-        const bool large = flags.find("ArcLarge") != std::string::npos || flags.find("large") != std::string::npos;
+        const bool large =
+            flags.find("ArcLarge") != std::string::npos || flags.find("large") != std::string::npos;
         bool clockwise = flags.find("ArcCW") != std::string::npos || flags.find("cw") != std::string::npos;
         if (rx < 0) clockwise = !clockwise;
         rx = std::abs(rx);
@@ -254,12 +258,14 @@ class Follower {
         const bool sweep = !clockwise; // y points upwards here
         if (large == sweep) share = -share;
         const Point middle(share * rx * p.y / ry, -share * ry * p.x / rx);
-        const Point centre = Point(c * middle.x - s * middle.y, s * middle.x + c * middle.y) + (from + to) / 2.0;
+        const Point centre =
+            Point(c * middle.x - s * middle.y, s * middle.x + c * middle.y) + (from + to) / 2.0;
         const double first = std::atan2((p.y - middle.y) / ry, (p.x - middle.x) / rx);
         double turn = std::atan2((-p.y - middle.y) / ry, (-p.x - middle.x) / rx) - first;
         if (sweep && turn < 0) turn += 2 * std::numbers::pi;
         if (!sweep && turn > 0) turn -= 2 * std::numbers::pi;
-        const int steps = std::max(1, static_cast<int>(std::ceil(std::abs(turn) * 180 / std::numbers::pi / arc_step_deg)));
+        const int steps =
+            std::max(1, static_cast<int>(std::ceil(std::abs(turn) * 180 / std::numbers::pi / arc_step_deg)));
         if (!std::isfinite(turn)) return fail(element.span, "this arc has no numbers");
         for (int i = 1; i <= steps; ++i) {
             const double t = first + turn * i / steps;
@@ -272,12 +278,15 @@ class Follower {
 
     void command(const Element& element, const Numbers& known) {
         if (element.name == "FILL") return fill(&element.modification, element.span);
-        if (element.name != "STROKE") return fail(element.span, fmt::format("'{}' within a path is not translated", element.name));
+        if (element.name != "STROKE")
+            return fail(element.span, fmt::format("'{}' within a path is not translated", element.name));
         double width = usual_stroke;
         for (const Expr& argument : element.arguments)
-            if (argument.kind == Expr::Kind::number || expressions_.number(argument, known)) width = number(argument, known);
+            if (argument.kind == Expr::Kind::number || expressions_.number(argument, known))
+                width = number(argument, known);
         for (const Adjustment& adjustment : element.modification.adjustments)
-            if (adjustment.word == "width" && !adjustment.values.empty()) width = number(adjustment.values[0], known);
+            if (adjustment.word == "width" && !adjustment.values.empty())
+                width = number(adjustment.values[0], known);
         stroke(&element.modification, width, element.span);
     }
 
@@ -319,13 +328,14 @@ class Follower {
                 if (!(length > 1e-9)) continue;
                 const double angle = std::atan2(b.y - a.y, b.x - a.x) * 180 / std::numbers::pi;
                 const Point middle = (a + b) / 2.0;
-                part.lines.push_back(fmt::format("instance: polygon(-0.5, -0.5, 0.5, -0.5, 0.5, 0.5, -0.5, 0.5)  scale: {}, {}, 1  "
-                                                 "rotate: z, {}  translate: {}, {}, 0",
-                                                 rounded(length), rounded(width), rounded(angle), rounded(middle.x),
-                                                 rounded(middle.y)));
+                part.lines.push_back(fmt::format(
+                    "instance: polygon(-0.5, -0.5, 0.5, -0.5, 0.5, 0.5, -0.5, 0.5)  scale: {}, {}, 1  "
+                    "rotate: z, {}  translate: {}, {}, 0",
+                    rounded(length), rounded(width), rounded(angle), rounded(middle.x), rounded(middle.y)));
                 if (i == 0) continue;
-                part.lines.push_back(fmt::format("instance: cylinder  rotate: x, 90  scale: {0}, {0}, 0.001  translate: {1}, {2}, 0",
-                                                 rounded(width / 2), rounded(a.x), rounded(a.y)));
+                part.lines.push_back(fmt::format(
+                    "instance: cylinder  rotate: x, 90  scale: {0}, {0}, 0.001  translate: {1}, {2}, 0",
+                    rounded(width / 2), rounded(a.x), rounded(a.y)));
             }
         }
         if (!part.lines.empty()) parts_.push_back(std::move(part));

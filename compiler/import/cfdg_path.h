@@ -11,7 +11,7 @@ namespace graftal::cfdg {
 
 /// What a path draws: lines of an object, each with the adjustments of its command.
 struct PathPart {
-    std::vector<std::string> lines;    ///< `instance: polygon(...)`; of a stroke, squares and discs
+    std::vector<std::string> lines;             ///< `instance: polygon(...)`; of a stroke, squares and discs
     const Modification* modification = nullptr; ///< null of a path without commands
 };
 

@@ -22,7 +22,15 @@ constexpr std::size_t most_shapes = 150;
 double growth_of(const Modification& modification, const Expressions& expressions) {
     double growth = 0;
     for (const Adjustment& adjustment : modification.adjustments) {
-        if (adjustment.word == "trans" || adjustment.word == "skew") return unknown;
+        if (adjustment.word == "skew") return unknown;
+        if (adjustment.word == "trans") {
+            const Definition* const inner = expressions.modification(adjustment);
+            if (!inner || inner->modification.adjustments.size() > 20) return unknown;
+            for (const Adjustment& part : inner->modification.adjustments)
+                if (part.word == "trans") return unknown;
+            growth += growth_of(inner->modification, expressions);
+            continue;
+        }
         if (adjustment.word != "s") continue;
         double largest = 0;
         for (std::size_t i = 0; i < adjustment.values.size() && i < 2; ++i) {
@@ -57,7 +65,8 @@ void Recursion::walk(std::size_t from, const Elements& elements, double growth) 
             inner += growth_of(modification, expressions_);
         if (element.kind == Element::Kind::loop) {
             // The last copy is the largest where copies grow.
-            const double copies = element.arguments.empty() ? 1 : expressions_.number(element.arguments[0]).value_or(100);
+            const double copies =
+                element.arguments.empty() ? 1 : expressions_.number(element.arguments[0]).value_or(100);
             const double step = inner - growth;
             inner = growth + (step > 0 ? step * std::max(1.0, copies) : 0);
         }

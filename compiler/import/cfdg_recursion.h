@@ -13,8 +13,8 @@ class Recursion {
   public:
     Recursion(const Grammar& grammar, const Expressions& expressions);
 
-    /// The generations after which recursion ends where it would not by itself: its sizes do not shrink, or its
-    /// parameters change for ever. Nothing of a shape that needs no end.
+    /// The generations after which recursion ends where it would not by itself: its sizes do not shrink, or
+    /// its parameters change for ever. Nothing of a shape that needs no end.
     std::optional<int> limit(std::size_t shape) const { return limits_[component_[shape]]; }
     bool shrinks(std::size_t shape) const { return shrinks_[component_[shape]]; }
     /// Whether they lead to each other.
@@ -35,7 +35,7 @@ class Recursion {
     const Grammar& grammar_;
     const Expressions& expressions_;
     std::vector<Call> calls_;
-    std::vector<std::size_t> component_; ///< by shape
+    std::vector<std::size_t> component_;     ///< by shape
     std::vector<std::optional<int>> limits_; ///< by component
     std::vector<bool> shrinks_;
 };

@@ -19,7 +19,12 @@ constexpr std::array<std::string_view, 12> long_signs = {"+/-", "..", "<=", ">="
 
 /// Signs of Unicode and what they stand for.
 constexpr std::array<std::pair<std::string_view, std::string_view>, 6> other_signs = {
-    {{"\u2026", ".."}, {"\u00b1", "+/-"}, {"\u2264", "<="}, {"\u2265", ">="}, {"\u2260", "<>"}, {"\u221e", "infinity"}}};
+    {{"\u2026", ".."},
+     {"\u00b1", "+/-"},
+     {"\u2264", "<="},
+     {"\u2265", ">="},
+     {"\u2260", "<>"},
+     {"\u221e", "infinity"}}};
 
 bool begins_word(char c) {
     return std::isalpha(static_cast<unsigned char>(c)) || c == '_' || static_cast<unsigned char>(c) >= 0x80;
@@ -54,7 +59,8 @@ class Tokenizer {
             comment(2, text_.find("*/", at_ + 2), 2);
         } else if (c == '"') {
             const std::size_t end = std::min(text_.find('"', at_ + 1), text_.size());
-            if (end == text_.size()) file_.diagnostics.error(file_.span(at_, at_ + 1), "this '\"' has no other");
+            if (end == text_.size())
+                file_.diagnostics.error(file_.span(at_, at_ + 1), "this '\"' has no other");
             const std::string words(text_.substr(at_ + 1, end - at_ - 1));
             at_ = std::min(end + 1, text_.size());
             add(TokenKind::text, at_, words);
@@ -82,7 +88,8 @@ class Tokenizer {
         while (!rest.empty()) {
             const std::size_t stop = std::min(rest.find_first_of("\r\n"), rest.size());
             std::string_view line = rest.substr(0, stop);
-            while (!line.empty() && (line.front() == ' ' || line.front() == '\t' || line.front() == '*' || line.front() == '/'))
+            while (!line.empty() && (line.front() == ' ' || line.front() == '\t' || line.front() == '*' ||
+                                     line.front() == '/'))
                 line.remove_prefix(1);
             if (!line.empty()) comments_.emplace_back(line);
             rest.remove_prefix(std::min(stop + 1, rest.size()));
@@ -94,7 +101,8 @@ class Tokenizer {
         for (const auto& [written, meant] : other_signs)
             if (text_.substr(at_).starts_with(written)) {
                 at_ += written.size();
-                add(meant == "infinity" ? TokenKind::word : TokenKind::sign, at_, std::string(meant), written.size());
+                add(meant == "infinity" ? TokenKind::word : TokenKind::sign, at_, std::string(meant),
+                    written.size());
                 return true;
             }
         return false;
@@ -109,7 +117,8 @@ class Tokenizer {
     void word(std::size_t bar) {
         const std::size_t begin = at_;
         at_ += bar;
-        while (at_ < text_.size() && (begins_word(peek()) || is_digit(peek()) || (peek() == ':' && peek(1) == ':'))) {
+        while (at_ < text_.size() &&
+               (begins_word(peek()) || is_digit(peek()) || (peek() == ':' && peek(1) == ':'))) {
             if (at_unicode_sign(at_)) break;
             at_ += peek() == ':' ? 2 : 1;
         }
@@ -151,7 +160,8 @@ class Tokenizer {
             }
         const char c = peek();
         ++at_;
-        if (std::string_view("{}[]()*,+-/^<>=!|;:@_").find(c) != std::string_view::npos)
+        // A dot stands in the names of files only, which the parser reads as a whole.
+        if (std::string_view("{}[]()*,+-/^<>=!|;:@_.").find(c) != std::string_view::npos)
             return add(TokenKind::sign, at_, std::string(1, c), 1);
         file_.diagnostics.error(file_.span(at_ - 1, at_), "no word or sign begins like this");
     }

@@ -11,6 +11,7 @@
 
 #include "compiler/import/cfdg_affine.h"
 #include "compiler/import/cfdg_path.h"
+#include "compiler/import/foreign_text.h"
 #include "compiler/import/importers.h"
 #include "compiler/import/own_words.h"
 #include "compiler/support/hue.h"
@@ -30,7 +31,28 @@ std::string rounded(double value, double steps = 1e6) {
 }
 
 bool is_colour(const Adjustment& adjustment) {
-    return adjustment.word == "h" || adjustment.word == "sat" || adjustment.word == "b" || adjustment.word == "a";
+    return adjustment.word == "h" || adjustment.word == "sat" || adjustment.word == "b" ||
+           adjustment.word == "a";
+}
+
+/// Signs of Unicode are names of them too.
+std::string_view primitive_named(std::string_view name) {
+    static constexpr std::array<std::pair<std::string_view, std::string_view>, 12> table = {
+        {{"CIRCLE", "CIRCLE"},
+         {"SQUARE", "SQUARE"},
+         {"TRIANGLE", "TRIANGLE"},
+         {"\u25cf", "CIRCLE"},
+         {"\u26ab", "CIRCLE"},
+         {"\u2b24", "CIRCLE"},
+         {"\u25a0", "SQUARE"},
+         {"\u25fc", "SQUARE"},
+         {"\u2b1b", "SQUARE"},
+         {"\uffed", "SQUARE"},
+         {"\u25b2", "TRIANGLE"},
+         {"\u25b4", "TRIANGLE"}}};
+    for (const auto& [written, meant] : table)
+        if (name == written) return meant;
+    return {};
 }
 
 } // namespace
@@ -70,18 +92,32 @@ void Writer::fail(Span span, std::string message, std::string hint) {
 
 void Writer::check_definitions() {
     static const std::set<std::string, std::less<>> harmless = {
-        "CF::Impure",    "CF::MinimumSize", "CF::MaxNatural",   "CF::MaxShapes",  "CF::BorderDynamic",
-        "CF::BorderFixed", "CF::Color",     "CF::ColorDepth",   "CF::Time",       "CF::Frame",
-        "CF::FrameTime", "CF::AllowOverlap", "CF::Alpha"};
+        "CF::Impure",      "CF::MinimumSize",  "CF::MaxNatural", "CF::MaxShapes", "CF::BorderDynamic",
+        "CF::BorderFixed", "CF::Color",        "CF::ColorDepth", "CF::Time",      "CF::Frame",
+        "CF::FrameTime",   "CF::AllowOverlap", "CF::Alpha"};
     for (const Definition& definition : grammar_.definitions) {
         if (!definition.name.starts_with("CF::")) continue;
         if (harmless.contains(definition.name))
-            file_.diagnostics.note(definition.span, fmt::format("'{}' changes nothing here", definition.name));
-        else
-            fail(definition.span, fmt::format("'{}' is not translated", definition.name));
+            file_.diagnostics.note(definition.span,
+                                   fmt::format("'{}' changes nothing here", definition.name));
+        else if (definition.name != "CF::Symmetry" || !read_symmetry(definition))
+            fail(definition.span, fmt::format("this '{}' is not translated", definition.name));
     }
     if (grammar_.tile)
         file_.diagnostics.warning(grammar_.tile->span, "'tile': one tile is drawn, without its neighbours");
+}
+
+/// `CF::Symmetry = CF::Cyclic, 5` or `CF::Dihedral, 5`, about the origin.
+bool Writer::read_symmetry(const Definition& definition) {
+    const Expr& value = definition.value;
+    if (value.kind != Expr::Kind::list || value.operands.size() != 2) return false;
+    const std::string& kind = value.operands[0].text;
+    const std::optional<double> turns = expressions_.number(value.operands[1]);
+    if ((kind != "CF::Cyclic" && kind != "CF::Dihedral") || !turns || *turns < 1 || *turns > 1000)
+        return false;
+    turns_ = static_cast<int>(*turns);
+    mirrors_ = kind == "CF::Dihedral";
+    return true;
 }
 
 std::array<double, 3> Writer::colour_from(const Modification& modification, std::array<double, 3> hsv) {
@@ -93,16 +129,19 @@ std::array<double, 3> Writer::colour_from(const Modification& modification, std:
             continue;
         }
         double& part = hsv[adjustment.word == "h" ? 0 : adjustment.word == "sat" ? 1 : 2];
-        part = adjustment.word == "h" ? part + *by : std::clamp(*by > 0 ? part + *by * (1 - part) : part * (1 + *by), 0.0, 1.0);
+        part = adjustment.word == "h"
+                   ? part + *by
+                   : std::clamp(*by > 0 ? part + *by * (1 - part) : part * (1 + *by), 0.0, 1.0);
     }
     return hsv;
 }
 
 void Writer::write_scene() {
-    const std::array<double, 3> hsv = grammar_.background ? colour_from(*grammar_.background, {0, 0, 1}) : std::array{0.0, 0.0, 1.0};
+    const std::array<double, 3> hsv =
+        grammar_.background ? colour_from(*grammar_.background, {0, 0, 1}) : std::array{0.0, 0.0, 1.0};
     const Rgb screen = rgb_from_hsv(hsv[0], hsv[1], hsv[2]);
-    line(fmt::format("background: {}, {}, {}", rounded(linear_from_srgb(screen.r)), rounded(linear_from_srgb(screen.g)),
-                     rounded(linear_from_srgb(screen.b))));
+    line(fmt::format("background: {}, {}, {}", rounded(linear_from_srgb(screen.r)),
+                     rounded(linear_from_srgb(screen.g)), rounded(linear_from_srgb(screen.b))));
     write_camera();
     line("light { sun: 0,0,1  color: 0,0,0 }   # colours are as they are");
     line("material flat { color: 1,1,1  ambient: 1  diffuse: 0  specular: 0 }");
@@ -110,7 +149,8 @@ void Writer::write_scene() {
         if (!constants_.contains(constant->name)) continue;
         for (const std::string& words : constant->comments)
             comment(words);
-        line(fmt::format("let {} = {}", constants_.at(constant->name), shortest(*expressions_.number(constant->value))),
+        line(fmt::format("let {} = {}", constants_.at(constant->name),
+                         shortest(*expressions_.number(constant->value))),
              constant->span);
     }
 }
@@ -121,8 +161,8 @@ void Writer::write_camera() {
     if (given && !map) fail(given->span, "the numbers of the size must be known");
     if (!map) return line("camera { orthographic  location: 0,0,10  look_at: 0,0,0 }");
     const Vec3 at = map->translation;
-    line(fmt::format("camera {{ orthographic  location: {0},{1},10  look_at: {0},{1},0  width: {2} }}", rounded(at.x),
-                     rounded(at.y), rounded(glm::length(map->linear[0]))),
+    line(fmt::format("camera {{ orthographic  location: {0},{1},10  look_at: {0},{1},0  width: {2} }}",
+                     rounded(at.x), rounded(at.y), rounded(glm::length(map->linear[0]))),
          given->span);
 }
 
@@ -136,7 +176,16 @@ void Writer::write_start() {
         const Element& start = *grammar_.start;
         const std::string master = reference(start, nullptr, constants_);
         const std::optional<Lines> lines = lines_of(start.modification, constants_, 0);
-        if (lines) line(fmt::format("instance: {}{}  ink: hsv(0, 0, 0){}", master, lines->moves, lines->inks), start.span);
+        if (lines)
+            for (const char* const mirror : {"", "  scale: 1, -1, 1"}) {
+                if (*mirror && !mirrors_) break;
+                const std::string copies = turns_ > 1
+                                               ? fmt::format("{} * {{ rotate: z, 360/{} }} ", turns_, turns_)
+                                               : std::string("instance: ");
+                line(fmt::format("{}{}{}{}  ink: hsv(0, 0, 0){}", copies, master, lines->moves, mirror,
+                                 lines->inks),
+                     start.span);
+            }
     }
     --depth_;
     line("}");
@@ -165,10 +214,12 @@ void Writer::write_shape(std::size_t index) {
         comment(words);
     for (const Parameter& parameter : shape.parameters)
         if (parameter.type != "number" && parameter.type != "natural")
-            return fail(parameter.span, fmt::format("the parameter '{}' of type '{}' is not translated", parameter.name,
-                                                    parameter.type));
+            return fail(parameter.span, fmt::format("the parameter '{}' of type '{}' is not translated",
+                                                    parameter.name, parameter.type));
     if (shape.is_path) {
-        if (!shape.parameters.empty()) return fail(shape.span, fmt::format("the path '{}' has parameters, which are not translated", shape.name));
+        if (!shape.parameters.empty())
+            return fail(shape.span,
+                        fmt::format("the path '{}' has parameters, which are not translated", shape.name));
         return write_path(shape, object_names_[index]);
     }
     if (shape.rules.empty()) return fail(shape.span, fmt::format("'{}' has no rule", shape.name));
@@ -196,13 +247,16 @@ void Writer::write_rule(std::size_t index, const Rule& rule, const std::string& 
     }
     for (const std::string& words : rule.comments)
         comment(words);
-    line(fmt::format("canonical object {}{}{} {{", object_names_[index], parameter_list(place.parameters), weight),
+    line(fmt::format("canonical object {}{}{} {{", object_names_[index], parameter_list(place.parameters),
+                     weight),
          rule.span);
     ++depth_;
     if (limit) {
         if (!recursion_.shrinks(index))
-            file_.diagnostics.note(shape.span, fmt::format("'{}' calls itself without becoming smaller, as far as can be "
-                                                           "told; it is drawn to {} generations", shape.name, *limit));
+            file_.diagnostics.note(shape.span,
+                                   fmt::format("'{}' calls itself without becoming smaller, as far as can be "
+                                               "told; it is drawn to {} generations",
+                                               shape.name, *limit));
         line("when n > 0 {");
         ++depth_;
     }
@@ -221,7 +275,8 @@ void Writer::write_path(const Shape& shape, const std::string& name) {
     ++depth_;
     std::size_t order = 0, lines = 0;
     for (const PathPart& part : *parts) {
-        std::optional<Lines> own = part.modification ? lines_of(*part.modification, constants_, order) : Lines();
+        std::optional<Lines> own =
+            part.modification ? lines_of(*part.modification, constants_, order) : Lines();
         if (!own) continue;
         for (const std::string& words : part.lines)
             line(fmt::format("{}  material: flat{}{}", words, own->moves, own->inks), shape.span), ++lines;
@@ -237,7 +292,8 @@ void Writer::write_parts() {
     for (; written_parts_ < parts_.size() && !file_.diagnostics.full(); ++written_parts_) {
         Part next = parts_[written_parts_];
         line("");
-        line(fmt::format("canonical object {}{} {{", next.name, parameter_list(next.place.parameters)), next.span);
+        line(fmt::format("canonical object {}{} {{", next.name, parameter_list(next.place.parameters)),
+             next.span);
         ++depth_;
         const std::size_t before = out_.text.size();
         write_elements(*next.elements, next.first, next.place);
@@ -305,7 +361,8 @@ void Writer::write_element(const Element& element, Place& place) {
     switch (element.kind) {
     case Element::Kind::shape: {
         if (element.name == "FILL" && !recursion_.index("FILL"))
-            return fail(element.span, "'FILL' covers the whole canvas, and is not translated", "use CF::Background");
+            return fail(element.span, "'FILL' covers the whole canvas, and is not translated",
+                        "use CF::Background");
         const std::string master = reference(element, &place, place.scope);
         const std::optional<Lines> lines = lines_of(element.modification, place.scope, place.order);
         if (lines) line(fmt::format("instance: {}{}{}", master, lines->moves, lines->inks), element.span);
@@ -321,7 +378,8 @@ void Writer::write_element(const Element& element, Place& place) {
         write_choice(element, place);
         break;
     case Element::Kind::transform: {
-        const std::string object = part(element.body, 0, place, element.span) + parameter_list(place.parameters);
+        const std::string object =
+            part(element.body, 0, place, element.span) + parameter_list(place.parameters);
         for (const Modification& modification : element.modifications)
             if (const std::optional<Lines> lines = lines_of(modification, place.scope, place.order))
                 line(fmt::format("instance: {}{}{}", object, lines->moves, lines->inks), element.span);
@@ -338,7 +396,9 @@ void Writer::write_element(const Element& element, Place& place) {
 void Writer::write_condition(const Element& element, Place& place) {
     const std::optional<std::string> test = text(element.arguments[0], place.scope);
     if (!test) return;
-    if (is_random(*test)) return fail(element.arguments[0].span, "a random condition is not translated", "use two rules with weights");
+    if (is_random(*test))
+        return fail(element.arguments[0].span, "a random condition is not translated",
+                    "use two rules with weights");
     line(fmt::format("when {} {{", *test), element.span);
     ++depth_;
     Place inner = place;
@@ -357,7 +417,8 @@ void Writer::write_condition(const Element& element, Place& place) {
 void Writer::write_choice(const Element& element, Place& place) {
     const std::optional<std::string> value = text(element.arguments[0], place.scope);
     if (!value) return;
-    if (is_random(*value)) return fail(element.arguments[0].span, "a random choice is not translated", "use rules with weights");
+    if (is_random(*value))
+        return fail(element.arguments[0].span, "a random choice is not translated", "use rules with weights");
     const Case* otherwise = nullptr;
     bool open = false;
     for (const Case& one : element.cases) {
@@ -396,26 +457,30 @@ void Writer::write_loop(const Element& element, Place& place) {
                 });
             };
             return std::ranges::any_of(inner.arguments, in) || modifies(inner.modification) ||
-                   std::ranges::any_of(inner.modifications, modifies) || self(self, inner.body) || self(self, inner.other) ||
-                   std::ranges::any_of(inner.cases, [&](const Case& one) {
+                   std::ranges::any_of(inner.modifications, modifies) || self(self, inner.body) ||
+                   self(self, inner.other) || std::ranges::any_of(inner.cases, [&](const Case& one) {
                        return std::ranges::any_of(one.values, in) || self(self, one.body);
                    });
         });
     };
     Element probe = {};
     probe.modification = element.modification;
-    const bool indexed = !element.name.empty() && (uses_index(uses_index, element.body) || uses_index(uses_index, {probe}) ||
-                                                   uses_index(uses_index, element.other));
-    if (indexed || !element.other.empty() || element.arguments.size() > 2) return write_indexed_loop(element, place);
+    const bool indexed =
+        !element.name.empty() && (uses_index(uses_index, element.body) || uses_index(uses_index, {probe}) ||
+                                  uses_index(uses_index, element.other));
+    if (indexed || !element.other.empty() || element.arguments.size() > 2)
+        return write_indexed_loop(element, place);
     std::optional<std::string> count = text(element.arguments.back(), place.scope);
     const std::optional<std::string> begin =
         element.arguments.size() == 2 ? text(element.arguments.front(), place.scope) : std::nullopt;
     const std::optional<Lines> lines = lines_of(element.modification, place.scope, 1);
     if (!count || !lines) return;
     if (begin) count = fmt::format("({} - ({}))", *count, *begin);
-    const std::optional<double> known = element.arguments.size() == 1 ? expressions_.number(element.arguments[0]) : std::nullopt;
+    const std::optional<double> known =
+        element.arguments.size() == 1 ? expressions_.number(element.arguments[0]) : std::nullopt;
     if (known && *known < 1) return;
-    line(fmt::format("repeat {} {{{}{} }} {{", known ? shortest(std::floor(*known)) : fmt::format("max(1, floor({}))", *count),
+    line(fmt::format("repeat {} {{{}{} }} {{",
+                     known ? shortest(std::floor(*known)) : fmt::format("max(1, floor({}))", *count),
                      lines->moves, lines->inks),
          element.span);
     ++depth_;
@@ -452,7 +517,8 @@ void Writer::write_indexed_loop(const Element& element, Place& place) {
     for (; step > 0 ? at < end - 1e-9 : at > end + 1e-9; at += step) {
         std::vector<std::string> arguments = place.parameters;
         arguments.push_back(shortest(at));
-        line(fmt::format("instance: {}({}){}{}", object, fmt::join(arguments, ", "), moves, inks), element.span);
+        line(fmt::format("instance: {}({}){}{}", object, fmt::join(arguments, ", "), moves, inks),
+             element.span);
         Scope scope = place.scope;
         scope[element.name] = shortest(at);
         known[element.name] = at;
@@ -465,9 +531,9 @@ void Writer::write_indexed_loop(const Element& element, Place& place) {
             moves = "  matrix:";
             for (int row = 0; row < 3; ++row) {
                 const double lift = row == 2 ? 1e-5 : 0;
-                moves += fmt::format(" {}, {}, {}, {}{}", rounded(moved.linear[0][row], 1e9), rounded(moved.linear[1][row], 1e9),
-                                     rounded(moved.linear[2][row], 1e9), rounded(moved.translation[row] + lift, 1e9),
-                                     row < 2 ? "," : "");
+                moves += fmt::format(" {}, {}, {}, {}{}", rounded(moved.linear[0][row], 1e9),
+                                     rounded(moved.linear[1][row], 1e9), rounded(moved.linear[2][row], 1e9),
+                                     rounded(moved.translation[row] + lift, 1e9), row < 2 ? "," : "");
             }
         } else {
             moves = turn->moves + moves;
@@ -486,15 +552,16 @@ void Writer::write_indexed_loop(const Element& element, Place& place) {
 std::string Writer::reference(const Element& element, const Place* from, const Scope& scope) {
     const std::optional<std::size_t> to = recursion_.index(element.name);
     if (!to) {
-        if (element.name == "CIRCLE" || element.name == "SQUARE" || element.name == "TRIANGLE") {
-            auto [known, fresh] = primitives_.try_emplace(element.name);
-            if (fresh) known->second = free_name(element.name);
+        if (const std::string_view primitive = primitive_named(element.name); !primitive.empty()) {
+            auto [known, fresh] = primitives_.try_emplace(std::string(primitive));
+            if (fresh) known->second = free_name(primitive);
             return known->second;
         }
         std::vector<std::string> names = {"CIRCLE", "SQUARE", "TRIANGLE"};
         for (const Shape& shape : grammar_.shapes)
             names.push_back(shape.name);
-        fail(element.span, fmt::format("unknown shape '{}'", element.name), did_you_mean(element.name, names));
+        fail(element.span, fmt::format("unknown shape '{}'", element.name),
+             did_you_mean(element.name, names));
         return element.name;
     }
     const Shape& shape = grammar_.shapes[*to];
@@ -506,13 +573,15 @@ std::string Writer::reference(const Element& element, const Place* from, const S
             fail(element.span, "'(=)' needs a shape with the same parameters");
         else
             for (const Parameter& parameter : grammar_.shapes[from->shape].parameters)
-                if (const auto known = scope.find(parameter.name); known != scope.end()) arguments.push_back(known->second);
+                if (const auto known = scope.find(parameter.name); known != scope.end())
+                    arguments.push_back(known->second);
     } else {
         for (const Expr& argument : element.arguments)
-            if (std::optional<std::string> words = text(argument, scope)) arguments.push_back(std::move(*words));
+            if (std::optional<std::string> words = text(argument, scope))
+                arguments.push_back(std::move(*words));
         if (element.arguments.size() != shape.parameters.size())
-            fail(element.span, fmt::format("'{}' takes {} parameters, not {}", element.name, shape.parameters.size(),
-                                           element.arguments.size()));
+            fail(element.span, fmt::format("'{}' takes {} parameters, not {}", element.name,
+                                           shape.parameters.size(), element.arguments.size()));
     }
     return object_names_[*to] + parameter_list(arguments);
 }
@@ -527,10 +596,7 @@ std::string Writer::free_name(std::string_view wanted) {
 }
 
 void Writer::comment(const std::string& words) {
-    std::string clean;
-    for (const char c : words)
-        clean += static_cast<unsigned char>(c) < ' ' ? ' ' : c;
-    line("# " + clean);
+    line("# " + comment_text(words));
 }
 
 void Writer::line(const std::string& words, Span origin) {

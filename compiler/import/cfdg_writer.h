@@ -43,6 +43,7 @@ class Writer {
     };
 
     void check_definitions();
+    bool read_symmetry(const Definition& definition);
     void write_scene();
     void write_camera();
     void write_start();
@@ -81,12 +82,14 @@ class Writer {
     Translation out_{.extension = "inst"};
     int depth_ = 0;
     std::set<std::string> names_;
-    std::vector<std::string> object_names_; ///< by shape
+    std::vector<std::string> object_names_;         ///< by shape
     std::map<std::string, std::string> primitives_; ///< that are used
     Scope constants_;                               ///< of the file, as `let`s
     std::vector<Part> parts_;                       ///< to be written
     std::size_t written_parts_ = 0;
-    bool in_path_ = false;
+    int turns_ = 1; ///< of CF::Symmetry
+    bool mirrors_ = false;
+    int nested_ = 0; ///< adjustments within adjustments
 };
 
 } // namespace graftal::cfdg

@@ -2,7 +2,7 @@
 
 #include "compiler/import/eisenscript_parser.h"
 #include "compiler/import/eisenscript_writer.h"
-#include "compiler/import/importers.h"
+#include "compiler/import/foreign_text.h"
 
 namespace graftal {
 
@@ -18,7 +18,8 @@ std::optional<Translation> translate(const ForeignFile& file, const ForeignModel
     const Script script = parse(file);
     if (file.diagnostics.error_count() > errors) return std::nullopt;
     if (script.rules.front().actions.empty()) {
-        file.diagnostics.error(file.span(0, 0), "the script draws nothing: no action stands outside of its rules");
+        file.diagnostics.error(file.span(0, 0),
+                               "the script draws nothing: no action stands outside of its rules");
         return std::nullopt;
     }
     Translation translation = Writer(file, script).write();
@@ -26,8 +27,8 @@ std::optional<Translation> translate(const ForeignFile& file, const ForeignModel
     return translation;
 }
 
-bool recognises(std::string_view) {
-    return true;
+bool recognises(std::string_view text) {
+    return !is_binary(text);
 }
 
 } // namespace eisenscript

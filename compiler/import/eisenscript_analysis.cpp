@@ -63,7 +63,8 @@ using State = std::vector<double>; // group, size, counts
 class Growth {
   public:
     Growth(const Script& script, const Limits& limits, const Analysis& analysis)
-        : script_(script), limits_(limits), analysis_(analysis), sized_(limits.least_size || limits.most_size) {}
+        : script_(script), limits_(limits), analysis_(analysis),
+          sized_(limits.least_size || limits.most_size) {}
 
     /// False if there is an end without limits.
     bool run(int& generations, bool& by_objects, double& objects) {
@@ -108,7 +109,9 @@ class Growth {
         for (const std::size_t rule : group.rules)
             sum += script_.rules[rule].weight.number;
         for (const std::size_t rule : group.rules) {
-            const double share = group.rules.size() == 1 ? 1 : sum > 0 ? script_.rules[rule].weight.number / sum : 0;
+            const double share = group.rules.size() == 1 ? 1
+                                 : sum > 0               ? script_.rules[rule].weight.number / sum
+                                                         : 0;
             if (share > 0) apply_rule(rule, group, state, number * share, fallbacks);
         }
     }
@@ -236,7 +239,8 @@ void Analysis::find_components() {
     for (std::size_t id = 0; id < count; ++id)
         for (const std::size_t rule : groups_[id].rules) {
             const auto add = [&](const std::string& name) {
-                if (const Group* const to = group(name)) calls[id].push_back(static_cast<std::size_t>(to - groups_.data()));
+                if (const Group* const to = group(name))
+                    calls[id].push_back(static_cast<std::size_t>(to - groups_.data()));
             };
             for (const Action& action : script_.rules[rule].actions)
                 add(action.target.text);

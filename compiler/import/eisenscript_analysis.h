@@ -12,9 +12,9 @@ namespace graftal::eisenscript {
 
 /// The rules of one name, of which chance takes one. It becomes one object.
 struct Group {
-    std::string name;                  ///< in small letters
-    std::vector<std::size_t> rules;    ///< in Script::rules
-    std::size_t component = 0;         ///< groups that lead to each other
+    std::string name;               ///< in small letters
+    std::vector<std::size_t> rules; ///< in Script::rules
+    std::size_t component = 0;      ///< groups that lead to each other
     bool recurs = false;
     std::vector<std::size_t> counters; ///< rules of its component with a depth, whose counts it must know
     bool endless = false;              ///< it leads to recursion
@@ -46,8 +46,8 @@ class Analysis {
     /// Index of the group of a rule.
     std::size_t group_of(std::size_t rule) const { return group_of_rule_[rule]; }
 
-    /// The generations that Structure Synth makes, or nothing if the script ends by itself. It stops after the one
-    /// that reaches the number of objects; with chances, where their mean does.
+    /// The generations that Structure Synth makes, or nothing if the script ends by itself. It stops after
+    /// the one that reaches the number of objects; with chances, where their mean does.
     std::optional<int> generations() const { return generations_; }
     bool by_objects() const { return by_objects_; }
     /// Cubes and other primitives that it then has drawn; with chances, their mean.

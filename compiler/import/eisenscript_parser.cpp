@@ -24,17 +24,28 @@ struct OperatorRow {
 const std::map<std::string_view, OperatorRow>& operator_table() {
     using enum Operator::Kind;
     static const std::map<std::string_view, OperatorRow> table = {
-        {"x", {x, 1, 1}},           {"y", {y, 1, 1}},
-        {"z", {z, 1, 1}},           {"rx", {rx, 1, 1}},
-        {"ry", {ry, 1, 1}},         {"rz", {rz, 1, 1}},
-        {"s", {size, 1, 3}},        {"fx", {size, 0, 0}},
-        {"fy", {size, 0, 0}},       {"fz", {size, 0, 0}},
-        {"matrix", {matrix, 9, 9}}, {"reflect", {reflect, 3, 3}},
-        {"h", {hue, 1, 1}},         {"hue", {hue, 1, 1}},
-        {"sat", {saturation, 1, 1}}, {"b", {brightness, 1, 1}},
-        {"brightness", {brightness, 1, 1}}, {"v", {brightness, 1, 1}},
-        {"a", {alpha, 1, 1}},       {"alpha", {alpha, 1, 1}},
-        {"c", {colour, 0, 0}},      {"color", {colour, 0, 0}},
+        {"x", {x, 1, 1}},
+        {"y", {y, 1, 1}},
+        {"z", {z, 1, 1}},
+        {"rx", {rx, 1, 1}},
+        {"ry", {ry, 1, 1}},
+        {"rz", {rz, 1, 1}},
+        {"s", {size, 1, 3}},
+        {"fx", {size, 0, 0}},
+        {"fy", {size, 0, 0}},
+        {"fz", {size, 0, 0}},
+        {"matrix", {matrix, 9, 9}},
+        {"reflect", {reflect, 3, 3}},
+        {"h", {hue, 1, 1}},
+        {"hue", {hue, 1, 1}},
+        {"sat", {saturation, 1, 1}},
+        {"b", {brightness, 1, 1}},
+        {"brightness", {brightness, 1, 1}},
+        {"v", {brightness, 1, 1}},
+        {"a", {alpha, 1, 1}},
+        {"alpha", {alpha, 1, 1}},
+        {"c", {colour, 0, 0}},
+        {"color", {colour, 0, 0}},
         {"blend", {blend, 1, 1}},
     };
     return table;
@@ -105,7 +116,8 @@ class Parser {
             if (!parse_modifier(rule)) return false;
         if (!accept(TokenKind::open)) return expected("'{', 'maxdepth' or 'weight'");
         while (peek().kind != TokenKind::close) {
-            if (peek().kind == TokenKind::end || peek().is("rule")) return expected("'}' at the end of the rule");
+            if (peek().kind == TokenKind::end || peek().is("rule"))
+                return expected("'}' at the end of the rule");
             if (!parse_line(rule)) return false;
         }
         rule.tail = next().comments;
@@ -171,7 +183,8 @@ class Parser {
         if (peek().kind == TokenKind::number) {
             const Token count = next();
             if (!count.whole || count.number > most_copies) {
-                file_.diagnostics.error(count.span, fmt::format("a count is a whole number up to {}", most_copies));
+                file_.diagnostics.error(count.span,
+                                        fmt::format("a count is a whole number up to {}", most_copies));
                 return std::nullopt;
             }
             loop.count = {count.number, count.constant};
@@ -204,7 +217,8 @@ class Parser {
         if (word.text[0] == 'f')
             for (const char axis : {'x', 'y', 'z'})
                 op.numbers.push_back({word.text[1] == axis ? -1.0 : 1.0, {}});
-        if ((op.kind == Operator::Kind::colour || op.kind == Operator::Kind::blend) && !parse_colour(op)) return std::nullopt;
+        if ((op.kind == Operator::Kind::colour || op.kind == Operator::Kind::blend) && !parse_colour(op))
+            return std::nullopt;
         for (int i = 0; i < row->second.most; ++i) {
             if (i >= row->second.least && peek().kind != TokenKind::number) break;
             const std::optional<Value> value = number(word.written);

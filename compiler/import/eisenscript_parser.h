@@ -19,8 +19,21 @@ struct Value {
 /// One operator of `{ x 1 rz 30 hue 10 }`.
 struct Operator {
     enum class Kind : std::uint8_t {
-        x, y, z, rx, ry, rz, size, matrix, reflect,
-        hue, saturation, brightness, alpha, colour, blend
+        x,
+        y,
+        z,
+        rx,
+        ry,
+        rz,
+        size,
+        matrix,
+        reflect,
+        hue,
+        saturation,
+        brightness,
+        alpha,
+        colour,
+        blend
     };
 
     Kind kind = Kind::x;

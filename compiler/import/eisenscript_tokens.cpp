@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 
+#include "compiler/import/foreign_text.h"
 #include "compiler/support/counter_random.h"
 #include "compiler/support/number.h"
 
@@ -22,7 +23,7 @@ constexpr int most_substitutions = 100;            ///< in one line, as in Struc
 /// A character of the text after substitution.
 struct Character {
     char c = 0;
-    std::uint32_t origin = 0;  ///< its place in the file, or that of the name it replaces
+    std::uint32_t origin = 0;   ///< its place in the file, or that of the name it replaces
     std::int32_t constant = -1; ///< of the `#define` that gave it
 };
 
@@ -35,21 +36,6 @@ struct Define {
 
 bool is_blank(char c) {
     return c == ' ' || c == '\t' || c == '\r' || c == '\n' || c == '\f' || c == '\v';
-}
-
-std::string_view trimmed(std::string_view text) {
-    while (!text.empty() && is_blank(text.front()))
-        text.remove_prefix(1);
-    while (!text.empty() && is_blank(text.back()))
-        text.remove_suffix(1);
-    return text;
-}
-
-std::string small(std::string_view text) {
-    std::string result(text);
-    std::ranges::transform(result, result.begin(),
-                           [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    return result;
 }
 
 /// `1/3` too.
@@ -143,7 +129,8 @@ class Preprocessor {
         out_.insert(out_.end(), line.begin(), line.end());
     }
 
-    void replace(std::vector<Character>& line, std::string& plain, const std::string& name, std::size_t define) {
+    void replace(std::vector<Character>& line, std::string& plain, const std::string& name,
+                 std::size_t define) {
         const std::string& value = defines_[define].value;
         std::vector<Character> replaced;
         std::string text;
@@ -194,7 +181,9 @@ class Tokenizer {
     }
 
   private:
-    char peek(std::size_t ahead = 0) const { return at_ + ahead < text_.size() ? text_[at_ + ahead].c : '\0'; }
+    char peek(std::size_t ahead = 0) const {
+        return at_ + ahead < text_.size() ? text_[at_ + ahead].c : '\0';
+    }
 
     void step() {
         const char c = peek();
@@ -265,8 +254,9 @@ class Tokenizer {
     void add(TokenKind kind, std::size_t begin, std::size_t end) {
         Token token{.kind = kind, .span = origin(begin, end)};
         for (std::size_t i = begin; i < end; ++i)
-            if (!is_blank(text_[i].c) || token.written.find('[') != std::string::npos) token.written += text_[i].c;
-        token.text = small(token.written);
+            if (!is_blank(text_[i].c) || token.written.find('[') != std::string::npos)
+                token.written += text_[i].c;
+        token.text = in_small_letters(token.written);
         token.comments = std::exchange(comments_, {});
         if (kind == TokenKind::word) read_number(token, begin, end);
         tokens_.list.push_back(std::move(token));
@@ -294,7 +284,9 @@ class Tokenizer {
     /// `random[0,1]` is one number for the whole script.
     void draw(Token& token) {
         const std::size_t comma = token.text.find(',');
-        const auto part = [&](std::size_t from, std::size_t to) { return number_of(token.text.substr(from, to - from)); };
+        const auto part = [&](std::size_t from, std::size_t to) {
+            return number_of(token.text.substr(from, to - from));
+        };
         const std::optional<double> least = comma < token.text.size() ? part(7, comma) : std::nullopt;
         const std::optional<double> most =
             comma < token.text.size() ? part(comma + 1, token.text.size() - 1) : std::nullopt;

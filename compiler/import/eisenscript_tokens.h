@@ -13,12 +13,12 @@ enum class TokenKind : std::uint8_t { word, number, open, close, times, more, en
 /// A word, a number or a sign of the text after its `#define`s.
 struct Token {
     TokenKind kind = TokenKind::end;
-    std::string text;       ///< in small letters
-    std::string written;    ///< as it stands
+    std::string text;    ///< in small letters
+    std::string written; ///< as it stands
     double number = 0;
-    bool whole = false;     ///< a number without fraction
-    std::string constant;   ///< the `#define` that gave all of the number; "" if none did
-    Span span;              ///< in the file
+    bool whole = false;                ///< a number without fraction
+    std::string constant;              ///< the `#define` that gave all of the number; "" if none did
+    Span span;                         ///< in the file
     std::vector<std::string> comments; ///< that stand before it
 
     bool is(std::string_view word) const { return kind == TokenKind::word && text == word; }

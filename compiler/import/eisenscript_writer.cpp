@@ -9,12 +9,11 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "compiler/import/colour_names.h"
+#include "compiler/import/eisenscript_text.h"
+#include "compiler/import/foreign_text.h"
 #include "compiler/import/importers.h"
 #include "compiler/import/own_words.h"
-#include "compiler/support/hue.h"
 #include "compiler/support/number.h"
-#include "compiler/support/srgb.h"
 
 namespace graftal::eisenscript {
 
@@ -22,48 +21,13 @@ namespace {
 
 /// Copies that are written one by one.
 constexpr std::size_t most_written_copies = 10'000;
-/// What a size of 0 becomes: graftal's maps must be regular.
-constexpr double thinnest = 1e-4;
-
 bool is_identifier(std::string_view name) {
     if (name.empty() || std::isdigit(static_cast<unsigned char>(name[0]))) return false;
     return std::ranges::all_of(name, [](unsigned char c) { return std::isalnum(c) || c == '_'; });
 }
 
-std::string hsv_text(const std::array<double, 3>& rgb) {
-    const Hsv hsv = hsv_from_rgb(Rgb(rgb[0], rgb[1], rgb[2]));
-    // To what screens tell apart.
-    const auto rounded = [](double v) { return std::round(1e4 * v) / 1e4; };
-    return fmt::format("hsv({}, {}, {})", shortest(rounded(hsv.hue_deg)), shortest(rounded(hsv.saturation)),
-                       shortest(rounded(hsv.value)));
-}
-
-Hsv hsv_of(const std::array<double, 3>& rgb) {
-    return hsv_from_rgb(Rgb(rgb[0], rgb[1], rgb[2]));
-}
-
-std::string linear_text(const std::array<double, 3>& rgb) {
-    std::vector<std::string> parts;
-    for (const double part : rgb)
-        parts.push_back(shortest(std::round(1e5 * linear_from_srgb(part)) / 1e5));
-    return fmt::format("{}", fmt::join(parts, ", "));
-}
-
-std::string vector_text(Vec3 v) {
-    return fmt::format("{}, {}, {}", shortest(v.x), shortest(v.y), shortest(v.z));
-}
-
 bool has_colours(const std::vector<Operator>& operators) {
     return std::ranges::any_of(operators, [](const Operator& op) { return !op.moves(); });
-}
-
-bool sets_colour(const std::vector<Operator>& operators) {
-    return std::ranges::any_of(operators, [](const Operator& op) { return op.kind == Operator::Kind::colour; });
-}
-
-bool draws_colour(const std::vector<Operator>& operators) {
-    return std::ranges::any_of(
-        operators, [](const Operator& op) { return op.kind == Operator::Kind::colour && !op.colour; });
 }
 
 bool commute(const Affine& a, const Affine& b) {
@@ -75,21 +39,6 @@ bool commute(const Affine& a, const Affine& b) {
 
 int copies_of(const Loop& loop) {
     return std::max(1, static_cast<int>(loop.count.number));
-}
-
-/// Maps the corners of our triangle to three points.
-std::optional<std::string> triangle_map(Vec3 a, Vec3 b, Vec3 c) {
-    const Vec3 middle = (a + b + c) / 3.0;
-    const Vec3 up = a - middle, side = (c - b) / std::numbers::sqrt3;
-    const Vec3 normal = glm::cross(side, up);
-    const double area = glm::length(normal);
-    if (!(area > 1e-9 * (glm::dot(side, side) + glm::dot(up, up)))) return std::nullopt;
-    const Vec3 out = normal / std::sqrt(area);
-    std::string text = "instance: triangle  matrix:";
-    for (int row = 0; row < 3; ++row)
-        text += fmt::format(" {}, {}, {}, {}{}", shortest(side[row]), shortest(up[row]), shortest(out[row]),
-                            shortest(middle[row]), row < 2 ? ", " : "");
-    return text;
 }
 
 } // namespace
@@ -120,165 +69,11 @@ Translation Writer::write() {
     return std::move(out_);
 }
 
-// Settings
-
-std::optional<double> Writer::number(const Setting& setting) {
-    const std::optional<double> value = parse_number(setting.value);
-    if (!value || !(std::abs(*value) <= 1e100))
-        file_.diagnostics.error(setting.span, fmt::format("'{}' is not a number", setting.value));
-    return value;
-}
-
-/// `[1 0 0]` or `[1,0,0]`.
-std::vector<double> Writer::numbers(const Setting& setting, std::size_t count) {
-    std::vector<double> values;
-    std::string word;
-    for (const char c : setting.value + " ") {
-        if (c != ' ' && c != ',' && c != '[' && c != ']') {
-            word += c;
-            continue;
-        }
-        const std::optional<double> value = parse_number(word);
-        if (value && std::abs(*value) <= 1e9) values.push_back(*value);
-        word.clear();
-    }
-    if (values.size() != count)
-        file_.diagnostics.error(setting.span, fmt::format("'{}' takes {} numbers in brackets", setting.key, count));
-    return values;
-}
-
-void Writer::read_settings() {
-    for (std::size_t rule = 0; rule < script_.rules.size(); ++rule)
-        for (const Setting& setting : script_.rules[rule].settings) {
-            if (rule == 0 || setting.key == "background")
-                set(setting);
-            else
-                file_.diagnostics.warning(setting.span,
-                                          fmt::format("'set {}' within a rule changes nothing here", setting.key));
-        }
-}
-
-void Writer::set(const Setting& setting) {
-    const std::string& key = setting.key;
-    const auto whole = [&](double most) -> std::optional<double> {
-        const std::optional<double> value = number(setting);
-        if (!value || (*value == std::floor(*value) && *value >= 0)) return value ? std::optional(std::min(*value, most)) : value;
-        file_.diagnostics.error(setting.span, fmt::format("'{}' is a whole number", key));
-        return std::nullopt;
-    };
-    if (key == "maxdepth" || key == "md") {
-        if (const auto value = whole(1e6)) limits_.generations = static_cast<int>(*value);
-    } else if (key == "maxobjects") {
-        if (const auto value = whole(1e12)) limits_.objects = *value;
-    } else if (key == "minsize") {
-        limits_.least_size = number(setting);
-    } else if (key == "maxsize") {
-        limits_.most_size = number(setting);
-    } else if (key == "background") {
-        background_ = colour_named(setting.value);
-        if (!background_) file_.diagnostics.error(setting.span, fmt::format("'{}' is not a colour", setting.value));
-    } else if (key == "colorpool") {
-        pool_ = setting.value;
-        std::ranges::transform(pool_, pool_.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-        if (pool_ == "grayscale") pool_ = "greyscale";
-        if (pool_.starts_with("list:")) {
-            pool_colours_.clear();
-            std::string_view rest = std::string_view(pool_).substr(5);
-            while (true) {
-                const std::size_t comma = std::min(rest.find(','), rest.size());
-                const auto rgb = colour_named(rest.substr(0, comma));
-                if (!rgb)
-                    file_.diagnostics.error(setting.span, fmt::format("'{}' is not a colour", rest.substr(0, comma)));
-                else
-                    pool_colours_.push_back(hsv_text(*rgb));
-                if (comma == rest.size()) break;
-                rest.remove_prefix(comma + 1);
-            }
-        } else if (pool_.starts_with("image:")) {
-            file_.diagnostics.error(setting.span, "a pool of colours from a picture ('image:') is not translated")
-                .with_hint("name the colours: set colorpool list:orange,#346");
-        } else if (pool_ != "randomhue" && pool_ != "randomrgb" && pool_ != "greyscale") {
-            file_.diagnostics.error(setting.span, fmt::format("unknown pool of colours '{}'", setting.value));
-        }
-    } else if (key == "translation" || key == "pivot") {
-        (key == "pivot" ? camera_.pivot : camera_.translation) = numbers(setting, 3);
-    } else if (key == "rotation") {
-        camera_.rotation = numbers(setting, 9);
-    } else if (key == "scale") {
-        camera_.scale = number(setting);
-    } else if (key == "perspective-angle") {
-        camera_.angle_deg = number(setting);
-    } else if (key == "seed") {
-        file_.diagnostics.note(setting.span, "the seed is an option here, and chooses other numbers: --seed");
-    } else if (key == "recursion" || key == "syncrandom" || key == "rng" || key == "template" || key == "opengl") {
-        file_.diagnostics.warning(setting.span, fmt::format("'set {} {}' changes nothing here", key, setting.value));
-    } else if (key.starts_with("raytracer::")) {
-        const std::string rest = key.substr(11);
-        const std::size_t colons = rest.find("::");
-        const std::string of = colons == std::string::npos ? "" : rest.substr(0, colons);
-        const std::string what = colons == std::string::npos ? rest : rest.substr(colons + 2);
-        if (!of.empty() && what == "reflection") {
-            finishes_[of].reflection = number(setting);
-        } else if (!of.empty() && what == "phong") {
-            const std::vector<double> phong = numbers(setting, 3);
-            if (phong.size() == 3) {
-                finishes_[of].ambient = phong[0];
-                finishes_[of].diffuse = phong[1];
-                finishes_[of].specular = phong[2];
-            }
-        } else {
-            file_.diagnostics.warning(setting.span, fmt::format("'{}' is of Structure Synth's own raytracer, and "
-                                                                "changes nothing here", key));
-        }
-    } else {
-        file_.diagnostics.error(setting.span, fmt::format("unknown setting '{}'", key));
-    }
-}
-
-void Writer::write_scene() {
-    if (background_) line(fmt::format("background: {}", linear_text(*background_)));
-    write_camera();
-    for (const auto& [name, finish] : finishes_) {
-        std::string fields;
-        const auto add = [&](const char* field, const std::optional<double>& value) {
-            if (value) fields += fmt::format("  {}: {}", field, shortest(std::clamp(*value, 0.0, 1.0)));
-        };
-        add("ambient", finish.ambient);
-        add("diffuse", finish.diffuse);
-        add("specular", finish.specular);
-        add("reflection", finish.reflection);
-        line(fmt::format("material {} {{{} }}", plain_name(name), fields));
-    }
-}
-
-/// Structure Synth moves the scene: eye = translation + scale * rotation * (point - pivot), and looks along -z.
-void Writer::write_camera() {
-    if (!camera_.translation || camera_.translation->size() != 3 || !camera_.scale || !(*camera_.scale > 0)) return;
-    Mat3 eye_from_world(1.0);
-    if (camera_.rotation && camera_.rotation->size() == 9)
-        for (int row = 0; row < 3; ++row)
-            for (int column = 0; column < 3; ++column)
-                eye_from_world[column][row] = (*camera_.rotation)[static_cast<std::size_t>(3 * row + column)];
-    Vec3 pivot(0.0);
-    if (camera_.pivot && camera_.pivot->size() == 3) pivot = {(*camera_.pivot)[0], (*camera_.pivot)[1], (*camera_.pivot)[2]};
-    const Vec3 moved((*camera_.translation)[0], (*camera_.translation)[1], (*camera_.translation)[2]);
-    const Mat3 world_from_eye = glm::transpose(eye_from_world);
-    const Vec3 location = pivot - Vec3(0.5) - world_from_eye * moved / *camera_.scale;
-    const Vec3 ahead = world_from_eye * Vec3(0, 0, -1), up = world_from_eye * Vec3(0, 1, 0);
-    const double distance = std::max(1e-3, std::abs(moved.z) / *camera_.scale);
-    const auto rounded = [](Vec3 v) { return vector_text(glm::round(1e5 * v) / 1e5); };
-    if (!(glm::length(glm::cross(ahead, up)) > 0.1)) return;
-    const double upright = std::clamp(camera_.angle_deg.value_or(22), 1.0, 150.0) * std::numbers::pi / 180;
-    const double across = 2 * std::atan(std::tan(upright / 2) * 16 / 9) * 180 / std::numbers::pi;
-    line(fmt::format("camera {{ location: {}  look_at: {}  up: {}  angle: {} }}", rounded(location),
-                     rounded(location + distance * ahead), rounded(up), shortest(std::round(100 * across) / 100)));
-}
-
 // Names
 
 void Writer::check_names() {
     for (const Constant& constant : script_.constants)
-        if (is_identifier(constant.name) && !is_own_word(constant.name) &&
+        if (is_identifier(constant.name) && constant.name != "edge" && !is_own_word(constant.name) &&
             !constant.name.starts_with("left"))
             constants_.insert(constant.name);
     for (const Group& group : analysis_->groups()) {
@@ -293,17 +88,19 @@ void Writer::check_names() {
     for (const Group& group : analysis_->groups())
         for (const std::size_t rule : group.counters) {
             const Group& of = analysis_->groups()[analysis_->group_of(rule)];
-            std::string name = group.counters.size() == 1 ? "left" : "left_" + object_names_[analysis_->group_of(rule)];
+            std::string name =
+                group.counters.size() == 1 ? "left" : "left_" + object_names_[analysis_->group_of(rule)];
             if (group.counters.size() > 1 && of.rules.size() > 1)
                 name += fmt::format("_{}", std::ranges::find(of.rules, rule) - of.rules.begin() + 1);
             counter_names_[rule] = name;
         }
     // References to nothing, in the rules that are used or not, as in Structure Synth.
-    static const std::set<std::string, std::less<>> primitives = {"box",  "sphere",   "grid", "line",     "dot",
-                                                                  "point", "cylinder", "mesh", "template", "tube"};
+    static const std::set<std::string, std::less<>> primitives = {
+        "box", "sphere", "grid", "line", "dot", "point", "cylinder", "mesh", "template", "tube"};
     const auto check = [&](const Token& token) {
         const std::string plain = token.text.substr(0, token.text.find("::"));
-        if (analysis_->group(token.text) || primitives.contains(plain) || token.text.starts_with("triangle[")) return;
+        if (analysis_->group(token.text) || primitives.contains(plain) || token.text.starts_with("triangle["))
+            return;
         std::vector<std::string> known(primitives.begin(), primitives.end());
         for (const Group& group : analysis_->groups())
             if (!group.name.empty()) known.push_back(group.name);
@@ -335,7 +132,7 @@ std::string Writer::parameters(const Group& group) const {
     if (limited_) names.emplace_back("n");
     for (const std::size_t rule : group.counters)
         names.push_back(counter_name(rule));
-    if (sized_) names.emplace_back("size");
+    if (sized_) names.emplace_back("edge");
     return names.empty() || group.name.empty() ? "" : fmt::format("({})", fmt::join(names, ", "));
 }
 
@@ -343,7 +140,7 @@ void Writer::write_constants() {
     std::set<std::string> written;
     for (const Constant& constant : script_.constants) {
         if (!constants_.contains(constant.name) || !written.insert(constant.name).second) continue;
-        const std::string remark = constant.remark.empty() ? "" : "   # " + constant.remark;
+        const std::string remark = constant.remark.empty() ? "" : "   # " + comment_text(constant.remark);
         line(fmt::format("let {} = {}{}", constant.name, shortest(constant.number), remark), constant.span);
     }
 }
@@ -387,8 +184,8 @@ void Writer::write_rule(std::size_t index) {
     if (limited_ && !top) test = "n > 1";
     const auto also = [&](const std::string& more) { test += (test.empty() ? "" : " && ") + more; };
     const auto plain = [](double diagonal) { return shortest(diagonal / std::numbers::sqrt3); };
-    if (sized_ && !top && limits_.least_size) also(fmt::format("size >= {}", plain(*limits_.least_size)));
-    if (sized_ && !top && limits_.most_size) also(fmt::format("size <= {}", plain(*limits_.most_size)));
+    if (sized_ && !top && limits_.least_size) also(fmt::format("edge >= {}", plain(*limits_.least_size)));
+    if (sized_ && !top && limits_.most_size) also(fmt::format("edge <= {}", plain(*limits_.most_size)));
     if (!test.empty()) line(fmt::format("when {} {{", test)), ++depth_;
     write_body(rule, group, index);
     if (!test.empty()) --depth_, line("}");
@@ -425,9 +222,11 @@ void Writer::write_body(const Rule& rule, const Group& group, std::size_t index)
     line("} else {");
     ++depth_;
     if (analysis_->group(rule.fallback->text))
-        line(fmt::format("instance: {}", reference(rule.fallback->text, group, index, true, 1)), rule.fallback->span);
+        line(fmt::format("instance: {}", reference(rule.fallback->text, group, index, true, 1)),
+             rule.fallback->span);
     else
-        write_action({.loops = {}, .target = *rule.fallback, .comments = {}, .span = rule.fallback->span}, index);
+        write_action({.loops = {}, .target = *rule.fallback, .comments = {}, .span = rule.fallback->span},
+                     index);
     --depth_;
     line("}");
 }
@@ -441,8 +240,8 @@ std::string Writer::reference(const std::string& name, const Group& from, std::o
         const int generations = *analysis_->generations() - 1;
         const std::string left = same_generation ? "n" : "n - 1";
         if (top)
-            arguments.push_back(std::to_string(to.endless ? generations
-                                                          : std::min<int>(generations, static_cast<int>(to.height))));
+            arguments.push_back(std::to_string(
+                to.endless ? generations : std::min<int>(generations, static_cast<int>(to.height))));
         else
             arguments.push_back(to.endless ? left : fmt::format("min({}, {})", left, to.height));
     }
@@ -455,8 +254,10 @@ std::string Writer::reference(const std::string& name, const Group& from, std::o
             arguments.push_back(rule == counter ? counter_name(counter) + " - 1" : counter_name(counter));
     }
     if (sized_) {
-        const std::string size = top ? "1" : "size";
-        arguments.push_back(growth == 1 ? size : top ? shortest(growth) : fmt::format("size * {}", shortest(growth)));
+        const std::string size = top ? "1" : "edge";
+        arguments.push_back(growth == 1 ? size
+                            : top       ? shortest(growth)
+                                        : fmt::format("edge * {}", shortest(growth)));
     }
     const std::string& object = object_names_[static_cast<std::size_t>(&to - analysis_->groups().data())];
     return arguments.empty() ? object : fmt::format("{}({})", object, fmt::join(arguments, ", "));
@@ -468,24 +269,31 @@ void Writer::write_action(const Action& action, std::size_t from) {
     const std::string plain = action.target.text.substr(0, action.target.text.find("::"));
     const Group* const to = analysis_->group(action.target.text);
     if (!to && plain == "template") {
-        file_.diagnostics.warning(action.span, "'template' draws nothing here: it is a text for other programs");
+        file_.diagnostics.warning(action.span,
+                                  "'template' draws nothing here: it is a text for other programs");
         return;
     }
-    if (!to && plain == "mesh") return write_mesh(action);
+    if (!to && plain == "mesh") {
+        if (!action.loops.empty()) write_mesh(action); // else whoever calls this rule writes it
+        return;
+    }
+    if (to && holds_mesh(*to) && !action.loops.empty()) write_mesh(action);
     if (!sized_) return write_loops(action.loops, target_of(action, from), action.span);
     // Each copy knows its own size.
     const Group& group = analysis_->groups()[analysis_->group_of(from)];
     std::vector<Loop> loops = {{}};
     loops[0].span = action.span;
-    const bool grows = std::ranges::any_of(action.loops, [](const Loop& loop) { return growth_of(loop) != 1; });
+    const bool grows =
+        std::ranges::any_of(action.loops, [](const Loop& loop) { return growth_of(loop) != 1; });
     std::size_t copies = 1;
     if (grows)
         for (const Loop& loop : action.loops) {
             std::vector<Loop> more;
             copies *= static_cast<std::size_t>(copies_of(loop));
             if (copies > most_written_copies) {
-                file_.diagnostics.error(loop.span, "with 'minsize' or 'maxsize', copies that change their size are at most "
-                                                   "10000");
+                file_.diagnostics.error(
+                    loop.span, "with 'minsize' or 'maxsize', copies that change their size are at most "
+                               "10000");
                 return;
             }
             for (const Loop& one : loops) {
@@ -501,7 +309,8 @@ void Writer::write_action(const Action& action, std::size_t from) {
         const double growth = grows ? growth_of(one) : 1;
         std::string test;
         if (!to && growth != 1) {
-            const std::string size = group.name.empty() ? shortest(growth) : fmt::format("size * {}", shortest(growth));
+            const std::string size =
+                group.name.empty() ? shortest(growth) : fmt::format("edge * {}", shortest(growth));
             if (limits_.least_size)
                 test = fmt::format("{} >= {}", size, shortest(*limits_.least_size / std::numbers::sqrt3));
             if (limits_.most_size)
@@ -509,7 +318,8 @@ void Writer::write_action(const Action& action, std::size_t from) {
                                     shortest(*limits_.most_size / std::numbers::sqrt3));
         }
         if (!test.empty()) line(fmt::format("when {} {{", test), action.span), ++depth_;
-        const std::string target = to ? reference(action.target.text, group, from, false, growth) : primitive(action);
+        const std::string target =
+            to ? reference(action.target.text, group, from, false, growth) : primitive(action);
         write_loops(grows ? std::vector<Loop>{one} : action.loops, target, action.span);
         if (!test.empty()) --depth_, line("}");
     }
@@ -527,7 +337,8 @@ void Writer::write_loops(const std::vector<Loop>& given, const std::string& targ
         const bool joins = !loops.empty() && copies_of(loop) == 1 && copies_of(loops.back()) == 1 &&
                            !(has_colours(loop.operators) && has_colours(loops.back().operators));
         if (joins)
-            loops.back().operators.insert(loops.back().operators.end(), loop.operators.begin(), loop.operators.end());
+            loops.back().operators.insert(loops.back().operators.end(), loop.operators.begin(),
+                                          loop.operators.end());
         else
             loops.push_back(loop);
     }
@@ -558,7 +369,8 @@ void Writer::write_loops(const std::vector<Loop>& given, const std::string& targ
     for (const Loop& loop : loops)
         own += inks(loop.operators);
     std::string master = target;
-    const bool pooled = std::ranges::any_of(loops, [](const Loop& loop) { return draws_colour(loop.operators); });
+    const bool pooled =
+        std::ranges::any_of(loops, [](const Loop& loop) { return draws_colour(loop.operators); });
     if (pooled && !pool_colours_.empty()) {
         // An object that chance gives one of the colours.
         const Group& group = analysis_->groups()[group_];
@@ -572,8 +384,19 @@ void Writer::write_loops(const std::vector<Loop>& given, const std::string& targ
         }
         master = name + parameters(group);
     }
-    line(repeats.empty() ? fmt::format("instance: {}{}", master, own) : fmt::format("{}{}{}", repeats, master, own),
+    line(repeats.empty() ? fmt::format("instance: {}{}", master, own)
+                         : fmt::format("{}{}{}", repeats, master, own),
          span);
+}
+
+/// Whether a rule of the group has a `mesh` without a place of its own: it leads from where the rule was
+/// called to the rule.
+bool Writer::holds_mesh(const Group& group) const {
+    return std::ranges::any_of(group.rules, [&](std::size_t rule) {
+        return std::ranges::any_of(script_.rules[rule].actions, [](const Action& action) {
+            return action.loops.empty() && action.target.text.starts_with("mesh");
+        });
+    });
 }
 
 /// Faces between the plane where the parent stands and where each copy does.
@@ -589,9 +412,8 @@ void Writer::write_mesh(const Action& action) {
         }
         places = std::move(more);
     }
-    if (action.loops.empty() || places.size() > most_written_copies) {
-        file_.diagnostics.error(action.span, action.loops.empty() ? "a 'mesh' needs a place before it, in braces"
-                                                                  : "too many copies of a 'mesh'");
+    if (places.size() > most_written_copies) {
+        file_.diagnostics.error(action.span, "too many copies of a 'mesh'");
         return;
     }
     std::string colours;
@@ -606,183 +428,8 @@ void Writer::write_mesh(const Action& action) {
         }
 }
 
-// Primitives
-
-std::string Writer::triangle_object(const Token& token) {
-    std::vector<double> numbers;
-    std::string word;
-    for (const char c : token.text.substr(9)) {
-        if (c != ',' && c != ';' && c != ']') {
-            if (c != ' ') word += c;
-            continue;
-        }
-        const std::optional<double> value = parse_number(word);
-        if (value && std::abs(*value) <= 1e9) numbers.push_back(*value - 0.5);
-        word.clear();
-    }
-    std::optional<std::string> map;
-    if (numbers.size() == 9)
-        map = triangle_map({numbers[0], numbers[1], numbers[2]}, {numbers[3], numbers[4], numbers[5]},
-                           {numbers[6], numbers[7], numbers[8]});
-    if (!map) {
-        file_.diagnostics.error(token.span, "a triangle is written triangle[0,0,0;1,0,0;0.5,1,0.5]")
-            .with_hint("its corners must not lie on one line");
-        return "nothing";
-    }
-    auto [known, fresh] = primitive_names_.try_emplace(*map);
-    if (fresh) {
-        known->second = free_name("triangle_1");
-        primitive_lines_[*map] = {*map};
-    }
-    return known->second;
-}
-
-std::string Writer::primitive(const Action& action) {
-    const std::string& text = action.target.text;
-    if (text.starts_with("triangle[")) return triangle_object(action.target);
-    const std::size_t colons = text.find("::");
-    const std::string kind = text.substr(0, colons);
-    const std::string of = colons == std::string::npos ? "" : plain_name(text.substr(colons + 2));
-    auto [known, fresh] = primitive_names_.try_emplace(text);
-    if (!fresh) return known->second;
-    known->second = free_name(of.empty() ? (kind == "sphere" ? "ball" : kind == "cylinder" ? "rod" : kind)
-                                         : fmt::format("{}_{}", of, kind));
-    std::vector<std::string>& lines = primitive_lines_[text];
-    if (kind == "box") {
-        lines = {"instance: cube  scale: 0.5"};
-    } else if (kind == "sphere") {
-        lines = {"instance: sphere  scale: 0.5"};
-    } else if (kind == "dot" || kind == "point") {
-        lines = {"instance: sphere  scale: 0.02"};
-    } else if (kind == "line") {
-        lines = {"instance: cylinder  scale: 0.01, 1, 0.01  rotate: z, -90  translate: -0.5, 0, 0"};
-    } else if (kind == "cylinder" || kind == "tube") {
-        lines = {"instance: cylinder  scale: 0.5, 1, 0.5  rotate: x, 90  translate: 0, 0, -0.5"};
-    } else { // the edges of a box
-        for (const auto& [turn, axis] : {std::pair{"z, -90", 'x'}, {"", 'y'}, {"x, 90", 'z'}})
-            for (const double a : {-0.5, 0.5})
-                for (const double b : {-0.5, 0.5}) {
-                    const Vec3 at = axis == 'x' ? Vec3(-0.5, a, b) : axis == 'y' ? Vec3(a, -0.5, b) : Vec3(a, b, -0.5);
-                    lines.push_back(fmt::format("instance: cylinder  scale: 0.01, 1, 0.01{}  translate: {}",
-                                                *turn ? fmt::format("  rotate: {}", turn) : "", vector_text(at)));
-                }
-    }
-    if (finishes_.contains(text.substr(std::min(text.size(), colons + 2))) && colons != std::string::npos)
-        for (std::string& words : lines)
-            words += fmt::format("  material: {}", of);
-    return known->second;
-}
-
-// Lines
-
-std::string Writer::transforms(const std::vector<Operator>& operators) {
-    std::string text;
-    std::array<std::string, 3> moved;
-    const auto flush = [&] {
-        if (moved[0].empty() && moved[1].empty() && moved[2].empty()) return;
-        for (std::string& part : moved)
-            if (part.empty()) part = "0";
-        text += fmt::format("  translate: {}, {}, {}", moved[0], moved[1], moved[2]);
-        moved = {};
-    };
-    for (auto op = operators.rbegin(); op != operators.rend(); ++op) {
-        if (!op->moves()) continue;
-        if (op->kind <= Operator::Kind::z) {
-            std::string& part = moved[static_cast<std::size_t>(op->kind)];
-            const std::string offset = expression(op->numbers[0]);
-            part = part.empty() ? offset : fmt::format("{} + {}", offset, part);
-            continue;
-        }
-        flush();
-        if (op->kind <= Operator::Kind::rz) {
-            const char axis = "xyz"[static_cast<int>(op->kind) - static_cast<int>(Operator::Kind::rx)];
-            text += fmt::format("  rotate: {}, {}", axis, expression(op->numbers[0]));
-        } else if (op->kind == Operator::Kind::size) {
-            std::vector<std::string> factors;
-            for (const Value& value : op->numbers) {
-                if (value.number == 0)
-                    file_.diagnostics.warning(op->span, "a size of 0 becomes 0.0001");
-                factors.push_back(value.number == 0 ? shortest(thinnest) : expression(value));
-            }
-            text += fmt::format("  scale: {}", fmt::join(factors, ", "));
-        } else {
-            Loop alone; // a temporary is a false alarm of GCC 12
-            alone.operators.push_back(*op);
-            const Affine map = map_of(alone);
-            if (is_singular(map))
-                file_.diagnostics.error(op->span, "this matrix is singular: it flattens what it maps");
-            text += "  matrix:";
-            for (int row = 0; row < 3; ++row)
-                text += fmt::format(" {}, {}, {}, {}{}", shortest(map.linear[0][row]), shortest(map.linear[1][row]),
-                                    shortest(map.linear[2][row]), shortest(map.translation[row]), row < 2 ? "," : "");
-        }
-    }
-    flush();
-    return text;
-}
-
-/// As Structure Synth adds the operators of one list up: colours that are set and changed in one are set.
-std::string Writer::inks(const std::vector<Operator>& operators) {
-    std::array<double, 4> change = {0, 1, 1, 1};
-    std::array<std::string, 4> words;
-    bool set = false, drawn = false;
-    const Operator* blend = nullptr;
-    for (const Operator& op : operators) {
-        if (op.kind == Operator::Kind::blend && op.numbers[0].number > 0) blend = &op;
-        if (op.kind == Operator::Kind::colour) {
-            drawn = !op.colour;
-            if (op.colour) {
-                const Hsv hsv = hsv_of(*op.colour);
-                if (set) change = {0, 1, 1, 1};
-                change[0] += hsv.hue_deg, change[1] *= hsv.saturation, change[2] *= hsv.value;
-            }
-            set = true;
-        }
-        if (op.kind < Operator::Kind::hue || op.kind > Operator::Kind::alpha) continue;
-        const auto channel = static_cast<std::size_t>(op.kind) - static_cast<std::size_t>(Operator::Kind::hue);
-        const double number = op.numbers[0].number;
-        words[channel] = words[channel].empty() && number >= 0 ? expression(op.numbers[0]) : "";
-        change[channel] = channel == 0 ? change[channel] + number : change[channel] * number;
-    }
-    for (std::size_t i = 1; i < 4; ++i)
-        change[i] = std::clamp(change[i], 0.0, set ? 1.0 : 1e6);
-    drawn = drawn || (set && change[0] > 360);
-    std::string text;
-    if (drawn) {
-        if (pool_ == "randomrgb")
-            text = "  ink: random(0, 1), random(0, 1), random(0, 1)";
-        else if (pool_ == "greyscale")
-            text = "  ink: hsv(0, 0, random(0, 1))";
-        else if (pool_colours_.empty())
-            text = "  ink: hsv(random(0, 360), 1, 1)";
-    } else if (set) {
-        const auto rounded = [](double v) { return shortest(std::round(1e4 * v) / 1e4); };
-        text = fmt::format("  ink: hsv({}, {}, {})", rounded(change[0]), rounded(change[1]), rounded(change[2]));
-        if (change[3] < 1) text += fmt::format("  ink {{ alpha {} }}", shortest(change[3]));
-    } else {
-        static constexpr std::array channels = {"hue", "saturation", "value", "alpha"};
-        std::string changes;
-        for (std::size_t i = 0; i < 4; ++i) {
-            const bool same = change[i] == (i == 0 ? 0 : 1);
-            if (same && (words[i].empty() || !constants_.contains(words[i]))) continue;
-            changes += fmt::format(" {} {}", channels[i], constants_.contains(words[i]) ? words[i] : shortest(change[i]));
-        }
-        if (!changes.empty()) text = fmt::format("  ink {{{} }}", changes);
-    }
-    if (blend) {
-        const Hsv hsv = hsv_of(*blend->colour);
-        const double share = blend->numbers[0].number / (1 + blend->numbers[0].number);
-        text += fmt::format("  ink {{ hue to {1} by {0} saturation to {2} by {0} value to {3} by {0} }}",
-                            shortest(share), shortest(hsv.hue_deg), shortest(hsv.saturation), shortest(hsv.value));
-    }
-    return text;
-}
-
 void Writer::comment(const std::string& words) {
-    std::string clean;
-    for (const char c : words)
-        clean += static_cast<unsigned char>(c) < ' ' ? ' ' : c;
-    line("# " + clean);
+    line("# " + comment_text(words));
 }
 
 void Writer::line(const std::string& words, Span origin) {

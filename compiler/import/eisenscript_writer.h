@@ -33,7 +33,7 @@ class Writer {
     void write_loops(const std::vector<Loop>& loops, const std::string& target, Span span);
     void write_wrapper_later(std::vector<Loop> loops, std::string target, Span span);
     void write_mesh(const Action& action);
-    void write_triangle(const std::string& lines);
+    bool holds_mesh(const Group& group) const;
 
     std::string reference(const std::string& name, const Group& from, std::optional<std::size_t> rule,
                           bool same_generation, double growth);
@@ -58,9 +58,9 @@ class Writer {
     Translation out_{.extension = "inst"};
     int depth_ = 0; ///< of braces
     std::set<std::string> names_;
-    std::set<std::string> constants_; ///< of Script that are written as `let`
-    std::vector<std::string> object_names_; ///< of groups
-    std::vector<std::string> counter_names_; ///< of rules
+    std::set<std::string> constants_;                    ///< of Script that are written as `let`
+    std::vector<std::string> object_names_;              ///< of groups
+    std::vector<std::string> counter_names_;             ///< of rules
     std::map<std::string, std::string> primitive_names_; ///< as far as they are used
     std::map<std::string, std::vector<std::string>> primitive_lines_;
     struct Wrapper {

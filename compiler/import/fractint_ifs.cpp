@@ -9,7 +9,9 @@
 
 #include <fmt/format.h>
 
+#include "compiler/import/foreign_text.h"
 #include "compiler/import/importers.h"
+#include "compiler/import/own_words.h"
 #include "compiler/import/spectral_radius.h"
 #include "compiler/support/number.h"
 
@@ -25,7 +27,7 @@ struct Number {
 };
 
 struct Row {
-    std::vector<Number> numbers;    ///< without the probability
+    std::vector<Number> numbers; ///< without the probability
     std::optional<Number> probability;
     Affine map;
     std::vector<std::string> above; ///< comments on lines of their own
@@ -43,14 +45,6 @@ struct System {
 
 bool is_space(char c) {
     return c == ' ' || c == '\t' || c == '\r' || c == '\n' || c == '\f' || c == '\x1a';
-}
-
-std::string_view trimmed(std::string_view text) {
-    while (!text.empty() && is_space(text.front()))
-        text.remove_prefix(1);
-    while (!text.empty() && is_space(text.back()))
-        text.remove_suffix(1);
-    return text;
 }
 
 bool says_3d(std::string_view head) {
@@ -98,9 +92,7 @@ std::vector<ForeignModel> models(const ForeignFile& file) {
                 const std::size_t close = line.words.find('}', at);
                 if (close == std::string_view::npos) break;
                 open->span.end = static_cast<std::uint32_t>(line.begin + close + 1);
-                std::string small = open->name;
-                std::ranges::transform(small, small.begin(), [](unsigned char c) { return std::tolower(c); });
-                if (small != "comment") found.push_back(std::move(*open));
+                if (in_small_letters(open->name) != "comment") found.push_back(std::move(*open));
                 open.reset();
                 at = close + 1;
                 continue;
@@ -113,8 +105,8 @@ std::vector<ForeignModel> models(const ForeignFile& file) {
             if (brace == std::string_view::npos) break;
             open = ForeignModel{name_of(head), file.span(head_begin, line.begin + brace + 1)};
             if (open->name.empty()) {
-                file.diagnostics.error(file.span(line.begin + brace, line.begin + brace + 1),
-                                       "this system has no name")
+                file.diagnostics
+                    .error(file.span(line.begin + brace, line.begin + brace + 1), "this system has no name")
                     .with_hint("write its name before the brace: fern {");
                 open->name = "unnamed";
             }
@@ -307,16 +299,12 @@ class Writer {
         file_.diagnostics
             .warning(system_.rows.back().probability->span,
                      "these probabilities do not add up to 1, or are negative")
-            .with_hint("Fractint gives the last map what is left, and takes a negative one from those before it: "
-                       "so does the model");
+            .with_hint(
+                "Fractint gives the last map what is left, and takes a negative one from those before it: "
+                "so does the model");
     }
 
-    void comment(std::string_view words) {
-        std::string clean;
-        for (const char c : words)
-            clean += static_cast<unsigned char>(c) < ' ' ? ' ' : c;
-        out_.line(trimmed(fmt::format("# {}", clean)));
-    }
+    void comment(std::string_view words) { out_.line(trimmed(fmt::format("# {}", comment_text(words)))); }
 
     /// A map that keeps or grows the size of something, or two that do so together.
     const Row* growing() const {
@@ -334,7 +322,8 @@ class Writer {
     static bool is_point(const Row& row) { return largest_entry(row.map.linear) == 0; }
 
     void write_maps() {
-        out_.line(fmt::format("rifs {} {{", plain_name(model_.name)), model_.span);
+        const std::string name = plain_name(model_.name);
+        out_.line(fmt::format("rifs {} {{", is_own_word(name) ? name + "_ifs" : name), model_.span);
         out_.line(fmt::format("  codes {} {{", system_.in_space ? "3d" : "2d"));
         for (std::size_t i = 0; i < system_.rows.size(); ++i) {
             const Row& row = system_.rows[i];
@@ -345,7 +334,7 @@ class Writer {
             for (const Number& number : row.numbers)
                 text += fmt::format(" {:>9}", shortest(number.value));
             if (!chances_.empty()) text += fmt::format("  {:>9}", shortest(chances_[i]));
-            if (!row.beside.empty()) text += fmt::format("   # {}", clean(row.beside));
+            if (!row.beside.empty()) text += fmt::format("   # {}", comment_text(row.beside));
             out_.line(text, row.span());
         }
         out_.line("  }");
@@ -356,27 +345,22 @@ class Writer {
 
     /// A map that leaves one point of everything: a speck, and what the other maps make of it.
     void write_point(const Row& row) {
-        file_.diagnostics.warning(row.span(), "this map leaves one point of everything; a small ball stands for it");
+        file_.diagnostics.warning(row.span(),
+                                  "this map leaves one point of everything; a small ball stands for it");
         const Vec3 at = row.map.translation;
         const double size = 1e-3 * std::max(1e-3, largest_entry(at));
-        out_.line(fmt::format("  condense sphere  scale {}  translate {}, {}, {}", shortest(size), shortest(at.x),
-                              shortest(at.y), shortest(at.z)),
+        out_.line(fmt::format("  condense sphere  scale {}  translate {}, {}, {}", shortest(size),
+                              shortest(at.x), shortest(at.y), shortest(at.z)),
                   row.span());
     }
 
-    void indented_comment(std::string_view words) { out_.line(fmt::format("    # {}", clean(words))); }
-
-    static std::string clean(std::string_view words) {
-        std::string text;
-        for (const char c : words)
-            text += static_cast<unsigned char>(c) < ' ' ? ' ' : c;
-        return text;
-    }
+    void indented_comment(std::string_view words) { out_.line(fmt::format("    # {}", comment_text(words))); }
 
     void write_orbit(const Row& growing) {
         file_.diagnostics
-            .warning(growing.span(), "this map does not shrink, alone or together with another, so the system has "
-                                     "no limit set")
+            .warning(growing.span(),
+                     "this map does not shrink, alone or together with another, so the system has "
+                     "no limit set")
             .with_hint("the model is an orbit: 'graftal points' draws it");
         out_.line(fmt::format("orbit {} {{", plain_name(model_.name)), model_.span);
         for (std::size_t i = 0; i < system_.rows.size(); ++i) {
@@ -387,8 +371,9 @@ class Writer {
             const int size = system_.in_space ? 3 : 2;
             for (int r = 0; r < size; ++r)
                 out_.line(formula(row, r, size), row.span());
-            if (!chances_.empty()) out_.line(fmt::format("    probability {}", shortest(chances_[i])), row.span());
-            out_.line(row.beside.empty() ? "  }" : fmt::format("  }} # {}", clean(row.beside)));
+            if (!chances_.empty())
+                out_.line(fmt::format("    probability {}", shortest(chances_[i])), row.span());
+            out_.line(row.beside.empty() ? "  }" : fmt::format("  }} # {}", comment_text(row.beside)));
         }
         out_.line("}");
     }

@@ -7,8 +7,12 @@
 
 #include <fmt/format.h>
 
+#include "compiler/import/cfdg.h"
 #include "compiler/import/cpfg.h"
+#include "compiler/import/eisenscript.h"
+#include "compiler/import/flame.h"
 #include "compiler/import/foreign_text.h"
+#include "compiler/import/fractint_ifs.h"
 #include "compiler/import/fractint_lsystem.h"
 #include "compiler/import/lparser.h"
 #include "compiler/import/vlab_surface.h"
@@ -38,8 +42,9 @@ std::vector<std::string> names_of(const std::vector<ForeignModel>& models) {
 
 std::span<const Importer> importers() {
     // Where two rows share an ending, the first that recognises the text has it.
-    static const Importer table[] = {cpfg_importer(), fractint_lsystem_importer(), lparser_importer(),
-                                     vlab_surface_importer()};
+    static const Importer table[] = {
+        cpfg_importer(),         fractint_lsystem_importer(), lparser_importer(), vlab_surface_importer(),
+        fractint_ifs_importer(), eisenscript_importer(),      cfdg_importer(),    flame_importer()};
     return table;
 }
 

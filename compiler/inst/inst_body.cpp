@@ -179,8 +179,7 @@ class BodyParser {
         const Token keyword = stream_.peek();
         std::vector<InstInkStep> steps;
         if (!parse_inst_ink(stream_, steps)) return false;
-        if (InstGroup* group = current(keyword))
-            std::ranges::move(steps, std::back_inserter(group->ink));
+        if (InstGroup* group = current(keyword)) std::ranges::move(steps, std::back_inserter(group->ink));
         return true;
     }
 
@@ -189,8 +188,8 @@ class BodyParser {
     /// `when` and an expression; else an object may have that name.
     bool at_when() const {
         const Token& after = stream_.peek(1);
-        const bool value = after.kind == TokenKind::number || after.is("(") || after.is("-") || after.is("!") ||
-                           (after.kind == TokenKind::name && !is_body_keyword(after));
+        const bool value = after.kind == TokenKind::number || after.is("(") || after.is("-") ||
+                           after.is("!") || (after.kind == TokenKind::name && !is_body_keyword(after));
         return stream_.at("when") && !after.first_on_line && value;
     }
 
@@ -203,7 +202,8 @@ class BodyParser {
                                fmt::format("conditions nest more than {} deep", TokenStream::max_nesting));
             return false;
         }
-        const auto shared = std::make_shared<const InstTest>(std::move(*test), stream_.span_from(keyword.span));
+        const auto shared =
+            std::make_shared<const InstTest>(std::move(*test), stream_.span_from(keyword.span));
         if (!parse_conditional({shared, true})) return false;
         if (!stream_.accept("else")) return true;
         if (stream_.at("when")) { // `else when`: the rest is inside of this one
@@ -488,7 +488,7 @@ class BodyParser {
     std::size_t group_begin_ = 0; ///< of the lines of the last group
     bool sealed_ = false;         ///< after the '{' or '}' of a block of repeated groups, a line has no group
     std::vector<std::shared_ptr<const InstRepeat>>
-        repeats_;             ///< that contain the next group, the outermost first
+        repeats_;                           ///< that contain the next group, the outermost first
     std::vector<InstCondition> conditions_; ///< of the next group, the outermost first
     bool conditional_ = false;              ///< the object may draw nothing
     bool lost_group_ = false;               ///< the last group was in error

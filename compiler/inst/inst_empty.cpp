@@ -43,8 +43,9 @@ template<typename T> void keep(std::vector<T>& list, const std::vector<bool>& ke
     list.erase(list.begin() + static_cast<std::ptrdiff_t>(to), list.end());
 }
 
-template<typename Row> void renumber(std::map<ObjectId, Row>& table, const std::vector<bool>& empty,
-                                     const std::vector<ObjectId>& numbers) {
+template<typename Row>
+void renumber(std::map<ObjectId, Row>& table, const std::vector<bool>& empty,
+              const std::vector<ObjectId>& numbers) {
     std::map<ObjectId, Row> renumbered;
     for (auto& [id, row] : table)
         if (!empty[id]) renumbered.emplace_hint(renumbered.end(), numbers[id], std::move(row));
@@ -70,7 +71,8 @@ bool drop_empty(Graph& graph, HueTable& hues, InkTable& inks) {
             instance.master = numbers[instance.master];
         }
         keep(object.instances, kept);
-        if (object.terminal && empty[object.terminal->master]) object.terminal.reset(), object.terminal_px = 0;
+        if (object.terminal && empty[object.terminal->master])
+            object.terminal.reset(), object.terminal_px = 0;
         if (object.terminal) object.terminal->master = numbers[object.terminal->master];
         if (const auto row = hues.find(id); row != hues.end()) keep(row->second.instances, kept);
         if (const auto row = inks.find(id); row != inks.end()) keep(row->second.instances, kept);

@@ -124,8 +124,9 @@ std::optional<InstLowerer::Placement> InstLowerer::composed(const Placement& par
         return Placement{map, graftal::composed({child.tint, parent.tint}), child.material, *hue,
                          std::move(ink)};
     if (ink.size() > InkChange::most_steps)
-        scratch_.error(span, fmt::format("the copies of this repeat change the ink in more than {} ways",
-                                         InkChange::most_steps))
+        scratch_
+            .error(span, fmt::format("the copies of this repeat change the ink in more than {} ways",
+                                     InkChange::most_steps))
             .with_hint("repeat fewer times, or change the ink of the repeated objects");
     else if (!hue)
         scratch_.error(span, "the turns of these hues have no small common denominator")

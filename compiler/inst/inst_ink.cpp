@@ -83,8 +83,8 @@ class InkStates {
   public:
     InkStates(const Graph& source, const InkTable& inks, const HueTable& hues, int bits, std::size_t most,
               Lowering& lowering)
-        : source_(source), graph_(source), inks_(inks), hues_(hues), steps_(std::ldexp(1.0, bits)), most_(most),
-          lowering_(lowering) {
+        : source_(source), graph_(source), inks_(inks), hues_(hues), steps_(std::ldexp(1.0, bits)),
+          most_(most), lowering_(lowering) {
         for (const Object& object : graph_.objects)
             names_.take(object.name);
         for (const Material& material : graph_.materials)
@@ -307,13 +307,15 @@ bool apply_inks(Graph& graph, const InkTable& inks, HueTable& hues, Span place, 
     const std::size_t most = lowering.options.max_objects;
     for (const int bits : ink_bits) {
         const bool last = bits == ink_bits.back();
-        const std::size_t limit = last ? most : std::min(most, std::max(most_fine_objects, 2 * graph.objects.size()));
+        const std::size_t limit =
+            last ? most : std::min(most, std::max(most_fine_objects, 2 * graph.objects.size()));
         InkStates states(graph, inks, hues, bits, limit, lowering);
         if (!states.run()) continue;
         graph = states.take_graph();
         hues = states.take_hues();
         if (bits != ink_bits.front())
-            lowering.diagnostics.note(place, fmt::format("inks that differ by less than 1/{} are one here", 1 << bits));
+            lowering.diagnostics.note(
+                place, fmt::format("inks that differ by less than 1/{} are one here", 1 << bits));
         return true;
     }
     lowering.diagnostics

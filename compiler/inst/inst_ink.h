@@ -13,8 +13,8 @@
 
 namespace graftal {
 
-/// A colour that is handed down: hue in degrees in [0, 360), then saturation, value and alpha in [0, 1], of the
-/// colour as screens store it (sRGB).
+/// A colour that is handed down: hue in degrees in [0, 360), then saturation, value and alpha in [0, 1], of
+/// the colour as screens store it (sRGB).
 struct Ink {
     std::array<double, ink_channels> channels{0, 0, 0, 1};
 
@@ -62,10 +62,11 @@ using InkTable = std::map<ObjectId, ObjectInks>;
 std::optional<InkChange> lower_ink(const std::vector<InstInkStep>& steps, const Environment& environment,
                                    Diagnostics& diagnostics, const ChanceDraws& draws);
 
-/// Hands inks down to the primitives, which get them as tints that cover, and as materials where alpha is below
-/// 1. If paths reach an object with different inks, the graph gets one copy of it for each. Inks that differ by
-/// less than 2^-16 of a channel's range are one; if they make too many objects, by 2^-12, 2^-9 or 2^-6, with a note. `hues` gets rows
-/// for the copies. An error, at `place`: more objects than the options allow.
+/// Hands inks down to the primitives, which get them as tints that cover, and as materials where alpha is
+/// below
+/// 1. If paths reach an object with different inks, the graph gets one copy of it for each. Inks that differ
+/// by less than 2^-16 of a channel's range are one; if they make too many objects, by 2^-12, 2^-9 or 2^-6,
+/// with a note. `hues` gets rows for the copies. An error, at `place`: more objects than the options allow.
 bool apply_inks(Graph& graph, const InkTable& inks, HueTable& hues, Span place, Lowering& lowering);
 
 } // namespace graftal

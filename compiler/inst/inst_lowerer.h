@@ -183,8 +183,9 @@ class InstLowerer {
     std::uint64_t place_ = 0; ///< places of it that have random numbers so far
     Environment environment_; ///< of the object being lowered
     ChanceDraws draws_;       ///< of the copy of a group being lowered
-    std::unordered_map<const InstTest*, bool> tests_; ///< of the object being lowered, as far as they were asked
-    Diagnostics scratch_;     ///< its errors
+    std::unordered_map<const InstTest*, bool>
+        tests_;           ///< of the object being lowered, as far as they were asked
+    Diagnostics scratch_; ///< its errors
     std::set<const InstReference*> unknown_;
     std::unordered_map<const InstReference*, Primitive> meshes_;
     std::unordered_map<std::string, ObjectId> shapes_;   ///< primitives of numbers, by their references

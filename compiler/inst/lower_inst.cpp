@@ -50,13 +50,11 @@ std::optional<Graph> InstLowerer::run() && {
     if (failed()) return std::nullopt;
     const Span place = graph_.objects[graph_.root].span;
     if (!drop_empty(graph_, hues_, inks_)) {
-        diagnostics_.error(place, "the model draws nothing")
-            .with_hint("its conditions leave nothing of it");
+        diagnostics_.error(place, "the model draws nothing").with_hint("its conditions leave nothing of it");
         return std::nullopt;
     }
     if (!inks_.empty() && !apply_inks(graph_, inks_, hues_, place, lowering_)) return std::nullopt;
-    if (!hues_.empty() && !apply_hues(graph_, hues_, place, lowering_))
-        return std::nullopt;
+    if (!hues_.empty() && !apply_hues(graph_, hues_, place, lowering_)) return std::nullopt;
     return std::move(graph_);
 }
 

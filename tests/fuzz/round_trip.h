@@ -1,11 +1,13 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <string>
 
 #include "compiler/graph/print.h"
 #include "compiler/graph/verify.h"
+#include "compiler/import/importers.h"
 #include "compiler/languages/lower.h"
 #include "compiler/support/check.h"
 
@@ -35,6 +37,39 @@ inline void check_model_text(const char* name, const std::uint8_t* data, std::si
         lower_text("printed.inst", print(*graph), options, sources, no_diagnostics).graph;
     GRAFTAL_CHECK(again.has_value(), no_diagnostics.render(sources));
     GRAFTAL_CHECK(equal(*graph, *again), "printed and read");
+}
+
+/// What must hold for any text of another program: each of its models gives text with one origin a line,
+/// which gives a verified graph, an orbit or an error; or there is an error.
+inline void check_foreign_text(const char* name, const std::uint8_t* data, std::size_t size) {
+    SourceMap sources;
+    Diagnostics diagnostics;
+    const FileId file = sources.add(name, std::string(reinterpret_cast<const char*>(data), size));
+    const ForeignFile foreign = foreign_file(file, sources, diagnostics);
+    const Importer* const importer = importer_of(foreign);
+    GRAFTAL_CHECK(importer != nullptr || diagnostics.has_errors(), "an importer or an error");
+    if (!importer) return;
+    const std::vector<ForeignModel> models = importer->models(foreign);
+    for (std::size_t i = 0; i < models.size() && i < 3; ++i) {
+        const std::size_t errors = diagnostics.error_count();
+        const std::optional<Translation> translation = importer->translate(foreign, models[i]);
+        GRAFTAL_CHECK(translation.has_value() != (diagnostics.error_count() > errors), "a text or an error");
+        if (!translation) continue;
+        const auto lines = std::count(translation->text.begin(), translation->text.end(), '\n');
+        GRAFTAL_CHECK(static_cast<std::size_t>(lines) == translation->origins.size(),
+                      "an origin for each line");
+        SourceMap own;
+        Diagnostics said;
+        LowerOptions options = fuzz_options();
+        options.may_be_orbit = true;
+        const std::string path = "no_such_folder/fuzz." + std::string(translation->extension);
+        const LoweredText lowered = lower_text(path, translation->text, options, own, said);
+        const bool made = lowered.graph.has_value() || lowered.notes.orbit != nullptr;
+        GRAFTAL_CHECK(made != said.has_errors(), "a graph, an orbit or an error");
+        said.render(own);
+        if (lowered.graph) check_verified(*lowered.graph, "fuzz");
+    }
+    diagnostics.render(sources);
 }
 
 } // namespace graftal

@@ -114,7 +114,7 @@ TEST(Repeat, mistakes_end_in_messages) {
         {"object a { (0 - 3) * { translate: 1, 0, 0 } sphere }", "not -3"},
         {"object a { 1000 * { scale: 0.5 } sphere }", "a copy of this repeat"},
         {"object a { 100 * { scale: 0.5, 1, 1 } sphere }", "a copy of this repeat is singular"},
-        {"object a { 3 * { sphere } }", "expected a transform, 'tint', 'hue' or '}'"},
+        {"object a { 3 * { sphere } }", "expected a transform, 'tint', 'hue', 'ink' or '}'"},
         {"object a { sphere\n 3 * { scale: 0.5 } }", "expected the objects to repeat"},
         {"object a { 3 * { scale: 0.5 } { sphere } scale: 2 }", "'scale' has no object to apply to"},
         {"object a { sphere\n 3 * { scale: 0.5 } { scale: 2 cube } }", "'scale' has no object to apply to"},

@@ -1,7 +1,8 @@
 # Shared by tools/render and tools/test; to be sourced. Leaves the project's folder in $root.
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 
-# Installs the packages of tools/packages.txt that are missing; asks for nothing if none is.
+# install_packages [LIST...]: installs the packages of tools/packages.txt, and of other lists, that are missing; asks for nothing
+# if none is.
 install_packages() {
     local package command missing=()
     while read -r package command; do
@@ -9,7 +10,7 @@ install_packages() {
         [[ $command ]] && command -v "$command" >/dev/null && continue
         [[ $(dpkg-query -W -f '${db:Status-Status}' "$package" 2>/dev/null) == installed ]] ||
             missing+=("$package")
-    done <"$root/tools/packages.txt"
+    done < <(cat "$root/tools/packages.txt" "${@/#/$root/tools/}")
     ((${#missing[@]})) || return 0
 
     local as_root=()

@@ -112,7 +112,7 @@ TEST_F(Export, CommandsOfThePageWork) {
 }
 
 TEST_F(Export, ASquareOfStrokes) {
-    write("square.lsys", "lsys square { steps 0 axiom F+F+F+F angle 90 }\n");
+    write("square.lsys", "lsys square {\n steps 0\n angle 90\n axiom F+F+F+F\n}\n");
     ASSERT_EQ(graftal("export square.lsys --plotter --unit 10mm -o p.svg").status, 0);
     const std::string text = read("p.svg");
     EXPECT_EQ(text.find("<path"), text.rfind("<path")) << text; // one stroke

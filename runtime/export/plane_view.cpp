@@ -12,6 +12,25 @@
 
 namespace graftal {
 
+namespace {
+
+/// Whether the middles of all leaves lie in one plane, and the axes of those that are long: lines may be
+/// thick where they are few.
+bool lies_in_plane(const ExportedScene& scene, int axis) {
+    constexpr double flat = 1e-9;
+    constexpr std::size_t most_leaves = 1'000'000;
+    const double height = scene.bounds.centre()[axis];
+    const double off = flat * largest_entry(scene.bounds.size());
+    std::size_t leaves = 0;
+    return walk_leaves(scene, scene.root, {}, {}, [&](const SceneLeaf& leaf) {
+        const Affine& place = leaf.world_from_shape;
+        return ++leaves <= most_leaves && std::abs(place.translation[axis] - height) <= off &&
+               std::abs(place.linear[1][axis]) <= off;
+    });
+}
+
+} // namespace
+
 Affine2 operator*(const Affine2& a, const Affine2& b) {
     Affine2 product;
     for (std::size_t column = 0; column < 2; ++column)
@@ -47,7 +66,7 @@ Affine2 SeenFrame::picture_of(const SeenFrame& part, const Affine& frame_from_pa
 
 std::optional<PlanePage> page_of(const ExportJob& job, std::optional<double> unit) {
     const Box& box = job.scene.bounds;
-    if (box.empty() || !is_figure(box)) {
+    if (box.empty() || !(is_figure(box) || lies_in_plane(job.scene, thinnest_axis(box)))) {
         job.diagnostics
             .error(job.model,
                    fmt::format("the model is in no plane: it is {:.3g} thick where it measures {:.3g}",

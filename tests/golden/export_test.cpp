@@ -46,7 +46,7 @@ TEST_F(Export, WritesEachFormatAndSaysWhat) {
 
 TEST_F(Export, RefusesWrongCommandLines) {
     const std::pair<const char*, const char*> cases[] = {
-        {"export m.rifs", "--output is required"},
+        {"export m.rifs", "graftal: name the file with '-o FILE'; its ending says the format: .usda, "},
         {"export m.rifs -o a.fbx", "graftal: 'a.fbx': the name must end in .usda, "},
         {"export m.rifs -o a", "graftal: 'a': the name must end in .usda, "},
         {"export m.rifs -o a.obj --unit 3mm",
@@ -79,15 +79,16 @@ TEST_F(Export, RefusesModelsThatDoNotFit) {
         {"export m.rifs --steps 80 -o a.glb", "error: with "},
         {"export m.rifs --steps 80 --limit 1K -o a.usda", "error: 'a.usda' would have "},
         {"export m.rifs --error 0 -o a.usda", "error: the recursion has no end"},
-        {"export m.rifs --steps 3 -o a.svg", "error: the model is in no plane"},
-        {"export none.rifs -o a.obj", "cannot read 'none.rifs'"},
+        {"export cube.inst -o a.svg", "error: the model is in no plane"},
+        {"export none.rifs -o a.obj", "cannot open 'none.rifs'"},
     };
+    write("cube.inst", "object m { cube }\n");
     for (const auto& [command, said] : cases) {
         const RunResult result = graftal(command);
         EXPECT_NE(result.status, 0) << command;
         EXPECT_THAT(result.err, HasSubstr(said)) << command;
     }
-    EXPECT_EQ(files(), "m.rifs");
+    EXPECT_EQ(files(), "cube.inst m.rifs");
 }
 
 TEST_F(Export, AFolderThatIsNotThereIsTheEnvironments) {
@@ -111,7 +112,7 @@ TEST_F(Export, CommandsOfThePageWork) {
 }
 
 TEST_F(Export, ASquareOfStrokes) {
-    write("square.lsys", "lsys square {\n axiom: F + F + F + F\n angle: 90\n}\n");
+    write("square.lsys", "lsys square {\n steps 0\n angle 90\n axiom F+F+F+F\n}\n");
     ASSERT_EQ(graftal("export square.lsys --plotter --unit 10mm -o p.svg").status, 0);
     const std::string text = read("p.svg");
     EXPECT_EQ(text.find("<path"), text.rfind("<path")) << text; // one stroke

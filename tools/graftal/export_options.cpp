@@ -49,7 +49,6 @@ void add_export(CLI::App& app, Options& options) {
     ExportOptions& file = options.file;
     add_model(app, options);
     app.add_option("-o,--output", options.render.output, "File to write, " + export_endings())
-        ->required()
         ->type_name("FILE");
     add_value(app, "--limit", "BYTES",
               "Refuse to write a larger file, and say how large it would be; suffixes K M G (default 1G)",
@@ -101,6 +100,8 @@ void add_export(CLI::App& app, Options& options) {
 }
 
 std::string complete_export(const Options& options) {
+    if (options.render.output.empty())
+        return fmt::format("name the file with '-o FILE'; its ending says the format: {}", export_endings());
     const ExportFormat* const format = find_export_format(options.render.output);
     if (!format) return fmt::format("'{}': the name must end in {}", options.render.output, export_endings());
     struct Wish {

@@ -131,7 +131,7 @@ class Mitsuba:
         known, self.objects, self.instances, self.triangles = set(), {}, 0, 0
         for element in root.iter():
             expect(element.tag in self.TAGS, f'no element: {element.tag}')
-            if element.get('id'):
+            if element.get('id') and element.tag != 'ref':
                 expect(element.get('id') not in known, f'{element.get("id")} is there twice')
                 known.add(element.get('id'))
             if element.tag == 'ref':

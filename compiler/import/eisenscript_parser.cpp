@@ -65,7 +65,8 @@ class Parser {
                 skip_to_rule();
             }
         }
-        script_.tail = peek().comments;
+        next();
+        script_.tail = std::move(comments_);
         return std::move(script_);
     }
 
@@ -74,6 +75,7 @@ class Parser {
 
     const Token& next() {
         const Token& token = tokens_.list[at_];
+        comments_.insert(comments_.end(), token.comments.begin(), token.comments.end());
         if (token.kind != TokenKind::end) ++at_;
         return token;
     }
@@ -108,19 +110,20 @@ class Parser {
 
     bool parse_rule() {
         Rule rule;
-        rule.comments = peek().comments;
         next();
         if (peek().kind != TokenKind::word) return expected("the name of the rule");
         rule.name = next();
         while (peek().is("md") || peek().is("maxdepth") || peek().is("w") || peek().is("weight"))
             if (!parse_modifier(rule)) return false;
         if (!accept(TokenKind::open)) return expected("'{', 'maxdepth' or 'weight'");
+        rule.comments = std::exchange(comments_, {});
         while (peek().kind != TokenKind::close) {
             if (peek().kind == TokenKind::end || peek().is("rule"))
                 return expected("'}' at the end of the rule");
             if (!parse_line(rule)) return false;
         }
-        rule.tail = next().comments;
+        next();
+        rule.tail = std::exchange(comments_, {});
         script_.rules.push_back(std::move(rule));
         return true;
     }
@@ -162,7 +165,6 @@ class Parser {
 
     bool parse_action(Rule& rule) {
         Action action;
-        action.comments = peek().comments;
         const Span begin = peek().span;
         while (peek().kind == TokenKind::number || peek().kind == TokenKind::open) {
             if (action.loops.size() == most_loops) return expected("the name of a rule");
@@ -172,6 +174,7 @@ class Parser {
         }
         if (peek().kind != TokenKind::word) return expected("the name of a rule");
         action.target = next();
+        action.comments = std::exchange(comments_, {});
         action.span = join(begin, action.target.span);
         rule.actions.push_back(std::move(action));
         return true;
@@ -245,6 +248,7 @@ class Parser {
     const ForeignFile& file_;
     Tokens tokens_;
     std::size_t at_ = 0;
+    std::vector<std::string> comments_; ///< of tokens that were taken, not given to anything yet
     Script script_;
 };
 

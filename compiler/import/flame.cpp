@@ -45,7 +45,10 @@ struct Map {
         Affine scaled = pre;
         scaled.linear = factor * pre.linear;
         scaled.translation = factor * pre.translation;
-        return post * scaled;
+        Affine map = post * scaled;
+        const Mat3& m = map.linear; // z by the mean of x and y, as the rows of .rifs
+        map.linear[2] = {0, 0, std::sqrt(std::abs(m[0][0] * m[1][1] - m[1][0] * m[0][1]))};
+        return map;
     }
 };
 
@@ -424,12 +427,12 @@ class Writer {
         if (!flame_.last) return;
         const Affine whole = flame_.last->whole();
         out_.line(fmt::format("main rifs {}_final {{", name_));
-        out_.line(fmt::format(
-                      "  map final from {} {{ matrix {}, {}, 0, {},  {}, {}, 0, {},  0, 0, {}, 0{} }}", name_,
-                      number(whole.linear[0][0]), number(whole.linear[1][0]), number(whole.translation.x),
-                      number(whole.linear[0][1]), number(whole.linear[1][1]), number(whole.translation.y),
-                      number(std::sqrt(std::abs(glm::determinant(whole.linear)))), tint(*flame_.last)),
-                  flame_.last->span);
+        out_.line(
+            fmt::format("  map final from {} {{ matrix {}, {}, 0, {},  {}, {}, 0, {},  0, 0, {}, 0{} }}",
+                        name_, number(whole.linear[0][0]), number(whole.linear[1][0]),
+                        number(whole.translation.x), number(whole.linear[0][1]), number(whole.linear[1][1]),
+                        number(whole.translation.y), number(whole.linear[2][2]), tint(*flame_.last)),
+            flame_.last->span);
         out_.line("}");
     }
 

@@ -20,10 +20,12 @@ namespace {
 
 using StepKind = InstInkStep::Kind;
 
-/// Objects that a fine distinction of inks may make.
-constexpr std::size_t most_fine_objects = 100'000;
-/// How finely inks are told apart: the bits of each channel.
-constexpr std::array ink_bits = {16, 12, 9, 6};
+/// Objects that new inks may make; later inks are the nearest that there are.
+constexpr std::size_t most_new_objects = 100'000;
+/// Inks of an object that are looked at for the nearest: its last ones.
+constexpr std::size_t most_neighbours = 256;
+/// Inks are told apart by so many steps of each channel.
+constexpr double ink_steps = 65'536;
 
 double wrapped_degrees(double degrees) {
     const double inside = degrees - 360 * std::floor(degrees / 360);
@@ -78,13 +80,13 @@ class FreeNames {
     std::map<std::string, unsigned> numbers_;
 };
 
-/// One attempt to tell inks apart by so many bits.
+/// The objects under their inks.
 class InkStates {
   public:
-    InkStates(const Graph& source, const InkTable& inks, const HueTable& hues, int bits, std::size_t most,
-              Lowering& lowering)
-        : source_(source), graph_(source), inks_(inks), hues_(hues), steps_(std::ldexp(1.0, bits)),
-          most_(most), lowering_(lowering) {
+    InkStates(const Graph& source, const InkTable& inks, const HueTable& hues, Lowering& lowering)
+        : source_(source), graph_(source), inks_(inks), hues_(hues), most_(lowering.options.max_objects),
+          most_new_(std::min(most_, std::max(most_new_objects, 2 * source.objects.size()))),
+          lowering_(lowering) {
         for (const Object& object : graph_.objects)
             names_.take(object.name);
         for (const Material& material : graph_.materials)
@@ -104,6 +106,7 @@ class InkStates {
         return good_;
     }
 
+    bool merged() const { return merged_; }
     Graph take_graph() { return std::move(graph_); }
     HueTable take_hues() { return std::move(hues_); }
 
@@ -120,9 +123,9 @@ class InkStates {
         Key key{};
         for (std::size_t i = 0; i < ink_channels; ++i) {
             const double share = i == 0 ? ink.channels[i] / 360 : ink.channels[i];
-            key[i] = static_cast<std::int32_t>(std::lround(share * steps_));
+            key[i] = static_cast<std::int32_t>(std::lround(share * ink_steps));
         }
-        key[0] %= static_cast<std::int32_t>(steps_);
+        key[0] %= static_cast<std::int32_t>(ink_steps);
         return key;
     }
 
@@ -158,6 +161,11 @@ class InkStates {
     ObjectId state(ObjectId from, const Ink& ink) {
         const auto [known, fresh] = states_.try_emplace({from, key_of(ink)}, 0);
         if (!fresh) return known->second;
+        std::vector<std::pair<Ink, ObjectId>>& others = by_object_[from];
+        if (graph_.objects.size() >= most_new_ && !others.empty()) {
+            merged_ = true;
+            return known->second = nearest(others, ink);
+        }
         instances_ += source_.objects[from].instances.size();
         if (graph_.objects.size() >= most_ || instances_ > most_ * max_instances_per_object) {
             good_ = false;
@@ -167,8 +175,25 @@ class InkStates {
         copy.name = names_.like(copy.name);
         known->second = graph_.add(std::move(copy));
         if (const auto hues = hues_.find(from); hues != hues_.end()) hues_[known->second] = hues->second;
+        others.emplace_back(ink, known->second);
         open_.push_back({from, known->second, ink});
         return known->second;
+    }
+
+    static ObjectId nearest(const std::vector<std::pair<Ink, ObjectId>>& others, const Ink& ink) {
+        const auto distance = [&](const std::pair<Ink, ObjectId>& other) {
+            double sum = 0;
+            for (std::size_t i = 0; i < ink_channels; ++i) {
+                double apart = std::abs(other.first.channels[i] - ink.channels[i]);
+                if (i == 0) apart = std::min(apart, 360 - apart) / 180;
+                sum += apart * apart;
+            }
+            return sum;
+        };
+        const std::size_t first = others.size() - std::min(others.size(), most_neighbours);
+        return std::ranges::min_element(others.begin() + static_cast<std::ptrdiff_t>(first), others.end(), {},
+                                        distance)
+            ->second;
     }
 
     /// The material, or a plain one, that lets the rest of the light through, to 1/64.
@@ -188,15 +213,17 @@ class InkStates {
     Graph graph_;
     const InkTable& inks_;
     HueTable hues_;
-    double steps_;
     std::size_t most_;
+    std::size_t most_new_;
     Lowering& lowering_;
     std::map<std::pair<ObjectId, Key>, ObjectId> states_;
     std::map<std::pair<std::optional<MaterialId>, int>, MaterialId> sheer_;
+    std::map<ObjectId, std::vector<std::pair<Ink, ObjectId>>> by_object_;
     std::deque<Open> open_;
     FreeNames names_, material_names_;
     std::size_t instances_ = 0;
     bool good_ = true;
+    bool merged_ = false;
 };
 
 class StepLowerer {
@@ -305,17 +332,14 @@ std::optional<InkChange> lower_ink(const std::vector<InstInkStep>& steps, const 
 
 bool apply_inks(Graph& graph, const InkTable& inks, HueTable& hues, Span place, Lowering& lowering) {
     const std::size_t most = lowering.options.max_objects;
-    for (const int bits : ink_bits) {
-        const bool last = bits == ink_bits.back();
-        const std::size_t limit =
-            last ? most : std::min(most, std::max(most_fine_objects, 2 * graph.objects.size()));
-        InkStates states(graph, inks, hues, bits, limit, lowering);
-        if (!states.run()) continue;
+    InkStates states(graph, inks, hues, lowering);
+    if (states.run()) {
+        if (states.merged())
+            lowering.diagnostics.note(place,
+                                      "there are too many different inks: the deepest parts have the nearest "
+                                      "ink that their object has elsewhere");
         graph = states.take_graph();
         hues = states.take_hues();
-        if (bits != ink_bits.front())
-            lowering.diagnostics.note(
-                place, fmt::format("inks that differ by less than 1/{} are one here", 1 << bits));
         return true;
     }
     lowering.diagnostics

@@ -64,9 +64,10 @@ std::optional<InkChange> lower_ink(const std::vector<InstInkStep>& steps, const 
 
 /// Hands inks down to the primitives, which get them as tints that cover, and as materials where alpha is
 /// below
-/// 1. If paths reach an object with different inks, the graph gets one copy of it for each. Inks that differ
-/// by less than 2^-16 of a channel's range are one; if they make too many objects, by 2^-12, 2^-9 or 2^-6,
-/// with a note. `hues` gets rows for the copies. An error, at `place`: more objects than the options allow.
+/// 1. If paths reach an object with different inks, the graph gets one copy of it for each; inks that differ
+/// by less than 2^-16 of a channel's range are one. Once the graph has 100,000 objects, an object takes the
+/// nearest ink that it has already, with a note. `hues` gets rows for the copies. An error, at `place`: more
+/// objects than the options allow.
 bool apply_inks(Graph& graph, const InkTable& inks, HueTable& hues, Span place, Lowering& lowering);
 
 } // namespace graftal

@@ -23,9 +23,6 @@ namespace {
 
 /// The error grows by this where the memory does not suffice: a quarter less on each side of a leaf.
 constexpr double coarser = 1.25;
-/// The light of what is culled is rounded to sixteenths: each step has finishes and meshes of its own. By
-/// 64ths plants/autumn.inst had an error of 22 px within 1 GiB, and not of 4.
-constexpr int light_steps = 16;
 /// A cut is tried that is estimated to take this much more than there is: what is assembled is then counted.
 constexpr double estimate_slack = 1.25;
 /// Of the memory there is, what may be spent on what makes POV-Ray faster.
@@ -190,7 +187,7 @@ class Cutter {
         if (!(projection.error_px() > SelfShadows::lit_as_px)) return nullptr;
         return &self_shadows_.get([this] {
             return measure_self_shadows(cut_, symmetry_, prepared_.root_steps, view_, limit_normals(),
-                                        light_steps);
+                                        options_.light_steps);
         });
     }
 

@@ -12,6 +12,8 @@ namespace {
 
 /// A pixel's, before more is culled to save work.
 constexpr int fewest_soft_samples = 2;
+/// Of the light of what is culled. Other pictures keep POV-Ray's steps, to be equal to its.
+constexpr int light_steps_of_samples = 128;
 
 /// Whether pixels are estimated, by samples that differ.
 bool is_sampled(const Graph& graph, const View& view, const RenderOptions& options) {
@@ -49,6 +51,7 @@ PicturePlan plan_picture(const PreparedView& prepared, const RenderOptions& opti
     plan.sampled = is_sampled(prepared.viewed->model->graph, view, options);
     plan.detail = prepared.detail;
     plan.detail.work_seconds = options.work(view.quality, plan.sampled);
+    if (plan.sampled) plan.detail.light_steps = light_steps_of_samples;
     Looks& looks = plan.looks;
     looks.wanted = samplings_for(plan.sampled, view, options);
     looks.tried = plan.detail.culls() ? with_fewer_samples(looks.wanted, view.size,

@@ -23,9 +23,6 @@ namespace {
 /// Sizes are kept in here, so that inverses are numbers too.
 constexpr double least_size = 1e-140, largest_size = 1e140;
 
-/// Of the light of what is culled, so that it is not off by more than 1 of 255.
-constexpr int light_steps = 128;
-
 /// Where the frame of a node lies in the frame that the graph gives it. Scaled by a power of two, so that
 /// maps keep their digits.
 Affine graph_from_frame(const CutNode& node, const Box& box) {
@@ -404,7 +401,7 @@ TraceModel::TraceModel(std::shared_ptr<const PreparedCut> ready, const View& see
 const SelfShadows& TraceModel::self_shadows() const {
     return self_shadow_store->get([this] {
         return measure_self_shadows(prepared.cut, prepared.symmetry, prepared.root_steps, view,
-                                    options.limit_normals, light_steps);
+                                    options.limit_normals, options.light_steps);
     });
 }
 

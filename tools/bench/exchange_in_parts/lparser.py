@@ -118,6 +118,8 @@ def draw(text, steps, most):
             if letter in 'FZ':
                 box.add((-place[1], place[2], -place[0]), (-end[1], end[2], -end[0]))
             place = end
+        elif letter == '{':
+            box.has_polygons = True
         elif letter == '[':
             saved.append((place, ahead, left, up, angle, full, half))
         elif letter == ']' and saved:

@@ -4,6 +4,7 @@
 class Box:
     def __init__(self):
         self.low, self.high, self.lines = None, None, 0
+        self.has_polygons = False  # which are no lines, and may reach farther
 
     def add(self, start, end):
         self.lines += 1

@@ -14,19 +14,26 @@ namespace graftal {
 
 namespace {
 
-/// Whether the middles of all leaves lie in one plane, and the axes of those that are long: lines may be
-/// thick where they are few.
+/// Whether the model is nothing but lines, and balls where they meet, whose axes lie in one plane: where
+/// lines are few, they may be thick.
 bool lies_in_plane(const ExportedScene& scene, int axis) {
     constexpr double flat = 1e-9;
     constexpr std::size_t most_leaves = 1'000'000;
     const double height = scene.bounds.centre()[axis];
     const double off = flat * largest_entry(scene.bounds.size());
     std::size_t leaves = 0;
-    return walk_leaves(scene, scene.root, {}, {}, [&](const SceneLeaf& leaf) {
+    bool has_lines = false;
+    const bool all = walk_leaves(scene, scene.root, {}, {}, [&](const SceneLeaf& leaf) {
+        const PrimitiveKind kind = scene.shapes[leaf.shape].primitive.kind();
+        const bool is_line =
+            kind == PrimitiveKind::cylinder || kind == PrimitiveKind::cone || kind == PrimitiveKind::frustum;
+        has_lines = has_lines || is_line;
         const Affine& place = leaf.world_from_shape;
-        return ++leaves <= most_leaves && std::abs(place.translation[axis] - height) <= off &&
-               std::abs(place.linear[1][axis]) <= off;
+        return ++leaves <= most_leaves && (is_line || kind == PrimitiveKind::sphere) &&
+               std::abs(place.translation[axis] - height) <= off &&
+               (!is_line || std::abs(place.linear[1][axis]) <= off);
     });
+    return all && has_lines;
 }
 
 } // namespace

@@ -1,5 +1,7 @@
 #include "runtime/export/export_model.h"
 
+#include <utility>
+
 #include <fmt/format.h>
 
 #include "compiler/session/stages.h"
@@ -59,9 +61,14 @@ std::optional<std::string> export_model(PictureSession& session, const ExportMod
     if (!scene) return std::nullopt;
     note_what_is_missing(*scene, root, compilation.diagnostics);
     ExportReport report;
+    bool too_large = false;
     compilation.status = format->write({*scene, viewed->view, options.file, root, session.textures(),
-                                        session.control().cancel, compilation.diagnostics},
+                                        session.control().cancel, compilation.diagnostics, too_large},
                                        report);
+    if (too_large) {
+        const Status found = std::exchange(compilation.status, Status());
+        compilation.diagnostics.error(root, found.message()).with_hint("allow more with --limit");
+    }
     if (!compilation.status.ok() || compilation.diagnostics.has_errors()) return std::nullopt;
     const SceneCounts counts = count(*scene);
     return fmt::format("{} leaves: {}", in_words(counts.leaves), report.summary);

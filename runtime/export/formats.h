@@ -38,6 +38,7 @@ struct ExportJob {
     TextureStore& textures;
     const CancelFlag& cancel;
     Diagnostics& diagnostics;
+    bool& too_large; ///< set where the file would be larger than options.most_bytes; the status says it
 };
 
 /// What it has written.

@@ -486,7 +486,7 @@ Status write_gltf_file(const ExportJob& job, ExportReport& report, bool binary) 
     GltfWriter writer(job, *scene);
     const Status made = writer.make();
     if (!made.ok() || job.diagnostics.has_errors()) return made;
-    OutputFile file(job.options.output, job.options.most_bytes);
+    OutputFile file(job.options.output, job.options.most_bytes, job.too_large);
     if (!file.ok()) return file.status();
     writer.write(file, binary);
     const Status status = file.close();

@@ -269,8 +269,8 @@ Status write_mitsuba(const ExportJob& job, ExportReport& report) {
     const std::filesystem::path path = job.options.output;
     std::filesystem::path meshes_path = path;
     meshes_path.replace_extension(".serialized");
-    OutputFile file(path.string(), job.options.most_bytes);
-    OutputFile meshes(meshes_path.string(), job.options.most_bytes);
+    OutputFile file(path.string(), job.options.most_bytes, job.too_large);
+    OutputFile meshes(meshes_path.string(), job.options.most_bytes, job.too_large);
     for (const OutputFile* const output : {&file, &meshes})
         if (!output->ok()) return output->status();
     MitsubaWriter writer(job, *renderer, file, meshes, meshes_path.filename().string());

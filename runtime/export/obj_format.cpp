@@ -126,8 +126,8 @@ Status write_obj(const ExportJob& job, ExportReport& report) {
     const std::filesystem::path path = job.options.output;
     std::filesystem::path mtl_path = path;
     mtl_path.replace_extension(".mtl");
-    OutputFile obj(path.string(), job.options.most_bytes);
-    OutputFile mtl(mtl_path.string(), job.options.most_bytes);
+    OutputFile obj(path.string(), job.options.most_bytes, job.too_large);
+    OutputFile mtl(mtl_path.string(), job.options.most_bytes, job.too_large);
     PictureCopies copies(job);
     for (const Status* status : {&obj.status(), &mtl.status()})
         if (!status->ok()) return *status;

@@ -7,8 +7,8 @@
 
 namespace graftal {
 
-OutputFile::OutputFile(const std::string& path, std::uint64_t most_bytes)
-    : pending_(path), most_bytes_(most_bytes), status_(pending_.status()) {
+OutputFile::OutputFile(const std::string& path, std::uint64_t most_bytes, bool& too_large)
+    : pending_(path), most_bytes_(most_bytes), too_large_(too_large), status_(pending_.status()) {
     if (!status_.ok()) return;
     file_.reset(std::fopen(pending_.temporary_path().c_str(), "wb"));
     if (!file_) fail(errno);
@@ -21,10 +21,11 @@ void OutputFile::fail(int reason) {
 }
 
 void OutputFile::flush() {
-    if (status_.ok() && written_ + buffer_.size() > most_bytes_)
-        status_ =
-            Status::failure(fmt::format("'{}' would be larger than {}: allow more with --limit",
-                                        pending_.path(), readable_bytes(static_cast<double>(most_bytes_))));
+    if (status_.ok() && written_ + buffer_.size() > most_bytes_) {
+        too_large_ = true;
+        status_ = Status::failure(fmt::format("'{}' would be larger than {}", pending_.path(),
+                                              readable_bytes(static_cast<double>(most_bytes_))));
+    }
     if (status_.ok() && std::fwrite(buffer_.data(), 1, buffer_.size(), file_.get()) != buffer_.size())
         fail(errno ? errno : EIO);
     written_ += buffer_.size();

@@ -17,8 +17,8 @@ namespace graftal {
 /// A file that appears whole or not at all, written from its begin to its end, or overwritten in its head.
 class OutputFile {
   public:
-    /// `most_bytes`: a larger file is a failure.
-    OutputFile(const std::string& path, std::uint64_t most_bytes);
+    /// `most_bytes`: a larger file is a failure, and sets `too_large`.
+    OutputFile(const std::string& path, std::uint64_t most_bytes, bool& too_large);
 
     const Status& status() const { return status_; }
     bool ok() const { return status_.ok(); }
@@ -61,6 +61,7 @@ class OutputFile {
     std::string buffer_;
     std::uint64_t written_ = 0;
     std::uint64_t most_bytes_;
+    bool& too_large_;
     Status status_;
 };
 

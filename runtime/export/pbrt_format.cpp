@@ -191,7 +191,7 @@ Status write_pbrt(const ExportJob& job, ExportReport& report) {
     const std::optional<RendererScene> renderer =
         RendererScene::make(job, pbrt_triangle_bytes, pbrt_place_bytes);
     if (!renderer) return {};
-    OutputFile file(job.options.output, job.options.most_bytes);
+    OutputFile file(job.options.output, job.options.most_bytes, job.too_large);
     if (!file.ok()) return file.status();
     PbrtWriter writer(job, *renderer, file);
     Status status = writer.write();

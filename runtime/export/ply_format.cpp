@@ -20,7 +20,7 @@ Status write_ply_mesh(const ExportJob& job, ExportReport& report) {
     // over shapes knows them.
     ShapeMeshes meshes(job.scene);
     std::uint64_t vertices = 0, triangles = 0;
-    OutputFile file(job.options.output, job.options.most_bytes);
+    OutputFile file(job.options.output, job.options.most_bytes, job.too_large);
     if (!file.ok()) return file.status();
     Status status = for_each_leaf(job, file, [&](const SceneLeaf& leaf) {
         const ShapeMesh& mesh = meshes.of(leaf.shape, leaf.look);

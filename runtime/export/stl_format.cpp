@@ -28,7 +28,7 @@ Status write_stl(const ExportJob& job, ExportReport& report) {
             return stl_triangle_bytes * mesh_size(shape, false).triangles;
         }))
         return {};
-    OutputFile file(job.options.output, job.options.most_bytes);
+    OutputFile file(job.options.output, job.options.most_bytes, job.too_large);
     if (!file.ok()) return file.status();
     // Corners that rounding brings together make a triangle nothing: it is left out, and the edges beside it
     // still meet.

@@ -203,11 +203,11 @@ Status write_nested(const ExportJob& job, ExportReport& report) {
     const std::optional<ExportedScene> scene =
         resolve_looks(job.scene, {most_svg_nodes}, job.model, job.diagnostics);
     if (!scene) return {};
-    OutputFile file(job.options.output, job.options.most_bytes);
+    OutputFile file(job.options.output, job.options.most_bytes, job.too_large);
     if (!file.ok()) return file.status();
     SvgWriter writer(*scene, file);
     const bool fits = writer.find_nodes(*page);
-    if (!fits || writer.parts() * svg_part_bytes > job.options.most_bytes) {
+    if (!fits || writer.parts() * svg_part_bytes > job.options.most_bytes, job.too_large) {
         job.diagnostics
             .error(job.model,
                    fmt::format("'{}' would have {}{} parts, about {} bytes", job.options.output,
@@ -295,7 +295,7 @@ Status write_plotted(const ExportJob& job, ExportReport& report) {
             .with_hint("leave out more with a larger --error or fewer --steps");
         return {};
     }
-    OutputFile file(job.options.output, job.options.most_bytes);
+    OutputFile file(job.options.output, job.options.most_bytes, job.too_large);
     if (!file.ok()) return file.status();
     svg_head(file, job, *page, "mm", 1);
     std::size_t lines = 0;

@@ -232,9 +232,10 @@ TEST_F(CommandLine, SettingsCanBeSetLikeLets) {
     EXPECT_EQ(graftal("print koch.lsys --set steps=3").out, graftal("print koch.lsys --steps 3").out);
     const RunResult wrong = graftal("print koch.lsys --set angel=40");
     EXPECT_EQ(wrong.status, 1);
-    EXPECT_EQ(wrong.err,
-              "graftal: error: --set angel: the model has no 'let angel'\n"
-              "    hint: did you mean 'angle'? known here: size, angle, step, width, steps, seed\n");
+    EXPECT_EQ(
+        wrong.err,
+        "graftal: error: --set angel: the model has no 'let angel'\n"
+        "    hint: did you mean 'angle'? known here: size, angle, step, width, thickness, steps, seed\n");
     EXPECT_THAT(graftal("print koch.lsys --set step=-1").err,
                 HasSubstr("graftal: error: 'step' must be positive, not -1\n"));
     write("set.inst", "object set { union: set, sphere  scale: 0.5 }\n");

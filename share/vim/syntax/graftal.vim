@@ -3,10 +3,10 @@ if exists("b:current_syntax")
   finish
 endif
 
-syntax keyword graftalStatement angle apart background below by camera canonical chance codes colors condense consider count decompose decomposition except film follow ground haze homomorphism hue ignore inner instance interpret lean let light lsys main map material modules object orbit over probability repeat rifs scatter seed size sky start step steps terminal texture tropism turn union use weights width
+syntax keyword graftalStatement angle apart background below by camera canonical chance codes colors condense consider count decompose decomposition else except film follow ground haze homomorphism hue ignore ink inner instance interpret lean let light lsys main map material modules nothing object orbit over probability repeat rifs scatter seed size sky start step steps table terminal texture thickness thinnest tropism turn union use vertical weights when width with
 syntax keyword graftalShape bicubic_patch cone cube cylinder frustum mesh plane polygon sphere sphere_sweep superellipsoid torus triangle
 syntax keyword graftalChange color hsv matrix projection rgb rotate scale shear tint translate
-syntax keyword graftalFunction abs acos asin atan atan2 ceil cos exp floor lerp log logistic max min mod normal pow random sign sin smooth sqrt tan
+syntax keyword graftalFunction abs acos asin atan atan2 ceil choose cos exp floor lerp log logistic max min mod normal pow random sign sin smooth sqrt tan
 syntax match graftalField "\<[a-z_]\+\ze\s*:"
 syntax match graftalNumber "\<\d\+\%(\.\d*\)\=\%([eE][+-]\=\d\+\)\="
 syntax match graftalNumber "\.\d\+\%([eE][+-]\=\d\+\)\="

@@ -207,7 +207,7 @@ Status write_nested(const ExportJob& job, ExportReport& report) {
     if (!file.ok()) return file.status();
     SvgWriter writer(*scene, file);
     const bool fits = writer.find_nodes(*page);
-    if (!fits || writer.parts() * svg_part_bytes > job.options.most_bytes, job.too_large) {
+    if (!fits || writer.parts() * svg_part_bytes > job.options.most_bytes) {
         job.diagnostics
             .error(job.model,
                    fmt::format("'{}' would have {}{} parts, about {} bytes", job.options.output,

@@ -361,7 +361,7 @@ bool refuse_usd_size(const ExportJob& job, const ExportedScene& scene) {
         const std::size_t parts = scene.nodes[id].parts.size();
         bytes += parts * (parts >= fewest_points ? usd_point_bytes : usd_part_bytes);
     }
-    if (bytes <= job.options.most_bytes, job.too_large) return false;
+    if (bytes <= job.options.most_bytes) return false;
     job.diagnostics
         .error(job.model, fmt::format("'{}' would have {} instances, about {:.3g} bytes", job.options.output,
                                       count(scene).parts, static_cast<double>(bytes)))

@@ -305,7 +305,7 @@ void Writer::write_parts() {
 
 std::string Writer::part(const Elements& elements, std::size_t first, Place place, Span span,
                          const std::vector<std::string>& more) {
-    const std::string name = free_name(fmt::format("{}_part", object_names_[place.shape]));
+    std::string name = free_name(fmt::format("{}_part", object_names_[place.shape]));
     std::vector<std::string> arguments = place.parameters;
     arguments.insert(arguments.end(), more.begin(), more.end());
     if (parts_.size() >= most_parts || out_.text.size() > longest_output)
@@ -536,7 +536,7 @@ void Writer::write_indexed_loop(const Element& element, Place& place) {
                                      rounded(moved.translation[row] + lift, 1e9), row < 2 ? "," : "");
             }
         } else {
-            moves = turn->moves + moves;
+            moves.insert(0, turn->moves);
         }
         inks += turn->inks;
         if (inks.size() > 20'000) return fail(element.span, "this loop changes the colour in too many steps");

@@ -605,7 +605,7 @@ class CpfgTranslator {
         }
         const char c = symbol[0];
         if (std::string_view("FfGg+-&^\\/|[]{}.%!;,").find(c) != std::string_view::npos) return symbol;
-        const std::string name = c == 'T' ? "TT" : symbol_name(c);
+        std::string name = c == 'T' ? "TT" : symbol_name(c);
         if (name.size() > 1 || !has_production(symbol)) declared_.insert(name);
         return name;
     }

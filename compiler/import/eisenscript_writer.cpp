@@ -364,7 +364,7 @@ void Writer::write_loops(const std::vector<Loop>& given, const std::string& targ
                                    constants_.contains(loop.count.constant) ? loop.count.constant
                                                                             : std::to_string(copies_of(loop)),
                                    moves, sets_colour(loop.operators) ? "" : colours);
-        own = moves + own;
+        own.insert(0, moves);
     }
     for (const Loop& loop : loops)
         own += inks(loop.operators);

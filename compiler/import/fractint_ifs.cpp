@@ -225,8 +225,10 @@ class SystemReader {
         const int size = system_.in_space ? 3 : 2;
         for (int r = 0; r < size; ++r) {
             for (int c = 0; c < size; ++c)
-                map.linear[c][r] = n(static_cast<std::size_t>(size * r + c));
-            map.translation[r] = n(static_cast<std::size_t>(size * size + r));
+                map.linear[c][r] = n(static_cast<std::size_t>(size) * static_cast<std::size_t>(r) +
+                                     static_cast<std::size_t>(c));
+            map.translation[r] = n(static_cast<std::size_t>(size) * static_cast<std::size_t>(size) +
+                                   static_cast<std::size_t>(r));
         }
         if (!system_.in_space) map.linear[2][2] = std::sqrt(std::abs(n(0) * n(3) - n(1) * n(2)));
         return map;

@@ -178,7 +178,7 @@ class SceneBuilder {
     void push_part(SceneId node, ScenePart part) {
         if (++parts_ > limits_.parts) throw SceneTooLarge();
         meter_.add();
-        scene_.nodes[node].parts.push_back(std::move(part));
+        scene_.nodes[node].parts.push_back(part);
     }
 
     /// `errors`: that measure a unit of the task's node.
@@ -215,7 +215,7 @@ class SceneBuilder {
             part.node = shared(key);
         }
         if (child.primitive) part.turns = length_in_turns(edge.node_from_child.linear);
-        push_part(task.id, std::move(part));
+        push_part(task.id, part);
     }
 
     /// Steps of stretches that are rounded down get smaller round every cycle, so that this ends.
@@ -276,7 +276,7 @@ class SceneBuilder {
             part.node_from_part = widened(PrimitiveKind::sphere, node.node_from_proxy, width);
         part.node = leaf(PrimitiveKind::sphere, errors * largest_stretch(part.node_from_part.linear));
         scene_.nodes[id].mean = node.mean;
-        push_part(id, std::move(part));
+        push_part(id, part);
     }
 
     /// Leaf by leaf: a map without thickness is none that formats could place things by.
@@ -310,12 +310,12 @@ class SceneBuilder {
             ++scene_.thickened;
             const SceneId holder = add_node(cut_.nodes[at.node].name);
             scene_.nodes[holder].mean = mean;
-            push_part(holder, std::move(inner));
+            push_part(holder, inner);
             ScenePart outer;
             outer.node = holder;
             outer.tint = at.look.tint;
             outer.material = at.look.material;
-            push_part(task.id, std::move(outer));
+            push_part(task.id, outer);
         };
         while (!stack.empty()) {
             const Crushed at = stack.back();
@@ -342,7 +342,7 @@ class SceneBuilder {
                 below.scale = size_below(at.scale, edge, below.place.linear);
                 below.look.tint = at.look.tint * edge.tint;
                 if (edge.material) below.look.material = edge.material;
-                stack.push_back(std::move(below));
+                stack.push_back(below);
             });
             std::reverse(stack.begin() + static_cast<std::ptrdiff_t>(first), stack.end());
             meter_.add();

@@ -484,12 +484,12 @@ Status write_gltf_file(const ExportJob& job, ExportReport& report, bool binary) 
         resolve_looks(job.scene, {most_looks}, job.model, job.diagnostics);
     if (!scene) return {};
     GltfWriter writer(job, *scene);
-    const Status made = writer.make();
+    Status made = writer.make();
     if (!made.ok() || job.diagnostics.has_errors()) return made;
     OutputFile file(job.options.output, job.options.most_bytes, job.too_large);
     if (!file.ok()) return file.status();
     writer.write(file, binary);
-    const Status status = file.close();
+    Status status = file.close();
     if (!status.ok()) return status;
     report.summary = writer.summary();
     return file.pending().commit();

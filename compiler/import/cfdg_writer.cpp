@@ -587,12 +587,7 @@ std::string Writer::reference(const Element& element, const Place* from, const S
 }
 
 std::string Writer::free_name(std::string_view wanted) {
-    std::string name = plain_name(wanted);
-    if (is_own_word(name)) name += "_shape";
-    std::string free = name;
-    for (int i = 2; !names_.insert(free).second; ++i)
-        free = fmt::format("{}_{}", name, i);
-    return free;
+    return free_own_name(wanted, "_shape", names_);
 }
 
 void Writer::comment(const std::string& words) {

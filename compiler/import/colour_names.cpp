@@ -1,9 +1,11 @@
 #include "compiler/import/colour_names.h"
 
 #include <algorithm>
-#include <cctype>
 #include <cstdint>
 #include <string>
+
+#include "compiler/support/small_letters.h"
+#include "compiler/support/srgb.h"
 
 namespace graftal {
 
@@ -167,29 +169,14 @@ std::array<double, 3> from_bytes(std::uint32_t rgb) {
     return {(rgb >> 16) / 255.0, (rgb >> 8 & 255) / 255.0, (rgb & 255) / 255.0};
 }
 
-std::optional<std::uint32_t> hexadecimal(std::string_view digits) {
-    std::uint32_t value = 0;
-    for (const char c : digits) {
-        if (!std::isxdigit(static_cast<unsigned char>(c))) return std::nullopt;
-        const int small = std::tolower(static_cast<unsigned char>(c));
-        value = 16 * value + static_cast<std::uint32_t>(small <= '9' ? small - '0' : small - 'a' + 10);
-    }
-    return value;
-}
-
 } // namespace
 
 std::optional<std::array<double, 3>> colour_named(std::string_view name) {
     if (name.starts_with('#')) {
-        const std::string_view digits = name.substr(1);
-        if (digits.size() != 3 && digits.size() != 6) return std::nullopt;
-        const std::optional<std::uint32_t> value = hexadecimal(digits);
-        if (!value || digits.size() == 6) return value ? std::optional(from_bytes(*value)) : std::nullopt;
-        return std::array{(*value >> 8) / 15.0, (*value >> 4 & 15) / 15.0, (*value & 15) / 15.0};
+        const std::optional<Rgb> rgb = srgb_from_hex(name.substr(1));
+        return rgb ? std::optional(std::array{rgb->r, rgb->g, rgb->b}) : std::nullopt;
     }
-    std::string small(name);
-    std::ranges::transform(small, small.begin(),
-                           [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    const std::string small = in_small_letters(name);
     const auto found =
         std::ranges::lower_bound(colour_table, std::string_view(small), {}, &NamedColour::name);
     if (found == std::end(colour_table) || found->name != small) return std::nullopt;

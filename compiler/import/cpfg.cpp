@@ -15,6 +15,7 @@
 #include "compiler/import/cpfg_view.h"
 #include "compiler/import/foreign_text.h"
 #include "compiler/import/importers.h"
+#include "compiler/support/small_letters.h"
 
 namespace graftal {
 
@@ -448,7 +449,7 @@ class CpfgTranslator {
         const std::string body = strings_first();
         for (const char letter : used_surfaces_)
             out.line(fmt::format("use {} = \"{}\"", surface_name(letter), view_.surfaces[letter].file));
-        out.line(fmt::format("lsys {} {{", block_name()), model_.span);
+        out.line(fmt::format("lsys {} {{", block_name(model_.name)), model_.span);
         if (!declared_.empty()) out.line("  modules " + declared());
         for (const CpfgMacro& macro : source_.macros)
             if (lets_.contains(macro.name) && uses(body, macro.name))
@@ -504,13 +505,6 @@ class CpfgTranslator {
                          const char* indent) {
         for (const auto& [line, span] : lines)
             out.line(fmt::format("{}# {}", indent, line), span);
-    }
-
-    std::string block_name() const {
-        std::string name = plain_name(model_.name);
-        name[0] = static_cast<char>(
-            std::toupper(static_cast<unsigned char>(name[0]))); // primitives have small ones
-        return name;
     }
 
     std::string declared() const {

@@ -1,7 +1,6 @@
 // What `set` says, and the scene that it makes.
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <numbers>
 #include <utility>
@@ -14,6 +13,7 @@
 #include "compiler/import/eisenscript_writer.h"
 #include "compiler/import/importers.h"
 #include "compiler/support/number.h"
+#include "compiler/support/small_letters.h"
 
 namespace graftal::eisenscript {
 
@@ -78,9 +78,7 @@ void Writer::set(const Setting& setting) {
         if (!background_)
             file_.diagnostics.error(setting.span, fmt::format("'{}' is not a colour", setting.value));
     } else if (key == "colorpool") {
-        pool_ = setting.value;
-        std::ranges::transform(pool_, pool_.begin(),
-                               [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+        pool_ = in_small_letters(setting.value);
         if (pool_ == "grayscale") pool_ = "greyscale";
         if (pool_.starts_with("list:")) {
             pool_colours_.clear();

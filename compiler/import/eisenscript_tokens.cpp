@@ -12,6 +12,7 @@
 #include "compiler/import/foreign_text.h"
 #include "compiler/support/counter_random.h"
 #include "compiler/support/number.h"
+#include "compiler/support/small_letters.h"
 
 namespace graftal::eisenscript {
 

@@ -115,12 +115,7 @@ void Writer::check_names() {
 }
 
 std::string Writer::free_name(std::string_view wanted) {
-    std::string name = plain_name(wanted);
-    if (is_own_word(name)) name += "_rule";
-    std::string free = name;
-    for (int i = 2; !names_.insert(free).second; ++i)
-        free = fmt::format("{}_{}", name, i);
-    return free;
+    return free_own_name(wanted, "_rule", names_);
 }
 
 std::string Writer::counter_name(std::size_t rule) const {

@@ -126,7 +126,7 @@ class Reader {
                 const std::vector<double> rgb = numbers_in(child.attribute("rgb").value());
                 const int index = child.attribute("index").as_int(-1);
                 if (index >= 0 && index < 256 && rgb.size() == 3)
-                    set_colour(flame, index, rgb[0], rgb[1], rgb[2]);
+                    set_colour(flame, index, Rgb(rgb[0], rgb[1], rgb[2]) / 255.0);
             } else if (name == "palette" || name == "colors") {
                 read_palette(child, flame);
             } else if (name == "symmetry") {
@@ -143,9 +143,9 @@ class Reader {
     }
 
   private:
-    static void set_colour(Flame& flame, int index, double r, double g, double b) {
-        const auto part = [](double v) { return std::clamp(v / 255, 0.0, 1.0); };
-        flame.palette[static_cast<std::size_t>(index)] = {part(r), part(g), part(b)};
+    static void set_colour(Flame& flame, int index, Rgb encoded) {
+        const auto part = [](double v) { return std::clamp(v, 0.0, 1.0); };
+        flame.palette[static_cast<std::size_t>(index)] = {part(encoded.r), part(encoded.g), part(encoded.b)};
         flame.has_colour[static_cast<std::size_t>(index)] = true;
     }
 
@@ -159,11 +159,8 @@ class Reader {
         const auto count = static_cast<std::size_t>(std::max(1, node.attribute("count").as_int(256)));
         const std::size_t each = digits.size() >= 8 * count ? 8 : 6;
         for (std::size_t i = 0; i < 256 && each * (i + 1) <= digits.size(); ++i) {
-            const auto byte = [&](std::size_t at) {
-                return static_cast<double>(
-                    std::stoi(digits.substr(each * i + each - 6 + at, 2), nullptr, 16));
-            };
-            set_colour(flame, static_cast<int>(i), byte(0), byte(2), byte(4));
+            const std::string_view colour = std::string_view(digits).substr(each * i + each - 6, 6);
+            set_colour(flame, static_cast<int>(i), srgb_from_hex(colour).value_or(Rgb(0.0)));
         }
     }
 

@@ -17,8 +17,6 @@ std::vector<TextLine> lines_of(std::string_view text, std::size_t begin, std::si
 
 std::string_view trimmed(std::string_view text);
 
-std::string in_small_letters(std::string_view text);
-
 /// What stands in a comment of ours: one line of ASCII. Old files have other letters in code pages that they
 /// do not name.
 std::string comment_text(std::string_view text);

@@ -14,6 +14,7 @@
 #include "compiler/import/own_words.h"
 #include "compiler/import/spectral_radius.h"
 #include "compiler/support/number.h"
+#include "compiler/support/small_letters.h"
 
 namespace graftal {
 

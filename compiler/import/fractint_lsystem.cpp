@@ -12,6 +12,7 @@
 
 #include "compiler/import/foreign_text.h"
 #include "compiler/import/importers.h"
+#include "compiler/support/small_letters.h"
 
 namespace graftal {
 
@@ -249,7 +250,7 @@ class FractintWriter {
                 out.line(fmt::format("material {} {{ color: {}  ambient: 1  diffuse: 0 }}", colour.name,
                                      colour.rgb));
         }
-        out.line(fmt::format("lsys {} {{", block_name()), model_.span);
+        out.line(fmt::format("lsys {} {{", block_name(model_.name)), model_.span);
         if (const std::string names = declared(); !names.empty()) out.line("  modules " + names);
         if (uses("c<>")) out.line("  colors " + colour_names());
         out.line(fmt::format("  angle 360/{}{}", system_.angle, remark(system_.angle_comment)),
@@ -299,13 +300,6 @@ class FractintWriter {
 
     static std::string remark(const std::string& comment) {
         return comment.empty() ? std::string() : "   # " + comment;
-    }
-
-    std::string block_name() const {
-        std::string name = plain_name(model_.name);
-        name[0] = static_cast<char>(
-            std::toupper(static_cast<unsigned char>(name[0]))); // primitives have small ones
-        return name;
     }
 
     std::string colour_names() const {

@@ -17,6 +17,7 @@
 #include "compiler/import/lparser.h"
 #include "compiler/import/vlab_surface.h"
 #include "compiler/support/file.h"
+#include "compiler/support/small_letters.h"
 
 namespace graftal {
 
@@ -145,6 +146,12 @@ std::string plain_name(std::string_view name) {
         plain += std::isalnum(static_cast<unsigned char>(c)) ? c : '_';
     const bool letter_first = !plain.empty() && std::isalpha(static_cast<unsigned char>(plain[0]));
     return letter_first ? plain : "m_" + plain;
+}
+
+std::string block_name(std::string_view name) {
+    std::string block = plain_name(name);
+    block[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(block[0])));
+    return block;
 }
 
 } // namespace graftal

@@ -346,7 +346,7 @@ class LparserWriter {
         Translation out{"lsys", {}, {}};
         comments(out, system_.head, "");
         const int colours = write_materials(out);
-        out.line(fmt::format("lsys {} {{", block_name()), model_.span);
+        out.line(fmt::format("lsys {} {{", block_name(model_.name)), model_.span);
         if (const std::string names = declared(); !names.empty()) out.line("  modules " + names);
         write_settings(out, colours);
         out.line(fmt::format("  axiom {}{}{}{}", system_.switch_yz ? "@F" : "", ";(2)",
@@ -405,13 +405,6 @@ class LparserWriter {
     static void comments(Translation& out, const std::vector<LparserLine>& lines, const char* indent) {
         for (const LparserLine& line : lines)
             out.line(fmt::format("{}# {}", indent, line.comment), line.span);
-    }
-
-    std::string block_name() const {
-        std::string name = plain_name(model_.name);
-        name[0] = static_cast<char>(
-            std::toupper(static_cast<unsigned char>(name[0]))); // primitives have small ones
-        return name;
     }
 
     /// Colours are those of a screen.

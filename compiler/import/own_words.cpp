@@ -3,6 +3,10 @@
 #include <functional>
 #include <set>
 
+#include <fmt/format.h>
+
+#include "compiler/import/importers.h"
+
 namespace graftal {
 
 bool is_own_word(std::string_view word) {
@@ -99,6 +103,15 @@ bool is_own_word(std::string_view word) {
                                                                   "normal",
                                                                   "left"};
     return words.contains(word);
+}
+
+std::string free_own_name(std::string_view wanted, std::string_view suffix, std::set<std::string>& taken) {
+    std::string name = plain_name(wanted);
+    if (is_own_word(name)) name += suffix;
+    std::string free = name;
+    for (int i = 2; !taken.insert(free).second; ++i)
+        free = fmt::format("{}_{}", name, i);
+    return free;
 }
 
 } // namespace graftal

@@ -10,6 +10,7 @@
 
 #include <fmt/format.h>
 
+#include "compiler/inst/variant_name.h"
 #include "compiler/support/hue.h"
 
 namespace graftal {
@@ -137,7 +138,7 @@ class HueStates {
             return known->second = from;
         }
         Object copy = source_.objects[from];
-        copy.name = free_name(copy.name, names_);
+        copy.name = free_variant_name(copy.name, "hue", names_, numbers_);
         known->second = graph_.add(std::move(copy));
         open_.push_back({from, turn, known->second});
         return known->second;
@@ -156,22 +157,11 @@ class HueStates {
         if (fresh) {
             Material copy = source;
             copy.rgb = hue_turned(copy.rgb, turn.turns());
-            copy.name = free_name(copy.name, material_names_);
+            copy.name = free_variant_name(copy.name, "hue", material_names_, numbers_);
             known->second = static_cast<MaterialId>(graph_.materials.size());
             graph_.materials.push_back(std::move(copy));
         }
         return known->second;
-    }
-
-    /// `tip.hue7(2)` for `tip(2)`.
-    std::string free_name(const std::string& name, std::set<std::string>& taken) {
-        const std::size_t end = std::min(name.find('('), name.size());
-        std::string found;
-        do {
-            found = fmt::format("{}.hue{}{}", name.substr(0, end), ++numbers_[name.substr(0, end)],
-                                name.substr(end));
-        } while (!taken.insert(found).second);
-        return found;
     }
 
     void fail(std::string message) {

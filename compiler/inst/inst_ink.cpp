@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 
+#include "compiler/inst/variant_name.h"
 #include "compiler/lower/lower_transform.h"
 #include "compiler/support/hue.h"
 #include "compiler/support/number.h"
@@ -65,15 +66,7 @@ class FreeNames {
     void take(const std::string& name) { taken_.insert(name); }
 
     /// `tip.ink7(2)` for `tip(2)`.
-    std::string like(const std::string& name) {
-        const std::size_t end = std::min(name.find('('), name.size());
-        std::string found;
-        do {
-            found = fmt::format("{}.ink{}{}", name.substr(0, end), ++numbers_[name.substr(0, end)],
-                                name.substr(end));
-        } while (!taken_.insert(found).second);
-        return found;
-    }
+    std::string like(const std::string& name) { return free_variant_name(name, "ink", taken_, numbers_); }
 
   private:
     std::set<std::string> taken_;

@@ -83,8 +83,8 @@ std::optional<ObjectId> InstLowerer::import_called(std::string_view name,
     const auto use =
         std::ranges::find(module_.uses, model, [](const UseStatement& one) { return one.name.text; });
     const std::size_t known = graph_.objects.size();
-    const std::optional<ObjectId> part =
-        import_part(graph_, *use, {std::string(name.substr(model.size() + 1)), arguments}, lowering_);
+    const std::optional<ObjectId> part = import_part(
+        graph_, by_name_, *use, {std::string(name.substr(model.size() + 1)), arguments}, lowering_);
     for (std::size_t id = known; id < graph_.objects.size(); ++id) {
         by_name_.emplace(graph_.objects[id].name, static_cast<ObjectId>(id));
         instance_count_ += graph_.objects[id].instances.size();

@@ -278,17 +278,13 @@ std::optional<ObjectId> import_member(Graph& into, const UseStatement& use, cons
                           append_materials(into, *model, use.name.text, true));
 }
 
-std::optional<ObjectId> import_part(Graph& into, const UseStatement& use, const PartCall& part,
-                                    Lowering& lowering) {
+std::optional<ObjectId> import_part(Graph& into, const std::unordered_map<std::string, ObjectId>& known,
+                                    const UseStatement& use, const PartCall& part, Lowering& lowering) {
     lowering.part_missing = std::filesystem::path(use.path).extension() != ".inst";
     if (lowering.part_missing) return std::nullopt;
     const std::shared_ptr<const Graph> model = load(use, {}, part, lowering);
     if (!model || !has_room(into, *model, use.path_span, lowering)) return std::nullopt;
     lowering.meter.add(model->objects.size());
-    const std::string begin = fmt::format("{}.", use.name.text);
-    std::unordered_map<std::string, ObjectId> known;
-    for (ObjectId id = 0; id < into.objects.size(); ++id)
-        if (into.objects[id].name.starts_with(begin)) known.emplace(into.objects[id].name, id);
     return append_objects(into, *model, use.name.text, append_materials(into, *model, use.name.text, false),
                           known);
 }

@@ -7,6 +7,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -99,11 +100,11 @@ std::optional<ObjectId> import_member(Graph& into, const UseStatement& use, cons
                                       Lowering& lowering);
 
 /// The object that a part of a used model stands for, with what it contains: named `NAME.object`, and what
-/// `into` has under these names already is taken, so all parts share it. A part that does not exist is an
-/// error without a message, and sets Lowering::part_missing. Other languages have no parts. Requires that
-/// import_model() was given this `use`.
-std::optional<ObjectId> import_part(Graph& into, const UseStatement& use, const PartCall& part,
-                                    Lowering& lowering);
+/// `known`, objects of `into` by name, has under these names already is taken, so all parts share it. A part
+/// that does not exist is an error without a message, and sets Lowering::part_missing. Other languages have
+/// no parts. Requires that import_model() was given this `use`.
+std::optional<ObjectId> import_part(Graph& into, const std::unordered_map<std::string, ObjectId>& known,
+                                    const UseStatement& use, const PartCall& part, Lowering& lowering);
 
 /// The most instances that one model may have, as a multiple of LowerOptions::max_objects.
 inline constexpr std::size_t max_instances_per_object = 4;

@@ -1,11 +1,11 @@
 #include "compiler/support/diagnostics.h"
 
 #include <algorithm>
-#include <cctype>
 
 #include <fmt/format.h>
 
 #include "compiler/support/printable.h"
+#include "compiler/support/small_letters.h"
 
 namespace graftal {
 
@@ -139,14 +139,10 @@ std::string Diagnostics::render(const SourceMap& sources, bool quiet) const {
 
 namespace {
 
-char lower(char c) {
-    return static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-}
-
 /// Optimal string alignment distance (Damerau-Levenshtein without overlapping edits), small letters and
 /// capitals alike.
 std::size_t edit_distance(std::string_view a, std::string_view b) {
-    const auto same = [&](std::size_t i, std::size_t j) { return lower(a[i]) == lower(b[j]); };
+    const auto same = [&](std::size_t i, std::size_t j) { return small_letter(a[i]) == small_letter(b[j]); };
     std::vector<std::vector<std::size_t>> d(a.size() + 1, std::vector<std::size_t>(b.size() + 1));
     for (std::size_t i = 0; i <= a.size(); ++i)
         d[i][0] = i;

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <cmath>
+#include <optional>
+#include <string_view>
 
 #include "compiler/support/tint.h"
 
@@ -14,5 +16,8 @@ inline double linear_from_srgb(double encoded) {
 inline Rgb linear_from_srgb(Rgb encoded) {
     return {linear_from_srgb(encoded.r), linear_from_srgb(encoded.g), linear_from_srgb(encoded.b)};
 }
+
+/// `rgb` or `rrggbb` in hexadecimal digits, encoded, components in [0, 1]. Nothing for other texts.
+std::optional<Rgb> srgb_from_hex(std::string_view digits);
 
 } // namespace graftal

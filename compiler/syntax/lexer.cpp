@@ -48,15 +48,10 @@ std::size_t hex_colour_size(std::string_view text) {
 
 /// Of such a text, in linear light.
 std::array<double, 3> hex_colour(std::string_view text) {
+    const Rgb encoded = srgb_from_hex(text.substr(1, text.size() == 4 ? 3 : 6)).value_or(Rgb(0.0));
     std::array<double, 3> rgb{};
-    const std::size_t digits = text.size() == 4 ? 1 : 2;
-    for (std::size_t i = 0; i < 3; ++i) {
-        unsigned value = 0;
-        const char* const first = text.data() + 1 + i * digits;
-        std::from_chars(first, first + digits, value, 16);
-        const double share = value / (digits == 1 ? 15.0 : 255.0);
-        rgb[i] = std::round(linear_from_srgb(share) * 1000) / 1000;
-    }
+    for (int i = 0; i < 3; ++i)
+        rgb[static_cast<std::size_t>(i)] = std::round(linear_from_srgb(encoded[i]) * 1000) / 1000;
     return rgb;
 }
 

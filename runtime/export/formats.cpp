@@ -4,6 +4,8 @@
 #include <array>
 #include <filesystem>
 
+#include "compiler/support/small_letters.h"
+
 namespace graftal {
 
 std::span<const ExportFormat> export_formats() {
@@ -13,8 +15,7 @@ std::span<const ExportFormat> export_formats() {
 }
 
 const ExportFormat* find_export_format(std::string_view path) {
-    std::string extension = std::filesystem::path(path).extension().string();
-    std::ranges::transform(extension, extension.begin(), [](unsigned char c) { return std::tolower(c); });
+    const std::string extension = in_small_letters(std::filesystem::path(path).extension().string());
     for (const ExportFormat& format : export_formats())
         if (format.extension == extension) return &format;
     return nullptr;

@@ -278,9 +278,7 @@ Status write_mitsuba(const ExportJob& job, ExportReport& report) {
     for (OutputFile* const output : {&meshes, &file})
         if (status.ok()) status = output->close();
     if (!status.ok()) return status;
-    report.summary =
-        fmt::format("{} meshes of {:.0f} triangles, {} instances", renderer->groups().meshes.size(),
-                    renderer->groups().triangles, renderer->places().size());
+    report.summary = renderer->summary();
     return writer.pictures().commit({&meshes.pending(), &file.pending()});
 }
 

@@ -197,9 +197,7 @@ Status write_pbrt(const ExportJob& job, ExportReport& report) {
     Status status = writer.write();
     if (status.ok()) status = file.close();
     if (!status.ok()) return status;
-    report.summary =
-        fmt::format("{} meshes of {:.0f} triangles, {} instances", renderer->groups().meshes.size(),
-                    renderer->groups().triangles, renderer->places().size());
+    report.summary = renderer->summary();
     return writer.pictures().commit({&file.pending()});
 }
 

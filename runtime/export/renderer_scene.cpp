@@ -57,6 +57,11 @@ std::vector<GroupSurface> RendererScene::surfaces(SceneId mesh, ShapeMeshes& mes
     return surfaces_of(scene_, mesh, meshes, ColoursOf::surfaces);
 }
 
+std::string RendererScene::summary() const {
+    return fmt::format("{} meshes of {:.0f} triangles, {} instances", groups_.meshes.size(),
+                       groups_.triangles, places_.size());
+}
+
 std::size_t RendererScene::look_of(const GroupSurface& surface) const {
     const Rgb colour = surface.coloured ? surface.colours.front() : plain_colour(scene_, surface.material);
     const std::int64_t material = surface.material ? static_cast<std::int64_t>(*surface.material) : -1;

@@ -34,6 +34,8 @@ class RendererScene {
     /// The surfaces of a mesh, each in one look.
     std::vector<GroupSurface> surfaces(SceneId mesh, ShapeMeshes& meshes) const;
     std::size_t look_of(const GroupSurface& surface) const;
+    /// "12 meshes of 3400 triangles, 56 instances"
+    std::string summary() const;
 
   private:
     ExportedScene scene_;

@@ -1,7 +1,6 @@
 #include "runtime/image/image.h"
 
 #include <algorithm>
-#include <cctype>
 #include <cerrno>
 #include <chrono>
 #include <cmath>
@@ -18,6 +17,7 @@
 
 #include "compiler/support/check.h"
 #include "compiler/support/file.h"
+#include "compiler/support/small_letters.h"
 #include "runtime/image/animation.h"
 #include "runtime/image/picture_files.h"
 #include "runtime/image/png_files.h"
@@ -31,10 +31,7 @@ constexpr std::uint64_t most_samples = 1ull << 28;
 std::string extension(const std::string& path) {
     const std::size_t dot = path.find_last_of("./");
     if (dot == std::string::npos || path[dot] != '.') return {};
-    std::string lower = path.substr(dot);
-    for (char& c : lower)
-        c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-    return lower;
+    return in_small_letters(std::string_view(path).substr(dot));
 }
 
 struct Module {

@@ -1,11 +1,11 @@
 #include "runtime/image/sky_file.h"
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <utility>
 #include <vector>
 
+#include "compiler/support/small_letters.h"
 #include "compiler/support/srgb.h"
 #include "runtime/image/image.h"
 
@@ -17,9 +17,8 @@ constexpr int least_written_rows = 512;
 constexpr double most_half = 65504;
 
 bool is_linear_name(const std::string& path) {
-    std::string ending = path.substr(path.size() - std::min<std::size_t>(path.size(), 4));
-    for (char& c : ending)
-        c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    const std::string ending =
+        in_small_letters(std::string_view(path).substr(path.size() - std::min<std::size_t>(path.size(), 4)));
     return ending == ".exr" || ending == ".hdr";
 }
 

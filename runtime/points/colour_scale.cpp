@@ -1,8 +1,6 @@
 #include "runtime/points/colour_scale.h"
 
 #include <algorithm>
-#include <charconv>
-#include <cstdint>
 #include <utility>
 
 #include "compiler/support/srgb.h"
@@ -27,11 +25,7 @@ std::optional<Rgb> parse_srgb(std::string_view text) {
     if (text == "black") return Rgb(0.0);
     if (text == "white") return Rgb(1.0);
     if (text.size() != 7 || text.front() != '#') return std::nullopt;
-    std::uint32_t bits = 0;
-    const char* const end = text.data() + text.size();
-    const auto [stop, error] = std::from_chars(text.data() + 1, end, bits, 16);
-    if (error != std::errc() || stop != end) return std::nullopt;
-    return Rgb((bits >> 16) & 0xFF, (bits >> 8) & 0xFF, bits & 0xFF) / 255.0;
+    return srgb_from_hex(text.substr(1));
 }
 
 } // namespace

@@ -18,7 +18,8 @@ ROOT = Path(__file__).resolve().parent.parent.parent.parent
 SCENES = ROOT / 'scenes'
 OLD = b'old'
 SIGNALS = ('INT', 'TERM', 'HUP', 'KILL')
-TURN = ['animate', SCENES / 'hart/pound_sign.rifs', '-q', '--size', '96x54', '--frames', '4', '--antialias', 'off']
+TURN = ['animate', SCENES / 'hart/pound_sign.rifs', '-q', '--size', '96x54', '--frames', '4', '--antialias', 'off',
+        '--plain-light']
 
 # Name -> the arguments, and what is written. `models` holds what models() has made.
 MODES = {
@@ -27,7 +28,7 @@ MODES = {
     'points, .ply': (['points', SCENES / 'hart/pound_sign.rifs', '-q', '--points', '3e6'], 'out.ply'),
     'collage': (['collage', 'models/target.png', SCENES / 'ifs/fern.rifs'], None),
     'compare, .exr': (['compare', 'models/a.exr', 'models/a.exr'], None),
-    'render, POV-Ray': (['render', SCENES / 'hart/pound_sign.rifs', '-q', '--size', '160x120'], 'out.png'),
+    'render, POV-Ray': (['render', SCENES / 'hart/pound_sign.rifs', '-q', '--size', '160x120', '--plain-light'], 'out.png'),
     'render, native, .exr': (['render', SCENES / 'abop/fig1_24f.lsys', '-q', '--size', '320x240', '--engine', 'native'],
                              'out.exr'),
     'animate, native, .gif': ([*TURN, '--engine', 'native'], 'out.gif'),
@@ -44,7 +45,7 @@ def models(folder, program):
         'object bed {\n' + ''.join(f' scatter: cone over: disc 60 count: 4000 material: m{i}\n' for i in range(12)) + '}\n')
     for name, words in {'target.png': ['points', SCENES / 'ifs/fern.rifs', '--size', '900x900', '--transparent'],
                         'a.exr': ['render', SCENES / 'hart/pound_sign.rifs', '--engine', 'native', '--size', '900x900',
-                                  '--antialias', 'off']}.items():
+                                  '--antialias', 'off', '--plain-light']}.items():
         subprocess.run([program, *words, '-q', '-o', name], cwd=folder, check=True)
 
 

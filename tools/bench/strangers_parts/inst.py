@@ -32,6 +32,7 @@ class Text:
         self.cyclic, self.back, self.ahead = cyclic, back, ahead
         # Turns that soon add up to a circle, and now and then any: the graph has an object for each sum.
         self.hues = draw.weighted({(): 4, (15, 30, -45): 3, (360 / 7,): 1, (draw.uniform(-180, 180),): 1})
+        self.inked = draw.chance(0.2)
         self.calls = []          # objects with parameters, as they may be called
         self.parts = {}          # name of an object -> those that it has instances of
 
@@ -60,7 +61,25 @@ class Text:
             lines.append(f'material: {draw.pick(self.paints)}')
         if self.hues and draw.chance(0.3):
             lines.append(f'hue: {number(draw.pick(self.hues))}')
+        if self.inked and draw.chance(0.3):
+            lines.append(self.ink())
         return lines
+
+    def ink(self):
+        """A colour that is handed down, or changes to it."""
+        draw = self.draw
+        if draw.chance(0.3):
+            return f'ink: hsv({draw.whole(0, 360)}, {number(draw.random())}, {number(draw.random())})'
+        changes = []
+        for _ in range(draw.pick([1, 1, 2, 3])):
+            part = draw.pick(['hue', 'saturation', 'value', 'alpha'])
+            if draw.chance(0.3):
+                most = 360 if part == 'hue' else 1
+                changes.append(f'{part} to {number(draw.uniform(0, most))} by {number(draw.random())}')
+            else:
+                by = draw.pick([12, 45, draw.uniform(-180, 180)]) if part == 'hue' else draw.uniform(0.3, 1.2)
+                changes.append(f'{part} {number(by)}')
+        return f'ink {{ {"  ".join(changes)} }}'
 
     def leaf(self):
         draw = self.draw
@@ -122,7 +141,7 @@ class Text:
         """One in another, now and then."""
         draw = self.draw
         for _ in range(draw.pick([1, 1, 2, 3])):
-            steps = [*self.transforms(draw.pick([1, 1, 0.9])), *(line for line in self.look() if "material" not in line)]
+            steps = [*self.transforms(draw.pick([1, 1, 0.9])), *(line for line in self.look() if not line.startswith('material'))]
             count = draw.log_whole(1, 40)
             yield f'{draw.pick([f"repeat {count}", f"{count} *"])} {{ {"  ".join(steps)} }}'
 
@@ -141,6 +160,8 @@ class Text:
                 if draw.chance(0.3):
                     self.model.say(f'  union: {name}', *('    ' + line for line in self.transforms(0.8)))
                 self.model.say('}')
+            if draw.chance(0.3):
+                self.model.say(f'canonical object {name} weight {draw.whole(1, 5)} {{ nothing }}')
             self.calls.append(lambda name=name: name)
 
     def parametric(self):
@@ -154,9 +175,17 @@ class Text:
                 lines = self.transforms(draw.pick([self.back, 1]))
                 if draw.chance(0.3):
                     lines.append(f'rotate: z, {number(draw.uniform(1, 30))}*n')
-                self.model.say(f'  union: {name}(n - 1)', *('    ' + line for line in lines))
+                group = [f'  union: {name}(n - 1)', *('    ' + line for line in lines)]
+                self.model.say(*(self.conditional(group) if draw.chance(0.2) else group))
             self.model.say(f'  union: {scene.primitive(draw)}', *('    ' + line for line in scene.transforms(draw)), '}')
             self.calls.append(lambda name=name, last=last: f'{name}({draw.whole(0, last)})')
+
+    def conditional(self, group):
+        draw = self.draw
+        condition = draw.pick([f'mod(n, {draw.whole(2, 4)}) == 0', f'n > {draw.whole(0, 6)}', f'n != {draw.whole(0, 9)}'])
+        yield f'  when {condition} {{'
+        yield from ('  ' + line for line in group)
+        yield f'  }} else {{ union: {scene.primitive(draw)} scale: 0.1 }}' if draw.chance(0.5) else '  }'
 
     def address(self):
         """A walk down from the root; for ever, if it meets itself again."""

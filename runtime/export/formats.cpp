@@ -29,4 +29,25 @@ std::string export_endings() {
     return text;
 }
 
+std::string endings_with(bool ExportFormat::*has) {
+    std::string text;
+    for (const ExportFormat& format : export_formats())
+        if (format.*has) text += (text.empty() ? "" : ", ") + std::string(format.extension);
+    return text;
+}
+
+const ExportWish* find_vain_wish(const ExportFormat& format, const ExportOptions& options) {
+    using Options = ExportOptions;
+    static constexpr ExportWish wishes[] = {
+        {"unit", [](const Options& o) { return o.unit_mm.has_value(); }, &ExportFormat::has_unit},
+        {"plotter", [](const Options& o) { return o.plotter; }, &ExportFormat::has_plotter},
+        {"levels", [](const Options& o) { return o.levels.has_value(); }, &ExportFormat::has_levels},
+        {"nodes", [](const Options& o) { return o.nodes.has_value(); }, &ExportFormat::has_nodes},
+        {"instancing", [](const Options& o) { return o.instancing; }, &ExportFormat::has_instancing},
+    };
+    for (const ExportWish& wish : wishes)
+        if (wish.asked(options) && !(format.*wish.has)) return &wish;
+    return nullptr;
+}
+
 } // namespace graftal

@@ -16,7 +16,7 @@
 
 namespace graftal {
 
-/// What the command line says besides the model and its view.
+/// What is said besides the model and its view.
 struct ExportOptions {
     std::string output;
     std::uint64_t most_bytes = std::uint64_t{1} << 30; ///< of a file
@@ -25,8 +25,10 @@ struct ExportOptions {
     bool instancing = false;
     bool plotter = false;
     std::uint64_t memory_bytes = std::uint64_t{2} << 30; ///< that may be used
-    std::size_t most_nodes = 30'000;                     ///< of formats that share meshes only
+    std::optional<std::size_t> nodes; ///< at most, of formats that share meshes only; default_nodes
     ImageMetadata metadata;
+
+    static constexpr std::size_t default_nodes = 30'000;
 };
 
 /// What a format is given.
@@ -67,6 +69,17 @@ const ExportFormat* find_export_format(std::string_view path);
 
 /// ".obj, .ply or .stl"
 std::string export_endings();
+/// The endings of the formats that have it.
+std::string endings_with(bool ExportFormat::*has);
+
+/// An option that is for some formats only.
+struct ExportWish {
+    std::string_view option; ///< of the command line, without its dashes
+    bool (*asked)(const ExportOptions& options);
+    bool ExportFormat::*has;
+};
+/// One that is asked for and that the format has no use for; null if there is none.
+const ExportWish* find_vain_wish(const ExportFormat& format, const ExportOptions& options);
 
 // Rows.
 extern const ExportFormat obj_format, ply_format, stl_format, gltf_format, glb_format, usd_format, svg_format,

@@ -58,7 +58,7 @@ class GltfWriter {
 
     Status make() {
         GroupOptions options;
-        options.most_nodes = static_cast<double>(job_.options.most_nodes);
+        options.most_nodes = static_cast<double>(job_.options.nodes.value_or(ExportOptions::default_nodes));
         options.triangles_of_node = triangles_of_gltf_node;
         if (job_.options.instancing) {
             options.most_nodes = most_gltf_instances;

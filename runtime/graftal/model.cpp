@@ -10,6 +10,8 @@
 #include "compiler/analysis/counts.h"
 #include "compiler/session/stages.h"
 #include "compiler/session/stats.h"
+#include "compiler/support/number_range.h"
+#include "runtime/export/export_model.h"
 #include "runtime/graftal/listed_graph.h"
 #include "runtime/image/image.h"
 #include "runtime/points/draw_points.h"
@@ -118,6 +120,7 @@ struct Model::Parts {
 
     PictureSession session;
     RenderOptions options;
+    bool error_asked = false;
     OnProgress listener;
     mutable std::mutex telling;
     std::atomic<bool> cancelled = false;
@@ -180,6 +183,7 @@ void Model::zoom(std::optional<double> factor) {
 
 void Model::error_px(double pixels) {
     parts_->options.compile.detail.error_px = pixels;
+    parts_->error_asked = true;
 }
 
 void Model::memory(std::uint64_t bytes) {
@@ -314,6 +318,39 @@ Result<Drawn> Model::compile_to(const std::string& path) {
         compilation.status = write_scene(*model, path, {.include = include}, parts_->session.textures(),
                                          parts_->session.control().cancel);
         if (!compilation.status.ok()) return std::nullopt;
+        return Drawn{path, watch.seconds()};
+    });
+}
+
+Result<Drawn> Model::export_to(const std::string& path, const ExportSettings& settings) {
+    return parts_->run<Drawn>([&](Compilation& compilation) -> std::optional<Drawn> {
+        const auto fail = [&](std::string why) {
+            compilation.status = Status::failure(std::move(why));
+            return std::nullopt;
+        };
+        const ExportFormat* const format = find_export_format(path);
+        if (!format) return fail(fmt::format("'{}' does not end in {}", path, export_endings()));
+        const StageOptions& stages = parts_->options.compile;
+        const ExportModelOptions options{stages,
+                                         parts_->error_asked,
+                                         {.output = path,
+                                          .most_bytes = settings.most_bytes,
+                                          .unit_mm = settings.unit_mm,
+                                          .levels = settings.levels,
+                                          .instancing = settings.instancing,
+                                          .plotter = settings.plotter,
+                                          .memory_bytes = stages.detail.memory_bytes,
+                                          .nodes = settings.nodes,
+                                          .metadata = {}}};
+        if (const ExportWish* const wish = find_vain_wish(*format, options.file))
+            return fail(fmt::format("{} is for {}, not for {}", wish->option, endings_with(wish->has),
+                                    format->extension));
+        if (settings.unit_mm && !(*settings.unit_mm > 0 && is_size(*settings.unit_mm)))
+            return fail("unit is not a positive number of millimetres");
+        if (settings.levels && *settings.levels < 2) return fail("levels is less than 2");
+        if (settings.nodes && *settings.nodes < 1) return fail("nodes is less than 1");
+        const Stopwatch watch;
+        if (!export_model(parts_->session, options, compilation)) return std::nullopt;
         return Drawn{path, watch.seconds()};
     });
 }

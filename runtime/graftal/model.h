@@ -102,6 +102,16 @@ struct Drawn {
     double seconds = 0; ///< of drawing
 };
 
+/// How a model is written for another program. Each of the first five is for some formats only.
+struct ExportSettings {
+    std::optional<double> unit_mm;    ///< what a unit of the model measures; else as the format has it
+    std::optional<unsigned> levels;   ///< instances within instances, at most; at least 2
+    std::optional<std::size_t> nodes; ///< at most, each the place of a mesh; 30,000 before
+    bool instancing = false;          ///< glTF: a node a mesh, with a table of places
+    bool plotter = false;             ///< SVG: each line once, in the order of a pen
+    std::uint64_t most_bytes = std::uint64_t{1} << 30; ///< of the file; a larger one is refused
+};
+
 enum class Engine {
     native, ///< graftal's own ray tracer
     povray, ///< a child process; needs the program `povray`
@@ -116,7 +126,8 @@ using OnProgress = std::function<void(std::string_view stage, std::optional<doub
 /// cancel(). Objects that were moved from may only be destroyed or assigned to.
 class GRAFTAL_API Model {
   public:
-    /// A file `.lsys`, `.rifs` or `.inst`. It is read when it is needed first.
+    /// A file `.lsys`, `.rifs` or `.inst`, or one of another program that `graftal import` knows. It is read
+    /// when it is needed first.
     static Model from_file(std::string path);
     /// A text. The ending of the name says the language; files that the text names are looked up beside it.
     static Model from_text(std::string name, std::string text);
@@ -158,6 +169,10 @@ class GRAFTAL_API Model {
     Result<Drawn> render_to(const std::string& path, Engine engine = Engine::native);
     /// Writes a POV-Ray scene: `.pov`, or `.inc` to be included, and the pictures that it needs.
     Result<Drawn> compile_to(const std::string& path);
+    /// Writes a file for another program, as `graftal export` does: `.usda`, `.gltf`, `.glb`, `.obj`, `.ply`,
+    /// `.stl`, `.svg`, `.pbrt` or `.xml`. Small parts are left out of a model that ends only after
+    /// error_px().
+    Result<Drawn> export_to(const std::string& path, const ExportSettings& settings = {});
 
     /// Called now and then while the functions above work, perhaps from a thread of theirs, never twice at a
     /// time. Empty: nobody listens.

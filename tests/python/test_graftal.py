@@ -120,6 +120,24 @@ class Package(unittest.TestCase):
             with self.assertRaises(ValueError):
                 wrong(graftal.load(scene("ifs/fern.rifs")))
 
+    def test_files_for_other_programs_are_those_of_the_program(self):
+        for name, words, settings in (("a.glb", ["--nodes", "50"], {"nodes": 50}), ("a.usda", ["--levels", "4"], {"levels": 4}),
+                                      ("a.stl", ["--unit", "2mm"], {"unit_mm": 2}), ("a.obj", [], {})):
+            self.program("export", scene("abop/fig1_24f.lsys"), "--steps", "3", "--size", "1280x720", *words, "-q", "-o",
+                         self.path(name))
+            written = pathlib.Path(self.path(name)).read_bytes()
+            os.remove(self.path(name))
+            graftal.load(scene("abop/fig1_24f.lsys"), steps=3).export(self.path(name), **settings)
+            self.assertEqual(pathlib.Path(self.path(name)).read_bytes(), written, name)
+        with self.assertRaisesRegex(graftal.ModelError, "levels is for .usda, not for .ply"):
+            graftal.load(scene("ifs/fern.rifs")).export(self.path("a.ply"), levels=3)
+
+    def test_models_of_other_programs_are_read(self):
+        koch = pathlib.Path(self.path("curves.l"))
+        koch.write_text("Koch { ; of Fractint\n  angle 6\n  axiom f\n  f=f+f--f+f\n}\n")
+        printed = json.loads(self.program("stats", f"{koch}:Koch", "--steps", "4", "--json"))
+        self.assertEqual(graftal.load(f"{koch}:Koch", steps=4).stats(), printed)
+
     def test_a_let_a_depth_and_a_text_change_the_picture(self):
         text = "let k = 0.5\nrifs x { map a { scale k } map b { scale 0.4 translate <1, 0, 0> } terminal sphere }"
         model = graftal.rifs(text, steps=3)

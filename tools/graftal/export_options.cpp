@@ -35,14 +35,6 @@ std::string formats_text() {
     return text;
 }
 
-/// The endings of the formats that an option is for.
-std::string endings_with(bool ExportFormat::*has) {
-    std::string text;
-    for (const ExportFormat& format : export_formats())
-        if (format.*has) text += (text.empty() ? "" : ", ") + std::string(format.extension);
-    return text;
-}
-
 } // namespace
 
 void add_export(CLI::App& app, Options& options) {
@@ -71,13 +63,10 @@ void add_export(CLI::App& app, Options& options) {
         app, "--nodes", "N",
         fmt::format("Nodes that a file may have; graftal makes one mesh of parts where there are more "
                     "({}; default {})",
-                    endings_with(&ExportFormat::has_nodes), file.most_nodes),
+                    endings_with(&ExportFormat::has_nodes), ExportOptions::default_nodes),
         "a whole number from 1 to 10000000",
         [](const std::string& text) { return parse_whole(text, 1, 10'000'000); },
-        [&options](std::uint64_t nodes) {
-            options.file.most_nodes = nodes;
-            options.nodes_asked = true;
-        });
+        [&file](std::uint64_t nodes) { file.nodes = nodes; });
     app.add_flag(
         "--instancing", file.instancing,
         fmt::format("Write one node a mesh, with a table of its places (EXT_mesh_gpu_instancing; {})",
@@ -104,22 +93,9 @@ std::string complete_export(const Options& options) {
         return fmt::format("name the file with '-o FILE'; its ending says the format: {}", export_endings());
     const ExportFormat* const format = find_export_format(options.render.output);
     if (!format) return fmt::format("'{}': the name must end in {}", options.render.output, export_endings());
-    struct Wish {
-        const char* option;
-        bool asked;
-        bool ExportFormat::*has;
-    };
-    const Wish wishes[] = {
-        {"--unit", options.file.unit_mm.has_value(), &ExportFormat::has_unit},
-        {"--plotter", options.file.plotter, &ExportFormat::has_plotter},
-        {"--levels", options.file.levels.has_value(), &ExportFormat::has_levels},
-        {"--nodes", options.nodes_asked, &ExportFormat::has_nodes},
-        {"--instancing", options.file.instancing, &ExportFormat::has_instancing},
-    };
-    for (const Wish& wish : wishes)
-        if (wish.asked && !(format->*wish.has))
-            return fmt::format("{} is for {}, not for {}", wish.option, endings_with(wish.has),
-                               format->extension);
+    if (const ExportWish* const wish = find_vain_wish(*format, options.file))
+        return fmt::format("--{} is for {}, not for {}", wish->option, endings_with(wish->has),
+                           format->extension);
     return {};
 }
 

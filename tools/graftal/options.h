@@ -70,7 +70,6 @@ struct Options {
     PointsSettings points;
     FarmOptions farm;
     bool error_asked = false; ///< --error or --error-world is given
-    bool nodes_asked = false; ///< --nodes is
     ExportOptions file;       ///< of `export`; its output and metadata are those of `render`
     bool json = false;
     double threshold = 0;

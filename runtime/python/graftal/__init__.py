@@ -105,10 +105,11 @@ class Model:
         return self
 
     def limits(
-        self, *, error_px: float = 0.5, memory_bytes: int = 2 << 30, work_s: Optional[float] = None, threads: int = 0
+        self, *, error_px: Optional[float] = None, memory_bytes: int = 2 << 30, work_s: Optional[float] = None, threads: int = 0
     ) -> "Model":
-        """What is smaller than `error_px` pixels is left out. `threads` 0: one a processor."""
-        self._model.error_px(error_px)
+        """What is smaller than `error_px` pixels is left out (0.5 before). `threads` 0: one a processor."""
+        if error_px is not None:
+            self._model.error_px(error_px)
         self._model.memory(memory_bytes)
         if work_s is not None:
             self._model.work(work_s)
@@ -163,16 +164,31 @@ class Model:
         quality: str = "normal",
         engine: str = "native",
         progress: Optional[Progress] = None,
+        *,
+        unit_mm: Optional[float] = None,
+        levels: Optional[int] = None,
+        nodes: Optional[int] = None,
+        instancing: bool = False,
+        plotter: bool = False,
+        most_bytes: int = 1 << 30,
     ) -> None:
-        """Writes a picture (.png, .exr) or a scene for POV-Ray (.pov, .inc). `engine`, of pictures: "native" or "povray"."""
+        """Writes a picture (.png, .exr), a scene for POV-Ray (.pov, .inc), or a file for another program (.usda, .gltf, .glb,
+        .obj, .ply, .stl, .svg, .pbrt, .xml).
+
+        `engine`, of pictures: "native" or "povray". What follows is for other programs, each for some formats only, as the
+        options of `graftal export` are. `unit_mm`: what a unit of the model measures, in millimetres. `most_bytes`: a larger
+        file is refused.
+        """
         if engine not in ("native", "povray"):
             raise ValueError(f"engine: {engine!r} is neither 'native' nor 'povray'")
         self._ask(size, quality)
         name = os.fspath(path)
         if name.endswith((".pov", ".inc")):
             self._model.compile_to(name, progress)
-        else:
+        elif name.endswith((".png", ".exr")):
             self._model.render_to(name, engine, progress)
+        else:
+            self._model.export_to(name, unit_mm, levels, nodes, instancing, plotter, most_bytes, progress)
 
     def _repr_png_(self) -> bytes:
         """The picture that a notebook shows of a model."""
@@ -193,7 +209,7 @@ class Model:
 
 
 def load(path: "Union[str, os.PathLike[str]]", *, steps: Optional[int] = None, seed: Optional[int] = None, **lets: float) -> Model:
-    """A model from a file: .lsys, .rifs or .inst. It is read when it is needed first."""
+    """A model from a file: .lsys, .rifs, .inst, or one that `graftal import` knows. It is read when it is needed first."""
     return Model(_graftal.Model.from_file(os.fspath(path))).set(steps=steps, seed=seed, **lets)
 
 

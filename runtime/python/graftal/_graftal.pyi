@@ -48,3 +48,14 @@ class Model:
     def render(self, progress: Progress) -> np.ndarray: ...
     def render_to(self, path: str, engine: str, progress: Progress) -> None: ...
     def compile_to(self, path: str, progress: Progress) -> None: ...
+    def export_to(
+        self,
+        path: str,
+        unit_mm: Optional[float],
+        levels: Optional[int],
+        nodes: Optional[int],
+        instancing: bool,
+        plotter: bool,
+        most_bytes: int,
+        progress: Progress,
+    ) -> None: ...

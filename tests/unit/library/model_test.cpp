@@ -87,10 +87,27 @@ TEST(LibraryModel, WhatIsCancelledLeavesNoFileAndCanBeAskedAgain) {
     EXPECT_TRUE(std::filesystem::exists(path));
 }
 
+TEST(LibraryModel, WritesFilesForOtherPrograms) {
+    TemporaryDirectory folder;
+    ASSERT_TRUE(folder.create().ok());
+    Model model = small_crystal();
+    model.steps(3);
+    const std::string path = folder.path() + "/a.stl";
+    const auto whole = model.export_to(path);
+    ASSERT_TRUE(whole) << whole.text();
+    EXPECT_EQ(std::filesystem::file_size(path) % 50, 84 % 50); // a head, and 50 bytes a triangle
+    EXPECT_EQ(model.export_to(path, {.plotter = true}).text(), "error: plotter is for .svg, not for .stl\n");
+    EXPECT_FALSE(model.export_to(folder.path() + "/a.usda", {.levels = 1}));
+    const auto refused = model.export_to(folder.path() + "/b.stl", {.most_bytes = 100});
+    EXPECT_NE(refused.text().find("would have"), std::string::npos) << refused.text();
+    EXPECT_FALSE(std::filesystem::exists(folder.path() + "/b.stl"));
+}
+
 TEST(LibraryModel, RefusesNamesOfNoPicture) {
     Model model = small_crystal();
     EXPECT_FALSE(model.render_to("a.bmp"));
     EXPECT_FALSE(model.compile_to("a.scene"));
+    EXPECT_FALSE(model.export_to("a.png"));
     EXPECT_EQ(model.render_to("a.bmp").text(), "error: 'a.bmp' ends neither in .png nor in .exr\n");
 }
 

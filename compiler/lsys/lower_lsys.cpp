@@ -129,6 +129,9 @@ class LsysLowering {
                 added.source = &*set_main_;
             }
             all_lets.insert(lets.begin(), lets.end());
+            if (is_main)
+                for (const LsysVariable& variable : block.variables)
+                    all_lets.try_emplace(std::string(variable.name.text));
             add_family(added, lets);
             added.grammar = build_grammar(*added.source, std::move(lets), diagnostics_);
         }
@@ -137,7 +140,7 @@ class LsysLowering {
     }
 
     /// `--set angle=40` speaks to the block that is the model.
-    LsysBlock with_settings(LsysBlock block, const Environment& lets) {
+    LsysBlock with_settings(LsysBlock block, Environment lets) {
         const std::pair<const char*, std::optional<LsysValue>*> settings[] = {{"angle", &block.angle},
                                                                               {"step", &block.step},
                                                                               {"width", &block.width},
@@ -148,6 +151,11 @@ class LsysLowering {
             expression.number = value;
             return expression;
         };
+        for (LsysVariable& variable : block.variables) {
+            const auto value = set_value(variable.name.text, {}, lowering_);
+            if (value && variable.sizes.empty()) variable.values.assign(1, literal(*value));
+            lets.try_emplace(std::string(variable.name.text)); // it comes before a setting of its name
+        }
         for (const auto& [name, setting] : settings)
             if (const auto value = set_value(name, lets, lowering_))
                 *setting = LsysValue{literal(*value), Span()};
@@ -282,7 +290,7 @@ class LsysLowering {
 
     bool is_root(const Block& block) { return lowering_.at_root_model() && &block == main_block_; }
 
-    bool is_timed(const LsysGrammar& grammar) const { return grammar.time(RuleKind::interpret) != 0; }
+    bool is_timed(const LsysGrammar& grammar) const { return grammar.draws_in_time(); }
 
     /// What the command line says.
     std::optional<unsigned> asked_steps(const LsysGrammar& grammar) const {

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -49,13 +50,54 @@ struct LsysFormal {
     Span span;
 };
 
-/// `label : left < predecessor > right : condition -> successor : probability`.
+struct LsysCommandArm;
+
+/// A statement of a block that assigns values.
+struct LsysCommand {
+    enum class Kind : std::uint8_t {
+        assign,
+        choose,     ///< `if`: the first arm whose condition holds; the last may have none
+        loop,       ///< `while`: one arm
+        loop_after, ///< `do ... while`: the same
+    };
+
+    Kind kind = Kind::assign;
+    std::string target;              ///< of `assign`
+    std::vector<Expression> indices; ///< of `assign`, if it is an element of an array
+    std::optional<Expression> value; ///< of `assign`
+    std::vector<LsysCommandArm> arms;
+    Span span; ///< of the target or keyword
+};
+
+struct LsysCommandArm {
+    std::optional<Expression> condition;
+    std::vector<LsysCommand> commands;
+};
+
+/// `{ ... }`
+struct LsysCommands {
+    std::vector<LsysCommand> list;
+    Span span; ///< with the braces
+};
+
+/// `variable NAME = number` or `array NAME[size][size] = number, ...`
+struct LsysVariable {
+    Name name;
+    std::vector<Expression> sizes;  ///< of an array: one or two
+    std::vector<Expression> values; ///< of an array: all, row by row, or none
+};
+
+/// `label : left < predecessor following > right : {before} condition {after} -> successor : probability`.
 struct LsysProduction {
-    Name label;                          ///< an empty text if there is none
-    std::vector<LsysFormal> left;        ///< has no brackets
-    LsysFormal predecessor;              ///< neither a bracket nor a brace
-    std::vector<LsysFormal> right;       ///< brackets are balanced
+    Name label;                   ///< an empty text if there is none
+    std::vector<LsysFormal> left; ///< has no brackets
+    LsysFormal predecessor; ///< no brace; a bracket only where `following` or the successor has its other
+    std::vector<LsysFormal>
+        following;                 ///< side by side behind the predecessor, and rewritten with it; no braces
+    std::vector<LsysFormal> right; ///< brackets are balanced
+    std::optional<LsysCommands> before;  ///< carried out before the condition is asked
     std::optional<Expression> condition; ///< this and those below have the local values written out
+    std::optional<LsysCommands> after;   ///< carried out when the production is applied
     LsysString successor;
     std::optional<Expression> probability;
     Span span; ///< from the label or the first module to the arrow
@@ -85,6 +127,12 @@ struct LsysDirection {
     Span span;                         ///< of the keyword
 };
 
+/// `precedence text` or `precedence contexts`: in which order productions are tried.
+struct LsysPrecedence {
+    bool by_text = false; ///< else those with contexts come first
+    Span span;            ///< of the keyword
+};
+
 struct LsysBlock {
     Name name;
     bool is_main = false;
@@ -99,8 +147,11 @@ struct LsysBlock {
     std::optional<LsysContextFilter> filter;
     std::optional<LsysDirection> tropism;
     std::optional<LsysDirection> vertical;
+    std::optional<LsysPrecedence> precedence;
     std::vector<Name> colors;  ///< materials of the colour indices 0, 1, 2, ...
     std::vector<Name> modules; ///< declared names, each once
+    std::vector<LsysVariable> variables;
+    std::optional<LsysCommands> start, start_each, end_each, end;
     std::optional<LsysString> axiom;
     std::vector<LsysProduction> productions;
     std::vector<LsysProduction> interpret; ///< without contexts, as are those of `decompose`

@@ -8,7 +8,10 @@
 
 #include <fmt/format.h>
 
+#include "compiler/lsys/lsys_commands.h"
 #include "compiler/lsys/lsys_productions.h"
+#include "compiler/lsys/lsys_tables.h"
+#include "compiler/support/small_letters.h"
 #include "compiler/syntax/expression_functions.h"
 #include "compiler/syntax/expression_parser.h"
 #include "compiler/syntax/write_out.h"
@@ -33,7 +36,7 @@ class BlockParser {
         const LsysOutline outline = scanner_.outline(at);
         parse_statements(outline.statements);
         text_.check_polygons();
-        connect_tables();
+        connect_tables(block_, tables_);
         if (!outline.closed && opened && !text_.stray_brace_said) report_open(outline.end);
         if (opened && !axiom_said_)
             diagnostics_.error(block_.name.span, fmt::format("'lsys {}' has no axiom", block_.name.text))
@@ -122,6 +125,9 @@ class BlockParser {
         if (word == "vertical") return parse_direction(statement, block_.vertical);
         if (word == "colors") return parse_colors(statement);
         if (word == "table") return parse_table(statement);
+        if (word == "precedence") return parse_precedence(statement);
+        if (word == "variable" || word == "array") return parse_variables(statement);
+        if (word == "start" || word == "end") return parse_step_block(statement);
         if (text_of(statement).find("->") == std::string_view::npos) return parse_other(statement);
         std::optional<LsysProduction> production = parse_lsys_production(statement, text_);
         if (production) productions(statement.section).push_back(std::move(*production));
@@ -192,6 +198,42 @@ class BlockParser {
         if (text_.finish(stream)) set_once(statement, block_.steps, std::move(steps));
     }
 
+    void parse_variables(const LsysStatement& statement) {
+        TokenStream stream = values(statement);
+        const bool good = statement.word == "array" ? parse_lsys_array(stream, block_.variables)
+                                                    : parse_lsys_variables(stream, block_.variables);
+        if (good) text_.finish(stream);
+    }
+
+    /// `start { ... }`, `start each { ... }` and the same of `end`.
+    void parse_step_block(const LsysStatement& statement) {
+        TokenStream stream = values(statement);
+        const bool each = stream.accept("each");
+        stream.accept(":");
+        if (!stream.at("{")) {
+            stream.expected(fmt::format("'{{' after '{}{}'", statement.word, each ? " each" : ""));
+            return;
+        }
+        std::optional<LsysCommands> commands = parse_lsys_commands(stream);
+        if (!commands || !text_.finish(stream)) return;
+        std::optional<LsysCommands>& known = statement.word == "start"
+                                                 ? (each ? block_.start_each : block_.start)
+                                                 : (each ? block_.end_each : block_.end);
+        set_once(statement, known, std::move(*commands));
+    }
+
+    void parse_precedence(const LsysStatement& statement) {
+        TokenStream stream = values(statement);
+        const bool by_text = stream.at("text");
+        if (!by_text && !stream.at("contexts")) {
+            stream.expected("'text' or 'contexts'");
+            return;
+        }
+        stream.next();
+        if (text_.finish(stream))
+            set_once(statement, block_.precedence, {by_text, scanner_.span(statement.word)});
+    }
+
     void parse_filter(const LsysStatement& statement) {
         LsysStringReader reader = string(statement);
         LsysContextFilter filter{statement.word == "consider", {}, scanner_.span(statement.word)};
@@ -256,32 +298,6 @@ class BlockParser {
             diagnostics_.error(name->span, "a table has two values or more");
         else if (!tables_.emplace(name->text, std::move(table)).second)
             diagnostics_.error(name->span, fmt::format("duplicate table '{}'", name->text));
-    }
-
-    void connect_tables() {
-        if (tables_.empty()) return;
-        const auto connect = [&](Expression& expression) { graftal::connect_tables(expression, tables_); };
-        for (SceneStatement& let : block_.lets)
-            for (SceneField& field : let.fields)
-                for (Expression& value : field.values)
-                    connect(value);
-        for (std::optional<LsysValue>* value :
-             {&block_.angle, &block_.step, &block_.width, &block_.thickness, &block_.thinnest})
-            if (*value) connect((*value)->value);
-        if (block_.axiom) connect_string(*block_.axiom);
-        for (std::vector<LsysProduction>* section :
-             {&block_.productions, &block_.interpret, &block_.decompose})
-            for (LsysProduction& production : *section) {
-                if (production.condition) connect(*production.condition);
-                if (production.probability) connect(*production.probability);
-                connect_string(production.successor);
-            }
-    }
-
-    void connect_string(LsysString& string) {
-        for (LsysModule& module : string.modules)
-            for (Expression& parameter : module.parameters)
-                graftal::connect_tables(parameter, tables_);
     }
 
     void parse_colors(const LsysStatement& statement) {
@@ -361,7 +377,7 @@ class BlockParser {
                 : std::vector<Token>(1),
             diagnostics_, lsys_line_end);
         if (!stream.at_end()) return parse_misplaced(stream, word);
-        if (report_wrong_arrow(statement)) return;
+        if (report_joined_words(statement) || report_wrong_arrow(statement)) return;
         if (text_of(statement).ends_with('{')) ++text_.lost_braces;
         const std::string meant = closest_name(word, lsys_keywords());
         axiom_said_ |= meant == "axiom";
@@ -370,10 +386,19 @@ class BlockParser {
                 .with_hint("write interpret A -> F, or interpret { with one production per line }");
         } else if (word.size() > 1) {
             diagnostics_.error(scanner_.span(word), fmt::format("unknown statement '{}'", word))
-                .with_hint(choices(word, lsys_keywords()));
+                .with_hint(statement_choices(word, meant));
         } else {
             report_no_statement(statement);
         }
+    }
+
+    /// Of two words for one section the first is enough.
+    static std::string statement_choices(std::string_view word, std::string_view meant) {
+        std::vector<std::string> words = lsys_keywords();
+        std::erase_if(words, [&](const std::string& known) {
+            return known != meant && (known == "homomorphism" || known == "decomposition");
+        });
+        return choices(word, words);
     }
 
     void report_no_statement(const LsysStatement& statement) {
@@ -385,6 +410,16 @@ class BlockParser {
                 .error(scanner_.span(statement.begin, statement.end),
                        "this is neither a statement nor a production")
                 .with_hint("write a production with an arrow: A -> B");
+    }
+
+    /// The blocks of steps as cpfg calls them.
+    bool report_joined_words(const LsysStatement& statement) {
+        const std::string small = in_small_letters(statement.word);
+        if (small != "starteach" && small != "endeach") return false;
+        diagnostics_
+            .error(scanner_.span(statement.word), fmt::format("unknown statement '{}'", statement.word))
+            .with_hint(fmt::format("write {} each {{ ... }}", small == "endeach" ? "end" : "start"));
+        return true;
     }
 
     /// `A = B`, `A => B`, and arrows of other characters.

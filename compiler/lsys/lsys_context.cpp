@@ -113,9 +113,12 @@ void ContextMatcher::look_at(std::span<const ModuleId> word) {
 
 bool ContextMatcher::matches(const LsysRule& rule, std::uint32_t position, ModuleString& bound) {
     const std::size_t size = bound.size();
-    remember_ = grammar_.ignored[rule.predecessor.symbol];
-    if (match_left(rule.left, position, bound) &&
-        match_right(right_[static_cast<std::size_t>(&rule - grammar_.rules.data())], position, bound))
+    // Of these many may see the same branches.
+    const LsysPattern& last = rule.following.empty() ? rule.predecessor : rule.following.back();
+    remember_ = grammar_.ignored[last.symbol] || opens(grammar_, last) || closes(grammar_, last);
+    if (match_following(rule, position, bound) && match_left(rule.left, position, bound) &&
+        match_right(right_[static_cast<std::size_t>(&rule - grammar_.rules.data())],
+                    position + rule.length() - 1, bound))
         return true;
     bound.resize(size);
     return false;
@@ -124,6 +127,16 @@ bool ContextMatcher::matches(const LsysRule& rule, std::uint32_t position, Modul
 bool ContextMatcher::fits(std::uint32_t position, SymbolId symbol, std::uint16_t arity) const {
     const ModuleId module = word_[position];
     return modules_.symbol(module) == symbol && modules_.parameters(module).size() == arity;
+}
+
+bool ContextMatcher::match_following(const LsysRule& rule, std::uint32_t position,
+                                     ModuleString& bound) const {
+    if (word_.size() - position < rule.length()) return false;
+    for (const LsysPattern& pattern : rule.following) {
+        if (!fits(++position, pattern.symbol, pattern.arity)) return false;
+        bound.push_back(word_[position]);
+    }
+    return true;
 }
 
 bool ContextMatcher::match_left(const std::vector<LsysPattern>& left, std::uint32_t position,

@@ -66,8 +66,9 @@ class ContextMatcher {
     ModuleId before(std::uint32_t position) const { return module_at(links_.before(position)); }
     ModuleId after(std::uint32_t position) const { return module_at(links_.after(position)); }
 
-    /// Whether the contexts of a rule of the grammar match around a module that its predecessor matches. If
-    /// so, adds the modules that they match to `bound`, in the order of LsysRule::variables. A pattern in
+    /// Whether what follows the predecessor of a rule of the grammar, and its contexts, match around a module
+    /// that its predecessor matches. If so, adds the modules that they match to `bound`, in the order of
+    /// LsysRule::variables. What follows stands side by side; the contexts lie around all of it. A pattern in
     /// brackets matches the first branch that begins so and lies beyond those that earlier patterns match;
     /// branches without a pattern are passed over. For all modules of a word together O(word * pattern).
     bool matches(const LsysRule& rule, std::uint32_t position, ModuleString& bound);
@@ -93,6 +94,7 @@ class ContextMatcher {
     }
     Range compile(const std::vector<LsysPattern>& right);
     bool fits(std::uint32_t position, SymbolId symbol, std::uint16_t arity) const;
+    bool match_following(const LsysRule& rule, std::uint32_t position, ModuleString& bound) const;
     bool match_left(const std::vector<LsysPattern>& left, std::uint32_t position, ModuleString& bound) const;
     bool match_right(Range items, std::uint32_t position, ModuleString& bound);
     std::uint32_t find_branch(std::uint32_t item, std::uint32_t from, ModuleString& bound);

@@ -1,9 +1,6 @@
 #include "compiler/lsys/lsys_derive.h"
 
-#include <algorithm>
 #include <utility>
-
-#include <fmt/format.h>
 
 namespace graftal {
 
@@ -11,12 +8,6 @@ namespace {
 
 /// Of the sequences of a step, those at the positions of a word choose productions; this one decomposes.
 constexpr std::uint64_t decomposing = UINT64_MAX;
-
-bool cuts(const LsysGrammar& grammar, const std::vector<LsysTemplate>& string) {
-    return std::ranges::any_of(string, [&](const LsysTemplate& module) {
-        return grammar.commands[module.symbol] == TurtleCommand::cut;
-    });
-}
 
 } // namespace
 
@@ -27,9 +18,7 @@ LsysDeriver::LsysDeriver(LsysRewriter& rewriter, Diagnostics& diagnostics, std::
       matcher_(rewriter.grammar(), rewriter.modules()) {
     const LsysGrammar& grammar = rewriter.grammar();
     is_timed_ = grammar.time(RuleKind::produce) != 0;
-    has_cuts_ = cuts(grammar, grammar.axiom) || std::ranges::any_of(grammar.rules, [&](const LsysRule& rule) {
-                    return cuts(grammar, rule.successor);
-                });
+    has_cuts_ = has_cuts(grammar);
 }
 
 std::optional<ModuleString> LsysDeriver::derive(unsigned steps) {
@@ -41,7 +30,7 @@ std::optional<ModuleString> LsysDeriver::derive(unsigned steps) {
 }
 
 bool LsysDeriver::derive_to(unsigned steps) {
-    failed_ = failed_ || !begin();
+    failed_ = failed_ || !rewriter_.prepare(steps) || !begin();
     changed_ = true;
     while (!failed_ && changed_ && step_ < steps) {
         set_step(step_ + 1);
@@ -66,8 +55,7 @@ bool LsysDeriver::begin() {
     if (!axiom) return false;
     word_ = std::move(*axiom);
     if (decomposer_.has_rules() && !decompose()) return false;
-    if (has_cuts_) cut();
-    return is_short_enough(word_.size());
+    return finish_step() && is_short_enough(word_.size());
 }
 
 bool LsysDeriver::step() {
@@ -75,10 +63,15 @@ bool LsysDeriver::step() {
     if (!length || !is_short_enough(*length)) return false;
     gather(*length);
     if (decomposer_.varies() && !decompose()) return false;
-    if (has_cuts_) cut();
+    if (!finish_step()) return false;
     // Without chance, a word that a step leaves as it was stays so for ever; next_ is the word before.
-    changed_ = successors_.is_stochastic() || decomposer_.varies() || is_timed_ || word_ != next_;
+    changed_ = stage_ || successors_.is_stochastic() || decomposer_.varies() || is_timed_ || word_ != next_;
     return true;
+}
+
+bool LsysDeriver::finish_step() {
+    if (has_cuts_) cut_branches(rewriter_.grammar(), rewriter_.modules(), word_);
+    return !stage_ || stage_(step_, word_);
 }
 
 /// How long the next word is going to be; without chance and contexts.
@@ -95,20 +88,21 @@ std::optional<std::uint64_t> LsysDeriver::count() {
 
 /// The same with both: leaves the runs in chosen_.
 std::optional<std::uint64_t> LsysDeriver::choose() {
-    if (successors_.has_context()) matcher_.look_at(word_);
+    if (successors_.sees_word()) matcher_.look_at(word_);
     const CounterRandom random = random_.sequence(step_);
     chosen_.clear();
     chosen_.reserve(word_.size());
     std::uint64_t length = 0;
-    for (std::uint32_t i = 0; i < word_.size(); ++i) {
+    for (std::uint32_t i = 0; i < word_.size();) {
         rewriter_.work();
         const LsysSuccessors::Entry entry = successors_.entry(word_[i]);
         if (entry == LsysSuccessors::unknown) return std::nullopt;
-        std::optional<RunId> run = entry;
-        if (!LsysSuccessors::is_run(entry)) run = successors_.choose(word_[i], entry, random(i), matcher_, i);
-        if (!run) return std::nullopt;
-        chosen_.push_back(*run);
-        length += successors_.runs().length(*run);
+        std::optional<LsysSuccessors::Replacement> by = LsysSuccessors::Replacement{entry};
+        if (!LsysSuccessors::is_run(entry)) by = successors_.choose(word_[i], entry, random(i), matcher_, i);
+        if (!by) return std::nullopt;
+        chosen_.push_back(by->run);
+        length += successors_.runs().length(by->run);
+        i += by->modules;
     }
     return length;
 }
@@ -121,7 +115,7 @@ void LsysDeriver::gather(std::uint64_t length) {
             word_.size(), [&](std::size_t i) { return successors_.run(word_[i]); }, next_);
     else
         successors_.runs().append(
-            word_.size(), [&](std::size_t i) { return chosen_[i]; }, next_);
+            chosen_.size(), [&](std::size_t i) { return chosen_[i]; }, next_);
     word_.swap(next_);
 }
 
@@ -132,33 +126,8 @@ bool LsysDeriver::decompose() {
     return is_short_enough(word_.size());
 }
 
-/// From each `%` to the bracket that closes its branch, or to the end.
-void LsysDeriver::cut() {
-    const LsysGrammar& grammar = rewriter_.grammar();
-    const auto command = [&](ModuleId module) {
-        return grammar.commands[rewriter_.modules().symbol(module)];
-    };
-    auto kept = word_.begin();
-    for (auto at = word_.begin(); at != word_.end(); ++at) {
-        *kept++ = *at;
-        if (command(*at) != TurtleCommand::cut) continue;
-        for (std::size_t open = 0; at + 1 != word_.end(); ++at) {
-            const TurtleCommand next = command(at[1]);
-            if (next == TurtleCommand::open_branch) ++open;
-            if (next == TurtleCommand::close_branch && open-- == 0) break;
-        }
-    }
-    word_.erase(kept, word_.end());
-}
-
 bool LsysDeriver::is_short_enough(std::uint64_t length) {
-    if (length <= max_modules_) return true;
-    const LsysBlock& block = *rewriter_.grammar().source;
-    diagnostics_
-        .error(block.steps ? block.steps->span : block.name.span,
-               fmt::format("the derivation has more than {} modules after step {}", max_modules_, step_))
-        .with_hint("use fewer steps for a shorter one");
-    return false;
+    return graftal::is_short_enough(rewriter_.grammar(), length, max_modules_, step_, diagnostics_);
 }
 
 } // namespace graftal

@@ -2,11 +2,13 @@
 
 #include <cstdint>
 #include <optional>
+#include <utility>
 
 #include "compiler/lsys/lsys_context.h"
 #include "compiler/lsys/lsys_decompose.h"
 #include "compiler/lsys/lsys_rewriter.h"
 #include "compiler/lsys/lsys_successors.h"
+#include "compiler/lsys/lsys_word.h"
 #include "compiler/support/counter_random.h"
 #include "compiler/support/diagnostics.h"
 
@@ -24,8 +26,9 @@ inline bool little_repeats(std::uint64_t kept, std::uint64_t all) {
     return kept > all / 8;
 }
 
-/// Derives the words of a grammar. In each step all modules are replaced at once, by the first production
-/// that fits, contexts before others, or by chance; a module that none fits stays. The axiom and the result
+/// Derives the words of a grammar. In each step all modules are replaced at once, from left to right, by the
+/// first production that fits, contexts before others, or by chance; a module that none fits stays. A
+/// production that rewrites several modules passes over them. The axiom and the result
 /// of each step are decomposed, and lose what stands behind a `%` in its branch.
 class LsysDeriver {
   public:
@@ -38,6 +41,9 @@ class LsysDeriver {
     /// reported once; a step whose word would have more than max_modules is an error, found before the word
     /// takes memory. O(modules of all words), and O(modules * patterns) for contexts.
     std::optional<ModuleString> derive(unsigned steps);
+
+    /// What to do with the words between the steps.
+    void after_each_step(LsysStage stage) { stage_ = std::move(stage); }
 
     /// From now on derive() gives up, without an error, where the modules of all words are too different from
     /// each other for looking them up to pay: LsysStream does without. `fewest`: modules that it takes to
@@ -54,7 +60,7 @@ class LsysDeriver {
     std::optional<std::uint64_t> choose();
     void gather(std::uint64_t length);
     bool decompose();
-    void cut();
+    bool finish_step();
     bool is_short_enough(std::uint64_t length);
 
     LsysRewriter& rewriter_;
@@ -64,6 +70,7 @@ class LsysDeriver {
     LsysDecomposer decomposer_;
     LsysSuccessors successors_;
     ContextMatcher matcher_;
+    LsysStage stage_;
     bool has_cuts_ = false;
     bool is_timed_ = false; ///< a word may go on after a step that left it as it was
     bool failed_ = false;
@@ -73,7 +80,7 @@ class LsysDeriver {
     unsigned step_ = 0; ///< 0: the axiom
     ModuleString word_;
     ModuleString next_;
-    std::vector<RunId> chosen_; ///< for the modules of word_
+    std::vector<RunId> chosen_; ///< for word_, from left to right
     bool changed_ = false;
 };
 

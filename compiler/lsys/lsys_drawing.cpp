@@ -1,7 +1,6 @@
 #include "compiler/lsys/lsys_drawing.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <deque>
 #include <numbers>
@@ -12,11 +11,12 @@
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 
-#include "compiler/lower/lower_settings.h"
 #include "compiler/lsys/folded_word.h"
 #include "compiler/lsys/lsys_composer.h"
 #include "compiler/lsys/lsys_derive.h"
 #include "compiler/lsys/lsys_limit.h"
+#include "compiler/lsys/lsys_ordered.h"
+#include "compiler/lsys/lsys_palette.h"
 #include "compiler/lsys/lsys_sizes.h"
 #include "compiler/lsys/lsys_stream.h"
 #include "compiler/lsys/lsys_width.h"
@@ -26,37 +26,6 @@ namespace graftal {
 namespace {
 
 constexpr Vec3 up(0, 1, 0);
-
-struct Paint {
-    const char* name;
-    Rgb rgb;
-};
-
-/// The colours of the indices 0, 1, 2, ... where the model names none.
-constexpr std::array<Paint, 8> default_paints = {{
-    {"wood", {0.30, 0.17, 0.08}},
-    {"leaf", {0.12, 0.33, 0.05}},
-    {"shoot", {0.33, 0.50, 0.10}},
-    {"yellow", {0.85, 0.62, 0.06}},
-    {"red", {0.60, 0.05, 0.04}},
-    {"violet", {0.30, 0.12, 0.45}},
-    {"white", {0.85, 0.82, 0.78}},
-    {"blue", {0.07, 0.18, 0.50}},
-}};
-
-// Of figures that use no colours: light, to stand before a dark background.
-constexpr Paint curve_paint = {"curve", {0.90, 0.62, 0.22}};
-constexpr Paint stalk_paint = {"stalk", {0.50, 0.66, 0.24}};
-
-std::vector<Material> palette_of(std::span<const Paint> paints) {
-    std::vector<Material> palette;
-    for (const Paint& paint : paints) {
-        Material& material = palette.emplace_back();
-        material.name = paint.name;
-        material.rgb = paint.rgb;
-    }
-    return palette;
-}
 
 // Of random models.
 constexpr double most_drift = 0.05;
@@ -102,10 +71,12 @@ class Drawer {
     }
 
     std::optional<LsysDrawing> draw(Graph& graph, ObjectPool& pool) {
-        if (!choose_palette(graph)) return std::nullopt;
+        std::optional<std::vector<Material>> palette = palette_of(grammar_, graph, diagnostics_);
+        if (!palette) return std::nullopt;
+        palette_ = std::move(*palette);
         if (!options_.steps) return draw_limit(graph, pool);
         steps_ = *options_.steps;
-        if (options_.exact || grammar_.has_context) {
+        if (options_.exact || grammar_.needs_word) {
             if (!derive()) return std::nullopt;
         } else {
             if (grammar_.is_stochastic) variants_ = fewest_of(grammar_);
@@ -222,7 +193,7 @@ class Drawer {
         Derivation& derivation = drawing.derivation;
         derivation.way = way;
         derivation.steps = steps_;
-        derivation.timed = grammar_.time(RuleKind::interpret) != 0;
+        derivation.timed = grammar_.draws_in_time();
         derivation.time = steps_ + options_.share;
         derivation.modules = part.modules.str();
         derivation.segments = part.segments.str();
@@ -286,12 +257,18 @@ class Drawer {
     }
 
     bool derive() {
+        if (grammar_.in_order)
+            return take_word(LsysOrderedDeriver(rewriter_, diagnostics_, options_.seed, options_.max_modules)
+                                 .derive(steps_));
         LsysDeriver deriver(rewriter_, diagnostics_, options_.seed, options_.max_modules);
         if (can_draw_run() && LsysStream::can_derive(grammar_))
             deriver.give_up_where_little_repeats(options_.run_from);
         auto word = deriver.derive(steps_);
         in_run_ = deriver.gave_up();
-        if (in_run_) return true;
+        return in_run_ || take_word(std::move(word));
+    }
+
+    bool take_word(std::optional<ModuleString> word) {
         if (word) {
             const std::size_t length = word->size();
             word_.emplace(grammar_, rewriter_.modules(), std::move(*word));
@@ -303,11 +280,14 @@ class Drawer {
     }
 
     const char* obstacle_to_limit() const {
-        if (grammar_.has_context) return "with contexts";
         for (const LsysRule& rule : grammar_.rules) {
+            if (rule.has_context()) return "with contexts";
+            if (rule.sees_word()) return "that rewrite several modules at once";
             if (rule.probability) return "with probabilities";
             if (rule.draws > 0) return "with random numbers";
+            if (rule.time & reads_variables) return "that read variables";
             if (rule.time != 0) return "that read 'step' or 'age'";
+            if (rule.has_blocks()) return "with blocks";
         }
         return nullptr;
     }
@@ -467,22 +447,6 @@ class Drawer {
     void set_width_for(const TurtlePart& figure) {
         width_is_open_ = false;
         if (!figure.lengths.empty()) width_ = width_for(grammar_, figure.lengths, figure.reach);
-    }
-
-    /// The materials that the block names, else ours.
-    bool choose_palette(const Graph& graph) {
-        for (const Name& name : grammar_.source->colors) {
-            const Material* const material =
-                find_material(name.text, name.span, graph.materials, diagnostics_);
-            if (!material) return false;
-            palette_.push_back(*material);
-        }
-        if (!palette_.empty()) return true;
-        const bool coloured = grammar_.uses(
-            {TurtleCommand::colour_up, TurtleCommand::colour_down, TurtleCommand::close_polygon});
-        const Paint& paint = grammar_.uses({TurtleCommand::open_branch}) ? stalk_paint : curve_paint;
-        palette_ = draws_lines(grammar_) && !coloured ? palette_of({&paint, 1}) : palette_of(default_paints);
-        return true;
     }
 
     const LsysGrammar& grammar_;

@@ -11,8 +11,12 @@
 #include <glm/geometric.hpp>
 
 #include "compiler/lower/lower_transform.h"
+#include "compiler/lsys/lsys_commands.h"
+#include "compiler/lsys/lsys_declarations.h"
+#include "compiler/lsys/lsys_grammar_checks.h"
 #include "compiler/support/number.h"
 #include "compiler/support/number_range.h"
+#include "compiler/syntax/write_out.h"
 
 namespace graftal {
 
@@ -21,8 +25,13 @@ namespace {
 constexpr std::size_t most_symbols = 0xFFFF;
 constexpr double largest_seed = 9007199254740992.0; // 2^53
 
-/// Branches are balanced in every string; polygons need not be.
+/// Polygons need not be balanced in a string; branches only where the predecessor's are not. A string without
+/// braces moves no bracket past one.
 bool polygons_cross_branches(const LsysString& string) {
+    const auto is_brace = [](const LsysModule& module) {
+        return module.symbol == "{" || module.symbol == "}";
+    };
+    if (std::ranges::none_of(string.modules, is_brace)) return false;
     std::string open;
     for (const LsysModule& module : string.modules) {
         if (module.symbol == "[" || module.symbol == "{") open += module.symbol;
@@ -42,7 +51,10 @@ class GrammarBuilder {
     }
 
     std::optional<LsysGrammar> run() && {
+        grammar_.cells = std::make_shared<CellPlaces>(
+            declare_variables(block_, grammar_.lets, grammar_.first_cells, diagnostics_));
         add_settings();
+        add_step_programs();
         if (block_.axiom) grammar_.axiom = templates(*block_.axiom, {}, nullptr);
         add_rules(block_.productions, RuleKind::produce);
         add_rules(block_.decompose, RuleKind::decompose);
@@ -51,9 +63,9 @@ class GrammarBuilder {
         for (auto& rules : grammar_.rules_of)
             rules.resize(grammar_.symbols.size());
         note_times();
-        prefer_contexts();
-        check_symbols();
-        if (!block_.broken) check_contexts();
+        if (!block_.precedence || !block_.precedence->by_text) prefer_contexts();
+        check_symbols(grammar_, uses_, diagnostics_);
+        if (!block_.broken) check_patterns(grammar_, uses_, diagnostics_);
         if (diagnostics_.error_count() > errors_before_) return std::nullopt;
         return std::move(grammar_);
     }
@@ -69,11 +81,37 @@ class GrammarBuilder {
     template<typename Predicate>
     std::optional<double> checked(const Expression& expression, const Predicate& good, std::string_view name,
                                   std::string_view demand) {
+        if (const Expression* const variable = variable_in(expression)) {
+            diagnostics_.error(variable->span, fmt::format("'{}' is a variable, and '{}' has one value",
+                                                           variable->text, name));
+            return std::nullopt;
+        }
         const std::optional<double> number = evaluate(expression, grammar_.lets, diagnostics_);
         if (!number || good(*number)) return number;
         diagnostics_.error(expression.span,
                            fmt::format("'{}' must {}, not {}", name, demand, shortest(*number)));
         return std::nullopt;
+    }
+
+    const Expression* variable_in(const Expression& expression) const {
+        const bool names =
+            expression.kind == Expression::Kind::name || expression.kind == Expression::Kind::element;
+        if (names && grammar_.cells->contains(expression.text)) return &expression;
+        for (const Expression& operand : expression.operands)
+            if (const Expression* const found = variable_in(operand)) return found;
+        return nullptr;
+    }
+
+    void add_step_programs() {
+        const auto add = [&](const std::optional<LsysCommands>& commands, LsysProgram& program) {
+            if (!commands) return;
+            const LsysProgramNames names{grammar_.lets, *grammar_.cells, step_slots, &grammar_.step_draws};
+            program = compile_program(*commands, names, diagnostics_);
+        };
+        add(block_.start, grammar_.start);
+        add(block_.start_each, grammar_.start_each);
+        add(block_.end_each, grammar_.end_each);
+        add(block_.end, grammar_.end);
     }
 
     /// A size that the turtle can take.
@@ -154,8 +192,8 @@ class GrammarBuilder {
             added.symbol = symbol(module);
             uses_.push_back({added.symbol, module.parameters.size(), module.span});
             for (const Expression& parameter : module.parameters)
-                if (auto code =
-                        ExpressionCode::compile(parameter, grammar_.lets, variables, diagnostics_, draws))
+                if (auto code = ExpressionCode::compile(parameter, grammar_.lets, variables, diagnostics_,
+                                                        draws, grammar_.cells.get()))
                     added.parameters.push_back(std::move(*code));
         }
         grammar_.polygons_cross_branches |= polygons_cross_branches(string);
@@ -181,18 +219,17 @@ class GrammarBuilder {
         rule.source = &production;
         rule.kind = kind;
         rule.predecessor = pattern(production.predecessor, rule);
+        for (const LsysFormal& formal : production.following)
+            rule.following.push_back(pattern(formal, rule));
         for (const LsysFormal& formal : production.left)
             rule.left.push_back(pattern(formal, rule));
         for (const LsysFormal& formal : production.right)
             rule.right.push_back(pattern(formal, rule));
-        rule.slots = rule.variables;
-        for (const std::string_view name : {"step", "age"})
-            rule.slots.push_back(is_taken(name, rule) ? std::string_view() : name);
-        rule.condition = code(production.condition, rule);
-        rule.probability = code(production.probability, rule);
-        rule.successor = templates(production.successor, rule.slots, &rule.draws);
+        name_slots(rule);
+        compile(rule);
         rule.time = time_of(rule);
-        grammar_.has_context |= rule.has_context();
+        grammar_.in_order |= rule.in_order();
+        grammar_.needs_word |= rule.sees_word() || rule.in_order();
         grammar_.is_stochastic |= rule.is_random();
         auto& of_kind = grammar_.rules_of[static_cast<std::size_t>(kind)];
         if (of_kind.size() <= rule.predecessor.symbol) of_kind.resize(rule.predecessor.symbol + 1u);
@@ -200,15 +237,117 @@ class GrammarBuilder {
         grammar_.rules.push_back(std::move(rule));
     }
 
-    std::optional<ExpressionCode> code(const std::optional<Expression>& expression, const LsysRule& rule) {
-        if (!expression) return std::nullopt;
-        return ExpressionCode::compile(*expression, grammar_.lets, rule.slots, diagnostics_);
+    /// The names that blocks assign and that mean nothing else are local values.
+    std::vector<const LsysCommand*> locals_of(const std::optional<LsysCommands>& block,
+                                              const LsysRule& rule) {
+        std::vector<const LsysCommand*> locals;
+        if (!block) return locals;
+        for_each_assignment(block->list, [&](const LsysCommand& command) {
+            const std::string_view name = command.target;
+            const auto is_known = [&](std::string_view other) { return other == name; };
+            const bool known =
+                std::ranges::any_of(rule.variables, is_known) ||
+                std::ranges::any_of(locals, [&](auto* other) { return other->target == name; });
+            if (!known && command.indices.empty() && name != "pi" && !grammar_.lets.contains(name) &&
+                !grammar_.cells->contains(name))
+                locals.push_back(&command);
+        });
+        return locals;
+    }
+
+    void name_slots(LsysRule& rule) {
+        locals_ = locals_of(rule.source->before, rule);
+        locals_before_ = locals_.size();
+        for (const LsysCommand* local : locals_of(rule.source->after, rule))
+            if (std::ranges::none_of(locals_, [&](auto* other) { return other->target == local->target; }))
+                locals_.push_back(local);
+        rule.slots = rule.variables;
+        for (const std::string_view name : {"step", "age"})
+            rule.slots.push_back(is_taken(name, rule) ? std::string_view() : name);
+        for (const LsysCommand* local : locals_)
+            rule.slots.push_back(local->target);
     }
 
     /// Names of the model hide those of the time.
     bool is_taken(std::string_view name, const LsysRule& rule) const {
         return grammar_.lets.contains(name) ||
-               std::ranges::find(rule.variables, name) != rule.variables.end();
+               std::ranges::find(rule.variables, name) != rule.variables.end() ||
+               std::ranges::any_of(locals_, [&](auto* local) { return local->target == name; });
+    }
+
+    /// What is asked before the production is applied knows the local values of the first block only.
+    void compile(LsysRule& rule) {
+        const LsysProduction& source = *rule.source;
+        std::vector<std::string_view> early = rule.slots;
+        std::fill(early.end() - static_cast<std::ptrdiff_t>(locals_.size() - locals_before_), early.end(),
+                  std::string_view());
+        const bool draws = rule.kind != RuleKind::interpret;
+        const LsysProgramNames before{grammar_.lets, *grammar_.cells, early, draws ? &rule.draws : nullptr};
+        const bool refused = !draws && refuse_chance(source);
+        if (source.before && !refused) rule.before = compile_program(*source.before, before, diagnostics_);
+        if (source.condition && !refused)
+            rule.condition = compile_formula(*source.condition, before, diagnostics_);
+        if (source.probability)
+            rule.probability = ExpressionCode::compile(*source.probability, grammar_.lets, early,
+                                                       diagnostics_, nullptr, grammar_.cells.get());
+        const LsysProgramNames after{grammar_.lets, *grammar_.cells, rule.slots, &rule.draws, false};
+        if (source.after) rule.after = compile_program(*source.after, after, diagnostics_);
+        rule.successor = templates(source.successor, rule.slots, &rule.draws);
+        if (!draws) check_drawing(rule);
+        warn_of_idle_locals(rule);
+    }
+
+    /// What draws has no order. Whether it was reported.
+    bool refuse_chance(const LsysProduction& source) {
+        const std::size_t errors = diagnostics_.error_count();
+        const auto check = [&](const Expression& e) {
+            if (calls_chance(e))
+                diagnostics_.error(e.span, "chance does not decide here how a module is drawn")
+                    .with_hint("in 'interpret', random numbers stand in successors, or in a block behind the "
+                               "condition");
+        };
+        if (source.condition) check(*source.condition);
+        if (source.before) for_each_expression(source.before->list, check);
+        return diagnostics_.error_count() > errors;
+    }
+
+    void check_drawing(const LsysRule& rule) {
+        for (const auto* block : {&rule.source->before, &rule.source->after}) {
+            if (!*block) continue;
+            for_each_assignment((*block)->list, [&](const LsysCommand& command) {
+                if (std::ranges::find(rule.slots, command.target) == rule.slots.end() &&
+                    grammar_.cells->contains(command.target))
+                    diagnostics_
+                        .error(command.span,
+                               fmt::format("a drawing cannot change the variable '{}'", command.target))
+                        .with_hint("productions of 'interpret' may set local values only");
+            });
+        }
+        if (rule.after.draws_anew)
+            diagnostics_.error(rule.source->after->span, "random numbers in a loop cannot be drawn here")
+                .with_hint("a block of 'interpret' draws its random numbers once");
+    }
+
+    void warn_of_idle_locals(const LsysRule& rule) {
+        for (std::size_t i = 0; i < locals_.size(); ++i) {
+            const std::size_t slot = rule.variables.size() + 2 + i;
+            const auto reads = [&](const ExpressionCode& code) { return code.reads(slot); };
+            const bool is_read = rule.before.reads(slot) || rule.after.reads(slot) ||
+                                 (rule.condition && reads(rule.condition->code)) ||
+                                 (rule.probability && reads(*rule.probability)) ||
+                                 std::ranges::any_of(rule.successor, [&](const LsysTemplate& module) {
+                                     return std::ranges::any_of(module.parameters, reads);
+                                 });
+            if (is_read) continue;
+            std::vector<std::string> known;
+            for (const auto& [name, place] : *grammar_.cells)
+                known.push_back(name);
+            diagnostics_
+                .warning(locals_[i]->span,
+                         fmt::format("nothing reads the local value '{}'", locals_[i]->target))
+                .with_hint(known.empty() ? "a variable keeps its value for others: variable NAME = 0"
+                                         : choices(locals_[i]->target, known));
+        }
     }
 
     static TimeMask time_of(const LsysRule& rule) {
@@ -216,8 +355,14 @@ class GrammarBuilder {
         const auto note = [&](const ExpressionCode& code) {
             if (code.reads(rule.variables.size())) time |= reads_step;
             if (code.reads(rule.variables.size() + 1)) time |= reads_age;
+            if (code.reads_changing_cells()) time |= reads_variables;
         };
-        if (rule.condition) note(*rule.condition);
+        for (const LsysProgram* program : {&rule.before, &rule.after}) {
+            if (program->reads(rule.variables.size())) time |= reads_step;
+            if (program->reads(rule.variables.size() + 1)) time |= reads_age;
+            if (program->reads_changing_cells()) time |= reads_variables;
+        }
+        if (rule.condition) note(rule.condition->code);
         if (rule.probability) note(*rule.probability);
         for (const LsysTemplate& module : rule.successor)
             std::ranges::for_each(module.parameters, note);
@@ -274,158 +419,14 @@ class GrammarBuilder {
                                       [&](std::uint32_t id) { return grammar_.rules[id].has_context(); });
     }
 
-    bool is_rewritten(SymbolId id) const {
-        return std::ranges::any_of(grammar_.rules_of, [&](const auto& rules) { return !rules[id].empty(); });
-    }
-
-    bool is_rewritten(SymbolId id, std::size_t arity) const {
-        return std::ranges::any_of(grammar_.rules_of, [&](const auto& rules) {
-            return std::ranges::any_of(rules[id], [&](std::uint32_t rule) {
-                return grammar_.rules[rule].predecessor.arity == arity;
-            });
-        });
-    }
-
-    /// Such a production never fits; it is spoken of once.
-    void check_contexts() {
-        std::set<std::pair<SymbolId, std::size_t>> known;
-        std::set<SymbolId> symbols;
-        for (const Use& use : uses_) {
-            known.emplace(use.symbol, use.arity);
-            symbols.insert(use.symbol);
-        }
-        const auto matches = [&](const LsysPattern& pattern, const LsysFormal& source) {
-            std::string problem;
-            if (grammar_.ignored[pattern.symbol] && !is_bracket(pattern.symbol))
-                problem = fmt::format("contexts skip '{}'", source.symbol);
-            else if (!symbols.contains(pattern.symbol))
-                problem = fmt::format("no axiom or successor has a module '{}'", source.symbol);
-            else if (!known.contains({pattern.symbol, pattern.arity}))
-                problem = fmt::format("no axiom or successor has a module '{}' with {}", source.symbol,
-                                      count(pattern.arity));
-            if (problem.empty()) return true;
-            diagnostics_.warning(source.span, std::move(problem)).with_hint("this context never matches");
-            return false;
-        };
-        for (const LsysRule& rule : grammar_.rules)
-            if (std::ranges::equal(rule.left, rule.source->left, matches))
-                std::ranges::equal(rule.right, rule.source->right, matches);
-    }
-
-    bool is_bracket(SymbolId id) const {
-        return grammar_.commands[id] == TurtleCommand::open_branch ||
-               grammar_.commands[id] == TurtleCommand::close_branch;
-    }
-
-    static std::string count(std::size_t parameters) {
-        return fmt::format("{} parameter{}", parameters == 0 ? "no" : std::to_string(parameters),
-                           parameters == 1 ? "" : "s");
-    }
-
-    /// Each symbol, and each number of parameters of it, is spoken of once.
-    void check_symbols() {
-        std::set<SymbolId> seen_by_contexts;
-        for (const LsysRule& rule : grammar_.rules)
-            for (const auto* context : {&rule.left, &rule.right})
-                for (const LsysPattern& pattern : *context)
-                    seen_by_contexts.insert(pattern.symbol);
-        std::set<std::string_view> declared;
-        for (const Name& module : block_.modules)
-            declared.insert(module.text);
-        std::set<std::pair<SymbolId, std::size_t>> checked;
-        Word word;
-        for (const Use& use : uses_) {
-            const std::string& name = grammar_.symbols[use.symbol];
-            if (!is_letter(name) || use.span.begin != word.end) finish(word);
-            word.text += name;
-            word.end = use.arity == 0 ? use.span.end : 0;
-            const bool rewritten = is_rewritten(use.symbol);
-            if (grammar_.commands[use.symbol] != TurtleCommand::none) continue;
-            if (!checked.emplace(use.symbol, rewritten ? use.arity : 0).second) continue;
-            if (rewritten) {
-                if (!block_.broken && !is_rewritten(use.symbol, use.arity)) warn_of_arity(use, name);
-            } else if (!is_letter(name)) {
-                diagnostics_.error(use.span, fmt::format("'{}' means nothing to the turtle", name))
-                    .with_hint(name == "\""
-                                   ? "write strings of modules without quotes: axiom F"
-                                   : "use letters for modules; docs/language.md lists the turtle's symbols");
-            } else if (!seen_by_contexts.contains(use.symbol) && !declared.contains(name)) {
-                word.idle.push_back(&use);
-            }
-        }
-        finish(word);
-    }
-
-    struct Use {
-        SymbolId symbol;
-        std::size_t arity;
-        Span span;
-    };
-
-    /// Letters that follow each other without anything between them: one name, perhaps, read letter by
-    /// letter.
-    struct Word {
-        std::string text;
-        std::uint32_t end = 0;        ///< where the next letter would stand; 0: nowhere
-        std::vector<const Use*> idle; ///< modules without a production, not spoken of before
-    };
-
-    /// Without what could not be read, nobody knows which modules have a production.
-    void finish(Word& word) {
-        if (!word.idle.empty() && !block_.broken) warn_of_idle(word);
-        word = {};
-    }
-
-    void warn_of_idle(const Word& word) {
-        std::string quoted, names;
-        for (const Use* use : word.idle) {
-            const std::string& name = grammar_.symbols[use->symbol];
-            quoted += fmt::format("{}'{}'",
-                                  quoted.empty()            ? ""
-                                  : use == word.idle.back() ? " and "
-                                                            : ", ",
-                                  name);
-            names += " " + name;
-        }
-        const Span span = join(word.idle.front()->span, word.idle.back()->span);
-        if (word.idle.size() == 1) {
-            diagnostics_.warning(span, fmt::format("{} has no production and draws nothing", quoted))
-                .with_hint(fmt::format("write 'modules{}' if you mean this", names));
-            return;
-        }
-        std::vector<std::string> declared;
-        for (const Name& module : block_.modules)
-            declared.emplace_back(module.text);
-        const std::string meant = did_you_mean(word.text, declared);
-        diagnostics_.warning(span, fmt::format("{} have no production and draw nothing", quoted))
-            .with_hint(
-                !meant.empty()
-                    ? meant
-                    : fmt::format(
-                          "write 'modules {}' to make one name of them, or 'modules{}' if you mean this",
-                          word.text, names));
-    }
-
-    void warn_of_arity(const Use& use, const std::string& name) {
-        std::set<std::size_t> known;
-        for (const auto& rules : grammar_.rules_of)
-            for (const std::uint32_t rule : rules[use.symbol])
-                known.insert(grammar_.rules[rule].predecessor.arity);
-        diagnostics_
-            .warning(use.span, fmt::format("no production rewrites '{}' with {}", name, count(use.arity)))
-            .with_hint(fmt::format("its productions have {}", count(*known.begin())));
-    }
-
-    static bool is_letter(const std::string& name) {
-        return std::isalnum(static_cast<unsigned char>(name.front())) || name.front() == '_';
-    }
-
     const LsysBlock& block_;
     Diagnostics& diagnostics_;
     std::size_t errors_before_;
     LsysGrammar grammar_;
     std::unordered_map<std::string, SymbolId> ids_;
-    std::vector<Use> uses_; ///< in axiom and successors
+    std::vector<LsysUse> uses_;              ///< in axiom and successors
+    std::vector<const LsysCommand*> locals_; ///< of the rule that is added: the first assignment to each
+    std::size_t locals_before_ = 0;          ///< those of its first block
 };
 
 } // namespace

@@ -4,12 +4,14 @@
 #include <cstddef>
 #include <cstdint>
 #include <initializer_list>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "compiler/lsys/lsys_ast.h"
+#include "compiler/lsys/lsys_program.h"
 #include "compiler/lsys/module_table.h"
 #include "compiler/lsys/turtle_command.h"
 #include "compiler/support/affine.h"
@@ -28,9 +30,12 @@ enum class RuleKind : std::uint8_t {
 };
 inline constexpr std::size_t rule_kind_count = 3;
 
-/// What of the time a production looks at, as a set.
+/// What of the time a production looks at, as a set. Variables that change are a function of the step, unless
+/// the word is derived in order.
 using TimeMask = std::uint8_t;
-enum TimeBit : TimeMask { reads_step = 1, reads_age = 2 };
+enum TimeBit : TimeMask { reads_step = 1, reads_age = 2, reads_variables = 4 };
+/// What makes a drawing change between two steps.
+inline constexpr TimeMask flows = reads_step | reads_age;
 
 /// A module of a context or predecessor.
 struct LsysPattern {
@@ -48,22 +53,40 @@ struct LsysRule {
     const LsysProduction* source = nullptr;
     RuleKind kind = RuleKind::produce;
     LsysPattern predecessor;
-    std::vector<LsysPattern> left;  ///< has no brackets
-    std::vector<LsysPattern> right; ///< brackets are balanced
-    /// The names that expressions may use: of the predecessor, then of the left context, then of the right.
+    std::vector<LsysPattern> following; ///< side by side behind it, and rewritten with it
+    std::vector<LsysPattern> left;      ///< has no brackets
+    std::vector<LsysPattern> right;     ///< brackets are balanced
+    /// The names that expressions may use: of the predecessor, then of what follows it, then of the left
+    /// context, then of the right.
     std::vector<std::string_view> variables;
     /// What the slots of the expressions mean: the variables, then `step` and `age` (or nothing, where names
-    /// of the model hide them), then as many random numbers as there are draws.
+    /// of the model hide them), then the local values of the blocks, then as many random numbers as there are
+    /// draws.
     std::vector<std::string_view> slots;
     TimeMask time = 0;       ///< what is read of it
-    std::uint32_t draws = 0; ///< calls of `normal` and `random` in the successor
-    std::optional<ExpressionCode> condition;
+    std::uint32_t draws = 0; ///< calls of `normal` and `random`
+    LsysProgram before;      ///< carried out before the condition is asked; it may set slots
+    std::optional<LsysFormula> condition;
+    LsysProgram after; ///< carried out before the successor is made
     std::optional<ExpressionCode> probability;
     std::vector<LsysTemplate> successor;
 
     bool has_context() const { return !left.empty() || !right.empty(); }
+    /// Whether one module alone does not tell if it fits.
+    bool sees_word() const { return has_context() || !following.empty(); }
+    /// Modules that it rewrites.
+    std::uint32_t length() const { return static_cast<std::uint32_t>(following.size()) + 1; }
     /// Whether equal modules may become different ones.
     bool is_random() const { return probability.has_value() || draws > 0; }
+    bool has_blocks() const { return !before.empty() || !after.empty(); }
+    /// Whether its expressions see nothing but its variables, in slots and cells.
+    bool is_plain() const { return time == 0 && draws == 0 && !has_blocks(); }
+    /// Whether it fits, and what it gives, must be found out in the order of the word.
+    bool in_order() const {
+        return before.sets_cells || after.sets_cells || before.draws_anew || after.draws_anew ||
+               (condition && condition->draws > 0);
+    }
+    std::uint32_t slot_count() const { return static_cast<std::uint32_t>(slots.size()) + draws; }
 };
 
 struct LsysGrammar {
@@ -75,11 +98,17 @@ struct LsysGrammar {
     std::vector<LsysTemplate> axiom;
     std::vector<LsysRule> rules;
     /// The rules that may rewrite a symbol, of one kind, in the order in which they are tried: those with
-    /// contexts first, else as the text has them (ABOP, section 1.8).
+    /// contexts first (ABOP, section 1.8), unless the block has it otherwise, else as the text has them.
     std::array<std::vector<std::vector<std::uint32_t>>, rule_kind_count> rules_of;
     std::vector<bool> ignored; ///< symbols that contexts look past
-    bool has_context = false;
-    bool is_stochastic = false; ///< some rule is random
+    std::shared_ptr<const CellPlaces> cells = std::make_shared<CellPlaces>(); ///< of the variables
+    std::vector<double> first_cells;                                          ///< their first values
+    /// Carried out before the axiom, before and after each step, and after all; slots: see step_slots.
+    LsysProgram start, start_each, end_each, end;
+    std::uint32_t step_draws = 0; ///< calls of chance in these, each with a slot behind those of step_slots
+    bool needs_word = false;      ///< some rule sees more of the word than one module, or the next is true
+    bool in_order = false;        ///< some rule changes variables, or asks chance, in the order of the word
+    bool is_stochastic = false;   ///< some rule is random
     /// What the rules of a kind that may rewrite a symbol read of the time.
     std::array<std::vector<TimeMask>, rule_kind_count> time_of;
     /// Symbols whose modules are drawn by their age, or by that of what they are drawn as, or rewritten by
@@ -111,6 +140,8 @@ struct LsysGrammar {
     }
     /// Of all rules of a kind.
     TimeMask time(RuleKind kind) const;
+    /// Whether the drawing of a word changes between two steps.
+    bool draws_in_time() const { return (time(RuleKind::interpret) & flows) != 0; }
     /// Whether rules of a kind have random numbers in their successors.
     bool draws(RuleKind kind) const;
     /// Whether rules of a kind give chance a say.
@@ -118,6 +149,12 @@ struct LsysGrammar {
     /// Whether some symbol has one of these commands.
     bool uses(std::initializer_list<TurtleCommand> wanted) const;
 };
+
+/// The names in programs of steps.
+inline constexpr std::array<std::string_view, 1> step_slots = {"step"};
+
+/// The arrays of a block have at most so many elements, and its variables so many cells, in all.
+inline constexpr std::uint32_t max_cells = 65'536;
 
 /// Derivations of more steps are refused.
 inline constexpr unsigned max_derivation_steps = 10'000;

@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <cctype>
+#include <iterator>
 #include <utility>
 
 #include <fmt/format.h>
 
+#include "compiler/lsys/lsys_commands.h"
 #include "compiler/syntax/expression_parser.h"
 #include "compiler/syntax/write_out.h"
 
@@ -43,6 +45,8 @@ class ProductionParser {
         bool good = parse_left_side() && parse_condition() && parse_arrow();
         if (good) good = parse_successor(); // its errors are independent of those of the parameters
         if (good && !locals_.empty()) good = write_out_locals();
+        // What is carried out whenever the production fits, is so when it is applied, if it does not compete.
+        if (lone_block_ && !production_.probability) std::swap(production_.before, production_.after);
         return good && check_parameters() ? std::optional(std::move(production_)) : std::nullopt;
     }
 
@@ -75,7 +79,7 @@ class ProductionParser {
         if (has_right) good = read_context(production_.right) && good;
         if (!good) return false;
         if (has_left || has_right) good = check_contexts(begin, sign);
-        return check_predecessor(modules, has_left) && good;
+        return take_predecessor(modules, has_left) && good;
     }
 
     /// `*` says that there is none.
@@ -96,72 +100,137 @@ class ProductionParser {
         return check_lsys_brackets(production_.right, text_);
     }
 
-    bool check_predecessor(Formals& modules, bool has_left) {
+    bool take_predecessor(Formals& modules, bool has_left) {
         if (modules.empty()) {
             reader_.move_to(has_left ? reader_.position() : first_character());
             reader_.expected("the module that is rewritten").with_hint("write a production as A -> B");
             return false;
         }
-        if (modules.size() > 1) return report_several(modules);
-        if (is_bracket(modules[0].symbol)) {
-            diagnostics_.error(modules[0].span, "a bracket cannot be rewritten");
-            return false;
-        }
-        if (modules[0].symbol == "%") {
-            diagnostics_.error(modules[0].span, "a cut cannot be rewritten")
-                .with_hint("it has already removed the rest of its branch before a production could apply");
-            return false;
-        }
+        if (modules.size() > 1 && !check_several(modules)) return false;
+        for (const LsysFormal& module : modules)
+            if (!check_rewritten(module)) return false;
+        brackets_ = unmatched_brackets(modules);
         production_.predecessor = std::move(modules[0]);
+        production_.following.assign(std::make_move_iterator(modules.begin() + 1),
+                                     std::make_move_iterator(modules.end()));
         return true;
+    }
+
+    bool check_rewritten(const LsysFormal& module) {
+        if (module.symbol == "{" || module.symbol == "}") {
+            diagnostics_.error(module.span, "a brace cannot be rewritten");
+            return false;
+        }
+        const bool bracket = is_bracket(module.symbol);
+        if (bracket && statement_.section != LsysSection::block) {
+            diagnostics_.error(module.span, "only a derivation step can rewrite a bracket");
+            return false;
+        }
+        if (module.symbol != "%") return true;
+        diagnostics_.error(module.span, "a cut cannot be rewritten")
+            .with_hint("it has already removed the rest of its branch before a production could apply");
+        return false;
     }
 
     std::size_t first_character() const {
         return production_.label.text.empty() ? statement_.begin : production_.label.span.end + 1;
     }
 
-    bool report_several(const Formals& modules) {
+    /// What was meant otherwise: a name that is not declared, an arrow of three signs.
+    bool check_several(const Formals& modules) {
         const Span span = join(modules.front().span, modules.back().span);
-        Diagnostic& error =
-            diagnostics_.error(span, fmt::format("a production rewrites one module, not {}", modules.size()));
-        const std::string_view word =
-            lsys_name(text_.scanner.text().substr(span.begin, span.end - span.begin));
-        if (modules.back().symbol == "-")
-            error.with_hint("write a probability after the successor: A -> B : 0.5");
-        else if (word.size() > 1 && word.size() + 1 < span.end - span.begin)
-            error.with_hint(fmt::format(
-                "begin a production with its module: F -> ...; declare a name of several letters: modules {}",
-                word));
-        else if (word.size() > 1)
-            error.with_hint(fmt::format("declare longer names: modules {}", word));
-        else
-            error.with_hint("write the modules around it as its context: A < B > C -> ...");
+        const std::string_view text = text_.scanner.text().substr(span.begin, span.end - span.begin);
+        const std::string_view word = lsys_name(text);
+        const auto declare = [&] { return fmt::format("declare longer names: modules {}", word); };
+        if (statement_.section != LsysSection::block) {
+            diagnostics_
+                .error(span,
+                       fmt::format("a production of 'interpret' or 'decompose' rewrites one module, not {}",
+                                   modules.size()))
+                .with_hint(word.size() > 1 ? declare()
+                                           : "rewrite several modules at once in a derivation step");
+            return false;
+        }
+        if (modules.back().symbol == "-" && reader_.at_arrow() > 0 && reader_.position() == span.end) {
+            diagnostics_.error(span, "this arrow has too many signs")
+                .with_hint("write a blank between the module '-' and the arrow");
+            return false;
+        }
+        if (text_.symbols.first_of(word).size() >= word.size() || word.size() < 2) return true;
+        diagnostics_
+            .error(text_.scanner.span(word),
+                   fmt::format("'{}' is read letter by letter, as modules side by side", word))
+            .with_hint(fmt::format("{}; or write blanks between the modules", declare()));
         return false;
     }
 
     bool parse_condition() {
         if (!reader_.accept(':')) return true;
-        const std::optional<std::size_t> arrow = text_.scanner.find_arrow(reader_.position(), statement_.end);
-        if (const auto word = find_with(reader_.position(), arrow.value_or(statement_.end)))
-            return parse_locals(*word, arrow.value_or(statement_.end));
-        if (reader_.accept('*')) return true;
-        production_.condition = reader_.read_expression(arrow.value_or(statement_.end), "'->'");
-        return production_.condition.has_value();
+        const std::size_t end =
+            text_.scanner.find_arrow(reader_.position(), statement_.end).value_or(statement_.end);
+        if (!parse_commands(production_.before, end)) return false;
+        if (const auto word = find_outside("with", reader_.position(), end)) {
+            if (!production_.before) return parse_locals(*word, end);
+            return refuse_with(*word);
+        }
+        const std::optional<std::size_t> brace = find_outside("{", reader_.position(), end);
+        const bool always = reader_.accept('*');
+        skip_comments(end);
+        const bool asked = always || !production_.before || reader_.position() < brace.value_or(end);
+        if (asked && !always) {
+            production_.condition = reader_.read_expression(brace.value_or(end), brace ? "'{'" : "'->'");
+            if (!production_.condition) return false;
+        }
+        if (!parse_commands(production_.after, end)) return false;
+        // Without a condition there is nothing to be before.
+        if (production_.before && !asked && !production_.after) lone_block_ = true;
+        return true;
     }
 
-    /// The word `with` between these places, if it stands outside of parentheses.
-    std::optional<std::size_t> find_with(std::size_t begin, std::size_t end) const {
-        constexpr std::string_view word = "with";
+    void skip_comments(std::size_t end) {
+        reader_.move_to(std::min(text_.scanner.skip_blanks(reader_.position()), end));
+    }
+
+    /// `{ ... }`, if there is one here.
+    bool parse_commands(std::optional<LsysCommands>& commands, std::size_t end) {
+        skip_comments(end);
+        const std::size_t open = reader_.position();
+        if (open >= end || text_.scanner.text()[open] != '{') return true;
+        const std::optional<std::size_t> close = text_.scanner.brace_end(open, end);
+        if (!close) {
+            diagnostics_.error(text_.scanner.span(open, open + 1), "this '{' is not closed");
+            return false;
+        }
+        TokenStream stream = text_.tokens(open, *close, "the end of the block");
+        if (stream.at_end()) return false; // said by check of limits
+        commands = parse_lsys_commands(stream);
+        reader_.move_to(*close);
+        skip_comments(end);
+        return commands.has_value();
+    }
+
+    bool refuse_with(std::size_t word) {
+        diagnostics_
+            .error(text_.scanner.span(word, word + 4),
+                   "a production has either 'with' or blocks for local values")
+            .with_hint("assign the values in the block");
+        return false;
+    }
+
+    /// A word, or a brace, between these places, if it stands outside of parentheses and braces.
+    std::optional<std::size_t> find_outside(std::string_view word, std::size_t begin, std::size_t end) const {
         const std::string_view text = text_.scanner.text();
         const auto is_inside = [&](std::size_t at) {
             return at < end && (std::isalnum(static_cast<unsigned char>(text[at])) || text[at] == '_');
         };
         int depth = 0;
         for (std::size_t at = begin; at < end; ++at) {
-            depth += (text[at] == '(') - (text[at] == ')');
-            if (depth == 0 && text.substr(at, word.size()) == word && !is_inside(at + word.size()) &&
-                (at == begin || !is_inside(at - 1)))
+            at = text_.scanner.comment_end(at);
+            if (at >= end) break;
+            if (depth == 0 && text.substr(at, word.size()) == word &&
+                (word == "{" || (!is_inside(at + word.size()) && (at == begin || !is_inside(at - 1)))))
                 return at;
+            depth += (text[at] == '(' || text[at] == '{') - (text[at] == ')' || text[at] == '}');
         }
         return std::nullopt;
     }
@@ -239,7 +308,9 @@ class ProductionParser {
     }
 
     bool parse_successor() {
-        bool good = reader_.accept('*') || reader_.read_modules(production_.successor.modules);
+        const bool balanced = brackets_.closed + brackets_.open == 0;
+        bool good = reader_.accept('*') || reader_.read_modules(production_.successor.modules, balanced);
+        good = (balanced || check_brackets()) && good;
         if (reader_.accept(':')) {
             production_.probability = reader_.read_expression(statement_.end, lsys_line_end);
             return production_.probability && good;
@@ -255,9 +326,24 @@ class ProductionParser {
         return false;
     }
 
+    /// In place of the predecessor the successor must keep any word balanced.
+    bool check_brackets() {
+        const LsysBrackets now = unmatched_brackets(production_.successor.modules);
+        if (now.closed <= brackets_.closed && now.open + brackets_.closed == brackets_.open + now.closed)
+            return true;
+        const auto told = [](const LsysBrackets& brackets) {
+            return fmt::format("closes {} and opens {}", brackets.closed, brackets.open);
+        };
+        diagnostics_
+            .error(production_.successor.span,
+                   fmt::format("this successor {} of the word's branches", told(now)))
+            .with_hint(fmt::format("the predecessor {}, and the word must stay balanced", told(brackets_)));
+        return false;
+    }
+
     bool check_parameters() {
         std::vector<const Name*> names;
-        for (const Formals* part : {&production_.left, &production_.right})
+        for (const Formals* part : {&production_.following, &production_.left, &production_.right})
             for (const LsysFormal& module : *part)
                 add(module, names);
         add(production_.predecessor, names);
@@ -289,6 +375,8 @@ class ProductionParser {
     Diagnostics& diagnostics_;
     LsysStringReader reader_;
     LsysProduction production_;
+    LsysBrackets brackets_; ///< of the predecessor
+    bool lone_block_ = false;
     std::vector<std::pair<Name, Expression>> locals_;
 };
 

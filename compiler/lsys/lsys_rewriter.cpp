@@ -38,8 +38,22 @@ ChosenAlternative alternative_at(const std::vector<Alternative>& alternatives, d
 
 std::optional<ModuleString> LsysRewriter::axiom() {
     ModuleString string;
-    if (!append(grammar_.axiom, nullptr, {}, string)) return std::nullopt;
+    if (!append(grammar_.axiom, nullptr, {}, cells(RuleKind::produce, 0), string)) return std::nullopt;
     return string;
+}
+
+bool LsysRewriter::prepare(unsigned steps) {
+    if (grammar_.first_cells.empty() || grammar_.in_order || variables_.recorded() == steps) return !failed_;
+    timed_.clear(); // that of the last step was drawn
+    timed_ids_.clear();
+    failed_ = failed_ || !variables_.record(steps);
+    return !failed_;
+}
+
+std::span<const double> LsysRewriter::known_cells(RuleKind kind, double step) const {
+    if (!variables_.recorded()) return variables_.now();
+    const auto whole = static_cast<unsigned>(step);
+    return kind == RuleKind::interpret ? variables_.after(whole) : variables_.during(whole);
 }
 
 const std::vector<Alternative>* LsysRewriter::alternatives(RuleKind kind, ModuleId module,
@@ -70,7 +84,7 @@ std::uint32_t LsysRewriter::find_timed(RuleKind kind, ModuleId module, Moment mo
         timed_.clear();
         timed_ids_.clear();
     }
-    if (!(reads & reads_step)) moment.step = 0;
+    if (!(reads & (reads_step | reads_variables))) moment.step = 0;
     if (!(reads & reads_age)) moment.age = 0;
     const std::uint64_t hash = mixed(
         mixed(mixed(static_cast<std::uint64_t>(kind), module), std::bit_cast<std::uint64_t>(moment.step)),
@@ -105,7 +119,7 @@ bool LsysRewriter::collect(const std::vector<std::uint32_t>& rules, ModuleId mod
     const auto parameters = modules_.parameters(module);
     const std::vector<double> values(parameters.begin(), parameters.end());
     const auto first = try_rules(rules, values.size(), [&](const LsysRule& rule) {
-        if (rule.has_context()) return Fit::no;
+        if (rule.sees_word()) return Fit::no;
         Alternative alternative;
         const Fit fit = apply(rule, values, moment, alternative);
         if (fit == Fit::yes) found.push_back(std::move(alternative));
@@ -168,39 +182,86 @@ bool LsysRewriter::sums_to_one(double sum, const LsysRule& first) {
 
 Fit LsysRewriter::apply(const LsysRule& rule, std::span<const double> values, const Moment& moment,
                         Alternative& result) {
-    const std::size_t errors = diagnostics_.error_count();
-    if (!condition_holds(rule, values, moment))
-        return diagnostics_.error_count() > errors ? Fit::error : Fit::no;
-    const std::optional<double> chance = probability(rule, values, moment);
+    const auto slots = slots_of(rule, values, moment);
+    if (!slots) return Fit::error;
+    const std::optional<bool> fits = holds(rule, moment, *slots);
+    if (!fits) return Fit::error;
+    if (!*fits) return Fit::no;
+    const std::optional<double> chance = probability_of(rule, moment, *slots);
     if (!chance) return Fit::error;
     result.rule = &rule;
     result.probability = *chance;
     result.successor.clear();
     if (rule.draws > 0) return Fit::yes;
-    return append_successor(rule, values, moment, 0, result.successor) ? Fit::yes : Fit::error;
+    const bool applied = rule.is_plain() || apply_slots(rule, moment, 0, slots_);
+    return applied && append_by(rule, moment, *slots, result.successor) ? Fit::yes : Fit::error;
+}
+
+LsysMachine::State LsysRewriter::state_of(const LsysRule& rule, const Moment& moment,
+                                          std::span<double> slots) {
+    return {.slots = slots,
+            .names = rule.slots,
+            .cells = cells(rule.kind, moment.step),
+            .written_cells = chance_ ? variables_.now() : std::span<double>(),
+            .chance = chance_};
+}
+
+bool LsysRewriter::try_slots(const LsysRule& rule, const Moment& moment, std::vector<double>& slots,
+                             std::size_t first) {
+    slots.push_back(moment.step);
+    slots.push_back(moment.age);
+    slots.resize(first + rule.slot_count(), 0.0);
+    return rule.before.empty() ||
+           machine_.run(rule.before, state_of(rule, moment, std::span(slots).subspan(first)));
+}
+
+bool LsysRewriter::apply_slots(const LsysRule& rule, const Moment& moment, std::uint32_t set,
+                               std::vector<double>& slots, std::size_t first) {
+    if (rule.draws > 0) {
+        const std::vector<double>& draws = draws_of(rule);
+        for (std::uint32_t call = 0; call < rule.draws; ++call)
+            slots[first + rule.slots.size() + call] = draws[call * draw_sets + set];
+    }
+    return rule.after.empty() ||
+           machine_.run(rule.after, state_of(rule, moment, std::span(slots).subspan(first)));
 }
 
 /// Valid until the next call.
-std::span<const double> LsysRewriter::slots_of(const LsysRule& rule, std::span<const double> values,
-                                               const Moment& moment) {
-    if (rule.time == 0 && rule.draws == 0) return values;
+std::optional<std::span<const double>>
+LsysRewriter::slots_of(const LsysRule& rule, std::span<const double> values, const Moment& moment) {
+    if (rule.is_plain()) return values;
     slots_.assign(values.begin(), values.end());
-    slots_.push_back(moment.step);
-    slots_.push_back(moment.age);
+    if (!try_slots(rule, moment, slots_)) return std::nullopt;
     return slots_;
 }
 
 bool LsysRewriter::condition_holds(const LsysRule& rule, std::span<const double> values,
                                    const Moment& moment) {
     if (!rule.condition) return true;
-    const std::optional<double> truth = value(*rule.condition, rule, slots_of(rule, values, moment));
-    return truth && *truth != 0;
+    const auto slots = slots_of(rule, values, moment);
+    return slots && holds(rule, moment, *slots).value_or(false);
+}
+
+std::optional<bool> LsysRewriter::holds(const LsysRule& rule, const Moment& moment,
+                                        std::span<const double> slots) {
+    if (!rule.condition) return true;
+    const std::optional<double> truth = value(rule.condition->code, rule, moment, slots);
+    if (!truth) return std::nullopt;
+    return *truth != 0;
 }
 
 std::optional<double> LsysRewriter::probability(const LsysRule& rule, std::span<const double> values,
                                                 const Moment& moment) {
     if (!rule.probability) return 1;
-    const std::optional<double> chance = value(*rule.probability, rule, slots_of(rule, values, moment));
+    const auto slots = slots_of(rule, values, moment);
+    if (!slots) return std::nullopt;
+    return probability_of(rule, moment, *slots);
+}
+
+std::optional<double> LsysRewriter::probability_of(const LsysRule& rule, const Moment& moment,
+                                                   std::span<const double> slots) {
+    if (!rule.probability) return 1;
+    const std::optional<double> chance = value(*rule.probability, rule, moment, slots);
     if (!chance || *chance >= 0) return chance;
     diagnostics_.error(rule.source->probability->span,
                        fmt::format("a probability must not be negative, but is {}", shortest(*chance)));
@@ -209,35 +270,37 @@ std::optional<double> LsysRewriter::probability(const LsysRule& rule, std::span<
 
 bool LsysRewriter::append_successor(const LsysRule& rule, std::span<const double> values,
                                     const Moment& moment, std::uint32_t set, ModuleString& string) {
-    std::span<const double> slots = slots_of(rule, values, moment);
-    if (rule.draws > 0) {
-        const std::vector<double>& draws = draws_of(rule);
-        for (std::uint32_t call = 0; call < rule.draws; ++call)
-            slots_.push_back(draws[call * draw_sets + set]);
-        slots = slots_;
-    }
-    return append(rule.successor, &rule, slots, string);
+    if (rule.is_plain()) return append_by(rule, moment, values, string);
+    const auto slots = slots_of(rule, values, moment);
+    return slots && apply_slots(rule, moment, set, slots_) && append_by(rule, moment, slots_, string);
+}
+
+bool LsysRewriter::append_by(const LsysRule& rule, const Moment& moment, std::span<const double> slots,
+                             ModuleString& string) {
+    return append(rule.successor, &rule, slots, cells(rule.kind, moment.step), string);
 }
 
 std::optional<double> LsysRewriter::value(const ExpressionCode& code, const LsysRule& rule,
-                                          std::span<const double> slots) {
-    const std::optional<double> result = code.value(slots);
-    if (!result) code.report(slots, grammar_.lets, rule.slots, diagnostics_);
+                                          const Moment& moment, std::span<const double> slots) {
+    const std::span<const double> values = cells(rule.kind, moment.step);
+    const std::optional<double> result = code.value(slots, values);
+    if (!result) code.report(slots, grammar_.lets, rule.slots, diagnostics_, values);
     return result;
 }
 
 bool LsysRewriter::append(const std::vector<LsysTemplate>& templates, const LsysRule* rule,
-                          std::span<const double> slots, ModuleString& string) {
+                          std::span<const double> slots, std::span<const double> cells,
+                          ModuleString& string) {
     const bool stamps = birth_ != ModuleTable::no_birth && (!rule || rule->kind != RuleKind::interpret);
     for (const LsysTemplate& module : templates) {
         arguments_.clear();
         for (const ExpressionCode& code : module.parameters) {
-            const std::optional<double> argument = code.value(slots);
+            const std::optional<double> argument = code.value(slots, cells);
             if (!argument) {
                 code.report(slots, grammar_.lets,
                             rule ? std::span<const std::string_view>(rule->slots)
                                  : std::span<const std::string_view>(),
-                            diagnostics_);
+                            diagnostics_, cells);
                 return false;
             }
             arguments_.push_back(*argument);

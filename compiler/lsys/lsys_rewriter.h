@@ -9,6 +9,8 @@
 #include <vector>
 
 #include "compiler/lsys/lsys_grammar.h"
+#include "compiler/lsys/lsys_program.h"
+#include "compiler/lsys/lsys_variables.h"
 #include "compiler/lsys/module_table.h"
 #include "compiler/support/control.h"
 #include "compiler/support/id_table.h"
@@ -61,6 +63,7 @@ class LsysRewriter {
     LsysRewriter(const LsysGrammar& grammar, Diagnostics& diagnostics, std::uint64_t seed = 0,
                  WorkMeter* meter = nullptr)
         : grammar_(grammar), diagnostics_(diagnostics), seed_(seed), meter_(meter),
+          machine_(grammar.lets, diagnostics, meter), variables_(grammar, machine_, diagnostics, seed),
           has_ages_(std::ranges::find(grammar.ages, true) != grammar.ages.end()) {}
 
     const LsysGrammar& grammar() const { return grammar_; }
@@ -72,10 +75,18 @@ class LsysRewriter {
         if (meter_) meter_->add(modules);
     }
 
+    /// Readies the variables for a derivation of so many steps; to be called before anything else is. False
+    /// after an error. O(1) where there are none.
+    bool prepare(unsigned steps);
+    LsysVariables& variables() { return variables_; }
+    /// Where the word is derived in order, from now on until it is null: where chance is drawn anew. Then
+    /// productions may change the variables.
+    void derive_in_order(LsysChance* chance) { chance_ = chance; }
+
     /// The modules of the axiom; nothing after an error.
     std::optional<ModuleString> axiom();
 
-    /// The alternatives of a module without regard to contexts: productions that have some are passed over.
+    /// The alternatives of a module by itself: productions that see more of the word are passed over.
     /// Their probabilities sum to 1; none: no production applies, and the module stays. Null after an error
     /// (a division by zero, probabilities that do not sum to 1); reported once. Valid as long as this.
     const std::vector<Alternative>* alternatives(RuleKind kind, ModuleId module, const Moment& moment);
@@ -95,6 +106,25 @@ class LsysRewriter {
     /// The same for one rule and the values of its variables, those of the contexts included. Nothing if its
     /// condition is false, or after an error.
     bool condition_holds(const LsysRule& rule, std::span<const double> values, const Moment& moment);
+    /// The steps of applying a rule, for who keeps its slots. `slots` has the values of its variables, from
+    /// `first` on and last, and gets what else the rule's condition knows; then, if it is applied, one of the
+    /// draw_sets, and what its second block assigns. False after an error.
+    bool try_slots(const LsysRule& rule, const Moment& moment, std::vector<double>& slots,
+                   std::size_t first = 0);
+    bool apply_slots(const LsysRule& rule, const Moment& moment, std::uint32_t set,
+                     std::vector<double>& slots, std::size_t first = 0);
+    /// Of a rule whose slots are ready: whether its condition holds; nothing after an error.
+    std::optional<bool> holds(const LsysRule& rule, const Moment& moment, std::span<const double> slots);
+    std::optional<double> probability_of(const LsysRule& rule, const Moment& moment,
+                                         std::span<const double> slots);
+    bool append_by(const LsysRule& rule, const Moment& moment, std::span<const double> slots,
+                   ModuleString& string);
+
+    /// The variables as expressions of rules of a kind see them.
+    std::span<const double> cells(RuleKind kind, double step) const {
+        return grammar_.first_cells.empty() ? std::span<const double>() : known_cells(kind, step);
+    }
+
     /// Adds the rule's successor to `string`, drawn by one of the draw_sets; false after an error.
     bool append_successor(const LsysRule& rule, std::span<const double> values, const Moment& moment,
                           std::uint32_t set, ModuleString& string);
@@ -144,17 +174,22 @@ class LsysRewriter {
     bool collect(const std::vector<std::uint32_t>& rules, ModuleId module, const Moment& moment,
                  std::vector<Alternative>& found);
     bool normalise(std::vector<Alternative>& found, const LsysRule& first);
-    std::optional<double> value(const ExpressionCode& code, const LsysRule& rule,
+    std::span<const double> known_cells(RuleKind kind, double step) const;
+    LsysMachine::State state_of(const LsysRule& rule, const Moment& moment, std::span<double> slots);
+    std::optional<double> value(const ExpressionCode& code, const LsysRule& rule, const Moment& moment,
                                 std::span<const double> slots);
-    std::span<const double> slots_of(const LsysRule& rule, std::span<const double> values,
-                                     const Moment& moment);
+    std::optional<std::span<const double>> slots_of(const LsysRule& rule, std::span<const double> values,
+                                                    const Moment& moment);
     bool append(const std::vector<LsysTemplate>& templates, const LsysRule* rule,
-                std::span<const double> slots, ModuleString& string);
+                std::span<const double> slots, std::span<const double> cells, ModuleString& string);
 
     const LsysGrammar& grammar_;
     Diagnostics& diagnostics_;
     std::uint64_t seed_;
     WorkMeter* meter_;
+    LsysMachine machine_;
+    LsysVariables variables_;
+    LsysChance* chance_ = nullptr;
     bool has_ages_;
     std::uint32_t birth_ = ModuleTable::no_birth;
     ModuleTable modules_;

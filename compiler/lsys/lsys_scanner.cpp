@@ -30,9 +30,10 @@ std::optional<LsysSection> section_named(std::string_view word) {
 /// Statements that are made of the words of all languages, with their comments and strings.
 bool has_values(std::string_view word) {
     static const std::vector<std::string_view> words = {
-        "let",     "inner",     "angle",      "step",     "width",    "steps",  "seed",
-        "tropism", "thickness", "thinnest",   "vertical", "table",    "colors", "modules",
-        "camera",  "light",     "background", "ground",   "material", "use"};
+        "let",      "inner",     "angle",      "step",     "width",    "steps",  "seed",
+        "tropism",  "thickness", "thinnest",   "vertical", "table",    "colors", "modules",
+        "camera",   "light",     "background", "ground",   "material", "use",    "precedence",
+        "variable", "array",     "start",      "end"};
     return std::find(words.begin(), words.end(), word) != words.end();
 }
 
@@ -40,9 +41,10 @@ bool has_values(std::string_view word) {
 
 const std::vector<std::string>& lsys_keywords() {
     static const std::vector<std::string> keywords = {
-        "let",      "inner",    "angle",   "step",      "width",        "steps",     "seed",
-        "ignore",   "consider", "tropism", "colors",    "modules",      "thickness", "thinnest",
-        "vertical", "table",    "axiom",   "interpret", "homomorphism", "decompose", "decomposition"};
+        "let",      "inner",     "angle",        "step",      "width",        "steps",     "seed",
+        "ignore",   "consider",  "tropism",      "colors",    "modules",      "thickness", "thinnest",
+        "vertical", "table",     "precedence",   "variable",  "array",        "start",     "end",
+        "axiom",    "interpret", "homomorphism", "decompose", "decomposition"};
     return keywords;
 }
 
@@ -70,8 +72,9 @@ class LsysStatementEnd {
     LsysStatementEnd(const LsysScanner& scanner, std::size_t begin, std::string_view word,
                      std::size_t closes_before)
         : scanner_(scanner), at_(begin), closes_before_(closes_before), values_(has_values(word)),
-          production_(!is_lsys_keyword(word) && !values_),
-          lists_names_(word == "let" || word == "inner" || word == "colors" || word == "modules") {}
+          production_(!is_lsys_keyword(word) && !values_), blocks_(word == "start" || word == "end"),
+          lists_names_(word == "let" || word == "inner" || word == "colors" || word == "modules" ||
+                       word == "variable") {}
 
     std::size_t find() {
         while (at_ < scanner_.text_.size() && !ends_here())
@@ -93,7 +96,8 @@ class LsysStatementEnd {
     /// module may have such a name.
     std::string_view second_statement() const {
         const bool semicolon = scanner_.at(at_) == ';';
-        if (parentheses_ > 0 || (!semicolon && (!is_space(scanner_.at(at_)) || lists_names_))) return {};
+        if (parentheses_ > 0 || in_block() || (!semicolon && (!is_space(scanner_.at(at_)) || lists_names_)))
+            return {};
         const std::size_t begin = scanner_.skip_spaces(at_ + 1);
         const std::string_view word = lsys_name(scanner_.text_.substr(begin));
         const std::size_t end = begin + word.size();
@@ -107,10 +111,19 @@ class LsysStatementEnd {
         return ended && !is_value && !is_first ? word : std::string_view();
     }
 
+    /// Whether it stands in the braces of a block that assigns values.
+    bool in_block() const { return braces_ > 0 && (blocks_ || (production_ && !arrow_)); }
+
     bool goes_on() const {
         const bool open = parentheses_ + squares_ + braces_ > 0;
         const std::size_t next = scanner_.skip_spaces(at_ + 1);
-        if (next >= scanner_.text_.size() || (!open && !trailing_)) return false;
+        if (next >= scanner_.text_.size()) return false;
+        if (in_block()) return !at_other_statement(next);
+        const bool waits = production_ && colon_ && !arrow_;
+        if ((waits || (blocks_ && last_ != '}')) && scanner_.at(next) == '{') return true;
+        if (waits && last_ == '}' && scanner_.at(next) != '}') return !at_other_statement(next);
+        if (braces_closed_ && !arrow_ && lsys_arrow_size(scanner_.text_.substr(next)) > 0) return true;
+        if (!open && !trailing_) return false;
         if (values_ && braces_ > 0) return !scanner_.at_block(next);
         if (scanner_.at(next) == '\n') return open;
         // Alone on its line it closes the block: polygons may end in another string.
@@ -120,6 +133,14 @@ class LsysStatementEnd {
         return (production_ && !arrow_) || !scanner_.has_arrow(next);
     }
 
+    /// The word of a statement is none where it is assigned.
+    bool at_other_statement(std::size_t place) const {
+        if (scanner_.at_block(place)) return true;
+        const std::string_view word = lsys_name(scanner_.text_.substr(place));
+        const char after = scanner_.at(scanner_.skip_spaces(place + word.size()));
+        return is_lsys_keyword(word) && after != '=' && after != '[';
+    }
+
     void take() {
         const std::size_t comment = comment_end();
         if (comment > at_) {
@@ -127,10 +148,13 @@ class LsysStatementEnd {
             return;
         }
         const char c = scanner_.at(at_);
-        const std::size_t arrow = values_ ? 0 : lsys_arrow_size(scanner_.text_.substr(at_));
+        const std::size_t arrow = values_ || in_block() ? 0 : lsys_arrow_size(scanner_.text_.substr(at_));
         if (arrow > 0) return take_arrow(arrow);
         count(c);
-        if (c != '\n' && !is_space(c)) trailing_ = values_ && c == ',';
+        if (c != '\n' && !is_space(c)) {
+            trailing_ = values_ && c == ',';
+            last_ = c;
+        }
         ++at_;
     }
 
@@ -141,7 +165,7 @@ class LsysStatementEnd {
             return close == std::string_view::npos ? scanner_.text_.size()
                                                    : close + (scanner_.at(close) == '"' ? 1 : 0);
         }
-        if (values_ || parentheses_ > 0) return scanner_.comment_end(at_);
+        if (values_ || parentheses_ > 0 || in_block()) return scanner_.comment_end(at_);
         return scanner_.at(at_) == '#' ? scanner_.line_end(at_) : at_;
     }
 
@@ -158,9 +182,12 @@ class LsysStatementEnd {
             if (c == close && depth > 0) --depth;
         };
         change('(', ')', parentheses_);
-        if (parentheses_ > 0 || (production_ && !arrow_)) return;
+        if (parentheses_ > 0 || (production_ && !arrow_ && !colon_ && c != ':')) return;
+        colon_ = colon_ || c == ':';
+        const bool in_braces = braces_ > 0;
         change('[', ']', squares_);
         change('{', '}', braces_);
+        braces_closed_ = in_braces ? braces_ == 0 : braces_closed_;
     }
 
     const LsysScanner& scanner_;
@@ -169,9 +196,13 @@ class LsysStatementEnd {
     std::size_t closes_before_;
     bool values_;
     bool production_;
+    bool blocks_;      ///< a statement that is a word and a block
     bool lists_names_; ///< which may be those of statements
+    char last_ = '\0'; ///< before this place, of those that count
+    bool colon_ = false;
     bool arrow_ = false;
-    bool trailing_ = false; ///< the last character that counts asks for more
+    bool braces_closed_ = false; ///< of the block before this place
+    bool trailing_ = false;      ///< the last character that counts asks for more
     std::size_t parentheses_ = 0;
     std::size_t squares_ = 0;
     std::size_t braces_ = 0;
@@ -191,7 +222,6 @@ std::size_t LsysScanner::skip_spaces(std::size_t place) const {
     return std::min(text_.find_first_not_of(spaces, place), text_.size());
 }
 
-/// Past the comment of any kind at a place, or the place itself. One that is not closed goes to the end.
 std::size_t LsysScanner::comment_end(std::size_t place) const {
     if (at(place) == '#' || text_.substr(place, 2) == "//") return line_end(place);
     if (text_.substr(place, 2) != "/*") return place;
@@ -326,13 +356,28 @@ std::optional<std::size_t> LsysScanner::parenthesis_end(std::size_t open, std::s
     return std::nullopt;
 }
 
+std::optional<std::size_t> LsysScanner::brace_end(std::size_t open, std::size_t end) const {
+    std::size_t depth = 0;
+    for (std::size_t place = open; place < end;) {
+        const std::size_t comment = comment_end(place);
+        if (comment > place) {
+            place = comment;
+            continue;
+        }
+        if (at(place) == '{') ++depth;
+        if (at(place) == '}' && --depth == 0) return place + 1;
+        ++place;
+    }
+    return std::nullopt;
+}
+
 std::optional<std::size_t> LsysScanner::find_arrow(std::size_t place, std::size_t end) const {
     std::optional<std::size_t> inside;
     for (std::size_t depth = 0; place < end; ++place) {
         place = comment_end(place);
         const char c = at(place);
-        if (c == '(') ++depth;
-        if (c == ')' && depth > 0) --depth;
+        if (c == '(' || c == '{') ++depth;
+        if ((c == ')' || c == '}') && depth > 0) --depth;
         if (place >= end || lsys_arrow_size(text_.substr(place, end - place)) == 0) continue;
         if (depth == 0) return place;
         if (!inside) inside = place;

@@ -67,12 +67,17 @@ class LsysScanner {
     std::optional<LsysHeader> find_block(std::size_t at) const;
     /// Past white space, line ends and all comments; one that is not closed is an error.
     std::size_t skip_blanks(std::size_t at) const;
+    /// Past the comment of any kind at a place, or the place itself. One that is not closed goes to the end.
+    std::size_t comment_end(std::size_t place) const;
     /// The statements of the block whose '{' stands before `begin`, `interpret` and `decompose` opened up.
     LsysOutline outline(std::size_t begin) const;
 
     /// Past the ')' that closes the '(' at `open`, or nothing if none does before `end`.
     std::optional<std::size_t> parenthesis_end(std::size_t open, std::size_t end) const;
-    /// Of the first arrow outside of parentheses from `at` on, or, without one, of the first inside.
+    /// Past the '}' that closes the '{' at `open`, outside of comments, or nothing if none does before `end`.
+    std::optional<std::size_t> brace_end(std::size_t open, std::size_t end) const;
+    /// Of the first arrow outside of parentheses and braces from `at` on, or, without one, of the first
+    /// inside.
     std::optional<std::size_t> find_arrow(std::size_t at, std::size_t end) const;
 
     /// Reports "expected WHAT, found ..." at a place.
@@ -83,7 +88,6 @@ class LsysScanner {
     char at(std::size_t place) const { return place < text_.size() ? text_[place] : '\0'; }
     std::size_t line_end(std::size_t place) const;
     std::size_t skip_spaces(std::size_t place) const;
-    std::size_t comment_end(std::size_t place) const;
     bool at_block(std::size_t place) const;
     bool at_misspelt_block(std::string_view word) const;
     bool has_arrow(std::size_t place) const;

@@ -110,6 +110,12 @@ Degree degree_of(const Expression& e, const SizeNames& sizes) {
         return degree_of_binary(e, sizes);
     case Expression::Kind::call:
         return degree_of_call(e, sizes);
+    case Expression::Kind::element:
+        return std::ranges::all_of(
+                   e.operands,
+                   [&](const Expression& index) { return number_if(degree_of(index, sizes)).of.has_value(); })
+                   ? of(0)
+                   : no_degree;
     }
     return no_degree;
 }
@@ -157,6 +163,8 @@ class LsysSizes::Inference {
             for (const LsysTemplate& module : rule.successor)
                 add(module.symbol, module.parameters.size());
         }
+        for (const LsysRule& rule : grammar_.rules) // what blocks make of them nobody knows
+            if (rule.has_blocks()) roles(rule).assign(roles(rule).size(), ParameterRole::number);
         // Chains of productions take a round each; so long ones are nobody's.
         constexpr int most_rounds = 200;
         int rounds = 0;

@@ -17,12 +17,12 @@ constexpr std::uint32_t most_interpretations = 1000;
 } // namespace
 
 bool LsysStream::can_derive(const LsysGrammar& grammar) {
-    return !grammar.has_context && !grammar.has_rules(RuleKind::decompose) &&
+    return !grammar.needs_word && !grammar.has_rules(RuleKind::decompose) &&
            !grammar.uses({TurtleCommand::cut});
 }
 
 bool LsysStream::can_draw(const LsysGrammar& grammar) {
-    return grammar.time(RuleKind::interpret) == 0 || !grammar.is_random(RuleKind::interpret);
+    return !grammar.draws_in_time() || !grammar.is_random(RuleKind::interpret);
 }
 
 LsysStream::LsysStream(LsysRewriter& rewriter, const ModelPlacer& models, Diagnostics& diagnostics,
@@ -37,7 +37,8 @@ bool LsysStream::derive(Turtle& turtle) {
 }
 
 bool LsysStream::count() {
-    frames_.push_back({.string = &grammar_.axiom});
+    if (!rewriter_.prepare(options_.steps)) return false;
+    frames_.push_back({.string = &grammar_.axiom, .cells = rewriter_.cells(RuleKind::produce, 0)});
     return run();
 }
 
@@ -70,12 +71,12 @@ bool LsysStream::read_module(Frame& frame, Module& module) {
     module.span = frame.rule ? frame.rule->source->span : grammar_.source->axiom->span;
     for (const ExpressionCode& code : source.parameters) {
         const std::span<const double> slots = std::span(values_).subspan(frame.slots, frame.slot_count);
-        const std::optional<double> value = code.value(slots);
+        const std::optional<double> value = code.value(slots, frame.cells);
         if (!value) {
             code.report(slots, grammar_.lets,
                         frame.rule ? std::span<const std::string_view>(frame.rule->slots)
                                    : std::span<const std::string_view>(),
-                        diagnostics_);
+                        diagnostics_, frame.cells);
             return false;
         }
         values_.push_back(unrounded(*value));
@@ -95,8 +96,7 @@ bool LsysStream::meet(const Module& module, std::uint32_t word) {
             if (!chosen.rule && !waits) break; // what none fits now, none will fit later
             if (++in_word_[word] > options_.max_modules) return refuse_length(word);
             if (!chosen.rule) continue;
-            push(chosen, module, moment, {.word = word + 1, .birth = word + 1});
-            return true;
+            return push(chosen, module, moment, {.word = word + 1, .birth = word + 1});
         }
     }
     return count_from(word) && emit(module, 0);
@@ -132,12 +132,11 @@ bool LsysStream::emit(const Module& module, std::uint32_t repeated) {
         if (chosen.rule) {
             if (chosen.rule->is_random()) ++interpreted_;
             if (repeated < most_interpretations) {
-                push(chosen, module, moment,
-                     {.word = options_.steps,
-                      .birth = module.birth,
-                      .repeated = repeated + 1,
-                      .interprets = true});
-                return true;
+                return push(chosen, module, moment,
+                            {.word = options_.steps,
+                             .birth = module.birth,
+                             .repeated = repeated + 1,
+                             .interprets = true});
             }
             diagnostics_
                 .error(chosen.rule->source->span, fmt::format("the interpretation of '{}' does not end",
@@ -157,23 +156,19 @@ bool LsysStream::emit(const Module& module, std::uint32_t repeated) {
     return turtle_->run(command, parameters(module), model, module.span);
 }
 
-/// Goes on with what a rule makes of the module.
-void LsysStream::push(const Chosen& chosen, const Module& module, const Moment& moment, Frame frame) {
+/// Goes on with what a rule makes of the module; false after an error.
+bool LsysStream::push(const Chosen& chosen, const Module& module, const Moment& moment, Frame frame) {
     const LsysRule& rule = *chosen.rule;
     frame.string = &rule.successor;
     frame.rule = &rule;
     frame.slots = static_cast<std::uint32_t>(values_.size() - module.arity);
-    if (rule.time != 0 || rule.draws > 0) {
-        values_.push_back(moment.step);
-        values_.push_back(moment.age);
-    }
-    if (rule.draws > 0) {
-        const std::vector<double>& draws = rewriter_.draws_of(rule);
-        for (std::uint32_t call = 0; call < rule.draws; ++call)
-            values_.push_back(draws[call * draw_sets + chosen.set]);
-    }
+    frame.cells = rewriter_.cells(rule.kind, moment.step);
+    if (!rule.is_plain() && !(rewriter_.try_slots(rule, moment, values_, frame.slots) &&
+                              rewriter_.apply_slots(rule, moment, chosen.set, values_, frame.slots)))
+        return false;
     frame.slot_count = static_cast<std::uint32_t>(values_.size() - frame.slots);
     frames_.push_back(frame);
+    return true;
 }
 
 /// As LsysSuccessors does, to the last bit. No rule: none fits. False after an error.
@@ -183,7 +178,7 @@ bool LsysStream::choose(RuleKind kind, const Module& module, const Moment& momen
     competitors_.clear();
     const auto first = rewriter_.try_rules(
         grammar_.candidates(kind, module.symbol), values.size(), [&](const LsysRule& rule) {
-            if (rule.has_context()) return Fit::no;
+            if (rule.sees_word()) return Fit::no;
             if (rule.condition) {
                 const std::size_t errors = diagnostics_.error_count();
                 if (!rewriter_.condition_holds(rule, values, moment))

@@ -57,7 +57,8 @@ class LsysStream {
         std::uint32_t at = 0;           ///< next in the string
         std::uint32_t slots = 0;        ///< where the values of the rule's names begin
         std::uint32_t slot_count = 0;
-        std::uint32_t word = 0; ///< the step after which its modules stand in the word
+        std::span<const double> cells; ///< the variables
+        std::uint32_t word = 0;        ///< the step after which its modules stand in the word
         std::uint32_t birth = 0;
         std::uint32_t repeated = 0; ///< interpretations around it
         bool interprets = false;
@@ -85,7 +86,7 @@ class LsysStream {
     bool emit(const Module& module, std::uint32_t repeated);
     bool draw(const FoldedWord& word, std::span<const ModuleId> string);
     bool draw_bracket(TurtleCommand command);
-    void push(const Chosen& chosen, const Module& module, const Moment& moment, Frame frame);
+    bool push(const Chosen& chosen, const Module& module, const Moment& moment, Frame frame);
     bool choose(RuleKind kind, const Module& module, const Moment& moment, std::uint64_t draw,
                 Chosen& chosen);
     bool count_from(std::uint32_t word);

@@ -226,12 +226,12 @@ template<class Take> bool LsysStringReader::read(Take take_module) {
     return good;
 }
 
-bool LsysStringReader::read_modules(std::vector<LsysModule>& modules) {
+bool LsysStringReader::read_modules(std::vector<LsysModule>& modules, bool balanced) {
     bool good = read([&](const Raw& raw) {
         modules.push_back({raw.symbol, {}, raw.model, raw.span});
         return !raw.parameters || read_parameters(raw, modules.back().parameters);
     });
-    return check_lsys_brackets(modules, text_) && good;
+    return check_lsys_brackets(modules, text_, balanced) && good;
 }
 
 bool LsysStringReader::read_formals(std::vector<LsysFormal>& modules) {
@@ -344,7 +344,8 @@ std::optional<Expression> LsysStringReader::read_expression(std::size_t end, std
     return std::nullopt;
 }
 
-template<class Module> bool check_lsys_brackets(const std::vector<Module>& modules, LsysText& text) {
+template<class Module>
+bool check_lsys_brackets(const std::vector<Module>& modules, LsysText& text, bool balanced) {
     std::vector<const Module*> branches, polygons;
     for (const Module& module : modules) {
         const bool opens = module.symbol == "[" || module.symbol == "{";
@@ -361,6 +362,7 @@ template<class Module> bool check_lsys_brackets(const std::vector<Module>& modul
         if (!open.empty()) {
             open.pop_back();
         } else if (is_branch) {
+            if (!balanced) continue;
             text.diagnostics.error(module.span, "']' without '['");
             return false;
         } else if (!text.closed_polygon) {
@@ -368,12 +370,21 @@ template<class Module> bool check_lsys_brackets(const std::vector<Module>& modul
         }
     }
     if (!polygons.empty() && !text.open_polygon) text.open_polygon = polygons.back()->span;
-    if (branches.empty()) return true;
+    if (branches.empty() || !balanced) return true;
     text.diagnostics.error(branches.back()->span, "this '[' is not closed");
     return false;
 }
 
-template bool check_lsys_brackets(const std::vector<LsysModule>& modules, LsysText& text);
-template bool check_lsys_brackets(const std::vector<LsysFormal>& modules, LsysText& text);
+template bool check_lsys_brackets(const std::vector<LsysModule>& modules, LsysText& text, bool balanced);
+template bool check_lsys_brackets(const std::vector<LsysFormal>& modules, LsysText& text, bool balanced);
+
+void LsysBrackets::add(std::string_view symbol) {
+    if (symbol == "[") ++open;
+    if (symbol != "]") return;
+    if (open > 0)
+        --open;
+    else
+        ++closed;
+}
 
 } // namespace graftal

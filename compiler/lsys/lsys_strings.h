@@ -60,7 +60,8 @@ class LsysStringReader {
         : text_(text), scanner_(text.scanner), at_(begin), end_(end) {}
 
     /// Modules up to '<', '>', ':', '*', an arrow or the end. The readers return false after an error.
-    bool read_modules(std::vector<LsysModule>& modules);
+    /// `balanced`: square brackets that do not match are an error.
+    bool read_modules(std::vector<LsysModule>& modules, bool balanced = true);
     /// The same with names for parameters.
     bool read_formals(std::vector<LsysFormal>& modules);
     /// The same without parameters, for `ignore` and `consider`.
@@ -106,7 +107,25 @@ class LsysStringReader {
     bool warned_ = false;
 };
 
-/// Reports square brackets that do not match, and notes braces that have no other.
-template<class Module> bool check_lsys_brackets(const std::vector<Module>& modules, LsysText& text);
+/// Reports square brackets that do not match, unless they need not be balanced, and notes braces that have no
+/// other.
+template<class Module>
+bool check_lsys_brackets(const std::vector<Module>& modules, LsysText& text, bool balanced = true);
+
+/// Square brackets of a string that have no other in it: first those that close, then those that open.
+struct LsysBrackets {
+    std::size_t closed = 0;
+    std::size_t open = 0;
+
+    /// What it becomes by the next symbol.
+    void add(std::string_view symbol);
+};
+
+template<class Module> LsysBrackets unmatched_brackets(const std::vector<Module>& modules) {
+    LsysBrackets brackets;
+    for (const Module& module : modules)
+        brackets.add(module.symbol);
+    return brackets;
+}
 
 } // namespace graftal

@@ -33,14 +33,14 @@ LsysSuccessors::LsysSuccessors(LsysRewriter& rewriter, LsysDecomposer& decompose
 
 void LsysSuccessors::look_at(const LsysRule& rule) {
     is_stochastic_ |= rule.is_random();
-    if (!rule.has_context()) return;
-    has_context_ = true;
+    if (!rule.sees_word()) return;
+    sees_word_ = true;
     Contexts& contexts = contexts_[rule.predecessor.symbol];
     contexts.has_left |= !rule.left.empty();
     contexts.has_right |= !rule.right.empty();
     // A pattern in brackets has three modules at least, or sees whether there is a branch.
-    contexts.sight =
-        std::max(contexts.sight, rule.left.size() > 1 || rule.right.size() > 1 ? Sight::far : Sight::near);
+    const bool near = rule.left.size() <= 1 && rule.right.size() <= 1 && rule.following.empty();
+    contexts.sight = std::max(contexts.sight, near ? Sight::near : Sight::far);
 }
 
 void LsysSuccessors::begin_step(std::uint32_t step) {
@@ -78,9 +78,11 @@ LsysSuccessors::Entry LsysSuccessors::compute_entry(ModuleId module) {
     return has_contexts ? *run | mark : *run;
 }
 
-std::optional<RunId> LsysSuccessors::choose(ModuleId module, Entry entry, std::uint64_t draw,
-                                            ContextMatcher& matcher, std::uint32_t position) {
+std::optional<LsysSuccessors::Replacement> LsysSuccessors::choose(ModuleId module, Entry entry,
+                                                                  std::uint64_t draw, ContextMatcher& matcher,
+                                                                  std::uint32_t position) {
     const std::vector<Choice>* choices = &choices_;
+    std::uint32_t modules = 1;
     const Sight sight = contexts(module).sight;
     if (sight == Sight::near) {
         entry = entry_nearby(module, entry, matcher, position);
@@ -88,15 +90,18 @@ std::optional<RunId> LsysSuccessors::choose(ModuleId module, Entry entry, std::u
         const auto first = compete_in_context(module, matcher, position);
         chances_.clear();
         entry = first ? entry_of(*first, entry & ~mark, chances_) : unknown;
+        if (first && *first) modules = (*first)->length();
         choices = &chances_;
     }
-    if (is_run(entry)) return entry;
+    if (is_run(entry)) return Replacement{entry, modules};
     if (entry == unknown) return std::nullopt;
     const Choice* choice = choices->data() + (entry & ~mark);
     std::uint64_t below = 0;
     while (draw > choice->upto)
         below = (choice++)->upto;
-    return run_of(*choice, draw - below);
+    const std::optional<RunId> run = run_of(*choice, draw - below);
+    if (!run) return std::nullopt;
+    return Replacement{*run, choice->modules};
 }
 
 /// What chance gives within a choice has nothing to do with the choice itself.
@@ -136,7 +141,7 @@ std::optional<const LsysRule*> LsysSuccessors::compete_in_context(ModuleId modul
                                                                   std::uint32_t position) {
     return compete(module, [&](const LsysRule& rule) {
         bound_.assign(1, module);
-        if (rule.has_context() && !matcher.matches(rule, position, bound_)) return Outcome{};
+        if (rule.sees_word() && !matcher.matches(rule, position, bound_)) return Outcome{};
         return known_outcome(rule, bound_);
     });
 }
@@ -174,7 +179,7 @@ bool LsysSuccessors::add_choices(const LsysRule& first, std::vector<Choice>& cho
         below += outcome.probability / sum;
         const double upto = std::ldexp(below, 64);
         choices.push_back({upto < 0x1p64 ? static_cast<std::uint64_t>(upto) : UINT64_MAX, outcome.run,
-                           outcome.draws, outcome.bound, outcome.bound_count});
+                           outcome.draws, outcome.bound, outcome.bound_count, outcome.modules});
     }
     choices.back().upto = UINT64_MAX;
     return true;
@@ -204,12 +209,17 @@ LsysSuccessors::Outcome LsysSuccessors::outcome(const LsysRule& rule, std::span<
     if (rule.draws > 0) {
         bounds_.insert(bounds_.end(), bound.begin(), bound.end());
         const auto count = static_cast<std::uint32_t>(bound.size());
-        return {
-            Fit::yes, alternative_.probability, 0, &rule, static_cast<std::uint32_t>(bounds_.size()) - count,
-            count};
+        return {Fit::yes,
+                alternative_.probability,
+                0,
+                &rule,
+                static_cast<std::uint32_t>(bounds_.size()) - count,
+                count,
+                rule.length()};
     }
     const std::optional<RunId> run = add_successor(alternative_.successor, rule);
-    return run ? Outcome{Fit::yes, alternative_.probability, *run} : Outcome{Fit::error};
+    if (!run) return {Fit::error};
+    return {Fit::yes, alternative_.probability, *run, nullptr, 0, 0, rule.length()};
 }
 
 /// Decomposes the run for good where it can be decomposed in one way only.

@@ -27,9 +27,10 @@ class LsysSuccessors {
     /// All must outlive this.
     LsysSuccessors(LsysRewriter& rewriter, LsysDecomposer& decomposer, Diagnostics& diagnostics);
 
-    /// Whether all entries are runs: no production has a context, a probability or random numbers.
-    bool is_plain() const { return !has_context_ && !is_stochastic_; }
-    bool has_context() const { return has_context_; }
+    /// Whether all entries are runs: no production sees more than one module, or has a probability or random
+    /// numbers.
+    bool is_plain() const { return !sees_word_ && !is_stochastic_; }
+    bool sees_word() const { return sees_word_; }
     bool is_stochastic() const { return is_stochastic_; }
 
     /// Nothing but `unknown` after an error.
@@ -40,10 +41,16 @@ class LsysSuccessors {
 
     /// The run of a module whose entry is known to be one.
     RunId run(ModuleId module) const { return entries_[module]; }
-    /// The run of a module whose entry is none. `draw` is uniform over all 64 bits; `matcher` looks at the
-    /// word, which has the module at this position. Nothing after an error.
-    std::optional<RunId> choose(ModuleId module, Entry entry, std::uint64_t draw, ContextMatcher& matcher,
-                                std::uint32_t position);
+    /// What takes the place of some modules of a word.
+    struct Replacement {
+        RunId run = 0;
+        std::uint32_t modules = 1;
+    };
+    /// The run of a module whose entry is none, and how many of the modules from it on it replaces. `draw` is
+    /// uniform over all 64 bits; `matcher` looks at the word, which has the module at this position. Nothing
+    /// after an error.
+    std::optional<Replacement> choose(ModuleId module, Entry entry, std::uint64_t draw,
+                                      ContextMatcher& matcher, std::uint32_t position);
 
     const ModuleRuns& runs() const { return runs_; }
 
@@ -59,6 +66,7 @@ class LsysSuccessors {
         const LsysRule* draws = nullptr; ///< in place of the run: one that chance gives
         std::uint32_t bound = 0;         ///< the rule's modules, in bounds_
         std::uint32_t bound_count = 0;
+        std::uint32_t modules = 1; ///< that it replaces
     };
     /// What became of a rule.
     struct Outcome {
@@ -68,11 +76,12 @@ class LsysSuccessors {
         const LsysRule* draws = nullptr; ///< in place of the run
         std::uint32_t bound = 0;
         std::uint32_t bound_count = 0;
+        std::uint32_t modules = 1;
     };
     /// How far the productions of a symbol look.
     enum class Sight : std::uint8_t {
-        none, ///< no contexts
-        near, ///< at most one module towards the root and one away from it
+        none, ///< at the module alone
+        near, ///< and at most at one module towards the root and one away from it
         far,
     };
     struct Contexts {
@@ -105,7 +114,7 @@ class LsysSuccessors {
     LsysRewriter& rewriter_;
     LsysDecomposer& decomposer_;
     Diagnostics& diagnostics_;
-    bool has_context_ = false;
+    bool sees_word_ = false;
     bool is_stochastic_ = false;
     bool is_timed_ = false; ///< what a module becomes depends on the step
     std::uint32_t step_ = 0;

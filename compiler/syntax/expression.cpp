@@ -16,8 +16,9 @@ namespace {
 
 class Evaluator {
   public:
-    Evaluator(const Environment& environment, const ChanceDraws& draws, Diagnostics& diagnostics)
-        : environment_(environment), draws_(draws), diagnostics_(diagnostics) {}
+    Evaluator(const Environment& environment, const ChanceDraws& draws, const ExpressionCells& cells,
+              Diagnostics& diagnostics)
+        : environment_(environment), draws_(draws), cells_(cells), diagnostics_(diagnostics) {}
 
     /// Recursion is as deep as the tree, which the parser bounds.
     std::optional<double> value(const Expression& e) {
@@ -32,6 +33,8 @@ class Evaluator {
             return unary(e);
         case Expression::Kind::binary:
             return binary(e);
+        case Expression::Kind::element:
+            return element(e);
         }
         return std::nullopt;
     }
@@ -39,6 +42,13 @@ class Evaluator {
   private:
     std::optional<double> name(const Expression& e) {
         if (const auto found = environment_.find(e.text); found != environment_.end()) return found->second;
+        if (const CellPlace* const cell = cells_.find(e.text)) {
+            if (cell->dimensions == 0) return cells_.values[cell->first];
+            diagnostics_.error(e.span, fmt::format("'{}' is an array", e.text))
+                .with_hint(fmt::format("write an element of it: {}{}", e.text,
+                                       cell->dimensions == 1 ? "[0]" : "[0][0]"));
+            return std::nullopt;
+        }
         if (e.text == "pi") return std::numbers::pi;
         Diagnostic& error = diagnostics_.error(e.span, fmt::format("unknown name '{}'", e.text));
         if (expression_function(e.text)) {
@@ -48,11 +58,56 @@ class Evaluator {
         std::vector<std::string> candidates = {"pi"};
         for (const auto& [known, value] : environment_)
             candidates.push_back(known);
+        if (cells_.places)
+            for (const auto& [known, place] : *cells_.places)
+                candidates.push_back(known);
         const bool unit = e.text == "deg" || e.text == "degrees" || e.text == "rad" || e.text == "radians";
         error.with_hint(unit ? "angles are in degrees, and numbers have no units"
                         : candidates.size() == 1 && e.text != "PI" && e.text != "Pi"
                             ? fmt::format("'let {} = ...' names a number", e.text)
                             : choices(e.text, candidates));
+        return std::nullopt;
+    }
+
+    std::optional<double> element(const Expression& e) {
+        const CellPlace* const array = cells_.find(e.text);
+        if (!array || environment_.contains(e.text)) return unknown_array(e);
+        if (array->dimensions != e.operands.size()) {
+            diagnostics_.error(e.span,
+                               array->dimensions == 0
+                                   ? fmt::format("'{}' is a number, not an array", e.text)
+                                   : fmt::format("'{}' has {} ind{}, not {}", e.text, array->dimensions,
+                                                 array->dimensions == 1 ? "ex" : "ices", e.operands.size()));
+            return std::nullopt;
+        }
+        std::uint32_t at = 0;
+        for (std::size_t i = 0; i < e.operands.size(); ++i) {
+            const std::optional<double> number = value(e.operands[i]);
+            if (!number) return std::nullopt;
+            const std::optional<std::uint32_t> index = cell_index(*number, array->sizes[i]);
+            if (!index) {
+                diagnostics_.error(e.operands[i].span,
+                                   fmt::format("this index of '{}' must lie between 0 and {}, but is {}",
+                                               e.text, array->sizes[i] - 1, shortest(*number)));
+                return std::nullopt;
+            }
+            at = at * array->sizes[i] + *index;
+        }
+        return cells_.values[array->first + at];
+    }
+
+    std::nullopt_t unknown_array(const Expression& e) {
+        if (environment_.contains(e.text)) {
+            diagnostics_.error(e.span, fmt::format("'{}' is a number, not an array", e.text));
+            return std::nullopt;
+        }
+        std::vector<std::string> candidates;
+        if (cells_.places)
+            for (const auto& [known, place] : *cells_.places)
+                if (place.dimensions > 0) candidates.push_back(known);
+        diagnostics_.error(e.span, fmt::format("unknown array '{}'", e.text))
+            .with_hint(candidates.empty() ? "only a block of an L-system has arrays: array a[3] = 1, 2, 3"
+                                          : choices(e.text, candidates));
         return std::nullopt;
     }
 
@@ -105,7 +160,7 @@ class Evaluator {
         if (draw == draws_.end()) {
             diagnostics_.error(e.span,
                                fmt::format("'{}' draws random numbers, which only the lines of an object "
-                                           "(.inst) and the successors of productions (.lsys) may use",
+                                           "(.inst) and productions (.lsys) may use",
                                            e.text));
             return std::nullopt;
         }
@@ -161,14 +216,23 @@ class Evaluator {
 
     const Environment& environment_;
     const ChanceDraws& draws_;
+    const ExpressionCells& cells_;
     Diagnostics& diagnostics_;
 };
 
 } // namespace
 
 std::optional<double> evaluate(const Expression& expression, const Environment& environment,
-                               Diagnostics& diagnostics, const ChanceDraws& draws) {
-    return Evaluator(environment, draws, diagnostics).value(expression);
+                               Diagnostics& diagnostics, const ChanceDraws& draws,
+                               const ExpressionCells& cells) {
+    return Evaluator(environment, draws, cells, diagnostics).value(expression);
+}
+
+std::optional<std::uint32_t> cell_index(double index, std::uint32_t size) {
+    constexpr double rounding = 1e-9;
+    const double whole = std::floor(index + rounding);
+    if (!(whole >= 0 && whole < size)) return std::nullopt;
+    return static_cast<std::uint32_t>(whole);
 }
 
 } // namespace graftal

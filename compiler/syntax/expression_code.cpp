@@ -18,9 +18,9 @@ constexpr double failed = std::numeric_limits<double>::quiet_NaN();
 class ExpressionCode::Compiler {
   public:
     Compiler(ExpressionCode& code, const Environment& constants, std::span<const std::string_view> variables,
-             Diagnostics& diagnostics, std::uint32_t* draws)
+             Diagnostics& diagnostics, std::uint32_t* draws, const CellPlaces* cells)
         : code_(code), constants_(constants), variables_(variables), diagnostics_(diagnostics),
-          draws_(draws) {}
+          draws_(draws), cells_{cells, {}} {}
 
     /// The node of the expression. Recursion is as deep as the tree, which the parser bounds.
     std::optional<std::uint32_t> add(const Expression& e) {
@@ -35,6 +35,8 @@ class ExpressionCode::Compiler {
             return add_operands(e, {.kind = e.text == "!" ? Kind::invert : Kind::negate});
         case Expression::Kind::binary:
             return add_operands(e, {.kind = Kind::binary, .op = binary_operator(e.text)});
+        case Expression::Kind::element:
+            return add_element(e);
         }
         return std::nullopt;
     }
@@ -50,9 +52,26 @@ class ExpressionCode::Compiler {
         if (slot != variables_.end())
             return append(
                 {.kind = Kind::slot, .slot = static_cast<std::uint32_t>(slot - variables_.begin())});
-        if (const std::optional<double> number = evaluate(e, visible_names(e), diagnostics_))
+        if (const CellPlace* const cell = cells_.find(e.text); cell && cell->dimensions == 0) {
+            code_.reads_changing_cells_ |= cell->changes;
+            return append({.kind = Kind::cell, .slot = cell->first});
+        }
+        if (const std::optional<double> number = evaluate(e, visible_names(e), diagnostics_, {}, cells_))
             return append({.kind = Kind::number, .number = *number});
         return std::nullopt;
+    }
+
+    std::optional<std::uint32_t> add_element(const Expression& e) {
+        const CellPlace* const array = cells_.find(e.text);
+        const bool hidden = std::ranges::find(variables_, e.text) != variables_.end();
+        if (hidden || !array || array->dimensions != e.operands.size()) {
+            evaluate(e, visible_names(e), diagnostics_, {}, cells_);
+            return std::nullopt;
+        }
+        code_.reads_changing_cells_ |= array->changes;
+        code_.arrays_.push_back(*array);
+        return add_operands(
+            e, {.kind = Kind::element, .slot = static_cast<std::uint32_t>(code_.arrays_.size() - 1)});
     }
 
     /// For the error about an unknown name, those of the variables too.
@@ -103,14 +122,17 @@ class ExpressionCode::Compiler {
     std::span<const std::string_view> variables_;
     Diagnostics& diagnostics_;
     std::uint32_t* draws_;
+    ExpressionCells cells_;
 };
 
 std::optional<ExpressionCode> ExpressionCode::compile(const Expression& expression,
                                                       const Environment& constants,
                                                       std::span<const std::string_view> variables,
-                                                      Diagnostics& diagnostics, std::uint32_t* draws) {
+                                                      Diagnostics& diagnostics, std::uint32_t* draws,
+                                                      const CellPlaces* cells) {
     ExpressionCode code(expression);
-    if (!Compiler(code, constants, variables, diagnostics, draws).add(expression)) return std::nullopt;
+    code.cells_ = cells;
+    if (!Compiler(code, constants, variables, diagnostics, draws, cells).add(expression)) return std::nullopt;
     return code;
 }
 
@@ -119,44 +141,49 @@ bool ExpressionCode::reads(std::size_t slot) const {
         nodes_, [&](const Node& node) { return node.kind == Kind::slot && node.slot == slot; });
 }
 
-std::optional<double> ExpressionCode::value(std::span<const double> slots) const {
+std::optional<double> ExpressionCode::value(std::span<const double> slots,
+                                            std::span<const double> cells) const {
     const Node& whole = nodes_.back();
     const double result = whole.kind == Kind::slot ? slots[whole.slot]
                           : whole.kind == Kind::number
                               ? whole.number
-                              : value(static_cast<std::uint32_t>(nodes_.size() - 1), slots);
+                              : value(static_cast<std::uint32_t>(nodes_.size() - 1), Row{slots, cells});
     if (std::isfinite(result)) return result;
     return std::nullopt;
 }
 
-double ExpressionCode::value(std::uint32_t index, std::span<const double> slots) const {
+double ExpressionCode::value(std::uint32_t index, const Row& row) const {
     const Node& node = nodes_[index];
     switch (node.kind) {
     case Kind::number:
         return node.number;
     case Kind::slot:
-        return slots[node.slot];
+        return row.slots[node.slot];
+    case Kind::cell:
+        return row.cells[node.slot];
+    case Kind::element:
+        return element(node, row);
     case Kind::negate:
-        return -value(node.operands[0], slots);
+        return -value(node.operands[0], row);
     case Kind::invert: {
-        const double operand = value(node.operands[0], slots);
+        const double operand = value(node.operands[0], row);
         return std::isnan(operand) ? failed : static_cast<double>(operand == 0);
     }
     case Kind::call:
-        return call(node, slots);
+        return call(node, row);
     case Kind::binary:
-        return binary(node, slots);
+        return binary(node, row);
     }
     return failed;
 }
 
-double ExpressionCode::binary(const Node& node, std::span<const double> slots) const {
+double ExpressionCode::binary(const Node& node, const Row& row) const {
     // Most operands are numbers and names: to call for them would take most of the time.
     const auto value_of = [&](std::uint32_t operand) {
         const Node& leaf = nodes_[operand];
-        return leaf.kind == Kind::slot     ? slots[leaf.slot]
+        return leaf.kind == Kind::slot     ? row.slots[leaf.slot]
                : leaf.kind == Kind::number ? leaf.number
-                                           : value(operand, slots);
+                                           : value(operand, row);
     };
     const double left = value_of(node.operands[0]);
     if (!std::isfinite(left)) return failed;
@@ -169,33 +196,47 @@ double ExpressionCode::binary(const Node& node, std::span<const double> slots) c
     return apply_binary(node.op, left, right);
 }
 
-double ExpressionCode::call(const Node& node, std::span<const double> slots) const {
+double ExpressionCode::call(const Node& node, const Row& row) const {
     if (node.table) {
-        const double x = value(node.operands[0], slots);
+        const double x = value(node.operands[0], row);
         return std::isfinite(x) ? table_value(*node.table, x) : failed;
     }
     if (node.function->chooses) {
-        const double condition = value(node.operands[0], slots);
-        return std::isfinite(condition) ? value(node.operands[condition != 0 ? 1 : 2], slots) : failed;
+        const double condition = value(node.operands[0], row);
+        return std::isfinite(condition) ? value(node.operands[condition != 0 ? 1 : 2], row) : failed;
     }
     std::array<double, max_function_arity> arguments{};
     const std::size_t arity = node.function->arity;
     for (std::size_t i = 0; i < arity; ++i) {
-        arguments[i] = value(node.operands[i], slots);
+        arguments[i] = value(node.operands[i], row);
         if (!std::isfinite(arguments[i])) return failed;
     }
     return node.function->apply(std::span(arguments).first(arity));
 }
 
+double ExpressionCode::element(const Node& node, const Row& row) const {
+    const CellPlace& array = arrays_[node.slot];
+    std::uint32_t at = 0;
+    for (std::uint32_t i = 0; i < array.dimensions; ++i) {
+        const double number = value(node.operands[i], row);
+        const std::optional<std::uint32_t> index =
+            std::isfinite(number) ? cell_index(number, array.sizes[i]) : std::nullopt;
+        if (!index) return failed;
+        at = at * array.sizes[i] + *index;
+    }
+    return row.cells[array.first + at];
+}
+
 void ExpressionCode::report(std::span<const double> slots, const Environment& constants,
-                            std::span<const std::string_view> variables, Diagnostics& diagnostics) const {
+                            std::span<const std::string_view> variables, Diagnostics& diagnostics,
+                            std::span<const double> cells) const {
     Environment environment = constants;
     for (std::size_t i = 0; i < std::min(variables.size(), slots.size()); ++i)
         if (!variables[i].empty()) environment.insert_or_assign(std::string(variables[i]), slots[i]);
     ChanceDraws draws;
     for (const auto& [call, slot] : draws_)
         draws[call] = slots[slot];
-    evaluate(*source_, environment, diagnostics, draws);
+    evaluate(*source_, environment, diagnostics, draws, {cells_, cells});
 }
 
 } // namespace graftal

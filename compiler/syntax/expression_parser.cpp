@@ -32,6 +32,8 @@ int precedence(std::string_view op) {
     return 0;
 }
 
+constexpr std::size_t most_indices = 2;
+
 constexpr int comparison = 3;
 constexpr int addition = 4;
 
@@ -122,6 +124,7 @@ class ExpressionParser {
             return result;
         }
         if (stream_.at("(")) return parse_call(token);
+        if (stream_.at("[") && !stream_.peek().space_before) return parse_element(token);
         return node(Expression::Kind::name, token, token.span);
     }
 
@@ -162,9 +165,29 @@ class ExpressionParser {
         return result;
     }
 
-    bool close(const Token& open) {
-        if (stream_.accept(")")) return true;
-        stream_.expected("')'").with_note(open.span, "to close this '('");
+    /// `a[i]`, `a[i][j]`
+    std::optional<Expression> parse_element(const Token& name) {
+        Expression result = node(Expression::Kind::element, name, name.span);
+        while (stream_.at("[") && !stream_.peek().space_before) {
+            const Token open = stream_.next();
+            if (result.operands.size() == most_indices) {
+                stream_.diagnostics().error(open.span, "an array has one or two indices");
+                return std::nullopt;
+            }
+            const Nested nested(*this);
+            if (!nested.ok) return std::nullopt;
+            std::optional<Expression> index = parse();
+            if (!index || !close(open, "]")) return std::nullopt;
+            result.operands.push_back(std::move(*index));
+        }
+        result.span = stream_.span_from(name.span);
+        return result;
+    }
+
+    bool close(const Token& open, std::string_view by = ")") {
+        if (stream_.accept(by)) return true;
+        stream_.expected(fmt::format("'{}'", by))
+            .with_note(open.span, fmt::format("to close this '{}'", open.text));
         return false;
     }
 
@@ -172,7 +195,7 @@ class ExpressionParser {
     struct Nested {
         explicit Nested(ExpressionParser& parser)
             : ok(parser.enter()), parser_(parser), outer_(parser.mode_) {
-            if (parser.stream_.previous().is("(")) parser.mode_ = Mode();
+            if (parser.stream_.previous().is("(") || parser.stream_.previous().is("[")) parser.mode_ = Mode();
         }
         ~Nested() {
             --parser_.depth_;

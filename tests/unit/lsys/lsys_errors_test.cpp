@@ -79,9 +79,10 @@ m.lsys:4:7: error: this '(' is not closed
 
 TEST(LsysErrors, leftSides) {
     const Cases cases = {
-        {R"e([ -> F)e", R"e(m.lsys:3:1: error: a bracket cannot be rewritten
+        {R"e([ -> F)e", R"e(m.lsys:3:3: error: this successor closes 0 and opens 0 of the word's branches
     [ -> F
-    ^
+      ^~
+    hint: the predecessor closes 0 and opens 1, and the word must stay balanced
 )e"},
         {R"e(-> F)e", R"e(m.lsys:3:1: error: expected the module that is rewritten, found '->'
     -> F
@@ -113,20 +114,22 @@ TEST(LsysErrors, leftSides) {
           ^
     hint: write the left context first, and only once: A < B > C -> ...
 )e"},
-        {R"e(Bud -> F)e", R"e(m.lsys:3:1: error: a production rewrites one module, not 3
+        {R"e(Bud -> F)e", R"e(m.lsys:3:1: error: 'Bud' is read letter by letter, as modules side by side
     Bud -> F
     ^~~
-    hint: declare longer names: modules Bud
+    hint: declare longer names: modules Bud; or write blanks between the modules
 )e"},
-        {R"e(Bud : n > 1 -> F)e", R"e(m.lsys:3:1: error: a production rewrites one module, not 3
+        {R"e(Bud : n > 1 -> F)e",
+         R"e(m.lsys:3:1: error: 'Bud' is read letter by letter, as modules side by side
     Bud : n > 1 -> F
     ^~~
-    hint: declare longer names: modules Bud
+    hint: declare longer names: modules Bud; or write blanks between the modules
 )e"},
-        {R"e(A B -> F)e", R"e(m.lsys:3:1: error: a production rewrites one module, not 2
-    A B -> F
-    ^~~
-    hint: write the modules around it as its context: A < B > C -> ...
+        {R"e(interpret A B -> F)e",
+         R"e(m.lsys:3:11: error: a production of 'interpret' or 'decompose' rewrites one module, not 2
+    interpret A B -> F
+              ^~~
+    hint: rewrite several modules at once in a derivation step
 )e"},
         {R"e(A -(0.33)-> F)e", R"e(m.lsys:3:5: error: expected the name of a parameter, found '0.33'
     A -(0.33)-> F
@@ -262,7 +265,7 @@ TEST(LsysErrors, statements) {
         {R"e(angel 60)e", R"e(m.lsys:3:1: error: unknown statement 'angel'
     angel 60
     ^~~~~
-    hint: did you mean 'angle'? known here: let, inner, angle, step, width, steps, seed, ignore, consider, tropism, colors, modules, thickness, thinnest, vertical, table, axiom, interpret, homomorphism, decompose, decomposition
+    hint: did you mean 'angle'? known here: let, inner, angle, step, width, steps, seed, ignore, consider, tropism, colors, modules, thickness, thinnest, vertical, table, precedence, variable, array, start, end, axiom, interpret, decompose
 )e"},
         {R"e(F = F+F)e", R"e(m.lsys:3:3: error: expected '->', found '='
     F = F+F
@@ -507,7 +510,7 @@ axoim F
          R"e(m.lsys:2:1: error: unknown statement 'axoim'
     axoim F
     ^~~~~
-    hint: did you mean 'axiom'? known here: let, inner, angle, step, width, steps, seed, ignore, consider, tropism, colors, modules, thickness, thinnest, vertical, table, axiom, interpret, homomorphism, decompose, decomposition
+    hint: did you mean 'axiom'? known here: let, inner, angle, step, width, steps, seed, ignore, consider, tropism, colors, modules, thickness, thinnest, vertical, table, precedence, variable, array, start, end, axiom, interpret, decompose
 )e"},
         {R"e(lsysx a {
 axiom ''

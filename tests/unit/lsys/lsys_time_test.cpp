@@ -77,7 +77,7 @@ class AgedReference {
             if (rule.predecessor.arity != module.parameters.size()) continue;
             std::vector<double> slots = module.parameters;
             slots.insert(slots.end(), {step, step - module.birth});
-            if (rule.condition && rule.condition->value(slots).value() == 0) continue;
+            if (rule.condition && rule.condition->code.value(slots).value() == 0) continue;
             return instantiate(rule.successor, slots, birth);
         }
         return std::nullopt;

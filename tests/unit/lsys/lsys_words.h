@@ -3,10 +3,12 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include <fmt/format.h>
 
 #include "compiler/lsys/lsys_derive.h"
+#include "compiler/lsys/lsys_ordered.h"
 #include "tests/unit/lsys/lsys_texts.h"
 
 namespace graftal::testing {
@@ -28,8 +30,20 @@ class LsysModel {
 
     std::optional<ModuleString> derive(unsigned steps, std::uint64_t seed = 0,
                                        std::uint64_t most = 100'000'000) {
+        return derive_by(steps, {}, seed, most);
+    }
+
+    /// With a stage between the steps.
+    std::optional<ModuleString> derive_by(unsigned steps, LsysStage stage, std::uint64_t seed = 0,
+                                          std::uint64_t most = 100'000'000) {
         if (!rewriter_) return std::nullopt;
-        return LsysDeriver(*rewriter_, parsed_.diagnostics, seed, most).derive(steps);
+        if (!grammar_->first_cells.empty()) rewriter_.emplace(*grammar_, parsed_.diagnostics, seed);
+        const auto by = [&](auto deriver) {
+            deriver.after_each_step(std::move(stage));
+            return deriver.derive(steps);
+        };
+        if (grammar_->in_order) return by(LsysOrderedDeriver(*rewriter_, parsed_.diagnostics, seed, most));
+        return by(LsysDeriver(*rewriter_, parsed_.diagnostics, seed, most));
     }
 
     /// The word as text: `F[+(30)A(1,2)]`.

@@ -136,6 +136,7 @@ def write(draw, model, small):
         grammar.has_petal = True
     stochastic, conditional, contexts = draw.chance(0.25), grammar.parametric and draw.chance(0.6), draw.chance(0.15)
     timed = draw.chance(0.08)
+    variables, several, blocks = draw.chance(0.1), draw.chance(0.06), draw.chance(0.08)
     name = 'system' if small else 'main_system'
     model.say(f'{"main " if grammar.has_petal else ""}lsys {name} {{')
     if draw.chance(0.85):
@@ -150,9 +151,21 @@ def write(draw, model, small):
         model.say('  ignore + - & ^ / F')
     if (stochastic or contexts) and draw.chance(0.5):
         model.say(f'  seed {draw.whole(0, 1000)}')
-    rules, depth_free = [], not (stochastic or contexts or timed)
+    if (contexts or several) and draw.chance(0.3):
+        model.say(f'  precedence {draw.pick(["text", "contexts"])}')
+    if variables:
+        declare(draw, model)
+    rules, depth_free = [], not (stochastic or contexts or timed or variables or several or blocks)
     for symbol, kinds in grammar.kinds.items():
-        rules += productions(draw, grammar, symbol, kinds, stochastic, conditional, contexts, timed)
+        lines = productions(draw, grammar, symbol, kinds, stochastic, conditional, contexts, timed)
+        if several and draw.chance(0.5):
+            lines.insert(0, several_modules(draw, grammar, symbol))
+        if blocks:
+            lines = [with_block(draw, line, 's' in dict(zip('stuv', kinds)), variables) if draw.chance(0.6) else line
+                     for line in lines]
+        if variables:
+            lines = [line.replace('+', '+(turn[n])', 1) if draw.chance(0.5) else line for line in lines]
+        rules += lines
     axiom = draw.pick(list(grammar.kinds))
     axioms = ''.join(first(draw, grammar, draw.pick(list(grammar.kinds)) if k else axiom) + draw.pick(['', '', '+', 'F'])
                      for k in range(draw.pick([1, 1, 1, 2, 4])))
@@ -211,6 +224,48 @@ def productions(draw, grammar, symbol, kinds, stochastic, conditional, contexts,
     if timed and draw.chance(0.6):
         return [f'{formal} : step < {draw.whole(2, 12)} -> {successor()}', f'{formal} : age >= 2 -> {successor()}']
     return [f'{formal} -> {successor()}']
+
+
+def several_modules(draw, grammar, symbol):
+    """A production for two or three modules side by side, with or without the brackets around one of them."""
+    names = iter('abcdefghijkl')
+
+    def formal(other):
+        own = [next(names) for _ in grammar.kinds[other]]
+        return other + (f'({",".join(own)})' if own else '')
+    others = [formal(draw.pick(list(grammar.kinds))) for _ in range(draw.whole(1, 2))]
+    between = draw.pick([' ', ' ', ' [ ', ' ] '])
+    head = formal(symbol) + between + ' '.join(others)
+    body = first(draw, grammar, draw.pick(list(grammar.kinds))) + draw.pick(['F', '', '+F'])
+    return f'{head} -> {body}{between}' if between != ' ' else f'{head} -> {body}'
+
+
+def declare(draw, model):
+    """Variables, and the blocks of steps that change them."""
+    model.say(f'  variable n = {draw.whole(0, 2)}, m = {number(draw.uniform(0.5, 2))}',
+              f'  array turn[3] = {numbers([draw.uniform(-90, 90) for _ in range(3)])}')
+    if draw.chance(0.3):
+        model.say(f'  start {{ m = {number(draw.uniform(0.5, 2))}; turn[n] = {number(draw.uniform(5, 60))} }}')
+    model.say('  start each { n = (n + 1) % 3 }' if draw.chance(0.6) else
+              '  start each {\n    if (step % 2 == 0) { n = 0 } else { n = 2 }\n  }')
+    if draw.chance(0.4):
+        model.say(draw.pick(['  end each { m = 0.9*m }', '  end each { m = random(0.5, 1) }',
+                             '  end each { turn[2] = step }']))
+    if draw.chance(0.2):
+        model.say('  end { n = 1 }')
+
+
+def with_block(draw, line, has_parameter, variables):
+    """A production with a block, behind its condition or in place of one."""
+    head, tail = line.split(' -> ', 1)
+    value = 's' if has_parameter else '1'
+    statements = draw.pick([f'local = 0.5*{value}', f'local = {value}; while (local > 10) {{ local = local/2 }}',
+                            f'if ({value} > 0.5) {{ local = 1 }} else {{ local = 2 }}',
+                            'do { local = local + random(0, 1) } while (local < 2)'])
+    if variables and draw.chance(0.4):
+        statements += draw.pick(['; m = 0.99*m', '; turn[n] = turn[n] + 1', f'; m = min(m, {value})'])
+    return f'{head}{" " if " : " in head else " : "}{{ {statements} }} -> {tail}+(5*local)'.replace('*+(', '+(') \
+        if ' : ' not in tail else line
 
 
 def steps(draw, model, grammar, rules, small, repeats):

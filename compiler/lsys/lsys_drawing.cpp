@@ -32,6 +32,9 @@ constexpr double most_drift = 0.05;
 constexpr std::uint32_t fewest_variants = 16;
 constexpr std::uint32_t most_variants = 4096;
 
+/// Blocks may carry out so many statements for each module that a word may have.
+constexpr std::uint64_t instructions_a_module = 2;
+
 /// Models with more parts get by with fewer directions.
 constexpr std::size_t most_exact_parts = 100'000;
 /// And with fewer sizes, if these make them so many: then with a quarter. Of random models, as many for
@@ -65,8 +68,10 @@ class Drawer {
     Drawer(const LsysGrammar& grammar, const ModelPlacer& models, const LsysDrawOptions& options,
            Diagnostics& diagnostics)
         : grammar_(grammar), models_(models), options_(options), diagnostics_(diagnostics),
-          rewriter_(grammar, diagnostics, options.seed, options.meter), sizes_(grammar, options.inner),
-          width_(stated_width(grammar)), width_is_open_(has_open_width(grammar)) {
+          rewriter_(grammar, diagnostics, options.seed, options.meter,
+                    instructions_a_module * options.max_modules),
+          sizes_(grammar, options.inner), width_(stated_width(grammar)),
+          width_is_open_(has_open_width(grammar)) {
         add_roundings();
     }
 

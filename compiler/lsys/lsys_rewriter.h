@@ -59,11 +59,13 @@ inline constexpr std::size_t max_distinct_modules = 20'000'000;
 /// Applies the productions of a grammar to single modules; each module is rewritten once and then known.
 class LsysRewriter {
   public:
-    /// All must outlive this. The meter counts what work() is told; null: nobody does.
+    /// All must outlive this. The meter counts what work() is told; null: nobody does. `most_instructions`:
+    /// of all blocks.
     LsysRewriter(const LsysGrammar& grammar, Diagnostics& diagnostics, std::uint64_t seed = 0,
-                 WorkMeter* meter = nullptr)
+                 WorkMeter* meter = nullptr, std::uint64_t most_instructions = max_instructions)
         : grammar_(grammar), diagnostics_(diagnostics), seed_(seed), meter_(meter),
-          machine_(grammar.lets, diagnostics, meter), variables_(grammar, machine_, diagnostics, seed),
+          machine_(grammar.lets, diagnostics, meter, most_instructions),
+          variables_(grammar, machine_, diagnostics, seed),
           has_ages_(std::ranges::find(grammar.ages, true) != grammar.ages.end()) {}
 
     const LsysGrammar& grammar() const { return grammar_; }

@@ -16,6 +16,9 @@ namespace graftal::testing {
 /// An L-system of these statements, ready to derive.
 class LsysModel {
   public:
+    /// Of its blocks.
+    static constexpr std::uint64_t most_statements = 100'000;
+
     explicit LsysModel(const std::string& statements) {
         parse("lsys test {\n" + statements + "\n}\n", parsed_);
         if (parsed_.file.blocks.size() != 1) return;
@@ -37,7 +40,8 @@ class LsysModel {
     std::optional<ModuleString> derive_by(unsigned steps, LsysStage stage, std::uint64_t seed = 0,
                                           std::uint64_t most = 100'000'000) {
         if (!rewriter_) return std::nullopt;
-        if (!grammar_->first_cells.empty()) rewriter_.emplace(*grammar_, parsed_.diagnostics, seed);
+        if (!grammar_->first_cells.empty())
+            rewriter_.emplace(*grammar_, parsed_.diagnostics, seed, nullptr, most_statements);
         const auto by = [&](auto deriver) {
             deriver.after_each_step(std::move(stage));
             return deriver.derive(steps);

@@ -1,5 +1,6 @@
 """Random L-systems: 1 to 12 rules, and a turtle of every state."""
 import math
+import re
 
 import scene
 from draw import number, numbers
@@ -164,7 +165,8 @@ def write(draw, model, small):
             lines = [with_block(draw, line, 's' in dict(zip('stuv', kinds)), variables) if draw.chance(0.6) else line
                      for line in lines]
         if variables:
-            lines = [line.replace('+', '+(turn[n])', 1) if draw.chance(0.5) else line for line in lines]
+            lines = [re.sub(r'\+(?=[A-Z\[])', '+(turn[n])', line, count=1) if draw.chance(0.5) else line
+                     for line in lines]
         rules += lines
     axiom = draw.pick(list(grammar.kinds))
     axioms = ''.join(first(draw, grammar, draw.pick(list(grammar.kinds)) if k else axiom) + draw.pick(['', '', '+', 'F'])

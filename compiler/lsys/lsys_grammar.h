@@ -35,7 +35,7 @@ inline constexpr std::size_t rule_kind_count = 3;
 using TimeMask = std::uint8_t;
 enum TimeBit : TimeMask { reads_step = 1, reads_age = 2, reads_variables = 4 };
 /// What makes a drawing change between two steps.
-inline constexpr TimeMask flows = reads_step | reads_age;
+inline constexpr TimeMask reads_clock = reads_step | reads_age;
 
 /// A module of a context or predecessor.
 struct LsysPattern {
@@ -141,7 +141,7 @@ struct LsysGrammar {
     /// Of all rules of a kind.
     TimeMask time(RuleKind kind) const;
     /// Whether the drawing of a word changes between two steps.
-    bool draws_in_time() const { return (time(RuleKind::interpret) & flows) != 0; }
+    bool draws_in_time() const { return (time(RuleKind::interpret) & reads_clock) != 0; }
     /// Whether rules of a kind have random numbers in their successors.
     bool draws(RuleKind kind) const;
     /// Whether rules of a kind give chance a say.

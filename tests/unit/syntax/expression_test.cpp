@@ -1,11 +1,17 @@
 #include "compiler/syntax/expression.h"
 
+#include <array>
 #include <cmath>
 #include <limits>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "compiler/syntax/expression_code.h"
 #include "compiler/syntax/expression_parser.h"
 
 namespace graftal {
@@ -121,6 +127,70 @@ TEST(Expression, errors_say_what_is_wrong_and_where) {
     EXPECT_THAT(error("1 +"), HasSubstr("expected a number, found the end of the file"));
     EXPECT_THAT(error("(1 + 2"), HasSubstr("note: to close this '('"));
     EXPECT_THAT(error("* 2"), HasSubstr("expected a number, found '*'"));
+}
+
+/// A number `n` of 2, an array `a` of 5, 6, 7 and an array `b` of two rows, 1 2 and 3 4; a name `x` of 1.
+/// Evaluated and compiled, which must agree. Errors in `errors`.
+double value_of_cells(const std::string& text, std::string* errors = nullptr) {
+    const CellPlaces places = {{"n", {.first = 0}},
+                               {"a", {.first = 1, .dimensions = 1, .sizes = {3, 1}}},
+                               {"b", {.first = 4, .dimensions = 2, .sizes = {2, 2}}}};
+    const std::vector<double> cells = {2, 5, 6, 7, 1, 2, 3, 4};
+    const std::array<std::string_view, 1> names = {"x"};
+    const std::array slots = {1.0};
+    SourceMap sources;
+    Diagnostics diagnostics;
+    TokenStream stream(lex(sources, sources.add("t", text), diagnostics), diagnostics);
+    const std::optional<Expression> expression = parse_expression(stream);
+    if (expression && !stream.at_end()) stream.expected("the end");
+    double result = nothing;
+    if (expression && !diagnostics.has_errors()) {
+        result = evaluate(*expression, {{"x", 1}}, diagnostics, {}, {&places, cells}).value_or(nothing);
+        const std::string said = diagnostics.render(sources);
+        Diagnostics again;
+        const auto code = ExpressionCode::compile(*expression, {}, names, again, nullptr, &places);
+        const std::optional<double> compiled = code ? code->value(slots, cells) : std::nullopt;
+        EXPECT_EQ(compiled.has_value(), !std::isnan(result)) << text;
+        if (compiled) {
+            EXPECT_EQ(*compiled, result) << text;
+        }
+        if (code && !compiled) code->report(slots, {}, names, again, cells);
+        EXPECT_EQ(again.render(sources), said) << text;
+    }
+    if (errors) *errors = diagnostics.render(sources);
+    return result;
+}
+
+TEST(Expression, cells_have_names_and_indices) {
+    EXPECT_EQ(value_of_cells("n"), 2);
+    EXPECT_EQ(value_of_cells("a[0] + 10*a[n]"), 75);
+    EXPECT_EQ(value_of_cells("a[1.9]"), 6);
+    EXPECT_EQ(value_of_cells("a[2 - 1e-12]"), 7); // rounding
+    EXPECT_EQ(value_of_cells("b[x][0]^2"), 9);
+    EXPECT_EQ(value_of_cells("-b[a[0] - 5][b[0][0]]"), -2);
+    EXPECT_EQ(value_of_cells("max(a[0], a[1])"), 6);
+}
+
+TEST(Expression, wrong_indices_are_errors) {
+    const auto said = [](const std::string& text) {
+        std::string errors;
+        EXPECT_TRUE(std::isnan(value_of_cells(text, &errors))) << text;
+        return errors;
+    };
+    EXPECT_THAT(said("a[3]"),
+                HasSubstr("t:1:3: error: this index of 'a' must lie between 0 and 2, but is 3"));
+    EXPECT_THAT(said("a[-1]"), HasSubstr("must lie between 0 and 2, but is -1"));
+    EXPECT_THAT(said("b[1][n]"), HasSubstr("t:1:6: error: this index of 'b' must lie between 0 and 1"));
+    EXPECT_THAT(said("a[1/0]"), HasSubstr("division by zero"));
+    EXPECT_THAT(said("a"), HasSubstr("'a' is an array"));
+    EXPECT_THAT(said("a[1][1]"), HasSubstr("'a' has 1 index, not 2"));
+    EXPECT_THAT(said("b[1]"), HasSubstr("'b' has 2 indices, not 1"));
+    EXPECT_THAT(said("n[1]"), HasSubstr("'n' is a number, not an array"));
+    EXPECT_THAT(said("x[1]"), HasSubstr("'x' is a number, not an array"));
+    EXPECT_THAT(said("c[1]"), HasSubstr("unknown array 'c'"));
+    EXPECT_THAT(said("b[1][1][1]"), HasSubstr("an array has one or two indices"));
+    EXPECT_THAT(said("a[1"), HasSubstr("note: to close this '['"));
+    EXPECT_THAT(error("a[1]"), HasSubstr("only a block of an L-system has arrays"));
 }
 
 TEST(Expression, depth_and_length_are_bounded) {

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <utility>
 
 #include <fmt/format.h>
@@ -11,16 +10,12 @@
 #include <glm/gtc/quaternion.hpp>
 #include <glm/matrix.hpp>
 
-#include "compiler/support/angle.h"
 #include "compiler/support/number.h"
 #include "compiler/support/number_range.h"
 
 namespace graftal {
 
 namespace {
-
-/// `!` without an argument: the areas of two such branches sum to that of their parent.
-constexpr double thinning = std::numbers::sqrt2 / 2;
 
 /// They are cut into triangles in a time that goes with the square.
 constexpr std::size_t max_polygon_vertices = 10'000;
@@ -269,162 +264,6 @@ void Turtle::move(std::span<const double> parameters, bool absolute, bool draw, 
     if (draw) bend();
 }
 
-double Turtle::line_width(double length) {
-    constexpr double slenderness = 0.05;
-    if (context_.relative_width) {
-        const double least = context_.thinnest > 0 ? written(context_.thinnest) * read_unit() : 0;
-        return at_least_size(std::max(read_width() * std::abs(length), least));
-    }
-    return context_.limit && context_.lines ? slenderness * std::abs(length) : read_width();
-}
-
-double Turtle::usual_angle() {
-    if (!context_.varies_angle) return context_.angle_deg;
-    note(reads_angle);
-    return state_.angle_factor * context_.angle_deg;
-}
-
-/// How long a length is that a string writes.
-double Turtle::written(double length) {
-    if (!context_.varies_step) return scale_ * length;
-    note(reads_ruler);
-    return state_.ruler * length;
-}
-
-/// Of what is as thick as a segment.
-double Turtle::usual_diameter() {
-    return context_.relative_width ? read_width() * scale_ * context_.step * read_unit() : read_width();
-}
-
-/// The width stays as it is, and so becomes another one as seen from the turtle. `written_too`: lengths that
-/// strings write go with the scale.
-bool Turtle::scale_by(double factor, bool written_too, Span span) {
-    const double scale = scale_ * factor;
-    const double ruler = state_.ruler * (written_too ? factor : 1);
-    const double largest = std::max(ruler, context_.relative_width ? 0 : state_.width) / std::min(1.0, scale);
-    if (scale >= least_size && scale <= largest_size && ruler >= least_size && largest <= largest_size) {
-        scale_ = scale;
-        if (!context_.varies_step || !written_too) return true;
-        note(reads_ruler);
-        writes_ |= reads_ruler;
-        state_.ruler = ruler;
-        return true;
-    }
-    if (factor > 0 && std::isfinite(factor))
-        context_.diagnostics.error(span, "the scale of the turtle leaves the range of numbers")
-            .with_hint("use fewer steps, or factors closer to 1");
-    else
-        context_.diagnostics.error(
-            span, fmt::format("a factor of the scale must be above 0, but is {}", shortest(factor)));
-    return false;
-}
-
-bool Turtle::widen_by(double factor, Span span) {
-    const double width = factor * read_width();
-    if (factor >= 0 && width <= largest_size) {
-        state_.width = at_least_size(width);
-        writes_ |= reads_width;
-        return true;
-    }
-    context_.diagnostics.error(span, fmt::format("a width must lie between 0 and {}, but is {}",
-                                                 shortest(largest_size), shortest(width)));
-    return false;
-}
-
-bool Turtle::multiply_angle(double factor, Span span) {
-    note(reads_angle);
-    const double product = state_.angle_factor * factor;
-    if (std::abs(product) <= largest_size) {
-        state_.angle_factor = product;
-        writes_ |= reads_angle;
-        return true;
-    }
-    context_.diagnostics.error(span, "the factor of the angle leaves the range of numbers");
-    return false;
-}
-
-double Turtle::sense() {
-    if (!context_.reverses_turns) return 1;
-    note(reads_reversal);
-    return state_.turns_reversed ? -1 : 1;
-}
-
-/// With a parameter, so that turns are reversed where it is not 0; without, the other way than before.
-void Turtle::reverse_turns(std::span<const double> parameters) {
-    if (parameters.empty()) note(reads_reversal);
-    state_.turns_reversed = parameters.empty() ? !state_.turns_reversed : parameters[0] != 0;
-    writes_ |= reads_reversal;
-}
-
-void Turtle::exchange() {
-    note(reads_second);
-    std::swap(start_from_turtle_.linear, second_);
-    writes_ |= reads_second;
-}
-
-/// Both pairs of axes become mirror images, so that the second ones are seen from the first as before.
-void Turtle::flip() {
-    start_from_turtle_.linear[0] = -start_from_turtle_.linear[0];
-    second_[0] = -second_[0];
-    mirrored_ = !mirrored_;
-}
-
-/// By columns: what is not turned stays as it is, to the last bit.
-void Turtle::turn(Axis axis, double angle_deg) {
-    const auto [cosine, sine] = cos_sin_deg(angle_deg);
-    const int k = static_cast<int>(axis);
-    Vec3& first = start_from_turtle_.linear[(k + 1) % 3];
-    Vec3& second = start_from_turtle_.linear[(k + 2) % 3];
-    const Vec3 turned = cosine * first + sine * second;
-    second = cosine * second - sine * first;
-    first = turned;
-}
-
-/// L = V x H / |V x H|, U = H x L (ABOP, section 2.2); a turtle that heads straight up or down stays.
-void Turtle::level() {
-    note(reads_vertical);
-    const Vec3 heading = start_from_turtle_.linear[1];
-    const Vec3 left = glm::cross(state_.vertical, heading);
-    constexpr double least_sine = 1e-9;
-    if (!(glm::length(left) > least_sine)) return;
-    // The roll turns about the heading by the angle that the vertical turns about it.
-    sensitivity_.turn = bounded(sensitivity_.turn + (1 + sensitivity_.turn) / glm::length(left));
-    const Vec3 x = -glm::normalize(left);
-    start_from_turtle_.linear = Mat3(mirrored_ ? -x : x, heading, glm::cross(x, heading));
-}
-
-/// Turns about H x T by the angle e |H x T| (ABOP, section 2.2), in radians.
-void Turtle::bend() {
-    note(reads_elasticity);
-    if (state_.elasticity == 0) return;
-    note(reads_tropism);
-    const Vec3 axis = glm::cross(start_from_turtle_.linear[1], state_.tropism);
-    const double sine = glm::length(axis);
-    sensitivity_.turn = bounded(sensitivity_.turn + std::abs(state_.elasticity) * (1 + sensitivity_.turn));
-    if (!(sine > 0)) return;
-    const double angle_deg = state_.elasticity * sine * 180 / std::numbers::pi;
-    start_from_turtle_.linear = Affine::rotate(axis, angle_deg).linear * start_from_turtle_.linear;
-}
-
-/// By e |H x V|, in radians, about the turtle's own axis: so L-Parser bends branches.
-void Turtle::bend_down(double elasticity) {
-    note(reads_vertical);
-    const double sine = glm::length(glm::cross(start_from_turtle_.linear[1], state_.vertical));
-    sensitivity_.turn = bounded(sensitivity_.turn + std::abs(elasticity) * (1 + sensitivity_.turn));
-    turn(Axis::right, -elasticity * sine * 180 / std::numbers::pi);
-}
-
-/// Of something round that is drawn here.
-void Turtle::note_radius(double radius, WidthSource source) {
-    part_.thickest = std::max(part_.thickest, radius);
-    const double own_error = source == width_source_ ? width_error_ * radius : 0;
-    part_.size_error.farthest = std::max(part_.size_error.farthest, size_shift_ + own_error);
-    part_.error.farthest = std::max(part_.error.farthest, error_.shift + own_error);
-    if (source == WidthSource::start) part_.width_sensitivity = std::max(part_.width_sensitivity, radius);
-    const double by_unit = source == WidthSource::unit ? radius : 0;
-    part_.unit_sensitivity.farthest = std::max(part_.unit_sensitivity.farthest, unit_shift_ + by_unit);
-}
-
 void Turtle::add_ball(TurtleCommand command, std::span<const double> parameters, bool absolute, Span span) {
     part_.has_bodies = true;
     ++bodies_;
@@ -449,24 +288,6 @@ void Turtle::add_model(const PlacedModel& model, bool absolute, Span span) {
     // Of primitives no point lies farther from their origin; with others the unit is never off.
     constexpr double farthest = 2;
     if (absolute) note_radius(farthest * largest_entry(placed.scale), WidthSource::unit);
-}
-
-bool Turtle::set_width(std::span<const double> parameters, bool absolute, Span span) {
-    const double width = parameters.empty()        ? thinning * read_width()
-                         : context_.relative_width ? parameters[0]
-                                                   : written(parameters[0]);
-    if (width < 0) {
-        context_.diagnostics.error(span,
-                                   fmt::format("a width must not be negative, but is {}", shortest(width)));
-        return false;
-    }
-    state_.width = at_least_size(width);
-    if (!parameters.empty()) {
-        width_source_ = absolute ? WidthSource::unit : WidthSource::sizes;
-        if (!state_.in_cylinder) width_error_ = 0; // a taper has the width before, too
-    }
-    writes_ |= reads_width;
-    return true;
 }
 
 void Turtle::set_colour(std::span<const double> parameters, int step) {

@@ -1,0 +1,13 @@
+#pragma once
+
+#include <string>
+
+#include "compiler/import/cpfg_names.h"
+#include "compiler/import/cpfg_system.h"
+
+namespace graftal {
+
+/// The system as a model of ours. Of no use after an error.
+Translation write_cpfg_system(CpfgNames& names, CpfgSystem system, const ForeignModel& model);
+
+} // namespace graftal

@@ -36,11 +36,13 @@ const char* size_name(TurtleCommand command) {
     case TurtleCommand::move_unrecorded:
         return "a length";
     case TurtleCommand::width:
+    case TurtleCommand::widen:
         return "a width";
     case TurtleCommand::sphere:
     case TurtleCommand::disc:
         return "a diameter";
     case TurtleCommand::tropism:
+    case TurtleCommand::stiffen:
         return "an elasticity";
     case TurtleCommand::scale_by:
     case TurtleCommand::scale_down_by:
@@ -174,6 +176,26 @@ bool Turtle::run(TurtleCommand command, std::span<const double> parameters,
     case TurtleCommand::flip:
         flip();
         return true;
+    case TurtleCommand::widen:
+        return widen(first_or(parameters, 0), span);
+    case TurtleCommand::stiffen:
+        note(reads_elasticity);
+        state_.elasticity += first_or(parameters, 0);
+        writes_ |= reads_elasticity;
+        return true;
+    case TurtleCommand::set_tropism:
+        return set_tropism(parameters, span);
+    case TurtleCommand::go_to:
+        go_to(parameters);
+        break;
+    case TurtleCommand::head_to:
+        return head_to(parameters, span);
+    case TurtleCommand::ask_place:
+    case TurtleCommand::ask_heading:
+    case TurtleCommand::ask_up:
+    case TurtleCommand::ask_left:
+    case TurtleCommand::ask_environment:
+        return true;
     case TurtleCommand::model:
         if (model) add_model(*model, absolute, span);
         break;
@@ -239,12 +261,13 @@ bool Turtle::within_limits(Span span) {
 void Turtle::move(std::span<const double> parameters, bool absolute, bool draw, bool record, Span span,
                   bool always) {
     absolute = absolute || parameters.empty();
+    if (context_.bending == Bending::before_moves) bend();
     const double length =
         at_least_size(parameters.empty() ? scale_ * context_.step * read_unit() : written(parameters[0]));
     const bool fills = !always && (!polygons_.empty() || (note(reads_polygons), state_.open_polygons > 0));
     if (draw) ++segments_;
     if (absolute) unit_shift_ += std::abs(length);
-    if (draw && !fills && !(note(reads_cylinder), state_.in_cylinder)) {
+    if (draw && context_.draws && !fills && !(note(reads_cylinder), state_.in_cylinder)) {
         const double width = line_width(length);
         context_.bodies.add_segment(start_from_turtle_, length, width, read_colour(), span, sink(true));
         note_radius(width / 2, width_source_);
@@ -261,10 +284,12 @@ void Turtle::move(std::span<const double> parameters, bool absolute, bool draw, 
         total->farthest = std::max(total->farthest, drift->shift);
     }
     if (fills && record) record_vertex(start_from_turtle_.translation);
-    if (draw) bend();
+    if (context_.bending == Bending::after_moves || (draw && context_.bending == Bending::after_segments))
+        bend();
 }
 
 void Turtle::add_ball(TurtleCommand command, std::span<const double> parameters, bool absolute, Span span) {
+    if (!context_.draws) return;
     part_.has_bodies = true;
     ++bodies_;
     const double diameter = parameters.empty() ? usual_diameter() : written(parameters[0]);
@@ -280,6 +305,7 @@ void Turtle::add_ball(TurtleCommand command, std::span<const double> parameters,
 }
 
 void Turtle::add_model(const PlacedModel& model, bool absolute, Span span) {
+    if (!context_.draws) return;
     part_.has_bodies = true;
     ++bodies_;
     PlacedModel placed = model;
@@ -342,9 +368,11 @@ void Turtle::record_vertex(Vec3 vertex) {
 /// A '}' that closes nothing is passed over.
 void Turtle::close_polygon(int colour, Span span) {
     if (!polygons_.empty()) {
-        part_.has_bodies = true;
-        ++bodies_;
-        context_.bodies.add_polygon(polygons_.back(), colour, span, sink(false));
+        if (context_.draws) {
+            part_.has_bodies = true;
+            ++bodies_;
+            context_.bodies.add_polygon(polygons_.back(), colour, span, sink(false));
+        }
         polygons_.pop_back();
         return;
     }
@@ -366,6 +394,7 @@ void Turtle::add_control_point(Span span) {
     note(reads_cylinder);
     if (!state_.in_cylinder) return;
     note(reads_control);
+    if (!context_.draws) return start_cylinder();
     const double width = usual_diameter();
     context_.bodies.add_taper(start_from_turtle_, state_.control_point, state_.control_width, width,
                               read_colour(), span, sink(true));
@@ -383,6 +412,8 @@ TurtleState Turtle::state() const {
     if (state_.in_cylinder)
         result.control_point = turtle_from_start * (state_.control_point - start_from_turtle_.translation);
     if (context_.two_headings) result.second = glm::quat_cast(turtle_from_start * second_);
+    if (state_.frame)
+        result.frame = std::make_shared<TurtleFrame>(seen_from(*state_.frame, start_from_turtle_, 1));
     if (scale_ == 1) return result;
     result = scaled(result, 1 / scale_);
     result.unit = state_.unit; // the step, too, is longer by the scale

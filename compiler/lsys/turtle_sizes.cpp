@@ -81,6 +81,19 @@ bool Turtle::widen_by(double factor, Span span) {
     return false;
 }
 
+/// A width never becomes negative.
+bool Turtle::widen(double by, Span span) {
+    const double width = read_width() + (context_.relative_width ? by : written(by));
+    if (width <= largest_size) {
+        state_.width = at_least_size(std::max(0.0, width));
+        writes_ |= reads_width;
+        return true;
+    }
+    context_.diagnostics.error(
+        span, fmt::format("a width is at most {}, not {}", shortest(largest_size), shortest(width)));
+    return false;
+}
+
 bool Turtle::multiply_angle(double factor, Span span) {
     note(reads_angle);
     const double product = state_.angle_factor * factor;

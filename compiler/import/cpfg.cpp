@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <utility>
 
+#include "compiler/import/cpfg_companions.h"
 #include "compiler/import/cpfg_names.h"
 #include "compiler/import/cpfg_reader.h"
 #include "compiler/import/cpfg_source.h"
@@ -35,12 +36,13 @@ bool is_cpfg(std::string_view text) {
 std::optional<Translation> translate_cpfg(const ForeignFile& file, const ForeignModel& model) {
     const std::optional<CpfgSource> source = read_cpfg_source(file);
     if (!source) return std::nullopt;
-    const CpfgView view = read_cpfg_view(file);
+    const CpfgCompanions companions = find_cpfg_companions(file);
+    const CpfgView view = read_cpfg_view(file, companions.view);
     CpfgNames names(file, *source, view);
     std::optional<CpfgSystem> system = read_cpfg_system(names);
     if (!system) return std::nullopt;
     const std::size_t errors = file.diagnostics.error_count();
-    Translation out = write_cpfg_system(names, std::move(*system), model);
+    Translation out = write_cpfg_system(names, std::move(*system), model, companions.environment);
     if (file.diagnostics.error_count() > errors) return std::nullopt;
     return out;
 }

@@ -1,7 +1,7 @@
 #include "compiler/import/cpfg_reader.h"
 
 #include <algorithm>
-#include <set>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "compiler/import/cpfg_expression.h"
+#include "compiler/import/cpfg_long_names.h"
 #include "compiler/import/cpfg_string.h"
 #include "compiler/import/foreign_text.h"
 #include "compiler/support/small_letters.h"
@@ -29,6 +30,7 @@ class SystemReader {
             if (ended_ || diagnostics.full()) break;
             read(statement);
         }
+        join_cpfg_names(system_);
         if (system_.axiom.empty() && diagnostics.error_count() == errors)
             names_.error(Span(), "the model has no axiom");
         if (diagnostics.error_count() > errors) return std::nullopt;
@@ -74,12 +76,10 @@ class SystemReader {
             system_.axiom = read_cpfg_string(value(), names_, span);
             system_.axiom_span = span;
             system_.axiom_comments = statement.comments;
-        } else if (is("start:")) {
-            take_start(value(), span);
-        } else if (is("starteach:") || is("start each:") || is("endeach:") || is("end each:") || is("end:")) {
-            take_blocks(value(), span);
+        } else if (const auto moment = moment_of(small)) {
+            take_block(*moment, value(), span);
         } else if (is("define:")) {
-            names_.error(span, "arrays and other definitions have no translation");
+            take_arrays(value(), span);
         } else if (is("ring ")) {
             names_.error(span, "a ring L-system has no translation");
         } else if (is("homomorphism")) {
@@ -97,53 +97,78 @@ class SystemReader {
         }
     }
 
-    /// `{ a = 1; b = a/2; }`: names and values; false after an error. What prints is left out.
-    bool assignments(std::string_view block, Span span,
-                     std::vector<std::pair<std::string, std::string>>& out) {
-        block = trimmed(block);
-        if (block.starts_with('{')) block.remove_prefix(1);
-        if (block.ends_with('}')) block.remove_suffix(1);
-        while (!trimmed(block).empty()) {
-            const std::size_t end = std::min(find_outside(block, ";"), block.size());
-            const std::string_view statement = trimmed(block.substr(0, end));
-            block.remove_prefix(std::min(end + 1, block.size()));
-            if (statement.empty()) continue;
-            std::size_t name_end = 0;
-            while (name_end < statement.size() && is_cpfg_name(statement[name_end]))
-                ++name_end;
-            const std::string name(statement.substr(0, name_end));
-            const std::string_view rest = trimmed(statement.substr(name_end));
-            if (name == "printf" || name == "fprintf") {
-                names_.warn_once(span, "what the model prints is left out");
-            } else if (name == "srand") {
-                names_.warn_once(span, "srand() is left out: one seed decides all");
-            } else if (!name.empty() && rest.starts_with('=') && !rest.starts_with("==")) {
-                out.emplace_back(name, names_.expression(rest.substr(1), span));
-            } else {
+    static std::optional<CpfgMoment> moment_of(std::string_view small) {
+        constexpr std::pair<std::string_view, CpfgMoment> words[] = {
+            {"start:", CpfgMoment::start},           {"starteach:", CpfgMoment::start_each},
+            {"start each:", CpfgMoment::start_each}, {"endeach:", CpfgMoment::end_each},
+            {"end each:", CpfgMoment::end_each},     {"end:", CpfgMoment::end}};
+        for (const auto& [word, moment] : words)
+            if (small.starts_with(word)) return moment;
+        return std::nullopt;
+    }
+
+    void take_block(CpfgMoment moment, std::string_view text, Span span) {
+        std::optional<CpfgBlock> block = read_cpfg_block(text, span, names_);
+        if (!block) return;
+        CpfgBlock& known = system_.blocks[moment];
+        known.insert(known.end(), block->begin(), block->end());
+        system_.block_spans.try_emplace(moment, span);
+    }
+
+    /// `{ array a[2][3] = {1, 2, 3, 4, 5, 6}; array b[2]; }`
+    void take_arrays(std::string_view text, Span span) {
+        text = trimmed(text);
+        if (text.starts_with('{')) text.remove_prefix(1);
+        if (text.ends_with('}')) text.remove_suffix(1);
+        for (; !trimmed(text).empty(); text = trimmed(text)) {
+            const std::size_t end = std::min(text.find(';'), text.size());
+            std::string_view statement = trimmed(text.substr(0, end));
+            text.remove_prefix(std::min(end + 1, text.size()));
+            if (statement.empty() || statement == "}") continue;
+            if (!statement.starts_with("array ")) {
                 names_.error(span, fmt::format("'{}' has no translation here",
-                                               name.empty() ? comment_text(statement.substr(0, 20)) : name));
-                return false;
+                                               comment_text(statement.substr(0, statement.find(' ')))));
+                return;
+            }
+            // Several may follow, after commas outside of braces.
+            for (statement.remove_prefix(6); !trimmed(statement).empty();) {
+                statement = trimmed(statement);
+                int depth = 0;
+                std::size_t comma = 0;
+                for (; comma < statement.size() && !(statement[comma] == ',' && depth == 0); ++comma)
+                    depth += (statement[comma] == '{') - (statement[comma] == '}');
+                take_array(statement.substr(0, comma), span);
+                statement.remove_prefix(std::min(comma + 1, statement.size()));
             }
         }
-        return true;
     }
 
-    void take_start(std::string_view block, Span span) {
-        std::vector<std::pair<std::string, std::string>> values;
-        if (!assignments(block, span, values)) return;
-        for (auto& [name, value] : values) {
-            if (!globals_.insert(name).second)
-                names_.error(span, fmt::format("'{}' changes, which has no translation", name));
-            system_.globals.emplace_back(name, value);
+    void take_array(std::string_view text, Span span) {
+        CpfgArray array;
+        array.span = span;
+        const std::size_t equal = std::min(text.find('='), text.size());
+        const std::string_view head = trimmed(text.substr(0, equal));
+        const std::size_t open = std::min(head.find('['), head.size());
+        array.name = names_.own_name(trimmed(head.substr(0, open)));
+        for (std::size_t at = open; at < head.size();) {
+            const std::size_t close = std::min(head.find(']', at), head.size());
+            array.sizes += "[" + names_.expression(head.substr(at + 1, close - at - 1), span) + "]";
+            at = std::min(head.find('[', close), head.size());
         }
-        system_.globals_span = span;
-    }
-
-    /// Blocks of each step and of the end: what they say may not change anything.
-    void take_blocks(std::string_view block, Span span) {
-        std::vector<std::pair<std::string, std::string>> values;
-        if (assignments(block, span, values) && !values.empty())
-            names_.error(span, "variables that change from step to step have no translation");
+        std::string_view values = trimmed(text.substr(std::min(equal + 1, text.size())));
+        if (values.starts_with('{')) values.remove_prefix(1);
+        if (values.ends_with('}')) values.remove_suffix(1);
+        for (std::size_t from = 0; from < values.size() && !trimmed(values).empty();) {
+            const std::size_t comma = std::min(find_outside(values, ",", from), values.size());
+            const std::string_view one = trimmed(values.substr(from, comma - from));
+            if (!one.empty())
+                array.values += (array.values.empty() ? "" : ", ") + names_.expression(one, span);
+            from = comma + 1;
+        }
+        if (array.name.empty() || array.sizes.empty())
+            names_.error(span, "an array is a name and its sizes");
+        else
+            system_.arrays.push_back(std::move(array));
     }
 
     void add_production(const CpfgStatement& statement, Span span) {
@@ -184,43 +209,64 @@ class SystemReader {
             if (right != "*") production.right = read_cpfg_string(right, names_, production.span);
         }
         production.predecessor = read_cpfg_string(text.substr(0, more), names_, production.span);
-        // It says that the branch may go on, which is so without it.
+        check_right(production);
+        if (production.predecessor.empty())
+            names_.error(production.span, "this production has no predecessor");
+    }
+
+    /// `=` says that the branch may go on, which is so without it in ours; where a branch has to end, ours
+    /// cannot say so.
+    void check_right(CpfgProduction& production) {
+        int depth = 0;
+        bool leaves = false, ends = false;
+        for (std::size_t i = 0; i < production.right.size(); ++i) {
+            const std::string& symbol = production.right[i].symbol;
+            depth += (symbol == "[") - (symbol == "]");
+            leaves = leaves || depth < 0;
+            ends = ends || (symbol == "]" && i > 0 && production.right[i - 1].symbol != "=");
+        }
         std::erase_if(production.right, [](const CpfgModule& module) { return module.symbol == "="; });
-        if (production.predecessor.size() != 1)
+        if (section_ == CpfgSection::homomorphism) {
+            if (!production.left.empty() || !production.right.empty())
+                names_.warn_once(production.span, "contexts of the homomorphism are left out, as in cpfg");
+            production.left = production.right = {};
+            return;
+        }
+        if (leaves)
+            names_.error(production.span, "a right context that leaves its branch has no translation");
+        else if (ends)
             names_.error(production.span,
-                         fmt::format("a production for {} modules has no translation: ours rewrite one",
-                                     production.predecessor.size()));
+                         "a branch of a right context that must end (without '=') has no translation");
     }
 
     /// `{ before } condition { after }`
     bool read_condition(std::string_view text, CpfgProduction& production) {
         text = trimmed(text);
         if (text.starts_with('{')) {
-            const std::size_t end = std::min(text.find('}') + 1, text.size());
-            if (!add_locals(text.substr(0, end), production)) return false;
+            const std::size_t end = end_of_braces(text);
+            if (!read_block(text.substr(0, end), production.span, production.before)) return false;
             text = trimmed(text.substr(end));
         }
         const std::size_t open = std::min(text.find('{'), text.size());
         const std::string_view condition = trimmed(text.substr(0, open));
         if (condition != "*" && !condition.empty())
             production.condition = names_.expression(condition, production.span);
-        return open == text.size() || add_locals(text.substr(open), production);
+        return open == text.size() || read_block(text.substr(open), production.span, production.after);
     }
 
-    bool add_locals(std::string_view block, CpfgProduction& production) {
-        std::vector<std::pair<std::string, std::string>> values;
-        if (!assignments(block, production.span, values)) return false;
-        for (auto& [name, value] : values) {
-            if (globals_.contains(name)) {
-                names_.error(
-                    production.span,
-                    fmt::format("'{}' is a variable of the model: that a production changes it has no "
-                                "translation",
-                                name));
-                return false;
-            }
-            production.locals.emplace_back(name, value);
-        }
+    static std::size_t end_of_braces(std::string_view text) {
+        std::size_t end = 0;
+        int depth = 0;
+        do
+            depth += (text[end] == '{') - (text[end] == '}');
+        while (++end < text.size() && depth > 0);
+        return end;
+    }
+
+    bool read_block(std::string_view text, Span span, CpfgBlock& block) {
+        std::optional<CpfgBlock> known = read_cpfg_block(text, span, names_);
+        if (!known) return false;
+        block = std::move(*known);
         return true;
     }
 
@@ -229,7 +275,6 @@ class SystemReader {
     int systems_ = 0;
     bool ended_ = false;
     CpfgSection section_ = CpfgSection::productions;
-    std::set<std::string> globals_;
 };
 
 } // namespace

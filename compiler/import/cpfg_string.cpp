@@ -85,7 +85,11 @@ CpfgString read_cpfg_string(std::string_view given, CpfgNames& names, Span span)
         CpfgModule module;
         module.symbol = c;
         ++i;
-        if ((c == '@' || c == '~') && i < text.size()) module.symbol += text[i++];
+        // Blanks do not count.
+        if (c == '@' || c == '~') i = std::min(text.find_first_not_of(" \t", i), text.size());
+        const bool queries =
+            c == '?' && i < text.size() && std::string_view("PHLUQE").find(text[i]) != std::string_view::npos;
+        if ((c == '@' || c == '~' || queries) && i < text.size()) module.symbol += text[i++];
         skip_blanks(text, i);
         take_parameters(text, i, module, names, span);
         constexpr std::string_view longer = "GPTDbm";

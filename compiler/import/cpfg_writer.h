@@ -7,7 +7,9 @@
 
 namespace graftal {
 
-/// The system as a model of ours. Of no use after an error.
-Translation write_cpfg_system(CpfgNames& names, CpfgSystem system, const ForeignModel& model);
+/// The system as a model of ours, with the environment that a file describes ("": none). Of no use after an
+/// error.
+Translation write_cpfg_system(CpfgNames& names, CpfgSystem system, const ForeignModel& model,
+                              const std::string& environment);
 
 } // namespace graftal

@@ -51,7 +51,7 @@ double shared_area(double a, double b, double distance) {
 }
 
 /// Each query is a ball of the radius that it tells. From each direction it hears of its disc the share that
-/// others leave free: one that covers a share of it lets through so much less, but for its transmittance.
+/// others leave free: one that covers a share of it takes so much away, except for its transmittance.
 class Shade : public Surroundings {
   public:
     Shade(const EnvironmentSettings& settings, Diagnostics& diagnostics)

@@ -422,13 +422,17 @@ class BlockParser {
         }
     }
 
-    /// Of two words for one section the first is enough.
+    /// All of them. Of two words for one section the first is enough.
     static std::string statement_choices(std::string_view word, std::string_view meant) {
         std::vector<std::string> words = lsys_keywords();
         std::erase_if(words, [&](const std::string& known) {
             return known != meant && (known == "homomorphism" || known == "decomposition");
         });
-        return choices(word, words);
+        std::string list;
+        for (const std::string& known : words)
+            list += (list.empty() ? "" : ", ") + known;
+        const std::string hint = did_you_mean(word, words);
+        return hint + (hint.empty() ? "known here: " : " known here: ") + list;
     }
 
     void report_no_statement(const LsysStatement& statement) {

@@ -14,7 +14,7 @@ namespace graftal {
 
 /// The settings of the turtle that a grammar asks for; it draws on `bodies`.
 TurtleContext turtle_context(const LsysGrammar& grammar, TurtleBodies& bodies, Diagnostics& diagnostics);
-/// The state of the turtle at the start, but for its width.
+/// The state of the turtle at the start, except for its width.
 TurtleState turtle_start(const LsysGrammar& grammar);
 
 /// Answers the queries of a word before the next step is derived: a turtle walks along the word, as it is

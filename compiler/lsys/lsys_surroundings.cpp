@@ -259,6 +259,7 @@ class SurroundingsBuilder {
     }
 
     void check_queries() {
+        if (block_.broken) return; // an environment may be lost
         for (SymbolId id = 0; id < grammar_.symbols.size(); ++id)
             if (grammar_.commands[id] == TurtleCommand::ask_environment) {
                 diagnostics_

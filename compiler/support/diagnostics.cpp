@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::size_t widest_excerpt = 160;
 /// More names than fit here would hide the message among them.
-constexpr std::size_t longest_list = 240;
+constexpr std::size_t longest_list = 200;
 constexpr std::size_t longest_message = 1000;
 
 std::size_t code_points(std::string_view text) {

@@ -249,8 +249,7 @@ TEST(Cpfg, NamesWhatHasNoTranslation) {
     EXPECT_THAT(said("Axiom: F(curveX(1, 2))\n"), HasSubstr("curve 1 of the view file is no spline"));
     EXPECT_THAT(said("Axiom: A[B]\nA > [B] --> F\n"), HasSubstr("must end (without '=')"));
     EXPECT_THAT(said("Axiom: [AB]C\nA > B=]C --> F\n"), HasSubstr("leaves its branch"));
-    EXPECT_THAT(said("consider: AB\\nAxiom: A[B]\\nA > B --> F\\n"),
-                HasSubstr("sees through ignored brackets"));
+    EXPECT_THAT(said("consider: AB\nAxiom: A[B]\nA > B --> F\n"), HasSubstr("sees through ignored brackets"));
     EXPECT_THAT(said("ring lsystem\nAxiom: A\n"), HasSubstr("a ring L-system has no translation"));
     EXPECT_THAT(said("derivation length: 1\nfoo\nAxiom: F\n"),
                 HasSubstr("plant.l:4:1: error: this is no statement"));

@@ -1,10 +1,12 @@
 // Queries and environments in derivation, and what the turtle knows of the world.
 
 #include <algorithm>
+#include <array>
 #include <string>
 
 #include <gmock/gmock.h>
 
+#include "compiler/lsys/model_placer.h"
 #include "tests/unit/lsys/lsys_turtle.h"
 
 namespace graftal::testing {
@@ -191,6 +193,12 @@ TEST(TheWorld, WidthsAdd) {
     EXPECT_NEAR(widths[0], 0.2, 1e-9);
     EXPECT_NEAR(widths[1], 0.3, 1e-9);
     EXPECT_NEAR(widths[2], 0.5, 1e-9);
+}
+
+TEST(TheWorld, ModelsHaveASizeForEachAxis) {
+    EXPECT_EQ(placed_scale(std::array{2.0, 3.0, 5.0}), Vec3(2, 3, 5));
+    EXPECT_EQ(placed_scale(std::array{2.0, 8.0}), Vec3(2, 8, 4));
+    EXPECT_EQ(placed_scale(std::array{2.0}), Vec3(2, 2, 2));
 }
 
 } // namespace

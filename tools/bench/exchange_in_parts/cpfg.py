@@ -1,7 +1,6 @@
 """cpfg's L-systems (vlab), derived module by module as its program does, for what needs neither chance nor an
 environment program. Nothing of graftal is used here."""
 import math
-import re
 
 from exchange_in_parts.cpfg_language import Language, Refused
 from exchange_in_parts.turtle import Box, TooLong, along, cross, dot, unit
@@ -11,7 +10,8 @@ __all__ = ['Refused', 'draw']
 
 class Turtle:
     def __init__(self, view):
-        self.place, self.ahead, self.left, self.up = (0.0, 0.0, 0.0), (0.0, 1.0, 0.0), (-1.0, 0.0, 0.0), (0.0, 0.0, -1.0)
+        self.place, self.ahead = (0.0, 0.0, 0.0), (0.0, 1.0, 0.0)
+        self.left, self.up = (-1.0, 0.0, 0.0), (0.0, 0.0, -1.0)
         self.scale, self.elasticity = 1.0, view.elasticity
         self.strengths = [tropism[1] for tropism in view.tropisms]
 
@@ -38,9 +38,9 @@ class Drawing:
     TURNS = {'+': ('ahead', 'left', 1), '-': ('ahead', 'left', -1), '&': ('ahead', 'up', 1),
              '^': ('ahead', 'up', -1), '/': ('left', 'up', 1), '\\': ('left', 'up', -1)}
 
-    def __init__(self, view, answer=None):
+    def __init__(self, view):
         self.view, self.turtle, self.box, self.saved, self.open = view, Turtle(view), Box(), [], 0
-        self.answer, self.cylinder = answer, False
+        self.cylinder = False
 
     def bend_old(self):
         """After each move: towards the direction, in the plane of heading and up, then of heading and left."""

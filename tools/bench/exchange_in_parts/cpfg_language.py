@@ -565,7 +565,7 @@ class Language:
             return symbol[0] not in self.considered
         return self.ignored is not None and symbol[0] in self.ignored
 
-    def match(self, wanted, word, at, scope, back=None):
+    def match(self, wanted, word, at, scope):
         symbol, names = wanted
         found, values = word[at]
         if symbol != found or len(names) != len(values):

@@ -1,7 +1,6 @@
 """The view file of a cpfg model: what it says of angles, tropisms and functions."""
 import math
 import re
-from pathlib import Path
 
 
 def numbers(text):

@@ -113,11 +113,12 @@ class Grammar:
         if kind == 'elasticity':
             return f'T({number(draw.uniform(-0.5, 0.5))})'
         if kind == 'query':
-            return draw.pick(['?P(0, 0)', '?P(0, 0, 0)', '?H(0, 0, 0)', '?U(0, 0)', '?L(0)', '?E(1)', '?E(1, 0, 0, 0)'])
+            return draw.pick(['?P(0, 0)', '?P(0, 0, 0)', '?H(0, 0, 0)', '?U(0, 0)', '?L(0)', '?E(1)',
+                              '?E(1, 0, 0, 0)'])
         if kind == 'world':
             place = numbers([draw.uniform(-3, 3) for _ in range(3)])
-            return draw.pick([f'@M({place})', f'@R({place})', f'@R({place}, 0, 1, 0)', f'@I({number(draw.uniform(-0.1, 0.1))})',
-                              f'@K({number(draw.uniform(-0.2, 0.2))})'])
+            return draw.pick([f'@M({place})', f'@R({place})', f'@R({place}, 0, 1, 0)',
+                              f'@I({number(draw.uniform(-0.1, 0.1))})', f'@K({number(draw.uniform(-0.2, 0.2))})'])
         if kind == 'cut':
             return '%'
         if kind == 'about':
@@ -158,6 +159,8 @@ def write(draw, model, small):
             model.say(f'  tropism {numbers([draw.uniform(-1, 1) for _ in range(3)])}')
         if draw.chance(0.2):
             model.say(f'  bending {draw.pick(["after segments", "after moves", "before moves"])}')
+        if draw.chance(0.2):
+            model.say('  torque 0, 1, 0.2')
     queries = draw.chance(0.07)
     if queries:
         environment(draw, model)

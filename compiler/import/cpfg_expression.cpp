@@ -16,9 +16,8 @@ constexpr int most_nested_expressions = 200;
 
 class ExpressionWriter {
   public:
-    ExpressionWriter(const std::function<std::optional<std::string>(std::string_view)>& table_of,
-                     const std::function<void(const std::string&)>& complain)
-        : table_of_(table_of), complain_(complain) {}
+    ExpressionWriter(const CpfgCalls& calls, const std::function<void(const std::string&)>& complain)
+        : calls_(calls), complain_(complain) {}
 
     std::string write(std::string_view text, int depth = 0) {
         if (depth > most_nested_expressions) {
@@ -72,14 +71,13 @@ class ExpressionWriter {
             } else if (text.substr(i).starts_with("<>")) {
                 out += "!=";
                 i += 2;
-            } else if (c == '"' || c == '[' || c == ']' || c == '{' || c == '&') {
+            } else if (c == '"' || c == '{' || c == '&') {
                 if (text.substr(i).starts_with("&&")) {
                     out += "&&";
                     i += 2;
                     continue;
                 }
-                complain_(c == '[' || c == ']' ? "arrays have no translation"
-                                               : fmt::format("'{}' has no translation", c));
+                complain_(fmt::format("'{}' has no translation", c));
                 return "0";
             } else {
                 out += c;
@@ -107,13 +105,13 @@ class ExpressionWriter {
             arguments.push_back(inside.substr(begin, comma - begin));
             begin = comma + 1;
         }
-        if (name == "func" && arguments.size() == 2) {
-            const std::optional<std::string> table = table_of_(trimmed(arguments[0]));
-            return fmt::format("{}({})", table.value_or("func"), write(arguments[1], depth + 1));
-        }
+        std::vector<std::string> each;
         std::string written;
-        for (const std::string_view argument : arguments)
-            written += (written.empty() ? "" : ", ") + write(argument, depth + 1);
+        for (const std::string_view argument : arguments) {
+            each.push_back(write(argument, depth + 1));
+            written += (written.empty() ? "" : ", ") + each.back();
+        }
+        if (const std::optional<std::string> known = calls_(name, arguments, each)) return *known;
         if (name == "ran") return fmt::format("random(0, {})", written);
         if (name == "nran") return fmt::format("normal({})", written);
         if (name == "fabs") return fmt::format("abs({})", written);
@@ -125,7 +123,7 @@ class ExpressionWriter {
         return fmt::format("{}({})", name, written);
     }
 
-    const std::function<std::optional<std::string>(std::string_view)>& table_of_;
+    const CpfgCalls& calls_;
     const std::function<void(const std::string&)>& complain_;
     bool said_ = false;
 };
@@ -142,11 +140,9 @@ std::size_t find_outside(std::string_view text, std::string_view characters, std
     return std::string_view::npos;
 }
 
-std::string
-translated_cpfg_expression(std::string_view text,
-                           const std::function<std::optional<std::string>(std::string_view)>& table_of,
-                           const std::function<void(const std::string&)>& complain) {
-    return ExpressionWriter(table_of, complain).write(text);
+std::string translated_cpfg_expression(std::string_view text, const CpfgCalls& calls,
+                                       const std::function<void(const std::string&)>& complain) {
+    return ExpressionWriter(calls, complain).write(text);
 }
 
 } // namespace graftal

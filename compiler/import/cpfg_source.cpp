@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "compiler/import/cpfg_condition.h"
 #include "compiler/import/foreign_text.h"
 
 namespace graftal {
@@ -206,24 +207,33 @@ class SourceReader {
         return std::ranges::find(source_.macros, trimmed(name), &CpfgMacro::name) != source_.macros.end();
     }
 
-    /// Numbers, names of macros that are numbers, and `defined(NAME)`, each with `!` before it.
     bool value(std::string_view text, Span span) {
-        text = trimmed(text);
-        if (text.starts_with('!')) return !value(text.substr(1), span);
-        if (text.starts_with("defined")) {
-            const std::size_t begin = text.find_first_not_of(" (", 7);
-            return is_defined(text.substr(std::min(begin, text.size()), text.find(')') - begin));
-        }
         const std::optional<std::string> written =
-            expand_cpfg_macros(text, source_.macros, [](const CpfgMacro&) { return true; });
-        const std::string number(written ? trimmed(*written) : "");
-        char* end = nullptr;
-        const double known = std::strtod(number.c_str(), &end);
-        if (!number.empty() && *end == '\0') return known != 0;
-        if (!number.empty() && std::ranges::all_of(number, goes_on_name))
-            return false; // a name that is not defined
-        file_.diagnostics.error(span, "a condition is a number, a name or defined(NAME)");
+            expand_cpfg_macros(without_defined(text), source_.macros, [](const CpfgMacro&) { return true; });
+        const std::optional<double> known = written ? cpfg_condition(*written) : std::nullopt;
+        if (known) return *known != 0;
+        file_.diagnostics.error(span, "this condition has no translation");
         return false;
+    }
+
+    /// With 1 or 0 for `defined(NAME)` and `defined NAME`.
+    std::string without_defined(std::string_view text) const {
+        constexpr std::string_view word = "defined";
+        std::string out;
+        for (std::size_t i = 0; i < text.size();) {
+            const std::size_t found = std::min(text.find(word, i), text.size());
+            out += text.substr(i, found - i);
+            if (found == text.size()) break;
+            const std::size_t begin =
+                std::min(text.find_first_not_of(" (", found + word.size()), text.size());
+            std::size_t end = begin;
+            while (end < text.size() && goes_on_name(text[end]))
+                ++end;
+            out += is_defined(text.substr(begin, end - begin)) ? "1" : "0";
+            const bool closes = text.substr(found, begin - found).find('(') != std::string_view::npos;
+            i = closes ? std::min(text.find(')', end), text.size() - 1) + 1 : end;
+        }
+        return out;
     }
 
     void define(std::string_view rest, Span span) {

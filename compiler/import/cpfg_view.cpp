@@ -3,9 +3,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdlib>
 #include <filesystem>
 #include <sstream>
 #include <utility>
+
+#include <fmt/format.h>
 
 #include "compiler/import/foreign_text.h"
 #include "compiler/import/importers.h"
@@ -69,15 +72,12 @@ class ViewReader {
   public:
     ViewReader(const ForeignFile& file) : file_(file) {}
 
-    CpfgView read() {
-        const std::filesystem::path own(file_.sources.name(file_.file));
-        std::optional<FileId> view;
-        for (const char* ending : {".v", ".view"})
-            if (!view) view = file_.read_beside(own.stem().string() + ending);
+    CpfgView read(const std::string& name) {
+        const std::optional<FileId> view = name.empty() ? std::nullopt : file_.read_beside(name);
         if (view)
             for (const TextLine& line :
                  lines_of(file_.sources.text(*view), 0, file_.sources.text(*view).size()))
-                take(line.text.substr(0, line.text.find("//")));
+                take(line.text.substr(0, std::min(line.text.find("//"), line.text.find("/*"))));
         return std::move(view_);
     }
 
@@ -116,18 +116,73 @@ class ViewReader {
                 view_.surfaces[letter] = surface;
             }
         }
-        if (word == "function" || word == "function set") read_functions(value.substr(0, value.find(' ')));
+        if (word == "function" || word == "function set") {
+            const std::size_t end = std::min(value.find(' '), value.size());
+            const int samples = std::atoi(value.substr(end).substr(0, 9).c_str());
+            read_functions(value.substr(0, end), samples > 2 ? samples : most_function_samples);
+        }
+        if (word == "function set") view_.functions_have_names = true;
+        if (word == "curve") read_curve(value.substr(0, value.find(' ')));
+        if (word == "tropism direction") view_.tropism_direction = three_numbers(value);
+        if (word == "initial elasticity" && usable) view_.elasticity = number;
+        if (word == "elasticity increment" && usable) view_.elasticity_increment = number;
+        if (word == "interpretation past %") view_.draws_past_cuts = value != "off" && value != "no";
+        if (word == "tropism" || word == "torque") read_tropism(value, word == "torque");
     }
 
-    /// A file of one function, or of a gallery of them.
-    void read_functions(const std::string& name) {
+    static std::string with_blanks(std::string text) {
+        std::ranges::replace_if(
+            text, [](char c) { return c == ',' || c == ':' || c == '\t'; }, ' ');
+        return text;
+    }
+
+    static std::string three_numbers(const std::string& text) {
+        std::istringstream words(with_blanks(text));
+        double x = 0, y = 0, z = 0;
+        words >> x >> y >> z;
+        return fmt::format("{}, {}, {}", x, y, z);
+    }
+
+    /// `T: x y z A: angle I: intensity E: elasticity S: step`
+    void read_tropism(const std::string& text, bool twists) {
+        std::istringstream words(with_blanks(text));
+        CpfgTropism tropism{.direction = "0, 1, 0", .twists = twists};
+        std::array<double, 3> direction{0, 1, 0};
+        double intensity = 1;
+        for (std::string word; words >> word;) {
+            double number = 0;
+            if (word == "T")
+                words >> direction[0] >> direction[1] >> direction[2];
+            else if (!(words >> number))
+                break;
+            if (word == "A") tropism.angle_deg = number;
+            if (word == "I") intensity = number;
+            if (word == "E") tropism.elasticity = number;
+        }
+        const double share = std::clamp(intensity, -1.0, 1.0);
+        for (double& number : direction)
+            number *= (share < 0) != twists ? -1 : 1; // its up is our down
+        tropism.elasticity *= std::abs(share);
+        tropism.direction = fmt::format("{}, {}, {}", direction[0], direction[1], direction[2]);
+        if (view_.tropisms.size() < most_functions) view_.tropisms.push_back(tropism);
+    }
+
+    void read_curve(const std::string& name) {
+        const std::optional<FileId> file = file_.read_beside(name);
+        CpfgViewCurve curve{plain_name(std::filesystem::path(name).stem().string()), {}};
+        if (file)
+            if (auto known = read_cpfg_curve(file_.sources.text(*file))) curve.curve = std::move(*known);
+        if (view_.curves.size() < most_functions) view_.curves.push_back(std::move(curve));
+    }
+
+    /// A file of one function, or of a gallery of them. `samples`: of files that do not say how many.
+    void read_functions(const std::string& name, int samples) {
         const std::optional<FileId> file = file_.read_beside(name);
         if (!file) return;
         std::istringstream text{std::string(file_.sources.text(*file))};
         CpfgFunction function{std::filesystem::path(name).stem().string(), {}};
         std::vector<CurvePoint> points;
         std::size_t expected = 0;
-        int samples = most_function_samples;
         for (std::string line; std::getline(text, line);) {
             std::istringstream words(line);
             std::string word;
@@ -157,8 +212,11 @@ class ViewReader {
         function.name = plain_name(function.name);
         const FunctionCurve curve(points);
         const int pieces = std::clamp(samples, 2, most_function_samples) - 1;
-        for (int i = 0; i <= pieces; ++i)
-            function.values.push_back(curve.height_at(static_cast<double>(i) / pieces));
+        constexpr double nothing = 1e-12; // of halving
+        for (int i = 0; i <= pieces; ++i) {
+            const double height = curve.height_at(static_cast<double>(i) / pieces);
+            function.values.push_back(std::abs(height) < nothing ? 0 : height);
+        }
         view_.functions.push_back(std::move(function));
     }
 
@@ -168,8 +226,8 @@ class ViewReader {
 
 } // namespace
 
-CpfgView read_cpfg_view(const ForeignFile& file) {
-    return ViewReader(file).read();
+CpfgView read_cpfg_view(const ForeignFile& file, const std::string& view_name) {
+    return ViewReader(file).read(view_name);
 }
 
 } // namespace graftal

@@ -1,6 +1,8 @@
 #include "compiler/import/vlab_surface.h"
 
+#include <algorithm>
 #include <array>
+#include <cctype>
 #include <cmath>
 #include <filesystem>
 #include <vector>
@@ -43,9 +45,19 @@ std::vector<double> numbers_in(std::string_view line) {
 
 struct Surface {
     Point contact{0, 0, 0}, heading{0, 1, 0}, up{0, 0, 1};
+    double size = 1; ///< a scale of 1 makes it so many times as small
     std::vector<std::vector<double>> patches;
     std::vector<Span> places;
 };
+
+/// A patch begins with its name; the other words of the format are known.
+bool begins_patch(std::string_view words) {
+    constexpr std::array<std::string_view, 9> others = {"PRECISION", "CONTACT", "END", "HEADING", "UP",
+                                                        "SIZE",      "TOP",     "AL",  "BL"};
+    if (words.empty() || !std::isalpha(static_cast<unsigned char>(words[0])) || words.starts_with("L:"))
+        return false;
+    return std::ranges::none_of(others, [&](std::string_view word) { return words.starts_with(word); });
+}
 
 Surface read_surface(const ForeignFile& file) {
     Surface surface;
@@ -58,7 +70,8 @@ Surface read_surface(const ForeignFile& file) {
         if (words.starts_with("CONTACT")) point(surface.contact);
         if (words.starts_with("HEADING")) point(surface.heading);
         if (words.starts_with("UP")) point(surface.up);
-        if (words == "patch" || words.starts_with("patch ")) {
+        if (words.starts_with("SIZE") && !numbers.empty() && numbers[0] > 0) surface.size = numbers[0];
+        if (begins_patch(words)) {
             if (surface.patches.size() == most_patches) {
                 file.diagnostics.error(file.span(line.begin, line.begin + line.text.size()),
                                        fmt::format("a surface has at most {} patches", most_patches));
@@ -82,13 +95,21 @@ std::vector<ForeignModel> surface_models(const ForeignFile& file) {
 
 bool is_surface(std::string_view text) {
     return !is_binary(text) && text.find("CONTACT POINT") != std::string_view::npos &&
-           text.find("patch") != std::string_view::npos;
+           (text.find("patch") != std::string_view::npos || text.find("TOP COLOR") != std::string_view::npos);
 }
 
-/// In the frame of a turtle that takes hold of it: x right, y ahead, z up.
+Point of_unit_length(const Point& a) {
+    const double length = std::sqrt(dot(a, a));
+    return length > 0 ? Point{a[0] / length, a[1] / length, a[2] / length} : a;
+}
+
+/// In the frame of a turtle that takes hold of it: x right, y ahead, z up. Of a turtle of cpfg, which looks
+/// along its own heading and up, the left is heading x up: its up is our down.
 std::optional<Translation> translate_surface(const ForeignFile& file, const ForeignModel& model) {
     const Surface surface = read_surface(file);
-    const Point right = cross(surface.heading, surface.up);
+    const Point heading = of_unit_length(surface.heading);
+    const Point left = cross(heading, of_unit_length(surface.up));
+    const Point up = cross(left, heading);
     Translation out{"inst", {}, {}};
     out.line(fmt::format("# {}: a surface of the Virtual Laboratory", comment_text(model.name)), model.span);
     out.line(fmt::format("object {} {{", plain_name(model.name) + "_surface"), model.span);
@@ -103,11 +124,14 @@ std::optional<Translation> translate_surface(const ForeignFile& file, const Fore
             Point p{};
             for (std::size_t axis = 0; axis < 3; ++axis)
                 p[axis] = numbers[k + axis] - surface.contact[axis];
+            Point q{};
+            for (std::size_t axis = 0; axis < 3; ++axis)
+                q[axis] = (p[0] * left[axis] + p[1] * heading[axis] + p[2] * up[axis]) / surface.size;
             text += fmt::format("{}{:.6g}, {:.6g}, {:.6g}",
                                 k == 0        ? ""
                                 : k % 12 == 0 ? ",  "
                                               : ", ",
-                                dot(p, right) + 0.0, dot(p, surface.heading) + 0.0, dot(p, surface.up) + 0.0);
+                                0.0 - q[0], q[1] + 0.0, 0.0 - q[2]);
         }
         out.line(text + ")", surface.places[i]);
     }

@@ -121,10 +121,26 @@ struct LsysContextFilter {
     Span span;                 ///< of the keyword
 };
 
-/// `tropism x, y, z` or `vertical x, y, z`
+/// `vertical x, y, z`, `tropism x, y, z [, angle]` or `torque x, y, z`
 struct LsysDirection {
     std::vector<Expression> direction; ///< three
     Span span;                         ///< of the keyword
+    std::optional<Expression> angle;   ///< of a tropism
+    bool twists = false;               ///< a torque
+};
+
+/// `bending after segments`, `after moves` or `before moves`.
+struct LsysBending {
+    bool before = false;
+    bool moves = false;
+    Span span; ///< of the keyword
+};
+
+/// `environment KIND number, ...`
+struct LsysEnvironment {
+    std::string_view kind;
+    std::vector<Expression> numbers;
+    Span span; ///< of the kind
 };
 
 /// `precedence text` or `precedence contexts`: in which order productions are tried.
@@ -145,7 +161,9 @@ struct LsysBlock {
     std::optional<LsysValue> seed;
     std::optional<LsysSteps> steps;
     std::optional<LsysContextFilter> filter;
-    std::optional<LsysDirection> tropism;
+    std::vector<LsysDirection> tropisms;
+    std::optional<LsysBending> bending;
+    std::vector<LsysEnvironment> environment;
     std::optional<LsysDirection> vertical;
     std::optional<LsysPrecedence> precedence;
     std::vector<Name> colors;  ///< materials of the colour indices 0, 1, 2, ...

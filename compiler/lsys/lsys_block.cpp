@@ -10,6 +10,7 @@
 
 #include "compiler/lsys/lsys_commands.h"
 #include "compiler/lsys/lsys_productions.h"
+#include "compiler/lsys/lsys_surroundings.h"
 #include "compiler/lsys/lsys_tables.h"
 #include "compiler/support/small_letters.h"
 #include "compiler/syntax/expression_functions.h"
@@ -121,7 +122,9 @@ class BlockParser {
         if (word == "steps") return parse_steps(statement);
         if (word == "ignore" || word == "consider") return parse_filter(statement);
         if (word == "axiom") return parse_axiom(statement);
-        if (word == "tropism") return parse_direction(statement, block_.tropism);
+        if (word == "tropism" || word == "torque") return parse_tropism(statement);
+        if (word == "bending") return parse_bending_of(statement);
+        if (word == "environment") return parse_environment_of(statement);
         if (word == "vertical") return parse_direction(statement, block_.vertical);
         if (word == "colors") return parse_colors(statement);
         if (word == "table") return parse_table(statement);
@@ -271,12 +274,39 @@ class BlockParser {
         return false;
     }
 
+    /// Three numbers; four say at which angle.
+    void parse_tropism(const LsysStatement& statement) {
+        TokenStream stream = values(statement);
+        const bool twists = statement.word == "torque";
+        auto numbers = parse_numbers(stream, 3, twists ? 3 : 4, fmt::format("'{}'", statement.word));
+        if (!numbers) return;
+        LsysDirection tropism{std::move(*numbers), scanner_.span(statement.word), std::nullopt, twists};
+        if (tropism.direction.size() == 4) {
+            tropism.angle = std::move(tropism.direction.back());
+            tropism.direction.pop_back();
+        }
+        if (text_.finish(stream)) block_.tropisms.push_back(std::move(tropism));
+    }
+
+    void parse_bending_of(const LsysStatement& statement) {
+        TokenStream stream = values(statement);
+        const std::optional<LsysBending> bending = parse_bending(stream, scanner_.span(statement.word));
+        if (bending && text_.finish(stream)) set_once(statement, block_.bending, *bending);
+    }
+
+    void parse_environment_of(const LsysStatement& statement) {
+        TokenStream stream = values(statement);
+        std::optional<LsysEnvironment> environment = parse_environment(stream);
+        if (environment && text_.finish(stream)) block_.environment.push_back(std::move(*environment));
+    }
+
     void parse_direction(const LsysStatement& statement, std::optional<LsysDirection>& of) {
         TokenStream stream = values(statement);
         std::optional<std::vector<Expression>> direction =
             parse_vector(stream, fmt::format("'{}'", statement.word));
         if (!direction || !text_.finish(stream)) return;
-        set_once(statement, of, {std::move(*direction), scanner_.span(statement.word)});
+        set_once(statement, of,
+                 LsysDirection{std::move(*direction), scanner_.span(statement.word), std::nullopt});
     }
 
     /// `table NAME = number, number, ...`
@@ -392,13 +422,17 @@ class BlockParser {
         }
     }
 
-    /// Of two words for one section the first is enough.
+    /// All of them. Of two words for one section the first is enough.
     static std::string statement_choices(std::string_view word, std::string_view meant) {
         std::vector<std::string> words = lsys_keywords();
         std::erase_if(words, [&](const std::string& known) {
             return known != meant && (known == "homomorphism" || known == "decomposition");
         });
-        return choices(word, words);
+        std::string list;
+        for (const std::string& known : words)
+            list += (list.empty() ? "" : ", ") + known;
+        const std::string hint = did_you_mean(word, words);
+        return hint + (hint.empty() ? "known here: " : " known here: ") + list;
     }
 
     void report_no_statement(const LsysStatement& statement) {

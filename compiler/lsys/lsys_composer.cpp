@@ -48,8 +48,8 @@ LsysComposer::LsysComposer(LsysRewriter& rewriter, TurtleContext& turtle, Object
       stop_from_(limits.stop_from), max_bytes_(limits.max_bytes), snaps_(limits.snap_angle > 0),
       sizes_(limits.sizes), size_step_(limits.size_step), steps_unit_(limits.steps_unit),
       directions_(std::max(limits.snap_angle, DirectionTable::rounding)),
-      uses_directions_(
-          rewriter.grammar().uses({TurtleCommand::level, TurtleCommand::tropism, TurtleCommand::bend_down})),
+      uses_directions_(rewriter.grammar().uses({TurtleCommand::level, TurtleCommand::tropism,
+                                                TurtleCommand::set_tropism, TurtleCommand::bend_down})),
       decomposes_(rewriter.grammar().has_rules(RuleKind::decompose)),
       is_timed_(rewriter.grammar().draws_in_time()) {
     for (SymbolId symbol = 0; symbol < rewriter.grammar().symbols.size(); ++symbol)
@@ -386,14 +386,33 @@ TurtleState LsysComposer::state_of(const Turtle& turtle, double& snap) {
     if (context_.varies_angle) state.angle_factor = sizes_known_.representative(state.angle_factor);
     if (context_.two_headings) state.second = rotations_.representative(state.second);
     if (state.in_cylinder) state.control_point = representative(state.control_point);
+    if (state.frame) state.frame = representative(*state.frame, snap);
     if (!uses_directions_) return state;
     const TurtleState exact = state;
     state.tropism = directions_.representative(state.tropism);
     state.vertical = directions_.representative(state.vertical);
     if (snaps_)
-        snap = std::max(angle_between(exact.tropism, state.tropism),
-                        angle_between(exact.vertical, state.vertical));
+        snap = std::max({snap, angle_between(exact.tropism, state.tropism),
+                         angle_between(exact.vertical, state.vertical)});
     return state;
+}
+
+/// The directions of tropisms are snapped; the rest differs by rounding only.
+std::shared_ptr<const TurtleFrame> LsysComposer::representative(const TurtleFrame& exact, double& snap) {
+    auto frame = std::make_shared<TurtleFrame>(exact);
+    const bool mirrored = glm::determinant(exact.axes) < 0;
+    if (mirrored) frame->axes[0] = -frame->axes[0];
+    frame->axes = rotations_.representative(frame->axes);
+    if (mirrored) frame->axes[0] = -frame->axes[0];
+    frame->origin = representative(exact.origin);
+    frame->unit = sizes_known_.representative(exact.unit);
+    for (Tropism& tropism : frame->tropisms) {
+        if (tropism.elasticity == 0) continue;
+        const Vec3 direction = tropism.direction;
+        tropism.direction = directions_.representative(direction);
+        if (snaps_) snap = std::max(snap, angle_between(direction, tropism.direction));
+    }
+    return frame;
 }
 
 /// `A_5` for module A with five steps left.

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -147,6 +148,7 @@ class LsysComposer {
     void complete_task();
     TurtleState state_of(const Turtle& turtle, double& snap);
     Vec3 representative(Vec3 point);
+    std::shared_ptr<const TurtleFrame> representative(const TurtleFrame& exact, double& snap);
     std::string name_of_part(const Task& task) const;
 
     LsysRewriter& rewriter_;

@@ -17,6 +17,7 @@
 #include "compiler/lsys/lsys_limit.h"
 #include "compiler/lsys/lsys_ordered.h"
 #include "compiler/lsys/lsys_palette.h"
+#include "compiler/lsys/lsys_queries.h"
 #include "compiler/lsys/lsys_sizes.h"
 #include "compiler/lsys/lsys_stream.h"
 #include "compiler/lsys/lsys_width.h"
@@ -137,21 +138,14 @@ class Drawer {
     };
 
     TurtleContext turtle_context(TurtleBodies& bodies, Diagnostics& diagnostics, bool lines) const {
-        return {.bodies = bodies,
-                .diagnostics = diagnostics,
-                .angle_deg = grammar_.angle_deg,
-                .step = grammar_.step,
-                .varies_step = grammar_.uses({TurtleCommand::step_by}),
-                .relative_width = grammar_.thickness.has_value(),
-                .thinnest = grammar_.thinnest,
-                .varies_angle = grammar_.uses({TurtleCommand::angle_by}),
-                .reverses_turns = grammar_.uses({TurtleCommand::reverse_turns}),
-                .two_headings = grammar_.uses({TurtleCommand::exchange}),
-                .lines = lines};
+        TurtleContext context = graftal::turtle_context(grammar_, bodies, diagnostics);
+        context.lines = lines;
+        return context;
     }
 
     /// Whether parts differ in their sizes only.
     bool has_sizes() const {
+        if (grammar_.uses({TurtleCommand::widen})) return false; // a sum of widths goes with no size
         return sizes_.any() ||
                grammar_.uses({TurtleCommand::scale_by, TurtleCommand::scale_down_by, TurtleCommand::step_by});
     }
@@ -185,10 +179,8 @@ class Drawer {
     }
 
     TurtleState start() const {
-        TurtleState start;
+        TurtleState start = turtle_start(grammar_);
         start.width = width_;
-        start.tropism = grammar_.tropism;
-        start.vertical = grammar_.vertical;
         return start;
     }
 
@@ -262,12 +254,19 @@ class Drawer {
     }
 
     bool derive() {
-        if (grammar_.in_order)
-            return take_word(LsysOrderedDeriver(rewriter_, diagnostics_, options_.seed, options_.max_modules)
-                                 .derive(steps_));
+        LsysQueries queries(rewriter_, diagnostics_, options_.seed);
+        LsysStage stage;
+        if (grammar_.has_queries())
+            stage = [&](std::uint32_t step, ModuleString& word) { return queries.answer(step, word); };
+        if (grammar_.in_order) {
+            LsysOrderedDeriver deriver(rewriter_, diagnostics_, options_.seed, options_.max_modules);
+            deriver.after_each_step(std::move(stage));
+            return take_word(deriver.derive(steps_));
+        }
         LsysDeriver deriver(rewriter_, diagnostics_, options_.seed, options_.max_modules);
         if (can_draw_run() && LsysStream::can_derive(grammar_))
             deriver.give_up_where_little_repeats(options_.run_from);
+        deriver.after_each_step(std::move(stage));
         auto word = deriver.derive(steps_);
         in_run_ = deriver.gave_up();
         return in_run_ || take_word(std::move(word));
@@ -285,6 +284,7 @@ class Drawer {
     }
 
     const char* obstacle_to_limit() const {
+        if (grammar_.has_queries()) return "with queries";
         for (const LsysRule& rule : grammar_.rules) {
             if (rule.has_context()) return "with contexts";
             if (rule.sees_word()) return "that rewrite several modules at once";
@@ -403,7 +403,8 @@ class Drawer {
     }
 
     bool uses_directions() const {
-        return grammar_.uses({TurtleCommand::level, TurtleCommand::tropism, TurtleCommand::bend_down});
+        return grammar_.uses({TurtleCommand::level, TurtleCommand::tropism, TurtleCommand::stiffen,
+                              TurtleCommand::set_tropism, TurtleCommand::bend_down});
     }
 
     /// From what is exact to what is coarse.

@@ -1,4 +1,5 @@
 #include "compiler/lsys/lsys_grammar.h"
+#include "compiler/lsys/lsys_surroundings.h"
 
 #include <algorithm>
 #include <cctype>
@@ -65,6 +66,8 @@ class GrammarBuilder {
         note_times();
         if (!block_.precedence || !block_.precedence->by_text) prefer_contexts();
         check_symbols(grammar_, uses_, diagnostics_);
+        build_surroundings(block_, grammar_, diagnostics_);
+        grammar_.needs_word |= grammar_.has_queries();
         if (!block_.broken) check_patterns(grammar_, uses_, diagnostics_);
         if (diagnostics_.error_count() > errors_before_) return std::nullopt;
         return std::move(grammar_);
@@ -141,7 +144,6 @@ class GrammarBuilder {
             block_.seed, [](double x) { return x >= 0 && x <= largest_seed && x == std::floor(x); }, "seed",
             "be a whole number from 0 to 2^53");
         grammar_.seed = static_cast<std::uint64_t>(seed.value_or(0));
-        if (block_.tropism) set_direction(*block_.tropism, "tropism", grammar_.tropism);
         if (block_.vertical) set_direction(*block_.vertical, "vertical", grammar_.vertical);
         if (!block_.steps) return;
         grammar_.infinite = !block_.steps->value;

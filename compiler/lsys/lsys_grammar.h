@@ -10,6 +10,7 @@
 #include <string_view>
 #include <vector>
 
+#include "compiler/environment/environment.h"
 #include "compiler/lsys/lsys_ast.h"
 #include "compiler/lsys/lsys_program.h"
 #include "compiler/lsys/module_table.h"
@@ -119,11 +120,15 @@ struct LsysGrammar {
 
     double angle_deg = 90;
     double step = 1;
-    std::optional<double> width;     ///< nothing: automatic
-    std::optional<double> thickness; ///< of segments, per length: in place of a width
-    double thinnest = 0;             ///< then the least width
-    Vec3 tropism{0, -1, 0};          ///< unit vector that `T` bends towards, in world space
-    Vec3 vertical{0, 1, 0};          ///< the same, that `$` and `@B` look at
+    std::optional<double> width;            ///< nothing: automatic
+    std::optional<double> thickness;        ///< of segments, per length: in place of a width
+    double thinnest = 0;                    ///< then the least width
+    Vec3 tropism{0, -1, 0};                 ///< unit vector that `T` bends towards, in world space
+    std::vector<Vec3> other_tropisms;       ///< the same, of the second and all further ones
+    std::vector<TropismKind> tropism_kinds; ///< of all; empty: of one that is plain
+    Bending bending = Bending::after_segments;
+    std::optional<EnvironmentSettings> environment; ///< that answers `?E`; without its seed
+    Vec3 vertical{0, 1, 0};                         ///< the same, that `$` and `@B` look at
     std::uint64_t seed = 0;
     std::optional<unsigned> steps; ///< nothing: not given, or infinite
     bool infinite = false;
@@ -146,6 +151,11 @@ struct LsysGrammar {
     bool draws(RuleKind kind) const;
     /// Whether rules of a kind give chance a say.
     bool is_random(RuleKind kind) const;
+    /// Whether some symbol is a query, which derivation sets.
+    bool has_queries() const {
+        return uses({TurtleCommand::ask_place, TurtleCommand::ask_heading, TurtleCommand::ask_up,
+                     TurtleCommand::ask_left, TurtleCommand::ask_environment});
+    }
     /// Whether some symbol has one of these commands.
     bool uses(std::initializer_list<TurtleCommand> wanted) const;
 };

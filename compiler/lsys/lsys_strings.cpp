@@ -135,6 +135,8 @@ bool LsysStringReader::take_symbol(Raw& raw) {
         const bool two_letters = std::find(long_directives.begin(), long_directives.end(),
                                            text.substr(0, 3)) != long_directives.end();
         raw.symbol = text.substr(0, two_letters ? 3 : 2);
+    } else if (c == '?' && turtle_command(text.substr(0, 2)) != TurtleCommand::none) {
+        raw.symbol = text.substr(0, 2);
     } else if (c == '"' || turtle_command(text.substr(0, 1)) != TurtleCommand::none) {
         if (c == '/') warn_of_comment();
         raw.symbol = text.substr(0, 1);

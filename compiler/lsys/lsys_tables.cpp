@@ -25,6 +25,9 @@ void connect_tables(LsysBlock& block, const ExpressionTables& tables) {
     for (std::optional<LsysValue>* value :
          {&block.angle, &block.step, &block.width, &block.thickness, &block.thinnest})
         if (*value) connect((*value)->value);
+    for (LsysEnvironment& statement : block.environment)
+        for (Expression& number : statement.numbers)
+            connect(number);
     for (auto* commands : {&block.start, &block.start_each, &block.end_each, &block.end})
         connect_commands(*commands);
     if (block.axiom) connect_string(*block.axiom);

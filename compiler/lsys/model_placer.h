@@ -19,7 +19,7 @@ struct PlacedModel {
 using ModelPlacer = std::function<std::optional<PlacedModel>(SymbolId model, std::span<const double>, Span)>;
 
 /// The scale that parameters ask for: none, one for all directions, or k1, k2 across and along, with sqrt|k1
-/// k2| above, as `scale` has it; further ones do not count.
+/// k2| above, as `scale` has it, or k1, k2, k3; further ones do not count.
 Vec3 placed_scale(std::span<const double> parameters);
 
 } // namespace graftal

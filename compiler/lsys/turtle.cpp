@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <utility>
 
 #include <fmt/format.h>
@@ -11,16 +10,12 @@
 #include <glm/gtc/quaternion.hpp>
 #include <glm/matrix.hpp>
 
-#include "compiler/support/angle.h"
 #include "compiler/support/number.h"
 #include "compiler/support/number_range.h"
 
 namespace graftal {
 
 namespace {
-
-/// `!` without an argument: the areas of two such branches sum to that of their parent.
-constexpr double thinning = std::numbers::sqrt2 / 2;
 
 /// They are cut into triangles in a time that goes with the square.
 constexpr std::size_t max_polygon_vertices = 10'000;
@@ -41,11 +36,13 @@ const char* size_name(TurtleCommand command) {
     case TurtleCommand::move_unrecorded:
         return "a length";
     case TurtleCommand::width:
+    case TurtleCommand::widen:
         return "a width";
     case TurtleCommand::sphere:
     case TurtleCommand::disc:
         return "a diameter";
     case TurtleCommand::tropism:
+    case TurtleCommand::stiffen:
         return "an elasticity";
     case TurtleCommand::scale_by:
     case TurtleCommand::scale_down_by:
@@ -179,6 +176,26 @@ bool Turtle::run(TurtleCommand command, std::span<const double> parameters,
     case TurtleCommand::flip:
         flip();
         return true;
+    case TurtleCommand::widen:
+        return widen(first_or(parameters, 0), span);
+    case TurtleCommand::stiffen:
+        note(reads_elasticity);
+        state_.elasticity += first_or(parameters, 0);
+        writes_ |= reads_elasticity;
+        return true;
+    case TurtleCommand::set_tropism:
+        return set_tropism(parameters, span);
+    case TurtleCommand::go_to:
+        go_to(parameters);
+        break;
+    case TurtleCommand::head_to:
+        return head_to(parameters, span);
+    case TurtleCommand::ask_place:
+    case TurtleCommand::ask_heading:
+    case TurtleCommand::ask_up:
+    case TurtleCommand::ask_left:
+    case TurtleCommand::ask_environment:
+        return true;
     case TurtleCommand::model:
         if (model) add_model(*model, absolute, span);
         break;
@@ -244,12 +261,13 @@ bool Turtle::within_limits(Span span) {
 void Turtle::move(std::span<const double> parameters, bool absolute, bool draw, bool record, Span span,
                   bool always) {
     absolute = absolute || parameters.empty();
+    if (context_.bending == Bending::before_moves) bend();
     const double length =
         at_least_size(parameters.empty() ? scale_ * context_.step * read_unit() : written(parameters[0]));
     const bool fills = !always && (!polygons_.empty() || (note(reads_polygons), state_.open_polygons > 0));
     if (draw) ++segments_;
     if (absolute) unit_shift_ += std::abs(length);
-    if (draw && !fills && !(note(reads_cylinder), state_.in_cylinder)) {
+    if (draw && context_.draws && !fills && !(note(reads_cylinder), state_.in_cylinder)) {
         const double width = line_width(length);
         context_.bodies.add_segment(start_from_turtle_, length, width, read_colour(), span, sink(true));
         note_radius(width / 2, width_source_);
@@ -266,166 +284,12 @@ void Turtle::move(std::span<const double> parameters, bool absolute, bool draw, 
         total->farthest = std::max(total->farthest, drift->shift);
     }
     if (fills && record) record_vertex(start_from_turtle_.translation);
-    if (draw) bend();
-}
-
-double Turtle::line_width(double length) {
-    constexpr double slenderness = 0.05;
-    if (context_.relative_width) {
-        const double least = context_.thinnest > 0 ? written(context_.thinnest) * read_unit() : 0;
-        return at_least_size(std::max(read_width() * std::abs(length), least));
-    }
-    return context_.limit && context_.lines ? slenderness * std::abs(length) : read_width();
-}
-
-double Turtle::usual_angle() {
-    if (!context_.varies_angle) return context_.angle_deg;
-    note(reads_angle);
-    return state_.angle_factor * context_.angle_deg;
-}
-
-/// How long a length is that a string writes.
-double Turtle::written(double length) {
-    if (!context_.varies_step) return scale_ * length;
-    note(reads_ruler);
-    return state_.ruler * length;
-}
-
-/// Of what is as thick as a segment.
-double Turtle::usual_diameter() {
-    return context_.relative_width ? read_width() * scale_ * context_.step * read_unit() : read_width();
-}
-
-/// The width stays as it is, and so becomes another one as seen from the turtle. `written_too`: lengths that
-/// strings write go with the scale.
-bool Turtle::scale_by(double factor, bool written_too, Span span) {
-    const double scale = scale_ * factor;
-    const double ruler = state_.ruler * (written_too ? factor : 1);
-    const double largest = std::max(ruler, context_.relative_width ? 0 : state_.width) / std::min(1.0, scale);
-    if (scale >= least_size && scale <= largest_size && ruler >= least_size && largest <= largest_size) {
-        scale_ = scale;
-        if (!context_.varies_step || !written_too) return true;
-        note(reads_ruler);
-        writes_ |= reads_ruler;
-        state_.ruler = ruler;
-        return true;
-    }
-    if (factor > 0 && std::isfinite(factor))
-        context_.diagnostics.error(span, "the scale of the turtle leaves the range of numbers")
-            .with_hint("use fewer steps, or factors closer to 1");
-    else
-        context_.diagnostics.error(
-            span, fmt::format("a factor of the scale must be above 0, but is {}", shortest(factor)));
-    return false;
-}
-
-bool Turtle::widen_by(double factor, Span span) {
-    const double width = factor * read_width();
-    if (factor >= 0 && width <= largest_size) {
-        state_.width = at_least_size(width);
-        writes_ |= reads_width;
-        return true;
-    }
-    context_.diagnostics.error(span, fmt::format("a width must lie between 0 and {}, but is {}",
-                                                 shortest(largest_size), shortest(width)));
-    return false;
-}
-
-bool Turtle::multiply_angle(double factor, Span span) {
-    note(reads_angle);
-    const double product = state_.angle_factor * factor;
-    if (std::abs(product) <= largest_size) {
-        state_.angle_factor = product;
-        writes_ |= reads_angle;
-        return true;
-    }
-    context_.diagnostics.error(span, "the factor of the angle leaves the range of numbers");
-    return false;
-}
-
-double Turtle::sense() {
-    if (!context_.reverses_turns) return 1;
-    note(reads_reversal);
-    return state_.turns_reversed ? -1 : 1;
-}
-
-/// With a parameter, so that turns are reversed where it is not 0; without, the other way than before.
-void Turtle::reverse_turns(std::span<const double> parameters) {
-    if (parameters.empty()) note(reads_reversal);
-    state_.turns_reversed = parameters.empty() ? !state_.turns_reversed : parameters[0] != 0;
-    writes_ |= reads_reversal;
-}
-
-void Turtle::exchange() {
-    note(reads_second);
-    std::swap(start_from_turtle_.linear, second_);
-    writes_ |= reads_second;
-}
-
-/// Both pairs of axes become mirror images, so that the second ones are seen from the first as before.
-void Turtle::flip() {
-    start_from_turtle_.linear[0] = -start_from_turtle_.linear[0];
-    second_[0] = -second_[0];
-    mirrored_ = !mirrored_;
-}
-
-/// By columns: what is not turned stays as it is, to the last bit.
-void Turtle::turn(Axis axis, double angle_deg) {
-    const auto [cosine, sine] = cos_sin_deg(angle_deg);
-    const int k = static_cast<int>(axis);
-    Vec3& first = start_from_turtle_.linear[(k + 1) % 3];
-    Vec3& second = start_from_turtle_.linear[(k + 2) % 3];
-    const Vec3 turned = cosine * first + sine * second;
-    second = cosine * second - sine * first;
-    first = turned;
-}
-
-/// L = V x H / |V x H|, U = H x L (ABOP, section 2.2); a turtle that heads straight up or down stays.
-void Turtle::level() {
-    note(reads_vertical);
-    const Vec3 heading = start_from_turtle_.linear[1];
-    const Vec3 left = glm::cross(state_.vertical, heading);
-    constexpr double least_sine = 1e-9;
-    if (!(glm::length(left) > least_sine)) return;
-    // The roll turns about the heading by the angle that the vertical turns about it.
-    sensitivity_.turn = bounded(sensitivity_.turn + (1 + sensitivity_.turn) / glm::length(left));
-    const Vec3 x = -glm::normalize(left);
-    start_from_turtle_.linear = Mat3(mirrored_ ? -x : x, heading, glm::cross(x, heading));
-}
-
-/// Turns about H x T by the angle e |H x T| (ABOP, section 2.2), in radians.
-void Turtle::bend() {
-    note(reads_elasticity);
-    if (state_.elasticity == 0) return;
-    note(reads_tropism);
-    const Vec3 axis = glm::cross(start_from_turtle_.linear[1], state_.tropism);
-    const double sine = glm::length(axis);
-    sensitivity_.turn = bounded(sensitivity_.turn + std::abs(state_.elasticity) * (1 + sensitivity_.turn));
-    if (!(sine > 0)) return;
-    const double angle_deg = state_.elasticity * sine * 180 / std::numbers::pi;
-    start_from_turtle_.linear = Affine::rotate(axis, angle_deg).linear * start_from_turtle_.linear;
-}
-
-/// By e |H x V|, in radians, about the turtle's own axis: so L-Parser bends branches.
-void Turtle::bend_down(double elasticity) {
-    note(reads_vertical);
-    const double sine = glm::length(glm::cross(start_from_turtle_.linear[1], state_.vertical));
-    sensitivity_.turn = bounded(sensitivity_.turn + std::abs(elasticity) * (1 + sensitivity_.turn));
-    turn(Axis::right, -elasticity * sine * 180 / std::numbers::pi);
-}
-
-/// Of something round that is drawn here.
-void Turtle::note_radius(double radius, WidthSource source) {
-    part_.thickest = std::max(part_.thickest, radius);
-    const double own_error = source == width_source_ ? width_error_ * radius : 0;
-    part_.size_error.farthest = std::max(part_.size_error.farthest, size_shift_ + own_error);
-    part_.error.farthest = std::max(part_.error.farthest, error_.shift + own_error);
-    if (source == WidthSource::start) part_.width_sensitivity = std::max(part_.width_sensitivity, radius);
-    const double by_unit = source == WidthSource::unit ? radius : 0;
-    part_.unit_sensitivity.farthest = std::max(part_.unit_sensitivity.farthest, unit_shift_ + by_unit);
+    if (context_.bending == Bending::after_moves || (draw && context_.bending == Bending::after_segments))
+        bend();
 }
 
 void Turtle::add_ball(TurtleCommand command, std::span<const double> parameters, bool absolute, Span span) {
+    if (!context_.draws) return;
     part_.has_bodies = true;
     ++bodies_;
     const double diameter = parameters.empty() ? usual_diameter() : written(parameters[0]);
@@ -441,6 +305,7 @@ void Turtle::add_ball(TurtleCommand command, std::span<const double> parameters,
 }
 
 void Turtle::add_model(const PlacedModel& model, bool absolute, Span span) {
+    if (!context_.draws) return;
     part_.has_bodies = true;
     ++bodies_;
     PlacedModel placed = model;
@@ -449,24 +314,6 @@ void Turtle::add_model(const PlacedModel& model, bool absolute, Span span) {
     // Of primitives no point lies farther from their origin; with others the unit is never off.
     constexpr double farthest = 2;
     if (absolute) note_radius(farthest * largest_entry(placed.scale), WidthSource::unit);
-}
-
-bool Turtle::set_width(std::span<const double> parameters, bool absolute, Span span) {
-    const double width = parameters.empty()        ? thinning * read_width()
-                         : context_.relative_width ? parameters[0]
-                                                   : written(parameters[0]);
-    if (width < 0) {
-        context_.diagnostics.error(span,
-                                   fmt::format("a width must not be negative, but is {}", shortest(width)));
-        return false;
-    }
-    state_.width = at_least_size(width);
-    if (!parameters.empty()) {
-        width_source_ = absolute ? WidthSource::unit : WidthSource::sizes;
-        if (!state_.in_cylinder) width_error_ = 0; // a taper has the width before, too
-    }
-    writes_ |= reads_width;
-    return true;
 }
 
 void Turtle::set_colour(std::span<const double> parameters, int step) {
@@ -521,9 +368,11 @@ void Turtle::record_vertex(Vec3 vertex) {
 /// A '}' that closes nothing is passed over.
 void Turtle::close_polygon(int colour, Span span) {
     if (!polygons_.empty()) {
-        part_.has_bodies = true;
-        ++bodies_;
-        context_.bodies.add_polygon(polygons_.back(), colour, span, sink(false));
+        if (context_.draws) {
+            part_.has_bodies = true;
+            ++bodies_;
+            context_.bodies.add_polygon(polygons_.back(), colour, span, sink(false));
+        }
         polygons_.pop_back();
         return;
     }
@@ -545,6 +394,7 @@ void Turtle::add_control_point(Span span) {
     note(reads_cylinder);
     if (!state_.in_cylinder) return;
     note(reads_control);
+    if (!context_.draws) return start_cylinder();
     const double width = usual_diameter();
     context_.bodies.add_taper(start_from_turtle_, state_.control_point, state_.control_width, width,
                               read_colour(), span, sink(true));
@@ -562,6 +412,8 @@ TurtleState Turtle::state() const {
     if (state_.in_cylinder)
         result.control_point = turtle_from_start * (state_.control_point - start_from_turtle_.translation);
     if (context_.two_headings) result.second = glm::quat_cast(turtle_from_start * second_);
+    if (state_.frame)
+        result.frame = std::make_shared<TurtleFrame>(seen_from(*state_.frame, start_from_turtle_, 1));
     if (scale_ == 1) return result;
     result = scaled(result, 1 / scale_);
     result.unit = state_.unit; // the step, too, is longer by the scale

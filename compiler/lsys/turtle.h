@@ -97,8 +97,11 @@ struct TurtleContext {
     double thinnest = 0;         ///< then the least
     bool varies_angle = false;   ///< symbols multiply it
     bool reverses_turns = false;
-    bool two_headings = false; ///< symbols exchange them
-    bool lines = false;        ///< segments are strokes of a curve: small parts are drawn as lines
+    bool two_headings = false;             ///< symbols exchange them
+    std::span<const TropismKind> tropisms; ///< empty: one that is plain
+    Bending bending = Bending::after_segments;
+    bool draws = true;  ///< or only walks, for queries
+    bool lines = false; ///< segments are strokes of a curve: small parts are drawn as lines
     bool limit = false; ///< only proportions count: lines are as thick as their lengths ask, and parts that
                         ///< differ by a rotation in the plane are made equal
     bool open_width = false;               ///< how thick lines are is not known yet (turtle_bodies.h)
@@ -119,8 +122,8 @@ inline double bounded(double sensitivity) {
 /// Follows commands and gathers what they draw.
 class Turtle {
   public:
-    /// `context` must outlive the turtle. `run`: takes the round bodies that run() draws, in place of the
-    /// part's instances.
+    /// `context` must outlive the turtle; `start` has a frame if symbols ask for the world. `run`: takes the
+    /// round bodies that run() draws, in place of the part's instances.
     Turtle(TurtleContext& context, const TurtleState& start, Run* run = nullptr);
 
     /// Carries out one module; false after an error. What `~` places is given by `model`. `absolute`: the
@@ -190,6 +193,11 @@ class Turtle {
     double usual_diameter();
     bool scale_by(double factor, bool written_too, Span span);
     void bend_down(double elasticity);
+    bool set_tropism(std::span<const double> parameters, Span span);
+    void go_to(std::span<const double> parameters);
+    bool head_to(std::span<const double> parameters, Span span);
+    void turn_to(Vec3 heading);
+    bool widen(double by, Span span);
     bool widen_by(double factor, Span span);
     bool multiply_angle(double factor, Span span);
     double sense();
@@ -200,11 +208,14 @@ class Turtle {
     void turn(Axis axis, double angle_deg);
     void level();
     void bend();
+    void bend_to_all();
+    void twist_to(Vec3 pull);
     bool set_width(std::span<const double> parameters, bool absolute, Span span);
     void add_ball(TurtleCommand command, std::span<const double> parameters, bool absolute, Span span);
     void add_model(const PlacedModel& model, bool absolute, Span span);
     void note_radius(double radius, WidthSource source);
     void place_errors(const TurtlePart& part, const Placing& placing);
+    void take_tropisms(const TurtleFrame& exit);
     void take_exit_width(const TurtlePart& part, const Placing& placing);
     void set_colour(std::span<const double> parameters, int step);
     void cut();

@@ -46,6 +46,30 @@ enum class TurtleCommand : std::uint8_t {
     bend_down,     ///< pitches, the more level it heads
     reverse_turns, ///< exchanges left and right in turns, not in rolls
     flip,          ///< mirrors the turtle: left is right
+    widen,         ///< adds to the width
+    stiffen,       ///< adds to the elasticity
+    set_tropism,   ///< the elasticity of one of several
+    go_to,         ///< a place of the world
+    head_to,       ///< a direction of the world
+    // Queries: derivation sets their parameters (lsys_queries.h).
+    ask_place,
+    ask_heading,
+    ask_up,
+    ask_left,
+    ask_environment,
+};
+
+/// When tropisms bend the turtle.
+enum class Bending : std::uint8_t { after_segments, after_moves, before_moves };
+
+/// How a tropism acts.
+struct TropismKind {
+    double toward = 1; ///< cosine of the angle with the direction that headings tend to
+    double across = 0; ///< its sine
+    bool twists =
+        false; ///< turns the turtle about its heading, until z is near the direction, and bends nothing
+
+    bool is_plain() const { return across == 0 && !twists; }
 };
 
 struct TurtleSymbol {
@@ -95,6 +119,16 @@ inline constexpr TurtleSymbol turtle_symbols[] = {
     {"@B", TurtleCommand::bend_down},
     {"@N", TurtleCommand::reverse_turns},
     {"@E", TurtleCommand::draw_always},
+    {"@I", TurtleCommand::widen},
+    {"@K", TurtleCommand::stiffen},
+    {"@T", TurtleCommand::set_tropism},
+    {"@M", TurtleCommand::go_to},
+    {"@R", TurtleCommand::head_to},
+    {"?P", TurtleCommand::ask_place},
+    {"?H", TurtleCommand::ask_heading},
+    {"?U", TurtleCommand::ask_up},
+    {"?L", TurtleCommand::ask_left},
+    {"?E", TurtleCommand::ask_environment},
 };
 
 /// The command of a symbol as strings write it; `none` for what has no meaning.

@@ -37,6 +37,7 @@ void Turtle::append(const TurtlePart& part, Span span, const Placing& given) {
     if (part.writes & reads_reversal) state_.turns_reversed = part.exit.turns_reversed;
     if (part.writes & reads_ruler) state_.ruler = scale_ * part.exit.ruler; // its frame is of the scale alone
     if (part.writes & reads_angle) state_.angle_factor = part.exit.angle_factor;
+    if (part.writes & reads_tropisms) take_tropisms(*part.exit.frame);
     writes_ |= part.writes;
     const Affine& exit = part.start_from_exit;
     start_from_turtle_ = start_from_turtle_ * Affine{exit.linear, scale * exit.translation};
@@ -47,6 +48,14 @@ void Turtle::append(const TurtlePart& part, Span span, const Placing& given) {
     else if (part.mirrors)
         second_[0] = -second_[0];
     if (part.cut) cut();
+}
+
+/// The elasticities; the directions are those of this turtle.
+void Turtle::take_tropisms(const TurtleFrame& exit) {
+    TurtleFrame frame = *state_.frame;
+    for (std::size_t i = 0; i < most_other_tropisms; ++i)
+        frame.tropisms[i].elasticity = exit.tropisms[i].elasticity;
+    state_.frame = std::make_shared<TurtleFrame>(frame);
 }
 
 void Turtle::take_exit_width(const TurtlePart& part, const Placing& placing) {

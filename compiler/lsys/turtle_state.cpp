@@ -28,6 +28,7 @@ TurtleState scaled(TurtleState state, double factor) {
     state.unit *= factor;
     state.control_point *= factor;
     state.control_width *= factor;
+    if (state.frame) state.frame = std::make_shared<TurtleFrame>(seen_from(*state.frame, {}, 1 / factor));
     return state;
 }
 
@@ -47,7 +48,10 @@ bool equal(const TurtleState& a, const TurtleState& b, TurtleStateMask mask) {
            (!(mask & reads_birth) || a.birth == b.birth) && (!(mask & reads_unit) || a.unit == b.unit) &&
            (!(mask & reads_cylinder) || a.in_cylinder == b.in_cylinder) &&
            (!(mask & reads_control) ||
-            (a.control_point == b.control_point && a.control_width == b.control_width));
+            (a.control_point == b.control_point && a.control_width == b.control_width)) &&
+           (!(mask & reads_tropisms) || equal_tropisms(*a.frame, *b.frame)) &&
+           (!(mask & reads_axes) || a.frame->axes == b.frame->axes) &&
+           (!(mask & reads_origin) || equal_places(*a.frame, *b.frame));
 }
 
 std::uint64_t hash(const TurtleState& state, TurtleStateMask mask) {
@@ -71,6 +75,9 @@ std::uint64_t hash(const TurtleState& state, TurtleStateMask mask) {
     if (mask & reads_cylinder) hash = mixed(hash, state.in_cylinder);
     if (mask & reads_control)
         hash = mixed_number(mixed_vector(hash, state.control_point), state.control_width);
+    if (mask & reads_tropisms) hash = hash_of_tropisms(hash, *state.frame);
+    if (mask & reads_axes) hash = hash_of_axes(hash, *state.frame);
+    if (mask & reads_origin) hash = hash_of_origin(hash, *state.frame);
     return hash;
 }
 

@@ -1,10 +1,12 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include <glm/ext/quaternion_double.hpp>
 
+#include "compiler/lsys/turtle_frame.h"
 #include "compiler/support/affine.h"
 #include "compiler/support/id_table.h"
 
@@ -29,12 +31,13 @@ struct TurtleState {
     double unit = 1;           ///< how long a length of 1 is that the model writes (lsys_composer.h)
     double ruler = 1;          ///< the same of one that does not go with the step, where the step varies
     bool turns_reversed = false;
-    double angle_factor = 1;        ///< of turns without a parameter
-    Quat second = Quat(1, 0, 0, 0); ///< the second axes, from those of the turtle
+    double angle_factor = 1;                  ///< of turns without a parameter
+    Quat second = Quat(1, 0, 0, 0);           ///< the second axes, from those of the turtle
+    std::shared_ptr<const TurtleFrame> frame; ///< the world; null where no symbol asks for it
 };
 
 /// The members of a TurtleState, as a set.
-using TurtleStateMask = std::uint16_t;
+using TurtleStateMask = std::uint32_t;
 enum TurtleStateBit : TurtleStateMask {
     reads_width = 1,
     reads_colour = 2,
@@ -52,6 +55,9 @@ enum TurtleStateBit : TurtleStateMask {
     reads_second = 8192,
     reads_ruler = 16384,
     reads_reversal = 32768,
+    reads_tropisms = 65536, ///< all but the first
+    reads_axes = 131072,    ///< of the world
+    reads_origin = 262144,  ///< and its unit
 };
 
 /// The same in a frame in which all is this many times as long.

@@ -1,5 +1,7 @@
 #include <filesystem>
 #include <fstream>
+#include <map>
+#include <string>
 
 #include <gmock/gmock.h>
 
@@ -89,18 +91,166 @@ TEST(Cpfg, ReadsContexts) {
     EXPECT_EQ(model.derivation->segments, "5") << model.said();
 }
 
+TEST(Cpfg, RollsTheOtherWay) {
+    // In cpfg '/' takes the left away from the viewer: '+' then bends away.
+    const Imported model = cpfg("Lsystem: 1\nderivation length: 0\nAxiom: /(90)+(90)F(1)\nendlsystem\n");
+    ASSERT_EQ(model.segments().size(), 1u) << model.said();
+    EXPECT_NEAR(model.segments()[0].second.z, -1, 1e-9);
+}
+
+TEST(Cpfg, TakesStrictPredecessorsOfSeveralModules) {
+    const Imported model = cpfg("Lsystem: 1\nderivation length: 2\nAxiom: AB[C]D\nAB --> FB\nB[C] --> F[F]\n"
+                                "endlsystem\n");
+    EXPECT_EQ(model.derivation->segments, "3") << model.said();
+}
+
+TEST(Cpfg, KeepsVariablesThatChangeAndThoseThatDoNot) {
+    const Imported model =
+        cpfg("Lsystem: 1\nStart: {n = 1; len = 2; m = len*2;}\nStartEach: {n = n+1; printf(\"%f;\", n);}\n"
+             "derivation length: 3\nAxiom: A\nA --> F(n)A\nendlsystem\n");
+    EXPECT_THAT(model.translation, HasSubstr("  let len = 2\n  let m = len*2\n"));
+    EXPECT_THAT(model.translation, HasSubstr("  variable n = 1\n  start each { n = n+1 }\n"));
+    ASSERT_EQ(model.segments().size(), 3u) << model.said();
+    EXPECT_NEAR(model.segments()[2].second.y, 2 + 3 + 4, 1e-9);
+    EXPECT_THAT(model.said(), HasSubstr("what the model prints is left out"));
+}
+
+TEST(Cpfg, KeepsArraysConditionsAndLoops) {
+    const Imported model =
+        cpfg("Lsystem: 1\ndefine: { array len[2][2] = {1,2,3,4}; }\nderivation length: 1\nAxiom: A(1)\n"
+             "A(x) : { y = 0; i = 0; while (i < 2) { y = y + len[x][i]; i = i+1; }\n\tif (y > 6) y = 10; "
+             "else y = 1; } 1\n"
+             "\t--> F(y)\nendlsystem\n");
+    EXPECT_THAT(model.translation, HasSubstr("  array len[2][2] = 1, 2, 3, 4\n"));
+    ASSERT_EQ(model.segments().size(), 1u) << model.said();
+    EXPECT_NEAR(model.segments()[0].second.y, 10, 1e-9);
+}
+
+TEST(Cpfg, DecomposesInStepsOnly) {
+    const std::string lines =
+        "Axiom: A(3)\nB --> F\ndecomposition\nmaximum depth: 9\nA(n) : n > 0 --> BA(n-1)\n"
+        "endlsystem\n";
+    EXPECT_EQ(cpfg("Lsystem: 1\nderivation length: 1\n" + lines).segments().size(), 0u);
+    EXPECT_EQ(cpfg("Lsystem: 1\nderivation length: 2\n" + lines).segments().size(), 3u);
+}
+
+TEST(Cpfg, JoinsModulesThatAreOneName) {
+    const Imported model =
+        cpfg("Lsystem: 1\nderivation length: 1\nAxiom: AXIOM\nO(x) --> F(x)\ndecomposition\n"
+             "AXIOM --> O(2)\nhomomorphism\nO(x) --> F(x)F(x)\nendlsystem\n");
+    EXPECT_EQ(model.segments().size(), 2u) << model.said();
+}
+
+TEST(Cpfg, CutsOneStepLater) {
+    const std::string lines = "Axiom: A[F]B\nA --> F%\nB --> FF\nendlsystem\n";
+    EXPECT_EQ(cpfg("Lsystem: 1\nderivation length: 1\n" + lines).segments().size(), 4u);
+    EXPECT_EQ(cpfg("Lsystem: 1\nderivation length: 2\n" + lines).segments().size(), 1u);
+}
+
+TEST(Cpfg, AsksQueriesBeforeEachStep) {
+    const Imported model = cpfg(
+        "Lsystem: 1\nderivation length: 9\nconsider: A?P[]\nAxiom: A?P(0,0)\nA > ?P(x,y) : y < 2.5 --> FA\n"
+        "endlsystem\n");
+    EXPECT_EQ(model.segments().size(), 3u) << model.said();
+    EXPECT_THAT(model.translation, HasSubstr("  precedence text\n"));
+}
+
+TEST(Cpfg, WritesBooleanConditionsOfThePreprocessorOut) {
+    const Imported model =
+        cpfg("#define A 3\n#if A > 2 && (defined(B) || A*2 == 6) && !defined(C)\n#define L 2\n"
+             "#else\n#define L 1\n#endif\nLsystem: 1\nderivation length: 0\nAxiom: F(L)\nendlsystem\n");
+    ASSERT_EQ(model.segments().size(), 1u) << model.said();
+    EXPECT_NEAR(model.segments()[0].second.y, 2, 1e-9);
+}
+
+/// Files beside a model, in a folder of their own.
+class Companions {
+  public:
+    explicit Companions(const std::map<std::string, std::string>& files) {
+        std::filesystem::create_directories(folder_);
+        for (const auto& [name, text] : files)
+            std::ofstream(folder_ / name) << text;
+    }
+    ~Companions() { std::filesystem::remove_all(folder_); }
+
+    Imported model(const std::string& lines) const { return Imported((folder_ / "p.l").string(), lines); }
+
+  private:
+    std::filesystem::path folder_ = std::filesystem::temp_directory_path() / "graftal_cpfg_companions";
+};
+
+TEST(Cpfg, FindsWhatTheSpecificationsName) {
+    const Companions files({{"specifications", "model:\n\tcpfg -e world.e p.l other.v p.a\n"},
+                            {"other.v", "angle increment: 20\ninitial line width: 0.1\nline style: cylinder\n"
+                                        "line width increment: 0.02\ntropism direction: 1,0,0\n"
+                                        "elasticity increment: 0.1\nfunction set: all.fset\n"},
+                            {"all.fset", "funcgalleryver 1 1\nitems: 1\nfver 1 1\nname: GROWTH\nsamples: 3\n"
+                                         "flip: off\npoints: 2\n0 0\n1 4\n"},
+                            {"world.e", "executable: honda81 -e world.e near.spec\n"},
+                            {"near.spec", "radius: 0.5\n3d case: on\n"}});
+    const Imported model =
+        files.model("Lsystem: 1\nderivation length: 1\n"
+                    "Axiom: F_F#F(func(GROWTH, 0.5))?E(1)\n?E(x) : x == 1 --> FFF\nendlsystem\n");
+    ASSERT_TRUE(model.graph) << model.said();
+    EXPECT_THAT(model.translation, HasSubstr("angle 20"));
+    EXPECT_THAT(model.translation, HasSubstr("table GROWTH_of = 0, 2, 4"));
+    EXPECT_THAT(model.translation, HasSubstr("environment crowd 0.5\n"));
+    EXPECT_THAT(model.translation, HasSubstr("bending after moves"));
+    EXPECT_THAT(model.translation, HasSubstr("F@K(0.1)F@I(0.02)F(GROWTH_of(0.5))"));
+    EXPECT_EQ(model.segments().size(), 6u) << model.said();
+}
+
+TEST(Cpfg, KnowsTheEnvironmentsThatItTranslates) {
+    const auto translated = [](const std::string& executable, const std::string& specification) {
+        const Companions files({{"specifications", "m:\n\tcpfg -e w.e p.l\n"},
+                                {"w.e", "executable: " + executable + " s.spec\n"},
+                                {"s.spec", specification}});
+        const Imported model = files.model("Lsystem: 1\nderivation length: 1\nAxiom: F?E(1)\nendlsystem\n");
+        return model.translation.empty() ? model.said() : model.translation;
+    };
+    EXPECT_THAT(translated("honda81", "radius: 2\n"), HasSubstr("environment crowd 2, 0, 1, 0\n"));
+    EXPECT_THAT(translated("ecosystem -e w.e", "3d case: on\n"), HasSubstr("environment rivals\n"));
+    EXPECT_THAT(translated("chiba",
+                           "transmittance: 0.5\nestimate intersection area: on\nsource direction: 0 1 0 2\n"),
+                HasSubstr("environment shade 0.5,  0, 1, 0, 2\n"));
+    EXPECT_THAT(translated("clover", ""), HasSubstr("the environment program 'clover' has no translation"));
+}
+
+TEST(Cpfg, SurfacesAreAsLargeAsTheirSizeSays) {
+    const Companions files(
+        {{"p.v", "surface: l leaf.s 2\n"},
+         {"leaf.s", "CONTACT POINT  X: 0 Y: 0 Z: 0\nHEADING  X: 0 Y: 2 Z: 0\nUP X: 0 Y: 0 Z: -1\n"
+                    "SIZE: 10\nPatch_1\nTOP COLOR: 0 DIFFUSE: 0\nAL: ~ A: ~ AR: ~\nL: ~ R: ~\n"
+                    "0 0 0 1 0 0 2 0 0 3 0 0\n0 1 0 1 1 0 2 1 0 3 1 0\n"
+                    "0 2 0 1 2 0 2 2 0 3 2 0\n0 3 5 1 3 5 2 3 5 3 3 5\n"}});
+    const Imported model = files.model("Lsystem: 1\nderivation length: 0\nAxiom: F~l(1,2,3)\nendlsystem\n");
+    ASSERT_TRUE(model.graph) << model.said();
+    EXPECT_THAT(model.translation, HasSubstr("~surface_l(2*(1), 2*(2), 2*(3))"));
+    const SourceMap& sources = model.sources;
+    std::string surface;
+    for (FileId file = 0; file < sources.size(); ++file)
+        if (sources.original(file) && sources.text(file).find("bicubic") != std::string_view::npos)
+            surface = sources.text(file);
+    EXPECT_THAT(surface, HasSubstr("0, 0.3, 0.5"));
+}
+
 TEST(Cpfg, NamesWhatHasNoTranslation) {
     const auto said = [](const std::string& lines) {
         return cpfg("Lsystem: 1\nderivation length: 1\n" + lines + "endlsystem\n").said();
     };
-    EXPECT_THAT(said("Axiom: F?P(0,0,0)\n"), HasSubstr("plant.l:3:1: error: queries"));
-    EXPECT_THAT(said("StartEach: {n = n+1;}\nAxiom: F\n"),
-                HasSubstr("plant.l:3:1: error: variables that change"));
-    EXPECT_THAT(said("Axiom: A\nA B --> F\n"), HasSubstr("a production for 2 modules"));
-    EXPECT_THAT(said("Axiom: F@M(1,2,3)\n"), HasSubstr("the directive '@M' has no translation"));
-    EXPECT_THAT(said("Axiom: ~l(1)\n"), HasSubstr("the view file names no surface for '~l'"));
+    EXPECT_THAT(said("Axiom: F?Q(0,0,0,0)\n"),
+                HasSubstr("plant.l:3:1: error: the query '?Q' has no translation"));
+    EXPECT_THAT(said("Axiom: ?(2,1)F$\n"), HasSubstr("sub-L-systems (?) have no translation"));
+    EXPECT_THAT(said("EndEach: {stop(1);}\nAxiom: F\n"),
+                HasSubstr("plant.l:3:1: error: 'stop' has no translation"));
+    EXPECT_THAT(said("Axiom: F@PS(1)\n"), HasSubstr("the directive '@PS' has no translation"));
+    EXPECT_THAT(said("Axiom: ~l(1)\n"), HasSubstr("names no surface for '~l', so it draws nothing"));
     EXPECT_THAT(said("Axiom: F(func(1, 2))\n"), HasSubstr("there is no function 1"));
-    EXPECT_THAT(said("Axiom: F(a[1])\n"), HasSubstr("arrays have no translation"));
+    EXPECT_THAT(said("Axiom: F(curveX(1, 2))\n"), HasSubstr("curve 1 of the view file is no spline"));
+    EXPECT_THAT(said("Axiom: A[B]\nA > [B] --> F\n"), HasSubstr("must end (without '=')"));
+    EXPECT_THAT(said("Axiom: [AB]C\nA > B=]C --> F\n"), HasSubstr("leaves its branch"));
+    EXPECT_THAT(said("consider: AB\nAxiom: A[B]\nA > B --> F\n"), HasSubstr("sees through ignored brackets"));
+    EXPECT_THAT(said("ring lsystem\nAxiom: A\n"), HasSubstr("a ring L-system has no translation"));
     EXPECT_THAT(said("derivation length: 1\nfoo\nAxiom: F\n"),
                 HasSubstr("plant.l:4:1: error: this is no statement"));
 }

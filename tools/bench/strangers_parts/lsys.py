@@ -36,7 +36,8 @@ class Grammar:
         self.weights = {'segment': 8, 'symbol': draw.uniform(4, 10), 'turn': 8, 'branch': draw.pick([0, 3, 3, 6]),
                         'move': 0.5}
         for state, weight in {'width': 2, 'colour': 2, 'sphere': 0.7, 'disc': 0.4, 'polygon': 0.8, 'cylinder': 0.6,
-                              'upright': 1, 'elasticity': 1, 'cut': 0.2, 'model': 1, 'about': 0.4, 'factor': 0.5}.items():
+                              'upright': 1, 'elasticity': 1, 'cut': 0.2, 'model': 1, 'about': 0.4, 'factor': 0.5,
+                              'world': 0.3}.items():
             if draw.chance(0.22):
                 self.weights[state] = weight
         self.growth = 0.0
@@ -111,6 +112,13 @@ class Grammar:
             return '$'
         if kind == 'elasticity':
             return f'T({number(draw.uniform(-0.5, 0.5))})'
+        if kind == 'query':
+            return draw.pick(['?P(0, 0)', '?P(0, 0, 0)', '?H(0, 0, 0)', '?U(0, 0)', '?L(0)', '?E(1)',
+                              '?E(1, 0, 0, 0)'])
+        if kind == 'world':
+            place = numbers([draw.uniform(-3, 3) for _ in range(3)])
+            return draw.pick([f'@M({place})', f'@R({place})', f'@R({place}, 0, 1, 0)',
+                              f'@I({number(draw.uniform(-0.1, 0.1))})', f'@K({number(draw.uniform(-0.2, 0.2))})'])
         if kind == 'cut':
             return '%'
         if kind == 'about':
@@ -147,7 +155,16 @@ def write(draw, model, small):
     if draw.chance(0.45):
         model.say(f'  width {number(draw.log_uniform(0.005, 0.6))}')
     if 'elasticity' in grammar.weights and draw.chance(0.6):
-        model.say(f'  tropism {numbers([draw.uniform(-1, 1) for _ in range(3)])}')
+        for _ in range(draw.pick([1, 1, 2, 3])):
+            model.say(f'  tropism {numbers([draw.uniform(-1, 1) for _ in range(3)])}')
+        if draw.chance(0.2):
+            model.say(f'  bending {draw.pick(["after segments", "after moves", "before moves"])}')
+        if draw.chance(0.2):
+            model.say('  torque 0, 1, 0.2')
+    queries = draw.chance(0.07)
+    if queries:
+        environment(draw, model)
+        grammar.weights['query'] = 2
     if contexts and draw.chance(0.5):
         model.say('  ignore + - & ^ / F')
     if (stochastic or contexts) and draw.chance(0.5):
@@ -156,11 +173,13 @@ def write(draw, model, small):
         model.say(f'  precedence {draw.pick(["text", "contexts"])}')
     if variables:
         declare(draw, model)
-    rules, depth_free = [], not (stochastic or contexts or timed or variables or several or blocks)
+    rules, depth_free = [], not (stochastic or contexts or timed or variables or several or blocks or queries)
     for symbol, kinds in grammar.kinds.items():
         lines = productions(draw, grammar, symbol, kinds, stochastic, conditional, contexts, timed)
         if several and draw.chance(0.5):
             lines.insert(0, several_modules(draw, grammar, symbol))
+        if queries and draw.chance(0.5):
+            lines.insert(0, asking(draw, grammar, symbol))
         if blocks:
             lines = [with_block(draw, line, 's' in dict(zip('stuv', kinds)), variables) if draw.chance(0.6) else line
                      for line in lines]
@@ -182,6 +201,28 @@ def write(draw, model, small):
         if stochastic and draw.chance(0.4):
             model.options += ['--seed', str(draw.whole(0, 99))]
     return address(draw)
+
+
+def environment(draw, model):
+    place, size = numbers([draw.uniform(-3, 3) for _ in range(3)]), number(draw.uniform(0.5, 5))
+    for region in draw.pick([[f'sphere {place}, {size}'], ['box -2, -1, -2, 2, 6, 2'], ['plane 0, 1, 0, 4'], []]):
+        model.say(f'  environment {region}')
+        if draw.chance(0.3) and not region.startswith('plane'):
+            model.say(f'  environment points {draw.whole(1, 300)}, {size}, {number(draw.uniform(0, 1))}')
+        return
+    model.say('  environment ' + draw.pick([f'crowd {size}', f'crowd {size}, 0, 1, 0', 'rivals', 'rivals 0, 0, 1',
+                                            f'shade {number(draw.uniform(0, 1))}', 'shade 0.3, 0, 1, 0, 2, 1, 1, 0, 1',
+                                            f'shadows {size}, 0.3, 1.5, {draw.whole(0, 5)}']))
+
+
+def asking(draw, grammar, symbol):
+    """A production that looks at a query beside it."""
+    own = dict(zip('stuv', grammar.kinds[symbol]))
+    formal = symbol + (f'({",".join(own)})' if own else '')
+    query = draw.pick(['?P(x, y)', '?P(x, y, z)', '?E(x)', '?H(x, z, y)'])
+    told = query.replace('x', '1').replace('y', '0').replace('z', '0')
+    sides = f'{query} < {formal}' if draw.chance(0.5) else f'{formal} > {query}'
+    return f'{sides} : x < {number(draw.uniform(0, 4))} -> {grammar.string(own, 2, 1)}{told}'
 
 
 def first(draw, grammar, symbol):

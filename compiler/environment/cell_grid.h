@@ -1,0 +1,65 @@
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <unordered_map>
+#include <vector>
+
+#include "compiler/support/affine.h"
+#include "compiler/support/id_table.h"
+
+namespace graftal {
+
+/// A cell of space, by whole numbers.
+using CellPlace = std::array<std::int64_t, 3>;
+
+struct CellHash {
+    std::size_t operator()(const CellPlace& cell) const {
+        std::uint64_t hash = 0;
+        for (const std::int64_t k : cell)
+            hash = mixed(hash, static_cast<std::uint64_t>(k));
+        return static_cast<std::size_t>(hash);
+    }
+};
+
+/// The cell of this size that holds a place; requires a positive size. Cells beyond 1e15 are one.
+inline CellPlace cell_of(Vec3 place, double size) {
+    CellPlace cell{};
+    for (int axis = 0; axis < 3; ++axis) {
+        constexpr double farthest = 1e15;
+        const double k = std::floor(place[axis] / size);
+        cell[static_cast<std::size_t>(axis)] = static_cast<std::int64_t>(k > farthest    ? farthest
+                                                                         : k < -farthest ? -farthest
+                                                                                         : k);
+    }
+    return cell;
+}
+
+/// Things by the cells that they lie in, in each in the order in which they came.
+class CellGrid {
+  public:
+    /// Requires a positive size.
+    explicit CellGrid(double size) : size_(size) {}
+
+    void add(Vec3 place, std::uint32_t thing) { cells_[cell_of(place, size_)].push_back(thing); }
+
+    /// Calls look(thing) for all within `size` of a place, and for some others, until it says false.
+    template<typename Look> void near(Vec3 place, const Look& look) const {
+        const CellPlace middle = cell_of(place, size_);
+        for (std::int64_t x = -1; x <= 1; ++x)
+            for (std::int64_t y = -1; y <= 1; ++y)
+                for (std::int64_t z = -1; z <= 1; ++z) {
+                    const auto cell = cells_.find({middle[0] + x, middle[1] + y, middle[2] + z});
+                    if (cell == cells_.end()) continue;
+                    for (const std::uint32_t thing : cell->second)
+                        if (!look(thing)) return;
+                }
+    }
+
+  private:
+    double size_;
+    std::unordered_map<CellPlace, std::vector<std::uint32_t>, CellHash> cells_;
+};
+
+} // namespace graftal

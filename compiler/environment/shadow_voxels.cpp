@@ -1,0 +1,99 @@
+#include <algorithm>
+#include <cmath>
+#include <unordered_map>
+
+#include <fmt/format.h>
+#include <glm/geometric.hpp>
+
+#include "compiler/environment/cell_grid.h"
+#include "compiler/environment/environment.h"
+
+// Light by shadows: Palubicki et al. 2009, "Self-organizing tree models for image synthesis", section 4.1.
+
+namespace graftal {
+
+namespace {
+
+/// Each query throws a shadow upon the voxels below: q voxels down, over (2q + 1)^2 of them, of its weight
+/// times a b^-q. It hears 1 less the shadow of the others.
+class ShadowVoxels : public Surroundings {
+  public:
+    ShadowVoxels(const EnvironmentSettings& settings, Diagnostics& diagnostics)
+        : size_(settings.voxel), strength_(settings.strength), decay_(settings.decay), depth_(settings.depth),
+          budget_(diagnostics, settings.span) {
+        for (std::size_t axis = 0; axis < 3; ++axis)
+            if (std::abs(settings.up[static_cast<int>(axis)]) > std::abs(settings.up[static_cast<int>(up_)]))
+                up_ = axis;
+        down_ = settings.up[static_cast<int>(up_)] > 0 ? -1 : 1;
+    }
+
+    bool answer(std::span<EnvironmentQuery> queries) override {
+        std::unordered_map<CellPlace, double, CellHash> shadow;
+        for (const EnvironmentQuery& query : queries) {
+            const double weight = query.values.empty() ? 0 : query.values[0];
+            if (weight != 0 && !throw_shadow(cell_of(query.place, size_), weight, shadow)) return false;
+        }
+        const auto at = [&](const CellPlace& cell) {
+            const auto known = shadow.find(cell);
+            return known == shadow.end() ? 0.0 : known->second;
+        };
+        for (const EnvironmentQuery& query : queries) {
+            if (query.values.empty()) continue;
+            const CellPlace cell = cell_of(query.place, size_);
+            query.values[0] = std::clamp(1 - (at(cell) - strength_ * query.values[0]), 0.0, 1.0);
+            if (query.values.size() < 4) continue;
+            Vec3 darker(0.0);
+            for (std::size_t axis = 0; axis < 3; ++axis) {
+                CellPlace before = cell, after = cell;
+                --before[axis];
+                ++after[axis];
+                darker[static_cast<int>(axis)] = at(after) - at(before);
+            }
+            const double slope = glm::length(darker);
+            for (int axis = 0; axis < 3; ++axis)
+                query.values[static_cast<std::size_t>(axis) + 1] = slope > 0 ? -darker[axis] / slope : 0;
+        }
+        return true;
+    }
+
+  private:
+    bool throw_shadow(const CellPlace& from, double weight,
+                      std::unordered_map<CellPlace, double, CellHash>& shadow) {
+        double share = weight * strength_;
+        const std::size_t x = (up_ + 1) % 3, z = (up_ + 2) % 3;
+        for (std::int64_t q = 0; q <= depth_; ++q, share /= decay_) {
+            if (!budget_.take(static_cast<std::uint64_t>((2 * q + 1) * (2 * q + 1)))) return false;
+            for (std::int64_t i = -q; i <= q; ++i)
+                for (std::int64_t k = -q; k <= q; ++k) {
+                    CellPlace cell = from;
+                    cell[up_] += down_ * q;
+                    cell[x] += i;
+                    cell[z] += k;
+                    shadow[cell] += share;
+                }
+            if (shadow.size() > max_shadow_voxels) return refuse();
+        }
+        return true;
+    }
+
+    bool refuse() {
+        budget_.diagnostics()
+            .error(budget_.span(), fmt::format("more than {} voxels lie in shadow", max_shadow_voxels))
+            .with_hint("use larger voxels, or less depth");
+        return false;
+    }
+
+    double size_, strength_, decay_;
+    std::int64_t depth_;
+    std::size_t up_ = 0;
+    std::int64_t down_ = -1;
+    EnvironmentBudget budget_;
+};
+
+} // namespace
+
+std::unique_ptr<Surroundings> make_shadows(const EnvironmentSettings& settings, Diagnostics& diagnostics) {
+    return std::make_unique<ShadowVoxels>(settings, diagnostics);
+}
+
+} // namespace graftal

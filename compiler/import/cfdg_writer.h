@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <map>
 #include <set>
 #include <string>
@@ -8,8 +9,16 @@
 #include "compiler/import/cfdg_expression.h"
 #include "compiler/import/cfdg_recursion.h"
 #include "compiler/import/importer.h"
+#include "compiler/support/number.h"
 
 namespace graftal::cfdg {
+
+inline constexpr std::size_t longest_output = 8'000'000;
+
+/// A number with as many decimals as `steps` has zeros, at most.
+inline std::string rounded(double value, double steps = 1e6) {
+    return shortest(std::round(steps * value) / steps);
+}
 
 /// The `.inst` of a grammar.
 class Writer {

@@ -60,11 +60,12 @@ void Writer::write_elements(const Elements& elements, std::size_t first, Place& 
 void Writer::write_element(const Element& element, Place& place) {
     switch (element.kind) {
     case Element::Kind::shape: {
+        if (element.computed) return fail(element.span, "a shape that is chosen has no words in .inst");
         if (element.name == "FILL" && !recursion_.index("FILL"))
-            return fail(element.span, "'FILL' covers the whole canvas, and is not translated",
-                        "use CF::Background");
+            return fail(element.span, "'FILL' has no words in .inst");
         const std::string master = reference(element, &place, place.scope);
-        const std::optional<Lines> lines = lines_of(element.modification, place.scope, place.order);
+        const std::optional<Lines> lines =
+            lines_of(element.modification, place.scope, place.order, draws_rules(element));
         if (lines) line(fmt::format("instance: {}{}{}", master, lines->moves, lines->inks), element.span);
         break;
     }
@@ -80,9 +81,14 @@ void Writer::write_element(const Element& element, Place& place) {
     case Element::Kind::transform: {
         const std::string object =
             part(element.body, 0, place, element.span) + parameter_list(place.parameters);
-        for (const Modification& modification : element.modifications)
-            if (const std::optional<Lines> lines = lines_of(modification, place.scope, place.order))
+        if (element.clones) return fail(element.span, "'clone' has no words in .inst");
+        for (const Expr& change : element.arguments) {
+            if (change.kind != Expr::Kind::modification)
+                return fail(change.span, "this transform has no words in .inst");
+            const bool lifted = lifts(*change.change, {&element.body}, element.span);
+            if (const std::optional<Lines> lines = lines_of(*change.change, place.scope, place.order, lifted))
                 line(fmt::format("instance: {}{}{}", object, lines->moves, lines->inks), element.span);
+        }
         break;
     }
     case Element::Kind::path_operation:
@@ -147,6 +153,34 @@ void Writer::write_choice(const Element& element, Place& place) {
     if (open) line("}");
 }
 
+bool Writer::draws_rules(const Element& element) const {
+    const std::optional<std::size_t> shape = recursion_.index(element.name);
+    return shape && !grammar_.shapes[*shape].is_path;
+}
+
+void Writer::look_into(const Elements& elements, bool& shapes, bool& others) const {
+    for (const Element& element : elements) {
+        if (element.kind == Element::Kind::shape) (draws_rules(element) ? shapes : others) = true;
+        look_into(element.body, shapes, others);
+        look_into(element.other, shapes, others);
+        for (const Case& one : element.cases)
+            look_into(one.body, shapes, others);
+    }
+}
+
+bool Writer::lifts(const Modification& modification, std::initializer_list<const Elements*> held,
+                   Span place) {
+    bool shapes = false, others = false;
+    for (const Elements* const elements : held)
+        look_into(*elements, shapes, others);
+    const bool resizes = std::ranges::any_of(modification.adjustments, [](const Adjustment& adjustment) {
+        return adjustment.word == "s" || adjustment.word == "skew" || adjustment.word == "trans";
+    });
+    if (shapes && others && resizes)
+        fail(place, "what resizes shapes and primitives together has no words in .inst");
+    return shapes;
+}
+
 void Writer::write_loop(const Element& element, Place& place) {
     const auto uses_index = [&](const auto& self, const Elements& elements) -> bool {
         return std::ranges::any_of(elements, [&](const Element& inner) {
@@ -157,8 +191,8 @@ void Writer::write_loop(const Element& element, Place& place) {
                 });
             };
             return std::ranges::any_of(inner.arguments, in) || modifies(inner.modification) ||
-                   std::ranges::any_of(inner.modifications, modifies) || self(self, inner.body) ||
-                   self(self, inner.other) || std::ranges::any_of(inner.cases, [&](const Case& one) {
+                   self(self, inner.body) || self(self, inner.other) ||
+                   std::ranges::any_of(inner.cases, [&](const Case& one) {
                        return std::ranges::any_of(one.values, in) || self(self, one.body);
                    });
         });
@@ -173,21 +207,26 @@ void Writer::write_loop(const Element& element, Place& place) {
     std::optional<std::string> count = text(element.arguments.back(), place.scope);
     const std::optional<std::string> begin =
         element.arguments.size() == 2 ? text(element.arguments.front(), place.scope) : std::nullopt;
-    const std::optional<Lines> lines = lines_of(element.modification, place.scope, 1);
+    const bool lifted = lifts(element.modification, {&element.body}, element.span);
+    const std::optional<Lines> lines = lines_of(element.modification, place.scope, 1, lifted);
     if (!count || !lines) return;
+    if (is_random(*count) || (begin && is_random(*begin)))
+        return fail(element.span, "a loop of a random number of turns has no words in .inst");
     if (begin) count = fmt::format("({} - ({}))", *count, *begin);
     const std::optional<double> known =
         element.arguments.size() == 1 ? expressions_.number(element.arguments[0]) : std::nullopt;
-    if (known && *known < 1) return;
+    if (known && !(*known > 0)) return;
+    if (!known) line(fmt::format("when {} > 0 {{", *count)), ++depth_;
     line(fmt::format("repeat {} {{{}{} }} {{",
-                     known ? shortest(std::floor(*known)) : fmt::format("max(1, floor({}))", *count),
-                     lines->moves, lines->inks),
+                     known ? shortest(std::ceil(*known)) : fmt::format("ceil({})", *count), lines->moves,
+                     lines->inks),
          element.span);
     ++depth_;
     Place inner = place;
     write_elements(element.body, 0, inner);
     --depth_;
     line("}");
+    if (!known) --depth_, line("}");
 }
 
 /// Turn by turn: the index is a parameter of an object, and each turn moves by one more line.
@@ -209,9 +248,11 @@ void Writer::write_indexed_loop(const Element& element, Place& place) {
     inner.parameters.push_back(index);
     if (!element.name.empty()) inner.scope[element.name] = index;
     const std::string object = part(element.body, 0, inner, element.span);
+    const bool lifted = lifts(element.modification, {&element.body, &element.other}, element.span);
     std::string moves, inks;
     Affine moved;
     bool numbers = true;
+    double turns = 0;
     Numbers known;
     double at = begin;
     for (; step > 0 ? at < end - 1e-9 : at > end + 1e-9; at += step) {
@@ -222,18 +263,23 @@ void Writer::write_indexed_loop(const Element& element, Place& place) {
         Scope scope = place.scope;
         scope[element.name] = shortest(at);
         known[element.name] = at;
-        const std::optional<Lines> turn = lines_of(element.modification, scope, 1);
+        const std::optional<Lines> turn = lines_of(element.modification, scope, 1, lifted);
         if (!turn || out_.text.size() > longest_output) return;
+        if (is_random(turn->moves) || is_random(turn->inks)) // later copies stand on those before them
+            return fail(element.span, "a random loop whose index is used has no words in .inst");
         const std::optional<Affine> map = affine_of(element.modification, expressions_, known);
         numbers = numbers && map;
         if (numbers) {
             moved = moved * *map;
+            // Lines of one turn telescope to this.
+            const double shrunk = lifted ? lift * (1 - std::abs(moved.linear[2][2])) : 0;
+            const Vec3 lies(moved.translation.x, moved.translation.y,
+                            lift_of_z * moved.translation.z + lift_of_order * ++turns + shrunk);
             moves = "  matrix:";
             for (int row = 0; row < 3; ++row) {
-                const double lift = row == 2 ? 1e-5 : 0;
                 moves += fmt::format(" {}, {}, {}, {}{}", rounded(moved.linear[0][row], 1e9),
                                      rounded(moved.linear[1][row], 1e9), rounded(moved.linear[2][row], 1e9),
-                                     rounded(moved.translation[row] + lift, 1e9), row < 2 ? "," : "");
+                                     rounded(lies[row], 1e9), row < 2 ? "," : "");
             }
         } else {
             moves.insert(0, turn->moves);

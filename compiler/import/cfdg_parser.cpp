@@ -23,8 +23,8 @@ bool is_path_operation(std::string_view word) {
 
 class Parser : private Phrases {
   public:
-    Parser(const ForeignFile& file, Grammar& grammar, std::set<std::string>& files)
-        : Phrases(file), grammar_(grammar), files_(files) {}
+    Parser(const ForeignFile& file, Grammar& grammar, std::set<std::string>& files, std::string space)
+        : Phrases(file), grammar_(grammar), files_(files), space_(std::move(space)) {}
 
     void run(bool included) {
         while (!at_end() && !file_.diagnostics.full())
@@ -50,12 +50,12 @@ class Parser : private Phrases {
     bool parse_statement(bool included) {
         if (at("startshape")) return parse_start(included);
         if (at("include") || at("import")) return parse_include();
-        if (at("shape")) return parse_shape();
+        if (at("shape")) return parse_shape(included);
         if (at("path")) return parse_path();
         if (at("rule")) return parse_rule();
         if (peek().kind == TokenKind::word && (peek(1).is("{") || peek(1).is("[")))
             return parse_directive(included);
-        if (peek().kind == TokenKind::word) return parse_definition();
+        if (peek().kind == TokenKind::word) return parse_definition(included);
         return expected("a statement");
     }
 
@@ -65,25 +65,30 @@ class Parser : private Phrases {
         next();
         if (peek().kind != TokenKind::word) return expected("the name of a shape");
         start.span = peek().span;
-        start.name = next().text;
+        start.name = space_ + next().text;
         if (at("(") && !parse_call_arguments(start)) return false;
         if ((at("[") || at("{")) && !parse_modification(start.modification)) return false;
-        // The first counts, and one of the file itself before those of what it includes.
-        if (!grammar_.start && !included) grammar_.start = start;
-        if (!grammar_.included_start && included) grammar_.included_start = start;
+        return keep_start(std::move(start), included);
+    }
+
+    /// The first counts, and one of the file itself before those of what it includes.
+    bool keep_start(Element start, bool included) {
+        std::optional<Element>& place = included ? grammar_.included_start : grammar_.start;
+        if (!place) place = std::move(start);
         return true;
     }
 
     bool parse_include() {
         next();
+        std::string space = space_;
         if (accept("@")) {
-            file_.diagnostics.error(next().span, "namespaces of imports are not translated");
-            return false;
+            if (peek().kind != TokenKind::word) return expected("the name of a name space");
+            space += next().text + "::";
         }
         const Span span = peek().span;
         if (peek().kind == TokenKind::end) return expected("the name of a file");
         const std::string name = peek().kind == TokenKind::text ? next().text : file_name_at(span);
-        if (!files_.insert(name).second) return true;
+        if (!files_.insert(space + name).second) return true;
         if (files_.size() > most_files) {
             file_.diagnostics.error(span, "too many files include each other");
             return false;
@@ -94,7 +99,7 @@ class Parser : private Phrases {
             return false;
         }
         const ForeignFile other{*included, file_.sources, file_.diagnostics, file_.read_beside};
-        Parser(other, grammar_, files_).run(true);
+        Parser(other, grammar_, files_, space).run(true);
         return true;
     }
 
@@ -124,26 +129,28 @@ class Parser : private Phrases {
         return true;
     }
 
-    bool parse_definition() {
+    bool parse_definition(bool included) {
         Definition definition;
         definition.comments = peek().comments;
         definition.span = peek().span;
         definition.name = next().text;
-        if (peek().kind == TokenKind::word && !at("=")) definition.name = next().text; // behind a type
+        if (peek().kind == TokenKind::word) definition.type = std::exchange(definition.name, next().text);
+        return parse_definition(std::move(definition), included);
+    }
+
+    /// Behind its name.
+    bool parse_definition(Definition definition, bool included) {
         if (accept("(")) {
             definition.is_function = true;
             if (!parse_parameters(definition.parameters)) return false;
         }
         if (!expect("=")) return false;
-        if (at("[")) {
-            if (!parse_modification(definition.modification)) return false;
-            definition.value.kind = Expr::Kind::modification;
-            definition.value.span = definition.span;
-        } else {
-            std::optional<Expr> value = parse_list();
-            if (!value) return false;
-            definition.value = std::move(*value);
-        }
+        std::optional<Expr> value = parse_list();
+        if (!value) return false;
+        definition.value = std::move(*value);
+        if (definition.name == "CF::StartShape") return start_from(definition.value, included);
+        definition.space = space_;
+        if (!definition.name.starts_with("CF::")) definition.name.insert(0, space_);
         const auto place = [&]() -> std::optional<Modification>* {
             if (definition.name == "CF::Background") return &grammar_.background;
             if (definition.name == "CF::Size") return &grammar_.size;
@@ -151,13 +158,34 @@ class Parser : private Phrases {
             return nullptr;
         }();
         if (place) {
-            if (!*place) *place = std::move(definition.modification);
-        } else if (std::ranges::none_of(grammar_.definitions, [&](const Definition& other) {
-                       return other.name == definition.name;
-                   })) {
+            if (definition.value.kind != Expr::Kind::modification) {
+                file_.diagnostics.error(definition.span,
+                                        fmt::format("'{}' takes an adjustment", definition.name));
+                return false;
+            }
+            if (!*place) *place = *definition.value.change;
+        } else if (grammar_.defined.insert(definition.name).second) {
             grammar_.definitions.push_back(std::move(definition));
         }
         return true;
+    }
+
+    /// `CF::StartShape = a(1, 2), [x 1]`.
+    bool start_from(const Expr& value, bool included) {
+        const bool list = value.kind == Expr::Kind::list;
+        const Expr& shape = list ? value.operands.front() : value;
+        Element start;
+        start.span = value.span;
+        start.name = space_ + shape.text;
+        start.arguments = shape.operands;
+        const bool named = shape.kind == Expr::Kind::name || shape.kind == Expr::Kind::call;
+        const Expr* const change = list && value.operands.size() == 2 ? &value.operands[1] : nullptr;
+        if (!named || (list && !(change && change->kind == Expr::Kind::modification))) {
+            file_.diagnostics.error(value.span, "'CF::StartShape' takes a shape, and perhaps an adjustment");
+            return false;
+        }
+        if (change) start.modification = *change->change;
+        return keep_start(std::move(start), included);
     }
 
     /// Requires that the '(' was just taken.
@@ -174,30 +202,42 @@ class Parser : private Phrases {
     }
 
     Shape& shape_named(const std::string& name, Span span) {
-        for (Shape& shape : grammar_.shapes)
-            if (shape.name == name) return shape;
+        const auto [found, fresh] = grammar_.numbers.try_emplace(name, grammar_.shapes.size());
+        if (!fresh) return grammar_.shapes[found->second];
         Shape shape;
         shape.name = name;
+        shape.space = space_;
         shape.span = span;
         grammar_.shapes.push_back(std::move(shape));
         return grammar_.shapes.back();
     }
 
     /// `shape NAME(parameters)`, and its rules or one body.
-    bool parse_shape() {
+    bool parse_shape(bool included) {
         std::vector<std::string> comments = peek().comments;
         next();
         if (peek().kind != TokenKind::word) return expected("the name of the shape");
-        const Token name = next();
+        Token name = next();
+        if (at("(") || at("=")) {
+            // A function that gives shapes looks like a shape up to its '='.
+            const std::size_t before = at_;
+            std::vector<Parameter> parameters;
+            if (accept("(") && !parse_parameters(parameters)) return false;
+            if (accept("=")) {
+                at_ = before;
+                Definition function{.name = name.text, .type = "shape", .span = name.span};
+                function.is_function = accept("(");
+                if (function.is_function && !parse_parameters(function.parameters)) return false;
+                return parse_definition(std::move(function), included);
+            }
+            at_ = before;
+        }
+        name.text.insert(0, space_);
         std::vector<Parameter> parameters;
         if (accept("(") && !parse_parameters(parameters)) return false;
-        if (at("=")) {
-            file_.diagnostics.error(name.span, "functions that give shapes are not translated");
-            return false;
-        }
         Shape& shape = shape_named(name.text, name.span);
         shape.comments.insert(shape.comments.end(), comments.begin(), comments.end());
-        if (shape.rules.empty()) shape.parameters = std::move(parameters);
+        if (shape.rules.empty() && !parameters.empty()) shape.parameters = std::move(parameters);
         current_ = name.text;
         if (!at("{")) return true;
         Rule rule;
@@ -215,7 +255,7 @@ class Parser : private Phrases {
         std::string name = current_;
         if (peek().kind == TokenKind::word) {
             rule.span = peek().span;
-            name = next().text;
+            name = space_ + next().text;
         }
         if (peek().kind == TokenKind::number) {
             rule.weight = peek().number * (peek().percent ? 100 : 1);
@@ -234,7 +274,7 @@ class Parser : private Phrases {
         next();
         if (peek().kind != TokenKind::word) return expected("the name of the path");
         rule.span = peek().span;
-        const std::string name = next().text;
+        const std::string name = space_ + next().text;
         std::vector<Parameter> parameters;
         if (accept("(") && !parse_parameters(parameters)) return false;
         if (!at("{")) return expected("'{'");
@@ -286,26 +326,14 @@ class Parser : private Phrases {
         }
         if (accept("loop")) return parse_loop(element) && done();
         if (at("if") && peek(1).is("(")) return parse_if(element) && done();
+        if (at("let") && peek(1).is("(")) return parse_computed(element) && done();
         if (at("switch")) return parse_switch(element) && done();
-        if (at("clone")) {
-            file_.diagnostics.error(peek().span, "'clone' is not translated").with_hint("use 'transform'");
-            return false;
-        }
-        if (at("let")) {
-            file_.diagnostics.error(peek().span, "'let' within a rule is not translated");
-            return false;
-        }
-        if (at("transform") || at("trans")) return parse_transform(element) && done();
+        if (at("transform") || at("trans") || at("clone")) return parse_transform(element) && done();
         if (peek().kind != TokenKind::word) return expected("a shape");
         if (peek(1).is("=") || (peek(1).kind == TokenKind::word && peek(2).is("=")))
             return parse_local(element) && done();
         accept("path");
         element.name = next().text;
-        if (element.name.find("::") != std::string::npos) {
-            file_.diagnostics.error(element.span,
-                                    fmt::format("the name space of '{}' is not translated", element.name));
-            return false;
-        }
         if (is_path_operation(element.name)) {
             element.kind = Element::Kind::path_operation;
             if (at("(")) return parse_call_arguments(element) && done();
@@ -331,14 +359,29 @@ class Parser : private Phrases {
     }
 
     bool parse_if(Element& element) {
+        const std::size_t begin = at_;
         next();
         next();
         element.kind = Element::Kind::condition;
-        std::optional<Expr> test = parse_expression();
+        std::optional<Expr> test = parse_list();
         if (!test || !expect(")")) return false;
+        if (test->kind == Expr::Kind::list && at("[")) {
+            at_ = begin;
+            return parse_computed(element);
+        }
         element.arguments.push_back(std::move(*test));
         if (!parse_body(element.body)) return false;
         return !accept("else") || parse_body(element.other);
+    }
+
+    /// `if(a, B, C) []` or `let(...) []`: an expression that gives the shape.
+    bool parse_computed(Element& element) {
+        element.kind = Element::Kind::shape;
+        element.computed = true;
+        std::optional<Expr> shape = parse_expression();
+        if (!shape) return false;
+        element.arguments.push_back(std::move(*shape));
+        return parse_modification(element.modification);
     }
 
     bool parse_switch(Element& element) {
@@ -366,12 +409,12 @@ class Parser : private Phrases {
     }
 
     bool parse_transform(Element& element) {
-        next();
+        element.clones = next().is("clone");
         element.kind = Element::Kind::transform;
         do {
-            Modification modification;
-            if (!parse_modification(modification)) return false;
-            element.modifications.push_back(std::move(modification));
+            std::optional<Expr> change = parse_expression();
+            if (!change) return false;
+            element.arguments.push_back(std::move(*change));
         } while (accept(","));
         return parse_body(element.body);
     }
@@ -381,11 +424,6 @@ class Parser : private Phrases {
         element.name = next().text;
         if (!at("=")) element.name = next().text;
         next();
-        if (at("[")) {
-            if (!parse_modification(element.modification)) return false;
-            element.arguments.push_back({.kind = Expr::Kind::modification, .span = element.span});
-            return true;
-        }
         std::optional<Expr> value = parse_list();
         if (!value) return false;
         element.arguments.push_back(std::move(*value));
@@ -410,15 +448,23 @@ class Parser : private Phrases {
 
     Grammar& grammar_;
     std::set<std::string>& files_;
+    std::string space_;   ///< of the names of the file: "a::b::"
     std::string current_; ///< the shape that a rule belongs to
 };
 
 } // namespace
 
+std::optional<std::size_t> Grammar::shape(std::string_view name, std::string_view space) const {
+    return in_spaces(name, space, [&](const std::string& full) -> std::optional<std::size_t> {
+        const auto found = numbers.find(full);
+        return found == numbers.end() ? std::nullopt : std::optional(found->second);
+    });
+}
+
 Grammar parse(const ForeignFile& file) {
     Grammar grammar;
     std::set<std::string> files;
-    Parser(file, grammar, files).run(false);
+    Parser(file, grammar, files, "").run(false);
     if (!grammar.start) grammar.start = grammar.included_start;
     return grammar;
 }

@@ -198,8 +198,11 @@ std::optional<Expr> Phrases::parse_unary(bool tight) {
         return Expr{.number = token.number, .span = token.span};
     }
     if (at("[")) {
-        file_.diagnostics.error(peek().span, "an adjustment cannot be a number here");
-        return std::nullopt;
+        Modification change;
+        if (!parse_modification(change)) return std::nullopt;
+        Expr expression{.kind = Expr::Kind::modification, .span = change.span};
+        expression.change = std::make_shared<const Modification>(std::move(change));
+        return expression;
     }
     if (peek().kind != TokenKind::word) {
         expected("a number");
@@ -209,18 +212,25 @@ std::optional<Expr> Phrases::parse_unary(bool tight) {
     next();
     if (at("[") && peek().span.begin == name.span.end) { // an element of a vector
         next();
-        std::optional<Expr> index = parse_expression();
-        if (!index || !expect("]")) return std::nullopt;
-        Expr element{.kind = Expr::Kind::call, .text = "[]", .span = join(name.span, tokens_[at_ - 1].span)};
+        Expr element{.kind = Expr::Kind::call, .text = "[]", .span = name.span};
         element.operands.push_back(std::move(name));
-        element.operands.push_back(std::move(*index));
+        do {
+            std::optional<Expr> index = parse_expression();
+            if (!index) return std::nullopt;
+            element.operands.push_back(std::move(*index));
+        } while (accept(","));
+        if (!expect("]")) return std::nullopt;
+        element.span = join(element.span, tokens_[at_ - 1].span);
         return element;
     }
     if (!at("(")) return name;
     next();
     name.kind = Expr::Kind::call;
     if (name.text == "let") return parse_let(std::move(name));
-    if (!accept(")")) {
+    if (accept("=")) { // with the parameters of the rule
+        name.operands.push_back({.kind = Expr::Kind::name, .text = "=", .span = name.span});
+        if (!expect(")")) return std::nullopt;
+    } else if (!accept(")")) {
         do {
             std::optional<Expr> argument = parse_expression();
             if (!argument) return std::nullopt;
@@ -234,7 +244,9 @@ std::optional<Expr> Phrases::parse_unary(bool tight) {
 
 /// `let(a = 1; b = 2; a + b)`, behind its '('.
 std::optional<Expr> Phrases::parse_let(Expr let) {
-    while (peek().kind == TokenKind::word && peek(1).is("=")) {
+    while (peek().kind == TokenKind::word &&
+           (peek(1).is("=") || (peek(1).kind == TokenKind::word && peek(2).is("=")))) {
+        if (!peek(1).is("=")) next(); // a type
         Expr local{.kind = Expr::Kind::binary, .text = "=", .span = peek().span};
         local.operands.push_back({.kind = Expr::Kind::name, .text = next().text, .span = local.span});
         next();

@@ -353,7 +353,10 @@ std::optional<Value> Evaluator::of_numbers(const Expr& expression, const std::ve
     };
     const std::size_t count = n.size();
     if (name.starts_with("rand")) return random(expression, n);
-    if (count == 0 && (name == "ftime" || name == "frame")) return Value::of(0);
+    if (count == 0 && (name == "ftime" || name == "frame")) {
+        const Definition* const time = definition(name == "ftime" ? "CF::FrameTime" : "CF::Frame", "");
+        return time ? global(*time) : Value::of(0);
+    }
     if (name == "infinity") return Value::of(count == 1 && n[0] < 0 ? -endless : endless);
     if (const auto plain = plain_functions().find(name); plain != plain_functions().end() && count == 1)
         return finite(plain->second(n[0]));

@@ -197,11 +197,16 @@ class Filler {
         const auto close = [&](const auto& entry) {
             const auto& [sides, span] = entry;
             const Edge &left = edges[sides.first], &right = edges[sides.second];
-            Outline outline{{{left.x_at(span.from), span.from},
-                             {right.x_at(span.from), span.from},
-                             {right.x_at(span.to), span.to},
-                             {left.x_at(span.to), span.to}},
-                            true};
+            // Sides that meet in a corner may cross by the last digits.
+            const auto across = [&](double y) {
+                const double a = left.x_at(y), b = right.x_at(y);
+                return a <= b ? std::pair(a, b) : std::pair((a + b) / 2, (a + b) / 2);
+            };
+            const auto [left_from, right_from] = across(span.from);
+            const auto [left_to, right_to] = across(span.to);
+            Outline outline{
+                {{left_from, span.from}, {right_from, span.from}, {right_to, span.to}, {left_to, span.to}},
+                true};
             const double length = span.to - span.from + std::abs(outline.points[1].x - outline.points[0].x);
             if (Polygon ring = ring_of(outline, tiny_);
                 !ring.empty() && std::abs(area(ring)) > 2 * tiny_ * length)

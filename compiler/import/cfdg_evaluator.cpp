@@ -15,7 +15,7 @@ namespace graftal::cfdg {
 
 namespace {
 
-constexpr int deepest_expressions = 1500; ///< expressions within expressions, through functions too
+constexpr int deepest_expressions = 1000; ///< expressions within expressions, through functions too
 constexpr std::size_t most_evaluations = 12'000'000; ///< expressions that are evaluated
 constexpr std::size_t longest_vector = 10'000;
 constexpr double endless = 1e38;

@@ -18,6 +18,7 @@ namespace {
 
 /// As many variants of a random shape as .inst makes of a random object.
 constexpr std::size_t most_variants = 64;
+constexpr std::uint64_t most_trials = 20; ///< where chance draws nothing
 constexpr int most_generations = 2000;
 constexpr std::size_t most_nodes = 60'000;
 constexpr std::size_t most_unfolded_lines = 600'000;
@@ -65,17 +66,7 @@ Translation Unfolding::write() {
     if (!inks) fail(start.span, "this changes a colour away from another");
     std::string master = primitive_named(shape->name).empty() ? "" : primitive(primitive_named(shape->name));
     if (grammar_.numbers.contains(shape->name)) {
-        const std::optional<std::size_t> first = node_for(*shape, target, std::nullopt, change->map);
-        while (!open_.empty() && !file_.diagnostics.full() && file_.diagnostics.error_count() == 0) {
-            const auto [size, id] = open_.top();
-            open_.pop();
-            if (size < too_small * extent_) break; // all others are smaller
-            if (lines_ > most_unfolded_lines || turns_ > most_loop_turns) {
-                full_ = true;
-                break;
-            }
-            unfold(id);
-        }
+        const std::optional<std::size_t> first = unfold_from(*shape, target, change->map);
         if (first) master = nodes_[*first].name;
     }
     if (master.empty()) fail(start.span, fmt::format("'{}' is no shape to start from", shape->name));
@@ -94,6 +85,28 @@ Translation Unfolding::write() {
     if (inks) write_start(master + moves_text(change->map), *inks);
     write_end();
     return std::move(out_);
+}
+
+/// Where chance draws nothing at all, it is asked again.
+std::optional<std::size_t> Unfolding::unfold_from(const ShapeValue& shape, const Target& target,
+                                                  const Affine& world) {
+    std::optional<std::size_t> first;
+    for (salt_ = 0; salt_ < most_trials && !drawn_ && file_.diagnostics.error_count() == 0; ++salt_) {
+        nodes_.clear();
+        known_.clear();
+        open_ = {};
+        first = node_for(shape, target, std::nullopt, world);
+        while (!open_.empty() && file_.diagnostics.error_count() == 0) {
+            const auto [size, id] = open_.top();
+            open_.pop();
+            if (size < too_small * extent_) break; // all others are smaller
+            full_ = full_ || lines_ > most_unfolded_lines || turns_ > most_loop_turns;
+            if (lines_ > most_unfolded_lines || turns_ > most_loop_turns) break;
+            unfold(id);
+        }
+        if (!random_[grammar_.numbers.at(shape.name)]) break;
+    }
+    return first;
 }
 
 // Chance
@@ -222,7 +235,7 @@ std::optional<std::size_t> Unfolding::node_for(const ShapeValue& value, const Ta
         return known.front();
     }
     Node node{.shape = shape, .value = value, .target = target, .left = left, .world = world, .size = size};
-    node.seed = hash_of(key) + known.size();
+    node.seed = hash_of(key) + known.size() + 1000 * salt_;
     node.name =
         free_name(named_[shape] == 0 ? value.name : fmt::format("{}_{}", value.name, named_[shape] + 1));
     ++named_[shape];
@@ -269,6 +282,7 @@ void Unfolding::see(const Affine& world) {
 
 void Unfolding::add_line(std::size_t id, Line line) {
     ++lines_;
+    drawn_ = drawn_ || !line.master.empty();
     nodes_[id].lines.push_back(std::move(line));
 }
 

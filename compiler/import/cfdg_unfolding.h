@@ -66,6 +66,8 @@ class Unfolding : private SceneWriter {
     /// The node for a shape, which may be new; -1 where it has no generations left.
     std::optional<std::size_t> node_for(const ShapeValue& value, const Target& target,
                                         std::optional<std::size_t> from, const Affine& world);
+    std::optional<std::size_t> unfold_from(const ShapeValue& shape, const Target& target,
+                                           const Affine& world);
     void unfold(std::size_t id);
     void unfold_path(std::size_t id, const Surroundings& at);
     const Rule& rule_of(const Shape& shape);
@@ -89,7 +91,8 @@ class Unfolding : private SceneWriter {
     Vec3 least_{1e300}, most_{-1e300};                         ///< of what is drawn
     double extent_ = 0;
     std::size_t lines_ = 0, turns_ = 0, written_ = 0;
-    bool full_ = false, fills_ = false, noted_ = false;
+    bool full_ = false, fills_ = false, noted_ = false, drawn_ = false;
+    std::uint64_t salt_ = 0; ///< of all random numbers
 };
 
 } // namespace graftal::cfdg

@@ -238,6 +238,10 @@ TEST(ContextFree, ChanceDecidesOnceForEachVariant) {
               shapes("startshape A\nshape A { loop (randint::poisson(4)) [x 1] SQUARE [] }"));
 }
 
+TEST(ContextFree, ChanceThatDrawsNothingIsAskedAgain) {
+    EXPECT_EQ(shapes("startshape A\nv = 1, 2\nshape A rule 9 { } rule { SQUARE [x v] }"), 1u);
+}
+
 TEST(ContextFree, ColoursGoToTheirTargets) {
     const auto colour = [](const std::string& adjustments) {
         const ImportedShapes model("a.cfdg",

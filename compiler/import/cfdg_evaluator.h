@@ -52,6 +52,8 @@ class Evaluator {
 
     /// The random numbers of the rule that is evaluated.
     Draws draws;
+    /// That is left for the outlines of all paths: sides that are compared.
+    std::size_t outline_work = 100'000'000;
 
   private:
     std::optional<Value> value_of_name(const Expr& expression, const Surroundings& at);

@@ -17,8 +17,7 @@ namespace {
 
 constexpr std::size_t most_edges = 30'000;
 constexpr std::size_t most_ring_corners = 900; ///< of a polygon
-constexpr std::size_t most_crossings_work = 30'000'000;
-constexpr double miter_limit = 4; ///< of half the width, where a corner becomes blunt
+constexpr double miter_limit = 4;              ///< of half the width, where a corner becomes blunt
 constexpr double round_step_deg = 15;
 
 double cross(Point a, Point b) {
@@ -52,8 +51,8 @@ struct Edge {
 
 class Filler {
   public:
-    Filler(std::vector<std::vector<Point>> rings, bool even_odd, double tiny)
-        : rings_(std::move(rings)), even_odd_(even_odd), tiny_(tiny) {}
+    Filler(std::vector<std::vector<Point>> rings, bool even_odd, double tiny, std::size_t& work)
+        : rings_(std::move(rings)), even_odd_(even_odd), tiny_(tiny), left_(work) {}
 
     std::optional<std::vector<Polygon>> run() {
         if (rings_.empty()) return std::vector<Polygon>();
@@ -98,6 +97,7 @@ class Filler {
             const double right = std::max(one.a.x, one.b.x) + tiny_;
             for (std::size_t j = i + 1; j < sides.size() && std::min(sides[j].a.x, sides[j].b.x) <= right;
                  ++j) {
+                if (!spend(1)) return false;
                 const Side& other = sides[j];
                 const std::size_t size = rings_[one.ring].size();
                 const bool same = one.ring == other.ring;
@@ -176,10 +176,9 @@ class Filler {
         std::vector<double> heights;
         for (const Edge& edge : edges)
             heights.insert(heights.end(), {edge.low.y, edge.high.y});
-        std::size_t work = 0;
         for (std::size_t i = 0; i < edges.size(); ++i)
             for (std::size_t j = i + 1; j < edges.size() && edges[j].low.y < edges[i].high.y; ++j) {
-                if (++work > most_crossings_work) return std::nullopt;
+                if (!spend(1)) return std::nullopt;
                 const Point a = edges[i].high - edges[i].low, b = edges[j].high - edges[j].low;
                 const double turn = cross(a, b);
                 if (turn == 0) continue;
@@ -220,8 +219,7 @@ class Filler {
             std::erase_if(active, [&](std::size_t id) { return edges[id].high.y <= low + tiny_ / 2; });
             for (; next < edges.size() && edges[next].low.y < low + tiny_ / 2; ++next)
                 if (edges[next].high.y > low + tiny_ / 2) active.push_back(next);
-            work += active.size() + 1;
-            if (work > most_crossings_work) return std::nullopt;
+            if (!spend(active.size() + 1)) return std::nullopt;
             const double middle = (low + high) / 2;
             std::ranges::sort(active, {},
                               [&](std::size_t id) { return std::pair(edges[id].x_at(middle), id); });
@@ -248,11 +246,18 @@ class Filler {
         return done;
     }
 
+    bool spend(std::size_t work) const {
+        const bool enough = left_ >= work;
+        left_ -= enough ? work : left_;
+        return enough;
+    }
+
     bool fills(int winding) const { return even_odd_ ? winding % 2 != 0 : winding != 0; }
 
     std::vector<std::vector<Point>> rings_;
     bool even_odd_;
     double tiny_;
+    std::size_t& left_;
 };
 
 /// Coordinates of polygons lie within 1000, and keep six decimals: what they are multiples of.
@@ -269,12 +274,12 @@ double grain(const std::vector<Outline>& outlines) {
     return 2e-6 * unit_of(most);
 }
 
-Filler filler(const std::vector<Outline>& outlines, bool even_odd) {
+Filler filler(const std::vector<Outline>& outlines, bool even_odd, std::size_t& work) {
     const double tiny = grain(outlines);
     std::vector<std::vector<Point>> rings;
     for (const Outline& outline : outlines)
         if (std::vector<Point> ring = ring_of(outline, tiny); !ring.empty()) rings.push_back(std::move(ring));
-    return {std::move(rings), even_odd, tiny};
+    return {std::move(rings), even_odd, tiny, work};
 }
 
 /// The parts of a stroke, each counter-clockwise, so that windings add up.
@@ -430,20 +435,22 @@ class Pen {
 
 } // namespace
 
-std::optional<std::vector<Polygon>> filled(const std::vector<Outline>& outlines, bool even_odd) {
-    return filler(outlines, even_odd).run();
+std::optional<std::vector<Polygon>> filled(const std::vector<Outline>& outlines, bool even_odd,
+                                           std::size_t& work) {
+    return filler(outlines, even_odd, work).run();
 }
 
-std::optional<std::vector<Polygon>> stroked(const std::vector<Outline>& outlines, const Stroke& stroke) {
+std::optional<std::vector<Polygon>> stroked(const std::vector<Outline>& outlines, const Stroke& stroke,
+                                            std::size_t& work) {
     Pen pen(stroke);
     const double tiny = grain(outlines);
     for (const Outline& outline : outlines) {
         pen.draw(outline, tiny);
         if (pen.parts.size() > most_edges) return std::nullopt;
     }
-    if (std::optional<Polygon> ribbon = filler(pen.ribbons, true).simple())
+    if (std::optional<Polygon> ribbon = filler(pen.ribbons, true, work).simple())
         return std::vector<Polygon>{std::move(*ribbon)};
-    return filled(pen.parts, false);
+    return filled(pen.parts, false, work);
 }
 
 std::string polygon_text(const Polygon& polygon) {

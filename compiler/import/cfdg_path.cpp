@@ -405,11 +405,11 @@ class Follower {
         if (has("BevelJoin", "beveljoin")) stroke.join = Join::bevel;
         if (has("RoundCap", "roundcap")) stroke.cap = Cap::round;
         if (has("SquareCap", "squarecap")) stroke.cap = Cap::square;
-        draw(stroked(outlines_, stroke), change, element.span);
+        draw(stroked(outlines_, stroke, evaluator_.outline_work), change, element.span);
     }
 
     void fill(const Change& change, Span span, bool even_odd) {
-        draw(filled(outlines_, even_odd), change, span);
+        draw(filled(outlines_, even_odd, evaluator_.outline_work), change, span);
     }
 
     void draw(std::optional<std::vector<Polygon>> polygons, const Change& change, Span span) {

@@ -26,6 +26,7 @@ constexpr std::size_t most_loop_turns = 2'000'000;
 constexpr std::size_t longest_unfolding = 48'000'000;
 /// The share of the picture below which Context Free draws no shape: 0.3 pixels of 500.
 constexpr double too_small = 6e-4;
+constexpr double smallest_pixels = 0.3;
 
 std::uint64_t hash_of(std::string_view text) {
     std::uint64_t hash = 0x811c9dc5;
@@ -99,7 +100,9 @@ std::optional<std::size_t> Unfolding::unfold_from(const ShapeValue& shape, const
         while (!open_.empty() && file_.diagnostics.error_count() == 0) {
             const auto [size, id] = open_.top();
             open_.pop();
-            if (size < too_small * extent_) break; // all others are smaller
+            // All others are smaller. A canvas of a size is as many pixels wide, if that is more than usual.
+            if (size < std::min(too_small * extent_, grammar_.size ? smallest_pixels : too_small * extent_))
+                break;
             full_ = full_ || lines_ > most_unfolded_lines || turns_ > most_loop_turns;
             if (lines_ > most_unfolded_lines || turns_ > most_loop_turns) break;
             unfold(id);
@@ -240,7 +243,9 @@ std::optional<std::size_t> Unfolding::node_for(const ShapeValue& value, const Ta
         free_name(named_[shape] == 0 ? value.name : fmt::format("{}_{}", value.name, named_[shape] + 1));
     ++named_[shape];
     known.push_back(nodes_.size());
-    open_.emplace(node.size, nodes_.size());
+    // The first shape, and paths, are drawn whatever their size.
+    const bool certain = !from || grammar_.shapes[shape].is_path;
+    open_.emplace(certain ? 1e300 : node.size, nodes_.size());
     nodes_.push_back(std::move(node));
     return nodes_.size() - 1;
 }

@@ -267,6 +267,12 @@ TEST(ContextFree, SlowRecursionThatBranchesEndsAsInContextFree) {
     EXPECT_NEAR(static_cast<double>(objects), 4320, 60);
 }
 
+TEST(ContextFree, PathsAreDrawnWhateverTheirScale) {
+    EXPECT_EQ(shapes("startshape A\nCF::Size = [s 4]\nv = 0, 0\nshape A { P [s 0.001 x v] }\n"
+                     "path P { MOVETO(0, 0) LINETO(1000, 0) LINETO(0, 1000) CLOSEPOLY() FILL[] }"),
+              1u);
+}
+
 TEST(ContextFree, FillCoversTheCanvas) {
     const ImportedShapes model("a.cfdg", "startshape A\nshape A { FILL [b 0.5] SQUARE [s 2 4] }");
     ASSERT_TRUE(model.graph) << model.said();

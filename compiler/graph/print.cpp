@@ -74,9 +74,11 @@ class Printer {
         print_vector("  location", camera.location);
         print_vector("  look_at", camera.look_at);
         print_vector("  up", camera.up);
+        print_vector("  direction", camera.direction);
         print_number("  angle", camera.angle_deg);
         if (camera.orthographic) out_ += "  orthographic\n";
         print_number("  width", camera.width);
+        print_number("  height", camera.height);
         if (camera.aperture > 0) print_numbers("  aperture", {camera.aperture});
         print_vector("  focus", camera.focus);
         out_ += "}\n";

@@ -12,10 +12,6 @@ namespace graftal::cfdg {
 
 namespace {
 
-/// How far the smallest shapes lie in front of the largest: a shape of scale s lies at lift * (1 - s).
-constexpr double lift = 0.02;
-/// Of one element of a rule over the one before.
-constexpr double lift_of_order = 1e-5;
 /// What a size of 0 becomes.
 constexpr const char* thinnest = "0.0001";
 
@@ -30,7 +26,7 @@ std::optional<std::string> Writer::text(const Expr& expression, const Scope& sco
 }
 
 std::optional<Writer::Lines> Writer::lines_of(const Modification& modification, const Scope& scope,
-                                              std::size_t order) {
+                                              std::size_t order, bool lifts) {
     Lines lines;
     std::array<std::string, 3> moved;
     const auto flush = [&] {
@@ -49,7 +45,7 @@ std::optional<Writer::Lines> Writer::lines_of(const Modification& modification, 
             fail(adjustment.span, "this adjustment within an adjustment is not translated");
             return std::nullopt;
         }
-        const std::optional<Lines> own = lines_of(inner->modification, constants_, 0);
+        const std::optional<Lines> own = lines_of(*inner->value.change, constants_, 0, lifts);
         --nested_;
         if (!own) return std::nullopt;
         inner_moves = own->moves + inner_moves;
@@ -104,8 +100,9 @@ std::optional<Writer::Lines> Writer::lines_of(const Modification& modification, 
         }
     }
     const double forward =
-        std::round(1e8 * (lift * (1 - scale) + lift_of_order * static_cast<double>(order))) / 1e8;
-    if (!moved[2].empty()) moved[2] = fmt::format("10*({})", moved[2]);
+        std::round(1e9 * ((lifts ? lift * (1 - scale) : 0) + lift_of_order * static_cast<double>(order))) /
+        1e9;
+    if (!moved[2].empty()) moved[2] = fmt::format("{}*({})", shortest(lift_of_z), moved[2]);
     if (forward != 0) moved[2] = sum_of(moved[2], shortest(forward));
     flush();
     std::optional<std::string> inks = inks_of(modification, scope);

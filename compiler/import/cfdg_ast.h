@@ -4,12 +4,16 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "compiler/support/source.h"
 
 namespace graftal::cfdg {
+
+struct Modification;
 
 /// An expression of version 3; version 2 has numbers only.
 struct Expr {
@@ -19,6 +23,7 @@ struct Expr {
     double number = 0;
     std::string text; ///< a name, or an operator: + - * / ^ _ < <= > >= == <> && || ^^ ! .. +/-
     std::vector<Expr> operands;
+    std::shared_ptr<const Modification> change; ///< of kind modification
     Span span;
 };
 
@@ -51,12 +56,14 @@ struct Element {
     enum class Kind : std::uint8_t { shape, loop, condition, choice, transform, define, path_operation };
 
     Kind kind = Kind::shape;
-    std::string name;              ///< of a shape, an index, a variable or a path operation
-    std::vector<Expr> arguments;   ///< of a shape or an operation; the count, condition or value of others
+    std::string name; ///< of a shape, an index, a variable or a path operation
+    /// Of a shape or an operation; the count, condition or value of others; the adjustments of a transform.
+    std::vector<Expr> arguments;
     bool reuses_arguments = false; ///< `shape(=)`
+    bool computed = false;         ///< the shape is what the only argument gives: `if(a, B, C) []`
+    bool clones = false;           ///< a transform whose copies draw the same random numbers
     Modification modification;
-    std::vector<Modification> modifications; ///< of transform
-    Elements body, other;                    ///< other: of finally or else
+    Elements body, other; ///< other: of finally or else
     std::vector<Case> cases;
     Span span;
     std::vector<std::string> comments;
@@ -81,6 +88,7 @@ struct Shape {
     bool is_path = false;
     std::vector<Parameter> parameters;
     std::vector<Rule> rules;
+    std::string space; ///< the name space of the file: "a::b::"
     Span span;
     std::vector<std::string> comments;
 };
@@ -91,18 +99,33 @@ struct Definition {
     bool is_function = false;
     std::vector<Parameter> parameters;
     Expr value;
-    Modification modification; ///< where the value is one
+    std::string space; ///< the name space of the file
+    std::string type;  ///< "" where none is written
     Span span;
     std::vector<std::string> comments;
 };
 
+/// What a name of a file in the name space may mean, the innermost first: "a::b::x", "a::x", "x".
+template<typename Found> auto in_spaces(std::string_view name, std::string_view space, const Found& find) {
+    while (true) {
+        if (auto found = find(std::string(space) + std::string(name)); found || space.empty()) return found;
+        const std::size_t outer = space.substr(0, space.size() - 2).rfind("::");
+        space = outer == std::string_view::npos ? std::string_view() : space.substr(0, outer + 2);
+    }
+}
+
 struct Grammar {
-    std::vector<Shape> shapes; ///< in their order
+    std::vector<Shape> shapes;                  ///< in their order
+    std::map<std::string, std::size_t> numbers; ///< of the shapes, by name
     std::vector<Definition> definitions;
+    std::set<std::string> defined;         ///< their names
     std::optional<Element> start;          ///< startshape
     std::optional<Element> included_start; ///< that of an included file, where this one has none
     std::optional<Modification> background, size, tile;
     std::vector<std::string> tail; ///< comments
+
+    /// The number of a shape, as a name of a file in the name space means it.
+    std::optional<std::size_t> shape(std::string_view name, std::string_view space) const;
 };
 
 } // namespace graftal::cfdg

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "compiler/import/cfdg_functions.h"
 #include "compiler/import/importers.h"
 #include "compiler/support/counter_random.h"
 #include "compiler/support/number.h"
@@ -21,51 +22,8 @@ constexpr int deepest_calls = 32;
 constexpr std::size_t longest_text = 1'000'000;
 constexpr std::size_t most_work = 5'000'000;
 
-double sine(double degrees) {
-    return std::sin(degrees * std::numbers::pi / 180);
-}
-
-/// Functions of one number that are alike in both languages.
-const std::map<std::string, double (*)(double)>& plain_functions() {
-    static const std::map<std::string, double (*)(double)> table = {
-        {"sin", sine},
-        {"cos", [](double x) { return sine(x + 90); }},
-        {"tan", [](double x) { return std::tan(x * std::numbers::pi / 180); }},
-        {"asin", [](double x) { return std::asin(x) * 180 / std::numbers::pi; }},
-        {"acos", [](double x) { return std::acos(x) * 180 / std::numbers::pi; }},
-        {"atan", [](double x) { return std::atan(x) * 180 / std::numbers::pi; }},
-        {"sqrt", [](double x) { return std::sqrt(x); }},
-        {"exp", [](double x) { return std::exp(x); }},
-        {"log", [](double x) { return std::log(x); }},
-        {"floor", [](double x) { return std::floor(x); }},
-        {"ceiling", [](double x) { return std::ceil(x); }},
-        {"abs", [](double x) { return std::abs(x); }},
-        {"sg", [](double x) { return static_cast<double>((x > 0) - (x < 0)); }},
-        {"log10", [](double x) { return std::log10(x); }},
-    };
-    return table;
-}
-
 std::string our_name(const std::string& function) {
-    return function == "ceiling" ? "ceil" : function == "sg" ? "sign" : function;
-}
-
-double binary(const std::string& sign, double a, double b) {
-    if (sign == "+") return a + b;
-    if (sign == "-") return a - b;
-    if (sign == "*") return a * b;
-    if (sign == "/") return a / b;
-    if (sign == "^") return std::pow(a, b);
-    if (sign == "_") return std::max(0.0, a - b);
-    if (sign == "<") return a < b;
-    if (sign == "<=") return a <= b;
-    if (sign == ">") return a > b;
-    if (sign == ">=") return a >= b;
-    if (sign == "==") return a == b;
-    if (sign == "<>") return a != b;
-    if (sign == "&&") return a != 0 && b != 0;
-    if (sign == "||") return a != 0 || b != 0;
-    return (a != 0) != (b != 0);
+    return function == "ceiling" ? "ceil" : function;
 }
 
 } // namespace
@@ -99,8 +57,12 @@ const Definition* Expressions::modification(const Adjustment& adjustment) const 
 
 bool Expressions::mentions(const Expr& expression, const std::string& name) {
     if (expression.kind == Expr::Kind::name && expression.text == name) return true;
-    return std::ranges::any_of(expression.operands,
-                               [&](const Expr& operand) { return mentions(operand, name); });
+    const auto in = [&](const Expr& operand) { return mentions(operand, name); };
+    return std::ranges::any_of(expression.operands, in) ||
+           (expression.change &&
+            std::ranges::any_of(expression.change->adjustments, [&](const Adjustment& adjustment) {
+                return std::ranges::any_of(adjustment.values, in);
+            }));
 }
 
 std::nullopt_t Expressions::fail(const Expr& expression, std::string message) {
@@ -243,10 +205,12 @@ std::optional<std::string> Expressions::call(const Expr& expression, const Scope
     }
     if (count == 1 && name == "log10")
         return fmt::format("(log({}) / {})", arguments[0], shortest(std::numbers::ln10));
-    if (count == 1 && plain_functions().contains(name))
-        return fmt::format("{}({})", our_name(name), arguments[0]);
-    if (count == 2 && (name == "atan2" || name == "mod"))
-        return fmt::format("{}({}, {})", name, arguments[0], arguments[1]);
+    static const std::set<std::string, std::less<>> shared = {
+        "sin", "cos", "tan", "asin", "acos", "atan", "sqrt", "exp", "log", "floor", "ceiling", "abs"};
+    if (count == 1 && shared.contains(name)) return fmt::format("{}({})", our_name(name), arguments[0]);
+    if (count == 1 && name == "sg") return fmt::format("({} != 0)", number_of(0));
+    if (count == 2 && name == "atan2") return fmt::format("atan2({}, {})", arguments[0], arguments[1]);
+    if (count == 2 && name == "mod") return fmt::format("({} % {})", number_of(0), number_of(1));
     if (count == 2 && (name == "div" || name == "divides")) {
         if (name == "div") return fmt::format("floor({} / {})", number_of(0), number_of(1));
         return fmt::format("(mod({}, {}) == 0)", arguments[0], arguments[1]);
@@ -357,9 +321,7 @@ std::optional<double> Expressions::evaluate(const Expr& expression, const Number
             plain != plain_functions().end() && operands.size() == 1)
             return finite(plain->second(operands[0]));
         if (operands.size() == 2 && name == "mod")
-            return operands[1] == 0
-                       ? std::nullopt
-                       : finite(operands[0] - operands[1] * std::floor(operands[0] / operands[1]));
+            return operands[1] == 0 ? std::nullopt : finite(std::fmod(operands[0], operands[1]));
         if (operands.size() == 2 && name == "atan2")
             return std::atan2(operands[0], operands[1]) * 180 / std::numbers::pi;
         if (operands.size() == 2 && name == "div") return finite(std::floor(operands[0] / operands[1]));

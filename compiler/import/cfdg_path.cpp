@@ -7,36 +7,32 @@
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
-#include <glm/vec2.hpp>
-
-#include "compiler/import/cfdg_affine.h"
-#include "compiler/support/number.h"
 
 namespace graftal::cfdg {
 
 namespace {
 
-using Point = glm::dvec2;
-
 constexpr int curve_steps = 16;
 constexpr double arc_step_deg = 7.5;
-constexpr std::size_t most_points = 100'000;
-constexpr std::size_t most_corners = 1000; ///< of a polygon
-constexpr double usual_stroke = 0.1;
+constexpr std::size_t most_points = 60'000;
+constexpr std::size_t most_path_turns = 20'000; ///< of all loops
+constexpr int deepest_paths = 30;               ///< of paths within paths
 
-struct Outline {
-    std::vector<Point> points;
-    bool closed = false;
+/// What the lines of a path are under: of operations, the map that moves them; of commands, the change.
+struct Under {
+    Affine place;
+    bool moved = false; ///< the place counts: a loop, a transform or a path of operations alone
+    Change change;
 };
 
 class Follower {
   public:
-    Follower(const Shape& path, const ForeignFile& file, const Expressions& expressions)
-        : path_(path), file_(file), expressions_(expressions) {}
+    Follower(const ForeignFile& file, const Grammar& grammar, Evaluator& evaluator)
+        : file_(file), grammar_(grammar), evaluator_(evaluator) {}
 
-    std::optional<std::vector<PathPart>> run() {
-        walk(path_.rules.front().body, {}, Affine());
-        if (parts_.empty() && good_) fill(nullptr, path_.span);
+    std::optional<std::vector<PathPart>> run(const Shape& path, const Surroundings& at) {
+        walk(path.rules.front().body, at, {});
+        if (!drawn_ && good_ && !outlines_.empty()) fill({}, path.span, false);
         if (!good_) return std::nullopt;
         return std::move(parts_);
     }
@@ -47,88 +43,181 @@ class Follower {
         good_ = false;
     }
 
-    double number(const Expr& expression, const Numbers& known) {
-        const std::optional<double> value = expressions_.number(expression, known);
-        if (!value)
-            fail(expression.span,
-                 "the numbers of a path must be known: parameters and chance are not translated");
+    double number(const Expr& expression, const Surroundings& at) {
+        const std::optional<double> value = evaluator_.number(expression, at);
+        good_ = good_ && value;
         return value.value_or(0);
     }
 
-    void walk(const Elements& elements, Numbers known, Affine place) {
+    void walk(const Elements& elements, Surroundings at, const Under& under) {
         for (const Element& element : elements) {
             if (!good_) return;
             switch (element.kind) {
-            case Element::Kind::define:
-                known[element.name] = number(element.arguments[0], known);
+            case Element::Kind::define: {
+                std::optional<Value> value = evaluator_.value(element.arguments[0], at);
+                good_ = good_ && value;
+                if (value) at.values.insert_or_assign(element.name, std::move(*value));
                 break;
+            }
             case Element::Kind::path_operation:
-                operation(element, known, place);
+                operation(element, at, under.moved ? under.place : Affine());
                 break;
             case Element::Kind::shape:
-                command(element, known);
+                if (element.name == "FILL" || element.name == "STROKE")
+                    command(element, at, under);
+                else
+                    part(element, at, under);
                 break;
-            case Element::Kind::condition:
-                walk(number(element.arguments[0], known) != 0 ? element.body : element.other, known, place);
+            case Element::Kind::condition: {
+                const bool holds = number(element.arguments[0], at) != 0;
+                walk(holds ? element.body : element.other, at, under);
                 break;
+            }
             case Element::Kind::loop:
-                loop(element, known, place);
+                loop(element, at, begin_block(element, at, under));
                 break;
             case Element::Kind::transform: {
-                for (const Modification& modification : element.modifications) {
-                    const std::optional<Affine> map = affine_of(modification, expressions_, known);
-                    if (!map) return fail(modification.span, "the numbers of a path must be known");
-                    walk(element.body, known, place * *map);
+                const Under inner = begin_block(element, at, under);
+                const Draws before = evaluator_.draws;
+                for (const Expr& expression : element.arguments) {
+                    const std::optional<Value> value = evaluator_.value(expression, at);
+                    if (!value || value->kind != Value::Kind::change)
+                        return fail(expression.span, "'transform' takes adjustments here");
+                    if (element.clones) evaluator_.draws = before;
+                    walk(element.body, at, changed(inner, value->change));
                 }
                 break;
             }
             case Element::Kind::choice:
-                fail(element.span, "'switch' in a path is not translated");
+                if (const Elements* const chosen = evaluator_.choice(element, at))
+                    walk(*chosen, at, under);
+                else
+                    good_ = good_ && file_.diagnostics.error_count() == errors_;
                 break;
             }
         }
     }
 
-    void loop(const Element& element, Numbers known, Affine place) {
-        const auto bound = [&](std::size_t i) { return number(element.arguments[i], known); };
-        const std::size_t count = element.arguments.size();
-        const double begin = count > 1 ? bound(0) : 0, end = bound(count > 1 ? 1 : 0),
-                     step = count > 2 ? bound(2) : 1;
-        if (!good_) return;
-        if (!(step > 0) || !((end - begin) / step <= 10'000))
-            return fail(element.span, "a loop in a path has at most 10000 turns, upwards");
-        for (double index = begin; index < end - 1e-9 && good_; index += step) {
-            if (!element.name.empty()) known[element.name] = index;
-            walk(element.body, known, place);
-            const std::optional<Affine> map = affine_of(element.modification, expressions_, known);
-            if (!map) return fail(element.modification.span, "the numbers of a path must be known");
-            place = place * *map;
+    static Under changed(Under under, const Change& change) {
+        under.place = under.place * change.map;
+        under.change.add(change);
+        return under;
+    }
+
+    /// Operations move with a block that holds nothing else; elsewhere, only commands do.
+    Under begin_block(const Element& element, const Surroundings& at, Under under) const {
+        const bool alone = operates(element.body, at, 0) && operates(element.other, at, 0);
+        if (!alone || under.moved) return under;
+        under.place = Affine();
+        under.moved = true;
+        return under;
+    }
+
+    bool operates(const Elements& elements, const Surroundings& at, int depth) const {
+        return depth < deepest_paths && std::ranges::all_of(elements, [&](const Element& element) {
+                   switch (element.kind) {
+                   case Element::Kind::shape: {
+                       if (element.name == "FILL" || element.name == "STROKE") return false;
+                       const std::optional<std::size_t> path = grammar_.shape(element.name, at.space);
+                       return !path || (grammar_.shapes[*path].is_path &&
+                                        operates(grammar_.shapes[*path].rules.front().body, at, depth + 1));
+                   }
+                   case Element::Kind::choice:
+                       return std::ranges::all_of(
+                           element.cases, [&](const Case& one) { return operates(one.body, at, depth + 1); });
+                   case Element::Kind::define:
+                   case Element::Kind::path_operation:
+                       return true;
+                   default:
+                       return operates(element.body, at, depth + 1) && operates(element.other, at, depth + 1);
+                   }
+               });
+    }
+
+    void loop(const Element& element, Surroundings at, Under under) {
+        const std::optional<LoopBounds> bounds = evaluator_.bounds(element, at);
+        if (!bounds) {
+            good_ = false;
+            return;
         }
-        walk(element.other, known, place);
+        double index = bounds->begin;
+        for (; bounds->goes_on(index) && good_; index += bounds->step) {
+            if (++turns_ > most_path_turns) return fail(element.span, "the loops of a path turn too often");
+            if (!element.name.empty()) at.values.insert_or_assign(element.name, Value::of(index));
+            walk(element.body, at, under);
+            const std::optional<Change> change = evaluator_.change(element.modification, at);
+            good_ = good_ && change;
+            if (change) under = changed(std::move(under), *change);
+        }
+        if (!element.name.empty()) at.values.insert_or_assign(element.name, Value::of(index));
+        walk(element.other, at, under);
+    }
+
+    /// A path within the path.
+    void part(const Element& element, const Surroundings& at, Under under) {
+        const std::optional<ShapeValue> named = evaluator_.shape(element, at);
+        const std::optional<Change> change =
+            named ? evaluator_.change(element.modification, at) : std::nullopt;
+        if (!named || !change) {
+            good_ = false;
+            return;
+        }
+        const auto found = grammar_.numbers.find(named->name);
+        if (found == grammar_.numbers.end()) {
+            if (!under.moved) under.place = Affine();
+            return primitive(primitive_named(named->name), under.place * change->map, element.span);
+        }
+        const Shape& path = grammar_.shapes[found->second];
+        if (!path.is_path) return fail(element.span, fmt::format("'{}' is no path", named->name));
+        if (++depth_ > deepest_paths) return fail(element.span, "paths contain each other too deep");
+        std::optional<Values> bound = evaluator_.bind(path.parameters, named->arguments, element.span);
+        if (operates(path.rules.front().body, {.space = path.space}, 0)) {
+            if (!under.moved) under.place = Affine();
+            under.moved = true;
+        }
+        if (bound)
+            walk(path.rules.front().body, {std::move(*bound), path.space, &path},
+                 changed(std::move(under), *change));
+        good_ = good_ && bound;
+        --depth_;
+    }
+
+    void primitive(std::string_view kind, const Affine& place, Span span) {
+        if (kind.empty()) return fail(span, "this is no path");
+        renew();
+        std::vector<Point> corners;
+        if (kind == "SQUARE") corners = {{-0.5, -0.5}, {0.5, -0.5}, {0.5, 0.5}, {-0.5, 0.5}};
+        if (kind == "TRIANGLE") corners = {{0, 0.577350269}, {-0.5, -0.288675135}, {0.5, -0.288675135}};
+        if (kind == "CIRCLE")
+            for (int i = 0; i < 48; ++i) {
+                const double t = i * std::numbers::pi / 24;
+                corners.emplace_back(0.5 * std::cos(t), 0.5 * std::sin(t));
+            }
+        outlines_.emplace_back();
+        for (const Point corner : corners)
+            add(placed(corner.x, corner.y, place));
+        outlines_.back().closed = true;
+        at_ = outlines_.back().points.front();
     }
 
     // Operations
 
     /// Coordinates of version 2 stand in braces by name.
-    std::vector<double> numbers_of(const Element& element, const Numbers& known, std::string& flags) {
+    std::vector<double> numbers_of(const Element& element, const Surroundings& at, std::string& flags) {
         std::vector<double> numbers;
         for (const Expr& argument : element.arguments) {
-            if (argument.kind == Expr::Kind::name && argument.text.starts_with("CF::"))
-                flags += argument.text;
-            else if (argument.kind == Expr::Kind::list)
-                for (const Expr& part : argument.operands)
-                    numbers.push_back(number(part, known));
-            else if (argument.kind == Expr::Kind::binary && argument.text == "||")
-                flags += flag_text(argument);
-            else
-                numbers.push_back(number(argument, known));
+            const std::optional<Value> value = evaluator_.value(argument, at);
+            good_ = good_ && value;
+            if (!value) return numbers;
+            flags += value->flags;
+            numbers.insert(numbers.end(), value->numbers.begin(), value->numbers.end());
         }
         if (!element.arguments.empty()) return numbers;
         const auto given = [&](const char* word, double otherwise, bool& there) {
             for (const Adjustment& adjustment : element.modification.adjustments)
                 if (adjustment.word == word && !adjustment.values.empty()) {
                     there = true;
-                    return number(adjustment.values[0], known);
+                    return number(adjustment.values[0], at);
                 }
             return otherwise;
         };
@@ -152,35 +241,36 @@ class Follower {
         return numbers;
     }
 
-    static std::string flag_text(const Expr& expression) {
-        if (expression.kind == Expr::Kind::name) return expression.text;
-        std::string text;
-        for (const Expr& operand : expression.operands)
-            text += flag_text(operand);
-        return text;
-    }
-
     Point placed(double x, double y, const Affine& place) const {
         const Vec3 point = place(Vec3(x, y, 0));
         return {point.x, point.y};
     }
 
-    void operation(const Element& element, const Numbers& known, const Affine& place) {
+    /// The first operation behind commands begins another path.
+    void renew() {
         if (std::exchange(drawn_, false)) outlines_.clear();
+    }
+
+    void operation(const Element& element, const Surroundings& at, const Affine& place) {
+        renew();
         std::string flags;
-        const std::vector<double> n = numbers_of(element, known, flags);
+        const std::vector<double> n = numbers_of(element, at, flags);
         if (!good_) return;
         const std::string& name = element.name;
         if (name == "CLOSEPOLY") {
-            if (!outlines_.empty()) outlines_.back().closed = true;
+            if (outlines_.empty() || outlines_.back().points.empty()) return;
+            outlines_.back().closed = true;
+            at_ = outlines_.back().points.front();
+            control_ = at_;
             return;
         }
-        if (n.size() < 2) return fail(element.span, fmt::format("'{}' takes coordinates", name));
+        if (n.size() < 2 || n.size() > 6)
+            return fail(element.span, fmt::format("'{}' takes coordinates", name));
         const bool relative = name.ends_with("REL");
         const Point from = at_;
         const auto point = [&](std::size_t i) {
             const Point offset = placed(n[i], n[i + 1], place);
-            return relative ? from + offset - placed(0, 0, place) : offset;
+            return relative ? from + offset : offset;
         };
         const Point to = point(0);
         if (name == "MOVETO" || name == "MOVEREL") {
@@ -191,12 +281,18 @@ class Follower {
             add(to);
         } else if (name.starts_with("CURVE")) {
             begin();
+            if (n.size() % 2 != 0) return fail(element.span, fmt::format("'{}' takes points", name));
             curve(n, flags, point, to);
         } else {
             begin();
-            arc(n, flags, to, element);
+            // The radii hold under the map: the arc is drawn before it, and moved.
+            if (glm::determinant(place.linear) == 0) return add(to);
+            const Vec3 start = inverse(place)(Vec3(from, 0));
+            const Point end = relative ? Point(start) + Point(n[0], n[1]) : Point(n[0], n[1]);
+            arc(n, flags, Point(start), end, place, element);
+            if (!relative) at_ = outlines_.back().points.back() = to;
         }
-        if (name.starts_with("CURVE") == false) control_ = at_;
+        if (!name.starts_with("CURVE")) control_ = at_;
         if (points_ > most_points) fail(element.span, "the path has too many points");
     }
 
@@ -236,7 +332,8 @@ class Follower {
     }
 
     /// By end points, as SVG's (SVG 1.1, appendix F.6.5).
-    void arc(const std::vector<double>& n, const std::string& flags, Point to, const Element& element) {
+    void arc(const std::vector<double>& n, const std::string& flags, Point from, Point to,
+             const Affine& place, const Element& element) {
         double rx = n.size() > 2 ? n[2] : 1;
         double ry = n.size() > 4 ? n[3] : rx;
         const double angle = (n.size() > 4 ? n[4] : 0) * std::numbers::pi / 180;
@@ -246,8 +343,8 @@ class Follower {
         if (rx < 0) clockwise = !clockwise;
         rx = std::abs(rx);
         ry = std::abs(ry);
-        const Point from = at_;
-        if (rx == 0 || ry == 0 || from == to) return add(to);
+        const auto put = [&](Point point) { add(placed(point.x, point.y, place)); };
+        if (rx == 0 || ry == 0 || from == to) return put(to);
         const double c = std::cos(angle), s = std::sin(angle);
         const Point half = (from - to) / 2.0;
         const Point p(c * half.x + s * half.y, -s * half.x + c * half.y);
@@ -270,93 +367,77 @@ class Follower {
         for (int i = 1; i <= steps; ++i) {
             const double t = first + turn * i / steps;
             const Point on(rx * std::cos(t), ry * std::sin(t));
-            add(i == steps ? to : centre + Point(c * on.x - s * on.y, s * on.x + c * on.y));
+            put(i == steps ? to : centre + Point(c * on.x - s * on.y, s * on.x + c * on.y));
         }
     }
 
     // Commands
 
-    void command(const Element& element, const Numbers& known) {
-        if (element.name == "FILL") return fill(&element.modification, element.span);
-        if (element.name != "STROKE")
-            return fail(element.span, fmt::format("'{}' within a path is not translated", element.name));
-        double width = usual_stroke;
-        for (const Expr& argument : element.arguments)
-            if (argument.kind == Expr::Kind::number || expressions_.number(argument, known))
-                width = number(argument, known);
-        for (const Adjustment& adjustment : element.modification.adjustments)
-            if (adjustment.word == "width" && !adjustment.values.empty())
-                width = number(adjustment.values[0], known);
-        stroke(&element.modification, width, element.span);
-    }
-
-    void fill(const Modification* modification, Span span) {
-        drawn_ = true;
-        PathPart part{{}, modification};
-        std::string text;
-        std::size_t corners = 0;
-        for (const Outline& outline : outlines_) {
-            std::vector<Point> points;
-            for (const Point point : outline.points)
-                if (points.empty() || glm::distance(points.back(), point) > 1e-9) points.push_back(point);
-            while (points.size() > 1 && glm::distance(points.front(), points.back()) <= 1e-9)
-                points.pop_back();
-            if (points.size() < 3) continue;
-            points.push_back(points.front());
-            corners += points.size();
-            for (const Point point : points)
-                text += fmt::format("{}{}, {}", text.empty() ? "" : ", ", rounded(point.x), rounded(point.y));
+    void command(const Element& element, const Surroundings& at, const Under& under) {
+        const std::optional<Change> own = evaluator_.change(element.modification, at);
+        if (!own) {
+            good_ = false;
+            return;
         }
-        if (text.empty()) return;
-        if (corners > most_corners) return fail(span, "this path has more than 1000 corners");
-        part.lines.push_back(fmt::format("instance: polygon({})", text));
-        parts_.push_back(std::move(part));
-    }
-
-    static std::string rounded(double value) { return shortest(std::round(1e6 * value) / 1e6); }
-
-    void stroke(const Modification* modification, double width, Span span) {
-        drawn_ = true;
-        PathPart part{{}, modification};
-        if (!(width > 0)) return fail(span, "a stroke needs a width");
-        for (const Outline& outline : outlines_) {
-            std::vector<Point> points = outline.points;
-            if (outline.closed && !points.empty()) points.push_back(points.front());
-            for (std::size_t i = 0; i + 1 < points.size(); ++i) {
-                const Point a = points[i], b = points[i + 1];
-                const double length = glm::distance(a, b);
-                if (!(length > 1e-9)) continue;
-                const double angle = std::atan2(b.y - a.y, b.x - a.x) * 180 / std::numbers::pi;
-                const Point middle = (a + b) / 2.0;
-                part.lines.push_back(fmt::format(
-                    "instance: polygon(-0.5, -0.5, 0.5, -0.5, 0.5, 0.5, -0.5, 0.5)  scale: {}, {}, 1  "
-                    "rotate: z, {}  translate: {}, {}, 0",
-                    rounded(length), rounded(width), rounded(angle), rounded(middle.x), rounded(middle.y)));
-                if (i == 0) continue;
-                part.lines.push_back(fmt::format(
-                    "instance: cylinder  rotate: x, 90  scale: {0}, {0}, 0.001  translate: {1}, {2}, 0",
-                    rounded(width / 2), rounded(a.x), rounded(a.y)));
+        const Change change = changed(under, *own).change;
+        std::string flags;
+        Stroke stroke;
+        for (const Expr& argument : element.arguments) {
+            const std::optional<Value> value = evaluator_.value(argument, at);
+            if (!value) {
+                good_ = false;
+                return;
             }
+            flags += value->flags;
+            if (!value->numbers.empty()) stroke.width = value->numbers.front();
         }
-        if (!part.lines.empty()) parts_.push_back(std::move(part));
+        for (const Adjustment& adjustment : element.modification.adjustments) {
+            if (adjustment.word == "width" && !adjustment.values.empty())
+                stroke.width = number(adjustment.values[0], at);
+            if (adjustment.word == "p" && !adjustment.values.empty()) flags += adjustment.values[0].text;
+        }
+        const auto has = [&](std::string_view word, std::string_view old) {
+            return flags.find(word) != std::string::npos || flags.find(old) != std::string::npos;
+        };
+        if (element.name == "FILL") return fill(change, element.span, has("EvenOdd", "evenodd"));
+        if (!(stroke.width > 0)) return fail(element.span, "a stroke needs a width");
+        if (has("RoundJoin", "roundjoin")) stroke.join = Join::round;
+        if (has("BevelJoin", "beveljoin")) stroke.join = Join::bevel;
+        if (has("RoundCap", "roundcap")) stroke.cap = Cap::round;
+        if (has("SquareCap", "squarecap")) stroke.cap = Cap::square;
+        draw(stroked(outlines_, stroke, evaluator_.outline_work), change, element.span);
     }
 
-    const Shape& path_;
+    void fill(const Change& change, Span span, bool even_odd) {
+        draw(filled(outlines_, even_odd, evaluator_.outline_work), change, span);
+    }
+
+    void draw(std::optional<std::vector<Polygon>> polygons, const Change& change, Span span) {
+        drawn_ = true;
+        if (!good_) return;
+        if (!polygons) return fail(span, "this path crosses itself too often");
+        if (!polygons->empty()) parts_.push_back({std::move(*polygons), change, span});
+    }
+
     const ForeignFile& file_;
-    const Expressions& expressions_;
+    const Grammar& grammar_;
+    Evaluator& evaluator_;
+    std::size_t errors_ = file_.diagnostics.error_count();
     std::vector<Outline> outlines_;
     std::vector<PathPart> parts_;
     Point at_{0.0}, control_{0.0};
-    std::size_t points_ = 0;
+    std::size_t points_ = 0, turns_ = 0;
+    int depth_ = 0;
     bool drawn_ = false; ///< commands since the last operation
     bool good_ = true;
 };
 
 } // namespace
 
-std::optional<std::vector<PathPart>> follow(const Shape& path, const ForeignFile& file,
-                                            const Expressions& expressions) {
-    return Follower(path, file, expressions).run();
+std::optional<std::vector<PathPart>> follow(const Shape& path, const Surroundings& at,
+                                            const ForeignFile& file, const Grammar& grammar,
+                                            Evaluator& evaluator) {
+    return Follower(file, grammar, evaluator).run(path, at);
 }
 
 } // namespace graftal::cfdg

@@ -1,22 +1,24 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
-#include "compiler/import/cfdg_ast.h"
-#include "compiler/import/cfdg_expression.h"
-#include "compiler/import/importer.h"
+#include "compiler/import/cfdg_evaluator.h"
+#include "compiler/import/cfdg_outline.h"
 
 namespace graftal::cfdg {
 
-/// What a path draws: lines of an object, each with the adjustments of its command.
+/// What a command of a path draws.
 struct PathPart {
-    std::vector<std::string> lines;             ///< `instance: polygon(...)`; of a stroke, squares and discs
-    const Modification* modification = nullptr; ///< null of a path without commands
+    std::vector<Polygon> polygons;
+    Change change;
+    Span span;
 };
 
-/// Follows a path whose numbers are known. Nothing after an error.
-std::optional<std::vector<PathPart>> follow(const Shape& path, const ForeignFile& file,
-                                            const Expressions& expressions);
+/// Follows a path under the values of its parameters. Nothing after an error.
+std::optional<std::vector<PathPart>> follow(const Shape& path, const Surroundings& at,
+                                            const ForeignFile& file, const Grammar& grammar,
+                                            Evaluator& evaluator);
 
 } // namespace graftal::cfdg

@@ -1,8 +1,6 @@
 #include "compiler/import/cfdg_writer.h"
 
 #include <algorithm>
-#include <array>
-#include <cctype>
 #include <cmath>
 #include <utility>
 
@@ -11,56 +9,22 @@
 
 #include "compiler/import/cfdg_affine.h"
 #include "compiler/import/cfdg_path.h"
+#include "compiler/import/cfdg_text.h"
 #include "compiler/import/foreign_text.h"
 #include "compiler/import/importers.h"
 #include "compiler/import/own_words.h"
-#include "compiler/support/hue.h"
 #include "compiler/support/number.h"
-#include "compiler/support/srgb.h"
 
 namespace graftal::cfdg {
 
 namespace {
 
-constexpr std::size_t most_turns = 1000; ///< of a loop that is written turn by turn
 constexpr std::size_t most_parts = 20'000;
-constexpr std::size_t longest_output = 8'000'000;
-
-std::string rounded(double value, double steps = 1e6) {
-    return shortest(std::round(steps * value) / steps);
-}
-
-bool is_colour(const Adjustment& adjustment) {
-    return adjustment.word == "h" || adjustment.word == "sat" || adjustment.word == "b" ||
-           adjustment.word == "a";
-}
-
-/// Signs of Unicode are names of them too.
-std::string_view primitive_named(std::string_view name) {
-    static constexpr std::array<std::pair<std::string_view, std::string_view>, 12> table = {
-        {{"CIRCLE", "CIRCLE"},
-         {"SQUARE", "SQUARE"},
-         {"TRIANGLE", "TRIANGLE"},
-         {"\u25cf", "CIRCLE"},
-         {"\u26ab", "CIRCLE"},
-         {"\u2b24", "CIRCLE"},
-         {"\u25a0", "SQUARE"},
-         {"\u25fc", "SQUARE"},
-         {"\u2b1b", "SQUARE"},
-         {"\uffed", "SQUARE"},
-         {"\u25b2", "TRIANGLE"},
-         {"\u25b4", "TRIANGLE"}}};
-    for (const auto& [written, meant] : table)
-        if (name == written) return meant;
-    return {};
-}
 
 } // namespace
 
 Writer::Writer(const ForeignFile& file, const Grammar& grammar)
-    : file_(file), grammar_(grammar), expressions_(file, grammar), recursion_(grammar, expressions_) {
-    for (const char* const taken : {"flat", "scene", "n"})
-        names_.insert(taken);
+    : SceneWriter(file, grammar), expressions_(file, grammar), recursion_(grammar, expressions_) {
     for (const Shape& shape : grammar_.shapes)
         object_names_.push_back(free_name(shape.name));
     for (const Definition* const constant : expressions_.constants()) {
@@ -73,78 +37,23 @@ Translation Writer::write() {
     comment("from a grammar of Context Free");
     check_definitions();
     write_scene();
+    write_constants();
     for (std::size_t shape = 0; shape < grammar_.shapes.size() && !file_.diagnostics.full(); ++shape) {
         write_shape(shape);
         write_parts();
     }
-    write_start();
-    write_primitives();
-    for (const std::string& words : grammar_.tail)
-        comment(words);
+    write_start_shape();
+    write_end();
     return std::move(out_);
 }
 
-void Writer::fail(Span span, std::string message, std::string hint) {
-    file_.diagnostics.error(span, std::move(message)).with_hint(std::move(hint));
+bool Writer::shows_more() const {
+    const std::optional<std::size_t> first =
+        grammar_.start ? recursion_.index(grammar_.start->name) : std::nullopt;
+    return first && recursion_.fades_slowly(*first);
 }
 
-// The scene
-
-void Writer::check_definitions() {
-    static const std::set<std::string, std::less<>> harmless = {
-        "CF::Impure",      "CF::MinimumSize",  "CF::MaxNatural", "CF::MaxShapes", "CF::BorderDynamic",
-        "CF::BorderFixed", "CF::Color",        "CF::ColorDepth", "CF::Time",      "CF::Frame",
-        "CF::FrameTime",   "CF::AllowOverlap", "CF::Alpha"};
-    for (const Definition& definition : grammar_.definitions) {
-        if (!definition.name.starts_with("CF::")) continue;
-        if (harmless.contains(definition.name))
-            file_.diagnostics.note(definition.span,
-                                   fmt::format("'{}' changes nothing here", definition.name));
-        else if (definition.name != "CF::Symmetry" || !read_symmetry(definition))
-            fail(definition.span, fmt::format("this '{}' is not translated", definition.name));
-    }
-    if (grammar_.tile)
-        file_.diagnostics.warning(grammar_.tile->span, "'tile': one tile is drawn, without its neighbours");
-}
-
-/// `CF::Symmetry = CF::Cyclic, 5` or `CF::Dihedral, 5`, about the origin.
-bool Writer::read_symmetry(const Definition& definition) {
-    const Expr& value = definition.value;
-    if (value.kind != Expr::Kind::list || value.operands.size() != 2) return false;
-    const std::string& kind = value.operands[0].text;
-    const std::optional<double> turns = expressions_.number(value.operands[1]);
-    if ((kind != "CF::Cyclic" && kind != "CF::Dihedral") || !turns || *turns < 1 || *turns > 1000)
-        return false;
-    turns_ = static_cast<int>(*turns);
-    mirrors_ = kind == "CF::Dihedral";
-    return true;
-}
-
-std::array<double, 3> Writer::colour_from(const Modification& modification, std::array<double, 3> hsv) {
-    for (const Adjustment& adjustment : modification.adjustments) {
-        if (!is_colour(adjustment) || adjustment.word == "a") continue;
-        const std::optional<double> by = expressions_.number(adjustment.values[0]);
-        if (!by) {
-            fail(adjustment.span, "the numbers of this colour must be known");
-            continue;
-        }
-        double& part = hsv[adjustment.word == "h" ? 0 : adjustment.word == "sat" ? 1 : 2];
-        part = adjustment.word == "h"
-                   ? part + *by
-                   : std::clamp(*by > 0 ? part + *by * (1 - part) : part * (1 + *by), 0.0, 1.0);
-    }
-    return hsv;
-}
-
-void Writer::write_scene() {
-    const std::array<double, 3> hsv =
-        grammar_.background ? colour_from(*grammar_.background, {0, 0, 1}) : std::array{0.0, 0.0, 1.0};
-    const Rgb screen = rgb_from_hsv(hsv[0], hsv[1], hsv[2]);
-    line(fmt::format("background: {}, {}, {}", rounded(linear_from_srgb(screen.r)),
-                     rounded(linear_from_srgb(screen.g)), rounded(linear_from_srgb(screen.b))));
-    write_camera();
-    line("light { sun: 0,0,1  color: 0,0,0 }   # colours are as they are");
-    line("material flat { color: 1,1,1  ambient: 1  diffuse: 0  specular: 0 }");
+void Writer::write_constants() {
     for (const Definition* const constant : expressions_.constants()) {
         if (!constants_.contains(constant->name)) continue;
         for (const std::string& words : constant->comments)
@@ -155,54 +64,12 @@ void Writer::write_scene() {
     }
 }
 
-void Writer::write_camera() {
-    const std::optional<Modification>& given = grammar_.size ? grammar_.size : grammar_.tile;
-    const std::optional<Affine> map = given ? affine_of(*given, expressions_) : std::nullopt;
-    if (given && !map) fail(given->span, "the numbers of the size must be known");
-    if (!map) return line("camera { orthographic  location: 0,0,10  look_at: 0,0,0 }");
-    const Vec3 at = map->translation;
-    line(fmt::format("camera {{ orthographic  location: {0},{1},10  look_at: {0},{1},0  width: {2} }}",
-                     rounded(at.x), rounded(at.y), rounded(glm::length(map->linear[0]))),
-         given->span);
-}
-
-void Writer::write_start() {
-    line("");
-    line("object scene {");
-    ++depth_;
-    if (!grammar_.start) {
-        fail(file_.span(0, 0), "the grammar has no 'startshape'");
-    } else {
-        const Element& start = *grammar_.start;
-        const std::string master = reference(start, nullptr, constants_);
-        const std::optional<Lines> lines = lines_of(start.modification, constants_, 0);
-        if (lines)
-            for (const char* const mirror : {"", "  scale: 1, -1, 1"}) {
-                if (*mirror && !mirrors_) break;
-                const std::string copies = turns_ > 1
-                                               ? fmt::format("{} * {{ rotate: z, 360/{} }} ", turns_, turns_)
-                                               : std::string("instance: ");
-                line(fmt::format("{}{}{}{}  ink: hsv(0, 0, 0){}", copies, master, lines->moves, mirror,
-                                 lines->inks),
-                     start.span);
-            }
-    }
-    --depth_;
-    line("}");
-}
-
-void Writer::write_primitives() {
-    for (const auto& [key, name] : primitives_) {
-        line("");
-        line(fmt::format("canonical object {} {{", name));
-        if (key == "CIRCLE")
-            line("    instance: cylinder  rotate: x, 90  scale: 0.5, 0.5, 0.0001  material: flat");
-        else if (key == "SQUARE")
-            line("    instance: polygon(-0.5, -0.5, 0.5, -0.5, 0.5, 0.5, -0.5, 0.5)  material: flat");
-        else
-            line("    instance: polygon(0, 0.57735, -0.5, -0.288675, 0.5, -0.288675)  material: flat");
-        line("}");
-    }
+void Writer::write_start_shape() {
+    if (!grammar_.start) return fail(file_.span(0, 0), "the grammar has no 'startshape'");
+    const Element& start = *grammar_.start;
+    const std::string master = reference(start, nullptr, constants_);
+    if (const std::optional<Lines> lines = lines_of(start.modification, constants_, 0, true))
+        write_start(master + lines->moves, lines->inks);
 }
 
 // Shapes
@@ -269,20 +136,23 @@ void Writer::write_rule(std::size_t index, const Rule& rule, const std::string& 
 }
 
 void Writer::write_path(const Shape& shape, const std::string& name) {
-    const std::optional<std::vector<PathPart>> parts = follow(shape, file_, expressions_);
+    const std::optional<std::vector<PathPart>> parts = follow(shape, {}, file_, grammar_, evaluator_);
     if (!parts) return;
+    if (evaluator_.draws.drawn() > 0) return fail(shape.span, "this path draws random numbers");
     line(fmt::format("canonical object {} {{", name), shape.span);
     ++depth_;
-    std::size_t order = 0, lines = 0;
+    std::size_t order = 0;
     for (const PathPart& part : *parts) {
-        std::optional<Lines> own =
-            part.modification ? lines_of(*part.modification, constants_, order) : Lines();
-        if (!own) continue;
-        for (const std::string& words : part.lines)
-            line(fmt::format("{}  material: flat{}{}", words, own->moves, own->inks), shape.span), ++lines;
-        ++order;
+        Target target = first_target;
+        const std::optional<std::string> inks = ink_text(part.change.colours, target);
+        if (!inks) return fail(part.span, "this changes a colour away from another");
+        Affine map = part.change.map;
+        map.translation.z += lift_of_order * static_cast<double>(order++);
+        for (const Polygon& polygon : part.polygons)
+            line(fmt::format("{}{}  material: flat{}", polygon_text(polygon), moves_text(map), *inks),
+                 part.span);
     }
-    if (lines == 0) line("nothing");
+    if (parts->empty()) line("nothing");
     --depth_;
     line("}");
 }
@@ -319,244 +189,11 @@ std::string Writer::parameter_list(const std::vector<std::string>& names) const 
     return names.empty() ? "" : fmt::format("({})", fmt::join(names, ", "));
 }
 
-// Elements
-
-void Writer::write_elements(const Elements& elements, std::size_t first, Place& place) {
-    for (std::size_t i = first; i < elements.size() && !file_.diagnostics.full(); ++i) {
-        const Element& element = elements[i];
-        for (const std::string& words : element.comments)
-            comment(words);
-        if (element.kind != Element::Kind::define) {
-            write_element(element, place);
-            ++place.order;
-            continue;
-        }
-        if (element.arguments[0].kind == Expr::Kind::modification) {
-            fail(element.span, fmt::format("'{}': an adjustment as a value is not translated", element.name));
-            continue;
-        }
-        const std::optional<std::string> value = text(element.arguments[0], place.scope);
-        if (!value) continue;
-        if (!is_random(*value)) {
-            place.scope[element.name] = fmt::format("({})", *value);
-            continue;
-        }
-        // The rest of the rule knows one number by its name.
-        Place rest = place;
-        std::string name = plain_name(element.name);
-        while (is_own_word(name) || std::ranges::find(rest.parameters, name) != rest.parameters.end())
-            name += "_";
-        const std::vector<std::string> own = place.parameters;
-        rest.parameters.push_back(name);
-        rest.scope[element.name] = name;
-        const std::string object = part(elements, i + 1, rest, element.span);
-        std::vector<std::string> arguments = own;
-        arguments.push_back(*value);
-        line(fmt::format("instance: {}({})", object, fmt::join(arguments, ", ")), element.span);
-        return;
-    }
-}
-
-void Writer::write_element(const Element& element, Place& place) {
-    switch (element.kind) {
-    case Element::Kind::shape: {
-        if (element.name == "FILL" && !recursion_.index("FILL"))
-            return fail(element.span, "'FILL' covers the whole canvas, and is not translated",
-                        "use CF::Background");
-        const std::string master = reference(element, &place, place.scope);
-        const std::optional<Lines> lines = lines_of(element.modification, place.scope, place.order);
-        if (lines) line(fmt::format("instance: {}{}{}", master, lines->moves, lines->inks), element.span);
-        break;
-    }
-    case Element::Kind::loop:
-        write_loop(element, place);
-        break;
-    case Element::Kind::condition:
-        write_condition(element, place);
-        break;
-    case Element::Kind::choice:
-        write_choice(element, place);
-        break;
-    case Element::Kind::transform: {
-        const std::string object =
-            part(element.body, 0, place, element.span) + parameter_list(place.parameters);
-        for (const Modification& modification : element.modifications)
-            if (const std::optional<Lines> lines = lines_of(modification, place.scope, place.order))
-                line(fmt::format("instance: {}{}{}", object, lines->moves, lines->inks), element.span);
-        break;
-    }
-    case Element::Kind::path_operation:
-        fail(element.span, fmt::format("'{}' belongs to a path", element.name));
-        break;
-    case Element::Kind::define:
-        break;
-    }
-}
-
-void Writer::write_condition(const Element& element, Place& place) {
-    const std::optional<std::string> test = text(element.arguments[0], place.scope);
-    if (!test) return;
-    if (is_random(*test))
-        return fail(element.arguments[0].span, "a random condition is not translated",
-                    "use two rules with weights");
-    line(fmt::format("when {} {{", *test), element.span);
-    ++depth_;
-    Place inner = place;
-    write_elements(element.body, 0, inner);
-    --depth_;
-    if (!element.other.empty()) {
-        line("} else {");
-        ++depth_;
-        inner = place;
-        write_elements(element.other, 0, inner);
-        --depth_;
-    }
-    line("}");
-}
-
-void Writer::write_choice(const Element& element, Place& place) {
-    const std::optional<std::string> value = text(element.arguments[0], place.scope);
-    if (!value) return;
-    if (is_random(*value))
-        return fail(element.arguments[0].span, "a random choice is not translated", "use rules with weights");
-    const Case* otherwise = nullptr;
-    bool open = false;
-    for (const Case& one : element.cases) {
-        if (one.values.empty()) {
-            otherwise = &one;
-            continue;
-        }
-        std::string test;
-        for (const Expr& label : one.values)
-            if (const std::optional<std::string> words = text(label, place.scope))
-                test += fmt::format("{}floor({}) == floor({})", test.empty() ? "" : " || ", *value, *words);
-        if (test.empty()) return;
-        line(fmt::format("{}when {} {{", open ? "} else " : "", test), element.span);
-        open = true;
-        ++depth_;
-        Place inner = place;
-        write_elements(one.body, 0, inner);
-        --depth_;
-    }
-    if (otherwise && open) line("} else {"), ++depth_;
-    if (otherwise) {
-        Place inner = place;
-        write_elements(otherwise->body, 0, inner);
-    }
-    if (otherwise && open) --depth_;
-    if (open) line("}");
-}
-
-void Writer::write_loop(const Element& element, Place& place) {
-    const auto uses_index = [&](const auto& self, const Elements& elements) -> bool {
-        return std::ranges::any_of(elements, [&](const Element& inner) {
-            const auto in = [&](const Expr& value) { return Expressions::mentions(value, element.name); };
-            const auto modifies = [&](const Modification& modification) {
-                return std::ranges::any_of(modification.adjustments, [&](const Adjustment& adjustment) {
-                    return std::ranges::any_of(adjustment.values, in);
-                });
-            };
-            return std::ranges::any_of(inner.arguments, in) || modifies(inner.modification) ||
-                   std::ranges::any_of(inner.modifications, modifies) || self(self, inner.body) ||
-                   self(self, inner.other) || std::ranges::any_of(inner.cases, [&](const Case& one) {
-                       return std::ranges::any_of(one.values, in) || self(self, one.body);
-                   });
-        });
-    };
-    Element probe = {};
-    probe.modification = element.modification;
-    const bool indexed =
-        !element.name.empty() && (uses_index(uses_index, element.body) || uses_index(uses_index, {probe}) ||
-                                  uses_index(uses_index, element.other));
-    if (indexed || !element.other.empty() || element.arguments.size() > 2)
-        return write_indexed_loop(element, place);
-    std::optional<std::string> count = text(element.arguments.back(), place.scope);
-    const std::optional<std::string> begin =
-        element.arguments.size() == 2 ? text(element.arguments.front(), place.scope) : std::nullopt;
-    const std::optional<Lines> lines = lines_of(element.modification, place.scope, 1);
-    if (!count || !lines) return;
-    if (begin) count = fmt::format("({} - ({}))", *count, *begin);
-    const std::optional<double> known =
-        element.arguments.size() == 1 ? expressions_.number(element.arguments[0]) : std::nullopt;
-    if (known && *known < 1) return;
-    line(fmt::format("repeat {} {{{}{} }} {{",
-                     known ? shortest(std::floor(*known)) : fmt::format("max(1, floor({}))", *count),
-                     lines->moves, lines->inks),
-         element.span);
-    ++depth_;
-    Place inner = place;
-    write_elements(element.body, 0, inner);
-    --depth_;
-    line("}");
-}
-
-/// Turn by turn: the index is a parameter of an object, and each turn moves by one more line.
-void Writer::write_indexed_loop(const Element& element, Place& place) {
-    std::vector<double> bounds;
-    for (const Expr& bound : element.arguments) {
-        const std::optional<double> value = expressions_.number(bound);
-        if (!value) return fail(bound.span, "the bounds of a loop whose index is used must be known numbers");
-        bounds.push_back(*value);
-    }
-    const double begin = bounds.size() > 1 ? bounds[0] : 0, end = bounds.size() > 1 ? bounds[1] : bounds[0];
-    const double step = bounds.size() > 2 ? bounds[2] : 1;
-    if (step == 0 || !((end - begin) / step <= static_cast<double>(most_turns)))
-        return fail(element.span, fmt::format("a loop whose index is used has at most {} turns", most_turns));
-    Place inner = place;
-    std::string index = plain_name(element.name.empty() ? "i" : element.name);
-    while (is_own_word(index) || std::ranges::find(inner.parameters, index) != inner.parameters.end())
-        index += "_";
-    inner.parameters.push_back(index);
-    if (!element.name.empty()) inner.scope[element.name] = index;
-    const std::string object = part(element.body, 0, inner, element.span);
-    std::string moves, inks;
-    Affine moved;
-    bool numbers = true;
-    Numbers known;
-    double at = begin;
-    for (; step > 0 ? at < end - 1e-9 : at > end + 1e-9; at += step) {
-        std::vector<std::string> arguments = place.parameters;
-        arguments.push_back(shortest(at));
-        line(fmt::format("instance: {}({}){}{}", object, fmt::join(arguments, ", "), moves, inks),
-             element.span);
-        Scope scope = place.scope;
-        scope[element.name] = shortest(at);
-        known[element.name] = at;
-        const std::optional<Lines> turn = lines_of(element.modification, scope, 1);
-        if (!turn || out_.text.size() > longest_output) return;
-        const std::optional<Affine> map = affine_of(element.modification, expressions_, known);
-        numbers = numbers && map;
-        if (numbers) {
-            moved = moved * *map;
-            moves = "  matrix:";
-            for (int row = 0; row < 3; ++row) {
-                const double lift = row == 2 ? 1e-5 : 0;
-                moves += fmt::format(" {}, {}, {}, {}{}", rounded(moved.linear[0][row], 1e9),
-                                     rounded(moved.linear[1][row], 1e9), rounded(moved.linear[2][row], 1e9),
-                                     rounded(moved.translation[row] + lift, 1e9), row < 2 ? "," : "");
-            }
-        } else {
-            moves.insert(0, turn->moves);
-        }
-        inks += turn->inks;
-        if (inks.size() > 20'000) return fail(element.span, "this loop changes the colour in too many steps");
-    }
-    if (element.other.empty()) return;
-    inner.scope[element.name] = index;
-    const std::string last = part(element.other, 0, inner, element.span);
-    std::vector<std::string> arguments = place.parameters;
-    arguments.push_back(shortest(at));
-    line(fmt::format("instance: {}({}){}{}", last, fmt::join(arguments, ", "), moves, inks), element.span);
-}
-
 std::string Writer::reference(const Element& element, const Place* from, const Scope& scope) {
     const std::optional<std::size_t> to = recursion_.index(element.name);
     if (!to) {
-        if (const std::string_view primitive = primitive_named(element.name); !primitive.empty()) {
-            auto [known, fresh] = primitives_.try_emplace(std::string(primitive));
-            if (fresh) known->second = free_name(primitive);
-            return known->second;
-        }
+        if (const std::string_view kind = primitive_named(element.name); !kind.empty())
+            return primitive(kind);
         std::vector<std::string> names = {"CIRCLE", "SQUARE", "TRIANGLE"};
         for (const Shape& shape : grammar_.shapes)
             names.push_back(shape.name);
@@ -584,19 +221,6 @@ std::string Writer::reference(const Element& element, const Place* from, const S
                                            shape.parameters.size(), element.arguments.size()));
     }
     return object_names_[*to] + parameter_list(arguments);
-}
-
-std::string Writer::free_name(std::string_view wanted) {
-    return free_own_name(wanted, "_shape", names_);
-}
-
-void Writer::comment(const std::string& words) {
-    line("# " + comment_text(words));
-}
-
-void Writer::line(const std::string& words, Span origin) {
-    out_.line(words.empty() ? words : std::string(static_cast<std::size_t>(4 * depth_), ' ') + words,
-              origin.file == file_.file ? origin : Span());
 }
 
 } // namespace graftal::cfdg

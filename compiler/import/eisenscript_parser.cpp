@@ -1,5 +1,6 @@
 #include "compiler/import/eisenscript_parser.h"
 
+#include <cmath>
 #include <map>
 #include <string_view>
 #include <utility>
@@ -106,6 +107,35 @@ class Parser {
         }
         const Token& token = next();
         return Value{token.number, token.constant};
+    }
+
+    /// `2 * 0.5 + 1`, as other implementations read it within braces; products come first.
+    std::optional<Value> sum(std::string_view after) {
+        std::optional<Value> value = product(after);
+        while (value && (peek().is("+") || peek().is("-"))) {
+            const double sign = next().text == "+" ? 1 : -1;
+            const std::optional<Value> more = product(after);
+            if (!more) return std::nullopt;
+            value = Value{value->number + sign * more->number, {}};
+        }
+        return value;
+    }
+
+    std::optional<Value> product(std::string_view after) {
+        std::optional<Value> value = number(after);
+        while (value && (peek().kind == TokenKind::times || peek().is("/"))) {
+            const Token sign = next();
+            const std::optional<Value> more = number(after);
+            if (!more) return std::nullopt;
+            const double result =
+                sign.kind == TokenKind::times ? value->number * more->number : value->number / more->number;
+            if (!(std::abs(result) <= 1e100)) {
+                file_.diagnostics.error(sign.span, "this has no value");
+                return std::nullopt;
+            }
+            value = Value{result, {}};
+        }
+        return value;
     }
 
     bool parse_rule() {
@@ -224,7 +254,7 @@ class Parser {
             return std::nullopt;
         for (int i = 0; i < row->second.most; ++i) {
             if (i >= row->second.least && peek().kind != TokenKind::number) break;
-            const std::optional<Value> value = number(word.written);
+            const std::optional<Value> value = sum(word.written);
             if (!value) return std::nullopt;
             op.numbers.push_back(*value);
         }

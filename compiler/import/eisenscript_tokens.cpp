@@ -266,7 +266,7 @@ class Tokenizer {
     void read_number(Token& token, std::size_t begin, std::size_t end) {
         if (token.text.starts_with("random[")) return draw(token);
         const bool number = std::string_view("+-.0123456789").find(token.text[0]) != std::string_view::npos;
-        if (!number) return;
+        if (!number || token.text == "+" || token.text == "-") return;
         const std::optional<double> value = number_of(token.text);
         if (!value || !(std::abs(*value) <= 1e100)) {
             file_.diagnostics.error(token.span, fmt::format("'{}' is not a number", token.written));

@@ -1,5 +1,6 @@
 #include "compiler/import/own_words.h"
 
+#include <algorithm>
 #include <functional>
 #include <set>
 
@@ -109,8 +110,10 @@ std::string free_own_name(std::string_view wanted, std::string_view suffix, std:
     std::string name = plain_name(wanted);
     if (is_own_word(name)) name += suffix;
     std::string free = name;
-    for (int i = 2; !taken.insert(free).second; ++i)
+    for (std::size_t i = 2; !taken.insert(free).second; ++i) {
+        if (i == 50) i = std::max(i, taken.size()); // a file of one name only must not take long
         free = fmt::format("{}_{}", name, i);
+    }
     return free;
 }
 

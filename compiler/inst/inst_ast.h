@@ -38,7 +38,9 @@ struct InstInkStep {
     enum class Kind : std::uint8_t {
         set,    ///< values: a colour, as parse_color() has it
         change, ///< values: degrees by which the hue turns, or a factor
-        toward  ///< values: a target, and the share of the way to it
+        toward, ///< values: a target, and the share of the way to it
+        upward, ///< the same of a hue, that only grows on its way, past 360 degrees if it must
+        downward
     };
 
     Kind kind = Kind::set;

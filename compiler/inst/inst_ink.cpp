@@ -56,6 +56,9 @@ bool take_in(InkStep& step, const InkStep& later) {
         if (step.channel == InkChannel::hue || step.number != later.number) return false;
         step.share = 1 - (1 - step.share) * (1 - later.share);
         return true;
+    case StepKind::upward:
+    case StepKind::downward:
+        return false;
     }
     return false;
 }
@@ -228,7 +231,7 @@ class StepLowerer {
         InkStep lowered{.kind = step.kind, .channel = step.channel};
         if (step.kind == StepKind::set) return lower_set(step, lowered);
         const bool hue = step.channel == InkChannel::hue;
-        const bool toward = step.kind == StepKind::toward;
+        const bool toward = step.kind != StepKind::change;
         const double most = hue ? 1e6 : toward ? 1 : 1e6;
         const std::optional<double> number = in_range(step.values[0], hue ? -most : 0, most,
                                                       hue      ? "a hue"
@@ -300,7 +303,11 @@ std::optional<Ink> InkChange::apply(std::optional<Ink> ink) const {
         if (!ink) continue;
         double& number = (*ink)[step.channel];
         const bool hue = step.channel == InkChannel::hue;
-        if (step.kind == StepKind::toward)
+        if (step.kind == StepKind::upward)
+            number += step.share * wrapped_degrees(step.number - number);
+        else if (step.kind == StepKind::downward)
+            number -= step.share * wrapped_degrees(number - step.number);
+        else if (step.kind == StepKind::toward)
             number += step.share * (step.number - number);
         else
             number = hue ? number + step.number : number * step.number;

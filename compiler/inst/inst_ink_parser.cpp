@@ -12,7 +12,18 @@ namespace {
 
 constexpr std::array<std::string_view, ink_channels> channel_words = {"hue", "saturation", "value", "alpha"};
 
-/// `hue 10` or `value to 1 by 0.2`.
+/// Takes the words `to`, and for a hue `up to` or `down to`.
+InstInkStep::Kind kind_at(TokenStream& stream, InkChannel channel) {
+    using Kind = InstInkStep::Kind;
+    if (stream.accept("to")) return Kind::toward;
+    const bool up = stream.at("up"), down = stream.at("down");
+    if (channel != InkChannel::hue || !(up || down) || !stream.peek(1).is("to")) return Kind::change;
+    stream.next();
+    stream.next();
+    return up ? Kind::upward : Kind::downward;
+}
+
+/// `hue 10`, `value to 1 by 0.2` or `hue up to 90 by 0.5`.
 bool parse_change(TokenStream& stream, std::vector<InstInkStep>& steps) {
     const Token word = stream.peek();
     const auto channel = std::ranges::find(channel_words, word.text);
@@ -25,11 +36,11 @@ bool parse_change(TokenStream& stream, std::vector<InstInkStep>& steps) {
     stream.accept(":");
     InstInkStep step;
     step.channel = static_cast<InkChannel>(channel - channel_words.begin());
-    step.kind = stream.accept("to") ? InstInkStep::Kind::toward : InstInkStep::Kind::change;
+    step.kind = kind_at(stream, step.channel);
     std::optional<Expression> number = parse_expression(stream);
     if (!number) return false;
     step.values.push_back(std::move(*number));
-    if (step.kind == InstInkStep::Kind::toward) {
+    if (step.kind != InstInkStep::Kind::change) {
         if (!stream.expect("by", "the target")) return false;
         std::optional<Expression> share = parse_expression(stream);
         if (!share) return false;

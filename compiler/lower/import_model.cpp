@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "compiler/import/importers.h"
+#include "compiler/lower/language.h"
 #include "compiler/lower/lowering.h"
 #include "compiler/primitives/mesh_file.h"
 #include "compiler/support/check.h"
@@ -280,7 +281,12 @@ std::optional<ObjectId> import_member(Graph& into, const UseStatement& use, cons
 
 std::optional<ObjectId> import_part(Graph& into, const std::unordered_map<std::string, ObjectId>& known,
                                     const UseStatement& use, const PartCall& part, Lowering& lowering) {
-    lowering.part_missing = std::filesystem::path(use.path).extension() != ".inst";
+    // A model of another program has parts where its translation is in a language that has.
+    const std::optional<FileId> file =
+        read_used(use.path_span, path_beside(use.path_span, use.path, lowering.sources), lowering);
+    const Language* const language =
+        file ? language_of(*file, lowering.sources, lowering.languages) : nullptr;
+    lowering.part_missing = !language || language->extension != "inst";
     if (lowering.part_missing) return std::nullopt;
     const std::shared_ptr<const Graph> model = load(use, {}, part, lowering);
     if (!model || !has_room(into, *model, use.path_span, lowering)) return std::nullopt;

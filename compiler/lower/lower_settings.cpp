@@ -31,10 +31,12 @@ CameraSetting lower_camera(const SceneFields& fields) {
     camera.location = fields.place("location");
     camera.look_at = fields.place("look_at");
     camera.up = fields.direction("up");
+    camera.direction = fields.direction("direction");
     camera.orthographic = fields.flag("orthographic");
     camera.angle_deg = fields.number(
         "angle", [](double x) { return x >= least_size && x < 180; }, "lie between 0 and 180 degrees");
     camera.width = fields.size("width");
+    camera.height = fields.size("height");
     camera.aperture = fields.size("aperture").value_or(0);
     camera.focus = fields.place("focus");
     if (fields.flag("focus") && !fields.flag("aperture"))
@@ -46,6 +48,10 @@ CameraSetting lower_camera(const SceneFields& fields) {
         fields.error("look_at", "the camera looks at its own location");
     if (camera.width && !camera.orthographic)
         fields.error("width", "'width' belongs to an orthographic camera; give 'angle' instead");
+    if (camera.direction == Vec3(0.0)) fields.error("direction", "'direction' must have a direction");
+    if (camera.direction && camera.location)
+        fields.error("direction", "a camera with a 'location' looks at 'look_at'; leave out 'direction'");
+    if (camera.height && !camera.width) fields.error("height", "'height' needs a 'width' beside it");
     if (camera.angle_deg && camera.orthographic)
         fields.error("angle", "an orthographic camera has no 'angle'; give 'width' instead");
     return camera;

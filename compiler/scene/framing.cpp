@@ -235,6 +235,7 @@ void place_orthographic(Camera& camera, const CameraSetting& setting, const Subj
     if (half_width == 0) half_width = 1; // a point, or a segment seen along its length
     camera.orthographic = true;
     camera.width = setting.width.value_or(2 * subject.scale * half_width / (1 - 2 * margin));
+    if (setting.height) camera.width = std::max(camera.width, aspect * *setting.height);
     camera.location = setting.location.value_or(subject.world(anchor - (3 - nearest) * camera.direction));
 }
 
@@ -265,6 +266,8 @@ Camera place_camera(const CameraSetting& setting, const Box& bounds, const Outli
         const Vec3 sight = target - subject.local(*setting.location);
         const double length = glm::length(sight);
         if (length > 0 && std::isfinite(length)) direction = sight / length;
+    } else if (setting.direction) {
+        direction = *setting.direction / glm::length(*setting.direction);
     }
     orient(camera, direction, setting.up.value_or(Vec3(0, 1, 0)));
     // Seen face on, the box is exact already.
@@ -298,10 +301,14 @@ double thickness(const Box& bounds) {
 CameraSetting merge(const CameraSetting& model, const CameraSetting& over) {
     CameraSetting merged = model;
     if (over.location) merged.location = over.location;
+    if (over.location) merged.direction = std::nullopt;
     if (over.look_at) merged.look_at = over.look_at;
     if (over.up) merged.up = over.up;
     if (over.angle_deg) merged.angle_deg = over.angle_deg;
-    if (over.width) merged.width = over.width;
+    if (over.width) {
+        merged.width = over.width;
+        merged.height = over.height;
+    }
     if (over.orthographic || over.width)
         merged.orthographic = true;
     else if (over.angle_deg)
@@ -323,10 +330,12 @@ Camera frame_camera(const CameraSetting& setting, const Box& bounds, const Outli
 
 ImageSize shaped_size(const CameraSetting& setting, const Box& bounds, const Outliner& outliner,
                       ImageSize size) {
-    if (setting.width || (setting.location && setting.angle_deg)) return size;
+    const bool whole = setting.width && setting.height;
+    if (!whole && (setting.width || (setting.location && setting.angle_deg))) return size;
     Subject subject(bounds);
-    const Camera camera = place_camera(setting, bounds, outliner, size, false, subject);
-    const double aspect = aspect_of(camera, subject);
+    const double aspect =
+        whole ? *setting.width / *setting.height
+              : aspect_of(place_camera(setting, bounds, outliner, size, false, subject), subject);
     constexpr double shapes[] = {16.0 / 9, 3.0 / 2, 4.0 / 3, 1, 3.0 / 4, 2.0 / 3, 9.0 / 16};
     const auto distance = [&](double shape) { return std::abs(std::log(aspect / shape)); };
     const double shape = *std::ranges::min_element(shapes, {}, distance);

@@ -24,10 +24,11 @@ struct FieldRule {
 
 /// The fields of a statement in braces; empty for the others.
 const std::vector<FieldRule>& rules(Kind kind) {
-    static const std::vector<FieldRule> camera = {{"location", Shape::vector},   {"look_at", Shape::vector},
-                                                  {"up", Shape::vector},         {"angle", Shape::number},
-                                                  {"orthographic", Shape::flag}, {"width", Shape::number},
-                                                  {"aperture", Shape::number},   {"focus", Shape::vector}};
+    static const std::vector<FieldRule> camera = {
+        {"location", Shape::vector}, {"look_at", Shape::vector},    {"up", Shape::vector},
+        {"angle", Shape::number},    {"orthographic", Shape::flag}, {"width", Shape::number},
+        {"height", Shape::number},   {"aperture", Shape::number},   {"focus", Shape::vector},
+        {"direction", Shape::vector}};
     static const std::vector<FieldRule> haze = {{"distance", Shape::number},
                                                 {"color", Shape::color},
                                                 {"base", Shape::number},

@@ -42,6 +42,19 @@ TEST(EisenScript, LoopsMultiplyFromTheFirst) {
     EXPECT_EQ(boxes("3 * { x 1 } 4 * { y 1 } 5 * { z 1 } box"), 60u);
 }
 
+TEST(EisenScript, NumbersWithOperators) {
+    const auto place = [](const std::string& number) {
+        const ImportedShapes model("a.es", "{ x " + number + " y 7 } sphere");
+        EXPECT_TRUE(model.graph) << model.said();
+        return model.leaves().at(0).world_from_object.translation;
+    };
+    EXPECT_EQ(place("-1.1 * 10").x, place("-11").x);
+    EXPECT_EQ(place("1 + 2 * 3 / 4 - 1").x, place("1.5").x);
+    EXPECT_EQ(place("1 + 2 * 3 / 4 - 1").y, place("0").y);
+    EXPECT_THAT(ImportedShapes("a.es", "{ x 1 / 0 } box").said(), HasSubstr("this has no value"));
+    EXPECT_THAT(ImportedShapes("a.es", "{ x 1 * } box").said(), HasSubstr("expected a number"));
+}
+
 TEST(EisenScript, TurnsAboutTheMiddleOfTheCube) {
     const ImportedShapes model("a.es", "{ x 1 rz 90 s 2 1 1 y 1 } box");
     ASSERT_TRUE(model.graph) << model.said();

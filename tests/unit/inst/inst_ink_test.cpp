@@ -39,6 +39,24 @@ TEST(Ink, ChangesAreMadeOnTheWayDown) {
     EXPECT_NEAR(colour.r, 0.0509, 1e-4);
 }
 
+TEST(Ink, HuesGoUpOrDown) {
+    const auto hue = [](const std::string& change) {
+        const InstModel model(
+            "canonical object b { sphere }\nobject a { instance: b  ink: hsv(300, 1, 1)  ink { " + change +
+            " } }");
+        EXPECT_TRUE(model.graph) << model.said();
+        return tint_of(model, "b.ink1");
+    };
+    EXPECT_EQ(hue("hue up to 60 by 0.5"), Rgb(1, 0, 0));    // 300, 360
+    EXPECT_EQ(hue("hue down to 60 by 0.25"), Rgb(0, 0, 1)); // 300, 240
+    EXPECT_EQ(hue("hue to 60 by 0.75"), Rgb(0, 1, 0));      // 300, 120
+    const InstModel named("let up = 60\ncanonical object b { sphere }\n"
+                          "object a { instance: b  ink: hsv(300, 1, 1)  ink { hue up } }");
+    ASSERT_TRUE(named.graph) << named.said();
+    EXPECT_EQ(tint_of(named, "b.ink1"), Rgb(1, 0, 0)); // a turn by the number of this name
+    EXPECT_THAT(said("object a { instance: sphere ink { value up to 1 by 0.1 } }"), HasSubstr("error"));
+}
+
 TEST(Ink, WithoutAnInkChangesDoNothing) {
     const InstModel model("object a { instance: sphere  ink { hue 10 value 0.5 } }");
     ASSERT_TRUE(model.graph) << model.said();

@@ -92,6 +92,21 @@ TEST_F(Use, parts_take_arguments_from_outside) {
     EXPECT_NE(object("w.knot(5)").instances[0].parent_from_child.linear[0][0], knot);
 }
 
+TEST_F(Use, models_of_other_programs_have_parts_where_their_translations_have) {
+    write("tree.es", "twig\nrule twig md 3 > leaf { box { y 1 } twig }\nrule leaf { sphere }");
+    write("tile.cfdg",
+          "startshape A\nshape A { B(2) [] SQUARE [] }\nshape B(n) { loop (n) [x 1] CIRCLE [] }");
+    write("a.inst", "use t = \"tree.es\" use c = \"tile.cfdg\" object a { t.leaf, c.B(3) }");
+    lower("a.inst");
+    ASSERT_TRUE(graph_) << errors();
+    EXPECT_EQ(object("t.leaf").instances.size(), 1u);
+    EXPECT_EQ(object("c.B(3)").instances.size(), 3u);
+    write("lines.ls", "2\n90\n10\nF\nF=FF\n@\n");
+    write("b.inst", "use l = \"lines.ls\" object b { l.F }");
+    lower("b.inst");
+    EXPECT_THAT(errors(), HasSubstr("'l.F'"));
+}
+
 TEST_F(Use, parts_that_are_not_there_are_errors_of_the_user) {
     write("wood.inst", "canonical object bough(n) { cylinder scale: n } \n"
                        "object wood { bough(1) }");

@@ -251,6 +251,26 @@ TEST(Frame, AWidthMeansParallelRays) {
     EXPECT_FALSE(frame(graph, unit_cube, {200, 100}, {.angle_deg = 30}).camera.orthographic);
 }
 
+TEST(Frame, AViewHoldsItsWidthAndItsHeight) {
+    Graph graph = model();
+    graph.settings.camera = CameraSetting{.orthographic = true, .width = 4, .height = 3};
+    EXPECT_EQ(frame(graph, unit_cube, {100, 100}).camera.width, 4);
+    EXPECT_EQ(frame(graph, unit_cube, {200, 100}).camera.width, 6); // as high as 3
+    EXPECT_EQ(frame(graph, unit_cube, {100, 100}, {.width = 2}).camera.width, 2);
+}
+
+TEST(Frame, ACameraLooksInItsDirection) {
+    Graph graph = model();
+    for (const Vec3 direction : {Vec3(0, 0, -2), Vec3(1, 0, 0), Vec3(0, -3, 1)}) {
+        graph.settings.camera = CameraSetting{.direction = direction, .orthographic = true};
+        const View view = frame(graph, unit_cube, {100, 100});
+        EXPECT_LT(glm::distance(view.camera.direction, glm::normalize(direction)), 1e-12);
+        expect_well_framed(view, unit_cube);
+    }
+    const Camera camera = frame(graph, unit_cube, {100, 100}, {.location = Vec3(0, 0, 9)}).camera;
+    EXPECT_EQ(camera.direction, Vec3(0, 0, -1));
+}
+
 TEST(Frame, FlatModelsShowTheirTrueColours) {
     for (const Vec3 eye : {Vec3(0, 0, 5), Vec3(2, 1, -3)}) {
         const View view = frame(model(), square, {100, 100}, {.location = eye});

@@ -129,6 +129,10 @@ def surroundings(draw, model):
         fields = [f'location: {numbers(at)}', f'look_at: {numbers([0.3 * draw.normal() for _ in range(3)])}']
         if draw.chance(0.3):
             fields += ['orthographic', f'width: {number(draw.log_uniform(0.01, 30))}']
+            if draw.chance(0.3):
+                fields.append(f'height: {number(draw.log_uniform(0.01, 30))}')
+            if draw.chance(0.3):
+                fields[0] = f'direction: {numbers([draw.normal() for _ in range(3)])}'
         else:
             fields.append(f'angle: {number(draw.uniform(5, 120))}')
             if draw.chance(0.2):

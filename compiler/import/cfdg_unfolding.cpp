@@ -71,10 +71,12 @@ Translation Unfolding::write() {
         if (first) master = nodes_[*first].name;
     }
     if (master.empty()) fail(start.span, fmt::format("'{}' is no shape to start from", shape->name));
+    if (full_ && !drawn_) fail(start.span, "the grammar makes too many shapes");
     if (fills_) { // what covers all must not frame the picture
         const Vec3 half = 0.55 * (most_ - least_);
         middle_and_half_ = {0.5 * (least_ + most_), glm::max(half, Vec3(0.05 * std::max(extent_, 1e-3)))};
     }
+    if (file_.diagnostics.has_errors()) return std::move(out_);
     write_scene();
     if (!nodes_.empty()) {
         if (full_)
@@ -331,7 +333,9 @@ void Unfolding::expand_loop(const Element& element, Surroundings at, Under under
     if (!bounds) return;
     double index = bounds->begin;
     for (; bounds->goes_on(index); index += bounds->step) {
-        if (++turns_ > most_loop_turns || file_.diagnostics.error_count() > 0) return;
+        if (file_.diagnostics.error_count() > 0) return;
+        if (++turns_ > most_loop_turns || lines_ > 2 * most_unfolded_lines)
+            return fail(element.span, "the loops of this grammar turn too often");
         if (!element.name.empty()) at.values.insert_or_assign(element.name, Value::of(index));
         expand(element.body, at, under);
         const std::optional<Change> change = evaluator_.change(element.modification, at);

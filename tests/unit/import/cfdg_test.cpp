@@ -350,6 +350,8 @@ TEST(ContextFree, WhatHasNoCounterpartIsNamed) {
                 HasSubstr("a.cfdg:2:10: error: this changes a colour away from another"));
     EXPECT_THAT(said("startshape A\nshape A { SQUARE [blend CF::Multiply] }"),
                 HasSubstr("'blend CF::Multiply' is not translated"));
+    EXPECT_THAT(said("startshape A\nv = 1, 2\nshape A { loop 2000 [x v] loop 2000 [y 1] SQUARE [] }"),
+                HasSubstr("a.cfdg:3:27: error: the loops of this grammar turn too often"));
     EXPECT_THAT(said("startshape FILL"), HasSubstr("'FILL' is no shape to start from"));
     EXPECT_THAT(said("startshape A\nshape A { B [] }"), HasSubstr("a.cfdg:2:11: error: unknown shape 'B'"));
     EXPECT_THAT(said("shape A { SQUARE [] }"), HasSubstr("no 'startshape'"));

@@ -1,12 +1,16 @@
 """The names by which commands take the models of a file."""
 import re
 
-HEADINGS = {'.ifs': r'(?m)^\s*([^\s{(;][^{(;\n]*?)\s*(?:\(3[dD]\)\s*)?\{',
-            '.flame': r'<flame\b[^>]*?\bname="([^"]*)"', '.flam3': r'<flame\b[^>]*?\bname="([^"]*)"'}
+SYSTEM = re.compile(r'(?m)^\s*([^\s{(;][^{(;\n]*?)\s*(?:\(3[dD]\)\s*)?\{')
+FLAME = re.compile(r'<flame\b([^>]*)>')
 
 
 def models(path):
-    heading = HEADINGS.get(path.suffix.lower())
-    names = re.findall(heading, path.read_text('latin-1')) if heading else []
-    names = [name for name in names if name.lower() != 'comment']
+    text, names = path.read_text('latin-1'), []
+    if path.suffix.lower() == '.ifs':
+        names = [name for name in SYSTEM.findall(text) if name.lower() != 'comment']
+    elif path.suffix.lower() in ('.flame', '.flam3'):
+        for number, attributes in enumerate(FLAME.findall(text), 1):
+            named = re.search(r'\bname="([^"]+)"', attributes)
+            names.append(named[1] if named else f'flame{number}')
     return [f'{path}:{name}' for name in names] if len(names) > 1 else [str(path)]

@@ -125,7 +125,13 @@ TEST(Print, SceneStatements) {
     Graph graph;
     graph.root = add_union(graph, "a", {placed(graph.primitive(PrimitiveKind::sphere))});
     SceneSettings& settings = graph.settings;
-    settings.camera = CameraSetting{Vec3(0, 1, -5), Vec3(0.0), Vec3(0, 0, 1), 40.5, true, 3};
+    settings.camera.emplace();
+    settings.camera->location = Vec3(0, 1, -5);
+    settings.camera->look_at = Vec3(0.0);
+    settings.camera->up = Vec3(0, 0, 1);
+    settings.camera->angle_deg = 40.5;
+    settings.camera->orthographic = true;
+    settings.camera->width = 3;
     settings.lights = {{Vec3(1, 2, 3), false, Rgb(1.0), true}, {Vec3(0, 1, 0), true, Rgb(0.5, 0, 0), false}};
     settings.background = BackgroundSetting{Rgb(0, 0, 1), Rgb(1.0)};
     settings.ground = GroundSetting{-0.5, "grass", Rgb(0, 1, 0)};

@@ -167,9 +167,15 @@ void Model::seed(std::optional<std::uint64_t> seed) {
 }
 
 void Model::camera(const Camera& camera) {
-    parts_->options.compile.view.camera = {vec3_of(camera.location), vec3_of(camera.look_at),
-                                           vec3_of(camera.up),       camera.angle_deg,
-                                           camera.orthographic,      camera.width};
+    parts_->options.compile.view.camera = {.location = vec3_of(camera.location),
+                                           .look_at = vec3_of(camera.look_at),
+                                           .up = vec3_of(camera.up),
+                                           .direction = {},
+                                           .angle_deg = camera.angle_deg,
+                                           .orthographic = camera.orthographic,
+                                           .width = camera.width,
+                                           .height = {},
+                                           .focus = {}};
 }
 
 void Model::size(int width, int height) {

@@ -6,6 +6,18 @@
 
 namespace graftal::cfdg {
 
+std::vector<const Adjustment*> last_of_each(const Modification& modification,
+                                            std::span<const std::string_view> words) {
+    std::vector<const Adjustment*> found;
+    for (const std::string_view word : words) {
+        const Adjustment* last = nullptr;
+        for (const Adjustment& adjustment : modification.adjustments)
+            if (adjustment.word == word) last = &adjustment;
+        if (last) found.push_back(last);
+    }
+    return found;
+}
+
 std::vector<const Adjustment*> moves_of(const Modification& modification) {
     static constexpr std::array<std::string_view, 7> order = {"x", "y", "z", "r", "s", "skew", "f"};
     std::vector<const Adjustment*> moves;
@@ -15,13 +27,7 @@ std::vector<const Adjustment*> moves_of(const Modification& modification) {
                 if (adjustment.word == word) moves.push_back(&adjustment);
         return moves;
     }
-    for (const std::string_view word : order) {
-        const Adjustment* last = nullptr; // a later one replaces those before it
-        for (const Adjustment& adjustment : modification.adjustments)
-            if (adjustment.word == word) last = &adjustment;
-        if (last) moves.push_back(last);
-    }
-    return moves;
+    return last_of_each(modification, order);
 }
 
 std::optional<Affine> affine_of(const Modification& modification, const Expressions& expressions,

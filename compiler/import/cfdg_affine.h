@@ -1,12 +1,19 @@
 #pragma once
 
 #include <optional>
+#include <span>
+#include <string_view>
+#include <vector>
 
 #include "compiler/import/cfdg_ast.h"
 #include "compiler/import/cfdg_expression.h"
 #include "compiler/support/affine.h"
 
 namespace graftal::cfdg {
+
+/// Of each word the last adjustment, which replaces those before it, in the order of the words.
+std::vector<const Adjustment*> last_of_each(const Modification& modification,
+                                            std::span<const std::string_view> words);
 
 /// The adjustments that move, in the order in which they multiply: x y z, r, s, skew, f; as written where the
 /// modification keeps its order. The first is outermost.

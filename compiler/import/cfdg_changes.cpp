@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "compiler/import/cfdg_affine.h"
 #include "compiler/import/cfdg_evaluator.h"
 
 namespace graftal::cfdg {
@@ -61,12 +62,7 @@ std::vector<const Adjustment*> in_order(const Modification& modification) {
             all.push_back(&adjustment);
         return all;
     }
-    for (const std::string_view word : geometric_words) {
-        const Adjustment* last = nullptr; // a later one replaces those before it
-        for (const Adjustment& adjustment : modification.adjustments)
-            if (adjustment.word == word) last = &adjustment;
-        if (last) all.push_back(last);
-    }
+    all = last_of_each(modification, geometric_words);
     for (const Adjustment& adjustment : modification.adjustments)
         if (std::ranges::find(geometric_words, adjustment.word) == geometric_words.end())
             all.push_back(&adjustment);

@@ -196,7 +196,7 @@ class ProductionParser {
         skip_comments(end);
         const std::size_t open = reader_.position();
         if (open >= end || text_.scanner.text()[open] != '{') return true;
-        const std::optional<std::size_t> close = text_.scanner.brace_end(open, end);
+        const std::optional<std::size_t> close = text_.scanner.bracket_end(open, end);
         if (!close) {
             diagnostics_.error(text_.scanner.span(open, open + 1), "this '{' is not closed");
             return false;

@@ -342,7 +342,8 @@ LsysOutline LsysScanner::outline(std::size_t begin) const {
     return result;
 }
 
-std::optional<std::size_t> LsysScanner::parenthesis_end(std::size_t open, std::size_t end) const {
+std::optional<std::size_t> LsysScanner::bracket_end(std::size_t open, std::size_t end) const {
+    const char opening = at(open), closing = opening == '(' ? ')' : '}';
     std::size_t depth = 0;
     for (std::size_t place = open; place < end;) {
         const std::size_t comment = comment_end(place);
@@ -350,23 +351,8 @@ std::optional<std::size_t> LsysScanner::parenthesis_end(std::size_t open, std::s
             place = comment;
             continue;
         }
-        if (at(place) == '(') ++depth;
-        if (at(place) == ')' && --depth == 0) return place + 1;
-        ++place;
-    }
-    return std::nullopt;
-}
-
-std::optional<std::size_t> LsysScanner::brace_end(std::size_t open, std::size_t end) const {
-    std::size_t depth = 0;
-    for (std::size_t place = open; place < end;) {
-        const std::size_t comment = comment_end(place);
-        if (comment > place) {
-            place = comment;
-            continue;
-        }
-        if (at(place) == '{') ++depth;
-        if (at(place) == '}' && --depth == 0) return place + 1;
+        if (at(place) == opening) ++depth;
+        if (at(place) == closing && --depth == 0) return place + 1;
         ++place;
     }
     return std::nullopt;

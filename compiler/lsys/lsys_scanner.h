@@ -72,10 +72,9 @@ class LsysScanner {
     /// The statements of the block whose '{' stands before `begin`, `interpret` and `decompose` opened up.
     LsysOutline outline(std::size_t begin) const;
 
-    /// Past the ')' that closes the '(' at `open`, or nothing if none does before `end`.
-    std::optional<std::size_t> parenthesis_end(std::size_t open, std::size_t end) const;
-    /// Past the '}' that closes the '{' at `open`, outside of comments, or nothing if none does before `end`.
-    std::optional<std::size_t> brace_end(std::size_t open, std::size_t end) const;
+    /// Past the bracket that closes the '(' or '{' at `open`, outside of comments, or nothing if none does
+    /// before `end`.
+    std::optional<std::size_t> bracket_end(std::size_t open, std::size_t end) const;
     /// Of the first arrow outside of parentheses and braces from `at` on, or, without one, of the first
     /// inside.
     std::optional<std::size_t> find_arrow(std::size_t at, std::size_t end) const;

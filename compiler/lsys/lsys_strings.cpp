@@ -164,7 +164,7 @@ bool LsysStringReader::take_model(Raw& raw) {
 
 bool LsysStringReader::take_parameters(Raw& raw) {
     const std::size_t open = at_;
-    const std::optional<std::size_t> close = scanner_.parenthesis_end(open, end_);
+    const std::optional<std::size_t> close = scanner_.bracket_end(open, end_);
     if (!close) {
         text_.diagnostics.error(scanner_.span(open, open + 1), "this '(' is not closed");
         at_ = end_;
@@ -201,13 +201,12 @@ bool LsysStringReader::stray() {
             ++at_;
         while (at_ < end_ && (scanner_.text()[at_] & 0x80) != 0);
         // What looks like its parameters is no mistake of its own.
-        if (at_ < end_ && scanner_.text()[at_] == '(')
-            at_ = scanner_.parenthesis_end(at_, end_).value_or(end_);
+        if (at_ < end_ && scanner_.text()[at_] == '(') at_ = scanner_.bracket_end(at_, end_).value_or(end_);
         return false;
     }
     error.with_hint(at_ > 0 && scanner_.text()[at_ - 1] == '>' ? probability_hint
                                                                : "write parameters after their module: F(1)");
-    at_ = scanner_.parenthesis_end(at_, end_).value_or(end_);
+    at_ = scanner_.bracket_end(at_, end_).value_or(end_);
     return false;
 }
 

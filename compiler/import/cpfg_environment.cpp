@@ -1,7 +1,7 @@
 #include "compiler/import/cpfg_environment.h"
 
+#include <charconv>
 #include <cmath>
-#include <cstdlib>
 #include <map>
 #include <sstream>
 #include <utility>
@@ -35,10 +35,11 @@ std::string setting(const Settings& settings, std::string_view word) {
     return value;
 }
 
+/// The number that the text begins with.
 double number_in(const std::string& text, double otherwise) {
-    char* end = nullptr;
-    const double number = std::strtod(text.substr(0, 40).c_str(), &end);
-    return text.empty() || *end == text[0] || !std::isfinite(number) ? otherwise : number;
+    double number = 0;
+    const std::from_chars_result read = std::from_chars(text.data(), text.data() + text.size(), number);
+    return read.ec == std::errc() && std::isfinite(number) ? number : otherwise;
 }
 
 /// Of a program that measures in the plane of x and z unless it is told that it lives in space.

@@ -209,6 +209,8 @@ TEST(Cpfg, KnowsTheEnvironmentsThatItTranslates) {
         return model.translation.empty() ? model.said() : model.translation;
     };
     EXPECT_THAT(translated("honda81", "radius: 2\n"), HasSubstr("environment crowd 2, 0, 1, 0\n"));
+    EXPECT_THAT(translated("honda81", "radius: 1.5 metres\n"), HasSubstr("environment crowd 1.5, 0, 1, 0\n"));
+    EXPECT_THAT(translated("honda81", "radius: wide\n"), HasSubstr("has no translation"));
     EXPECT_THAT(translated("ecosystem -e w.e", "3d case: on\n"), HasSubstr("environment rivals\n"));
     EXPECT_THAT(translated("chiba",
                            "transmittance: 0.5\nestimate intersection area: on\nsource direction: 0 1 0 2\n"),

@@ -288,7 +288,7 @@ std::optional<Value> Evaluator::call(const Expr& expression, const Surroundings&
         if (!part) return std::nullopt;
         n.insert(n.end(), part->begin(), part->end());
     }
-    return of_numbers(expression, n, at);
+    return of_numbers(expression, n);
 }
 
 std::optional<Value> Evaluator::element(const Expr& expression, const Surroundings& at) {
@@ -341,8 +341,7 @@ std::optional<Value> Evaluator::select(const Expr& expression, const Surrounding
     return value(*parts[1 + static_cast<std::size_t>(std::clamp(std::floor(*index), 0.0, last))], at);
 }
 
-std::optional<Value> Evaluator::of_numbers(const Expr& expression, const std::vector<double>& n,
-                                           const Surroundings&) {
+std::optional<Value> Evaluator::of_numbers(const Expr& expression, const std::vector<double>& n) {
     const std::string& name = expression.text;
     const auto finite = [&](double made) -> std::optional<Value> {
         if (std::isfinite(made)) return Value::of(made);

@@ -67,8 +67,7 @@ class Evaluator {
     std::optional<Value> let(const Expr& expression, const Surroundings& at);
     std::optional<Value> select(const Expr& expression, const Surroundings& at);
     std::optional<Value> random(const Expr& expression, const std::vector<double>& n);
-    std::optional<Value> of_numbers(const Expr& expression, const std::vector<double>& n,
-                                    const Surroundings& at);
+    std::optional<Value> of_numbers(const Expr& expression, const std::vector<double>& n);
     std::optional<Value> shape_value(const Expr& expression, std::string_view name, const Surroundings& at);
     std::optional<std::vector<Value>> arguments(const std::vector<Expr>& expressions, const Surroundings& at);
     std::optional<Affine> move(const Adjustment& adjustment, const std::vector<double>& n);

@@ -102,35 +102,20 @@ void SceneWriter::check_definitions() {
 void SceneWriter::read_symmetry(const Definition& definition) {
     const Expr& value = definition.value;
     const std::vector<Expr> alone = {value};
-    std::string flag;
-    std::vector<double> numbers;
-    const auto take = [&] {
-        if (flag.empty()) return;
-        std::string fault;
-        const std::optional<std::vector<Affine>> maps = symmetry(flag, numbers, lattice_, fault);
-        if (maps)
-            add_unique(copies_, *maps);
-        else
-            fail(definition.span, fault);
-        flag.clear();
-        numbers.clear();
-    };
+    SymmetryReader reader(lattice_, copies_, [&](const std::string& fault) { fail(definition.span, fault); });
     for (const Expr& part : value.kind == Expr::Kind::list ? value.operands : alone) {
         const std::optional<Value> one = evaluator_.value(part, {});
         if (!one) return;
         if (one->kind == Value::Kind::flags) {
-            take();
-            flag = one->flags;
+            reader.begin(one->flags);
         } else if (one->kind == Value::Kind::change && one->change.colours.empty()) {
-            take();
+            reader.end();
             add_unique(copies_, {one->change.map});
-        } else if (one->kind == Value::Kind::numbers && !flag.empty()) {
-            numbers.insert(numbers.end(), one->numbers.begin(), one->numbers.end());
-        } else {
+        } else if (one->kind != Value::Kind::numbers || !reader.add(one->numbers)) {
             return fail(part.span, "a symmetry is a word, its numbers, or an adjustment that moves");
         }
     }
-    take();
+    reader.end();
 }
 
 /// What reaches over the edges of the tile comes in again on the other side.

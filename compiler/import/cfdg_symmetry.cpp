@@ -228,4 +228,26 @@ std::optional<std::vector<Affine>> symmetry(std::string_view name, const std::ve
     }
 }
 
+void SymmetryReader::begin(const std::string& word) {
+    end();
+    word_ = word;
+}
+
+bool SymmetryReader::add(const std::vector<double>& numbers) {
+    if (word_.empty()) return false;
+    numbers_.insert(numbers_.end(), numbers.begin(), numbers.end());
+    return true;
+}
+
+void SymmetryReader::end() {
+    if (word_.empty()) return;
+    std::string fault;
+    if (const std::optional<std::vector<Affine>> found = symmetry(word_, numbers_, lattice_, fault))
+        add_unique(maps_, *found);
+    else
+        fail_(fault);
+    word_.clear();
+    numbers_.clear();
+}
+
 } // namespace graftal::cfdg

@@ -1,8 +1,10 @@
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "compiler/support/affine.h"
@@ -25,5 +27,27 @@ std::optional<std::vector<Affine>> symmetry(std::string_view name, const std::ve
 
 /// Adds the maps that are not there.
 void add_unique(std::vector<Affine>& maps, const std::vector<Affine>& more);
+
+/// Reads lists such as `CF::Dihedral, 5, 30, CF::p2`: words, each with its numbers behind it.
+class SymmetryReader {
+  public:
+    /// The maps are added to `maps`; `fail` is told of symmetries that are not there. `maps` must outlive this.
+    SymmetryReader(const Lattice& lattice, std::vector<Affine>& maps,
+                   std::function<void(const std::string&)> fail)
+        : lattice_(lattice), maps_(maps), fail_(std::move(fail)) {}
+
+    void begin(const std::string& word);
+    /// False if no word is open.
+    bool add(const std::vector<double>& numbers);
+    /// Takes the symmetry that is open, if one is.
+    void end();
+
+  private:
+    Lattice lattice_;
+    std::vector<Affine>& maps_;
+    std::function<void(const std::string&)> fail_;
+    std::string word_;
+    std::vector<double> numbers_;
+};
 
 } // namespace graftal::cfdg

@@ -105,8 +105,10 @@ std::optional<std::size_t> Unfolding::unfold_from(const ShapeValue& shape, const
             // All others are smaller. A canvas of a size is as many pixels wide, if that is more than usual.
             if (size < std::min(too_small * extent_, grammar_.size ? smallest_pixels : too_small * extent_))
                 break;
-            full_ = full_ || lines_ > most_unfolded_lines || turns_ > most_loop_turns;
-            if (lines_ > most_unfolded_lines || turns_ > most_loop_turns) break;
+            if (lines_ > most_unfolded_lines || turns_ > most_loop_turns) {
+                full_ = true;
+                break;
+            }
             unfold(id);
         }
         if (!random_[grammar_.numbers.at(shape.name)]) break;
@@ -353,33 +355,20 @@ void Unfolding::expand_loop(const Element& element, Surroundings at, Under under
 void Unfolding::expand_transform(const Element& element, const Surroundings& at, const Under& under) {
     std::vector<Change> changes;
     std::vector<Affine> maps;
-    std::string flag;
-    std::vector<double> numbers;
-    const auto take = [&] {
-        if (flag.empty()) return;
-        std::string fault;
-        const std::optional<std::vector<Affine>> found = symmetry(flag, numbers, {}, fault);
-        if (!found) fail(element.span, fault);
-        if (found) add_unique(maps, *found);
-        flag.clear();
-        numbers.clear();
-    };
+    SymmetryReader reader({}, maps, [&](const std::string& fault) { fail(element.span, fault); });
     for (const Expr& expression : element.arguments) {
         const std::optional<Value> value = evaluator_.value(expression, at);
         if (!value) return;
         if (value->kind == Value::Kind::flags) {
-            take();
-            flag = value->flags;
+            reader.begin(value->flags);
         } else if (value->kind == Value::Kind::change) {
-            take();
+            reader.end();
             changes.push_back(value->change);
-        } else if (value->kind == Value::Kind::numbers && !flag.empty()) {
-            numbers.insert(numbers.end(), value->numbers.begin(), value->numbers.end());
-        } else {
+        } else if (value->kind != Value::Kind::numbers || !reader.add(value->numbers)) {
             return fail(expression.span, "a transform takes adjustments and symmetries");
         }
     }
-    take();
+    reader.end();
     for (const Affine& map : maps)
         changes.push_back({map, {}});
     const Draws before = evaluator_.draws;

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
 
+#include "compiler/lsys/lsys_word.h"
 #include "compiler/support/id_table.h"
 #include "compiler/support/number.h"
 
@@ -317,16 +318,10 @@ bool LsysComposer::start_task(ModuleId module, Stage stage, const TurtleState& s
                               const Unfolded& unfolded) {
     const bool repeated = unfolded.stage == stage;
     const unsigned count = repeated ? tasks_.back().repeated + 1 : 0;
-    const std::string& name = rewriter_.grammar().symbols[rewriter_.modules().symbol(module)];
     const Span span = unfolded.by->rule->source->span;
-    if (count > most_repeated) {
-        context_.diagnostics
-            .error(span, fmt::format("the {} of '{}' does not end",
-                                     stage == 0 ? "interpretation" : "decomposition", name))
-            .with_hint("graftal applies these productions again and again until none fits: add a condition "
-                       "that ends this");
-        return false;
-    }
+    if (count > most_repeated)
+        return refuse_endless(rewriter_.grammar(), stage == 0 ? RuleKind::interpret : RuleKind::decompose,
+                              rewriter_.modules().symbol(module), span, context_.diagnostics);
     if (!has_room(span)) return false;
     const bool interprets = unfolded.kind == RuleKind::interpret;
     tasks_.push_back({.module = module,

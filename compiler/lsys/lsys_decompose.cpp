@@ -58,15 +58,22 @@ bool LsysDecomposer::run(ModuleId module, const CounterRandom& random, ModuleStr
     return true;
 }
 
-bool LsysDecomposer::refuse(ModuleId module, const char* what) {
+bool LsysDecomposer::refuse(ModuleId module, std::string_view what) {
     const LsysGrammar& grammar = rewriter_.grammar();
     const SymbolId symbol = rewriter_.modules().symbol(module);
-    const LsysRule& rule = grammar.rules[grammar.candidates(RuleKind::decompose, symbol).front()];
-    diagnostics_
-        .error(rule.source->span, fmt::format("the decomposition of '{}' {}", grammar.symbols[symbol], what))
+    return refuse_decomposition(grammar,
+                                grammar.rules[grammar.candidates(RuleKind::decompose, symbol).front()], what,
+                                max_modules_, diagnostics_);
+}
+
+bool refuse_decomposition(const LsysGrammar& grammar, const LsysRule& rule, std::string_view what,
+                          std::uint64_t max_modules, Diagnostics& diagnostics) {
+    diagnostics
+        .error(rule.source->span,
+               fmt::format("the decomposition of '{}' {}", grammar.symbols[rule.predecessor.symbol], what))
         .with_hint(fmt::format("graftal follows at most {} levels and {} modules; give a module that recurs "
                                "a condition that becomes false",
-                               max_decomposition_depth, max_modules_));
+                               max_decomposition_depth, max_modules));
     return false;
 }
 

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <string_view>
 #include <vector>
 
 #include "compiler/lsys/lsys_rewriter.h"
@@ -13,6 +14,11 @@ namespace graftal {
 
 /// A module that decomposes, one that this gives, and so on, may not be more than this many.
 inline constexpr std::uint32_t max_decomposition_depth = 1000;
+
+/// Reports what is wrong with the decomposition that begins with a production: it "does not end" or "is too
+/// long"; false.
+bool refuse_decomposition(const LsysGrammar& grammar, const LsysRule& rule, std::string_view what,
+                          std::uint64_t max_modules, Diagnostics& diagnostics);
 
 /// Applies the `decompose` productions until nothing is left to decompose (Karwowski and Prusinkiewicz 2003,
 /// "Design and implementation of the L+C modeling language").
@@ -39,7 +45,7 @@ class LsysDecomposer {
 
     bool run(ModuleId module, const CounterRandom& random, ModuleString& out);
     Moment moment(ModuleId module) const;
-    bool refuse(ModuleId module, const char* what);
+    bool refuse(ModuleId module, std::string_view what);
 
     LsysRewriter& rewriter_;
     Diagnostics& diagnostics_;

@@ -2,8 +2,6 @@
 
 #include <utility>
 
-#include <fmt/format.h>
-
 namespace graftal {
 
 LsysOrderedDeriver::LsysOrderedDeriver(LsysRewriter& rewriter, Diagnostics& diagnostics, std::uint64_t seed,
@@ -99,7 +97,8 @@ bool LsysOrderedDeriver::decompose(const ModuleString& string) {
             next_.push_back(next);
             continue;
         }
-        if (depth == max_decomposition_depth || ++applied > max_modules_) return refuse(**by);
+        if (depth == max_decomposition_depth || ++applied > max_modules_)
+            return refuse_decomposition(grammar, **by, "does not end", max_modules_, diagnostics_);
         parts_.clear();
         if (!rewriter_.append_by(**by, moment, slots_, parts_)) return false;
         for (auto part = parts_.rbegin(); part != parts_.rend(); ++part)
@@ -175,17 +174,6 @@ LsysOrderedDeriver::Candidate* LsysOrderedDeriver::chosen_of(const LsysRule& fir
         if (share < 0) break;
     }
     return chosen;
-}
-
-bool LsysOrderedDeriver::refuse(const LsysRule& rule) {
-    const LsysGrammar& grammar = rewriter_.grammar();
-    diagnostics_
-        .error(rule.source->span, fmt::format("the decomposition of '{}' does not end",
-                                              grammar.symbols[rule.predecessor.symbol]))
-        .with_hint(fmt::format("graftal follows at most {} levels and {} modules; give a module that recurs "
-                               "a condition that becomes false",
-                               max_decomposition_depth, max_modules_));
-    return false;
 }
 
 } // namespace graftal

@@ -51,7 +51,6 @@ class LsysOrderedDeriver {
                                           std::optional<std::uint32_t> position, Moment& moment);
     Fit attempt(const LsysRule& rule, const Moment& moment);
     Candidate* chosen_of(const LsysRule& first);
-    bool refuse(const LsysRule& rule);
 
     LsysRewriter& rewriter_;
     Diagnostics& diagnostics_;

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include <fmt/format.h>
+#include "compiler/lsys/lsys_word.h"
 
 namespace graftal {
 
@@ -102,14 +102,9 @@ bool LsysQueries::meet(std::uint32_t step, ModuleId module, std::uint32_t birth,
         rewriter_.alternatives(RuleKind::interpret, module, moment);
     if (!alternatives) return false;
     if (alternatives->empty()) return step_over(module, at, in_word);
-    if (levels_.size() == most_query_levels) {
-        diagnostics_
-            .error(alternatives->front().rule->source->span,
-                   fmt::format("the interpretation of '{}' does not end", grammar_.symbols[symbol]))
-            .with_hint("graftal applies these productions again and again until none fits: add a condition "
-                       "that ends this");
-        return false;
-    }
+    if (levels_.size() == most_query_levels)
+        return refuse_endless(grammar_, RuleKind::interpret, symbol, alternatives->front().rule->source->span,
+                              diagnostics_);
     const bool by_chance = std::ranges::any_of(
         *alternatives, [](const Alternative& alternative) { return alternative.rule->is_random(); });
     const double share = by_chance ? CounterRandom::unit(random_.sequence(step)(chosen_++)) : 0;

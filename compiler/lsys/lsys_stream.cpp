@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include <fmt/format.h>
+#include "compiler/lsys/lsys_word.h"
 
 namespace graftal {
 
@@ -94,7 +94,8 @@ bool LsysStream::meet(const Module& module, std::uint32_t word) {
             Chosen chosen;
             if (!choose(RuleKind::produce, module, moment, draw, chosen)) return false;
             if (!chosen.rule && !waits) break; // what none fits now, none will fit later
-            if (++in_word_[word] > options_.max_modules) return refuse_length(word);
+            if (++in_word_[word] > options_.max_modules)
+                return refuse_length(grammar_, options_.max_modules, word, diagnostics_);
             if (!chosen.rule) continue;
             return push(chosen, module, moment, {.word = word + 1, .birth = word + 1});
         }
@@ -104,21 +105,12 @@ bool LsysStream::meet(const Module& module, std::uint32_t word) {
 
 /// Counts a module that stays as it is from that step on.
 bool LsysStream::count_from(std::uint32_t word) {
-    if (++modules_ > options_.max_modules) return refuse_length(options_.steps);
+    if (++modules_ > options_.max_modules)
+        return refuse_length(grammar_, options_.max_modules, options_.steps, diagnostics_);
     if (chooses_)
         for (std::size_t i = word; i < options_.steps; ++i)
             ++in_word_[i];
     return true;
-}
-
-bool LsysStream::refuse_length(std::uint32_t word) {
-    const LsysBlock& block = *grammar_.source;
-    diagnostics_
-        .error(
-            block.steps ? block.steps->span : block.name.span,
-            fmt::format("the derivation has more than {} modules after step {}", options_.max_modules, word))
-        .with_hint("use fewer steps for a shorter one");
-    return false;
 }
 
 /// Draws a module of the last word, or of what one is drawn as.
@@ -138,12 +130,8 @@ bool LsysStream::emit(const Module& module, std::uint32_t repeated) {
                              .repeated = repeated + 1,
                              .interprets = true});
             }
-            diagnostics_
-                .error(chosen.rule->source->span, fmt::format("the interpretation of '{}' does not end",
-                                                              grammar_.symbols[module.symbol]))
-                .with_hint("graftal applies these productions again and again until none fits: add a "
-                           "condition that ends this");
-            return false;
+            return refuse_endless(grammar_, RuleKind::interpret, module.symbol, chosen.rule->source->span,
+                                  diagnostics_);
         }
     }
     if (!turtle_) return ++drawn_ <= options_.max_modules;

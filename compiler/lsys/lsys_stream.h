@@ -90,7 +90,6 @@ class LsysStream {
     bool choose(RuleKind kind, const Module& module, const Moment& moment, std::uint64_t draw,
                 Chosen& chosen);
     bool count_from(std::uint32_t word);
-    bool refuse_length(std::uint32_t word);
     std::span<const double> parameters(const Module& module) const {
         return std::span(values_).last(module.arity);
     }

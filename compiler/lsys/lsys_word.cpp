@@ -38,14 +38,24 @@ void cut_branches(const LsysGrammar& grammar, const ModuleTable& modules, Module
     word.erase(kept, word.end());
 }
 
-bool is_short_enough(const LsysGrammar& grammar, std::uint64_t length, std::uint64_t max_modules,
-                     std::uint32_t step, Diagnostics& diagnostics) {
-    if (length <= max_modules) return true;
+bool refuse_length(const LsysGrammar& grammar, std::uint64_t max_modules, std::uint32_t step,
+                   Diagnostics& diagnostics) {
     const LsysBlock& block = *grammar.source;
     diagnostics
         .error(block.steps ? block.steps->span : block.name.span,
                fmt::format("the derivation has more than {} modules after step {}", max_modules, step))
         .with_hint("use fewer steps for a shorter one");
+    return false;
+}
+
+bool refuse_endless(const LsysGrammar& grammar, RuleKind kind, SymbolId symbol, Span production,
+                    Diagnostics& diagnostics) {
+    diagnostics
+        .error(production, fmt::format("the {} of '{}' does not end",
+                                       kind == RuleKind::interpret ? "interpretation" : "decomposition",
+                                       grammar.symbols[symbol]))
+        .with_hint("graftal applies these productions again and again until none fits: add a condition "
+                   "that ends this");
     return false;
 }
 

@@ -20,8 +20,18 @@ bool has_cuts(const LsysGrammar& grammar);
 /// Takes away what stands from each `%` to the bracket that closes its branch, or to the end. The `%` stays.
 void cut_branches(const LsysGrammar& grammar, const ModuleTable& modules, ModuleString& word);
 
+/// Reports that the word after a step is longer than that; false.
+bool refuse_length(const LsysGrammar& grammar, std::uint64_t max_modules, std::uint32_t step,
+                   Diagnostics& diagnostics);
 /// Whether a word is no longer than that; else it is reported.
-bool is_short_enough(const LsysGrammar& grammar, std::uint64_t length, std::uint64_t max_modules,
-                     std::uint32_t step, Diagnostics& diagnostics);
+inline bool is_short_enough(const LsysGrammar& grammar, std::uint64_t length, std::uint64_t max_modules,
+                            std::uint32_t step, Diagnostics& diagnostics) {
+    return length <= max_modules || refuse_length(grammar, max_modules, step, diagnostics);
+}
+
+/// Reports that productions of `interpret` or `decompose` follow each other without end, from one for this
+/// symbol on; false.
+bool refuse_endless(const LsysGrammar& grammar, RuleKind kind, SymbolId symbol, Span production,
+                    Diagnostics& diagnostics);
 
 } // namespace graftal

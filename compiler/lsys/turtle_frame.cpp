@@ -8,17 +8,13 @@
 
 namespace graftal {
 
-namespace {
-
-std::uint64_t with_number(std::uint64_t hash, double number) {
+std::uint64_t mixed_number(std::uint64_t hash, double number) {
     return mixed(hash, std::bit_cast<std::uint64_t>(number));
 }
 
-std::uint64_t with_vector(std::uint64_t hash, const Vec3& v) {
-    return with_number(with_number(with_number(hash, v.x), v.y), v.z);
+std::uint64_t mixed_vector(std::uint64_t hash, const Vec3& v) {
+    return mixed_number(mixed_number(mixed_number(hash, v.x), v.y), v.z);
 }
-
-} // namespace
 
 TurtleFrame seen_from(const TurtleFrame& frame, const Affine& start_from_turtle, double scale) {
     const Mat3 turtle_from_start = glm::transpose(start_from_turtle.linear);
@@ -34,18 +30,18 @@ TurtleFrame seen_from(const TurtleFrame& frame, const Affine& start_from_turtle,
 std::uint64_t hash_of_tropisms(std::uint64_t hash, const TurtleFrame& frame) {
     for (const Tropism& tropism : frame.tropisms)
         if (tropism.elasticity != 0)
-            hash = with_vector(with_number(hash, tropism.elasticity), tropism.direction);
+            hash = mixed_vector(mixed_number(hash, tropism.elasticity), tropism.direction);
     return hash;
 }
 
 std::uint64_t hash_of_axes(std::uint64_t hash, const TurtleFrame& frame) {
     for (int column = 0; column < 3; ++column)
-        hash = with_vector(hash, frame.axes[column]);
+        hash = mixed_vector(hash, frame.axes[column]);
     return hash;
 }
 
 std::uint64_t hash_of_origin(std::uint64_t hash, const TurtleFrame& frame) {
-    return with_number(with_vector(hash, frame.origin), frame.unit);
+    return mixed_number(mixed_vector(hash, frame.origin), frame.unit);
 }
 
 bool equal_tropisms(const TurtleFrame& a, const TurtleFrame& b) {

@@ -30,6 +30,10 @@ struct TurtleFrame {
 /// The same from a frame whose turtle stands here, in which all is `scale` times as long.
 TurtleFrame seen_from(const TurtleFrame& frame, const Affine& start_from_turtle, double scale);
 
+/// A hash with one number more, bit by bit.
+std::uint64_t mixed_number(std::uint64_t hash, double number);
+std::uint64_t mixed_vector(std::uint64_t hash, const Vec3& v);
+
 /// Elasticities, with the directions of those that are not 0.
 bool equal_tropisms(const TurtleFrame& a, const TurtleFrame& b);
 std::uint64_t hash_of_tropisms(std::uint64_t hash, const TurtleFrame& frame);

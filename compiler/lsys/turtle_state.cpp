@@ -1,7 +1,6 @@
 #include "compiler/lsys/turtle_state.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 
 #include <glm/geometric.hpp>
@@ -12,14 +11,6 @@ namespace graftal {
 namespace {
 
 constexpr double same_rotation = 1e-11;
-
-std::uint64_t mixed_number(std::uint64_t hash, double number) {
-    return mixed(hash, std::bit_cast<std::uint64_t>(number));
-}
-
-std::uint64_t mixed_vector(std::uint64_t hash, const Vec3& v) {
-    return mixed_number(mixed_number(mixed_number(hash, v.x), v.y), v.z);
-}
 
 } // namespace
 

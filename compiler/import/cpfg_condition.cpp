@@ -3,8 +3,8 @@
 #include <array>
 #include <cctype>
 #include <cmath>
-#include <cstdlib>
-#include <string>
+
+#include "compiler/import/foreign_text.h"
 
 namespace graftal {
 
@@ -87,10 +87,10 @@ class ConditionReader {
         while (at_ < text_.size() && (std::isalnum(static_cast<unsigned char>(text_[at_])) ||
                                       text_[at_] == '_' || text_[at_] == '.'))
             ++at_;
-        const std::string word(text_.substr(begin, at_ - begin));
+        const std::string_view word = text_.substr(begin, at_ - begin);
         good_ = good_ && !word.empty();
         if (!good_ || !(std::isdigit(static_cast<unsigned char>(word[0])) || word[0] == '.')) return 0;
-        return std::strtod(word.c_str(), nullptr);
+        return leading_number(word).value;
     }
 
     std::string_view text_;

@@ -1,6 +1,5 @@
 #include "compiler/import/cpfg_environment.h"
 
-#include <charconv>
 #include <cmath>
 #include <map>
 #include <sstream>
@@ -35,11 +34,9 @@ std::string setting(const Settings& settings, std::string_view word) {
     return value;
 }
 
-/// The number that the text begins with.
 double number_in(const std::string& text, double otherwise) {
-    double number = 0;
-    const std::from_chars_result read = std::from_chars(text.data(), text.data() + text.size(), number);
-    return read.ec == std::errc() && std::isfinite(number) ? number : otherwise;
+    const LeadingNumber number = leading_number(text);
+    return number.length > 0 && std::isfinite(number.value) ? number.value : otherwise;
 }
 
 /// Of a program that measures in the plane of x and z unless it is told that it lives in space.

@@ -178,9 +178,9 @@ std::string CpfgNames::beta(std::span<const std::string_view> arguments, Span sp
     std::vector<double> shape;
     for (const std::string_view argument : arguments) {
         const std::string number(trimmed(expanded(argument, span, true)));
-        char* end = nullptr;
-        shape.push_back(std::strtod(number.c_str(), &end));
-        if (number.empty() || *end != '\0' || !(shape.back() > 0 && shape.back() < 1000)) {
+        const LeadingNumber read = leading_number(number);
+        shape.push_back(read.value);
+        if (read.length != number.size() || !(shape.back() > 0 && shape.back() < 1000)) {
             error(span, "'bran' has a translation only with two numbers above 0");
             return "0";
         }

@@ -87,7 +87,7 @@ class ViewReader {
         if (colon == std::string_view::npos) return;
         const std::string word(trimmed(line.substr(0, colon)));
         const std::string value(trimmed(line.substr(colon + 1)));
-        const double number = std::strtod(value.substr(0, 40).c_str(), nullptr);
+        const double number = leading_number(std::string_view(value).substr(0, 40)).value;
         const bool usable = std::isfinite(number) && std::abs(number) < 1e9;
         if (word == "angle increment" && usable) view_.angle_deg = number;
         if (word == "angle factor" && usable && number != 0) view_.angle_deg = 360 / number;

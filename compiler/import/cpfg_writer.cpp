@@ -76,9 +76,8 @@ class SystemWriter {
             };
             const auto number = [&](const CpfgProduction& p) {
                 const std::string text(trimmed(names_.expanded(p.probability, p.span, true)));
-                char* end = nullptr;
-                const double value = std::strtod(text.c_str(), &end);
-                return end != text.c_str() && *end == '\0' && std::isfinite(value) ? value : -1;
+                const auto [value, length] = leading_number(text);
+                return length > 0 && length == text.size() && std::isfinite(value) ? value : -1;
             };
             bool plain = true;
             for (const CpfgProduction& p : productions) {

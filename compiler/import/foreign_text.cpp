@@ -2,7 +2,12 @@
 
 #include <algorithm>
 #include <cctype>
+#include <charconv>
+#include <limits>
+#include <system_error>
 #include <utility>
+
+#include "compiler/support/number.h"
 
 namespace graftal {
 
@@ -46,6 +51,36 @@ std::string symbol_name(char symbol) {
     const auto byte = static_cast<unsigned char>(symbol);
     if (byte < 0x80 && std::isalnum(byte)) return std::string(1, symbol);
     return "Byte" + std::to_string(byte);
+}
+
+namespace {
+
+bool is_hex_digit(char c) {
+    return std::isxdigit(static_cast<unsigned char>(c));
+}
+
+} // namespace
+
+LeadingNumber leading_number(std::string_view text) {
+    std::string_view rest = text.substr(std::min(text.find_first_not_of(" \t\r\n\f\v"), text.size()));
+    const bool negative = rest.starts_with('-');
+    if (negative || rest.starts_with('+')) rest.remove_prefix(1);
+    if (rest.starts_with('-')) return {};
+    const std::string_view digits = rest.substr(std::min<std::size_t>(2, rest.size()));
+    const bool hexadecimal = (rest.starts_with("0x") || rest.starts_with("0X")) && !digits.empty() &&
+                             is_hex_digit(digits[digits.size() > 1 && digits[0] == '.' ? 1 : 0]);
+    if (hexadecimal) rest.remove_prefix(2);
+    LeadingNumber number;
+    const auto [end, error] =
+        std::from_chars(rest.data(), rest.data() + rest.size(), number.value,
+                        hexadecimal ? std::chars_format::hex : std::chars_format::general);
+    if (error == std::errc::invalid_argument) return {};
+    const auto length = static_cast<std::size_t>(end - rest.data());
+    if (error == std::errc::result_out_of_range) // too small for a number, or too large
+        number.value = parse_number(rest.substr(0, length)).value_or(std::numeric_limits<double>::infinity());
+    if (negative) number.value = -number.value;
+    number.length = static_cast<std::size_t>(end - text.data());
+    return number;
 }
 
 bool is_binary(std::string_view text) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -24,6 +25,14 @@ std::string comment_text(std::string_view text);
 /// The name of a module for a symbol of another program: the letter or digit itself; a word for what means
 /// something else, or nothing, in our strings.
 std::string symbol_name(char symbol);
+
+/// The number that a text begins with, and how many characters it has with the blanks before it; none: no
+/// number. As strtod() reads it where the decimal point is a point, whatever the locale is.
+struct LeadingNumber {
+    double value = 0;
+    std::size_t length = 0;
+};
+LeadingNumber leading_number(std::string_view text);
 
 /// Whether a text has bytes that no text has: NUL. Pictures and programs have.
 bool is_binary(std::string_view text);

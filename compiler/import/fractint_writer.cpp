@@ -158,8 +158,7 @@ class FractintWriter {
         bool root = false, inverse = false;
         for (; !digits.empty() && (digits[0] == 'q' || digits[0] == 'i'); digits.remove_prefix(1))
             (digits[0] == 'q' ? root : inverse) = true;
-        const double value = std::strtod(
-            std::string(digits.substr(0, digits.find('.', digits.find('.') + 1))).c_str(), nullptr);
+        const double value = leading_number(digits.substr(0, digits.find('.', digits.find('.') + 1))).value;
         std::string text = value > 0 ? fmt::format("{}", value) : "0";
         if (value > 0 && root) text = fmt::format("sqrt({})", text);
         if (value > 0 && inverse) text = "1/" + text;

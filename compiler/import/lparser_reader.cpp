@@ -111,11 +111,10 @@ class LparserReader {
     void set(LparserNumber& number, std::string_view text) {
         number.span = span_;
         number.comment = comment_;
-        const std::string copy(text.substr(0, 40));
-        char* end = nullptr;
-        number.value = std::strtod(copy.c_str(), &end);
+        const LeadingNumber read = leading_number(text.substr(0, 40));
+        number.value = read.value;
         take_comments(system_.head);
-        if (end == copy.c_str() || !std::isfinite(number.value))
+        if (read.length == 0 || !std::isfinite(number.value))
             file_.diagnostics.error(span_, fmt::format("expected a number, found '{}'", comment_text(text)));
     }
 

@@ -283,9 +283,8 @@ class LparserWriter {
     std::string number_of(const LparserSymbol& symbol) {
         if (*symbol.number == "x") return "x";
         const std::string text = symbol.number->substr(0, 40);
-        char* end = nullptr;
-        const double value = std::strtod(text.c_str(), &end);
-        if (end == text.c_str() || *end != '\0' || !std::isfinite(value))
+        const auto [value, length] = leading_number(text);
+        if (length == 0 || length != text.size() || !std::isfinite(value))
             file_.diagnostics.warning(symbol.span,
                                       fmt::format("'{}' is read as the number {}", comment_text(text),
                                                   std::isfinite(value) ? value : 0));

@@ -34,10 +34,9 @@ std::vector<double> numbers_in(std::string_view line) {
     for (std::size_t i = 0; i < line.size() && numbers.size() < patch_numbers;) {
         const std::size_t begin = std::min(line.find_first_of("+-.0123456789", i), line.size());
         const std::size_t end = std::min(line.find_first_not_of("+-.0123456789eE", begin), line.size());
-        const std::string word(line.substr(begin, std::min<std::size_t>(end - begin, 40)));
-        char* rest = nullptr;
-        const double number = std::strtod(word.c_str(), &rest);
-        if (rest != word.c_str() && std::isfinite(number)) numbers.push_back(number);
+        const auto [number, length] =
+            leading_number(line.substr(begin, std::min<std::size_t>(end - begin, 40)));
+        if (length > 0 && std::isfinite(number)) numbers.push_back(number);
         i = end;
     }
     return numbers;

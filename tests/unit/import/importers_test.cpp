@@ -1,10 +1,15 @@
 #include "compiler/import/importers.h"
 
+#include <cmath>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <random>
 
 #include <gmock/gmock.h>
 
+#include "compiler/import/foreign_text.h"
+#include "tests/unit/comma_locale.h"
 #include "tests/unit/import/imported.h"
 
 namespace graftal::testing {
@@ -74,6 +79,33 @@ TEST(Importers, HostileFilesEndWithADiagnostic) {
                          "#define X Y(1)\n#define Y(a) X\nLsystem: 1\nderivation length: 1\nAxiom: F(X)\n"
                          "endlsystem\n");
     EXPECT_TRUE(cycle.diagnostics.has_errors());
+}
+
+TEST(ForeignText, ANumberIsReadAsByTheCLibraryWithAPoint) {
+    std::vector<std::string> texts = {"",       " ",    "x",   "1",   " 2.5 m", "+.5",    "-.5e",
+                                      "+-3",    "--1",  "- 1", "1e5", "1e-320", "1e-999", "1e999",
+                                      "-1e999", "0x1A", "0x",  "0xg", "-0x1p4", "inf",    "nan",
+                                      "1.2.3",  "5e+",  ".",   "e5",  "\t7",    "1,5"};
+    std::mt19937 random(3);
+    for (int k = 0; k < 20'000; ++k) {
+        std::string& text = texts.emplace_back();
+        for (unsigned length = random() % 12; length > 0; --length)
+            text += "0123456789+-.eE xX"[random() % 18];
+    }
+    const auto both = [&] {
+        for (const std::string& text : texts) {
+            char* end = nullptr;
+            const double value = std::strtod(text.c_str(), &end);
+            const LeadingNumber read = leading_number(text);
+            ASSERT_EQ(read.length, static_cast<std::size_t>(end - text.c_str())) << text;
+            if (std::isnan(value)) continue;
+            ASSERT_EQ(read.value, value) << text;
+        }
+    };
+    both();
+    const CommaLocale locale;
+    ASSERT_TRUE(locale.installed());
+    EXPECT_EQ(leading_number("2.5").value, 2.5);
 }
 
 } // namespace

@@ -9,6 +9,7 @@
 
 #include "compiler/detail/least_width.h"
 #include "compiler/detail/limit_normal.h"
+#include "compiler/detail/piece.h"
 #include "compiler/detail/piece_kind.h"
 #include "compiler/detail/run_cells.h"
 #include "compiler/graph/path.h"
@@ -124,13 +125,14 @@ void PartRays::go_below(const At& at, bool cut) {
     for (std::size_t i = 0; i < waiting_[at.depth].size() && !done(); ++i) {
         const Waiting next = waiting_[at.depth][i];
         if (!(next.t < best_.t)) break;
-        follow(at, *next.edge);
+        follow(at, *next.edge, cut);
         balls_.resize(std::min(balls_.size(), levels));
     }
 }
 
-void PartRays::follow(const At& parent, const CutEdge& edge) {
+void PartRays::follow(const At& parent, const CutEdge& edge, bool parent_is_cut) {
     At child = parent;
+    look_through(cut_, cut_.nodes[parent.node], parent_is_cut, edge, parent, child);
     child.node = edge.child;
     child.world_from_node = parent.world_from_node * edge.node_from_child;
     child.scale = size_below(parent.scale, edge, child.world_from_node.linear);
@@ -163,6 +165,8 @@ void PartRays::meet(const At& at, const Primitive& primitive, const Affine& worl
     best_.part = at.part;
     best_.part_px = at.part_px;
     if (any_) return;
+    best_.material = at.material;
+    best_.rgb = at.tint.over(proxy ? cut_.nodes[at.node].mean.over(at.inherited) : at.inherited);
     best_.normal = glm::normalize(glm::transpose(leaf_from_world.linear) * hit.normal);
     if (!proxy || !limit_normals_) return;
     NormalField field;

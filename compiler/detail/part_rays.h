@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "compiler/detail/cut_graph.h"
@@ -15,13 +16,15 @@ struct PartHit {
 
     double t = 0;
     Vec3 normal{0, 1, 0}; ///< of unit length, to either side
+    Rgb rgb{0.8};
+    std::optional<MaterialId> material; ///< whose finish it shows
     /// The first node on the way that is no larger than the size watched for, and that may be culled.
     NodeId part = none;
     double part_px = 0; ///< its diameter
 };
 
 /// Takes single rays through a cut graph as simply as can be: for a measurement, some thousands of them.
-/// Materials do not count: all is opaque. What a singular map crushes is left out.
+/// All is opaque, and pictures on materials do not count. What a singular map crushes is left out.
 class PartRays {
   public:
     /// Keeps references. `root_steps`: levels that the root has. `watched_px`: PartHit::part. Requires a
@@ -45,6 +48,9 @@ class PartRays {
         Affine world_from_node;
         double scale = 1; ///< norm of it
         std::uint32_t steps = 0;
+        PathTint tint;
+        Rgb inherited{0.8};
+        std::optional<MaterialId> material;
         bool faint = false;
         NodeId part = PartHit::none;
         double part_px = 0;
@@ -59,7 +65,7 @@ class PartRays {
     bool run(const Ray& ray, RayRange range, bool any);
     void enter(At at);
     void go_below(const At& at, bool cut);
-    void follow(const At& parent, const CutEdge& edge);
+    void follow(const At& parent, const CutEdge& edge, bool parent_is_cut);
     void meet(const At& at, const Primitive& primitive, const Affine& world_from_leaf, bool proxy);
     Ball ball_of(const At& at) const;
     bool done() const { return (any_ && found_) || work_ > work_limit_; }

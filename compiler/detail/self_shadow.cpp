@@ -26,7 +26,7 @@ constexpr double rays_of_doubt = 64;
 /// Sizes are told apart by quarters of an octave.
 constexpr std::size_t bins = 64;
 /// A level takes half of the light at most.
-constexpr double darkest_log = -1, brightest_log = 0.25;
+constexpr double darkest_log = -1, brightest_log = 0.5;
 
 double brightness(Rgb rgb) {
     return (rgb.r + rgb.g + rgb.b) / 3;
@@ -67,6 +67,19 @@ struct Seen {
             (light_with(middle) < light ? low : high) = middle;
         }
         return 0.5 * (low + high);
+    }
+};
+
+/// Where a ray has met a part.
+struct LitPoint {
+    Vec3 point, normal; ///< the normal towards the viewer
+    Rgb rgb;
+    const Material& material;
+
+    /// Of light from there: what falls on the viewer's side, or comes through from the other.
+    double scattered(Rgb light, Vec3 direction) const {
+        const double cosine = glm::dot(normal, direction);
+        return brightness(rgb * light) * (cosine > 0 ? material.diffuse : -material.translucency) * cosine;
     }
 };
 
@@ -152,19 +165,21 @@ class Measurer {
         return meets_culled || meets_whole;
     }
 
+    /// What the surface scatters to the viewer of the light that reaches either side of it.
     double light(PartRays& rays, const Ray& ray, const PartHit& hit, double choice) {
-        const Vec3 point = ray(hit.t);
-        const Vec3 normal = glm::dot(hit.normal, ray.direction) > 0 ? -hit.normal : hit.normal;
+        const LitPoint lit{ray(hit.t), glm::dot(hit.normal, ray.direction) > 0 ? -hit.normal : hit.normal,
+                           hit.rgb, hit.material ? cut_.materials[*hit.material] : plain_};
         double sum = 0;
         for (const Light& light : bare_)
-            sum += brightness(light.rgb) * std::max(0.0, glm::dot(normal, towards(light, point)));
+            sum += lit.scattered(light.rgb, towards(light, lit.point));
         const std::size_t tries = std::min(lights_a_hit, lights_.size());
         for (std::size_t i = 0; i < tries; ++i) {
             const double at = total_ * (static_cast<double>(i) + choice) / static_cast<double>(tries);
             const auto number = std::min<std::size_t>(
                 static_cast<std::size_t>(std::ranges::upper_bound(up_to_, at) - up_to_.begin()),
                 lights_.size() - 1);
-            sum += total_ / static_cast<double>(tries) * shadowed(rays, lights_[number], point, normal);
+            const Light& light = lights_[number];
+            sum += total_ / static_cast<double>(tries) / brightness(light.rgb) * shadowed(rays, light, lit);
         }
         return sum;
     }
@@ -173,19 +188,20 @@ class Measurer {
         return glm::normalize(light.sun ? light.location : light.location - point);
     }
 
-    /// The cosine of a light that is not hidden.
-    double shadowed(PartRays& rays, const Light& light, Vec3 point, Vec3 normal) const {
-        const Vec3 direction = towards(light, point);
-        const double cosine = glm::dot(normal, direction);
-        if (!(cosine > 0)) return 0;
+    /// What is scattered of a light, if nothing hides it.
+    double shadowed(PartRays& rays, const Light& light, const LitPoint& lit) const {
+        const Vec3 point = lit.point, direction = towards(light, point);
+        const double scattered = lit.scattered(light.rgb, direction);
+        if (!(scattered > 0)) return 0;
         constexpr double least_px = 1e-3; // as the tracer's
         RayRange range{least_px / whole_projection_.pixels_per_unit({point, 0})};
         if (!light.sun) range.most = glm::length(light.location - point);
-        return rays.meets_any({point, direction}, range) ? 0 : cosine;
+        return rays.meets_any({point, direction}, range) ? 0 : scattered;
     }
 
     const CutGraph& cut_;
     const View& view_;
+    const Material plain_; ///< of what names none
     Projection culled_projection_, whole_projection_;
     PartRays culled_, whole_;
     std::vector<Light> lights_, bare_;

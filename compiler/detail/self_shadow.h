@@ -45,9 +45,10 @@ class SelfShadows {
 
 /// Measures the shares for the lights and the camera of a view: some thousands of camera rays meet the parts
 /// once as they are culled at `measured_px`, and once as at SelfShadows::lit_as_px, both in their own
-/// shadows. An object's share makes the mean light on its parts equal. Objects that few rays meet take the
-/// mean of all. Shares are rounded to `steps`. Ambient light does not count; of light from all directions a
-/// list stands for it. Nothing is measured without lights that throw shadows.
+/// shadows. An object's share makes the mean light that its parts scatter equal: a leaf that stands alone
+/// lets light through, and the solid that stands for it does not. Objects that few rays meet take the mean of
+/// all. Shares are rounded to `steps`. Ambient light does not count; of light from all directions a list
+/// stands for it. Nothing is measured without lights that throw shadows.
 ///
 /// Requires fit_proxies(). Work: at most `most_self_shadow_work` parts are gone by.
 SelfShadows measure_self_shadows(const CutGraph& cut, const Symmetry& symmetry, std::uint32_t root_steps,

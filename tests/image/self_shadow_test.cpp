@@ -35,12 +35,12 @@ double mean_light(const Image& picture) {
         sum += (rgb[0] + rgb[1] + rgb[2]) / 3;
         ++count;
     }
-    EXPECT_GT(count, 500);
+    EXPECT_GT(count, 100);
     return 255 * sum / count;
 }
 
-RenderOptions options_for(double error_px, DefaultLight light) {
-    RenderOptions options = measured(320, 180);
+RenderOptions options_for(int width, double error_px, DefaultLight light) {
+    RenderOptions options = measured(width, width * 9 / 16);
     options.compile.detail.error_px = error_px;
     options.compile.view.light = light;
     options.compile.view.quality = Quality::draft;
@@ -52,6 +52,7 @@ struct LitModel {
     const char* name;
     const char* file; ///< its name tells the language; a model of the project if there is no text
     std::string text;
+    int width = 320; ///< of its pictures
 };
 
 void PrintTo(const LitModel& model, std::ostream* out) {
@@ -78,13 +79,15 @@ class CulledParts : public testing::TestWithParam<LitModel> {
             picture = image;
             return Status();
         };
-        const auto report = render_natively(session, options_for(error_px, light), compilation, keep);
+        const auto report =
+            render_natively(session, options_for(GetParam().width, error_px, light), compilation, keep);
         EXPECT_TRUE(report) << compilation.diagnostics.render(compilation.sources);
         return mean_light(picture);
     }
 
     static double povray(const std::string& more, double error_px, DefaultLight light) {
-        return mean_light(render_model_text(GetParam().file, text(more), options_for(error_px, light)));
+        return mean_light(
+            render_model_text(GetParam().file, text(more), options_for(GetParam().width, error_px, light)));
     }
 };
 
@@ -122,6 +125,28 @@ INSTANTIATE_TEST_SUITE_P(SelfShadow, CulledParts,
                                          LitModel{"sponge", "scenes/ifs/menger_sponge.rifs", {}},
                                          LitModel{"limit_tree", "scenes/limits/tree.lsys", {}},
                                          LitModel{"random_bush", "bush.lsys", random_bush}),
+                         [](const auto& model) { return model.param.name; });
+
+/// Light comes through the leaves, and not through the solids that stand for twigs.
+std::string thin_leaves() {
+    return std::regex_replace(model_of("scenes/abop/fig2_8a.lsys"),
+                              std::regex("\n(light|sky|haze|film)[^\n]*"), "");
+}
+
+class ThinLeaves : public CulledParts {};
+
+/// The solids have one finish for bark and leaves, so the light is not that of the finer picture to the last
+/// part in ten.
+TEST_P(ThinLeaves, KeepTheirLight) {
+    for (const auto& [more, light] :
+         {std::pair{std::string(), DefaultLight::plain}, {sky, DefaultLight::studio}}) {
+        const double fine = native(more, 0.5, light), coarse = native(more, 4, light);
+        EXPECT_NEAR(coarse / fine, 1, 0.1) << more;
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(SelfShadow, ThinLeaves,
+                         testing::Values(LitModel{"tree", "leaves.lsys", thin_leaves(), 64}),
                          [](const auto& model) { return model.param.name; });
 
 } // namespace

@@ -488,6 +488,7 @@ std::uint64_t fit_proxies(CutGraph& cut, const Symmetry& symmetry, WorkMeter* me
     Fitter fitter(cut, symmetry, meter);
     fitter.run();
     set_mean_colours(cut);
+    set_finishes(cut);
     return fitter.draws();
 }
 

@@ -11,7 +11,7 @@ namespace graftal {
 /// Fits the proxy of every node to what its subtree covers: an ellipsoid about the middle of the subtree's
 /// area whose shadow, from every side as nearly as an ellipsoid can, is as large as the subtree's, and over
 /// all directions exactly so. Congruent nodes get congruent proxies. Weighs the edges by what is seen of
-/// them.
+/// them, and sets mean colours and finishes by that.
 ///
 /// Shadows are measured on the subtree unfolded to some hundred parts, masters first, so that each node is
 /// unfolded down to its masters' proxies: O(graph). A cycle is gone round until its proxies stay as they are,

@@ -1,6 +1,9 @@
 #include "compiler/detail/cut_graph.h"
 
 #include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <span>
 #include <utility>
 
 #include <glm/geometric.hpp>
@@ -22,7 +25,32 @@ MeanColour mean_of(const CutGraph& cut, const CutNode& node) {
     return {sum.fixed / weights, sum.open / weights};
 }
 
+/// By material, and of what inherits: how much is seen of each below a node, all together 1.
+void add_shares(const CutGraph& cut, const CutNode& node, const std::vector<double>& shares,
+                std::vector<double>& sum) {
+    const std::size_t width = cut.materials.size() + 1;
+    sum.assign(width, 0);
+    double weights = 0;
+    for (const CutEdge& edge : node.edges) {
+        weights += edge.weight;
+        const double* const below = shares.data() + edge.child * width;
+        for (std::size_t m = 0; m + 1 < width; ++m)
+            sum[m] += edge.weight * below[m];
+        sum[edge.material ? *edge.material : width - 1] += edge.weight * below[width - 1];
+    }
+    for (double& share : sum)
+        share /= weights;
+}
+
 } // namespace
+
+std::optional<MaterialId> most_seen(std::span<const double> shares, const std::vector<Material>& materials) {
+    const auto most = static_cast<std::size_t>(std::ranges::max_element(shares) - shares.begin());
+    if (most == materials.size()) return {};
+    const Material& material = materials[most];
+    if (!material.texture.empty() || material.is_transparent()) return {};
+    return static_cast<MaterialId>(most);
+}
 
 std::vector<NodeId> masters_first(const CutGraph& cut) {
     std::vector<NodeId> order;
@@ -60,6 +88,35 @@ void set_mean_colours(CutGraph& cut) {
         }
         if (change < 1e-7) break;
     }
+}
+
+void set_finishes(CutGraph& cut) {
+    constexpr std::size_t most_shares = 8'000'000;
+    constexpr int sweeps = 32;
+    const std::size_t width = cut.materials.size() + 1; // the last share is of what inherits
+    if (cut.nodes.size() > most_shares / width) return;
+    std::vector<double> shares(cut.nodes.size() * width, 0);
+    for (NodeId id = 0; id < cut.nodes.size(); ++id)
+        shares[id * width + cut.nodes[id].finish.value_or(static_cast<MaterialId>(width - 1))] = 1;
+    const std::vector<NodeId> order = masters_first(cut);
+    std::vector<double> sum;
+    for (int sweep = 0; sweep < sweeps; ++sweep) {
+        double change = 0;
+        for (const NodeId id : order) {
+            const CutNode& node = cut.nodes[id];
+            if (node.primitive || node.edges.empty()) continue;
+            add_shares(cut, node, shares, sum);
+            for (std::size_t m = 0; m < width; ++m) {
+                double& share = shares[id * width + m];
+                change = std::max(change, std::abs(share - sum[m]));
+                share = sum[m];
+            }
+        }
+        if (change < 1e-4) break;
+    }
+    for (const NodeId id : order)
+        if (!cut.nodes[id].edges.empty())
+            cut.nodes[id].finish = most_seen({shares.data() + id * width, width}, cut.materials);
 }
 
 void mark_solid(CutGraph& cut) {

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -56,6 +57,7 @@ struct CutNode {
     Ball ball;
     Affine node_from_proxy; ///< places the unit sphere: the ellipsoid in the node's box, until fit_proxies()
     MeanColour mean;
+    std::optional<MaterialId> finish; ///< of what is seen most in its limit; none: that it inherits
 };
 
 /// A graph after the passes for detail, with what unfolding it asks for at every edge.
@@ -73,6 +75,15 @@ std::vector<NodeId> masters_first(const CutGraph& cut);
 /// Sets the mean colours anew, by the weights of the edges. Exact for ending nodes, converging geometrically
 /// for the others.
 void set_mean_colours(CutGraph& cut);
+
+/// Sets the finish that what stands for each node shows, by the weights of the edges: of its materials the
+/// one that is seen most, if more of it is seen than of what inherits. None for pictures, which wrap round
+/// single primitives, and for what is transparent, since one large lens is not what many small ones are. Sets
+/// none in graphs that are too large for it. Keeps those of nodes without edges.
+void set_finishes(CutGraph& cut);
+
+/// The material of which most is seen, as above. `shares`: by material, and of what inherits.
+std::optional<MaterialId> most_seen(std::span<const double> shares, const std::vector<Material>& materials);
 
 /// Sets what is solid. O(graph).
 void mark_solid(CutGraph& cut);

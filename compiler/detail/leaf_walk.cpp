@@ -55,6 +55,7 @@ bool LeafWalk::next(WalkedLeaf& leaf) {
         const double detail = 2 * shape.ball.radius * visit_.scale * detail_per_unit_;
         const bool cut = is_cut(shape, visit_.steps, detail, error_px_);
         if (followed_edges(shape, cut).empty() && (cut || !shape.cell)) {
+            if (shape.finish) leaf.material = shape.finish;
             leaf.primitive = PrimitiveKind::sphere;
             leaf.representative_from_leaf = visit_.representative_from_node * shape.node_from_proxy;
             for (const Paint& paint : paints_)

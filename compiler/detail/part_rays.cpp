@@ -165,8 +165,9 @@ void PartRays::meet(const At& at, const Primitive& primitive, const Affine& worl
     best_.part = at.part;
     best_.part_px = at.part_px;
     if (any_) return;
-    best_.material = at.material;
-    best_.rgb = at.tint.over(proxy ? cut_.nodes[at.node].mean.over(at.inherited) : at.inherited);
+    const CutNode& node = cut_.nodes[at.node];
+    best_.material = proxy && node.finish ? node.finish : at.material;
+    best_.rgb = at.tint.over(proxy ? node.mean.over(at.inherited) : at.inherited);
     best_.normal = glm::normalize(glm::transpose(leaf_from_world.linear) * hit.normal);
     if (!proxy || !limit_normals_) return;
     NormalField field;

@@ -95,6 +95,7 @@ class RunCellBuilder {
         double reach = 0, shadow = 0;
         std::size_t leaves = 0;
         MeanColour mean{Rgb(0.0), 0};
+        std::vector<double> seen(materials_.size() + 1, 0);
         for (std::size_t i = first; i < first + cell->count; ++i) {
             const RunItem& item = run[i];
             reach = std::max({reach, glm::distance(centre, item.base) + item.radius,
@@ -106,12 +107,15 @@ class RunCellBuilder {
             note(*cell, item.shape, std::max(item.radius, length));
             cell->flattest = std::min(cell->flattest, std::min(item.radius / length, length / item.radius));
             if (item.ball) note(*cell, PrimitiveKind::sphere, item.radius);
-            if (const std::optional<MaterialId>& material = source_->materials[item.colour])
+            const std::optional<MaterialId>& material = source_->materials[item.colour];
+            seen[material.value_or(static_cast<MaterialId>(materials_.size()))] += area;
+            if (material)
                 mean.fixed += area * materials_[*material].rgb;
             else
                 mean.open += area;
         }
         node.mean = shadow > 0 ? MeanColour{mean.fixed / shadow, mean.open / shadow} : MeanColour{};
+        node.finish = most_seen(seen, materials_);
         node.cullable = leaves > uncullable_leaves_of_run;
         node.ball = {centre, std::min(reach, 0.5 * glm::length(box.size()))};
         // Parts that lie anyhow in the ellipsoid hide each other: so much of its shadow is left dark (Beer's

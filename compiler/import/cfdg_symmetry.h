@@ -31,7 +31,8 @@ void add_unique(std::vector<Affine>& maps, const std::vector<Affine>& more);
 /// Reads lists such as `CF::Dihedral, 5, 30, CF::p2`: words, each with its numbers behind it.
 class SymmetryReader {
   public:
-    /// The maps are added to `maps`; `fail` is told of symmetries that are not there. `maps` must outlive this.
+    /// The maps are added to `maps`; `fail` is told of symmetries that are not there. `maps` must outlive
+    /// this.
     SymmetryReader(const Lattice& lattice, std::vector<Affine>& maps,
                    std::function<void(const std::string&)> fail)
         : lattice_(lattice), maps_(maps), fail_(std::move(fail)) {}

@@ -145,6 +145,7 @@ class Placing {
     void place_proxy(const CutNode& node, const Piece& piece, double light_share) {
         Piece proxy = piece;
         proxy.light_share = light_share;
+        if (node.finish) proxy.material = node.finish;
         proxy.faint = piece.faint || node.shadowless;
         place_primitive(PrimitiveKind::sphere, piece.world_from_node * node.node_from_proxy, proxy,
                         node.mean.over(piece.inherited));

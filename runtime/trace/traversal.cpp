@@ -231,7 +231,11 @@ void Traversal::surface_at_best(SurfaceHit& hit) const {
             model_.meshes.note(best_.cell * model_.projection.detail_per_unit({ray_(best_.t), 0}));
     } else if (best_.proxy_node == no_edge && material && model_.textures.of_material[*material])
         inherited = colour_of(texel(*material, way_.back(), best_.turns, best_.point));
-    if (best_.proxy_node != no_edge) inherited = model_.source(best_.proxy_node).mean.over(inherited);
+    if (best_.proxy_node != no_edge) {
+        const CutNode& stands_for = model_.source(best_.proxy_node);
+        inherited = stands_for.mean.over(inherited);
+        if (stands_for.finish) hit.material = &materials[*stands_for.finish];
+    }
     hit.t = best_.t;
     hit.rgb = tint.over(inherited);
     hit.normal = normal_at_best();

@@ -26,6 +26,22 @@ std::string our_name(const std::string& function) {
     return function == "ceiling" ? "ceil" : function;
 }
 
+// Expressions nest deep: the functions that call each other for their operands keep small frames, and leave the making of
+// text to functions that call none of them.
+
+std::string unary_text(const Expr& expression, const std::string& operand) {
+    if (expression.text == "!") return fmt::format("!({})", operand);
+    return expression.operands[0].kind == Expr::Kind::number ? "-" + operand : fmt::format("-({})", operand);
+}
+
+std::string binary_text(const std::string& sign, const std::string& a, const std::string& b) {
+    if (sign == "..") return fmt::format("random({}, {})", a, b);
+    if (sign == "+/-") return fmt::format("random({0} - ({1}), {0} + ({1}))", a, b);
+    if (sign == "_") return fmt::format("max(0, {} - ({}))", a, b);
+    if (sign == "^^") return fmt::format("((({}) != 0) != (({}) != 0))", a, b);
+    return fmt::format("({} {} {})", a, sign == "<>" ? "!=" : sign, b);
+}
+
 } // namespace
 
 bool is_random(const std::string& text) {
@@ -71,54 +87,22 @@ std::nullopt_t Expressions::fail(const Expr& expression, std::string message) {
 }
 
 std::optional<std::string> Expressions::text(const Expr& expression, const Scope& scope) {
-    const auto part = [&](std::size_t i) { return text(expression.operands[i], scope); };
     std::optional<std::string> result;
     switch (expression.kind) {
     case Expr::Kind::number:
         result = shortest(expression.number);
         break;
-    case Expr::Kind::name: {
-        if (const auto known = scope.find(expression.text); known != scope.end()) {
-            result = known->second;
-            break;
-        }
-        if (values_.contains(expression.text)) {
-            result = shortest(values_.at(expression.text));
-            break;
-        }
-        const Definition* const global = definition(expression.text);
-        if (!global || global->is_function)
-            return fail(expression, fmt::format("'{}' has no counterpart here", expression.text));
-        if (++depth_ > deepest_calls)
-            return fail(expression, fmt::format("'{}' depends on itself", expression.text));
-        const std::optional<std::string> value = text(global->value, {});
-        --depth_;
-        if (!value) return std::nullopt;
-        result = fmt::format("({})", *value);
+    case Expr::Kind::name:
+        result = name(expression, scope);
         break;
-    }
-    case Expr::Kind::unary: {
-        const std::optional<std::string> operand = part(0);
-        if (!operand) return std::nullopt;
-        result = expression.text == "!" ? fmt::format("!({})", *operand) : fmt::format("-{}", *operand);
-        if (expression.operands[0].kind != Expr::Kind::number && expression.text == "-")
-            result = fmt::format("-({})", *operand);
+    case Expr::Kind::unary:
+        if (const std::optional<std::string> operand = text(expression.operands[0], scope))
+            result = unary_text(expression, *operand);
         break;
-    }
     case Expr::Kind::binary: {
-        const std::optional<std::string> a = part(0), b = part(1);
-        if (!a || !b) return std::nullopt;
-        const std::string& sign = expression.text;
-        if (sign == "..")
-            result = fmt::format("random({}, {})", *a, *b);
-        else if (sign == "+/-")
-            result = fmt::format("random({0} - ({1}), {0} + ({1}))", *a, *b);
-        else if (sign == "_")
-            result = fmt::format("max(0, {} - ({}))", *a, *b);
-        else if (sign == "^^")
-            result = fmt::format("((({}) != 0) != (({}) != 0))", *a, *b);
-        else
-            result = fmt::format("({} {} {})", *a, sign == "<>" ? "!=" : sign, *b);
+        const std::optional<std::string> left = text(expression.operands[0], scope);
+        const std::optional<std::string> right = text(expression.operands[1], scope); // its errors are said too
+        if (left && right) result = binary_text(expression.text, *left, *right);
         break;
     }
     case Expr::Kind::call:
@@ -133,6 +117,21 @@ std::optional<std::string> Expressions::text(const Expr& expression, const Scope
     written_ += result->size();
     if (written_ > longest_text) return fail(expression, "the expressions of the file become too long");
     return result;
+}
+
+std::optional<std::string> Expressions::name(const Expr& expression, const Scope& scope) {
+    if (const auto known = scope.find(expression.text); known != scope.end()) return known->second;
+    if (const auto known = values_.find(expression.text); known != values_.end())
+        return shortest(known->second);
+    const Definition* const global = definition(expression.text);
+    if (!global || global->is_function)
+        return fail(expression, fmt::format("'{}' has no counterpart here", expression.text));
+    if (++depth_ > deepest_calls)
+        return fail(expression, fmt::format("'{}' depends on itself", expression.text));
+    const std::optional<std::string> value = text(global->value, {});
+    --depth_;
+    if (!value) return std::nullopt;
+    return fmt::format("({})", *value);
 }
 
 std::optional<std::string> Expressions::element(const Expr& expression, const Scope& scope) {
@@ -179,30 +178,38 @@ std::optional<std::string> Expressions::call(const Expr& expression, const Scope
         if (!argument) return std::nullopt;
         arguments.push_back(std::move(*argument));
     }
+    const Definition* const function = definition(expression.text);
+    if (function && function->is_function) return own_function(expression, *function, arguments);
+    return known_function(expression, arguments);
+}
+
+std::optional<std::string> Expressions::own_function(const Expr& expression, const Definition& function,
+                                                     const std::vector<std::string>& arguments) {
+    if (function.parameters.size() != arguments.size())
+        return fail(expression, fmt::format("'{}' takes {} arguments", expression.text, function.parameters.size()));
+    if (++depth_ > deepest_calls) {
+        depth_ = 0;
+        return fail(expression, fmt::format("'{}' calls itself: recursive functions are not translated",
+                                            expression.text));
+    }
+    Scope inner;
+    for (std::size_t i = 0; i < arguments.size(); ++i) {
+        if (is_random(arguments[i]))
+            return fail(expression.operands[i],
+                        "a random number as the argument of a function is not translated");
+        inner[function.parameters[i].name] = fmt::format("({})", arguments[i]);
+    }
+    std::optional<std::string> value = text(function.value, inner);
+    --depth_;
+    if (value) value = fmt::format("({})", *value);
+    return value;
+}
+
+std::optional<std::string> Expressions::known_function(const Expr& expression,
+                                                       const std::vector<std::string>& arguments) {
     const std::string& name = expression.text;
     const std::size_t count = arguments.size();
     const auto number_of = [&](std::size_t i) { return fmt::format("({})", arguments[i]); };
-    if (const Definition* const function = definition(name); function && function->is_function) {
-        if (function->parameters.size() != count)
-            return fail(expression,
-                        fmt::format("'{}' takes {} arguments", name, function->parameters.size()));
-        if (++depth_ > deepest_calls) {
-            depth_ = 0;
-            return fail(expression,
-                        fmt::format("'{}' calls itself: recursive functions are not translated", name));
-        }
-        Scope inner;
-        for (std::size_t i = 0; i < count; ++i) {
-            if (is_random(arguments[i]))
-                return fail(expression.operands[i],
-                            "a random number as the argument of a function is not translated");
-            inner[function->parameters[i].name] = number_of(i);
-        }
-        std::optional<std::string> value = text(function->value, inner);
-        --depth_;
-        if (value) value = fmt::format("({})", *value);
-        return value;
-    }
     if (count == 1 && name == "log10")
         return fmt::format("(log({}) / {})", arguments[0], shortest(std::numbers::ln10));
     static const std::set<std::string, std::less<>> shared = {

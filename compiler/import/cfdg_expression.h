@@ -4,6 +4,7 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <vector>
 
 #include "compiler/import/cfdg_ast.h"
 #include "compiler/import/importer.h"
@@ -43,7 +44,12 @@ class Expressions {
   private:
     std::optional<std::string> element(const Expr& expression, const Scope& scope);
     std::optional<std::string> let(const Expr& expression, const Scope& scope);
+    std::optional<std::string> name(const Expr& expression, const Scope& scope);
     std::optional<std::string> call(const Expr& expression, const Scope& scope);
+    std::optional<std::string> own_function(const Expr& expression, const Definition& function,
+                                            const std::vector<std::string>& arguments);
+    std::optional<std::string> known_function(const Expr& expression,
+                                              const std::vector<std::string>& arguments);
     std::nullopt_t fail(const Expr& expression, std::string message);
     std::optional<double> evaluate(const Expr& expression, const Numbers& known, int depth) const;
 

@@ -24,10 +24,15 @@ bool is_one_of(const std::string& symbol, std::string_view characters) {
 
 CpfgWords::CpfgWords(CpfgNames& names, const CpfgSystem& system) : names_(names), system_(system) {
     for (const auto& [section, productions] : system.productions)
-        for (const CpfgProduction& production : productions)
+        for (const CpfgProduction& production : productions) {
+            if (!production.predecessor.empty()) rewritten_.insert(production.predecessor[0].symbol);
+            if (section == CpfgSection::homomorphism && production.predecessor.size() == 1)
+                drawn_otherwise_.emplace(production.predecessor[0].symbol,
+                                         production.predecessor[0].parameters.size());
             for (const CpfgString* string : {&production.predecessor, &production.left, &production.right})
                 for (const CpfgModule& module : *string)
                     mentioned_.insert(module.symbol);
+        }
 }
 
 int CpfgWords::depth_of(CpfgSection section) const {
@@ -82,26 +87,8 @@ std::string CpfgWords::name_of(const std::string& symbol) {
     }
     if (std::string_view("FfGg+-&^|[]{}.!;,").find(c) != std::string_view::npos) return symbol;
     name = c == 'T' ? "TT" : symbol_name(c);
-    if (name.size() > 1 || !has_production(symbol)) declared_.insert(name);
+    if (name.size() > 1 || !rewritten_.contains(symbol)) declared_.insert(name);
     return name;
-}
-
-bool CpfgWords::has_production(const std::string& symbol) const {
-    return std::ranges::any_of(system_.productions, [&](const auto& section) {
-        return std::ranges::any_of(section.second, [&](const CpfgProduction& production) {
-            return !production.predecessor.empty() && production.predecessor[0].symbol == symbol;
-        });
-    });
-}
-
-/// Whether the homomorphism would draw such a module as something else.
-bool CpfgWords::is_drawn_otherwise(const std::string& symbol, std::size_t arity) const {
-    const auto section = system_.productions.find(CpfgSection::homomorphism);
-    if (section == system_.productions.end()) return false;
-    return std::ranges::any_of(section->second, [&](const CpfgProduction& production) {
-        return production.predecessor.size() == 1 && production.predecessor[0].symbol == symbol &&
-               production.predecessor[0].parameters.size() == arity;
-    });
 }
 
 std::string CpfgWords::text_of(const CpfgString& string, Span span, Use use) {
@@ -113,7 +100,7 @@ std::string CpfgWords::text_of(const CpfgString& string, Span span, Use use) {
 
 std::string CpfgWords::text_of(const CpfgModule& module, Span span, Use use) {
     if (use == Use::drawn && module.symbol == "%") return ""; // cpfg cuts nothing there
-    const bool otherwise = is_drawn_otherwise(module.symbol, module.parameters.size());
+    const bool otherwise = drawn_otherwise_.contains({module.symbol, module.parameters.size()});
     if (use == Use::word && is_renamed(module.symbol)) {
         stand_ins_.insert({module.symbol, module.parameters.size()});
         std::string text = name_of(module.symbol);
@@ -151,7 +138,7 @@ std::string CpfgWords::parameters(const CpfgModule& module, Span span, bool othe
             text += ", 0";
             ++arity;
         }
-        for (; is_drawn_otherwise(module.symbol, arity); ++arity)
+        for (; drawn_otherwise_.contains({module.symbol, arity}); ++arity)
             text += ", 0";
     }
     return text.empty() ? text : "(" + text + ")";

@@ -46,8 +46,6 @@ class CpfgWords {
   private:
     enum class Use { word, drawn };
 
-    bool has_production(const std::string& symbol) const;
-    bool is_drawn_otherwise(const std::string& symbol, std::size_t arity) const;
     bool is_renamed(const std::string& symbol) const;
     std::string text_of(const CpfgString& string, Span span, Use use);
     std::string text_of(const CpfgModule& module, Span span, Use use);
@@ -64,8 +62,11 @@ class CpfgWords {
 
     CpfgNames& names_;
     const CpfgSystem& system_;
-    std::set<std::string> mentioned_;                         ///< symbols that productions look at
-    std::set<std::pair<std::string, std::size_t>> stand_ins_; ///< with so many parameters
+    using WithParameters = std::set<std::pair<std::string, std::size_t>>; ///< symbols with so many parameters
+    std::set<std::string> mentioned_; ///< symbols that productions look at
+    std::set<std::string> rewritten_; ///< symbols that begin a predecessor
+    WithParameters drawn_otherwise_;  ///< what the homomorphism draws as something else
+    WithParameters stand_ins_;
     std::set<std::string> declared_;
     std::set<char> used_surfaces_;
     bool uses_cut_ = false, bends_of_old_ = false;

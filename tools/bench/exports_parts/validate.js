@@ -6,7 +6,7 @@ const validator = require('gltf-validator');
     for (const file of process.argv.slice(2)) {
         const report = await validator.validateBytes(new Uint8Array(fs.readFileSync(file)));
         const {numErrors, numWarnings, messages} = report.issues;
-        const worst = messages.find(message => message.severity === numErrors ? 0 : 1);
-        console.log(JSON.stringify({file, errors: numErrors, warnings: numWarnings, says: worst ? worst.code : ''}));
+        const worst = messages.reduce((a, b) => (b.severity < a.severity ? b : a), {code: '', severity: 9});
+        console.log(JSON.stringify({file, errors: numErrors, warnings: numWarnings, says: worst.code}));
     }
 })();

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 #include <pugixml.hpp>
 
+#include "compiler/import/flame_parametric.h"
 #include "compiler/import/flame_reader.h"
 #include "compiler/import/flame_variations.h"
 #include "compiler/import/foreign_text.h"
@@ -234,8 +235,12 @@ class Writer {
         // Variations with two branches make maps for each choice.
         std::vector<std::vector<std::pair<double, Formula>>> choices = {{}};
         for (const auto& [variation, weight] : map.variations) {
-            const std::vector<Formula> formulas = formulas_of(variation, map.pre);
-            if (formulas.empty()) {
+            const Setting setting{.pre = map.pre, .weight = weight, .number = [&](const std::string& name, double otherwise) {
+                                      const auto known = map.numbers.find(name);
+                                      return known == map.numbers.end() ? otherwise : known->second;
+                                  }};
+            const std::vector<Formula> formulas = formulas_of(variation, setting);
+            if (formulas.empty() || choices.size() * formulas.size() > most_branches) {
                 file_.diagnostics.error(map.span,
                                         fmt::format("the variation '{}' is not translated", variation));
                 return false;

@@ -10,6 +10,7 @@
 #include "compiler/import/flame_variations.h"
 #include "compiler/import/foreign_text.h"
 #include "compiler/support/number.h"
+#include "compiler/support/small_letters.h"
 
 namespace graftal::flame {
 
@@ -26,6 +27,24 @@ std::vector<double> numbers_in(std::string_view text) {
         numbers.push_back(value && std::abs(*value) <= 1e50 ? *value : 0);
         at = end;
     }
+}
+
+/// Fractorium and the plugins of Apophysis have some variations and numbers by other names.
+std::string name_in_flam3(std::string name) {
+    if (name == "Mobius") return "mobius";
+    if (name.starts_with("oscope_")) return name.replace(0, 6, "oscilloscope");
+    if (name.size() == 4 && (name.starts_with("Re_") || name.starts_with("Im_"))) return "mobius_" + in_small_letters(name);
+    return name;
+}
+
+/// Whether an attribute is a number of a variation: of one that the map has, or of one that it could have. Whatever its
+/// value, it means nothing without the variation.
+bool is_number_of_variation(const pugi::xml_node& node, std::string_view name) {
+    for (std::size_t end = name.find('_'); end != std::string_view::npos; end = name.find('_', end + 1)) {
+        const std::string owner(name.substr(0, end));
+        if (is_variation(owner) || node.attribute(owner.c_str())) return true;
+    }
+    return false;
 }
 
 } // namespace
@@ -125,25 +144,6 @@ Affine Reader::coefficients(const pugi::xml_attribute& attribute, Span place) {
 }
 
 Map Reader::read_map(const pugi::xml_node& node) {
-    static const std::set<std::string_view> plain = {"weight",
-                                                     "color",
-                                                     "symmetry",
-                                                     "color_speed",
-                                                     "coefs",
-                                                     "post",
-                                                     "chaos",
-                                                     "opacity",
-                                                     "animate",
-                                                     "name",
-                                                     "plotmode",
-                                                     "var",
-                                                     "density",
-                                                     "var_color",
-                                                     "pulsation",
-                                                     "slider",
-                                                     "motion_frequency",
-                                                     "motion_function",
-                                                     "motion_offset"};
     Map map;
     map.span = span(node);
     map.pre = coefficients(node.attribute("coefs"), map.span);
@@ -161,19 +161,39 @@ Map Reader::read_map(const pugi::xml_node& node) {
     map.chaos = numbers_in(node.attribute("chaos").value());
     map.name = node.attribute("name").value();
     if (std::string_view(node.attribute("plotmode").value()) == "off") map.opacity = 0;
-    for (const pugi::xml_attribute& attribute : node.attributes()) {
-        const std::string_view name = attribute.name();
-        const double value = attribute.as_double();
-        if (plain.contains(name) || value == 0) continue;
-        if (is_variation(name))
-            map.variations.emplace_back(name, std::clamp(value, -1e6, 1e6));
-        else if (name.find('_') == std::string_view::npos)
-            file_.diagnostics.error(map.span, fmt::format("the variation '{}' is not translated", name));
-        // What is left are parameters of variations, which stand or fall with these.
-    }
-    read_old_variations(node, map);
-    if (map.variations.empty() && !node.attribute("coefs").empty()) map.variations.emplace_back("linear", 1);
+    read_variations(node, map);
     return map;
+}
+
+void Reader::read_variations(const pugi::xml_node& node, Map& map) {
+    static const std::set<std::string_view> plain = {
+        "weight", "color", "symmetry", "color_speed", "coefs", "post", "chaos", "opacity", "animate",
+        "name", "plotmode", "var", "var1", "density", "var_color", "pulsation", "slider", "motion_frequency",
+        "motion_function", "motion_offset"};
+    bool flat = false;
+    std::vector<std::string> unknown;
+    for (const pugi::xml_attribute& attribute : node.attributes()) {
+        const std::string name = name_in_flam3(attribute.name());
+        const double value = std::clamp(attribute.as_double(), -1e6, 1e6);
+        if (plain.contains(name)) continue;
+        if (leaves_the_plane(name))
+            flat = true;
+        else if (is_variation(name) && value != 0)
+            map.variations.emplace_back(name, value);
+        else if (!is_variation(name) && is_number_of_variation(node, name))
+            map.numbers.emplace(name, value);
+        else if (!is_variation(name) && value != 0)
+            unknown.push_back(name);
+    }
+    // Variations that no file of flam3 has may have numbers of any name: these stand or fall with them.
+    const auto is_whole = [](std::string_view name) { return name.find('_') == std::string_view::npos; };
+    const bool some_whole = std::ranges::any_of(unknown, is_whole);
+    for (const std::string& name : unknown)
+        if (!some_whole || is_whole(name))
+            file_.diagnostics.error(map.span, fmt::format("the variation '{}' is not translated", name));
+    read_old_variations(node, map);
+    // A map that only flattens makes the one point; one that names no variation is linear.
+    if (map.variations.empty() && !node.attribute("coefs").empty()) map.variations.emplace_back("linear", flat ? 0 : 1);
 }
 
 /// `var="1 0 0 ..."` of old files.

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <map>
 #include <optional>
 #include <string>
 #include <utility>
@@ -25,6 +26,7 @@ struct Map {
     double weight = 0;
     double colour = 0, speed = 0.5;
     double opacity = 1;
+    std::map<std::string, double> numbers; ///< of the variations
     std::vector<double> chaos; ///< factors of the weights of the maps that follow
     std::string name;
     Span span;
@@ -77,6 +79,7 @@ class Reader {
     static void read_palette(const pugi::xml_node& node, Flame& flame);
     Affine coefficients(const pugi::xml_attribute& attribute, Span place);
     Map read_map(const pugi::xml_node& node);
+    void read_variations(const pugi::xml_node& node, Map& map);
     void read_old_variations(const pugi::xml_node& node, Map& map);
     const ForeignFile& file_;
     pugi::xml_document document_;

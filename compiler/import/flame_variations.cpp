@@ -1,11 +1,13 @@
 #include "compiler/import/flame_variations.h"
 
-#include <functional>
+#include <algorithm>
+#include <array>
 #include <map>
 #include <set>
 
 #include <fmt/format.h>
 
+#include "compiler/import/flame_parametric.h"
 #include "compiler/support/number.h"
 
 namespace graftal::flame {
@@ -151,6 +153,10 @@ const std::map<std::string_view, Maker, std::less<>>& formula_table() {
              return std::vector<Formula>{
                  {sine("u") + " / " + cosine("v"), fmt::format("tan({} * v)", degrees)}};
          }},
+        {"hemisphere",
+         [](const Affine&) {
+             return std::vector<Formula>{{"u / sqrt(r2 + 1)", "v / sqrt(r2 + 1)"}};
+         }},
         {"cross",
          [](const Affine&) {
              return std::vector<Formula>{{"u / (abs(u*u - v*v) + 1e-10)", "v / (abs(u*u - v*v) + 1e-10)"}};
@@ -161,25 +167,23 @@ const std::map<std::string_view, Maker, std::less<>>& formula_table() {
 
 } // namespace
 
-std::vector<Formula> formulas_of(std::string_view variation, const Affine& pre) {
+std::vector<Formula> formulas_of(std::string_view variation, const Setting& setting) {
     const auto found = formula_table().find(variation);
-    return found == formula_table().end() ? std::vector<Formula>() : found->second(pre);
+    return found == formula_table().end() ? parametric_formulas(variation, setting) : found->second(setting.pre);
+}
+
+bool leaves_the_plane(std::string_view name) {
+    static constexpr std::array<std::string_view, 8> names = {"flatten", "pre_flatten",  "post_flatten", "zscale",
+                                                              "zcone",   "ztranslate", "zblur",        "pre_zscale"};
+    return std::ranges::find(names, name) != names.end();
 }
 
 bool is_variation(std::string_view name) {
     static const std::set<std::string_view> others = {
-        "rings",   "fan",          "blob",       "pdj",         "fan2",          "rings2",      "perspective",
-        "noise",   "julian",       "juliascope", "blur",        "gaussian_blur", "radial_blur", "pie",
-        "ngon",    "curl",         "rectangles", "arch",        "square",        "rays",        "blade",
-        "secant2", "twintrian",    "disc2",      "super_shape", "flower",        "conic",       "parabola",
-        "bent2",   "bipolar",      "boarders",   "butterfly",   "cell",          "cpow",        "curve",
-        "edisc",   "elliptic",     "escher",     "foci",        "lazysusan",     "loonie",      "pre_blur",
-        "modulus", "oscilloscope", "polar2",     "popcorn2",    "scry",          "separation",  "split",
-        "splits",  "stripes",      "wedge",      "wedge_julia", "wedge_sph",     "whorl",       "waves2",
-        "exp",     "log",          "sin",        "cos",         "tan",           "sec",         "csc",
-        "cot",     "sinh",         "cosh",       "tanh",        "sech",          "csch",        "coth",
-        "auger",   "flux",         "mobius"};
-    return formula_table().contains(name) || others.contains(name);
+        "noise",      "blur",   "gaussian_blur", "radial_blur", "pie",   "ngon",     "arch",     "square",
+        "rays",       "blade",  "twintrian",     "super_shape", "flower", "conic",   "parabola", "boarders",
+        "cpow",       "pre_blur"};
+    return formula_table().contains(name) || is_parametric(name) || others.contains(name);
 }
 
 } // namespace graftal::flame

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <optional>
+#include <functional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -15,9 +15,20 @@ struct Formula {
     std::string x, y;
 };
 
+/// What a variation may read besides the point.
+struct Setting {
+    const Affine& pre; ///< the affine part of its map
+    double weight = 1;
+    /// A number of the map, such as `julian_power`, or what it is where the file says none.
+    std::function<double(const std::string& name, double otherwise)> number;
+};
+
 /// One for each equally likely branch: `julia` has two. Empty if the variation has no formula here, for it is
-/// unknown or draws random numbers. `pre`: the affine part of the map, which some use.
-std::vector<Formula> formulas_of(std::string_view variation, const Affine& pre);
+/// unknown or draws random numbers.
+std::vector<Formula> formulas_of(std::string_view variation, const Setting& setting);
+
+/// Whether it moves points off the plane only, as `flatten`: it changes nothing here.
+bool leaves_the_plane(std::string_view name);
 
 /// Whether flam3 knows a variation of this name.
 bool is_variation(std::string_view name);

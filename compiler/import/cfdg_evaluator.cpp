@@ -35,6 +35,15 @@ bool is_setting(std::string_view name) {
     return name.starts_with("CF::");
 }
 
+/// Whether the left operand decides alone; it is the result then.
+bool decides(const std::string& sign, Value& left) {
+    if (left.kind != Value::Kind::numbers) return false;
+    if (sign == "&&") return left.numbers == std::vector{0.0};
+    if (sign != "||" || left.numbers.size() != 1 || left.numbers[0] == 0) return false;
+    left.numbers[0] = 1;
+    return true;
+}
+
 } // namespace
 
 std::string key_of(const Value& value) {
@@ -96,33 +105,37 @@ std::optional<Value> Evaluator::value(const Expr& expression, const Surroundings
     if (depth_ >= deepest_expressions)
         return fail(expression.span, "functions call each other too deep here");
     ++depth_;
-    std::optional<Value> result;
-    switch (expression.kind) {
-    case Expr::Kind::number:
-        result = Value::of(expression.number);
-        break;
-    case Expr::Kind::name:
-        result = value_of_name(expression, at);
-        break;
-    case Expr::Kind::list:
-        result = list(expression, at);
-        break;
-    case Expr::Kind::modification:
-        if (std::optional<Change> made = change(*expression.change, at))
-            result = Value{.kind = Value::Kind::change, .change = std::move(*made)};
-        break;
-    case Expr::Kind::unary:
-        result = unary(expression, at);
-        break;
-    case Expr::Kind::binary:
-        result = operation(expression, at);
-        break;
-    case Expr::Kind::call:
-        result = call(expression, at);
-        break;
-    }
+    std::optional<Value> result = value_of_kind(expression, at);
     --depth_;
     return result;
+}
+
+// Expressions nest deep, and functions call themselves: each of these on the way keeps a small frame.
+
+std::optional<Value> Evaluator::value_of_kind(const Expr& expression, const Surroundings& at) {
+    switch (expression.kind) {
+    case Expr::Kind::name:
+        return value_of_name(expression, at);
+    case Expr::Kind::list:
+        return list(expression, at);
+    case Expr::Kind::modification:
+        return change_value(*expression.change, at);
+    case Expr::Kind::unary:
+        return unary(expression, at);
+    case Expr::Kind::binary:
+        return operation(expression, at);
+    case Expr::Kind::call:
+        return call(expression, at);
+    case Expr::Kind::number:
+        break;
+    }
+    return Value::of(expression.number);
+}
+
+std::optional<Value> Evaluator::change_value(const Modification& modification, const Surroundings& at) {
+    std::optional<Change> made = change(modification, at);
+    if (!made) return std::nullopt;
+    return Value{.kind = Value::Kind::change, .change = std::move(*made)};
 }
 
 std::optional<std::vector<double>> Evaluator::numbers(const Expr& expression, const Surroundings& at) {
@@ -192,32 +205,33 @@ std::optional<Value> Evaluator::unary(const Expr& expression, const Surroundings
 }
 
 std::optional<Value> Evaluator::operation(const Expr& expression, const Surroundings& at) {
+    std::optional<Value> left = value(expression.operands[0], at);
+    if (!left || decides(expression.text, *left)) return left;
+    const std::optional<Value> right = value(expression.operands[1], at);
+    if (!right) return std::nullopt;
+    return combined(expression, *left, *right);
+}
+
+std::optional<Value> Evaluator::combined(const Expr& expression, const Value& left, const Value& right) {
     const std::string& sign = expression.text;
-    const std::optional<Value> left = value(expression.operands[0], at);
-    if (!left) return std::nullopt;
-    if (left->kind == Value::Kind::flags && (sign == "+" || sign == "||")) {
-        const std::optional<Value> right = value(expression.operands[1], at);
-        if (!right) return std::nullopt;
-        return Value{.kind = Value::Kind::flags, .flags = left->flags + right->flags};
-    }
-    if (left->kind != Value::Kind::numbers) return fail(expression.operands[0].span, "this is no number");
-    const std::vector<double>& a = left->numbers;
-    if (sign == "&&" && a == std::vector{0.0}) return Value::of(0);
-    if (sign == "||" && a.size() == 1 && a[0] != 0) return Value::of(1);
-    const std::optional<std::vector<double>> b = numbers(expression.operands[1], at);
-    if (!b) return std::nullopt;
-    if (a.empty() || b->empty()) return fail(expression.span, "this is no number");
+    if (left.kind == Value::Kind::flags && (sign == "+" || sign == "||"))
+        return Value{.kind = Value::Kind::flags, .flags = left.flags + right.flags};
+    for (std::size_t i = 0; i < 2; ++i)
+        if ((i == 0 ? left : right).kind != Value::Kind::numbers)
+            return fail(expression.operands[i].span, "this is no number");
+    const std::vector<double>&a = left.numbers, &b = right.numbers;
+    if (a.empty() || b.empty()) return fail(expression.span, "this is no number");
     if (sign == ".." || sign == "+/-") {
         const double k = draws.unit();
-        return Value::of(sign == ".." ? std::min(a[0], (*b)[0]) + k * std::abs((*b)[0] - a[0])
-                                      : a[0] + (2 * k - 1) * (*b)[0]);
+        return Value::of(sign == ".." ? std::min(a[0], b[0]) + k * std::abs(b[0] - a[0])
+                                      : a[0] + (2 * k - 1) * b[0]);
     }
-    if (sign == "==" || sign == "<>") return Value::of((a == *b) == (sign == "=="));
-    if (a.size() != b->size() && a.size() != 1 && b->size() != 1)
+    if (sign == "==" || sign == "<>") return Value::of((a == b) == (sign == "=="));
+    if (a.size() != b.size() && a.size() != 1 && b.size() != 1)
         return fail(expression.span, "these vectors have different lengths");
     Value result;
-    for (std::size_t i = 0; i < std::max(a.size(), b->size()); ++i) {
-        const double made = binary(sign, a[a.size() == 1 ? 0 : i], (*b)[b->size() == 1 ? 0 : i]);
+    for (std::size_t i = 0; i < std::max(a.size(), b.size()); ++i) {
+        const double made = binary(sign, a[a.size() == 1 ? 0 : i], b[b.size() == 1 ? 0 : i]);
         if (!std::isfinite(made)) return fail(expression.span, "this has no finite value");
         result.numbers.push_back(made);
     }

@@ -61,6 +61,9 @@ class Evaluator {
     std::optional<Value> list(const Expr& expression, const Surroundings& at);
     std::optional<Value> unary(const Expr& expression, const Surroundings& at);
     std::optional<Value> operation(const Expr& expression, const Surroundings& at);
+    std::optional<Value> value_of_kind(const Expr& expression, const Surroundings& at);
+    std::optional<Value> combined(const Expr& expression, const Value& left, const Value& right);
+    std::optional<Value> change_value(const Modification& modification, const Surroundings& at);
     std::optional<Value> call(const Expr& expression, const Surroundings& at);
     std::optional<Value> function(const Definition& function, const Expr& expression, const Surroundings& at);
     std::optional<Value> element(const Expr& expression, const Surroundings& at);

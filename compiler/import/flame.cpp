@@ -71,6 +71,8 @@ class Writer {
     }
 
   private:
+    static constexpr const char *start_x = "0.1", *start_y = "0.2";
+
     static std::string comment(const std::string& words) { return "# " + comment_text(words); }
     static std::string own_name(const std::string& name) {
         const std::string plain = plain_name(name);
@@ -224,7 +226,7 @@ class Writer {
                          "this map does not shrink, alone or with another, so the flame has no limit set")
                 .with_hint("the model is an orbit: 'graftal points' draws it");
         out_.line(fmt::format("orbit {} {{", name_));
-        out_.line("  start 0.1, 0.2");
+        out_.line(fmt::format("  start {}, {}", start_x, start_y));
         for (const Map& map : flame_.maps)
             good = write_map(map) && good;
         out_.line("}");
@@ -271,18 +273,18 @@ class Writer {
                 x += fmt::format("{}({}) * ({})", sign, number(weight), formula.x);
                 y += fmt::format("{}({}) * ({})", sign, number(weight), formula.y);
             }
+            // As flam3 does, a point that runs away begins anew.
+            out_.line("    let p = " + x);
+            out_.line("    let q = " + y);
+            out_.line("    let near = abs(p) < 1e10 && abs(q) < 1e10");
             const Affine& post = map.post;
-            if (post == Affine()) {
-                out_.line("    x = " + x);
-                out_.line("    y = " + y);
-            } else {
-                out_.line("    let p = " + x);
-                out_.line("    let q = " + y);
-                out_.line(fmt::format("    x = ({}) * p + ({}) * q + ({})", number(post.linear[0][0]),
-                                      number(post.linear[1][0]), number(post.translation.x)));
-                out_.line(fmt::format("    y = ({}) * p + ({}) * q + ({})", number(post.linear[0][1]),
-                                      number(post.linear[1][1]), number(post.translation.y)));
-            }
+            const auto after = [&](std::size_t axis, double translation, const char* unmoved) {
+                if (post == Affine()) return std::string(unmoved);
+                return fmt::format("({}) * p + ({}) * q + ({})", number(post.linear[0][axis]), number(post.linear[1][axis]),
+                                   number(translation));
+            };
+            out_.line(fmt::format("    x = choose(near, {}, {})", after(0, post.translation.x, "p"), start_x));
+            out_.line(fmt::format("    y = choose(near, {}, {})", after(1, post.translation.y, "q"), start_y));
             out_.line(fmt::format("    probability {}{}",
                                   number(map.weight / static_cast<double>(choices.size())), tint(map)));
             out_.line("  }");

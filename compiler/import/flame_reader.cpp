@@ -31,7 +31,7 @@ std::vector<double> numbers_in(std::string_view text) {
 
 /// Fractorium and the plugins of Apophysis have some variations and numbers by other names.
 std::string name_in_flam3(std::string name) {
-    if (name == "Mobius") return "mobius";
+    if (name.starts_with("Mobius")) return in_small_letters(name);
     if (name.starts_with("oscope_")) return name.replace(0, 6, "oscilloscope");
     if (name.size() == 4 && (name.starts_with("Re_") || name.starts_with("Im_"))) return "mobius_" + in_small_letters(name);
     return name;

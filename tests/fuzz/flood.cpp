@@ -1,5 +1,5 @@
 // flood TARGET SECONDS SEED FINDING FOLDER: changed inputs from a folder through a target of tests/fuzz, for
-// so many seconds, without sanitizers and without a look at coverage: many more than libFuzzer can run.
+// so many seconds, without a look at coverage: many more than libFuzzer can run.
 // Prints the executions, the slowest in milliseconds and what was found; the input then stands in the file
 // FINDING, and the status is 1.
 
@@ -26,8 +26,13 @@ namespace {
 using namespace graftal::fuzz;
 
 constexpr std::size_t most_bytes = 2000;
-constexpr long most_kib = 2'000'000;
-constexpr int most_seconds = 20; ///< for one input
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+constexpr int slower = 4; ///< a build with sanitizers, in time and in memory
+#else
+constexpr int slower = 1;
+#endif
+constexpr long most_kib = slower * 2'000'000;
+constexpr int most_seconds = slower * 20; ///< for one input
 
 /// What a signal handler may look at.
 struct Now {

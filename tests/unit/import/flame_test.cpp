@@ -151,6 +151,27 @@ TEST(Flame, FormulasOfComplexNumbers) {
         }
 }
 
+TEST(Flame, NamesOfOtherPrograms) {
+    const auto said = [](const std::string& map) {
+        const ImportedShapes model("a.flame", flame("<xform weight=\"1\" coefs=\"1 0 0 1 0 0\" " + map + "/>"));
+        return model.said() + model.translation;
+    };
+    for (const char* map : {"Mobius=\"1\" Re_A=\"7\" Im_D=\"3\"", "Mobius=\"1\" Mobius_Re_A=\"7\" Mobius_Im_D=\"3\"",
+                            "mobius=\"1\" mobius_re_a=\"7\" mobius_im_d=\"3\""})
+        EXPECT_THAT(said(map), HasSubstr("7 * u")) << map;
+    for (const char* map : {"oscilloscope=\"1\" oscope_damping=\"7\"", "oscilloscope=\"1\" oscilloscope_damping=\"7\""})
+        EXPECT_THAT(said(map), HasSubstr("exp(-abs(u) * 7)")) << map;
+}
+
+// A point that runs away begins anew, as in flam3, which has no other end for a map that grows.
+TEST(Flame, PointsThatRunAwayBeginAnew) {
+    const ImportedShapes model("a.flame", flame("<xform weight=\"1\" linear=\"1\" coefs=\"3 0 0 3 0 0\"/>"));
+    ASSERT_TRUE(model.orbit) << model.said();
+    EXPECT_THAT(model.translation, HasSubstr("let near = abs(p) < 1e10 && abs(q) < 1e10"));
+    EXPECT_THAT(model.translation, HasSubstr("x = choose(near, p, 0.1)"));
+    EXPECT_THAT(model.translation, HasSubstr("start 0.1, 0.2"));
+}
+
 TEST(Flame, RootsAreTheBranches) {
     const Point z(-0.4, 0.9);
     for (const std::string variation : {"julian", "juliascope"}) {

@@ -1,6 +1,7 @@
 """Every scene as glTF, through Khronos' gltf-validator."""
 import concurrent.futures
 import json
+import re
 import sys
 import time
 from pathlib import Path
@@ -58,8 +59,9 @@ def every_scene(study, scenes, jobs, known):
 
 
 def told(said):
-    """Without the names of files."""
-    return said.split(': ', 2)[-1].replace('|', '\\|')
+    """How large the file would be; else all that was said, without the names of files."""
+    size = re.search(r'about ([\d.e+]+) bytes', said)
+    return f'{float(size[1]) / 2**20:.3g} MiB' if size else said.split('error: ')[-1].replace('|', '\\|')
 
 
 def table(rows, fallen_short):
@@ -75,16 +77,14 @@ def table(rows, fallen_short):
            f'{sum(row["warnings"] == 0 for row in written)} |')
     yield ''
     coarse = [row for row in written if row['refused']]
-    yield (f'{len(written) - len(coarse)} of them are written as they are. The others would be larger than {LIMIT}iB, or too large to '
-           'draw whole, and have a larger `--error`. No file is larger than ' + LAST_LIMIT + 'iB:')
+    yield (f'{len(written) - len(coarse)} of them are written as they are. The others would be larger than {LIMIT}iB, and have a '
+           f'larger `--error`; with the largest, a file may have {LAST_LIMIT}iB.')
     yield ''
-    yield '| scene | written with | what was said without it |'
+    yield '| scene | without `--error` | written with |'
     yield '|---|---|---|'
-    for row in coarse:
-        yield f'| `{row["scene"]}` | `{row["words"]}` | {told(row["refused"])} |'
     for row in rows:
-        if row['words'] is None:
-            yield f'| `{row["scene"]}` | not written | {told(row["said"])} |'
+        if row['refused']:
+            yield f'| `{row["scene"]}` | {told(row["refused"])} | {"" if row["words"] is None else "`" + row["words"] + "`"} |'
 
 
 def study(study, scenes, jobs, kept, commit):

@@ -16,6 +16,7 @@
 #include "compiler/import/importers.h"
 #include "compiler/import/own_words.h"
 #include "compiler/import/spectral_radius.h"
+#include "compiler/support/angle.h"
 #include "compiler/support/number.h"
 #include "compiler/support/srgb.h"
 
@@ -157,10 +158,11 @@ class Writer {
                               number(linear_from_srgb(b[1])), number(linear_from_srgb(b[2]))));
         if (!flame_.centre || !(flame_.scale > 0) || !(flame_.width > 0)) return;
         const double x = (*flame_.centre)[0], y = (*flame_.centre)[1];
+        const auto [cosine, sine] = cos_sin_deg(flame_.rotate);
         out_.line(fmt::format(
-            "camera {{ orthographic  location: {0},{1},-10  look_at: {0},{1},0  up: 0,-1,0  width: {2} }}"
+            "camera {{ orthographic  location: {0},{1},-10  look_at: {0},{1},0  up: {3},{4},0  width: {2} }}"
             "   # y points downwards",
-            number(x), number(y), number(flame_.width / flame_.scale)));
+            number(x), number(y), number(flame_.width / flame_.scale), number(-sine), number(-cosine)));
     }
 
     void write_maps() {
@@ -225,6 +227,7 @@ class Writer {
                 .warning(growing->span,
                          "this map does not shrink, alone or with another, so the flame has no limit set")
                 .with_hint("the model is an orbit: 'graftal points' draws it");
+        write_camera();
         out_.line(fmt::format("orbit {} {{", name_));
         out_.line(fmt::format("  start {}, {}", start_x, start_y));
         for (const Map& map : flame_.maps)

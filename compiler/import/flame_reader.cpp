@@ -71,7 +71,9 @@ std::optional<Flame> Reader::read(const pugi::xml_node& node) {
     if (centre.size() == 2) flame.centre = {centre[0], centre[1]};
     const std::vector<double> size = numbers_in(node.attribute("size").value());
     if (size.size() == 2) flame.width = size[0];
-    flame.scale = node.attribute("scale").as_double();
+    flame.scale = node.attribute("scale").as_double() * std::exp2(std::clamp(node.attribute("zoom").as_double(), -100.0, 100.0));
+    flame.rotate = node.attribute("rotate").as_double();
+    if (!std::isfinite(flame.rotate)) flame.rotate = 0;
     const std::vector<double> background = numbers_in(node.attribute("background").value());
     if (background.size() == 3)
         for (std::size_t i = 0; i < 3; ++i)

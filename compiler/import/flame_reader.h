@@ -59,7 +59,8 @@ struct Flame {
     int symmetry = 1;
     Span symmetry_span;
     std::optional<std::array<double, 2>> centre;
-    double scale = 0, width = 0;
+    double scale = 0, width = 0; ///< pixels of a unit, and of the picture
+    double rotate = 0;           ///< of the picture, in degrees
     std::array<double, 3> background{};
 };
 

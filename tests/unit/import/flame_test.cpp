@@ -163,6 +163,17 @@ TEST(Flame, NamesOfOtherPrograms) {
         EXPECT_THAT(said(map), HasSubstr("exp(-abs(u) * 7)")) << map;
 }
 
+TEST(Flame, TheViewIsThatOfTheFile) {
+    const std::string view = "size=\"600 400\" center=\"1 2\" scale=\"50\" zoom=\"1\" rotate=\"90\" background=\"1 0 0\"";
+    for (const char* map : {"linear=\".5\"", "swirl=\".5\""}) {
+        const ImportedShapes model("a.flame", "<flame name=\"a\" " + view + "><xform weight=\"1\" coefs=\"1 0 0 1 0 0\" " +
+                                                  map + "/></flame>");
+        EXPECT_TRUE(model.orbit || model.graph) << model.said();
+        EXPECT_THAT(model.translation, HasSubstr("background: 1, 0, 0\n"));
+        EXPECT_THAT(model.translation, HasSubstr("location: 1,2,-10  look_at: 1,2,0  up: -1,0,0  width: 6 }"));
+    }
+}
+
 // A point that runs away begins anew, as in flam3, which has no other end for a map that grows.
 TEST(Flame, PointsThatRunAwayBeginAnew) {
     const ImportedShapes model("a.flame", flame("<xform weight=\"1\" linear=\"1\" coefs=\"3 0 0 3 0 0\"/>"));

@@ -22,8 +22,10 @@ import usd  # noqa: E402
 MODELS = [('hart/sierpinski.inst', ['--steps', '5']), ('abop/fig1_24f.lsys', []), ('abop/fig1_25.lsys', []),
           ('hart/pound_sign.rifs', ['--steps', '3']), ('shapes/shapes.inst', []),
           ('ifs/fern.rifs', ['--steps', '4']), ('plants/maple_leaf_card.inst', [])]
-SOLIDS = [('ifs/menger_sponge.rifs', ['--steps', '2']), ('abop/fig1_24f.lsys', []), ('hart/pound_sign.rifs', ['--steps', '3']),
-          ('hart/ternary_tree.inst', ['--error', '8']), ('hart/elm.inst', ['--error', '32'])]
+# Those whose files are texts that Python reads slowly, or whose edges it counts, are young.
+RENDERED = [('hart/sierpinski.inst', ['--steps', '3']), ('abop/fig1_24f.lsys', ['--steps', '3']), ('hart/pound_sign.rifs', ['--steps', '2'])]
+SOLIDS = [('ifs/menger_sponge.rifs', ['--steps', '2']), ('abop/fig1_24f.lsys', ['--steps', '4']), ('hart/pound_sign.rifs', ['--steps', '3']),
+          ('hart/ternary_tree.inst', ['--error', '24']), ('hart/elm.inst', ['--error', '96'])]
 
 
 def glb_parts(path):
@@ -50,11 +52,21 @@ class Exports(unittest.TestCase):
         self.assertEqual(done.returncode, 0, done.stderr)
         return self.folder / name
 
+    known = {}  # of all tests: several ask the same
+
     def leaves(self, model, words):
-        return json.loads(self.graftal('stats', SOURCE / 'scenes' / model, *words, '--json').stdout)['leaves']
+        key = ('leaves', model, *words)
+        if key not in self.known:
+            self.known[key] = json.loads(self.graftal('stats', SOURCE / 'scenes' / model, *words, '--json').stdout)['leaves']
+        return self.known[key]
 
     def triangles(self, model, words):
-        return len(meshes.triangles_of(self.export(model, words, 'all.ply')))
+        """What the head of a flat file says; test_flat_files_agree reads such files whole."""
+        key = ('triangles', model, *words)
+        if key not in self.known:
+            head = self.export(model, words, 'all.ply').read_bytes().split(b'end_header')[0]
+            self.known[key] = int(head.split(b'element face ')[1].split()[0])
+        return self.known[key]
 
     def test_usd_means_every_leaf(self):
         for model, words in MODELS + [('hart/pound_sign.rifs', ['--steps', '36'])]:
@@ -87,7 +99,7 @@ class Exports(unittest.TestCase):
                 stage.meshes('/model')
 
     def test_renderers_get_every_triangle(self):
-        for model, words in (MODELS[0], MODELS[1], MODELS[3]):
+        for model, words in RENDERED:
             for name in ('m.pbrt', 'm.xml'):
                 with self.subTest(model, name=name):
                     found = renderers.read(self.export(model, words, name))

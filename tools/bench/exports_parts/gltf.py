@@ -61,7 +61,9 @@ def every_scene(study, scenes, jobs, known):
 def told(said):
     """How large the file would be; else all that was said, without the names of files."""
     size = re.search(r'about ([\d.e+]+) bytes', said)
-    return f'{float(size[1]) / 2**20:.3g} MiB' if size else said.split('error: ')[-1].replace('|', '\\|')
+    if size:
+        return f'{float(size[1]) / 2**20:.3g} MiB'
+    return said.split('error: ')[-1].removeprefix('graftal: ').replace('|', '\\|')
 
 
 def table(rows, fallen_short):

@@ -26,8 +26,8 @@ std::string our_name(const std::string& function) {
     return function == "ceiling" ? "ceil" : function;
 }
 
-// Expressions nest deep: the functions that call each other for their operands keep small frames, and leave the making of
-// text to functions that call none of them.
+// Expressions nest deep: the functions that call each other for their operands keep small frames, and leave
+// the making of text to functions that call none of them.
 
 std::string unary_text(const Expr& expression, const std::string& operand) {
     if (expression.text == "!") return fmt::format("!({})", operand);
@@ -101,8 +101,9 @@ std::optional<std::string> Expressions::text(const Expr& expression, const Scope
         break;
     case Expr::Kind::binary: {
         const std::optional<std::string> left = text(expression.operands[0], scope);
-        const std::optional<std::string> right = text(expression.operands[1], scope); // its errors are said too
-        if (left && right) result = binary_text(expression.text, *left, *right);
+        if (!left) return std::nullopt; // where functions call themselves, the right one has no end
+        const std::optional<std::string> right = text(expression.operands[1], scope);
+        if (right) result = binary_text(expression.text, *left, *right);
         break;
     }
     case Expr::Kind::call:
@@ -126,8 +127,9 @@ std::optional<std::string> Expressions::name(const Expr& expression, const Scope
     const Definition* const global = definition(expression.text);
     if (!global || global->is_function)
         return fail(expression, fmt::format("'{}' has no counterpart here", expression.text));
-    if (++depth_ > deepest_calls)
+    if (depth_ == deepest_calls)
         return fail(expression, fmt::format("'{}' depends on itself", expression.text));
+    ++depth_;
     const std::optional<std::string> value = text(global->value, {});
     --depth_;
     if (!value) return std::nullopt;
@@ -186,12 +188,11 @@ std::optional<std::string> Expressions::call(const Expr& expression, const Scope
 std::optional<std::string> Expressions::own_function(const Expr& expression, const Definition& function,
                                                      const std::vector<std::string>& arguments) {
     if (function.parameters.size() != arguments.size())
-        return fail(expression, fmt::format("'{}' takes {} arguments", expression.text, function.parameters.size()));
-    if (++depth_ > deepest_calls) {
-        depth_ = 0;
+        return fail(expression,
+                    fmt::format("'{}' takes {} arguments", expression.text, function.parameters.size()));
+    if (depth_ == deepest_calls)
         return fail(expression, fmt::format("'{}' calls itself: recursive functions are not translated",
                                             expression.text));
-    }
     Scope inner;
     for (std::size_t i = 0; i < arguments.size(); ++i) {
         if (is_random(arguments[i]))
@@ -199,6 +200,7 @@ std::optional<std::string> Expressions::own_function(const Expr& expression, con
                         "a random number as the argument of a function is not translated");
         inner[function.parameters[i].name] = fmt::format("({})", arguments[i]);
     }
+    ++depth_;
     std::optional<std::string> value = text(function.value, inner);
     --depth_;
     if (value) value = fmt::format("({})", *value);

@@ -240,10 +240,11 @@ class Writer {
         // Variations with two branches make maps for each choice.
         std::vector<std::vector<std::pair<double, Formula>>> choices = {{}};
         for (const auto& [variation, weight] : map.variations) {
-            const Setting setting{.pre = map.pre, .weight = weight, .number = [&](const std::string& name, double otherwise) {
-                                      const auto known = map.numbers.find(name);
-                                      return known == map.numbers.end() ? otherwise : known->second;
-                                  }};
+            const Setting setting{
+                .pre = map.pre, .weight = weight, .number = [&](const std::string& name, double otherwise) {
+                    const auto known = map.numbers.find(name);
+                    return known == map.numbers.end() ? otherwise : known->second;
+                }};
             const std::vector<Formula> formulas = formulas_of(variation, setting);
             if (formulas.empty() || choices.size() * formulas.size() > most_branches) {
                 file_.diagnostics.error(map.span,
@@ -283,11 +284,13 @@ class Writer {
             const Affine& post = map.post;
             const auto after = [&](std::size_t axis, double translation, const char* unmoved) {
                 if (post == Affine()) return std::string(unmoved);
-                return fmt::format("({}) * p + ({}) * q + ({})", number(post.linear[0][axis]), number(post.linear[1][axis]),
-                                   number(translation));
+                return fmt::format("({}) * p + ({}) * q + ({})", number(post.linear[0][axis]),
+                                   number(post.linear[1][axis]), number(translation));
             };
-            out_.line(fmt::format("    x = choose(near, {}, {})", after(0, post.translation.x, "p"), start_x));
-            out_.line(fmt::format("    y = choose(near, {}, {})", after(1, post.translation.y, "q"), start_y));
+            out_.line(
+                fmt::format("    x = choose(near, {}, {})", after(0, post.translation.x, "p"), start_x));
+            out_.line(
+                fmt::format("    y = choose(near, {}, {})", after(1, post.translation.y, "q"), start_y));
             out_.line(fmt::format("    probability {}{}",
                                   number(map.weight / static_cast<double>(choices.size())), tint(map)));
             out_.line("  }");

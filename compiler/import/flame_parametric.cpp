@@ -16,7 +16,8 @@ namespace graftal::flame {
 
 namespace {
 
-/// A name and what stands for it: for the number of a variation its value where the file says none, for a step its text.
+/// A name and what stands for it: for the number of a variation its value where the file says none, for a
+/// step its text.
 struct Part {
     std::string_view name, text;
 };
@@ -28,8 +29,8 @@ struct Row {
     std::string_view x, y;
 };
 
-/// Steps that several variations share. `u` and `v` are the point behind the affine part, `w` is the weight, `e` and `f`
-/// are the translation of the affine part, `k` is the number of the branch.
+/// Steps that several variations share. `u` and `v` are the point behind the affine part, `w` is the weight,
+/// `e` and `f` are the translation of the affine part, `k` is the number of the branch.
 constexpr Part shared[] = {
     {"deg", "57.29577951308232"}, // our functions take degrees
     {"phi", "pi / 180 * atan2(v, u)"},
@@ -129,7 +130,8 @@ const std::vector<Row>& rows() {
         {"bipolar",
          {{"shift", "0"}},
          {{"b", "pi / 360 * atan2(2*v, r2 - 1) - pi / 2 * shift"},
-          {"a", "choose(b > pi / 2, mod(b + pi / 2, pi) - pi / 2, choose(b < -pi / 2, pi / 2 - mod(pi / 2 - b, pi), b))"}},
+          {"a", "choose(b > pi / 2, mod(b + pi / 2, pi) - pi / 2, choose(b < -pi / 2, pi / 2 - mod(pi / 2 - "
+                "b, pi), b))"}},
          "log((r2 + 1 + 2*u) / (r2 + 1 - 2*u)) / (2*pi)",
          "2 / pi * a"},
         {"butterfly",
@@ -205,11 +207,7 @@ const std::vector<Row>& rows() {
          {},
          "choose(cos(180 * v * ysize) >= 0, u, -u)",
          "choose(cos(180 * u * xsize) >= 0, v, -v)"},
-        {"splits",
-         {{"x", "0"}, {"y", "0"}},
-         {},
-         "u + choose(u >= 0, x, -x)",
-         "v + choose(v >= 0, y, -y)"},
+        {"splits", {{"x", "0"}, {"y", "0"}}, {}, "u + choose(u >= 0, x, -x)", "v + choose(v >= 0, y, -y)"},
         {"stripes",
          {{"space", "0"}, {"warp", "0"}},
          {{"i", "floor(u + 0.5)"}, {"d", "u - i"}},
@@ -266,7 +264,14 @@ const std::vector<Row>& rows() {
          "n * cos(a)",
          "n * sin(a)"},
         {"mobius",
-         {{"re_a", "0"}, {"im_a", "0"}, {"re_b", "0"}, {"im_b", "0"}, {"re_c", "0"}, {"im_c", "0"}, {"re_d", "0"}, {"im_d", "0"}},
+         {{"re_a", "0"},
+          {"im_a", "0"},
+          {"re_b", "0"},
+          {"im_b", "0"},
+          {"re_c", "0"},
+          {"im_c", "0"},
+          {"re_d", "0"},
+          {"im_d", "0"}},
          {{"a", "re_a * u - im_a * v + re_b"},
           {"b", "re_a * v + im_a * u + im_b"},
           {"c", "re_c * u - im_c * v + re_d"},
@@ -300,7 +305,8 @@ class Text {
         std::string out;
         for (std::size_t at = 0; at < text.size();) {
             std::size_t end = at;
-            while (end < text.size() && (std::isalnum(static_cast<unsigned char>(text[end])) || text[end] == '_'))
+            while (end < text.size() &&
+                   (std::isalnum(static_cast<unsigned char>(text[end])) || text[end] == '_'))
                 ++end;
             if (end == at) {
                 out += text[at++];

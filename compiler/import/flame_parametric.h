@@ -7,8 +7,8 @@
 
 namespace graftal::flame {
 
-/// The formulas of variations that have numbers of their own (`julian_power`), or that are made of several steps. Empty if
-/// it is none of these, or if its numbers make more branches than `most_branches`.
+/// The formulas of variations that have numbers of their own (`julian_power`), or that are made of several
+/// steps. Empty if it is none of these, or if its numbers make more branches than `most_branches`.
 std::vector<Formula> parametric_formulas(std::string_view variation, const Setting& setting);
 
 /// Whether there is such a variation.

@@ -33,12 +33,13 @@ std::vector<double> numbers_in(std::string_view text) {
 std::string name_in_flam3(std::string name) {
     if (name.starts_with("Mobius")) return in_small_letters(name);
     if (name.starts_with("oscope_")) return name.replace(0, 6, "oscilloscope");
-    if (name.size() == 4 && (name.starts_with("Re_") || name.starts_with("Im_"))) return "mobius_" + in_small_letters(name);
+    if (name.size() == 4 && (name.starts_with("Re_") || name.starts_with("Im_")))
+        return "mobius_" + in_small_letters(name);
     return name;
 }
 
-/// Whether an attribute is a number of a variation: of one that the map has, or of one that it could have. Whatever its
-/// value, it means nothing without the variation.
+/// Whether an attribute is a number of a variation: of one that the map has, or of one that it could have.
+/// Whatever its value, it means nothing without the variation.
 bool is_number_of_variation(const pugi::xml_node& node, std::string_view name) {
     for (std::size_t end = name.find('_'); end != std::string_view::npos; end = name.find('_', end + 1)) {
         const std::string owner(name.substr(0, end));
@@ -71,7 +72,8 @@ std::optional<Flame> Reader::read(const pugi::xml_node& node) {
     if (centre.size() == 2) flame.centre = {centre[0], centre[1]};
     const std::vector<double> size = numbers_in(node.attribute("size").value());
     if (size.size() == 2) flame.width = size[0];
-    flame.scale = node.attribute("scale").as_double() * std::exp2(std::clamp(node.attribute("zoom").as_double(), -100.0, 100.0));
+    flame.scale = node.attribute("scale").as_double() *
+                  std::exp2(std::clamp(node.attribute("zoom").as_double(), -100.0, 100.0));
     flame.rotate = node.attribute("rotate").as_double();
     if (!std::isfinite(flame.rotate)) flame.rotate = 0;
     const std::vector<double> background = numbers_in(node.attribute("background").value());
@@ -168,10 +170,26 @@ Map Reader::read_map(const pugi::xml_node& node) {
 }
 
 void Reader::read_variations(const pugi::xml_node& node, Map& map) {
-    static const std::set<std::string_view> plain = {
-        "weight", "color", "symmetry", "color_speed", "coefs", "post", "chaos", "opacity", "animate",
-        "name", "plotmode", "var", "var1", "density", "var_color", "pulsation", "slider", "motion_frequency",
-        "motion_function", "motion_offset"};
+    static const std::set<std::string_view> plain = {"weight",
+                                                     "color",
+                                                     "symmetry",
+                                                     "color_speed",
+                                                     "coefs",
+                                                     "post",
+                                                     "chaos",
+                                                     "opacity",
+                                                     "animate",
+                                                     "name",
+                                                     "plotmode",
+                                                     "var",
+                                                     "var1",
+                                                     "density",
+                                                     "var_color",
+                                                     "pulsation",
+                                                     "slider",
+                                                     "motion_frequency",
+                                                     "motion_function",
+                                                     "motion_offset"};
     bool flat = false;
     std::vector<std::string> unknown;
     for (const pugi::xml_attribute& attribute : node.attributes()) {
@@ -195,7 +213,8 @@ void Reader::read_variations(const pugi::xml_node& node, Map& map) {
             file_.diagnostics.error(map.span, fmt::format("the variation '{}' is not translated", name));
     read_old_variations(node, map);
     // A map that only flattens makes the one point; one that names no variation is linear.
-    if (map.variations.empty() && !node.attribute("coefs").empty()) map.variations.emplace_back("linear", flat ? 0 : 1);
+    if (map.variations.empty() && !node.attribute("coefs").empty())
+        map.variations.emplace_back("linear", flat ? 0 : 1);
 }
 
 /// `var="1 0 0 ..."` of old files.

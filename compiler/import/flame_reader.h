@@ -27,7 +27,7 @@ struct Map {
     double colour = 0, speed = 0.5;
     double opacity = 1;
     std::map<std::string, double> numbers; ///< of the variations
-    std::vector<double> chaos; ///< factors of the weights of the maps that follow
+    std::vector<double> chaos;             ///< factors of the weights of the maps that follow
     std::string name;
     Span span;
 

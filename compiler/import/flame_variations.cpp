@@ -169,20 +169,21 @@ const std::map<std::string_view, Maker, std::less<>>& formula_table() {
 
 std::vector<Formula> formulas_of(std::string_view variation, const Setting& setting) {
     const auto found = formula_table().find(variation);
-    return found == formula_table().end() ? parametric_formulas(variation, setting) : found->second(setting.pre);
+    return found == formula_table().end() ? parametric_formulas(variation, setting)
+                                          : found->second(setting.pre);
 }
 
 bool leaves_the_plane(std::string_view name) {
-    static constexpr std::array<std::string_view, 8> names = {"flatten", "pre_flatten",  "post_flatten", "zscale",
-                                                              "zcone",   "ztranslate", "zblur",        "pre_zscale"};
+    static constexpr std::array<std::string_view, 8> names = {
+        "flatten", "pre_flatten", "post_flatten", "zscale", "zcone", "ztranslate", "zblur", "pre_zscale"};
     return std::ranges::find(names, name) != names.end();
 }
 
 bool is_variation(std::string_view name) {
     static const std::set<std::string_view> others = {
-        "noise",      "blur",   "gaussian_blur", "radial_blur", "pie",   "ngon",     "arch",     "square",
-        "rays",       "blade",  "twintrian",     "super_shape", "flower", "conic",   "parabola", "boarders",
-        "cpow",       "pre_blur"};
+        "noise",  "blur",   "gaussian_blur", "radial_blur", "pie",       "ngon",
+        "arch",   "square", "rays",          "blade",       "twintrian", "super_shape",
+        "flower", "conic",  "parabola",      "boarders",    "cpow",      "pre_blur"};
     return formula_table().contains(name) || is_parametric(name) || others.contains(name);
 }
 

@@ -344,6 +344,16 @@ TEST(ContextFree, AChainOfManyShapes) {
     EXPECT_TRUE(model.graph) << model.said().substr(0, 1000);
 }
 
+// However often a function calls itself, and whatever is left to do where that ends.
+TEST(ContextFree, FunctionsThatCallThemselvesEnd) {
+    for (const char* body : {"f(n) + f(n)", "f(n) + f(n) + f(n) + f(n)", "-f(n)", "f(f(n))", "min(f(n), f(n))", "if(n, f(n), f(n))"}) {
+        const ImportedShapes model("a.cfdg", std::string("startshape A\nf(number n) = ") + body +
+                                                 "\nshape A { SQUARE [x (f(1))] SQUARE [x (f(2) + f(3))] }");
+        EXPECT_TRUE(model.diagnostics.has_errors()) << body;
+        EXPECT_LT(model.diagnostics.error_count(), 100u) << body;
+    }
+}
+
 TEST(ContextFree, WhatHasNoCounterpartIsNamed) {
     const auto said = [](const std::string& text) { return ImportedShapes("a.cfdg", text).said(); };
     EXPECT_THAT(said("startshape A [|b 0.5]\nrule A { SQUARE { b -0.1| } }"),

@@ -66,15 +66,19 @@ TEST(Flame, WhatHasNoFormulaIsNamed) {
     EXPECT_THAT(said(""), HasSubstr("no maps"));
 }
 
-
 TEST(Flame, WhatIsUnknownIsNamedAlsoBehindAnUnderscore) {
     const auto said = [](const std::string& map) {
-        return ImportedShapes("a.flame", flame("<xform weight=\"1\" coefs=\".5 0 0 .5 0 0\" " + map + "/>")).said();
+        return ImportedShapes("a.flame", flame("<xform weight=\"1\" coefs=\".5 0 0 .5 0 0\" " + map + "/>"))
+            .said();
     };
-    EXPECT_THAT(said("linear=\"1\" pre_wobble=\"1\""), HasSubstr("the variation 'pre_wobble' is not translated"));
-    EXPECT_THAT(said("linear=\"1\" julian_power=\"3\" blob_low=\"1\""), ::testing::Not(HasSubstr("not translated")));
-    EXPECT_THAT(said("linear=\"1\" flatten=\"1\" pre_flatten=\"1\""), ::testing::Not(HasSubstr("not translated")));
-    EXPECT_THAT(said("wobble=\"1\" Speed_Q=\"4\""), ::testing::Not(HasSubstr("variation 'Speed_Q'"))) << "a number of 'wobble'";
+    EXPECT_THAT(said("linear=\"1\" pre_wobble=\"1\""),
+                HasSubstr("the variation 'pre_wobble' is not translated"));
+    EXPECT_THAT(said("linear=\"1\" julian_power=\"3\" blob_low=\"1\""),
+                ::testing::Not(HasSubstr("not translated")));
+    EXPECT_THAT(said("linear=\"1\" flatten=\"1\" pre_flatten=\"1\""),
+                ::testing::Not(HasSubstr("not translated")));
+    EXPECT_THAT(said("wobble=\"1\" Speed_Q=\"4\""), ::testing::Not(HasSubstr("variation 'Speed_Q'")))
+        << "a number of 'wobble'";
     EXPECT_THAT(said("julian=\"1\" julian_power=\"2.5\""), HasSubstr("'julian'")) << "roots of unlike chance";
     EXPECT_THAT(said("var1=\"2\""), ::testing::Not(HasSubstr("not translated")));
 }
@@ -86,28 +90,31 @@ Point value(const flame::Formula& formula, Point at) {
     const auto text = [](double number) { return std::to_string(number); };
     SourceMap sources;
     Diagnostics diagnostics;
-    const LoweredText lowered = lower_text(
-        "m.inst",
-        "let u = " + text(at.real()) + "\nlet v = " + text(at.imag()) +
-            "\nlet r2 = u*u + v*v\nlet r = sqrt(r2)\nlet theta = pi / 180 * atan2(u, v)\nobject all {\n    sphere translate: " +
-            formula.x + ", " + formula.y + ", 0\n}\n",
-        {}, sources, diagnostics);
+    const LoweredText lowered = lower_text("m.inst",
+                                           "let u = " + text(at.real()) + "\nlet v = " + text(at.imag()) +
+                                               "\nlet r2 = u*u + v*v\nlet r = sqrt(r2)\nlet theta = pi / 180 "
+                                               "* atan2(u, v)\nobject all {\n    sphere translate: " +
+                                               formula.x + ", " + formula.y + ", 0\n}\n",
+                                           {}, sources, diagnostics);
     EXPECT_TRUE(lowered.graph) << diagnostics.render(sources);
     Point found;
     if (lowered.graph)
-        unfold(*lowered.graph, strong_components(*lowered.graph), std::nullopt, 10, [&](const UnfoldedLeaf& leaf) {
-            found = {leaf.world_from_object.translation.x, leaf.world_from_object.translation.y};
-            return true;
-        });
+        unfold(*lowered.graph, strong_components(*lowered.graph), std::nullopt, 10,
+               [&](const UnfoldedLeaf& leaf) {
+                   found = {leaf.world_from_object.translation.x, leaf.world_from_object.translation.y};
+                   return true;
+               });
     return found;
 }
 
-std::vector<flame::Formula> formulas(const std::string& variation, const std::map<std::string, double>& numbers = {}) {
+std::vector<flame::Formula> formulas(const std::string& variation,
+                                     const std::map<std::string, double>& numbers = {}) {
     const Affine pre = Affine::translate({0.3, -0.2, 0});
-    const flame::Setting setting{.pre = pre, .weight = 0.7, .number = [&](const std::string& name, double otherwise) {
-                                     const auto known = numbers.find(name);
-                                     return known == numbers.end() ? otherwise : known->second;
-                                 }};
+    const flame::Setting setting{
+        .pre = pre, .weight = 0.7, .number = [&](const std::string& name, double otherwise) {
+            const auto known = numbers.find(name);
+            return known == numbers.end() ? otherwise : known->second;
+        }};
     return flame::formulas_of(variation, setting);
 }
 
@@ -115,9 +122,9 @@ std::vector<flame::Formula> formulas(const std::string& variation, const std::ma
 TEST(Flame, FormulasOfComplexNumbers) {
     using Function = std::function<Point(Point)>;
     const Point a(0.2, 0.4), b(-0.3, 0.1), c(0.5, -0.6), d(1.1, 0.2), i(0, 1);
-    const std::map<std::string, double> mobius = {{"mobius_re_a", 0.2},  {"mobius_im_a", 0.4}, {"mobius_re_b", -0.3},
-                                                  {"mobius_im_b", 0.1},  {"mobius_re_c", 0.5}, {"mobius_im_c", -0.6},
-                                                  {"mobius_re_d", 1.1},  {"mobius_im_d", 0.2}};
+    const std::map<std::string, double> mobius = {
+        {"mobius_re_a", 0.2}, {"mobius_im_a", 0.4},  {"mobius_re_b", -0.3}, {"mobius_im_b", 0.1},
+        {"mobius_re_c", 0.5}, {"mobius_im_c", -0.6}, {"mobius_re_d", 1.1},  {"mobius_im_d", 0.2}};
     const std::map<std::string, std::pair<Function, std::map<std::string, double>>> known = {
         {"exp", {[](Point z) { return std::exp(z); }, {}}},
         {"log", {[](Point z) { return std::log(z); }, {}}},
@@ -133,15 +140,24 @@ TEST(Flame, FormulasOfComplexNumbers) {
         {"sech", {[](Point z) { return 1.0 / std::cosh(z); }, {}}},
         {"csch", {[](Point z) { return 1.0 / std::sinh(z); }, {}}},
         {"coth", {[](Point z) { return std::conj(1.0 / std::tanh(z)); }, {}}},
-        {"curl", {[](Point z) { return z / (1.0 + 0.3 * z + 0.7 * z * z); }, {{"curl_c1", 0.3}, {"curl_c2", 0.7}}}},
-        {"escher", {[&](Point z) { return std::pow(z, (1.0 + std::exp(0.8 * i)) / 2.0); }, {{"escher_beta", 0.8}}}},
-        {"foci", {[](Point z) { return std::tanh(z / 2.0) * std::norm(std::cosh(z / 2.0)) / std::norm(std::sinh(z / 2.0)); }, {}}},
+        {"curl",
+         {[](Point z) { return z / (1.0 + 0.3 * z + 0.7 * z * z); }, {{"curl_c1", 0.3}, {"curl_c2", 0.7}}}},
+        {"escher",
+         {[&](Point z) { return std::pow(z, (1.0 + std::exp(0.8 * i)) / 2.0); }, {{"escher_beta", 0.8}}}},
+        {"foci",
+         {[](Point z) {
+              return std::tanh(z / 2.0) * std::norm(std::cosh(z / 2.0)) / std::norm(std::sinh(z / 2.0));
+          },
+          {}}},
         {"mobius", {[&](Point z) { return (a * z + b) / (c * z + d); }, mobius}},
         {"wedge", {[](Point z) { return z; }, {}}},
         {"stripes", {[](Point z) { return z; }, {}}},
-        {"waves2", {[](Point z) { return z + Point(2 * std::sin(3 * z.imag()), 0); }, {{"waves2_scalex", 2}, {"waves2_freqx", 3}}}},
+        {"waves2",
+         {[](Point z) { return z + Point(2 * std::sin(3 * z.imag()), 0); },
+          {{"waves2_scalex", 2}, {"waves2_freqx", 3}}}},
         {"popcorn2",
-         {[](Point z) { return z + Point(0, 0.5 * std::sin(std::tan(2 * z.real()))); }, {{"popcorn2_c", 2}, {"popcorn2_y", 0.5}}}},
+         {[](Point z) { return z + Point(0, 0.5 * std::sin(std::tan(2 * z.real()))); },
+          {{"popcorn2_c", 2}, {"popcorn2_y", 0.5}}}},
     };
     for (const auto& [name, expected] : known)
         for (const Point z : {Point(0.3, 0.8), Point(-0.6, 0.4), Point(-0.2, -1.1), Point(1.3, -0.5)}) {
@@ -153,24 +169,30 @@ TEST(Flame, FormulasOfComplexNumbers) {
 
 TEST(Flame, NamesOfOtherPrograms) {
     const auto said = [](const std::string& map) {
-        const ImportedShapes model("a.flame", flame("<xform weight=\"1\" coefs=\"1 0 0 1 0 0\" " + map + "/>"));
+        const ImportedShapes model("a.flame",
+                                   flame("<xform weight=\"1\" coefs=\"1 0 0 1 0 0\" " + map + "/>"));
         return model.said() + model.translation;
     };
-    for (const char* map : {"Mobius=\"1\" Re_A=\"7\" Im_D=\"3\"", "Mobius=\"1\" Mobius_Re_A=\"7\" Mobius_Im_D=\"3\"",
-                            "mobius=\"1\" mobius_re_a=\"7\" mobius_im_d=\"3\""})
+    for (const char* map :
+         {"Mobius=\"1\" Re_A=\"7\" Im_D=\"3\"", "Mobius=\"1\" Mobius_Re_A=\"7\" Mobius_Im_D=\"3\"",
+          "mobius=\"1\" mobius_re_a=\"7\" mobius_im_d=\"3\""})
         EXPECT_THAT(said(map), HasSubstr("7 * u")) << map;
-    for (const char* map : {"oscilloscope=\"1\" oscope_damping=\"7\"", "oscilloscope=\"1\" oscilloscope_damping=\"7\""})
+    for (const char* map :
+         {"oscilloscope=\"1\" oscope_damping=\"7\"", "oscilloscope=\"1\" oscilloscope_damping=\"7\""})
         EXPECT_THAT(said(map), HasSubstr("exp(-abs(u) * 7)")) << map;
 }
 
 TEST(Flame, TheViewIsThatOfTheFile) {
-    const std::string view = "size=\"600 400\" center=\"1 2\" scale=\"50\" zoom=\"1\" rotate=\"90\" background=\"1 0 0\"";
+    const std::string view =
+        "size=\"600 400\" center=\"1 2\" scale=\"50\" zoom=\"1\" rotate=\"90\" background=\"1 0 0\"";
     for (const char* map : {"linear=\".5\"", "swirl=\".5\""}) {
-        const ImportedShapes model("a.flame", "<flame name=\"a\" " + view + "><xform weight=\"1\" coefs=\"1 0 0 1 0 0\" " +
-                                                  map + "/></flame>");
+        const ImportedShapes model("a.flame", "<flame name=\"a\" " + view +
+                                                  "><xform weight=\"1\" coefs=\"1 0 0 1 0 0\" " + map +
+                                                  "/></flame>");
         EXPECT_TRUE(model.orbit || model.graph) << model.said();
         EXPECT_THAT(model.translation, HasSubstr("background: 1, 0, 0\n"));
-        EXPECT_THAT(model.translation, HasSubstr("location: 1,2,-10  look_at: 1,2,0  up: -1,0,0  width: 6 }"));
+        EXPECT_THAT(model.translation,
+                    HasSubstr("location: 1,2,-10  look_at: 1,2,0  up: -1,0,0  width: 6 }"));
     }
 }
 
@@ -191,26 +213,30 @@ TEST(Flame, RootsAreTheBranches) {
         for (std::size_t k = 0; k < 3; ++k) {
             const Point cube = std::pow(value(roots[k], z), 3);
             // juliascope turns every other one over.
-            EXPECT_NEAR(std::abs(cube - (variation == "juliascope" && k == 1 ? std::conj(z) : z)), 0, 1e-6) << variation << k;
+            EXPECT_NEAR(std::abs(cube - (variation == "juliascope" && k == 1 ? std::conj(z) : z)), 0, 1e-6)
+                << variation << k;
         }
     }
     EXPECT_EQ(formulas("julian", {{"julian_power", -4}}).size(), 4u);
     EXPECT_TRUE(formulas("julian", {{"julian_power", 1000}}).empty());
-    const ImportedShapes many("a.flame", flame("<xform weight=\"1\" julian=\"1\" julian_power=\"40\" julia=\"1\" "
-                                               "coefs=\"1 0 0 1 0 0\"/>"));
+    const ImportedShapes many("a.flame",
+                              flame("<xform weight=\"1\" julian=\"1\" julian_power=\"40\" julia=\"1\" "
+                                    "coefs=\"1 0 0 1 0 0\"/>"));
     EXPECT_THAT(many.said(), HasSubstr("is not translated")) << "80 maps for one";
 }
 
 // What they are was read from flam3; here that graftal can compute them at all.
 TEST(Flame, EveryFormulaHasAValue) {
     for (const std::string name :
-         {"rings", "fan", "blob", "pdj", "fan2", "rings2", "perspective", "julian", "juliascope", "wedge_julia", "curl",
-          "rectangles", "secant2", "disc2", "bent2", "bipolar", "butterfly", "cell", "curve", "edisc", "elliptic",
-          "escher", "foci", "lazysusan", "loonie", "modulus", "oscilloscope", "polar2", "popcorn2", "scry", "separation",
-          "split", "splits", "stripes", "wedge", "wedge_sph", "whorl", "waves2", "auger", "flux", "mobius", "hemisphere"})
+         {"rings",     "fan",        "blob",        "pdj",    "fan2",       "rings2",       "perspective",
+          "julian",    "juliascope", "wedge_julia", "curl",   "rectangles", "secant2",      "disc2",
+          "bent2",     "bipolar",    "butterfly",   "cell",   "curve",      "edisc",        "elliptic",
+          "escher",    "foci",       "lazysusan",   "loonie", "modulus",    "oscilloscope", "polar2",
+          "popcorn2",  "scry",       "separation",  "split",  "splits",     "stripes",      "wedge",
+          "wedge_sph", "whorl",      "waves2",      "auger",  "flux",       "mobius",       "hemisphere"})
         for (const Point z : {Point(0.3, 0.8), Point(-0.6, -0.4)}) {
-            const std::vector<flame::Formula> found =
-                formulas(name, {{"perspective_dist", 2}, {"mobius_re_d", 1}, {"cell_size", 0.3}, {"modulus_x", 0.1}});
+            const std::vector<flame::Formula> found = formulas(
+                name, {{"perspective_dist", 2}, {"mobius_re_d", 1}, {"cell_size", 0.3}, {"modulus_x", 0.1}});
             ASSERT_EQ(found.size(), 1u) << name;
             const Point point = value(found[0], z);
             EXPECT_TRUE(std::isfinite(point.real()) && std::isfinite(point.imag())) << name;

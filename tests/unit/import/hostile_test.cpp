@@ -1,5 +1,5 @@
-// Files that nobody would write, in each format: what nests deep, is long, large or endless. Each ends soon with an error
-// or a model.
+// Files that nobody would write, in each format: what nests deep, is long, large or endless. Each ends soon
+// with an error or a model.
 
 #include <ctime>
 #include <string>
@@ -31,13 +31,15 @@ struct Format {
 const std::vector<Format>& formats() {
     static const std::vector<Format> all = {
         {"a.l", "", " {\n Angle 4\n Axiom F\n F=F@", "F\n}\n", "[", "]", " F=F+F\n"},
-        {"a.ls", "recursion 3\nangle 30\naxiom A\nrule A = F;# ", "\nrule F = F(", ")F\n", "[", "]", "rule F = FF\n"},
-        {"b.l", "Lsystem: 1\nderivation length: 3\nAxiom: A(1)\n", "(x) --> F(x)\nA(x) --> F(", ")A(x/2)\nendlsystem\n", "(",
-         ")", "M%(x) --> M%(x) A(x)\n"},
+        {"a.ls", "recursion 3\nangle 30\naxiom A\nrule A = F;# ", "\nrule F = F(", ")F\n", "[", "]",
+         "rule F = FF\n"},
+        {"b.l", "Lsystem: 1\nderivation length: 3\nAxiom: A(1)\n", "(x) --> F(x)\nA(x) --> F(",
+         ")A(x/2)\nendlsystem\n", "(", ")", "M%(x) --> M%(x) A(x)\n"},
         {"a.ifs", "", " {\n .5 0 0 .5 0 ", " 1\n .5 0 0 .5 0 0 1\n}\n", "{", "}", " .5 0 0 .5 1 1 1\n"},
-        {"a.flame", "<flame name=\"", "\"><xform weight=\"1\" linear=\"1\" coefs=\".5 0 0 .5 0 ", "\"/></flame>\n", "<a>", "</a>",
-         "<xform weight=\"1\" linear=\"1\" coefs=\".5 0 0 .5 0 0\"/>\n"},
-        {"a.es", "a\nrule ", " { box }\nrule a { { x ", " } box }\n", "(", ")", "rule a { { x 1 } r% box }\n"},
+        {"a.flame", "<flame name=\"", "\"><xform weight=\"1\" linear=\"1\" coefs=\".5 0 0 .5 0 ",
+         "\"/></flame>\n", "<a>", "</a>", "<xform weight=\"1\" linear=\"1\" coefs=\".5 0 0 .5 0 0\"/>\n"},
+        {"a.es", "a\nrule ", " { box }\nrule a { { x ", " } box }\n", "(", ")",
+         "rule a { { x 1 } r% box }\n"},
         {"a.cfdg", "startshape A\nshape ", " { SQUARE [] }\nshape A { SQUARE [x ", "] }\n", "(", ")",
          "shape M% { A [s 0.5] }\n"},
     };
@@ -48,7 +50,8 @@ const std::vector<Format>& formats() {
 double tried(const char* file, const std::string& text) {
     const std::clock_t begin = std::clock();
     const Imported model(file, text, {.max_modules = 100'000, .max_objects = 1000});
-    EXPECT_TRUE(model.graph || model.derivation || model.diagnostics.has_errors()) << file << "\n" << text.substr(0, 200);
+    EXPECT_TRUE(model.graph || model.derivation || model.diagnostics.has_errors()) << file << "\n"
+                                                                                   << text.substr(0, 200);
     return static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
 }
 
@@ -76,7 +79,8 @@ TEST_P(Hostile, WhatNestsDeep) {
 }
 
 TEST_P(Hostile, NumbersWithoutMeasure) {
-    for (const char* const number : {"1e999", "-1e999", "1e308", "1e-320", "nan", "0", "99999999999999999999999", "-1"})
+    for (const char* const number :
+         {"1e999", "-1e999", "1e308", "1e-320", "nan", "0", "99999999999999999999999", "-1"})
         expect_soon(with("B", number));
     expect_soon(with("B", times(100'000, "9")));
 }

@@ -346,7 +346,8 @@ TEST(ContextFree, AChainOfManyShapes) {
 
 // However often a function calls itself, and whatever is left to do where that ends.
 TEST(ContextFree, FunctionsThatCallThemselvesEnd) {
-    for (const char* body : {"f(n) + f(n)", "f(n) + f(n) + f(n) + f(n)", "-f(n)", "f(f(n))", "min(f(n), f(n))", "if(n, f(n), f(n))"}) {
+    for (const char* body : {"f(n) + f(n)", "f(n) + f(n) + f(n) + f(n)", "-f(n)", "f(f(n))",
+                             "min(f(n), f(n))", "if(n, f(n), f(n))"}) {
         const ImportedShapes model("a.cfdg", std::string("startshape A\nf(number n) = ") + body +
                                                  "\nshape A { SQUARE [x (f(1))] SQUARE [x (f(2) + f(3))] }");
         EXPECT_TRUE(model.diagnostics.has_errors()) << body;

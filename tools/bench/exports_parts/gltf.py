@@ -79,8 +79,8 @@ def table(rows, fallen_short):
            f'{sum(row["warnings"] == 0 for row in written)} |')
     yield ''
     coarse = [row for row in written if row['refused']]
-    yield (f'{len(written) - len(coarse)} of them are written as they are. The others would be larger than {LIMIT[:-1]} MiB, and have a '
-           f'larger `--error`; with the largest, a file may have {LAST_LIMIT[:-1]} MiB.')
+    yield f'{len(written) - len(coarse)} of them are written as they are. The others would be larger than {LIMIT[:-1]} MiB, and have'
+    yield f'a larger `--error`; with the largest, a file may have {LAST_LIMIT[:-1]} MiB.'
     yield ''
     yield '| scene | without `--error` | written with |'
     yield '|---|---|---|'

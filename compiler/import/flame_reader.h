@@ -14,6 +14,7 @@
 
 #include "compiler/import/importer.h"
 #include "compiler/support/affine.h"
+#include "compiler/support/srgb.h"
 
 namespace graftal::flame {
 

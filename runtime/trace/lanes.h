@@ -30,6 +30,24 @@ GRAFTAL_INLINE Double4 lanes_of(const Vec3& v) {
     return Double4{v.x, v.y, v.z, 0};
 }
 
+/// A number of each of eight rays.
+struct Double8 {
+    Double4 half[2];
+};
+
+GRAFTAL_INLINE Float8 floats_of(const Double8& lanes) {
+    const Float4 low = __builtin_convertvector(lanes.half[0], Float4),
+                 high = __builtin_convertvector(lanes.half[1], Float4);
+    return __builtin_shufflevector(low, high, 0, 1, 2, 3, 4, 5, 6, 7);
+}
+
+/// Of the first four lanes, or the others.
+GRAFTAL_INLINE Double4 doubles_of(const Float8& lanes, int half) {
+    const Float4 four = half == 0 ? __builtin_shufflevector(lanes, lanes, 0, 1, 2, 3)
+                                  : __builtin_shufflevector(lanes, lanes, 4, 5, 6, 7);
+    return __builtin_convertvector(four, Double4);
+}
+
 /// An affine map by columns; the last lanes are 0.
 struct LaneMap {
     Double4 translation; ///< first, for maps of which nothing else is asked

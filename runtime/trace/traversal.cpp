@@ -9,6 +9,7 @@
 #include "runtime/trace/traversal_even.h"
 #include "runtime/trace/traversal_kernel.h"
 #include "runtime/trace/traversal_leaves.h"
+#include "runtime/trace/traversal_packet.h"
 #include "runtime/trace/traversal_runs.h"
 #include "runtime/trace/traversal_specks.h"
 
@@ -28,7 +29,10 @@ Traversal::Traversal(const TraceModel& model, Instructions instructions)
     if (!model.even) return;
     even_frames_.resize(16);
     even_entries_.resize(128);
+    packet_ = std::make_unique<PacketRoom>();
 }
+
+Traversal::~Traversal() = default;
 
 #if defined(__x86_64__)
 #define GRAFTAL_AVX2 __attribute__((target("avx2")))
@@ -48,6 +52,24 @@ template<typename Kernel>
 GRAFTAL_AVX2 bool run_avx2(Traversal& traversal, const TraceModel& model, const RayRange& range,
                            const Ray& ray) {
     return Kernel{traversal, model, range}.run(ray);
+}
+
+template<typename Packet>
+std::uint32_t run_packet(Traversal& traversal, const TraceModel& model, const RayRange& range,
+                         std::span<const Ray> rays, std::uint32_t& tied) {
+    Packet packet(traversal, model, range);
+    packet.run(rays);
+    tied = packet.tied;
+    return packet.found;
+}
+
+template<typename Packet>
+GRAFTAL_AVX2 std::uint32_t run_packet_avx2(Traversal& traversal, const TraceModel& model, const RayRange& range,
+                                           std::span<const Ray> rays, std::uint32_t& tied) {
+    Packet packet(traversal, model, range);
+    packet.run(rays);
+    tied = packet.tied;
+    return packet.found;
 }
 
 } // namespace
@@ -89,6 +111,11 @@ bool Traversal::goes_on() {
 
 bool Traversal::closest(const Ray& ray, const RayRange& range, SurfaceHit& hit) {
     if (!run<false>(ray, range)) return false;
+    show_best(hit);
+    return true;
+}
+
+void Traversal::show_best(SurfaceHit& hit) {
     path_.clear();
     std::size_t length = 0;
     for (const std::uint32_t edge : way_)
@@ -98,7 +125,37 @@ bool Traversal::closest(const Ray& ray, const RayRange& range, SurfaceHit& hit) 
         for (const std::uint32_t edge : way_)
             append_to_path(edge);
     surface_at_best(hit);
-    return true;
+}
+
+std::uint32_t Traversal::closest_each(std::span<const Ray> rays, const RayRange& range,
+                                      std::span<SurfaceHit> hits) {
+    if (!packet_ || rays.size() < 3) return Surfaces::closest_each(rays, range, hits);
+    std::uint32_t alone = 0;
+    std::uint32_t found = instructions_ == Instructions::avx2
+                              ? run_packet_avx2<EvenPacket<Instructions::avx2>>(*this, model_, range, rays, alone)
+                              : run_packet<EvenPacket<Instructions::portable>>(*this, model_, range, rays, alone);
+    found &= ~alone;
+    for (std::uint32_t left = found; left != 0; left &= left - 1) {
+        const auto lane = static_cast<std::size_t>(std::countr_zero(left));
+        const PacketRoom::Hit& met = packet_->hits[packet_->hit_of[lane]];
+        ray_ = rays[lane];
+        best_.t = packet_->t[lane];
+        best_.normal = packet_->normal[lane];
+        best_.point = packet_->point[lane];
+        best_.turns = met.turns;
+        best_.world_from_leaf = met.world_from_leaf;
+        best_.proxy_node = met.proxy_node;
+        best_.mesh_colour = nullptr;
+        best_.in_world = best_.crushed = false;
+        const auto way = packet_->ways.begin();
+        way_.assign(way + static_cast<std::ptrdiff_t>(met.way), way + static_cast<std::ptrdiff_t>(met.way_end));
+        show_best(hits[lane]);
+    }
+    for (; alone != 0; alone &= alone - 1) {
+        const auto lane = static_cast<std::size_t>(std::countr_zero(alone));
+        found |= static_cast<std::uint32_t>(closest(rays[lane], range, hits[lane])) << lane;
+    }
+    return found;
 }
 
 bool Traversal::meets_any(const Ray& ray, const RayRange& range) {

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <memory>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -46,8 +48,11 @@ class FlatImage {
 class Traversal final : public Surfaces {
   public:
     explicit Traversal(const TraceModel& model, Instructions instructions = best_instructions());
+    ~Traversal() override;
 
     bool closest(const Ray& ray, const RayRange& range, SurfaceHit& hit) override;
+    std::uint32_t closest_each(std::span<const Ray> rays, const RayRange& range,
+                               std::span<SurfaceHit> hits) override;
     bool meets_any(const Ray& ray, const RayRange& range) override;
     bool all_opaque() const override;
 
@@ -63,8 +68,12 @@ class Traversal final : public Surfaces {
   private:
     template<Instructions instructions, bool any>
     struct Kernel; ///< the traversal proper (traversal_kernel.h)
+    struct EvenPlaces; ///< which parts of an even model are looked into (traversal_even_places.h)
     template<Instructions instructions, bool any>
     struct EvenKernel; ///< through even models (traversal_even.h)
+    template<Instructions instructions>
+    struct EvenPacket; ///< eight rays at once through even models (traversal_packet.h)
+    struct PacketRoom; ///< its memory
 
     /// The ray in some frame: origin + (t - base) / unit * direction.
     struct LocalRay {
@@ -102,18 +111,21 @@ class Traversal final : public Surfaces {
         std::uint32_t frame = 0;
     };
 
-    /// The same in even models, whose rays have one direction in all frames.
-    struct alignas(64) EvenFrame {
-        Double4 origin;
+    /// An object on the way from the root of an even model, wherever the ray is.
+    struct alignas(32) EvenPlace {
         Double4 offset;   ///< translation of world_from_node
         double entry = 1; ///< and its scale; `scale`, a product of norms, may differ by a rounding
         double scale = 1;
-        double base = 0, unit = 1, speed = 1;
         double least_detail = 0;
-        Float4 near; ///< the origin
-        float least = 0;
         std::uint32_t edge = 0, node = 0, steps = 0;
         bool cut = false;
+    };
+    /// And the ray in its frame. In even models, rays have one direction in all frames.
+    struct alignas(64) EvenFrame : EvenPlace {
+        Double4 origin;
+        double base = 0, unit = 1, speed = 1;
+        Float4 near; ///< the origin
+        float least = 0;
     };
     struct EvenEntry {
         float at = 0;
@@ -180,6 +192,8 @@ class Traversal final : public Surfaces {
     bool meet_drawn(const Primitive& primitive, const Affine& drawn, const RayRange& range);
     /// The edges to a frame's node.
     void keep_way(std::uint32_t frame_number);
+    /// Fills in what is seen at the best hit.
+    void show_best(SurfaceHit& hit);
     template<template<Instructions, bool> typename AnyKernel, bool any>
     bool run(const Ray& ray, const RayRange& range);
     template<bool any> bool run(const Ray& ray, const RayRange& range);
@@ -214,6 +228,7 @@ class Traversal final : public Surfaces {
     std::vector<EvenFrame> even_frames_;
     std::vector<EvenEntry> even_entries_;
     std::size_t entry_count_ = 0; ///< in use, of either
+    std::unique_ptr<PacketRoom> packet_; ///< null where rays go one by one
     Best best_;
     /// Shells asked for lately, by a hash of their keys: the store has to be locked.
     std::array<std::pair<MeshStore::Key, const TraceMesh*>, 64> meshes_{};

@@ -5,15 +5,11 @@
 // all frames; of a frame's place a scale and an offset are left. Only traversal.cpp includes this.
 
 #include "compiler/primitives/passage.h"
-#include "runtime/trace/even_parts.h"
-#include "runtime/trace/traversal_kernel.h"
+#include "runtime/trace/traversal_even_places.h"
 
 namespace graftal {
 
-template<Instructions instructions, bool any> struct Traversal::EvenKernel {
-    Traversal& self;
-    const TraceModel& model;
-    const RayRange range;
+template<Instructions instructions, bool any> struct Traversal::EvenKernel : EvenPlaces {
     EvenFrame* frames; ///< and entries: Traversal's
     EvenEntry* entries;
     EvenEntry* top; ///< behind the last entry in use
@@ -27,7 +23,7 @@ template<Instructions instructions, bool any> struct Traversal::EvenKernel {
     using Frame = EvenFrame;
 
     GRAFTAL_INLINE explicit EvenKernel(Traversal& traversal, const TraceModel& traced, const RayRange& asked)
-        : self(traversal), model(traced), range(asked), frames(self.even_frames_.data()),
+        : EvenPlaces{traversal, traced, asked}, frames(self.even_frames_.data()),
           entries(self.even_entries_.data()), top(entries) {}
 
     GRAFTAL_INLINE bool run(const Ray& ray) {
@@ -37,7 +33,11 @@ template<Instructions instructions, bool any> struct Traversal::EvenKernel {
         self.visit_limit_ = self.visits_ + model.most_visits;
         self.hurries_ = false;
         Entry entry;
-        if (!enter_world(ray, entry)) return false;
+        return enter_world(ray, entry) && go_on(entry);
+    }
+
+    /// From an entry on, until nothing is left; true if something nearer was met.
+    GRAFTAL_INLINE bool go_on(Entry entry) {
         for (bool more = true; more || pop(entry);) {
             if (entry.entry & BoxNode::inner) {
                 more = test_boxes(entry.entry & ~BoxNode::inner, entry.frame, entry);
@@ -165,16 +165,8 @@ template<Instructions instructions, bool any> struct Traversal::EvenKernel {
         frame.speed = parent.speed * part.growth;
         frame.unit = parent.unit * part.stretch;
         frame.origin = (parent.origin + splat(at) * direction) * splat(part.shrink) + part.shift;
-        frame.offset = splat(parent.entry) * part.offset + parent.offset;
-        frame.entry = parent.entry * part.entry;
-        frame.scale = parent.scale * part.stretch;
-        frame.edge = entry.entry | (parent.cut ? from_cut : 0);
-        frame.node = part.child;
-        frame.steps = parent.steps == unlimited_steps ? parent.steps : parent.steps - part.levels;
-        if (!(frame.scale > least_scale)) return false;
+        if (!go_to_child(part, entry.entry, parent, frame)) return false;
         const TraceNode& node = model.nodes[part.child];
-        frame.cut = is_cut(node, frame, parent.least_detail);
-        frame.least_detail = model.least_detail_per_unit;
         if (frame.cut && node.stop_tree == no_tree) {
             meet_proxy(node, frame, number);
             return false;
@@ -187,44 +179,6 @@ template<Instructions instructions, bool any> struct Traversal::EvenKernel {
         }
         const std::uint32_t tree = frame.cut ? node.stop_tree : tree_of(node, frame);
         return tree != no_tree && test_boxes(tree, number, entry);
-    }
-
-    GRAFTAL_INLINE Ball world_ball(const TraceNode& node, const Frame& frame, double radius) const {
-        return {vec3_of(node.ball_centre * splat(frame.entry) + frame.offset), frame.scale * radius};
-    }
-
-    /// As Kernel::is_cut().
-    GRAFTAL_INLINE bool is_cut(const TraceNode& node, const Frame& frame, double least_detail) const {
-        if (self.hurries_ && node.cullable) return true;
-        double detail = INFINITY;
-        if (node.cullable && !(2 * frame.scale * node.ball_radius * least_detail > node.cut_detail)) {
-            const Ball ball = world_ball(node, frame, node.ball_radius);
-            detail = 2 * ball.radius * model.projection.detail_per_unit(ball);
-        }
-        return graftal::is_cut(node, frame.steps, detail);
-    }
-
-    /// As Kernel::tree_of().
-    GRAFTAL_INLINE std::uint32_t tree_of(const TraceNode& node, Frame& frame) const {
-        double most = INFINITY;
-        bool known = false;
-        for (std::uint32_t i = 0; i < node.unrolling_count; ++i) {
-            const Unrolling& unrolling = model.unrollings[node.first_unrolling + i];
-            if (frame.steps < unrolling.least_steps) continue;
-            const double size = frame.scale * unrolling.least_size;
-            const bool has_leaves = unrolling.leaf_tree != no_tree;
-            if (has_leaves && frame.steps == unrolling.last_steps) return unrolling.leaf_tree;
-            if (!known && (has_leaves || !(size * frame.least_detail > 1))) {
-                const auto details = model.projection.detail_range(world_ball(node, frame, node.reach));
-                frame.least_detail = surely_more * details.least;
-                most = details.most;
-                known = true;
-            }
-            if (!(size * frame.least_detail > 1)) continue;
-            const bool all_cut = has_leaves && frame.scale * unrolling.most_size * most <= surely_more;
-            return all_cut ? unrolling.leaf_tree : unrolling.tree;
-        }
-        return node.tree;
     }
 
     GRAFTAL_INLINE void meet_leaf(const EvenPart& part, const Frame& parent, const Entry& entry) {
@@ -327,13 +281,6 @@ template<Instructions instructions, bool any> struct Traversal::EvenKernel {
         self.best_.mesh_colour = nullptr;
         self.best_.in_world = false;
         self.best_.crushed = false;
-    }
-
-    GRAFTAL_INLINE void place(const Frame& parent, const LaneMap& parent_from_leaf,
-                              LaneMap& world_from_leaf) const {
-        for (int i = 0; i < 3; ++i)
-            world_from_leaf.column[i] = splat(parent.entry) * parent_from_leaf.column[i];
-        world_from_leaf.translation = splat(parent.entry) * parent_from_leaf.translation + parent.offset;
     }
 
     GRAFTAL_INLINE void keep_way(std::uint32_t number) {

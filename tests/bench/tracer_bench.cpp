@@ -5,6 +5,8 @@
 //   tracer_bench compare MODEL STEPS
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -78,9 +80,26 @@ template<typename Trace> void measure(const std::vector<Ray>& rays, const Trace&
                 hits, peak_mib());
 }
 
+/// Hits of camera rays in packets of 4x2 neighbours, as pictures are made.
+std::size_t hits_together(Traversal& traversal, const std::vector<Ray>& rays) {
+    constexpr std::size_t width = size.width, height = size.height, across = 4, down = 2;
+    std::array<Ray, across * down> packet;
+    std::array<SurfaceHit, across * down> seen;
+    std::size_t hits = 0;
+    for (std::size_t y = 0; y < height; y += down)
+        for (std::size_t x = 0; x < width; x += across) {
+            for (std::size_t i = 0; i < packet.size(); ++i)
+                packet[i] = rays[(y + i / across) * width + x + i % across];
+            hits += static_cast<std::size_t>(std::popcount(traversal.closest_each(packet, {}, seen)));
+        }
+    return hits;
+}
+
 void graph(const TraceModel& model) {
     const std::vector<Ray> rays = camera_rays(model.view);
-    Traversal traversal(model);
+    Traversal traversal(model), together(model);
+    measure(rays, [&] { return hits_together(together, rays); });
+    std::printf("one by one:");
     measure(rays, [&] {
         std::size_t hits = 0;
         SurfaceHit hit;
@@ -170,7 +189,8 @@ void compare(const TraceModel& model) {
         {"by_16", camera, [&] { return mesh.hits_by_16(camera, width); }},
         {"instances", camera, [&] { return placed.hits(camera, 0, true); }},
         {"instances_bounce", scattered, [&] { return placed.hits(scattered, least, false); }},
-        {"graph", camera, [&] { return traced(camera, 0); }},
+        {"graph", camera, [&] { return hits_together(traversal, camera); }},
+        {"graph_singly", camera, [&] { return traced(camera, 0); }},
         {"graph_bounce", scattered, [&] { return traced(scattered, least); }},
     };
     for (int round = 0; round < repeats; ++round)

@@ -1,0 +1,72 @@
+#pragma once
+
+// What a packet of rays remembers on its way (traversal_packet.h).
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "runtime/trace/traversal.h"
+
+namespace graftal {
+
+struct Traversal::PacketRoom {
+    /// An object on the way from the root, and all rays in its frame.
+    struct alignas(64) Frame : EvenPlace {
+        Double8 origin[3]; ///< by axis
+        Double8 base, unit, speed;
+        Float8 near[3]; ///< the origin
+        Float8 least;
+    };
+
+    /// An edge or a node of boxes that rays are to look into.
+    struct alignas(64) Entry {
+        Float8 at; ///< in units from each ray's base
+        float key = 0; ///< the same of a ray that goes there
+        std::uint32_t entry = 0;
+        std::uint32_t frame = 0;
+        std::uint32_t mask = 0; ///< one bit for each ray that meets its box
+    };
+
+    /// What some rays have met, as Best.
+    struct Hit {
+        LaneMap world_from_leaf;
+        double turns = 1;
+        std::uint32_t proxy_node = UINT32_MAX;
+        std::size_t way = 0, way_end = 0; ///< of `ways`
+    };
+
+    std::vector<Frame> frames = std::vector<Frame>(16);
+    std::vector<Entry> entries = std::vector<Entry>(128);
+    std::size_t top = 0; ///< entries in use
+    std::vector<Hit> hits;
+    std::vector<std::uint32_t> ways; ///< edges, one way after the other
+    // By ray, of the best hit:
+    std::array<std::size_t, 8> hit_of{};
+    std::array<double, 8> t{};
+    std::array<Vec3, 8> normal{}, point{};
+
+    void clear() {
+        top = 0;
+        hits.clear();
+        ways.clear();
+    }
+
+    Entry* reserve(std::size_t count) {
+        if (top + count > entries.size()) entries.resize(2 * entries.size());
+        return entries.data() + top;
+    }
+
+    Entry& push() {
+        reserve(1);
+        return entries[top++];
+    }
+
+    Frame& frame(std::size_t number) {
+        if (number >= frames.size()) frames.resize(2 * frames.size());
+        return frames[number];
+    }
+};
+
+} // namespace graftal

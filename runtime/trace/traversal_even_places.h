@@ -1,0 +1,77 @@
+#pragma once
+
+// Which parts of an even model rays look into, and where these lie in the world: that does not depend on the
+// rays. Only traversal.cpp includes this.
+
+#include "runtime/trace/even_parts.h"
+#include "runtime/trace/traversal_kernel.h"
+
+namespace graftal {
+
+struct Traversal::EvenPlaces {
+    Traversal& self;
+    const TraceModel& model;
+    const RayRange range;
+
+    GRAFTAL_INLINE Ball world_ball(const TraceNode& node, const EvenPlace& frame, double radius) const {
+        return {vec3_of(node.ball_centre * splat(frame.entry) + frame.offset), frame.scale * radius};
+    }
+
+    /// As Kernel::is_cut().
+    GRAFTAL_INLINE bool is_cut(const TraceNode& node, const EvenPlace& frame, double least_detail) const {
+        if (self.hurries_ && node.cullable) return true;
+        double detail = INFINITY;
+        if (node.cullable && !(2 * frame.scale * node.ball_radius * least_detail > node.cut_detail)) {
+            const Ball ball = world_ball(node, frame, node.ball_radius);
+            detail = 2 * ball.radius * model.projection.detail_per_unit(ball);
+        }
+        return graftal::is_cut(node, frame.steps, detail);
+    }
+
+    /// As Kernel::tree_of().
+    GRAFTAL_INLINE std::uint32_t tree_of(const TraceNode& node, EvenPlace& frame) const {
+        double most = INFINITY;
+        bool known = false;
+        for (std::uint32_t i = 0; i < node.unrolling_count; ++i) {
+            const Unrolling& unrolling = model.unrollings[node.first_unrolling + i];
+            if (frame.steps < unrolling.least_steps) continue;
+            const double size = frame.scale * unrolling.least_size;
+            const bool has_leaves = unrolling.leaf_tree != no_tree;
+            if (has_leaves && frame.steps == unrolling.last_steps) return unrolling.leaf_tree;
+            if (!known && (has_leaves || !(size * frame.least_detail > 1))) {
+                const auto details = model.projection.detail_range(world_ball(node, frame, node.reach));
+                frame.least_detail = surely_more * details.least;
+                most = details.most;
+                known = true;
+            }
+            if (!(size * frame.least_detail > 1)) continue;
+            const bool all_cut = has_leaves && frame.scale * unrolling.most_size * most <= surely_more;
+            return all_cut ? unrolling.leaf_tree : unrolling.tree;
+        }
+        return node.tree;
+    }
+
+    /// Goes to the child of an edge; false if it is nothing.
+    GRAFTAL_INLINE bool go_to_child(const EvenPart& part, std::uint32_t edge, const EvenPlace& parent,
+                                    EvenPlace& child) const {
+        child.offset = splat(parent.entry) * part.offset + parent.offset;
+        child.entry = parent.entry * part.entry;
+        child.scale = parent.scale * part.stretch;
+        child.edge = edge | (parent.cut ? from_cut : 0);
+        child.node = part.child;
+        child.steps = parent.steps == unlimited_steps ? parent.steps : parent.steps - part.levels;
+        if (!(child.scale > least_scale)) return false;
+        child.cut = is_cut(model.nodes[part.child], child, parent.least_detail);
+        child.least_detail = model.least_detail_per_unit;
+        return true;
+    }
+
+    GRAFTAL_INLINE void place(const EvenPlace& parent, const LaneMap& parent_from_leaf,
+                              LaneMap& world_from_leaf) const {
+        for (int i = 0; i < 3; ++i)
+            world_from_leaf.column[i] = splat(parent.entry) * parent_from_leaf.column[i];
+        world_from_leaf.translation = splat(parent.entry) * parent_from_leaf.translation + parent.offset;
+    }
+};
+
+} // namespace graftal

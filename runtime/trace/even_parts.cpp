@@ -25,9 +25,11 @@ std::vector<EvenPart> even_parts(const TraceModel& model) {
                          .entry = edge.parent_from_child.column[0][0],
                          .stretch = edge.stretch,
                          .growth = edge.growth,
+                         .turns = edge.turns,
                          .child = edge.child,
                          .levels = edge.levels,
-                         .kind = kind_of(model, edge)});
+                         .kind = kind_of(model, edge),
+                         .upright = edge.upright});
     return parts;
 }
 

@@ -24,8 +24,10 @@ struct alignas(64) EvenPart {
     double shrink;  ///< entry of the first; `stretch` and `growth` may differ by a rounding
     double entry;   ///< and of the second
     double stretch, growth;
+    double turns; ///< TraceEdge's
     std::uint32_t child, levels;
     Kind kind;
+    bool upright; ///< TraceEdge's
 };
 
 /// One for each edge of an even model.

@@ -145,6 +145,7 @@ bool Traversal::meet_drawn(const Primitive& primitive, const Affine& drawn, cons
     best_.point = leaf_from_world(ray_(best_.t));
     best_.turns = 1;
     best_.world_from_leaf = LaneMap(drawn);
+    best_.is_upright = false;
     best_.proxy_node = no_edge;
     best_.mesh_colour = nullptr;
     best_.in_world = true;

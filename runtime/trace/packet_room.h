@@ -18,6 +18,10 @@ struct Traversal::PacketRoom {
         Double8 base, unit, speed;
         Float8 near[3]; ///< the origin
         Float8 least;
+        float extreme[2][3]; ///< the least and the greatest of `near`, by axis
+        float first_least;   ///< the least of `least`
+        Float8 most;         ///< what is nearer than the rays' best hits is less than this
+        std::uint32_t hits_then = 0; ///< hits of the packet when that was so
     };
 
     /// An edge or a node of boxes that rays are to look into.
@@ -31,7 +35,8 @@ struct Traversal::PacketRoom {
 
     /// What some rays have met, as Best.
     struct Hit {
-        LaneMap world_from_leaf;
+        LaneMap world_from_leaf; ///< unless it is upright
+        bool is_upright = false;
         double turns = 1;
         std::uint32_t proxy_node = UINT32_MAX;
         std::size_t way = 0, way_end = 0; ///< of `ways`
@@ -42,10 +47,13 @@ struct Traversal::PacketRoom {
     std::size_t top = 0; ///< entries in use
     std::vector<Hit> hits;
     std::vector<std::uint32_t> ways; ///< edges, one way after the other
-    // By ray, of the best hit:
-    std::array<std::size_t, 8> hit_of{};
-    std::array<double, 8> t{};
-    std::array<Vec3, 8> normal{}, point{};
+    /// Of a ray.
+    struct Best {
+        double t = 0;
+        std::size_t hit = 0; ///< of `hits`
+        Vec3 normal{0.0}, point{0.0};
+    };
+    std::array<Best, 8> best;
 
     void clear() {
         top = 0;

@@ -53,18 +53,19 @@ struct alignas(64) TraceEdge {
     bool to_primitive = false;     ///< leads to one
     LaneMap parent_from_child;
     LaneMap child_from_parent;
-    Box box; ///< of what the child draws, in the parent's frame
+    // What the looks of hits ask for, in one line of the cache:
     PathTint tint;
     std::optional<MaterialId> material;
     /// Of a primitive: the node that holds it, also where its parts stand in place of it; no_edge: the one
     /// before.
     std::uint32_t holder = no_edge;
-    double turns = 1; ///< of a primitive: length_in_turns() of the graph's instance
     /// Of an unrolling's edges that lead several levels down: the way is one of its edges or the node's, and
     /// then one of that child's. `last` may be marked as one from a cut node.
     std::uint32_t before = no_edge, last = no_edge;
     std::uint32_t length = 1; ///< of the way, in edges
     bool as_one = true;       ///< its tint, material and holder are those of the whole way; no mark is on it
+    Box box;                  ///< of what the child draws, in the parent's frame
+    double turns = 1;         ///< of a primitive: length_in_turns() of the graph's instance
 
     void find_upright();
 };

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 
+#include <glm/geometric.hpp>
+
 #include "compiler/primitives/texture_space.h"
 #include "compiler/support/stretch.h"
 #include "runtime/trace/surface_normal.h"
@@ -14,6 +16,9 @@
 #include "runtime/trace/traversal_specks.h"
 
 namespace graftal {
+#ifdef STATS
+long stats[16]; struct PS{~PS(){ const char*n[]={"alone inner","alone node","alone leaf","tog inner lanes","tog node lanes","tog leaf lanes","tog inner","tog node","tog leaf","redo","found","packets"}; for(int i=0;i<12;++i) fprintf(stderr,"%s %.3f\n",n[i],stats[i]/(5*307200.));}} ps;
+#endif
 
 Instructions best_instructions() {
 #if defined(__x86_64__)
@@ -134,16 +139,21 @@ std::uint32_t Traversal::closest_each(std::span<const Ray> rays, const RayRange&
     std::uint32_t found = instructions_ == Instructions::avx2
                               ? run_packet_avx2<EvenPacket<Instructions::avx2>>(*this, model_, range, rays, alone)
                               : run_packet<EvenPacket<Instructions::portable>>(*this, model_, range, rays, alone);
+#ifdef STATS
+    stats[9]+=std::popcount(alone); stats[10]+=std::popcount(found); stats[11]++;
+#endif
     found &= ~alone;
     for (std::uint32_t left = found; left != 0; left &= left - 1) {
         const auto lane = static_cast<std::size_t>(std::countr_zero(left));
-        const PacketRoom::Hit& met = packet_->hits[packet_->hit_of[lane]];
+        const PacketRoom::Best& best = packet_->best[lane];
+        const PacketRoom::Hit& met = packet_->hits[best.hit];
         ray_ = rays[lane];
-        best_.t = packet_->t[lane];
-        best_.normal = packet_->normal[lane];
-        best_.point = packet_->point[lane];
+        best_.t = best.t;
+        best_.normal = best.normal;
+        best_.point = best.point;
         best_.turns = met.turns;
-        best_.world_from_leaf = met.world_from_leaf;
+        best_.is_upright = met.is_upright;
+        if (!met.is_upright) best_.world_from_leaf = met.world_from_leaf;
         best_.proxy_node = met.proxy_node;
         best_.mesh_colour = nullptr;
         best_.in_world = best_.crushed = false;
@@ -221,6 +231,7 @@ bool Traversal::is_clear(std::uint32_t edge, std::uint32_t frame, double turns, 
 
 Vec3 Traversal::normal_at_best() const {
     const bool limit = best_.proxy_node != no_edge && model_.options.limit_normals && !best_.crushed;
+    if (!limit && best_.is_upright) return glm::normalize(best_.normal);
     if (!limit) return transformed_normal(best_.world_from_leaf, best_.normal);
     if (!best_.in_world) return limit_normal(model_, path_, best_.proxy_node, best_.normal);
     const Vec3 normal = transformed_normal(best_.world_from_leaf, best_.normal);

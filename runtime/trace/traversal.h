@@ -140,7 +140,8 @@ class Traversal final : public Surfaces {
         Vec3 normal{0.0}; ///< in the leaf's frame
         Vec3 point{0.0};  ///< of a primitive, likewise
         double turns = 1; ///< of a primitive (TraceEdge)
-        LaneMap world_from_leaf;
+        LaneMap world_from_leaf; ///< unless
+        bool is_upright = false; ///< that keeps normals: it only scales evenly and moves
         std::uint32_t proxy_node = 0;                   ///< or no_edge
         const TraceMesh::Colour* mesh_colour = nullptr; ///< of a triangle
         double cell = 0;                                ///< of its shell, in the world

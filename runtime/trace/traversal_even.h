@@ -213,10 +213,11 @@ template<Instructions instructions, bool any> struct Traversal::EvenKernel : Eve
         set_best(base + hit.t * unit, hit.normal);
         if (any) return;
         self.best_.point = origin + hit.t * along;
-        const TraceEdge& edge = model.edges[entry.entry];
-        self.best_.turns = edge.turns;
+        self.best_.turns = part.turns;
         self.best_.proxy_node = no_edge;
-        place(parent, edge.parent_from_child, self.best_.world_from_leaf);
+        self.best_.is_upright = part.upright;
+        if (!part.upright)
+            place(parent, model.edges[entry.entry].parent_from_child, self.best_.world_from_leaf);
         keep_way(entry.frame);
         self.way_.push_back(entry.entry | (parent.cut ? from_cut : 0));
     }
@@ -279,6 +280,7 @@ template<Instructions instructions, bool any> struct Traversal::EvenKernel : Eve
         self.best_.found = true;
         self.best_.normal = normal;
         self.best_.mesh_colour = nullptr;
+        self.best_.is_upright = false;
         self.best_.in_world = false;
         self.best_.crushed = false;
     }

@@ -454,6 +454,7 @@ template<Instructions instructions, bool any> struct Traversal::Kernel {
         self.best_.t = t;
         self.best_.found = true;
         self.best_.mesh_colour = nullptr;
+        self.best_.is_upright = false;
         self.best_.in_world = false;
         self.best_.crushed = false;
         return !any;

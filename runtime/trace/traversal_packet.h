@@ -20,6 +20,7 @@ template<Instructions instructions> struct Traversal::EvenPacket : EvenPlaces {
     // In every frame:
     Double8 direction[3], inverse[3];
     Float8 reciprocal[3];
+    Float8 least_reciprocal[3], most_reciprocal[3]; ///< of all rays
     std::size_t side_in[3];
 
     Double8 best;            ///< of t
@@ -45,9 +46,17 @@ template<Instructions instructions> struct Traversal::EvenPacket : EvenPlaces {
         if (inside == 0) return;
         room.push() = {Float8{}, 0, 0, 0, inside};
         while (room.top > 0) {
-            Entry entry = room.entries[--room.top];
+            const Entry& last = room.entries[--room.top];
+            // Number by number: they were stored so.
+            Entry entry{last.at, last.key, last.entry, last.frame, last.mask};
             if (!leave_out_beaten(entry)) continue;
-            if (std::popcount(entry.mask) <= few || !go_together(entry))
+#ifdef STATS
+            extern long stats[16];
+            const int pc=std::popcount(entry.mask);
+            if (pc<=few) stats[entry.entry & BoxNode::inner ? 0 : model.even_parts[entry.entry].kind==EvenPart::Kind::node?1:2]+=pc;
+            else stats[entry.entry & BoxNode::inner ? 3 : model.even_parts[entry.entry].kind==EvenPart::Kind::node?4:5]+=pc, stats[entry.entry & BoxNode::inner ? 6 : model.even_parts[entry.entry].kind==EvenPart::Kind::node?7:8]++;
+#endif
+            if (is_left_alone(entry) || !go_together(entry))
                 for (std::uint32_t left = entry.mask; left != 0; left &= left - 1)
                     go_alone(entry, std::countr_zero(left));
             if (visits > most_visits) {
@@ -109,7 +118,10 @@ template<Instructions instructions> struct Traversal::EvenPacket : EvenPlaces {
             const std::uint32_t negative = bits_of<instructions>(reciprocal[axis] < 0);
             if (negative != 0 && negative != 0xff) return false;
             side_in[axis] = negative != 0 ? 1 : 0;
+            least_reciprocal[axis] = spread<instructions>(smallest(reciprocal[axis], 0xff));
+            most_reciprocal[axis] = spread<instructions>(greatest(reciprocal[axis], 0xff));
         }
+        frame.hits_then = UINT32_MAX;
         frame.offset = Double4{};
         frame.entry = frame.scale = 1;
         frame.steps = model.prepared.root_steps;
@@ -119,11 +131,14 @@ template<Instructions instructions> struct Traversal::EvenPacket : EvenPlaces {
     }
 
     /// Of rays that have met something, in the frame, as single precision tells; a little more.
-    GRAFTAL_INLINE Float8 most_in(const Frame& frame) const {
+    GRAFTAL_INLINE const Float8& most_in(Frame& frame) const {
+        const auto hits = static_cast<std::uint32_t>(room.hits.size());
+        if (frame.hits_then == hits) return frame.most;
         Double8 most;
         for (int i = 0; i < 2; ++i)
             most.half[i] = (best.half[i] - frame.base.half[i]) * frame.speed.half[i];
-        return floats_of(most) + 2e-6f;
+        frame.hits_then = hits;
+        return frame.most = floats_of(most) + 2e-6f;
     }
 
     /// False if all rays have met something nearer than the entry is.
@@ -136,7 +151,7 @@ template<Instructions instructions> struct Traversal::EvenPacket : EvenPlaces {
     /// Sorts the boxes that rays meet onto the stack, the nearest on top.
     GRAFTAL_INLINE void test_boxes(std::uint32_t number, std::uint32_t frame_number, std::uint32_t mask) {
         const BoxNode& node = model.boxes[number];
-        const Frame& frame = room.frames[frame_number];
+        Frame& frame = room.frames[frame_number];
         const Float8 least = frame.least, most = most_in(frame);
         const Float8 near[3] = {frame.near[0], frame.near[1], frame.near[2]};
         const float* const in[3] = {side_of(node, side_in[0], 0), side_of(node, side_in[1], 1),
@@ -146,7 +161,8 @@ template<Instructions instructions> struct Traversal::EvenPacket : EvenPlaces {
         const int lead = std::countr_zero(mask);
         Entry* const first = room.reserve(8);
         Entry* end = first;
-        for (std::size_t child = 0; child < 8; ++child) {
+        for (std::uint32_t left = boxes_near(node, frame, most, mask); left != 0; left &= left - 1) {
+            const auto child = static_cast<std::size_t>(std::countr_zero(left));
             Float8 enters = least, leaves = most;
             for (int axis = 0; axis < 3; ++axis) {
                 enters = greater(enters,
@@ -165,8 +181,56 @@ template<Instructions instructions> struct Traversal::EvenPacket : EvenPlaces {
         room.top += static_cast<std::size_t>(end - first);
     }
 
+    /// Which of eight boxes a ray of the packet may meet, as the extremes of all rays tell. Sums and products are
+    /// rounded in order, so that none is left out.
+    GRAFTAL_INLINE std::uint32_t boxes_near(const BoxNode& node, const Frame& frame, const Float8& most,
+                                            std::uint32_t mask) const {
+        Float8 enters = spread<instructions>(frame.first_least);
+        Float8 leaves = spread<instructions>(greatest(most, mask));
+        for (int axis = 0; axis < 3; ++axis) {
+            const std::size_t in = side_in[axis];
+            const Float8 from = node.side[in][axis] - spread<instructions>(frame.extreme[1 - in][axis]),
+                         to = node.side[1 - in][axis] - spread<instructions>(frame.extreme[in][axis]);
+            enters = greater(enters, lesser(from * least_reciprocal[axis], from * most_reciprocal[axis]));
+            leaves = lesser(leaves, greater(to * least_reciprocal[axis], to * most_reciprocal[axis]));
+        }
+        return bits_of<instructions>(enters <= leaves);
+    }
+
+    static GRAFTAL_INLINE Float8 lanes_in(const Float8& lanes, std::uint32_t mask, float other) {
+        constexpr Int8 bit = {1, 2, 4, 8, 16, 32, 64, 128};
+        const Int8 used = (static_cast<std::int32_t>(mask) & bit) != 0;
+        return used ? lanes : spread<instructions>(other);
+    }
+
+    static GRAFTAL_INLINE float greatest(const Float8& lanes, std::uint32_t mask) {
+        Float8 all = lanes_in(lanes, mask, -INFINITY);
+        all = greater(all, __builtin_shufflevector(all, all, 4, 5, 6, 7, 0, 1, 2, 3));
+        all = greater(all, __builtin_shufflevector(all, all, 2, 3, 0, 1, 6, 7, 4, 5));
+        all = greater(all, __builtin_shufflevector(all, all, 1, 0, 3, 2, 5, 4, 7, 6));
+        return all[0];
+    }
+
+    static GRAFTAL_INLINE float smallest(const Float8& lanes, std::uint32_t mask) {
+        Float8 all = lanes_in(lanes, mask, INFINITY);
+        all = lesser(all, __builtin_shufflevector(all, all, 4, 5, 6, 7, 0, 1, 2, 3));
+        all = lesser(all, __builtin_shufflevector(all, all, 2, 3, 0, 1, 6, 7, 4, 5));
+        all = lesser(all, __builtin_shufflevector(all, all, 1, 0, 3, 2, 5, 4, 7, 6));
+        return all[0];
+    }
+
     static GRAFTAL_INLINE const float* side_of(const BoxNode& node, std::size_t side, int axis) {
         return reinterpret_cast<const float*>(&node.side[side][axis]);
+    }
+
+    static GRAFTAL_INLINE bool meets_together(const EvenPart& part) {
+        return part.kind == EvenPart::Kind::cube || part.kind == EvenPart::Kind::triangle;
+    }
+
+    /// Whether so few rays go there that each goes by itself. A leaf is not worth the way there.
+    GRAFTAL_INLINE bool is_left_alone(const Entry& entry) const {
+        return std::popcount(entry.mask) <= few &&
+               (entry.entry & BoxNode::inner || !meets_together(model.even_parts[entry.entry]));
     }
 
     /// False if each ray is to go there by itself.
@@ -177,8 +241,8 @@ template<Instructions instructions> struct Traversal::EvenPacket : EvenPlaces {
         }
         const EvenPart& part = model.even_parts[entry.entry];
         if (part.kind == EvenPart::Kind::node) return enter(part, entry);
-        if (part.kind != EvenPart::Kind::cube) return false;
-        meet_cube(part, entry);
+        if (!meets_together(part)) return false;
+        meet_leaf(part, entry);
         return true;
     }
 
@@ -202,8 +266,13 @@ template<Instructions instructions> struct Traversal::EvenPacket : EvenPlaces {
             least.half[i] = (range.least - frame.base.half[i]) * frame.speed.half[i];
         }
         frame.least = floats_of(least);
-        for (int axis = 0; axis < 3; ++axis)
+        frame.hits_then = UINT32_MAX;
+        frame.first_least = smallest(frame.least, entry.mask);
+        for (int axis = 0; axis < 3; ++axis) {
             frame.near[axis] = floats_of(frame.origin[axis]);
+            frame.extreme[0][axis] = smallest(frame.near[axis], entry.mask);
+            frame.extreme[1][axis] = greatest(frame.near[axis], entry.mask);
+        }
         if (frame.cut && node.stop_edge_count == 1) { // about as large as the node: no box to test
             room.push() = {Float8{}, 0, node.first_edge + node.edge_count, entry.frame + 1, entry.mask};
             return true;
@@ -218,83 +287,170 @@ template<Instructions instructions> struct Traversal::EvenPacket : EvenPlaces {
         visits += static_cast<std::uint64_t>(std::popcount(entry.mask));
     }
 
-    GRAFTAL_INLINE void meet_cube(const EvenPart& part, const Entry& entry) {
-        count(entry);
+    /// Four rays in a leaf's frame, and what counts of them there.
+    struct Near {
+        Double4 origin[3], along[3];
+        Double4 base, unit, least, most;
+        Long4 is_map; ///< false where the leaf's frame is none
+    };
+
+    GRAFTAL_INLINE Near bring_near(const EvenPart& part, const TraceEdge& edge, const Entry& entry,
+                                   int half) const {
         const Frame& parent = room.frames[entry.frame];
+        const Double4 at = doubles_of(entry.at, half);
+        Near near;
+        near.base = parent.base.half[half] + at * parent.unit.half[half];
+        Double4 from[3];
+        for (int axis = 0; axis < 3; ++axis)
+            from[axis] = parent.origin[axis].half[half] + at * direction[axis].half[half];
+        Double4 growth = splat(part.growth), stretch = splat(part.stretch);
+        near.is_map = growth == growth;
+        if (part.upright) {
+            for (int axis = 0; axis < 3; ++axis) {
+                near.origin[axis] = from[axis] * splat(part.shrink) + splat(part.shift[axis]);
+                near.along[axis] = direction[axis].half[half];
+            }
+        } else {
+            const LaneMap& map = edge.child_from_parent;
+            const auto through = [&](const Double4& x, const Double4& y, const Double4& z, int axis)
+                                     GRAFTAL_INLINED_LAMBDA {
+                                         return splat(map.column[0][axis]) * x +
+                                                splat(map.column[1][axis]) * y +
+                                                splat(map.column[2][axis]) * z;
+                                     };
+            for (int axis = 0; axis < 3; ++axis) {
+                near.origin[axis] =
+                    through(from[0], from[1], from[2], axis) + splat(map.translation[axis]);
+                near.along[axis] = through(direction[0].half[half], direction[1].half[half],
+                                           direction[2].half[half], axis);
+            }
+            if (!edge.similarity) {
+                growth = largest_of(near.along);
+                near.is_map = (growth > splat(0.0)) & (growth < splat(1 / least_scale));
+                stretch = 1 / growth;
+            }
+            for (int axis = 0; axis < 3; ++axis)
+                near.along[axis] = near.along[axis] * stretch;
+        }
+        near.unit = parent.unit.half[half] * stretch;
+        const Double4 speed = parent.speed.half[half] * growth;
+        near.least = (range.least - near.base) * speed;
+        near.most = (best.half[half] - near.base) * speed;
+        return near;
+    }
+
+    static GRAFTAL_INLINE Double4 size_of(const Double4& x) { return x < 0 ? -x : x; }
+
+    /// As largest_component(), of four vectors.
+    static GRAFTAL_INLINE Double4 largest_of(const Double4 (&vector)[3]) {
+        const Double4 x = size_of(vector[0]), y = size_of(vector[1]), z = size_of(vector[2]);
+        const Double4 xy = x < y ? y : x;
+        return xy < z ? z : xy;
+    }
+
+    /// Where four rays cross a leaf first; `crossed`: which do.
+    struct Crossing {
+        Double4 t;
+        Double4 normal[3];
+        Long4 crossed;
+    };
+
+    /// As EvenKernel::meet_cube().
+    GRAFTAL_INLINE Crossing cross_cube(const Near& near, int half) const {
+        Double4 enter[3], leave[3];
+        for (int axis = 0; axis < 3; ++axis) {
+            const Double4 a = (-1 - near.origin[axis]) * inverse[axis].half[half],
+                          b = (1 - near.origin[axis]) * inverse[axis].half[half];
+            enter[axis] = b < a ? b : a;
+            leave[axis] = a < b ? b : a;
+        }
+        const Double4 enter_xy = enter[0] < enter[1] ? enter[1] : enter[0],
+                      leave_xy = leave[1] < leave[0] ? leave[1] : leave[0];
+        const Double4 enters = enter_xy < enter[2] ? enter[2] : enter_xy,
+                      leaves = leave[2] < leave_xy ? leave[2] : leave_xy;
+        const Long4 entering = enters > near.least;
+        Crossing crossing;
+        crossing.t = entering ? enters : leaves;
+        crossing.crossed = (enters <= leaves) & (crossing.t > near.least);
+        Long4 here = crossing.t == (entering ? enter[0] : leave[0]), other = ~here;
+        for (int axis = 0; axis < 3; ++axis) {
+            const Double4 outwards =
+                ((near.along[axis] < 0) ^ entering) != 0 ? splat(-1.0) : splat(1.0);
+            crossing.normal[axis] = here ? outwards : splat(0.0);
+            here = axis == 0 ? other & (crossing.t == (entering ? enter[1] : leave[1])) : other & ~here;
+            other = other & ~here;
+        }
+        return crossing;
+    }
+
+    /// As EvenKernel::meet_triangle().
+    static GRAFTAL_INLINE Crossing cross_triangle(const Near& near) {
+        constexpr double root3 = 1.7320508075688772;
+        Crossing crossing;
+        const Double4 t = -near.origin[2] / near.along[2];
+        const Double4 x = near.origin[0] + t * near.along[0], y = near.origin[1] + t * near.along[1];
+        crossing.t = t;
+        crossing.crossed = (t > near.least) & (y >= splat(-0.5 - passage_rounding)) &
+                           (root3 * size_of(x) + y <= splat(1 + passage_rounding));
+        crossing.normal[0] = crossing.normal[1] = splat(0.0);
+        crossing.normal[2] = splat(1.0);
+        return crossing;
+    }
+
+    GRAFTAL_INLINE void meet_leaf(const EvenPart& part, const Entry& entry) {
+        count(entry);
+        const TraceEdge& edge = model.edges[entry.entry];
+        Near near[2];
+        Crossing crossing[2];
+        Double8 t;
         std::uint32_t hit = 0, close = 0;
-        Double8 ts;
-        Double8 normal[3], point[3];
         for (int i = 0; i < 2; ++i) {
-            const Double4 at = doubles_of(entry.at, i);
-            const Double4 base = parent.base.half[i] + at * parent.unit.half[i];
-            const Double4 unit = parent.unit.half[i] * part.stretch,
-                          speed = parent.speed.half[i] * part.growth;
-            const Double4 least = (range.least - base) * speed, most = (best.half[i] - base) * speed;
-            Double4 enter[3], leave[3], origin[3];
-            for (int axis = 0; axis < 3; ++axis) {
-                origin[axis] =
-                    (parent.origin[axis].half[i] + at * direction[axis].half[i]) * splat(part.shrink) +
-                    splat(part.shift[axis]);
-                const Double4 a = (-1 - origin[axis]) * inverse[axis].half[i],
-                              b = (1 - origin[axis]) * inverse[axis].half[i];
-                enter[axis] = b < a ? b : a;
-                leave[axis] = a < b ? b : a;
-            }
-            const Double4 enter_xy = enter[0] < enter[1] ? enter[1] : enter[0],
-                          leave_xy = leave[1] < leave[0] ? leave[1] : leave[0];
-            const Double4 enters = enter_xy < enter[2] ? enter[2] : enter_xy,
-                          leaves = leave[2] < leave_xy ? leave[2] : leave_xy;
-            const Long4 entering = enters > least;
-            const Double4 end = entering ? enters : leaves;
-            const Long4 crossed = (enters <= leaves) & (end > least);
-            const Double4 t = base + end * unit;
-            const Long4 nearer = crossed & (end < most);
-            hit |= bits_of<instructions>(nearer) << (4 * i);
-            const Double4 apart = t < best.half[i] ? best.half[i] - t : t - best.half[i];
-            const Double4 size = (t < 0 ? -t : t) + (base < 0 ? -base : base);
-            close |= bits_of<instructions>(crossed & (apart <= rounding * size)) << (4 * i);
-            ts.half[i] = t;
-            Long4 other{};
-            other = ~other;
-            for (int axis = 0; axis < 3; ++axis) {
-                const Long4 here =
-                    axis == 2 ? other : other & (end == (entering ? enter[axis] : leave[axis]));
-                const Double4 d = direction[axis].half[i];
-                const Double4 along = d < 0 ? splat(-1.0) : splat(1.0);
-                normal[axis].half[i] = here ? (entering ? -along : along) : splat(0.0);
-                other = other & ~here;
-                point[axis].half[i] = origin[axis] + end * d;
-            }
+            near[i] = bring_near(part, edge, entry, i);
+            crossing[i] =
+                part.kind == EvenPart::Kind::cube ? cross_cube(near[i], i) : cross_triangle(near[i]);
+            const Long4 crossed = crossing[i].crossed & near[i].is_map;
+            t.half[i] = near[i].base + crossing[i].t * near[i].unit;
+            hit |= bits_of<instructions>(crossed & (crossing[i].t < near[i].most)) << (4 * i);
+            const Double4 slack = rounding * (size_of(t.half[i]) + size_of(near[i].base));
+            close |= bits_of<instructions>(crossed & (size_of(t.half[i] - best.half[i]) <= slack)) << (4 * i);
         }
         hit &= entry.mask;
-        close &= entry.mask;
-        note_ties(hit, close);
+        tied = (tied & ~hit) | (close & entry.mask);
         if (hit == 0) return;
-        PacketRoom::Hit& met = room.hits.emplace_back();
-        const TraceEdge& edge = model.edges[entry.entry];
-        place(parent, edge.parent_from_child, met.world_from_leaf);
-        met.turns = edge.turns;
-        met.way = room.ways.size();
+        found |= hit;
+        const std::size_t number = keep_hit(part, entry);
+        for (; hit != 0; hit &= hit - 1) {
+            const int lane = std::countr_zero(hit), i = lane / 4, j = lane % 4;
+            best.half[i][j] = t.half[i][j];
+            const Crossing& c = crossing[i];
+            const Near& n = near[i];
+            PacketRoom::Best& to = room.best[static_cast<std::size_t>(lane)];
+            to.t = t.half[i][j];
+            to.hit = number;
+            to.normal = {c.normal[0][j], c.normal[1][j], c.normal[2][j]};
+            for (int axis = 0; axis < 3; ++axis)
+                to.point[axis] = n.origin[axis][j] + c.t[j] * n.along[axis][j];
+        }
+    }
+
+    /// What the rays share that hit an entry's leaf.
+    GRAFTAL_INLINE std::size_t keep_hit(const EvenPart& part, const Entry& entry) {
+        const Frame& parent = room.frames[entry.frame];
+        PacketRoom::Hit& hit = room.hits.emplace_back();
+        hit.is_upright = part.upright;
+        if (!part.upright)
+            place(parent, model.edges[entry.entry].parent_from_child, hit.world_from_leaf);
+        hit.turns = part.turns;
+        hit.way = room.ways.size();
         for (std::uint32_t i = 1; i <= entry.frame; ++i)
             room.ways.push_back(room.frames[i].edge);
         room.ways.push_back(entry.entry | (parent.cut ? from_cut : 0));
-        met.way_end = room.ways.size();
-        for (std::uint32_t left = hit; left != 0; left &= left - 1) {
-            const int lane = std::countr_zero(left), i = lane / 4, j = lane % 4;
-            best.half[i][j] = room.t[static_cast<std::size_t>(lane)] = ts.half[i][j];
-            room.hit_of[static_cast<std::size_t>(lane)] = room.hits.size() - 1;
-            room.normal[static_cast<std::size_t>(lane)] = {normal[0].half[i][j], normal[1].half[i][j],
-                                                           normal[2].half[i][j]};
-            room.point[static_cast<std::size_t>(lane)] = {point[0].half[i][j], point[1].half[i][j],
-                                                          point[2].half[i][j]};
-        }
-        found |= hit;
+        hit.way_end = room.ways.size();
+        return room.hits.size() - 1;
     }
 
     /// As much as the rounding of t may decide which of two hits is the nearer one, times some ten.
     static constexpr double rounding = 1e-14;
-
-    GRAFTAL_INLINE void note_ties(std::uint32_t hit, std::uint32_t close) { tied = (tied & ~hit) | close; }
 
     /// From an entry on, as a ray by itself does.
     GRAFTAL_INLINE void go_alone(const Entry& entry, int lane) {
@@ -343,13 +499,12 @@ template<Instructions instructions> struct Traversal::EvenPacket : EvenPlaces {
     }
 
     GRAFTAL_INLINE void keep_best(int lane) {
-        const auto number = static_cast<std::size_t>(lane);
-        best.half[lane / 4][lane % 4] = room.t[number] = self.best_.t;
-        room.normal[number] = self.best_.normal;
-        room.point[number] = self.best_.point;
-        room.hit_of[number] = room.hits.size();
+        best.half[lane / 4][lane % 4] = self.best_.t;
+        room.best[static_cast<std::size_t>(lane)] = {self.best_.t, room.hits.size(), self.best_.normal,
+                                                     self.best_.point};
         PacketRoom::Hit& met = room.hits.emplace_back();
-        met.world_from_leaf = self.best_.world_from_leaf;
+        met.is_upright = self.best_.is_upright;
+        if (!met.is_upright) met.world_from_leaf = self.best_.world_from_leaf;
         met.turns = self.best_.turns;
         met.proxy_node = self.best_.proxy_node;
         met.way = room.ways.size();

@@ -143,6 +143,14 @@ std::uint32_t Traversal::closest_each(std::span<const Ray> rays, const RayRange&
     stats[9]+=std::popcount(alone); stats[10]+=std::popcount(found); stats[11]++;
 #endif
     found &= ~alone;
+    for (const PacketRoom::Hit& hit : packet_->hits) {
+        const TraceEdge& edge = model_.edges[packet_->ways[hit.way_end - 1] & ~from_cut];
+        if (edge.as_one) continue;
+        __builtin_prefetch(&model_.edges[edge.before].tint);
+        __builtin_prefetch(&model_.edges[edge.before]);
+        __builtin_prefetch(&model_.edges[edge.last & ~from_cut].tint);
+        __builtin_prefetch(&model_.edges[edge.last & ~from_cut]);
+    }
     for (std::uint32_t left = found; left != 0; left &= left - 1) {
         const auto lane = static_cast<std::size_t>(std::countr_zero(left));
         const PacketRoom::Best& best = packet_->best[lane];

@@ -441,6 +441,9 @@ template<Instructions instructions> struct Traversal::EvenPacket : EvenPlaces {
         if (!part.upright)
             place(parent, model.edges[entry.entry].parent_from_child, hit.world_from_leaf);
         hit.turns = part.turns;
+        const TraceEdge& edge = model.edges[entry.entry]; // its look will be asked for
+        __builtin_prefetch(&edge);
+        __builtin_prefetch(&edge.tint);
         hit.way = room.ways.size();
         for (std::uint32_t i = 1; i <= entry.frame; ++i)
             room.ways.push_back(room.frames[i].edge);

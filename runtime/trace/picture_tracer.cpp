@@ -1,10 +1,12 @@
 #include "runtime/trace/picture_tracer.h"
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <bit>
 #include <memory>
 #include <mutex>
+#include <span>
 #include <vector>
 
 #include <glm/common.hpp>
@@ -67,7 +69,9 @@ class Worker {
         for (std::uint64_t i = begin; i < end; ++i) {
             if (cancelled()) return false;
             const glm::dvec2 point = glm::fract(static_cast<double>(i + 1) * r2_step);
-            look(point.x * size.width, point.y * size.height);
+            Sight seen = sight(point.x * size.width, point.y * size.height);
+            ++camera_rays_;
+            shader_.radiance(seen.ray, seen.random);
         }
         return true;
     }
@@ -77,22 +81,55 @@ class Worker {
     }
 
   private:
-    /// `random` is of no account where all light is from points.
-    Rgb look(double x, double y, SampleStream random) {
-        ++camera_rays_;
-        const Ray ray = rays_.has_lens() ? rays_.through(x, y, random.next()) : rays_.through(x, y);
-        if (!aovs_) return shader_.radiance(ray, random);
-        SurfaceHit first;
-        const Rgb rgb = shader_.radiance(ray, random, &first);
-        seen_ = AovSample(first, ray, view_);
-        return rgb;
+    /// A ray of a picture and the random numbers of its light, which are of no account where all light is
+    /// from points.
+    struct Sight {
+        Ray ray;
+        SampleStream random;
+    };
+
+    Sight sight(double x, double y, SampleStream random) const {
+        if (!rays_.has_lens()) return {rays_.through(x, y), random};
+        const glm::dvec2 place = random.next();
+        return {rays_.through(x, y, place), random};
     }
 
     /// By numbers of their own, wherever in the picture.
-    Rgb look(double x, double y) {
-        return look(x, y,
-                    SampleStream(CounterRandom::scrambled(std::bit_cast<std::uint64_t>(x)),
-                                 static_cast<std::uint32_t>(std::bit_cast<std::uint64_t>(y) >> 20)));
+    Sight sight(double x, double y) const {
+        return sight(x, y,
+                     SampleStream(CounterRandom::scrambled(std::bit_cast<std::uint64_t>(x)),
+                                  static_cast<std::uint32_t>(std::bit_cast<std::uint64_t>(y) >> 20)));
+    }
+
+    /// Looks through so many points, neighbours together: sight_of(i) is the i-th, and take(i, light) gets what
+    /// comes from there, in order, and says whether to go on. False if it was cancelled.
+    template<class SightOf, class Take> bool look(int count, const SightOf& sight_of, const Take& take) {
+        constexpr int together = Surfaces::most_together;
+        std::array<Ray, Surfaces::most_together> rays;
+        std::vector<SampleStream>& randoms = randoms_;
+        bool more = true;
+        for (int first = 0; first < count && more; first += together) {
+            if (cancelled()) return false;
+            const int end = std::min(count, first + together);
+            randoms.clear();
+            for (int i = first; i < end; ++i) {
+                const Sight seen = sight_of(i);
+                rays[static_cast<std::size_t>(i - first)] = seen.ray;
+                randoms.push_back(seen.random);
+            }
+            shader_.look_ahead(std::span(rays).first(randoms.size()), ahead_);
+            for (int i = first; i < end && more; ++i) {
+                if (i > first && cancelled()) return false;
+                const auto number = static_cast<std::size_t>(i - first);
+                ++camera_rays_;
+                SurfaceHit met;
+                const Rgb rgb =
+                    shader_.radiance(rays[number], randoms[number], aovs_ ? &met : nullptr, ahead_, number);
+                if (aovs_) seen_ = AovSample(met, rays[number], view_);
+                more = take(i, rgb);
+            }
+        }
+        return true;
     }
 
     bool cancelled() const { return control_.cancelled && control_.cancelled(); }
@@ -113,23 +150,42 @@ class Worker {
 
     /// A block has its middle in the whole picture, however little of it is in the window.
     bool trace_blocks(int block, const Tile& tile, Image& picture) {
-        for (int y = tile.y; y < tile.y + tile.height; y += block)
-            for (int x = tile.x; x < tile.x + tile.width; x += block) {
-                const int right = std::min(x + block, tile.x + tile.width);
-                const int below = std::min(y + block, tile.y + tile.height);
-                const Tile shown = common({x, y, right - x, below - y}, window_);
-                if (shown.pixels() == 0) continue;
-                if (cancelled()) return false;
-                const Rgb rgb = look(0.5 * (x + right), 0.5 * (y + below));
-                AovSum sum;
-                sum.add(seen_, 1, 0);
-                for (int j = shown.y; j < shown.y + shown.height; ++j)
-                    for (int i = shown.x; i < shown.x + shown.width; ++i) {
-                        set(picture, i, j, rgb);
-                        if (aovs_) set(i, j, sum);
+        // Two rows and four columns at a time are nearer to each other than eight in a row.
+        constexpr int down = 2, across = static_cast<int>(Surfaces::most_together) / down;
+        for (int y = tile.y; y < tile.y + tile.height; y += down * block)
+            for (int x = tile.x; x < tile.x + tile.width; x += across * block) {
+                std::array<Tile, Surfaces::most_together> blocks;
+                int count = 0;
+                for (int top = y; top < std::min(y + down * block, tile.y + tile.height); top += block)
+                    for (int left = x; left < std::min(x + across * block, tile.x + tile.width);
+                         left += block) {
+                        const Tile one{left, top, std::min(block, tile.x + tile.width - left),
+                                       std::min(block, tile.y + tile.height - top)};
+                        if (common(one, window_).pixels() > 0)
+                            blocks[static_cast<std::size_t>(count++)] = one;
                     }
+                const auto middle = [&](int i) {
+                    const Tile& one = blocks[static_cast<std::size_t>(i)];
+                    return sight(one.x + 0.5 * one.width, one.y + 0.5 * one.height);
+                };
+                if (!look(count, middle, [&](int i, const Rgb& rgb) {
+                        show(picture, common(blocks[static_cast<std::size_t>(i)], window_), rgb);
+                        return true;
+                    }))
+                    return false;
             }
         return true;
+    }
+
+    /// The same in all pixels.
+    void show(Image& picture, const Tile& shown, const Rgb& rgb) {
+        AovSum sum;
+        sum.add(seen_, 1, 0);
+        for (int y = shown.y; y < shown.y + shown.height; ++y)
+            for (int x = shown.x; x < shown.x + shown.width; ++x) {
+                set(picture, x, y, rgb);
+                if (aovs_) set(x, y, sum);
+            }
     }
 
     /// Pixel by pixel, each by itself, so that it depends on its place in the picture alone.
@@ -142,15 +198,26 @@ class Worker {
                 NoiseMeter meter(film_);
                 AovSum sum;
                 bool calm = false;
-                for (int i = 0; i < sampling.most_samples && !calm; ++i) {
-                    if (cancelled()) return false;
-                    SampleStream random(seed, static_cast<std::uint32_t>(i));
+                const auto offset_of = [&](SampleStream& random) {
                     const glm::dvec2 place = random.next();
-                    const glm::dvec2 offset(filter.offset(place.x), filter.offset(place.y));
-                    meter.add(look(x + 0.5 + offset.x, y + 0.5 + offset.y, random));
-                    if (aovs_) sum.add(seen_, 1, glm::dot(offset, offset));
+                    return glm::dvec2(filter.offset(place.x), filter.offset(place.y));
+                };
+                const auto sample = [&](int i) {
+                    SampleStream random(seed, static_cast<std::uint32_t>(i));
+                    const glm::dvec2 offset = offset_of(random);
+                    return sight(x + 0.5 + offset.x, y + 0.5 + offset.y, random);
+                };
+                const bool whole = look(sampling.most_samples, sample, [&](int i, const Rgb& rgb) {
+                    meter.add(rgb);
+                    if (aovs_) {
+                        SampleStream random(seed, static_cast<std::uint32_t>(i));
+                        const glm::dvec2 offset = offset_of(random);
+                        sum.add(seen_, 1, glm::dot(offset, offset));
+                    }
                     calm = meter.count() % samples_a_round == 0 && meter.error_255() < sampling.noise_255;
-                }
+                    return !calm;
+                });
+                if (!whole) return false;
                 if (!calm && sampling.noise_255 > 0) ++noisy_pixels_;
                 set(picture, x, y, meter.mean());
                 if (aovs_) set(x, y, sum);
@@ -187,16 +254,15 @@ class Worker {
         std::fill(row_.begin(), row_.end(), Rgb(0.0));
         const double y = tile.y + static_cast<double>(j) / steps;
         const int count = static_cast<int>(row_.size()) * steps;
-        for (int i = 0; i <= count; ++i) {
-            if (cancelled()) return false;
-            const Rgb rgb = look(tile.x + static_cast<double>(i) / steps, y);
+        const auto sample = [&](int i) { return sight(tile.x + static_cast<double>(i) / steps, y); };
+        return look(count + 1, sample, [&](int i, const Rgb& rgb) {
             if (aovs_) add_seen(tile, {i, j}, steps);
             const auto pixel = static_cast<std::size_t>(i / steps);
             const bool edge = i % steps == 0;
             if (pixel < row_.size()) row_[pixel] += (edge ? 1.0 : 2.0) * rgb;
             if (edge && pixel > 0) row_[pixel - 1] += rgb;
-        }
-        return true;
+            return true;
+        });
     }
 
     /// Adds what the sample at this place of the lattice has seen to the pixels that it belongs to.
@@ -224,6 +290,8 @@ class Worker {
     const Film& film_;
     const View& view_;
     const TraceControl& control_;
+    Shader::Ahead ahead_;
+    std::vector<SampleStream> randoms_; ///< of the sights ahead
     std::uint64_t camera_rays_ = 0, noisy_pixels_ = 0;
     std::vector<Rgb> row_, sums_;
     Tile window_;

@@ -131,12 +131,22 @@ Shader::Shader(const View& view, Surfaces& surfaces, const ShaderLimits& limits,
 
 Shader::~Shader() = default;
 
-Rgb Shader::radiance(const Ray& ray, SampleStream& random, SurfaceHit* first) {
+void Shader::look_ahead(std::span<const Ray> rays, Ahead& ahead) {
+    ahead.met = surfaces_.closest_each(rays, {0, limits_.farthest}, ahead.hits);
+}
+
+Rgb Shader::radiance(const Ray& ray, SampleStream& random, SurfaceHit* first, const Ahead& ahead,
+                     std::size_t number) {
+    const Known known{ahead.met >> number & 1 ? &ahead.hits[number] : nullptr};
+    return radiance(ray, random, first, &known);
+}
+
+Rgb Shader::radiance(const Ray& ray, SampleStream& random, SurfaceHit* first, const Known* known) {
     if (first) *first = {};
     Path path;
     path.ray = ray;
     path.inside = camera_inside_;
-    Rgb sum = follow(path, random, first);
+    Rgb sum = follow(path, random, first, known);
     while (!waiting_.empty()) {
         path = waiting_.back();
         waiting_.pop_back();
@@ -146,12 +156,12 @@ Rgb Shader::radiance(const Ray& ray, SampleStream& random, SurfaceHit* first) {
 }
 
 /// The light that comes along a path, without what waits then.
-Rgb Shader::follow(Path& path, SampleStream& random, SurfaceHit* first) {
+Rgb Shader::follow(Path& path, SampleStream& random, SurfaceHit* first, const Known* known) {
     Rgb sum(0.0);
     const unsigned most = most_surfaces + bounces_;
     for (; path.surfaces < most && path.counts >= limits_.least_weight; ++path.surfaces) {
         SurfaceHit hit;
-        const bool found = closest(path.ray, path.range, hit);
+        const bool found = closest(path.ray, path.range, hit, path.surfaces == 0 ? known : nullptr);
         if (first && path.surfaces == 0 && found) *first = hit;
         double caught = 0; // of what lies behind the catcher
         if (view_.catcher) {
@@ -268,9 +278,10 @@ bool Shader::first_hit(const Ray& ray, SurfaceHit& hit) {
     return closest(ray, {}, hit);
 }
 
-bool Shader::closest(const Ray& ray, RayRange range, SurfaceHit& hit) {
+bool Shader::closest(const Ray& ray, RayRange range, SurfaceHit& hit, const Known* known) {
     range.most = std::min(range.most, limits_.farthest);
-    const bool found = surfaces_.closest(ray, range, hit);
+    if (known && known->hit) hit = *known->hit;
+    const bool found = known ? known->hit != nullptr : surfaces_.closest(ray, range, hit);
     if (!view_.ground) return found;
     if (found) range.most = hit.t;
     double t = 0;

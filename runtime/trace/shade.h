@@ -1,8 +1,12 @@
 #pragma once
 
+#include <array>
+#include <cstddef>
+#include <cstdint>
 #include <limits>
 #include <memory>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "compiler/scene/light_list.h"
@@ -52,6 +56,12 @@ struct SkyChoice;
 /// ComputeRefraction, ComputeShadowColour, ComputeSky.)
 class Shader {
   public:
+    /// What some rays meet first, the ground left out.
+    struct Ahead {
+        std::array<SurfaceHit, Surfaces::most_together> hits;
+        std::uint32_t met = 0; ///< one bit for each ray
+    };
+
     /// Keeps references to the view and the surfaces. `ground_texture`: of the ground's material; null: the
     /// ground shows its colour.
     Shader(const View& view, Surfaces& surfaces, const ShaderLimits& limits = {},
@@ -62,7 +72,15 @@ class Shader {
     /// is met. The direction is of unit length. Where soft light is sampled, an estimate by the numbers of
     /// the stream. `first`, if it is not null, gets what is met first; its material is null if that is the
     /// sky.
-    Rgb radiance(const Ray& ray, SampleStream& random, SurfaceHit* first = nullptr);
+    Rgb radiance(const Ray& ray, SampleStream& random, SurfaceHit* first = nullptr) {
+        return radiance(ray, random, first, nullptr);
+    }
+    /// The same of one of the rays that look_ahead() was asked for, by its number. What they meet first is sooner
+    /// found for neighbours of a picture together.
+    Rgb radiance(const Ray& ray, SampleStream& random, SurfaceHit* first, const Ahead& ahead,
+                 std::size_t number);
+    /// Requires at most Surfaces::most_together rays.
+    void look_ahead(std::span<const Ray> rays, Ahead& ahead);
     /// The same where nothing is sampled.
     Rgb radiance(const Ray& ray) {
         SampleStream unused(0, 0);
@@ -92,7 +110,12 @@ class Shader {
     struct Path;
     struct Way;
 
-    bool closest(const Ray& ray, RayRange range, SurfaceHit& hit);
+    /// Of a ray whose first surface is known; `hit` is null where there is none.
+    struct Known {
+        const SurfaceHit* hit;
+    };
+    Rgb radiance(const Ray& ray, SampleStream& random, SurfaceHit* first, const Known* known);
+    bool closest(const Ray& ray, RayRange range, SurfaceHit& hit, const Known* known = nullptr);
     /// Where and how the ground is met; false beyond the range, along it, and where its picture is clear.
     bool meet_ground(const Ray& ray, const RayRange& range, double& t) const;
     static bool meet_level(double height, const Ray& ray, const RayRange& range, double& t);
@@ -106,7 +129,7 @@ class Shader {
     Rgb from_sky(const Point& point, double least, bool shine_only, SampleStream& random);
     Rgb sky_light(const SkyChoice& choice, const Point& point, double body, Vec3 direction, double least);
     Rgb shine(const Point& point, Vec3 to_light) const;
-    Rgb follow(Path& path, SampleStream& random, SurfaceHit* first = nullptr);
+    Rgb follow(Path& path, SampleStream& random, SurfaceHit* first = nullptr, const Known* known = nullptr);
     static double scattered_by(const Point& point);
     bool goes_on(Path& path, const Point& point, double scattered, bool sky_later, SampleStream& random);
     bool scatter(Path& path, const Point& point, double choice, SampleStream& random) const;

@@ -179,7 +179,8 @@ struct TraceModel {
     ModelTextures textures;                             ///< of_material has all materials
     /// Nodes and primitives that one ray may go into. Sound models need some tens or hundreds; where
     /// thousands of parts coincide, a ray would not come to an end.
-    std::uint64_t most_visits = 1 << 17;
+    std::uint64_t most_visits = usual_visits;
+    static constexpr std::uint64_t usual_visits = 1 << 17;
     /// More of them, for a ray that was given up before it met anything: it looks into no more parts that may
     /// be culled, so that few are left.
     std::uint64_t more_visits() const { return std::clamp<std::uint64_t>(most_visits, 32, 256); }

@@ -81,6 +81,9 @@ GRAFTAL_AVX2 std::uint32_t run_packet_avx2(Traversal& traversal, const TraceMode
 
 namespace {
 
+/// Fewer rays go alone.
+constexpr std::size_t least_packet = 3;
+
 Rgb colour_of(const Texture::Texel& texel) {
     static const std::array<double, 256> linear = [] {
         std::array<double, 256> levels;
@@ -134,7 +137,9 @@ void Traversal::show_best(SurfaceHit& hit) {
 
 std::uint32_t Traversal::closest_each(std::span<const Ray> rays, const RayRange& range,
                                       std::span<SurfaceHit> hits) {
-    if (!packet_ || rays.size() < 3) return Surfaces::closest_each(rays, range, hits);
+    // Rays that may be given up go alone: how far they come depends on the order of their parts.
+    if (!packet_ || rays.size() < least_packet || model_.most_visits < TraceModel::usual_visits)
+        return Surfaces::closest_each(rays, range, hits);
     std::uint32_t alone = 0;
     std::uint32_t found = instructions_ == Instructions::avx2
                               ? run_packet_avx2<EvenPacket<Instructions::avx2>>(*this, model_, range, rays, alone)

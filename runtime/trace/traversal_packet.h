@@ -284,7 +284,9 @@ template<Instructions instructions> struct Traversal::EvenPacket : EvenPlaces {
     }
 
     GRAFTAL_INLINE void count(const Entry& entry) {
-        visits += static_cast<std::uint64_t>(std::popcount(entry.mask));
+        const auto rays = static_cast<std::uint64_t>(std::popcount(entry.mask));
+        visits += rays;
+        self.visits_ += rays;
     }
 
     /// Four rays in a leaf's frame, and what counts of them there.
@@ -489,7 +491,10 @@ template<Instructions instructions> struct Traversal::EvenPacket : EvenPlaces {
         const std::uint64_t visits_before = self.visits_;
         const bool met = alone.go_on({entry.at[lane], entry.entry, entry.frame});
         visits += self.visits_ - visits_before;
-        self.visits_ = visits_before;
+        if (self.hurries_) { // it is not given up yet
+            self.hurries_ = false;
+            --self.given_up_;
+        }
         if (!met) return;
         const std::uint32_t bit = 1u << lane;
         if (before < INFINITY && !(self.best_.t < before - slack)) {

@@ -24,13 +24,15 @@ struct Traversal::PacketRoom {
         std::uint32_t hits_then = 0; ///< hits of the packet when that was so
     };
 
-    /// An edge or a node of boxes that rays are to look into.
-    struct alignas(64) Entry {
-        Float8 at; ///< in units from each ray's base
-        float key = 0; ///< the same of a ray that goes there
+    /// An edge or a node of boxes that rays are to look into. Where each of them enters its box is computed
+    /// again when it is taken: to keep that takes longer.
+    struct Entry {
+        float key = 0; ///< where one of the rays does
         std::uint32_t entry = 0;
         std::uint32_t frame = 0;
         std::uint32_t mask = 0; ///< one bit for each ray that meets its box
+        std::uint32_t box = no_box; ///< eight times the node of boxes, and the lane
+        static constexpr std::uint32_t no_box = UINT32_MAX; ///< the rays are at its beginning
     };
 
     /// What some rays have met, as Best.

@@ -16,6 +16,13 @@ template<Instructions instructions> struct Traversal::EvenPacket : EvenPlaces {
     using Entry = PacketRoom::Entry;
     using Alone = EvenKernel<instructions, false>;
 
+    /// Rays on their way into an entry.
+    struct Going {
+        Float8 at;     ///< from where on, in units from each ray's base
+        float key = 0; ///< as Entry's
+        std::uint32_t entry, frame, mask, box;
+    };
+
     PacketRoom& room;
     // In every frame:
     Double8 direction[3], inverse[3];
@@ -44,26 +51,35 @@ template<Instructions instructions> struct Traversal::EvenPacket : EvenPlaces {
         }
         inside &= all;
         if (inside == 0) return;
-        room.push() = {Float8{}, 0, 0, 0, inside};
-        while (room.top > 0) {
-            const Entry& last = room.entries[--room.top];
-            // Number by number: they were stored so.
-            Entry entry{last.at, last.key, last.entry, last.frame, last.mask};
-            if (!leave_out_beaten(entry)) continue;
-#ifdef STATS
-            extern long stats[16];
-            const int pc=std::popcount(entry.mask);
-            if (pc<=few) stats[entry.entry & BoxNode::inner ? 0 : model.even_parts[entry.entry].kind==EvenPart::Kind::node?1:2]+=pc;
-            else stats[entry.entry & BoxNode::inner ? 3 : model.even_parts[entry.entry].kind==EvenPart::Kind::node?4:5]+=pc, stats[entry.entry & BoxNode::inner ? 6 : model.even_parts[entry.entry].kind==EvenPart::Kind::node?7:8]++;
-#endif
-            if (is_left_alone(entry) || !go_together(entry))
-                for (std::uint32_t left = entry.mask; left != 0; left &= left - 1)
-                    go_alone(entry, std::countr_zero(left));
+        Going going{Float8{}, 0, 0, 0, inside, Entry::no_box};
+        for (bool more = true; more || pop(going);) {
+            const Next next = is_left_alone(going) ? Next::alone : go_together(going);
+            more = next == Next::on;
+            if (next == Next::alone)
+                for (std::uint32_t left = going.mask; left != 0; left &= left - 1)
+                    go_alone(going, std::countr_zero(left));
             if (visits > most_visits) {
                 tied = all;
                 return;
             }
         }
+    }
+
+    /// What becomes of rays that go into something: they are at its end, on their way into the nearest of what
+    /// is in it, or each is to go there by itself.
+    enum class Next { end, on, alone };
+
+    /// Takes the nearest entry, if one is left that is nearer than what its rays have met.
+    GRAFTAL_INLINE bool pop(Going& going) {
+        while (room.top > 0) {
+            const Entry& entry = room.entries[--room.top];
+            going.entry = entry.entry;
+            going.frame = entry.frame;
+            going.mask = entry.mask;
+            going.at = at_box(entry);
+            if (leave_out_beaten(going)) return true;
+        }
+        return false;
     }
 
     /// So many rays go alone: fewer than that have little in common.
@@ -141,15 +157,29 @@ template<Instructions instructions> struct Traversal::EvenPacket : EvenPlaces {
         return frame.most = floats_of(most) + 2e-6f;
     }
 
+    GRAFTAL_INLINE Float8 at_box(const Entry& entry) const {
+        if (entry.box == Entry::no_box) return Float8{};
+        const BoxNode& node = model.boxes[entry.box / 8];
+        const Frame& frame = room.frames[entry.frame];
+        Float8 enters = frame.least;
+        for (int axis = 0; axis < 3; ++axis)
+            enters = greater(
+                enters, (spread<instructions>(side_of(node, side_in[axis], axis)[entry.box % 8]) - frame.near[axis]) *
+                            reciprocal[axis]);
+        return enters;
+    }
+
     /// False if all rays have met something nearer than the entry is.
-    GRAFTAL_INLINE bool leave_out_beaten(Entry& entry) const {
+    GRAFTAL_INLINE bool leave_out_beaten(Going& entry) const {
         if ((entry.mask & found) == 0) return true;
         entry.mask &= bits_of<instructions>(entry.at <= most_in(room.frames[entry.frame]));
         return entry.mask != 0;
     }
 
-    /// Sorts the boxes that rays meet onto the stack, the nearest on top.
-    GRAFTAL_INLINE void test_boxes(std::uint32_t number, std::uint32_t frame_number, std::uint32_t mask) {
+    /// Puts the nearest of the boxes that rays meet in the place of their node, and the others onto the stack, the
+    /// farthest first.
+    GRAFTAL_INLINE Next test_boxes(Going& going) {
+        const std::uint32_t number = going.entry & ~BoxNode::inner, frame_number = going.frame, mask = going.mask;
         const BoxNode& node = model.boxes[number];
         Frame& frame = room.frames[frame_number];
         const Float8 least = frame.least, most = most_in(frame);
@@ -161,6 +191,7 @@ template<Instructions instructions> struct Traversal::EvenPacket : EvenPlaces {
         const int lead = std::countr_zero(mask);
         Entry* const first = room.reserve(8);
         Entry* end = first;
+        bool none = true;
         for (std::uint32_t left = boxes_near(node, frame, most, mask); left != 0; left &= left - 1) {
             const auto child = static_cast<std::size_t>(std::countr_zero(left));
             Float8 enters = least, leaves = most;
@@ -172,13 +203,28 @@ template<Instructions instructions> struct Traversal::EvenPacket : EvenPlaces {
             }
             const std::uint32_t meeting = bits_of<instructions>(enters <= leaves) & mask;
             if (meeting == 0) continue;
-            const float key = enters[meeting >> lead & 1 ? lead : std::countr_zero(meeting)];
+            float key = enters[meeting >> lead & 1 ? lead : std::countr_zero(meeting)];
+            std::uint32_t into = node.entry[child], rays = meeting,
+                          box = 8 * number + static_cast<std::uint32_t>(child);
+            if (key <= going.key || none) {
+                std::swap(key, going.key);
+                std::swap(into, going.entry);
+                std::swap(rays, going.mask);
+                std::swap(box, going.box);
+                going.at = enters;
+                if (std::exchange(none, false)) continue;
+            }
             Entry* place = end++;
             for (; place > first && place[-1].key < key; --place)
                 *place = place[-1];
-            *place = {enters, key, node.entry[child], frame_number, meeting};
+            place->key = key;
+            place->entry = into;
+            place->frame = frame_number;
+            place->mask = rays;
+            place->box = box;
         }
         room.top += static_cast<std::size_t>(end - first);
+        return none ? Next::end : Next::on;
     }
 
     /// Which of eight boxes a ray of the packet may meet, as the extremes of all rays tell. Sums and products are
@@ -228,30 +274,26 @@ template<Instructions instructions> struct Traversal::EvenPacket : EvenPlaces {
     }
 
     /// Whether so few rays go there that each goes by itself. A leaf is not worth the way there.
-    GRAFTAL_INLINE bool is_left_alone(const Entry& entry) const {
+    GRAFTAL_INLINE bool is_left_alone(const Going& entry) const {
         return std::popcount(entry.mask) <= few &&
                (entry.entry & BoxNode::inner || !meets_together(model.even_parts[entry.entry]));
     }
 
-    /// False if each ray is to go there by itself.
-    GRAFTAL_INLINE bool go_together(const Entry& entry) {
-        if (entry.entry & BoxNode::inner) {
-            test_boxes(entry.entry & ~BoxNode::inner, entry.frame, entry.mask);
-            return true;
-        }
-        const EvenPart& part = model.even_parts[entry.entry];
-        if (part.kind == EvenPart::Kind::node) return enter(part, entry);
-        if (!meets_together(part)) return false;
-        meet_leaf(part, entry);
-        return true;
+    GRAFTAL_INLINE Next go_together(Going& going) {
+        if (going.entry & BoxNode::inner) return test_boxes(going);
+        const EvenPart& part = model.even_parts[going.entry];
+        if (part.kind == EvenPart::Kind::node) return enter(part, going);
+        if (!meets_together(part)) return Next::alone;
+        meet_leaf(part, going);
+        return Next::end;
     }
 
-    GRAFTAL_INLINE bool enter(const EvenPart& part, const Entry& entry) {
+    GRAFTAL_INLINE Next enter(const EvenPart& part, Going& entry) {
         Frame& frame = room.frame(entry.frame + 1); // parents may move, but no more after this
         const Frame& parent = room.frames[entry.frame];
-        if (!go_to_child(part, entry.entry, parent, frame)) return true;
+        if (!go_to_child(part, entry.entry, parent, frame)) return Next::end;
         const TraceNode& node = model.nodes[part.child];
-        if (frame.cut && node.stop_tree == no_tree) return false;
+        if (frame.cut && node.stop_tree == no_tree) return Next::alone;
         count(entry);
         Double8 least;
         for (int i = 0; i < 2; ++i) {
@@ -273,17 +315,19 @@ template<Instructions instructions> struct Traversal::EvenPacket : EvenPlaces {
             frame.extreme[0][axis] = smallest(frame.near[axis], entry.mask);
             frame.extreme[1][axis] = greatest(frame.near[axis], entry.mask);
         }
+        entry.at = Float8{};
+        entry.box = Entry::no_box;
+        ++entry.frame;
         if (frame.cut && node.stop_edge_count == 1) { // about as large as the node: no box to test
-            room.push() = {Float8{}, 0, node.first_edge + node.edge_count, entry.frame + 1, entry.mask};
-            return true;
+            entry.entry = node.first_edge + node.edge_count;
+            return Next::on;
         }
         const std::uint32_t tree = frame.cut ? node.stop_tree : tree_of(node, frame);
-        if (tree != no_tree)
-            room.push() = {Float8{}, 0, tree | BoxNode::inner, entry.frame + 1, entry.mask};
-        return true;
+        entry.entry = tree | BoxNode::inner;
+        return tree == no_tree ? Next::end : Next::on;
     }
 
-    GRAFTAL_INLINE void count(const Entry& entry) {
+    GRAFTAL_INLINE void count(const Going& entry) {
         const auto rays = static_cast<std::uint64_t>(std::popcount(entry.mask));
         visits += rays;
         self.visits_ += rays;
@@ -296,7 +340,7 @@ template<Instructions instructions> struct Traversal::EvenPacket : EvenPlaces {
         Long4 is_map; ///< false where the leaf's frame is none
     };
 
-    GRAFTAL_INLINE Near bring_near(const EvenPart& part, const TraceEdge& edge, const Entry& entry,
+    GRAFTAL_INLINE Near bring_near(const EvenPart& part, const TraceEdge& edge, const Going& entry,
                                    int half) const {
         const Frame& parent = room.frames[entry.frame];
         const Double4 at = doubles_of(entry.at, half);
@@ -399,7 +443,7 @@ template<Instructions instructions> struct Traversal::EvenPacket : EvenPlaces {
         return crossing;
     }
 
-    GRAFTAL_INLINE void meet_leaf(const EvenPart& part, const Entry& entry) {
+    GRAFTAL_INLINE void meet_leaf(const EvenPart& part, const Going& entry) {
         count(entry);
         const TraceEdge& edge = model.edges[entry.entry];
         Near near[2];
@@ -436,7 +480,7 @@ template<Instructions instructions> struct Traversal::EvenPacket : EvenPlaces {
     }
 
     /// What the rays share that hit an entry's leaf.
-    GRAFTAL_INLINE std::size_t keep_hit(const EvenPart& part, const Entry& entry) {
+    GRAFTAL_INLINE std::size_t keep_hit(const EvenPart& part, const Going& entry) {
         const Frame& parent = room.frames[entry.frame];
         PacketRoom::Hit& hit = room.hits.emplace_back();
         hit.is_upright = part.upright;
@@ -458,7 +502,7 @@ template<Instructions instructions> struct Traversal::EvenPacket : EvenPlaces {
     static constexpr double rounding = 1e-14;
 
     /// From an entry on, as a ray by itself does.
-    GRAFTAL_INLINE void go_alone(const Entry& entry, int lane) {
+    GRAFTAL_INLINE void go_alone(const Going& entry, int lane) {
         Alone alone(self, model, range);
         const int i = lane / 4, j = lane % 4;
         const auto of = [&](const Double8& lanes) GRAFTAL_INLINED_LAMBDA { return lanes.half[i][j]; };

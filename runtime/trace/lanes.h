@@ -100,6 +100,17 @@ GRAFTAL_INLINE Mat3 linear_of(const LaneMap& map) {
     return {vec3_of(map.column[0]), vec3_of(map.column[1]), vec3_of(map.column[2])};
 }
 
+GRAFTAL_INLINE Double4 size_of(const Double4& x) {
+    return x < 0 ? -x : x;
+}
+
+/// As largest_component(), of four vectors.
+GRAFTAL_INLINE Double4 largest_of(const Double4& x, const Double4& y, const Double4& z) {
+    const Double4 a = size_of(x), b = size_of(y), c = size_of(z);
+    const Double4 ab = a < b ? b : a;
+    return ab < c ? c : ab;
+}
+
 GRAFTAL_INLINE Float8 lesser(const Float8& a, const Float8& b) {
     return a < b ? a : b;
 }

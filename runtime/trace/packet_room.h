@@ -39,6 +39,7 @@ struct Traversal::PacketRoom {
     struct Hit {
         LaneMap world_from_leaf; ///< unless it is upright
         bool is_upright = false;
+        bool in_world = false;
         double turns = 1;
         std::uint32_t proxy_node = UINT32_MAX;
         std::size_t way = 0, way_end = 0; ///< of `ways`
@@ -66,11 +67,6 @@ struct Traversal::PacketRoom {
     Entry* reserve(std::size_t count) {
         if (top + count > entries.size()) entries.resize(2 * entries.size());
         return entries.data() + top;
-    }
-
-    Entry& push() {
-        reserve(1);
-        return entries[top++];
     }
 
     Frame& frame(std::size_t number) {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <limits>
 
 #include <glm/geometric.hpp>
 
@@ -59,6 +60,33 @@ template<Instructions instructions> GRAFTAL_INLINE Float8 spread(float x) {
     }
 #endif
     return x - Float8{};
+}
+
+/// The lanes that have a bit, and a number for the others.
+template<Instructions instructions>
+GRAFTAL_INLINE Float8 lanes_in(const Float8& lanes, std::uint32_t mask, float other) {
+    constexpr Int8 bit = {1, 2, 4, 8, 16, 32, 64, 128};
+    const Int8 used = (static_cast<std::int32_t>(mask) & bit) != 0;
+    return used ? lanes : spread<instructions>(other);
+}
+
+/// Of the lanes that have a bit.
+template<Instructions instructions>
+GRAFTAL_INLINE float greatest(const Float8& lanes, std::uint32_t mask) {
+    Float8 all = lanes_in<instructions>(lanes, mask, -std::numeric_limits<float>::infinity());
+    all = greater(all, __builtin_shufflevector(all, all, 4, 5, 6, 7, 0, 1, 2, 3));
+    all = greater(all, __builtin_shufflevector(all, all, 2, 3, 0, 1, 6, 7, 4, 5));
+    all = greater(all, __builtin_shufflevector(all, all, 1, 0, 3, 2, 5, 4, 7, 6));
+    return all[0];
+}
+
+template<Instructions instructions>
+GRAFTAL_INLINE float smallest(const Float8& lanes, std::uint32_t mask) {
+    Float8 all = lanes_in<instructions>(lanes, mask, std::numeric_limits<float>::infinity());
+    all = lesser(all, __builtin_shufflevector(all, all, 4, 5, 6, 7, 0, 1, 2, 3));
+    all = lesser(all, __builtin_shufflevector(all, all, 2, 3, 0, 1, 6, 7, 4, 5));
+    all = lesser(all, __builtin_shufflevector(all, all, 1, 0, 3, 2, 5, 4, 7, 6));
+    return all[0];
 }
 
 /// Where it is 0 something small: far beyond all boxes, but a number, and 0 times it is 0.

@@ -11,14 +11,11 @@
 #include "runtime/trace/traversal_even.h"
 #include "runtime/trace/traversal_kernel.h"
 #include "runtime/trace/traversal_leaves.h"
-#include "runtime/trace/traversal_packet.h"
+#include "runtime/trace/traversal_packet_leaves.h"
 #include "runtime/trace/traversal_runs.h"
 #include "runtime/trace/traversal_specks.h"
 
 namespace graftal {
-#ifdef STATS
-long stats[16]; struct PS{~PS(){ const char*n[]={"alone inner","alone node","alone leaf","tog inner lanes","tog node lanes","tog leaf lanes","tog inner","tog node","tog leaf","redo","found","packets"}; for(int i=0;i<12;++i) fprintf(stderr,"%s %.3f\n",n[i],stats[i]/(5*307200.));}} ps;
-#endif
 
 Instructions best_instructions() {
 #if defined(__x86_64__)
@@ -144,9 +141,6 @@ std::uint32_t Traversal::closest_each(std::span<const Ray> rays, const RayRange&
     std::uint32_t found = instructions_ == Instructions::avx2
                               ? run_packet_avx2<EvenPacket<Instructions::avx2>>(*this, model_, range, rays, alone)
                               : run_packet<EvenPacket<Instructions::portable>>(*this, model_, range, rays, alone);
-#ifdef STATS
-    stats[9]+=std::popcount(alone); stats[10]+=std::popcount(found); stats[11]++;
-#endif
     found &= ~alone;
     for (const PacketRoom::Hit& hit : packet_->hits) {
         const TraceEdge& edge = model_.edges[packet_->ways[hit.way_end - 1] & ~from_cut];
@@ -169,7 +163,8 @@ std::uint32_t Traversal::closest_each(std::span<const Ray> rays, const RayRange&
         if (!met.is_upright) best_.world_from_leaf = met.world_from_leaf;
         best_.proxy_node = met.proxy_node;
         best_.mesh_colour = nullptr;
-        best_.in_world = best_.crushed = false;
+        best_.in_world = met.in_world;
+        best_.crushed = false;
         const auto way = packet_->ways.begin();
         way_.assign(way + static_cast<std::ptrdiff_t>(met.way), way + static_cast<std::ptrdiff_t>(met.way_end));
         show_best(hits[lane]);

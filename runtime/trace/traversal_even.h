@@ -212,6 +212,7 @@ template<Instructions instructions, bool any> struct Traversal::EvenKernel : Eve
         }
         set_best(base + hit.t * unit, hit.normal);
         if (any) return;
+        prefetch_look(entry.entry);
         self.best_.point = origin + hit.t * along;
         self.best_.turns = part.turns;
         self.best_.proxy_node = no_edge;

@@ -66,6 +66,13 @@ struct Traversal::EvenPlaces {
         return true;
     }
 
+    /// What will be asked of the edge to a leaf that was met, if nothing nearer is.
+    GRAFTAL_INLINE void prefetch_look(std::uint32_t number) const {
+        const TraceEdge& edge = model.edges[number];
+        __builtin_prefetch(&edge);
+        __builtin_prefetch(&edge.tint);
+    }
+
     GRAFTAL_INLINE void place(const EvenPlace& parent, const LaneMap& parent_from_leaf,
                               LaneMap& world_from_leaf) const {
         for (int i = 0; i < 3; ++i)

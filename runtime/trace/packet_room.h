@@ -18,9 +18,9 @@ struct Traversal::PacketRoom {
         Double8 base, unit, speed;
         Float8 near[3]; ///< the origin
         Float8 least;
-        float extreme[2][3]; ///< the least and the greatest of `near`, by axis
-        float first_least;   ///< the least of `least`
-        Float8 most;         ///< what is nearer than the rays' best hits is less than this
+        float extreme[2][3];         ///< the least and the greatest of `near`, by axis
+        float first_least;           ///< the least of `least`
+        Float8 most;                 ///< what is nearer than the rays' best hits is less than this
         std::uint32_t hits_then = 0; ///< hits of the packet when that was so
     };
 
@@ -30,8 +30,8 @@ struct Traversal::PacketRoom {
         float key = 0; ///< where one of the rays does
         std::uint32_t entry = 0;
         std::uint32_t frame = 0;
-        std::uint32_t mask = 0; ///< one bit for each ray that meets its box
-        std::uint32_t box = no_box; ///< eight times the node of boxes, and the lane
+        std::uint32_t mask = 0;                             ///< one bit for each ray that meets its box
+        std::uint32_t box = no_box;                         ///< eight times the node of boxes, and the lane
         static constexpr std::uint32_t no_box = UINT32_MAX; ///< the rays are at its beginning
     };
 
@@ -43,8 +43,11 @@ struct Traversal::PacketRoom {
         double turns = 1;
         std::uint32_t proxy_node = UINT32_MAX;
         std::size_t way = 0, way_end = 0; ///< of `ways`
+        std::size_t shown = no_ray;       ///< a ray of which it is known what is seen there
+        static constexpr std::size_t no_ray = SIZE_MAX;
     };
 
+    bool has_textures = false; ///< then what is seen depends on where a part is met
     std::vector<Frame> frames = std::vector<Frame>(16);
     std::vector<Entry> entries = std::vector<Entry>(128);
     std::size_t top = 0; ///< entries in use

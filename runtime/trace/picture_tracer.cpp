@@ -101,8 +101,8 @@ class Worker {
                                   static_cast<std::uint32_t>(std::bit_cast<std::uint64_t>(y) >> 20)));
     }
 
-    /// Looks through so many points, neighbours together: sight_of(i) is the i-th, and take(i, light) gets what
-    /// comes from there, in order, and says whether to go on. False if it was cancelled.
+    /// Looks through so many points, neighbours together: sight_of(i) is the i-th, and take(i, light) gets
+    /// what comes from there, in order, and says whether to go on. False if it was cancelled.
     template<class SightOf, class Take> bool look(int count, const SightOf& sight_of, const Take& take) {
         constexpr int together = Surfaces::most_together;
         std::array<Ray, Surfaces::most_together> rays;

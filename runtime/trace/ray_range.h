@@ -71,8 +71,7 @@ GRAFTAL_INLINE Float8 lanes_in(const Float8& lanes, std::uint32_t mask, float ot
 }
 
 /// Of the lanes that have a bit.
-template<Instructions instructions>
-GRAFTAL_INLINE float greatest(const Float8& lanes, std::uint32_t mask) {
+template<Instructions instructions> GRAFTAL_INLINE float greatest(const Float8& lanes, std::uint32_t mask) {
     Float8 all = lanes_in<instructions>(lanes, mask, -std::numeric_limits<float>::infinity());
     all = greater(all, __builtin_shufflevector(all, all, 4, 5, 6, 7, 0, 1, 2, 3));
     all = greater(all, __builtin_shufflevector(all, all, 2, 3, 0, 1, 6, 7, 4, 5));
@@ -80,8 +79,7 @@ GRAFTAL_INLINE float greatest(const Float8& lanes, std::uint32_t mask) {
     return all[0];
 }
 
-template<Instructions instructions>
-GRAFTAL_INLINE float smallest(const Float8& lanes, std::uint32_t mask) {
+template<Instructions instructions> GRAFTAL_INLINE float smallest(const Float8& lanes, std::uint32_t mask) {
     Float8 all = lanes_in<instructions>(lanes, mask, std::numeric_limits<float>::infinity());
     all = lesser(all, __builtin_shufflevector(all, all, 4, 5, 6, 7, 0, 1, 2, 3));
     all = lesser(all, __builtin_shufflevector(all, all, 2, 3, 0, 1, 6, 7, 4, 5));

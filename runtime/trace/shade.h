@@ -75,8 +75,8 @@ class Shader {
     Rgb radiance(const Ray& ray, SampleStream& random, SurfaceHit* first = nullptr) {
         return radiance(ray, random, first, nullptr);
     }
-    /// The same of one of the rays that look_ahead() was asked for, by its number. What they meet first is sooner
-    /// found for neighbours of a picture together.
+    /// The same of one of the rays that look_ahead() was asked for, by its number. What they meet first is
+    /// sooner found for neighbours of a picture together.
     Rgb radiance(const Ray& ray, SampleStream& random, SurfaceHit* first, const Ahead& ahead,
                  std::size_t number);
     /// Requires at most Surfaces::most_together rays.

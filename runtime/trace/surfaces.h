@@ -31,8 +31,8 @@ class Surfaces {
 
     /// The first surface within the range, if there is one.
     virtual bool closest(const Ray& ray, const RayRange& range, SurfaceHit& hit) = 0;
-    /// The same of several rays, at most most_together: one bit for each that meets something. Faster than one
-    /// by one where neighbours of a picture are asked for together.
+    /// The same of several rays, at most most_together: one bit for each that meets something. Faster than
+    /// one by one where neighbours of a picture are asked for together.
     virtual std::uint32_t closest_each(std::span<const Ray> rays, const RayRange& range,
                                        std::span<SurfaceHit> hits) {
         std::uint32_t met = 0;

@@ -32,6 +32,8 @@ Traversal::Traversal(const TraceModel& model, Instructions instructions)
     even_frames_.resize(16);
     even_entries_.resize(128);
     packet_ = std::make_unique<PacketRoom>();
+    packet_->has_textures = std::ranges::any_of(model.textures.of_material,
+                                                [](const auto& texture) { return texture != nullptr; });
 }
 
 Traversal::~Traversal() = default;
@@ -66,8 +68,9 @@ std::uint32_t run_packet(Traversal& traversal, const TraceModel& model, const Ra
 }
 
 template<typename Packet>
-GRAFTAL_AVX2 std::uint32_t run_packet_avx2(Traversal& traversal, const TraceModel& model, const RayRange& range,
-                                           std::span<const Ray> rays, std::uint32_t& tied) {
+GRAFTAL_AVX2 std::uint32_t run_packet_avx2(Traversal& traversal, const TraceModel& model,
+                                           const RayRange& range, std::span<const Ray> rays,
+                                           std::uint32_t& tied) {
     Packet packet(traversal, model, range);
     packet.run(rays);
     tied = packet.tied;
@@ -132,15 +135,43 @@ void Traversal::show_best(SurfaceHit& hit) {
     surface_at_best(hit);
 }
 
+/// Of a ray of a packet. Of those that meet the same part, one has to look along the way there.
+void Traversal::show_packed(std::size_t lane, const Ray& ray, std::span<SurfaceHit> hits) {
+    const PacketRoom::Best& best = packet_->best[lane];
+    PacketRoom::Hit& met = packet_->hits[best.hit];
+    ray_ = ray;
+    best_.t = best.t;
+    best_.normal = best.normal;
+    best_.point = best.point;
+    best_.turns = met.turns;
+    best_.is_upright = met.is_upright;
+    if (!met.is_upright) best_.world_from_leaf = met.world_from_leaf;
+    best_.proxy_node = met.proxy_node;
+    best_.mesh_colour = nullptr;
+    best_.in_world = met.in_world;
+    best_.crushed = false;
+    if (met.shown != PacketRoom::Hit::no_ray) {
+        hits[lane] = hits[met.shown];
+        hits[lane].t = best.t;
+        hits[lane].normal = normal_at_best();
+        return;
+    }
+    const auto way = packet_->ways.begin();
+    way_.assign(way + static_cast<std::ptrdiff_t>(met.way), way + static_cast<std::ptrdiff_t>(met.way_end));
+    show_best(hits[lane]);
+    if (met.proxy_node == no_edge && !packet_->has_textures) met.shown = lane;
+}
+
 std::uint32_t Traversal::closest_each(std::span<const Ray> rays, const RayRange& range,
                                       std::span<SurfaceHit> hits) {
     // Rays that may be given up go alone: how far they come depends on the order of their parts.
     if (!packet_ || rays.size() < least_packet || model_.most_visits < TraceModel::usual_visits)
         return Surfaces::closest_each(rays, range, hits);
     std::uint32_t alone = 0;
-    std::uint32_t found = instructions_ == Instructions::avx2
-                              ? run_packet_avx2<EvenPacket<Instructions::avx2>>(*this, model_, range, rays, alone)
-                              : run_packet<EvenPacket<Instructions::portable>>(*this, model_, range, rays, alone);
+    std::uint32_t found =
+        instructions_ == Instructions::avx2
+            ? run_packet_avx2<EvenPacket<Instructions::avx2>>(*this, model_, range, rays, alone)
+            : run_packet<EvenPacket<Instructions::portable>>(*this, model_, range, rays, alone);
     found &= ~alone;
     for (const PacketRoom::Hit& hit : packet_->hits) {
         const TraceEdge& edge = model_.edges[packet_->ways[hit.way_end - 1] & ~from_cut];
@@ -152,22 +183,7 @@ std::uint32_t Traversal::closest_each(std::span<const Ray> rays, const RayRange&
     }
     for (std::uint32_t left = found; left != 0; left &= left - 1) {
         const auto lane = static_cast<std::size_t>(std::countr_zero(left));
-        const PacketRoom::Best& best = packet_->best[lane];
-        const PacketRoom::Hit& met = packet_->hits[best.hit];
-        ray_ = rays[lane];
-        best_.t = best.t;
-        best_.normal = best.normal;
-        best_.point = best.point;
-        best_.turns = met.turns;
-        best_.is_upright = met.is_upright;
-        if (!met.is_upright) best_.world_from_leaf = met.world_from_leaf;
-        best_.proxy_node = met.proxy_node;
-        best_.mesh_colour = nullptr;
-        best_.in_world = met.in_world;
-        best_.crushed = false;
-        const auto way = packet_->ways.begin();
-        way_.assign(way + static_cast<std::ptrdiff_t>(met.way), way + static_cast<std::ptrdiff_t>(met.way_end));
-        show_best(hits[lane]);
+        show_packed(lane, rays[lane], hits);
     }
     for (; alone != 0; alone &= alone - 1) {
         const auto lane = static_cast<std::size_t>(std::countr_zero(alone));

@@ -67,7 +67,7 @@ class Traversal final : public Surfaces {
 
   private:
     template<Instructions instructions, bool any>
-    struct Kernel; ///< the traversal proper (traversal_kernel.h)
+    struct Kernel;     ///< the traversal proper (traversal_kernel.h)
     struct EvenPlaces; ///< which parts of an even model are looked into (traversal_even_places.h)
     template<Instructions instructions, bool any>
     struct EvenKernel; ///< through even models (traversal_even.h)
@@ -137,12 +137,12 @@ class Traversal final : public Surfaces {
     struct Best {
         double t = 0;
         bool found = false;
-        Vec3 normal{0.0}; ///< in the leaf's frame
-        Vec3 point{0.0};  ///< of a primitive, likewise
-        double turns = 1; ///< of a primitive (TraceEdge)
-        LaneMap world_from_leaf; ///< unless
-        bool is_upright = false; ///< that keeps normals: it only scales evenly and moves
-        std::uint32_t proxy_node = 0;                   ///< or no_edge
+        Vec3 normal{0.0};             ///< in the leaf's frame
+        Vec3 point{0.0};              ///< of a primitive, likewise
+        double turns = 1;             ///< of a primitive (TraceEdge)
+        LaneMap world_from_leaf;      ///< unless
+        bool is_upright = false;      ///< that keeps normals: it only scales evenly and moves
+        std::uint32_t proxy_node = 0; ///< or no_edge
         const TraceMesh::Colour* mesh_colour = nullptr; ///< of a triangle
         double cell = 0;                                ///< of its shell, in the world
         bool in_world = false; ///< the proxy was met there: so are its normal and point
@@ -195,6 +195,7 @@ class Traversal final : public Surfaces {
     void keep_way(std::uint32_t frame_number);
     /// Fills in what is seen at the best hit.
     void show_best(SurfaceHit& hit);
+    void show_packed(std::size_t lane, const Ray& ray, std::span<SurfaceHit> hits);
     template<template<Instructions, bool> typename AnyKernel, bool any>
     bool run(const Ray& ray, const RayRange& range);
     template<bool any> bool run(const Ray& ray, const RayRange& range);
@@ -228,7 +229,7 @@ class Traversal final : public Surfaces {
     std::vector<Entry> entries_;
     std::vector<EvenFrame> even_frames_;
     std::vector<EvenEntry> even_entries_;
-    std::size_t entry_count_ = 0; ///< in use, of either
+    std::size_t entry_count_ = 0;        ///< in use, of either
     std::unique_ptr<PacketRoom> packet_; ///< null where rays go one by one
     Best best_;
     /// Shells asked for lately, by a hash of their keys: the store has to be locked.

@@ -1,10 +1,10 @@
 #pragma once
 
-// Eight rays at once through even models: neighbours of a picture mostly look into the same parts. Each ray is
-// taken into frames and meets leaves by the very operations of the way alone (traversal_even.h), in a lane of
-// its own. What differs is the order in which parts are looked into. That matters only where two hits are all
-// but equally near: such a ray goes again, alone. So a packet gives what its rays give one by one, to the last
-// bit. Only traversal.cpp includes this.
+// Eight rays at once through even models: neighbours of a picture mostly look into the same parts. Each ray
+// is taken into frames and meets leaves by the very operations of the way alone (traversal_even.h), in a lane
+// of its own. What differs is the order in which parts are looked into. That matters only where two hits are
+// all but equally near: such a ray goes again, alone. So a packet gives what its rays give one by one, to the
+// last bit. Only traversal.cpp includes this.
 
 #include <bit>
 #include <utility>
@@ -70,8 +70,8 @@ template<Instructions instructions> struct Traversal::EvenPacket : EvenPlaces {
         }
     }
 
-    /// What becomes of rays that go into something: they are at its end, on their way into the nearest of what
-    /// is in it, or each is to go there by itself.
+    /// What becomes of rays that go into something: they are at its end, on their way into the nearest of
+    /// what is in it, or each is to go there by itself.
     enum class Next { end, on, alone };
 
     /// Takes the nearest entry, if one is left that is nearer than what its rays have met.
@@ -167,9 +167,10 @@ template<Instructions instructions> struct Traversal::EvenPacket : EvenPlaces {
         const Frame& frame = room.frames[entry.frame];
         Float8 enters = frame.least;
         for (int axis = 0; axis < 3; ++axis)
-            enters = greater(
-                enters, (spread<instructions>(side_of(node, side_in[axis], axis)[entry.box % 8]) - frame.near[axis]) *
-                            reciprocal[axis]);
+            enters =
+                greater(enters, (spread<instructions>(side_of(node, side_in[axis], axis)[entry.box % 8]) -
+                                 frame.near[axis]) *
+                                    reciprocal[axis]);
         return enters;
     }
 
@@ -180,10 +181,11 @@ template<Instructions instructions> struct Traversal::EvenPacket : EvenPlaces {
         return going.mask != 0;
     }
 
-    /// Puts the nearest of the boxes that rays meet in the place of their node, and the others onto the stack, the
-    /// farthest first.
+    /// Puts the nearest of the boxes that rays meet in the place of their node, and the others onto the
+    /// stack, the farthest first.
     GRAFTAL_INLINE Next test_boxes(Going& going) {
-        const std::uint32_t number = going.entry & ~BoxNode::inner, frame_number = going.frame, mask = going.mask;
+        const std::uint32_t number = going.entry & ~BoxNode::inner, frame_number = going.frame,
+                            mask = going.mask;
         const BoxNode& node = model.boxes[number];
         Frame& frame = room.frames[frame_number];
         const Float8 least = frame.least, most = most_in(frame);
@@ -200,10 +202,10 @@ template<Instructions instructions> struct Traversal::EvenPacket : EvenPlaces {
             const auto child = static_cast<std::size_t>(std::countr_zero(left));
             Float8 enters = least, leaves = most;
             for (int axis = 0; axis < 3; ++axis) {
-                enters = greater(enters,
-                                 (spread<instructions>(in[axis][child]) - near[axis]) * reciprocal[axis]);
-                leaves = lesser(leaves,
-                                (spread<instructions>(out[axis][child]) - near[axis]) * reciprocal[axis]);
+                enters =
+                    greater(enters, (spread<instructions>(in[axis][child]) - near[axis]) * reciprocal[axis]);
+                leaves =
+                    lesser(leaves, (spread<instructions>(out[axis][child]) - near[axis]) * reciprocal[axis]);
             }
             const std::uint32_t meeting = bits_of<instructions>(enters <= leaves) & mask;
             if (meeting == 0) continue;
@@ -231,8 +233,8 @@ template<Instructions instructions> struct Traversal::EvenPacket : EvenPlaces {
         return none ? Next::end : Next::on;
     }
 
-    /// Which of eight boxes a ray of the packet may meet, as the extremes of all rays tell. Sums and products are
-    /// rounded in order, so that none is left out.
+    /// Which of eight boxes a ray of the packet may meet, as the extremes of all rays tell. Sums and products
+    /// are rounded in order, so that none is left out.
     GRAFTAL_INLINE std::uint32_t boxes_near(const BoxNode& node, const Frame& frame, const Float8& most,
                                             std::uint32_t mask) const {
         Float8 enters = spread<instructions>(frame.first_least);

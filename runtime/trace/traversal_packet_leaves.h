@@ -8,8 +8,8 @@ namespace graftal {
 
 template<Instructions instructions>
 GRAFTAL_INLINE typename Traversal::EvenPacket<instructions>::Near
-Traversal::EvenPacket<instructions>::bring_near(const EvenPart& part, const TraceEdge& edge, const Going& going,
-                               int half) const {
+Traversal::EvenPacket<instructions>::bring_near(const EvenPart& part, const TraceEdge& edge,
+                                                const Going& going, int half) const {
     const Frame& parent = room.frames[going.frame];
     const Double4 at = doubles_of(going.at, half);
     Near near;
@@ -28,15 +28,13 @@ Traversal::EvenPacket<instructions>::bring_near(const EvenPart& part, const Trac
         const LaneMap& map = edge.child_from_parent;
         const auto through = [&](const Double4& x, const Double4& y, const Double4& z, int axis)
                                  GRAFTAL_INLINED_LAMBDA {
-                                     return splat(map.column[0][axis]) * x +
-                                            splat(map.column[1][axis]) * y +
+                                     return splat(map.column[0][axis]) * x + splat(map.column[1][axis]) * y +
                                             splat(map.column[2][axis]) * z;
                                  };
         for (int axis = 0; axis < 3; ++axis) {
-            near.origin[axis] =
-                through(from[0], from[1], from[2], axis) + splat(map.translation[axis]);
-            near.along[axis] = through(direction[0].half[half], direction[1].half[half],
-                                       direction[2].half[half], axis);
+            near.origin[axis] = through(from[0], from[1], from[2], axis) + splat(map.translation[axis]);
+            near.along[axis] =
+                through(direction[0].half[half], direction[1].half[half], direction[2].half[half], axis);
         }
         if (!edge.similarity) {
             growth = largest_of(near.along[0], near.along[1], near.along[2]);
@@ -74,8 +72,7 @@ Traversal::EvenPacket<instructions>::cross_cube(const Near& near, int half) cons
     crossing.crossed = (enters <= leaves) & (crossing.t > near.least);
     Long4 here = crossing.t == (entering ? enter[0] : leave[0]), other = ~here;
     for (int axis = 0; axis < 3; ++axis) {
-        const Double4 outwards =
-            ((near.along[axis] < 0) ^ entering) != 0 ? splat(-1.0) : splat(1.0);
+        const Double4 outwards = ((near.along[axis] < 0) ^ entering) != 0 ? splat(-1.0) : splat(1.0);
         crossing.normal[axis] = here ? outwards : splat(0.0);
         here = axis == 0 ? other & (crossing.t == (entering ? enter[1] : leave[1])) : other & ~here;
         other = other & ~here;
@@ -109,8 +106,7 @@ GRAFTAL_INLINE void Traversal::EvenPacket<instructions>::meet_leaf(const EvenPar
     std::uint32_t hit = 0, close = 0;
     for (int i = 0; i < 2; ++i) {
         near[i] = bring_near(part, edge, going, i);
-        crossing[i] =
-            part.kind == EvenPart::Kind::cube ? cross_cube(near[i], i) : cross_triangle(near[i]);
+        crossing[i] = part.kind == EvenPart::Kind::cube ? cross_cube(near[i], i) : cross_triangle(near[i]);
         const Long4 crossed = crossing[i].crossed & near[i].is_map;
         t.half[i] = near[i].base + crossing[i].t * near[i].unit;
         hit |= bits_of<instructions>(crossed & (crossing[i].t < near[i].most)) << (4 * i);
@@ -138,13 +134,12 @@ GRAFTAL_INLINE void Traversal::EvenPacket<instructions>::meet_leaf(const EvenPar
 
 /// What the rays share that hit an entry's leaf.
 template<Instructions instructions>
-GRAFTAL_INLINE std::size_t
-Traversal::EvenPacket<instructions>::keep_hit(const EvenPart& part, const Going& going) {
+GRAFTAL_INLINE std::size_t Traversal::EvenPacket<instructions>::keep_hit(const EvenPart& part,
+                                                                         const Going& going) {
     const Frame& parent = room.frames[going.frame];
     PacketRoom::Hit& hit = room.hits.emplace_back();
     hit.is_upright = part.upright;
-    if (!part.upright)
-        place(parent, model.edges[going.entry].parent_from_child, hit.world_from_leaf);
+    if (!part.upright) place(parent, model.edges[going.entry].parent_from_child, hit.world_from_leaf);
     hit.turns = part.turns;
     prefetch_look(going.entry);
     hit.way = room.ways.size();

@@ -1,6 +1,8 @@
 // The traversal against the plain definition: every part of the unfolding met by itself, the nearest wins.
 
+#include <array>
 #include <cmath>
+#include <cstdint>
 #include <optional>
 #include <random>
 #include <vector>
@@ -160,6 +162,38 @@ void compare(const TraceModel& model, const std::vector<Leaf>& leaves, std::mt19
     }
 }
 
+/// Rays together meet what each meets alone, to the last bit.
+void compare_packets(const TraceModel& model, std::mt19937_64& random) {
+    Traversal alone(model), packet(model), portable(model, Instructions::portable);
+    const Box& box = model.edges.front().box;
+    const RayRange range{1e-9 * glm::length(box.size()), 1e30};
+    for (int i = 0; i < 12; ++i) {
+        const Ray first = random_ray(box, random), last = random_ray(box, random);
+        const double apart = i % 2 ? 1 : 0.02; // from one to the other, or some way
+        std::array<Ray, Surfaces::most_together> rays;
+        for (std::size_t k = 0; k < rays.size(); ++k) {
+            const double share = apart * static_cast<double>(k) / rays.size();
+            rays[k].origin = first.origin + share * (last.origin - first.origin);
+            rays[k].direction = first.direction + share * (last.direction - first.direction);
+        }
+        std::array<SurfaceHit, Surfaces::most_together> hits, narrow;
+        const std::uint32_t met = packet.closest_each(rays, range, hits);
+        ASSERT_EQ(portable.closest_each(rays, range, narrow), met);
+        for (std::size_t k = 0; k < rays.size(); ++k) {
+            SurfaceHit hit;
+            ASSERT_EQ(alone.closest(rays[k], range, hit), (met >> k & 1) != 0);
+            if (!(met >> k & 1)) continue;
+            for (const SurfaceHit* other : {&hits[k], &narrow[k]}) {
+                ASSERT_EQ(hit.t, other->t);
+                ASSERT_EQ(hit.normal, other->normal);
+                ASSERT_EQ(hit.rgb, other->rgb);
+                ASSERT_EQ(hit.node, other->node);
+                ASSERT_EQ(hit.levels, other->levels);
+            }
+        }
+    }
+}
+
 TEST(TraversalProperty, MeetsWhatThePlainUnfoldingMeets) {
     Tally tally;
     for (std::uint64_t seed = 1; seed <= 1200; ++seed) {
@@ -187,6 +221,7 @@ TEST(TraversalProperty, MeetsWhatThePlainUnfoldingMeets) {
         std::mt19937_64 random(seed);
         const std::size_t before = tally.differing;
         compare(model, *leaves, random, tally);
+        compare_packets(model, random);
         if (HasFatalFailure()) FAIL() << "seed " << seed;
         EXPECT_LE(tally.differing - before, 1u) << "seed " << seed;
         ++tally.models;

@@ -23,8 +23,8 @@ using test::traced;
 constexpr std::size_t together = Surfaces::most_together;
 using Packet = std::array<Ray, together>;
 
-/// Parts on a lattice, so that many touch or lie in each other, in as many colours. Some are triangles, in any
-/// direction, or balls.
+/// Parts on a lattice, so that many touch or lie in each other, in as many colours. Some are triangles, in
+/// any direction, or balls.
 Graph random_model(std::mt19937_64& random, bool terminal) {
     Graph graph = empty_graph();
     const ObjectId cube = graph.primitive(PrimitiveKind::cube);
@@ -39,11 +39,20 @@ Graph random_model(std::mt19937_64& random, bool terminal) {
         const Tint tint{{share(), share(), share()}, 0.5};
         const Affine turned = even * Affine::rotate({1, 2, 3}, 90.0 * static_cast<double>(random() % 4) + 10);
         switch (random() % 8) {
-        case 0: place(graph, self, triangle, turned, tint); break;
-        case 1: place(graph, self, triangle, even, tint); break;
-        case 2: place(graph, self, ball, even, tint); break;
-        case 3: place(graph, self, cube, even, tint); break;
-        default: place(graph, self, self, even, tint);
+        case 0:
+            place(graph, self, triangle, turned, tint);
+            break;
+        case 1:
+            place(graph, self, triangle, even, tint);
+            break;
+        case 2:
+            place(graph, self, ball, even, tint);
+            break;
+        case 3:
+            place(graph, self, cube, even, tint);
+            break;
+        default:
+            place(graph, self, self, even, tint);
         }
     }
     place(graph, self, self, Affine::translate(Vec3(0.5)) * Affine::scale(Vec3(0.25)));

@@ -28,7 +28,7 @@ namespace graftal {
 namespace {
 
 constexpr ImageSize size{640, 480};
-constexpr int repeats = 9;
+constexpr int repeats = 5;
 
 /// Seconds of processor: rays are traced on one thread, and other work must not count.
 double now() {

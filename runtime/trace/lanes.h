@@ -16,7 +16,8 @@ using Float4 = float __attribute__((vector_size(16), aligned(16)));
 using Float8 = float __attribute__((vector_size(32), aligned(32)));
 using Byte8 = std::uint8_t __attribute__((vector_size(8), aligned(8)));
 using Int4 = std::int32_t __attribute__((vector_size(16), aligned(16)));
-using Long4 = std::int64_t __attribute__((vector_size(32), aligned(32)));
+/// What comparing gives: GCC and Clang do not agree on its elements.
+using Long4 __attribute__((aligned(32))) = decltype(Double4{} < Double4{});
 using Int8 = std::int32_t __attribute__((vector_size(32), aligned(32)));
 
 /// For functions that take or give vectors: how these are passed depends on the instructions.

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <span>
 #include <utility>
 
 #include <glm/geometric.hpp>
@@ -26,7 +25,7 @@ MeanColour mean_of(const CutGraph& cut, const CutNode& node) {
 }
 
 /// By material, and of what inherits: how much is seen of each below a node, all together 1.
-void add_shares(const CutGraph& cut, const CutNode& node, const std::vector<double>& shares,
+void set_shares(const CutGraph& cut, const CutNode& node, const std::vector<double>& shares,
                 std::vector<double>& sum) {
     const std::size_t width = cut.materials.size() + 1;
     sum.assign(width, 0);
@@ -105,7 +104,7 @@ void set_finishes(CutGraph& cut) {
         for (const NodeId id : order) {
             const CutNode& node = cut.nodes[id];
             if (node.primitive || node.edges.empty()) continue;
-            add_shares(cut, node, shares, sum);
+            set_shares(cut, node, shares, sum);
             for (std::size_t m = 0; m < width; ++m) {
                 double& share = shares[id * width + m];
                 change = std::max(change, std::abs(share - sum[m]));

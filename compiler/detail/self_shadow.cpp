@@ -25,7 +25,8 @@ constexpr std::size_t lights_a_hit = 3;
 constexpr double rays_of_doubt = 64;
 /// Sizes are told apart by quarters of an octave.
 constexpr std::size_t bins = 64;
-/// A level takes half of the light at most.
+/// A level takes half of the light at most. It may also give some: solids keep off light that leaves let
+/// through.
 constexpr double darkest_log = -1, brightest_log = 0.5;
 
 double brightness(Rgb rgb) {

@@ -118,12 +118,13 @@ class Printer {
         print_number("  clear", sky.turbidity);
         if (!sky.environment.empty()) {
             out_ += "  environment: \"" + sky.environment + "\"\n";
-            if (sky.turn_deg != 0) print_numbers("  turn", {sky.turn_deg});
         } else if (!sky.turbidity) {
             print_vector("  zenith", sky.zenith);
             print_vector("  horizon", sky.horizon);
         }
         if (sky.environment.empty()) print_vector("  below", sky.below);
+        print_number("  clouds", sky.clouds);
+        if (sky.turn_deg != 0) print_numbers("  turn", {sky.turn_deg});
         print_numbers("  brightness", {sky.brightness});
         if (sky.bounces > 0) out_ += "  bounces: " + std::to_string(sky.bounces) + "\n";
         out_ += "}\n";

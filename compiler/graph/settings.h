@@ -48,8 +48,9 @@ struct SkySetting {
     std::optional<double> turbidity;           ///< a clear sky, about the first sun among the lights
     std::string environment;                   ///< the file of a picture (SkyPicture); empty: none
     std::shared_ptr<const SkyPicture> picture; ///< what it holds; null: nobody has read it, and it is white
-    double turn_deg = 0;                       ///< of the picture about y; 90 brings its middle from x to -z
-    double brightness = 1;                     ///< of all of it
+    std::optional<double> clouds;              ///< the share of the sky that they cover (light/clouds.h)
+    double turn_deg = 0;   ///< of picture or clouds about y; 90 brings its middle from x to -z
+    double brightness = 1; ///< of all of it
     unsigned bounces = 0;
     bool operator==(const SkySetting&) const = default;
 };

@@ -43,9 +43,12 @@ Rgb zenith_of(double turbidity, double sun_from_zenith) {
 ClearSky::ClearSky(double turbidity, Vec3 towards_sun, Vec3 up) : to_sun(towards_sun) {
     constexpr double lowest_sun = 0.01; // cosine; the luminance of the zenith is fitted above
     const double cosine = std::clamp(glm::dot(to_sun, up), lowest_sun, 1.0);
-    const Vec3 level = to_sun - glm::dot(to_sun, up) * up;
-    if (glm::dot(to_sun, up) < lowest_sun)
-        to_sun = cosine * up + std::sqrt(1 - cosine * cosine) * glm::normalize(level);
+    if (glm::dot(to_sun, up) < lowest_sun) {
+        const Vec3 level = to_sun - glm::dot(to_sun, up) * up;
+        constexpr double straight_below = 1e-9;
+        const Vec3 way = glm::length(level) > straight_below ? glm::normalize(level) : axes_across(up).a;
+        to_sun = cosine * up + std::sqrt(1 - cosine * cosine) * way;
+    }
     const double t = turbidity;
     perez = {{{0.1787 * t - 1.4630, -0.3554 * t + 0.4275, -0.0227 * t + 5.3251, 0.1206 * t - 2.5771,
                -0.0670 * t + 0.3703},

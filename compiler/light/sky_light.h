@@ -31,6 +31,7 @@ struct ClearSky {
     std::array<std::array<double, 5>, 3> perez; ///< of Y, x and y
     Rgb zenith_yxy;                             ///< over perez at the zenith
     Vec3 to_sun;
+    bool operator==(const ClearSky&) const = default;
 };
 
 /// The light that comes from all directions, where no surface stands in between. A radiance of 1 is that of
@@ -50,6 +51,7 @@ struct SkyLight {
 
     /// Along a unit vector, from there.
     Rgb radiance(Vec3 direction) const;
+    bool operator==(const SkyLight&) const = default;
 
     /// The irradiance of a surface that faces up, over pi: the light that white paper shows.
     Rgb on_paper() const;

@@ -62,22 +62,24 @@ void report_sky_picture(const LoadedSkyPicture& loaded, Span span, Diagnostics& 
                               loaded.mended, shortest(most_radiance)));
 }
 
-void lower_environment(const SceneFields& fields, Lowering& lowering, SkySetting& sky) {
-    const SceneField* const field = fields.find("environment");
-    if (!field) {
-        if (fields.flag("turn")) fields.error("turn", "'turn' turns an 'environment', but this sky has none");
-        return;
-    }
-    for (const char* const other : {"clear", "zenith", "horizon", "below"})
-        if (fields.flag(other))
-            return fields.error(other,
-                                fmt::format("an environment has its own light; leave out '{}'", other));
+void lower_turn(const SceneFields& fields, SkySetting& sky) {
+    if (fields.flag("turn") && !fields.flag("environment") && !fields.flag("clouds"))
+        return fields.error("turn", "'turn' turns an 'environment' or 'clouds', but this sky has none");
     constexpr double most_turn_deg = 36'000;
     sky.turn_deg = fields
                        .number(
                            "turn", [](double x) { return std::abs(x) <= most_turn_deg; },
                            fmt::format("lie within {} degrees", shortest(most_turn_deg)))
                        .value_or(0);
+}
+
+void lower_environment(const SceneFields& fields, Lowering& lowering, SkySetting& sky) {
+    const SceneField* const field = fields.find("environment");
+    if (!field) return;
+    for (const char* const other : {"clear", "zenith", "horizon", "below", "clouds"})
+        if (fields.flag(other))
+            return fields.error(other,
+                                fmt::format("an environment has its own light; leave out '{}'", other));
     const std::optional<std::string> path = find_beside(field->name_span, field->name, lowering);
     if (!path) return;
     sky.environment = *path;
@@ -140,6 +142,9 @@ SkySetting lower_sky(const SceneFields& fields, Lowering& lowering) {
             fields.error(colour, fmt::format("a clear sky has its own colours; leave out '{}'", colour));
     sky.brightness = fields.brightness("brightness").value_or(1);
     sky.bounces = fields.whole("bounces", 0, most_bounces).value_or(0);
+    sky.clouds = fields.number(
+        "clouds", [](double x) { return x >= 0 && x <= 1; }, "lie between 0 (none) and 1 (an overcast sky)");
+    lower_turn(fields, sky);
     lower_environment(fields, lowering, sky);
     if (fields.empty())
         fields.error_at_statement("this sky says nothing",

@@ -8,6 +8,7 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
+#include "compiler/light/clouds.h"
 #include "compiler/scene/backdrop.h"
 #include "compiler/scene/framing.h"
 #include "compiler/scene/studio.h"
@@ -88,6 +89,16 @@ SkyLight resolve(const SkySetting& setting, const std::vector<Light>& lights) {
     const auto sun = std::ranges::find_if(lights, [](const Light& light) { return light.sun; });
     if (setting.turbidity && sun != lights.end())
         sky.clear.emplace(*setting.turbidity, sun->location, sky.up);
+    if (setting.clouds) {
+        Clouds clouds{.cover = *setting.clouds, .turn_deg = setting.turn_deg};
+        if (sun != lights.end()) {
+            clouds.to_sun = sun->location;
+            clouds.sun_rgb = sun->rgb;
+        }
+        sky.picture = cloudy_picture(sky, clouds);
+        sky.picture_from_world = Mat3(1.0);
+        sky.brightness = 1;
+    }
     return sky;
 }
 
@@ -115,7 +126,11 @@ Haze resolve(const HazeSetting& setting, const View& view) {
     haze.height = setting.height.value_or(even * setting.distance);
     const Vec3 level(view.camera.direction.x, 0, view.camera.direction.z);
     const double length = glm::length(level);
-    haze.rgb = setting.rgb.value_or(view.background(length > 0 ? level / length : Vec3(1, 0, 0)));
+    Vec3 horizon = length > 0 ? level / length : Vec3(1, 0, 0);
+    // A picture's light at the horizon is half of what lies below.
+    if (view.sky_light && view.sky_light->picture)
+        horizon = glm::normalize(horizon + Vec3(0, 2.0 / view.sky_light->picture->height(), 0));
+    haze.rgb = setting.rgb.value_or(view.background(horizon));
     return haze;
 }
 

@@ -38,10 +38,10 @@ const std::vector<FieldRule>& rules(Kind kind) {
         {"temperature", Shape::number}, {"brightness", Shape::number}, {"angle", Shape::number},
         {"shadowless", Shape::flag},    {"size", Shape::pair},         {"radius", Shape::number},
         {"look_at", Shape::vector}};
-    static const std::vector<FieldRule> sky = {{"zenith", Shape::color},      {"horizon", Shape::color},
-                                               {"below", Shape::color},       {"clear", Shape::number},
-                                               {"environment", Shape::text},  {"turn", Shape::number},
-                                               {"brightness", Shape::number}, {"bounces", Shape::number}};
+    static const std::vector<FieldRule> sky = {
+        {"zenith", Shape::color}, {"horizon", Shape::color},     {"below", Shape::color},
+        {"clear", Shape::number}, {"clouds", Shape::number},     {"environment", Shape::text},
+        {"turn", Shape::number},  {"brightness", Shape::number}, {"bounces", Shape::number}};
     static const std::vector<FieldRule> film = {
         {"exposure", Shape::number}, {"white", Shape::number}, {"soft", Shape::flag}, {"hard", Shape::flag}};
     static const std::vector<FieldRule> background = {{"zenith", Shape::color}, {"horizon", Shape::color}};

@@ -104,6 +104,24 @@ TEST_F(WithEnvironment, ReadsAgainAsItIsPrinted) {
     EXPECT_EQ(graftal("print again.inst").out, printed.out);
 }
 
+TEST_F(WithEnvironment, CloudsAreTheSameInBothEnginesAndPrint) {
+    write("a.inst", "light { sun: 1, 1, 0.5  angle: 1 }\nsky { clear: 3  clouds: 0.5  turn: 20 }\n"
+                    "haze { distance: 50  height: 3 }\nground { height: -1 }\nobject a { sphere }\n"
+                    "camera { location: 0, 0, 5  look_at: 0, 1, 0  angle: 90 }\n");
+    for (const std::string engine : {"povray", "native --listed-lights", "native --samples 256 --noise 0"}) {
+        const RunResult result =
+            graftal("render a.inst --size 120x90 -q -o '" + engine + ".png' --engine " + engine);
+        ASSERT_EQ(result.status, 0) << result.err;
+    }
+    const Image povray = picture("povray.png");
+    EXPECT_LT(compare_images(povray, picture("native --listed-lights.png")).mean, 0.2 / 255);
+    EXPECT_LT(compare_images(povray, picture("native --samples 256 --noise 0.png")).mean, 2.0 / 255);
+    const RunResult printed = graftal("print a.inst");
+    EXPECT_THAT(printed.out, HasSubstr("  clouds: 0.5\n  turn: 20\n"));
+    write("again.inst", printed.out);
+    EXPECT_EQ(graftal("print again.inst").out, printed.out);
+}
+
 TEST_F(WithEnvironment, ACompiledSceneHasItBesideIt) {
     ASSERT_EQ(graftal("compile a.inst -o scene.pov").status, 0);
     EXPECT_EQ(files(), "a.inst a.inst_sky.exr scene.pov sky.exr");

@@ -188,6 +188,8 @@ def soft_light(draw, model):
         else:
             fields = [f'{name}: {colour(draw)}' for name in ('zenith', 'horizon', 'below') if draw.chance(0.6)]
             fields = fields or ['zenith: 1, 1, 1']
+        if draw.chance(0.2) and not fields[0].startswith('environment'):
+            fields.append(f'clouds: {number(draw.uniform(0, 1))}  turn: {number(draw.uniform(-360, 360))}')
         if draw.chance(0.3):
             fields.append(f'brightness: {number(draw.log_uniform(0.01, 100))}')
         if draw.chance(0.3):

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <memory>
+
+#include "compiler/light/sky_light.h"
+
+namespace graftal {
+
+/// One layer of clouds over a sky, seen from below.
+struct Clouds {
+    double cover = 0;     ///< the share of the layer that they take, in [0, 1]; 0: none
+    double turn_deg = 0;  ///< of the layer about the vertical: other turns show other clouds
+    Vec3 to_sun{0, 1, 0}; ///< unit
+    Rgb sun_rgb{0.0};     ///< light of that sun: what white paper at right angles to it shows
+    bool operator==(const Clouds&) const = default;
+};
+
+/// The light of the sky above the horizon with clouds before it; below, the sky as it is. The layer is a
+/// sphere about a large planet, so that clouds are smaller and paler towards the horizon. How thick they are
+/// is a sum of gradient noise (Perlin, "Improving noise", 2002) of falling wavelengths; light comes through
+/// them and is scattered forwards by Henyey and Greenstein's function (1941), and is lost on its way from the
+/// sun. No measured sky: a likeness. Requires an upright sky that shows no picture. The same values give the
+/// same texels; as long as the last picture is in use, asking for it again costs nothing.
+std::shared_ptr<const SkyPicture> cloudy_picture(const SkyLight& sky, const Clouds& clouds);
+
+} // namespace graftal

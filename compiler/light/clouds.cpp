@@ -124,7 +124,7 @@ struct Layer {
     const SkyLight& sky;
     Clouds clouds;
     double threshold;
-    Rgb ambient, far;
+    Rgb ambient;
     glm::dvec2 turn;
 
     Layer(const SkyLight& over, const Clouds& what)
@@ -179,12 +179,13 @@ struct Layer {
         // Towards the sun: its low light passes more of the layer.
         const glm::dvec2 level(sun.x, sun.z);
         const double slant = std::min(3.0, glm::length(level) / std::max(sun.y, 0.1));
+        constexpr double look = 0.09;
         const glm::dvec2 step =
-            glm::length(level) > 0 ? 0.09 * slant * glm::normalize(level) : glm::dvec2(0.0);
+            glm::length(level) > 0 ? look * slant * glm::normalize(level) : glm::dvec2(0.0);
         double before = 0;
         constexpr int steps = 3;
         for (int i = 1; i <= steps; ++i)
-            before += thickness(meeting.at + static_cast<double>(i) * step, texel) / steps;
+            before += thickness(meeting.at + static_cast<double>(i) * step, std::max(texel, look)) / steps;
         const double reaches = 0.3 + 0.7 * std::exp(-0.45 * before);
         const double through = 0.42 + 0.58 * std::exp(-0.35 * tau);
         constexpr double g = 0.75;

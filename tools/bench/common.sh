@@ -4,6 +4,7 @@
 #   --write    puts the tables into their page of docs/, with the commit that they were measured at
 #   --check    compares with what the page says, where that does not depend on the machine
 #   --smoke    tries whether everything runs, on models so small that it takes a moment; measures nothing
+#   --help     says what the benchmark measures
 . "$(dirname "${BASH_SOURCE[0]}")/../setup.sh"
 
 write=false check=false smoke=false arguments=()
@@ -12,6 +13,10 @@ for argument; do
     --write) write=true ;;
     --check) check=true ;;
     --smoke) smoke=true ;;
+    -h | --help) # what the file says of itself
+        awk 'NR > 1 && !/^#/ { exit } NR > 1 { sub(/^# ?/, ""); print }' "$0"
+        exit
+        ;;
     *) arguments+=("$argument") ;;
     esac
 done

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include <boost/math/special_functions/beta.hpp>
+#include <boost/math/tools/roots.hpp>
 #include <fmt/format.h>
 
 #include "compiler/import/cpfg_expression.h"
@@ -173,6 +174,20 @@ const CpfgViewCurve* CpfgNames::curve_named(std::string_view id, Span span) {
     return nullptr;
 }
 
+namespace {
+
+/// Where a share of the distribution lies below. Boost's ibeta_inv() takes Newton's steps, and throws at the
+/// median of beta(5, 5).
+double beta_quantile(double a, double b, double share) {
+    if (share <= 0 || share >= 1) return share;
+    const auto excess = [&](double x) { return boost::math::ibeta(a, b, x) - share; };
+    const auto [below, above] =
+        boost::math::tools::bisect(excess, 0.0, 1.0, boost::math::tools::eps_tolerance<double>(40));
+    return 0.5 * (below + above);
+}
+
+} // namespace
+
 /// By a table of the distribution's inverse.
 std::string CpfgNames::beta(std::span<const std::string_view> arguments, Span span) {
     std::vector<double> shape;
@@ -188,7 +203,7 @@ std::string CpfgNames::beta(std::span<const std::string_view> arguments, Span sp
     constexpr int pieces = 64;
     std::vector<double> values;
     for (int i = 0; i <= pieces; ++i)
-        values.push_back(boost::math::ibeta_inv(shape[0], shape[1], static_cast<double>(i) / pieces));
+        values.push_back(beta_quantile(shape[0], shape[1], static_cast<double>(i) / pieces));
     return fmt::format("{}(random(0, 1))",
                        table(plain_name(fmt::format("beta_{}_{}", shape[0], shape[1])), std::move(values)));
 }

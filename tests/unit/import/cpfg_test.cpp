@@ -1,7 +1,11 @@
+#include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <map>
+#include <sstream>
 #include <string>
+#include <vector>
 
 #include <gmock/gmock.h>
 
@@ -45,6 +49,26 @@ TEST(Cpfg, WritesOutMacrosWithParametersAndConditions) {
              "A(x) --> END[+(x > 2 ? 10 : 20)F(1)]\nendlsystem\n");
     EXPECT_THAT(model.translation, HasSubstr("A(x) -> F((2*(x)))[+(choose(x > 2, 10, 20))F(1)]"));
     EXPECT_EQ(model.segments().size(), 2u) << model.said();
+}
+
+/// At the median of beta(5, 5) Newton's steps, by which Boost finds quantiles, give up.
+TEST(Cpfg, BetaIsATableOfItsQuantiles) {
+    for (const std::string shape : {"5, 5", "0.01, 0.01", "1, 1", "0.5, 999", "999, 999", "2, 3"}) {
+        const Imported model =
+            cpfg("Lsystem: 1\nderivation length: 1\nAxiom: A\nA --> F(bran(" + shape + "))\nendlsystem\n");
+        ASSERT_TRUE(model.graph) << shape << model.said();
+        EXPECT_THAT(model.translation, HasSubstr("(random(0, 1))"));
+        std::istringstream numbers(model.translation.substr(model.translation.find(" = ") + 3));
+        std::vector<double> quantiles;
+        for (double number; numbers >> number; numbers.ignore(1, ','))
+            quantiles.push_back(number);
+        ASSERT_EQ(quantiles.size(), 65u) << model.translation;
+        EXPECT_EQ(quantiles.front(), 0);
+        EXPECT_EQ(quantiles.back(), 1);
+        EXPECT_TRUE(std::ranges::is_sorted(quantiles)) << shape;
+        const bool symmetric = shape.substr(0, shape.find(',')) == shape.substr(shape.find(' ') + 1);
+        EXPECT_TRUE(!symmetric || std::abs(quantiles[32] - 0.5) < 1e-9) << shape << ": " << quantiles[32];
+    }
 }
 
 TEST(Cpfg, ReadsTheViewFileAndItsFunctionsAndSurfaces) {

@@ -132,6 +132,22 @@ class Traversal final : public Surfaces {
         std::uint32_t entry = 0;
         std::uint32_t frame = 0;
     };
+    /// One that is kept for later.
+    struct EvenLater {
+        std::int64_t key = 0; ///< where it is, and its number: the nearer, the less
+        std::uint32_t frame = 0;
+    };
+    /// Where the root of an even model lies, and what rays look into there.
+    struct EvenRoot {
+        EvenPlace place;
+        std::uint32_t tree = no_tree; ///< none: it is entered as any other part
+    };
+    /// What rays look into of a node with so many levels left, where nothing is culled.
+    struct EvenTree {
+        std::uint32_t node = no_edge, steps = 0;
+        std::uint32_t tree = no_tree;
+        bool cut = false;
+    };
 
     /// The best hit so far.
     struct Best {
@@ -210,7 +226,8 @@ class Traversal final : public Surfaces {
         PathTint tint = {};
         Rgb inherited;
         std::optional<MaterialId> material = {};
-        std::uint32_t parent = no_edge;
+        std::uint32_t parent = 0; ///< if it has_mean
+        bool has_mean = false;
     };
     void look_along(std::uint32_t step, WayLook& look, SurfaceHit& hit) const;
     void surface_at_best(SurfaceHit& hit) const;
@@ -228,7 +245,9 @@ class Traversal final : public Surfaces {
     std::size_t depth_ = 0; ///< frames in use
     std::vector<Entry> entries_;
     std::vector<EvenFrame> even_frames_;
-    std::vector<EvenEntry> even_entries_;
+    std::vector<EvenLater> even_later_;
+    EvenRoot even_root_;
+    std::array<EvenTree, 64> even_trees_; ///< by a hash
     std::size_t entry_count_ = 0;        ///< in use, of either
     std::unique_ptr<PacketRoom> packet_; ///< null where rays go one by one
     Best best_;

@@ -83,8 +83,8 @@ template<Instructions instructions, bool any> struct Traversal::Kernel {
         frame.world_from_node = LaneMap();
         frame.origin = lanes_of(ray.origin);
         frame.direction = lanes_of(ray.direction);
-        frame.speed = largest_component(frame.direction);
-        frame.unit = 1 / frame.speed;
+        frame.speed = power_below(largest_component(frame.direction));
+        frame.unit = inverse_power(frame.speed);
         frame.direction = frame.direction * splat(frame.unit);
         frame.base = 0;
         frame.scale = 1;
@@ -178,14 +178,18 @@ template<Instructions instructions, bool any> struct Traversal::Kernel {
         Entry* end = first;
         while ((lanes &= lanes - 1) != 0) {
             Entry entry = entry_of(lanes);
-            if (entry.at <= nearest.at) std::swap(entry, nearest);
+            if (is_nearer(entry, nearest)) std::swap(entry, nearest);
             Entry* place = end++;
-            for (; place > first && place[-1].at < entry.at; --place)
+            for (; place > first && is_nearer(place[-1], entry); --place)
                 *place = place[-1];
             *place = entry;
         }
         self.entry_count_ += static_cast<std::size_t>(end - first);
         return true;
+    }
+
+    static GRAFTAL_INLINE bool is_nearer(const Entry& a, const Entry& b) {
+        return a.at < b.at || (a.at == b.at && a.entry < b.entry);
     }
 
     GRAFTAL_INLINE void reserve_entries(std::size_t count) {

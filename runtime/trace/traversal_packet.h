@@ -107,9 +107,9 @@ template<Instructions instructions> struct Traversal::EvenPacket : EvenPlaces {
         const Box box = enlarged(model.edges.front().box, Vec3(0.0));
         std::uint32_t parallel = 0;
         for (int i = 0; i < 2; ++i) {
-            const Double4 speed =
-                largest_of(direction[0].half[i], direction[1].half[i], direction[2].half[i]);
-            const Double4 unit = 1 / speed;
+            const Double4 speed = power_below(
+                largest_of(direction[0].half[i], direction[1].half[i], direction[2].half[i]));
+            const Double4 unit = inverse_power(speed);
             Double4 least = range.least * speed, most = best.half[i] * speed;
             for (int axis = 0; axis < 3; ++axis) {
                 direction[axis].half[i] = direction[axis].half[i] * unit;
@@ -141,11 +141,7 @@ template<Instructions instructions> struct Traversal::EvenPacket : EvenPlaces {
             most_reciprocal[axis] = spread<instructions>(greatest<instructions>(reciprocal[axis], 0xff));
         }
         frame.hits_then = UINT32_MAX;
-        frame.offset = Double4{};
-        frame.entry = frame.scale = 1;
-        frame.steps = model.prepared.root_steps;
-        frame.cut = false;
-        frame.least_detail = model.least_detail_per_unit;
+        place_world(frame);
         return true;
     }
 
@@ -285,7 +281,7 @@ template<Instructions instructions> struct Traversal::EvenPacket : EvenPlaces {
             const Double4 at = doubles_of(going.at, i);
             for (int axis = 0; axis < 3; ++axis)
                 frame.origin[axis].half[i] =
-                    (parent.origin[axis].half[i] + at * direction[axis].half[i]) * splat(part.shrink) +
+                    (parent.origin[axis].half[i] + at * direction[axis].half[i]) * splat(part.shrink()) +
                     splat(part.shift[axis]);
             frame.base.half[i] = parent.base.half[i] + at * parent.unit.half[i];
             frame.unit.half[i] = parent.unit.half[i] * part.stretch;
@@ -365,10 +361,10 @@ template<Instructions instructions> struct Traversal::EvenPacket : EvenPlaces {
         alone.direction = Double4{of(direction[0]), of(direction[1]), of(direction[2]), 0};
         alone.inverse = Double4{of(inverse[0]), of(inverse[1]), of(inverse[2]), 0};
         alone.is_parallel = false;
-        for (int axis = 0; axis < 3; ++axis) {
+        for (int axis = 0; axis < 3; ++axis)
             alone.reciprocal[axis] = spread<instructions>(reciprocal[axis][lane]);
-            alone.side_in[axis] = side_in[axis];
-        }
+        alone.set_sides(side_in);
+        alone.first_placed = going.frame;
         const double before = of(best), slack = rounding * (std::abs(before) + std::abs(frame.base));
         // Also what is a little farther: it may come first.
         self.best_.t = before < INFINITY ? before + 2 * slack : before;

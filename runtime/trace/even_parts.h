@@ -25,7 +25,8 @@ struct alignas(64) EvenPart {
     double stretch, growth;
     std::uint32_t child, levels;
     Kind kind;
-    bool upright; ///< TraceEdge's
+    bool upright;            ///< TraceEdge's
+    std::uint32_t group = 0; ///< TraceModel::even_triangles, where it begins some
 
     double shrink() const { return shift[3]; }
 };

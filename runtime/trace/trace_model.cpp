@@ -178,7 +178,7 @@ class ModelBuilder {
 
     std::uint32_t add_edges(NodeId id, const std::vector<CutEdge>& edges, const std::vector<Box>& boxes) {
         const Affine frame_from_graph = inverse(model_.graph_from_frame[id]);
-        std::vector<BoxedItem> items;
+        std::vector<std::uint32_t> numbers;
         std::set<EdgeKey> met; // parts that coincide are drawn once
         for (const Part& part : parts_of(edges, boxes)) {
             if (!met.insert(key_of(part.edge)).second) continue;
@@ -196,11 +196,12 @@ class ModelBuilder {
                     part.edge.stretch * graph_from_child.linear[0][0] * frame_from_graph.linear[0][0]);
             edge.find_upright();
             edge.box = transformed(frame_from_graph, part.box);
-            const auto number = static_cast<std::uint32_t>(model_.edges.size());
-            if (!edge.box.empty()) items.emplace_back(edge.box, 1, number);
+            numbers.push_back(static_cast<std::uint32_t>(model_.edges.size()));
             add(edge, look, part.holder.value_or(id));
         }
-        return cut_.nodes[id].unbounded ? no_tree : build_box_tree(items, model_.boxes);
+        if (cut_.nodes[id].unbounded) return no_tree;
+        std::vector<BoxedItem> items = grouped_items(model_, numbers);
+        return build_box_tree(items, model_.boxes);
     }
 
     /// An instance and the box of what it draws, in the frame that the graph gives the node.
@@ -412,6 +413,7 @@ TraceModel::TraceModel(std::shared_ptr<const PreparedCut> ready, const View& see
     if (!even) return;
     even_parts = graftal::even_parts(*this);
     even_offsets = graftal::even_offsets(*this);
+    even_triangles = graftal::even_triangles(*this, even_parts);
 }
 
 const SelfShadows& TraceModel::self_shadows() const {

@@ -20,6 +20,7 @@
 #include "runtime/trace/even_parts.h"
 #include "runtime/trace/lanes.h"
 #include "runtime/trace/layers.h"
+#include "runtime/trace/leaf_group.h"
 #include "runtime/trace/mesh_store.h"
 #include "runtime/trace/specks.h"
 
@@ -204,6 +205,7 @@ struct TraceModel {
     bool even = false;
     std::vector<EvenPart> even_parts; ///< by edge, if it is
     std::vector<EvenOffset> even_offsets;
+    std::vector<EvenTriangles> even_triangles; ///< of groups
 
     /// Up to where a hit will do, if none can be nearer by more than this share of the half width: of a model
     /// in a plane that is drawn in specks; else before all.

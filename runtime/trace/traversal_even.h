@@ -208,6 +208,10 @@ template<Instructions instructions, bool any> struct Traversal::EvenKernel : Eve
     GRAFTAL_INLINE bool enter(std::int64_t& key, std::uint32_t& number) {
         ++self.visits_;
         const std::uint32_t edge = entry_in(key);
+        if (LeafGroup::is(edge)) {
+            meet_triangles(LeafGroup(edge), frames[number], at_in(key), number);
+            return false;
+        }
         const EvenPart& part = model.even_parts[edge];
         if (part.kind != EvenPart::Kind::node) {
             meet_leaf(part, frames[number], {at_in(key), edge, number});
@@ -282,19 +286,69 @@ template<Instructions instructions, bool any> struct Traversal::EvenKernel : Eve
         }
         set_best(base + hit.t * unit, hit.normal);
         if (any) return;
-        prefetch_look(entry.entry);
+        keep_leaf(part, entry.entry, parent, entry.frame, origin + hit.t * along);
+    }
+
+    /// Of the best hit: the child of the edge, met at a point in its frame.
+    GRAFTAL_INLINE void keep_leaf(const EvenPart& part, std::uint32_t edge, const Frame& parent,
+                                  std::uint32_t number, const Vec3& point) {
+        prefetch_look(edge);
         if (self.packet_->has_textures) {
-            self.best_.point = origin + hit.t * along;
-            self.best_.turns = model.edges[entry.entry].turns;
+            self.best_.point = point;
+            self.best_.turns = model.edges[edge].turns;
         }
         self.best_.proxy_node = no_edge;
         self.best_.is_upright = part.upright;
         if (!part.upright) {
-            place_frames(entry.frame);
-            place(parent, model.edges[entry.entry].parent_from_child, self.best_.world_from_leaf);
+            place_frames(number);
+            place(parent, model.edges[edge].parent_from_child, self.best_.world_from_leaf);
         }
-        keep_way(entry.frame);
-        self.way_.push_back(entry.entry | (parent.cut ? from_cut : 0));
+        keep_way(number);
+        self.way_.push_back(edge | (parent.cut ? from_cut : 0));
+    }
+
+    /// Each as meet_leaf() would meet it, one after the other.
+    GRAFTAL_INLINE void meet_triangles(const LeafGroup& group, const Frame& parent, double at,
+                                       std::uint32_t number) {
+        self.visits_ += group.count - 1;
+        const EvenTriangles& all = model.even_triangles[model.even_parts[group.first].group];
+        if (!all.similar) self.more_work_ += RayWork::stretched * group.count;
+        const double base = parent.base + at * parent.unit;
+        const Double4 near = parent.origin + splat(at) * direction;
+        const auto along = [&](const Double4* row) GRAFTAL_INLINED_LAMBDA {
+            return row[0] * splat(direction[0]) + row[1] * splat(direction[1]) + row[2] * splat(direction[2]);
+        };
+        const auto place = [&](const Double4* row) GRAFTAL_INLINED_LAMBDA {
+            return row[0] * splat(near[0]) + row[1] * splat(near[1]) + row[2] * splat(near[2]) + row[3];
+        };
+        const Double4 dx = along(all.row[1]), dy = along(all.row[2]), dz = along(all.row[0]);
+        Double4 growth = all.growth, stretch = all.stretch;
+        if (!all.similar) {
+            growth = largest_of(dx, dy, dz);
+            stretch = 1 / growth;
+        }
+        const Double4 from_plane = place(all.row[0]);
+        const Double4 t = -from_plane / (dz * stretch);
+        const Double4 speed = parent.speed * growth;
+        const Long4 ahead = (growth > splat(0.0)) & (growth < splat(1 / least_scale)) &
+                            (t > (range.least - base) * speed) & (t < (self.best_.t - base) * speed);
+        const std::uint32_t used = (1u << group.count) - 1;
+        if ((bits_of<instructions>(ahead) & used) == 0) return;
+        constexpr double root3 = 1.7320508075688772;
+        const Double4 x = place(all.row[1]) + t * (dx * stretch), y = place(all.row[2]) + t * (dy * stretch);
+        std::uint32_t met =
+            used & bits_of<instructions>(ahead & (y >= splat(-0.5 - passage_rounding)) &
+                                              (root3 * size_of(x) + y <= splat(1 + passage_rounding)));
+        const Double4 in_world = base + t * (parent.unit * stretch);
+        for (; met != 0; met &= met - 1) {
+            const int lane = std::countr_zero(met);
+            if (!(t[lane] < (self.best_.t - base) * speed[lane])) continue;
+            set_best(in_world[lane], {0, 0, 1});
+            if (any) return;
+            const std::uint32_t edge = group.first + static_cast<std::uint32_t>(lane);
+            keep_leaf(model.even_parts[edge], edge, parent, number,
+                      {x[lane], y[lane], from_plane[lane] + t[lane] * (dz[lane] * stretch[lane])});
+        }
     }
 
     /// As the primitive is met (cube.cpp).

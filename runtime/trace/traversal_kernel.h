@@ -65,7 +65,18 @@ template<Instructions instructions, bool any> struct Traversal::Kernel {
 
     /// Puts the nearest of what it leads to in its place; false if there is nothing.
     GRAFTAL_INLINE bool go_into(Entry& entry) {
-        if (!(entry.entry & BoxNode::inner)) return enter(entry);
+        if (!(entry.entry & BoxNode::inner)) {
+            std::uint32_t more = 0;
+            if (LeafGroup::is(entry.entry)) {
+                const LeafGroup group(entry.entry);
+                entry.entry = group.first;
+                more = group.count - 1;
+            }
+            for (;; --more, ++entry.entry) {
+                const bool entered = enter(entry);
+                if (more == 0 || (any && self.best_.found)) return entered;
+            }
+        }
         self.depth_ = entry.frame + 1;
         if (entry.entry & BoxNode::packed)
             return test_packed(entry.entry & ~(BoxNode::inner | BoxNode::packed), entry.frame, entry);

@@ -256,12 +256,18 @@ template<Instructions instructions> struct Traversal::EvenPacket : EvenPlaces {
 
     /// Whether so few rays go there that each goes by itself. A leaf is not worth the way there.
     GRAFTAL_INLINE bool is_left_alone(const Going& going) const {
-        return std::popcount(going.mask) <= few &&
+        return std::popcount(going.mask) <= few && !LeafGroup::is(going.entry) &&
                (going.entry & BoxNode::inner || !meets_together(model.even_parts[going.entry]));
     }
 
     GRAFTAL_INLINE Next go_together(Going& going) {
         if (going.entry & BoxNode::inner) return test_boxes(going);
+        if (LeafGroup::is(going.entry)) {
+            const LeafGroup group(going.entry);
+            for (going.entry = group.first; going.entry < group.first + group.count; ++going.entry)
+                meet_leaf(model.even_parts[going.entry], going);
+            return Next::end;
+        }
         const EvenPart& part = model.even_parts[going.entry];
         if (part.kind == EvenPart::Kind::node) return enter(part, going);
         if (!meets_together(part)) return Next::alone;

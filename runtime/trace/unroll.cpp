@@ -315,9 +315,7 @@ class Unroller {
     }
 
     std::uint32_t tree_over(const std::vector<std::uint32_t>& edges) {
-        std::vector<BoxedItem> items;
-        for (const std::uint32_t edge : edges)
-            if (!model_.edges[edge].box.empty()) items.emplace_back(model_.edges[edge].box, 1, edge);
+        std::vector<BoxedItem> items = grouped_items(model_, edges);
         return build_box_tree(items, model_.boxes);
     }
 

@@ -54,8 +54,8 @@ struct alignas(64) TraceEdge {
     bool to_primitive = false;     ///< leads to one
     LaneMap parent_from_child;
     LaneMap child_from_parent;
-    Box box;                  ///< of what the child draws, in the parent's frame
-    double turns = 1;         ///< of a primitive: length_in_turns() of the graph's instance
+    Box box;          ///< of what the child draws, in the parent's frame
+    double turns = 1; ///< of a primitive: length_in_turns() of the graph's instance
 
     void find_upright();
 };

@@ -27,10 +27,9 @@ Instructions best_instructions() {
 Traversal::Traversal(const TraceModel& model, Instructions instructions)
     : model_(model), instructions_(instructions) {
     frames_.resize(16);
-    entries_.resize(128);
+    later_.resize(128);
     if (!model.even) return;
     even_frames_.resize(16);
-    even_later_.resize(128);
     packet_ = std::make_unique<PacketRoom>();
     packet_->has_textures = std::ranges::any_of(model.textures.of_material,
                                                 [](const auto& texture) { return texture != nullptr; });

@@ -72,8 +72,9 @@ class Traversal final : public Surfaces {
     template<Instructions instructions, bool any>
     struct EvenKernel; ///< through even models (traversal_even.h)
     template<Instructions instructions>
-    struct EvenPacket; ///< eight rays at once through even models (traversal_packet.h)
-    struct PacketRoom; ///< its memory
+    struct EvenPacket;   ///< eight rays at once through even models (traversal_packet.h)
+    struct PacketRoom;   ///< its memory
+    struct LaterEntries; ///< what a ray is to look into later (later_entries.h)
 
     /// The ray in some frame: origin + (t - base) / unit * direction.
     struct LocalRay {
@@ -106,8 +107,13 @@ class Traversal final : public Surfaces {
 
     /// An edge or a node of boxes to go into, and from where on.
     struct Entry {
-        double at = 0; ///< in units from the frame's base
+        float at = 0; ///< in units from the frame's base
         std::uint32_t entry = 0;
+        std::uint32_t frame = 0;
+    };
+    /// One that is kept for later.
+    struct Later {
+        std::int64_t key = 0; ///< where it is, and its number: the nearer, the less
         std::uint32_t frame = 0;
     };
 
@@ -126,16 +132,6 @@ class Traversal final : public Surfaces {
         double base = 0, unit = 1, speed = 1;
         Float4 near; ///< the origin
         float least = 0;
-    };
-    struct EvenEntry {
-        float at = 0;
-        std::uint32_t entry = 0;
-        std::uint32_t frame = 0;
-    };
-    /// One that is kept for later.
-    struct EvenLater {
-        std::int64_t key = 0; ///< where it is, and its number: the nearer, the less
-        std::uint32_t frame = 0;
     };
     /// Where the root of an even model lies, and what rays look into there.
     struct EvenRoot {
@@ -242,14 +238,11 @@ class Traversal final : public Surfaces {
     const TraceModel& model_;
     Instructions instructions_;
     std::vector<Frame> frames_;
-    std::size_t depth_ = 0; ///< frames in use
-    std::vector<Entry> entries_;
+    std::vector<Later> later_;
     std::vector<EvenFrame> even_frames_;
-    std::vector<EvenLater> even_later_;
     EvenRoot even_root_;
     std::array<EvenTree, 64> even_trees_; ///< by a hash
-    std::size_t entry_count_ = 0;        ///< in use, of either
-    std::unique_ptr<PacketRoom> packet_; ///< null where rays go one by one
+    std::unique_ptr<PacketRoom> packet_;  ///< null where rays go one by one
     Best best_;
     /// Shells asked for lately, by a hash of their keys: the store has to be locked.
     std::array<std::pair<MeshStore::Key, const TraceMesh*>, 64> meshes_{};

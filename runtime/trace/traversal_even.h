@@ -5,20 +5,17 @@
 // all frames; of a frame's place a scale and an offset are left. Only traversal.cpp includes this.
 
 #include "compiler/primitives/passage.h"
+#include "runtime/trace/later_entries.h"
 #include "runtime/trace/packet_room.h"
 #include "runtime/trace/traversal_even_places.h"
 
 namespace graftal {
 
 template<Instructions instructions, bool any> struct Traversal::EvenKernel : EvenPlaces {
-    using Entry = EvenEntry;
-    using Later = EvenLater;
     using Frame = EvenFrame;
 
     Frame* frames; ///< Traversal's
-    Later* later;  ///< likewise
-    Later* top;    ///< behind the last in use
-    Later* limit;  ///< up to where those of one node find room
+    LaterEntries later;
     std::uint32_t first_placed = 0; ///< from there down frames know where they lie in the world
     // In every frame:
     Double4 direction, inverse;
@@ -28,15 +25,7 @@ template<Instructions instructions, bool any> struct Traversal::EvenKernel : Eve
     std::size_t in[3], out[3];
 
     GRAFTAL_INLINE explicit EvenKernel(Traversal& traversal, const TraceModel& traced, const RayRange& asked)
-        : EvenPlaces{traversal, traced, asked}, frames(self.even_frames_.data()) {
-        use_later(0);
-    }
-
-    GRAFTAL_INLINE void use_later(std::size_t count) {
-        later = self.even_later_.data();
-        top = later + count;
-        limit = later + self.even_later_.size() - lanes;
-    }
+        : EvenPlaces{traversal, traced, asked}, frames(self.even_frames_.data()), later{self.later_} {}
 
     GRAFTAL_INLINE bool run(const Ray& ray) {
         self.best_.found = false;
@@ -47,16 +36,16 @@ template<Instructions instructions, bool any> struct Traversal::EvenKernel : Eve
         if (!enter_world(ray)) return false;
         std::int64_t key = 0;
         if (self.even_root_.tree == no_tree) return go_on({0, 0, 0});
-        return enter_root(key) && go_on({at_in(key), entry_in(key), 1});
+        return enter_root(key) && go_on({LaterEntries::at_in(key), LaterEntries::entry_in(key), 1});
     }
 
     /// From an entry on, until nothing is left; true if something nearer was met.
     GRAFTAL_INLINE bool go_on(const Entry& first) {
-        std::int64_t key = key_of(first.at, first.entry);
+        std::int64_t key = LaterEntries::key_of(first.at, first.entry);
         std::uint32_t frame = first.frame;
         for (bool more = true; more || pop(key, frame);) {
-            if (entry_in(key) & BoxNode::inner) {
-                more = test_boxes(entry_in(key) & ~BoxNode::inner, frame, key);
+            if (LaterEntries::entry_in(key) & BoxNode::inner) {
+                more = test_boxes(LaterEntries::entry_in(key) & ~BoxNode::inner, frame, key);
                 continue;
             }
             more = enter(key, frame);
@@ -66,23 +55,15 @@ template<Instructions instructions, bool any> struct Traversal::EvenKernel : Eve
         return self.best_.found;
     }
 
-    // Where an entry is, and its number, in one: the nearer, the less.
-    static GRAFTAL_INLINE std::int64_t key_of(float at, std::uint32_t entry) {
-        return static_cast<std::int64_t>(std::bit_cast<std::int32_t>(at)) << 32 | entry;
-    }
-    static GRAFTAL_INLINE float at_in(std::int64_t key) {
-        return std::bit_cast<float>(static_cast<std::int32_t>(key >> 32));
-    }
-    static GRAFTAL_INLINE std::uint32_t entry_in(std::int64_t key) { return static_cast<std::uint32_t>(key); }
-
     /// Takes the nearest entry, if one is left that is nearer than the best hit.
     GRAFTAL_INLINE bool pop(std::int64_t& key, std::uint32_t& number) {
-        while (top != later) {
-            --top;
-            key = top->key;
-            number = top->frame;
+        while (later.top != later.first) {
+            --later.top;
+            key = later.top->key;
+            number = later.top->frame;
             const Frame& frame = frames[number];
-            if (frame.base + static_cast<double>(at_in(key)) * frame.unit < self.best_.t) return true;
+            if (frame.base + static_cast<double>(LaterEntries::at_in(key)) * frame.unit < self.best_.t)
+                return true;
         }
         return false;
     }
@@ -135,8 +116,6 @@ template<Instructions instructions, bool any> struct Traversal::EvenKernel : Eve
         return within;
     }
 
-    static constexpr std::size_t lanes = 8;
-
     /// Of all boxes of a node.
     static GRAFTAL_INLINE const Float8& sides_at(const BoxNode& node, std::size_t number) {
         return *(&node.side[0][0] + number);
@@ -158,31 +137,11 @@ template<Instructions instructions, bool any> struct Traversal::EvenKernel : Eve
         }
         std::uint32_t met = bits_of<instructions>(enters <= leaves);
         if (met == 0) return false;
-        const auto key = [&](std::uint32_t bits) GRAFTAL_INLINED_LAMBDA {
+        nearest = later.nearest_of(met, frame_number, [&](std::uint32_t bits) GRAFTAL_INLINED_LAMBDA {
             const auto lane = static_cast<std::size_t>(std::countr_zero(bits));
-            return key_of(enters[lane], node.entry[lane]);
-        };
-        nearest = key(met);
-        met &= met - 1;
-        if (met != 0) {
-            if (top > limit) grow();
-            Later* const first = top;
-            do {
-                const std::int64_t one = key(met), farther = one < nearest ? nearest : one;
-                nearest = one < nearest ? one : nearest;
-                Later* place = top++;
-                for (; place > first && place[-1].key < farther; --place)
-                    *place = place[-1];
-                *place = {farther, frame_number};
-            } while ((met &= met - 1) != 0);
-        }
+            return LaterEntries::key_of(enters[lane], node.entry[lane]);
+        });
         return true;
-    }
-
-    GRAFTAL_INLINE void grow() {
-        const auto count = static_cast<std::size_t>(top - later);
-        self.even_later_.resize(2 * self.even_later_.size());
-        use_later(count);
     }
 
     /// What any part that is entered does, for a root of which it is known what is in it.
@@ -207,14 +166,14 @@ template<Instructions instructions, bool any> struct Traversal::EvenKernel : Eve
     /// nothing.
     GRAFTAL_INLINE bool enter(std::int64_t& key, std::uint32_t& number) {
         ++self.visits_;
-        const std::uint32_t edge = entry_in(key);
+        const std::uint32_t edge = LaterEntries::entry_in(key);
         if (LeafGroup::is(edge)) {
-            meet_triangles(LeafGroup(edge), frames[number], at_in(key), number);
+            meet_triangles(LeafGroup(edge), frames[number], LaterEntries::at_in(key), number);
             return false;
         }
         const EvenPart& part = model.even_parts[edge];
         if (part.kind != EvenPart::Kind::node) {
-            meet_leaf(part, frames[number], {at_in(key), edge, number});
+            meet_leaf(part, frames[number], {LaterEntries::at_in(key), edge, number});
             return false;
         }
         ++number;
@@ -224,7 +183,7 @@ template<Instructions instructions, bool any> struct Traversal::EvenKernel : Eve
         }
         const Frame& parent = frames[number - 1];
         Frame& frame = frames[number];
-        take_ray(part, parent, at_in(key), frame);
+        take_ray(part, parent, LaterEntries::at_in(key), frame);
         if (!culls) {
             step_to_child(part, edge, parent, frame);
             if (!(frame.scale > least_scale)) return false;
@@ -241,7 +200,7 @@ template<Instructions instructions, bool any> struct Traversal::EvenKernel : Eve
             return false;
         }
         if (frame.cut && node.stop_edge_count == 1) { // about as large as the node: no box to test
-            key = key_of(0, node.first_edge + node.edge_count);
+            key = LaterEntries::key_of(0, node.first_edge + node.edge_count);
             return true;
         }
         const std::uint32_t tree = frame.cut ? node.stop_tree : tree_of(node, frame);
@@ -338,7 +297,7 @@ template<Instructions instructions, bool any> struct Traversal::EvenKernel : Eve
         const Double4 x = place(all.row[1]) + t * (dx * stretch), y = place(all.row[2]) + t * (dy * stretch);
         std::uint32_t met =
             used & bits_of<instructions>(ahead & (y >= splat(-0.5 - passage_rounding)) &
-                                              (root3 * size_of(x) + y <= splat(1 + passage_rounding)));
+                                         (root3 * size_of(x) + y <= splat(1 + passage_rounding)));
         const Double4 in_world = base + t * (parent.unit * stretch);
         for (; met != 0; met &= met - 1) {
             const int lane = std::countr_zero(met);

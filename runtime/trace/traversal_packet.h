@@ -107,8 +107,8 @@ template<Instructions instructions> struct Traversal::EvenPacket : EvenPlaces {
         const Box box = enlarged(model.edges.front().box, Vec3(0.0));
         std::uint32_t parallel = 0;
         for (int i = 0; i < 2; ++i) {
-            const Double4 speed = power_below(
-                largest_of(direction[0].half[i], direction[1].half[i], direction[2].half[i]));
+            const Double4 speed =
+                power_below(largest_of(direction[0].half[i], direction[1].half[i], direction[2].half[i]));
             const Double4 unit = inverse_power(speed);
             Double4 least = range.least * speed, most = best.half[i] * speed;
             for (int axis = 0; axis < 3; ++axis) {

@@ -1,5 +1,7 @@
 #include "runtime/trace/even_parts.h"
 
+#include <glm/geometric.hpp>
+
 #include "runtime/trace/trace_model.h"
 
 namespace graftal {
@@ -11,6 +13,24 @@ EvenPart::Kind kind_of(const TraceModel& model, const TraceEdge& edge) {
     const Primitive& primitive = model.nodes[edge.child].primitive;
     if (edge.upright && primitive == PrimitiveKind::cube) return EvenPart::Kind::cube;
     return primitive == PrimitiveKind::triangle ? EvenPart::Kind::triangle : EvenPart::Kind::primitive;
+}
+
+/// Of the parts in a tree of a node.
+void note_within(const TraceModel& model, const TraceNode& node, std::uint32_t tree,
+                 std::vector<EvenPart>& parts) {
+    if (tree == no_tree || node.kind != TraceNode::Kind::parts) return;
+    constexpr double rounding = 1e-9; // of which surely_more is careful
+    for (const std::uint32_t item : model.boxes[tree].entry) {
+        if (item & BoxNode::inner) {
+            note_within(model, node, item & ~BoxNode::inner, parts);
+        } else if (!LeafGroup::is(item) && !model.edges[item].to_primitive) {
+            const TraceEdge& edge = model.edges[item];
+            const TraceNode& child = model.nodes[edge.child];
+            const Vec3 centre = edge.parent_from_child.affine()(vec3_of(child.ball_centre));
+            parts[item].within = glm::distance(centre, vec3_of(node.ball_centre)) + edge.stretch * child.reach <=
+                                 (1 + rounding) * node.reach;
+        }
+    }
 }
 
 Double4 with_scale(const LaneMap& map) {
@@ -32,6 +52,11 @@ std::vector<EvenPart> even_parts(const TraceModel& model) {
                          .levels = edge.levels,
                          .kind = kind_of(model, edge),
                          .upright = edge.upright});
+    for (const TraceNode& node : model.nodes) {
+        note_within(model, node, node.tree, parts);
+        for (std::uint32_t i = 0; i < node.unrolling_count; ++i)
+            note_within(model, node, model.unrollings[node.first_unrolling + i].tree, parts);
+    }
     return parts;
 }
 

@@ -26,6 +26,7 @@ struct alignas(64) EvenPart {
     std::uint32_t child, levels;
     Kind kind;
     bool upright;            ///< TraceEdge's
+    bool within = false;     ///< the child's reach is within that of the node
     std::uint32_t group = 0; ///< TraceModel::even_triangles, where it begins some
 
     double shrink() const { return shift[3]; }
@@ -36,7 +37,7 @@ struct EvenOffset {
     Double4 offset;
 };
 
-/// One for each edge of an even model.
+/// One for each edge of an even model. Requires its trees.
 std::vector<EvenPart> even_parts(const TraceModel& model);
 std::vector<EvenOffset> even_offsets(const TraceModel& model);
 

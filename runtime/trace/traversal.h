@@ -122,7 +122,7 @@ class Traversal final : public Surfaces {
         Double4 offset;   ///< translation of world_from_node
         double entry = 1; ///< and its scale; `scale`, a product of norms, may differ by a rounding
         double scale = 1;
-        double least_detail = 0;
+        double least_detail = 0, most_detail = 0; ///< of a unit anywhere within the node's reach, or outside
         std::uint32_t edge = 0, node = 0, steps = 0;
         bool cut = false;
     };

@@ -187,7 +187,7 @@ template<Instructions instructions, bool any> struct Traversal::EvenKernel : Eve
         if (!culls) {
             step_to_child(part, edge, parent, frame);
             if (!(frame.scale > least_scale)) return false;
-            const std::uint32_t tree = self.hurries_ ? no_tree : known_tree(part.child, frame);
+            const std::uint32_t tree = self.hurries_ ? no_tree : known_tree(part, frame);
             if (tree != no_tree) return test_boxes(tree, number, key);
             frame.cut = is_cut(model.nodes[part.child], frame, INFINITY);
         } else if (!go_to_child(part, edge, parent, frame)) {
@@ -203,7 +203,7 @@ template<Instructions instructions, bool any> struct Traversal::EvenKernel : Eve
             key = LaterEntries::key_of(0, node.first_edge + node.edge_count);
             return true;
         }
-        const std::uint32_t tree = frame.cut ? node.stop_tree : tree_of(node, frame);
+        const std::uint32_t tree = frame.cut ? node.stop_tree : tree_of(node, frame, part, parent);
         return tree != no_tree && test_boxes(tree, number, key);
     }
 

@@ -29,9 +29,14 @@ struct Traversal::EvenPlaces {
         return graftal::is_cut(node, frame.steps, detail);
     }
 
-    /// As Kernel::tree_of().
-    GRAFTAL_INLINE std::uint32_t tree_of(const TraceNode& node, EvenPlace& frame) const {
-        double most = INFINITY;
+    /// As Kernel::tree_of(), and what it finds. Where the node's reach is within its parent's, what is known of
+    /// that often tells.
+    GRAFTAL_INLINE std::uint32_t tree_of(const TraceNode& node, EvenPlace& frame, const EvenPart& part,
+                                         const EvenPlace& parent) const {
+        if (part.within) {
+            frame.least_detail = parent.least_detail;
+            frame.most_detail = parent.most_detail;
+        }
         bool known = false;
         for (std::uint32_t i = 0; i < node.unrolling_count; ++i) {
             const Unrolling& unrolling = model.unrollings[node.first_unrolling + i];
@@ -39,14 +44,19 @@ struct Traversal::EvenPlaces {
             const double size = frame.scale * unrolling.least_size;
             const bool has_leaves = unrolling.leaf_tree != no_tree;
             if (has_leaves && frame.steps == unrolling.last_steps) return unrolling.leaf_tree;
-            if (!known && (has_leaves || !(size * frame.least_detail > 1))) {
-                const auto details = model.projection.detail_range(world_ball(node, frame, node.reach));
-                frame.least_detail = surely_more * details.least;
-                most = details.most;
-                known = true;
+            const double largest = frame.scale * unrolling.most_size;
+            if (!known) {
+                const bool told = !has_leaves || largest * frame.most_detail <= surely_more ||
+                                  largest * frame.least_detail > 1;
+                if (!told || !(size * frame.least_detail > 1)) {
+                    const auto details = model.projection.detail_range(world_ball(node, frame, node.reach));
+                    frame.least_detail = surely_more * details.least;
+                    frame.most_detail = details.most;
+                    known = true;
+                }
             }
             if (!(size * frame.least_detail > 1)) continue;
-            const bool all_cut = has_leaves && frame.scale * unrolling.most_size * most <= surely_more;
+            const bool all_cut = has_leaves && largest * frame.most_detail <= surely_more;
             return all_cut ? unrolling.leaf_tree : unrolling.tree;
         }
         return node.tree;
@@ -76,6 +86,7 @@ struct Traversal::EvenPlaces {
         child.node = part.child;
         child.steps = parent.steps == unlimited_steps ? parent.steps : parent.steps - part.levels;
         child.least_detail = model.least_detail_per_unit;
+        child.most_detail = INFINITY;
     }
 
     GRAFTAL_INLINE void place_world(EvenPlace& world) const {
@@ -84,6 +95,7 @@ struct Traversal::EvenPlaces {
         world.steps = model.prepared.root_steps;
         world.cut = false;
         world.least_detail = model.least_detail_per_unit;
+        world.most_detail = INFINITY;
     }
 
     /// Rays begin there, all alike.
@@ -94,25 +106,26 @@ struct Traversal::EvenPlaces {
         EvenRoot& root = self.even_root_;
         place_world(world);
         if (!go_to_child(part, 0, world, root.place) || root.place.cut) return;
-        root.tree = tree_of(model.nodes[part.child], root.place);
+        root.tree = tree_of(model.nodes[part.child], root.place, part, world);
     }
 
     /// Of boxes to look into, where nothing is culled: the node and the levels left tell. no_tree: it has to
     /// be looked at more closely.
-    GRAFTAL_INLINE std::uint32_t known_tree(std::uint32_t number, EvenPlace& frame) const {
+    GRAFTAL_INLINE std::uint32_t known_tree(const EvenPart& part, EvenPlace& frame) const {
+        const std::uint32_t number = part.child;
         EvenTree& known = self.even_trees_[(7 * number + frame.steps) % self.even_trees_.size()];
-        if (known.node != number || known.steps != frame.steps) find_tree(number, frame, known);
+        if (known.node != number || known.steps != frame.steps) find_tree(part, frame, known);
         frame.cut = known.cut;
         return known.tree;
     }
 
-    GRAFTAL_INLINE void find_tree(std::uint32_t number, const EvenPlace& frame, EvenTree& known) const {
-        const TraceNode& node = model.nodes[number];
+    GRAFTAL_INLINE void find_tree(const EvenPart& part, const EvenPlace& frame, EvenTree& known) const {
+        const TraceNode& node = model.nodes[part.child];
         EvenPlace place = frame;
         place.cut = graftal::is_cut(node, frame.steps, INFINITY);
-        known = {number, frame.steps, no_tree, place.cut};
+        known = {part.child, frame.steps, no_tree, place.cut};
         if (place.cut && node.stop_edge_count == 1) return;
-        known.tree = place.cut ? node.stop_tree : tree_of(node, place);
+        known.tree = place.cut ? node.stop_tree : tree_of(node, place, part, place);
     }
 
     /// What will be asked of the edge to a leaf that was met, if nothing nearer is.

@@ -309,7 +309,7 @@ template<Instructions instructions> struct Traversal::EvenPacket : EvenPlaces {
             going.entry = node.first_edge + node.edge_count;
             return Next::on;
         }
-        const std::uint32_t tree = frame.cut ? node.stop_tree : tree_of(node, frame);
+        const std::uint32_t tree = frame.cut ? node.stop_tree : tree_of(node, frame, part, parent);
         going.entry = tree | BoxNode::inner;
         return tree == no_tree ? Next::end : Next::on;
     }

@@ -27,8 +27,9 @@ void note_within(const TraceModel& model, const TraceNode& node, std::uint32_t t
             const TraceEdge& edge = model.edges[item];
             const TraceNode& child = model.nodes[edge.child];
             const Vec3 centre = edge.parent_from_child.affine()(vec3_of(child.ball_centre));
-            parts[item].within = glm::distance(centre, vec3_of(node.ball_centre)) + edge.stretch * child.reach <=
-                                 (1 + rounding) * node.reach;
+            parts[item].within =
+                glm::distance(centre, vec3_of(node.ball_centre)) + edge.stretch * child.reach <=
+                (1 + rounding) * node.reach;
         }
     }
 }

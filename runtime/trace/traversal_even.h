@@ -34,9 +34,7 @@ template<Instructions instructions, bool any> struct Traversal::EvenKernel : Eve
         self.visit_limit_ = self.visits_ + model.most_visits;
         self.hurries_ = false;
         if (!enter_world(ray)) return false;
-        std::int64_t key = 0;
-        if (self.even_root_.tree == no_tree) return go_on({0, 0, 0});
-        return enter_root(key) && go_on({LaterEntries::at_in(key), LaterEntries::entry_in(key), 1});
+        return go_on(self.even_root_.tree == no_tree ? Entry{} : enter_root());
     }
 
     /// From an entry on, until nothing is left; true if something nearer was met.
@@ -145,12 +143,12 @@ template<Instructions instructions, bool any> struct Traversal::EvenKernel : Eve
     }
 
     /// What any part that is entered does, for a root of which it is known what is in it.
-    GRAFTAL_INLINE bool enter_root(std::int64_t& nearest) {
+    GRAFTAL_INLINE Entry enter_root() {
         ++self.visits_;
         Frame& frame = frames[1];
         static_cast<EvenPlace&>(frame) = self.even_root_.place;
         take_ray(model.even_parts.front(), frames[0], 0, frame);
-        return test_boxes(self.even_root_.tree, 1, nearest);
+        return {0, self.even_root_.tree | BoxNode::inner, 1};
     }
 
     GRAFTAL_INLINE void take_ray(const EvenPart& part, const Frame& parent, double at, Frame& frame) const {
@@ -188,7 +186,10 @@ template<Instructions instructions, bool any> struct Traversal::EvenKernel : Eve
             step_to_child(part, edge, parent, frame);
             if (!(frame.scale > least_scale)) return false;
             const std::uint32_t tree = self.hurries_ ? no_tree : known_tree(part, frame);
-            if (tree != no_tree) return test_boxes(tree, number, key);
+            if (tree != no_tree) {
+                key = LaterEntries::key_of(0, tree | BoxNode::inner);
+                return true;
+            }
             frame.cut = is_cut(model.nodes[part.child], frame, INFINITY);
         } else if (!go_to_child(part, edge, parent, frame)) {
             return false;
@@ -204,7 +205,8 @@ template<Instructions instructions, bool any> struct Traversal::EvenKernel : Eve
             return true;
         }
         const std::uint32_t tree = frame.cut ? node.stop_tree : tree_of(node, frame, part, parent);
-        return tree != no_tree && test_boxes(tree, number, key);
+        key = LaterEntries::key_of(0, tree | BoxNode::inner);
+        return tree != no_tree;
     }
 
     /// Fills in where frames lie in the world, where nobody asked so far.

@@ -29,8 +29,8 @@ struct Traversal::EvenPlaces {
         return graftal::is_cut(node, frame.steps, detail);
     }
 
-    /// As Kernel::tree_of(), and what it finds. Where the node's reach is within its parent's, what is known of
-    /// that often tells.
+    /// As Kernel::tree_of(), and what it finds. Where the node's reach is within its parent's, what is known
+    /// of that often tells.
     GRAFTAL_INLINE std::uint32_t tree_of(const TraceNode& node, EvenPlace& frame, const EvenPart& part,
                                          const EvenPlace& parent) const {
         if (part.within) {

@@ -34,7 +34,9 @@ template<Instructions instructions, bool any> struct Traversal::EvenKernel : Eve
         self.visit_limit_ = self.visits_ + model.most_visits;
         self.hurries_ = false;
         if (!enter_world(ray)) return false;
-        return go_on(self.even_root_.tree == no_tree ? Entry{} : enter_root());
+        if (self.even_root_.tree == no_tree) return go_on({});
+        std::int64_t key = 0;
+        return enter_root(key) && go_on({LaterEntries::at_in(key), LaterEntries::entry_in(key), 1});
     }
 
     /// From an entry on, until nothing is left; true if something nearer was met.
@@ -143,12 +145,12 @@ template<Instructions instructions, bool any> struct Traversal::EvenKernel : Eve
     }
 
     /// What any part that is entered does, for a root of which it is known what is in it.
-    GRAFTAL_INLINE Entry enter_root() {
+    GRAFTAL_INLINE bool enter_root(std::int64_t& nearest) {
         ++self.visits_;
         Frame& frame = frames[1];
         static_cast<EvenPlace&>(frame) = self.even_root_.place;
         take_ray(model.even_parts.front(), frames[0], 0, frame);
-        return {0, self.even_root_.tree | BoxNode::inner, 1};
+        return test_boxes(self.even_root_.tree, 1, nearest);
     }
 
     GRAFTAL_INLINE void take_ray(const EvenPart& part, const Frame& parent, double at, Frame& frame) const {
@@ -186,10 +188,7 @@ template<Instructions instructions, bool any> struct Traversal::EvenKernel : Eve
             step_to_child(part, edge, parent, frame);
             if (!(frame.scale > least_scale)) return false;
             const std::uint32_t tree = self.hurries_ ? no_tree : known_tree(part, frame);
-            if (tree != no_tree) {
-                key = LaterEntries::key_of(0, tree | BoxNode::inner);
-                return true;
-            }
+            if (tree != no_tree) return test_boxes(tree, number, key);
             frame.cut = is_cut(model.nodes[part.child], frame, INFINITY);
         } else if (!go_to_child(part, edge, parent, frame)) {
             return false;

@@ -11,42 +11,41 @@ namespace graftal {
 
 namespace {
 
-/// The corners of all that is drawn of an unending model by its steps: a tree of a few levels may be a small
-/// part of its limit set, and terminals may reach beyond it. Nothing where there is too much to look at.
-std::vector<Vec3> corners_of_levels(const AnalysedModel& model, unsigned steps) {
+/// Visits the corners of all that is drawn of an unending model by its steps: a tree of a few levels may be a
+/// small part of its limit set, and terminals may reach beyond it. False where there is too much to look at.
+template<typename Visit> bool visit_corners(const AnalysedModel& model, unsigned steps, const Visit& visit) {
     constexpr std::uint64_t most_leaves = 200'000;
     constexpr unsigned most_steps = 200; // a leaf may lie that deep
-    if (steps > most_steps) return {};
-    std::vector<Vec3> points;
+    if (steps > most_steps) return false;
     std::map<ObjectId, std::vector<Vec3>> corners_of; // many leaves place one object
-    const auto add = [&](const UnfoldedLeaf& leaf) {
+    return unfold(model.graph, model.components, steps, most_leaves, [&](const UnfoldedLeaf& leaf) {
         const auto [corners, is_new] = corners_of.try_emplace(leaf.object);
         if (is_new)
             corners->second = hull_points(model.graph.objects[leaf.object], model.bounds[leaf.object].box);
         for (const Vec3& corner : corners->second)
-            points.push_back(leaf.world_from_object(corner));
+            visit(leaf.world_from_object(corner));
         return true;
-    };
-    if (!unfold(model.graph, model.components, steps, most_leaves, add)) return {};
-    return points;
-}
-
-Box box_of(const std::vector<Vec3>& points) {
-    Box box;
-    for (const Vec3& point : points)
-        box.include(point);
-    return box;
+    });
 }
 
 } // namespace
 
 Sight sight_of(const AnalysedModel& model, std::optional<unsigned> steps) {
     if (steps && model.components.unending[model.graph.root]) {
-        std::vector<Vec3> points = corners_of_levels(model, *steps);
-        if (!points.empty()) {
-            const Box box = box_of(points);
-            return {box, [points = std::move(points)](const auto&) { return points; }};
-        }
+        Box box;
+        std::size_t count = 0;
+        const auto include = [&](const Vec3& corner) {
+            box.include(corner);
+            ++count;
+        };
+        // There may be a million: whoever asks for them has the only copy.
+        if (visit_corners(model, *steps, include) && count > 0)
+            return {box, [&model, steps = *steps, count](const std::vector<Vec3>&) {
+                        std::vector<Vec3> corners;
+                        corners.reserve(count);
+                        visit_corners(model, steps, [&](const Vec3& corner) { corners.push_back(corner); });
+                        return corners;
+                    }};
     }
     const Box& box = model.bounds[model.graph.root].box;
     const Box unit{Vec3(-1.0), Vec3(1.0)}; // stands in for nothing but planes

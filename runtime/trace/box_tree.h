@@ -12,7 +12,7 @@ namespace graftal {
 
 /// Eight boxes side by side, each of an item or of another node. Lanes that are not used hold no
 /// numbers: no ray meets them.
-struct BoxNode {
+struct alignas(64) BoxNode {
     static constexpr std::uint32_t inner = 1u << 31;  ///< marks the number of a node among those of items
     static constexpr std::uint32_t packed = 1u << 30; ///< and this, besides, that of a PackedNode
 

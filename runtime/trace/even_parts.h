@@ -9,8 +9,8 @@ namespace graftal {
 
 struct TraceModel;
 
-/// What rays ask of an edge on their short way (traversal_even.h), close together: thousands of parts then
-/// fit into the caches.
+/// What rays ask of an edge on their short way (traversal_even.h), in one line of the processor's caches:
+/// thousands of parts then fit into these.
 struct alignas(64) EvenPart {
     enum class Kind : std::uint8_t {
         node,
@@ -19,18 +19,26 @@ struct alignas(64) EvenPart {
         primitive, ///< any other
     };
 
-    Double4 shift;  ///< translation of child_from_parent
-    Double4 offset; ///< and of parent_from_child
-    double shrink;  ///< entry of the first; `stretch` and `growth` may differ by a rounding
-    double entry;   ///< and of the second
+    /// Translation of child_from_parent and, in the last lane, its scale; `stretch` and `growth` may differ
+    /// from that by a rounding. What is computed with it has nothing of use in its last lane.
+    Double4 shift;
     double stretch, growth;
-    double turns; ///< TraceEdge's
     std::uint32_t child, levels;
     Kind kind;
-    bool upright; ///< TraceEdge's
+    bool upright;            ///< TraceEdge's
+    bool within = false;     ///< the child's reach is within that of the node
+    std::uint32_t group = 0; ///< TraceModel::even_triangles, where it begins some
+
+    double shrink() const { return shift[3]; }
 };
 
-/// One for each edge of an even model.
+/// Translation of parent_from_child, and its scale in the last lane.
+struct EvenOffset {
+    Double4 offset;
+};
+
+/// One for each edge of an even model. Requires its trees.
 std::vector<EvenPart> even_parts(const TraceModel& model);
+std::vector<EvenOffset> even_offsets(const TraceModel& model);
 
 } // namespace graftal

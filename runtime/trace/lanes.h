@@ -4,6 +4,7 @@
 // ask for it and pairs of SSE2 operations elsewhere, with the same results to the last bit.
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstdint>
 
@@ -91,6 +92,24 @@ GRAFTAL_INLINE void compose(const LaneMap& a, const LaneMap& b, LaneMap& product
 
 GRAFTAL_INLINE double largest_component(const Double4& v) {
     return std::max(std::max(std::abs(v[0]), std::abs(v[1])), std::abs(v[2]));
+}
+
+/// The largest power of two that is not above a positive number. Multiplying by powers of two rounds nothing.
+GRAFTAL_INLINE double power_below(double x) {
+    return std::bit_cast<double>(std::bit_cast<std::uint64_t>(x) & 0x7ff0'0000'0000'0000);
+}
+
+/// 1 divided by a power of two; sooner told than a quotient.
+GRAFTAL_INLINE double inverse_power(double power) {
+    return std::bit_cast<double>(0x7fe0'0000'0000'0000 - std::bit_cast<std::uint64_t>(power));
+}
+
+GRAFTAL_INLINE Double4 power_below(const Double4& x) {
+    return std::bit_cast<Double4>(std::bit_cast<Long4>(x) & 0x7ff0'0000'0000'0000);
+}
+
+GRAFTAL_INLINE Double4 inverse_power(const Double4& power) {
+    return std::bit_cast<Double4>(0x7fe0'0000'0000'0000 - std::bit_cast<Long4>(power));
 }
 
 GRAFTAL_INLINE Vec3 vec3_of(const Double4& v) {

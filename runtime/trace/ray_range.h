@@ -3,6 +3,7 @@
 // Where a ray is in boxes and goes by parts, as the traversal asks it of every part.
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <limits>
 
@@ -85,6 +86,13 @@ template<Instructions instructions> GRAFTAL_INLINE float smallest(const Float8& 
     all = lesser(all, __builtin_shufflevector(all, all, 2, 3, 0, 1, 6, 7, 4, 5));
     all = lesser(all, __builtin_shufflevector(all, all, 1, 0, 3, 2, 5, 4, 7, 6));
     return all[0];
+}
+
+/// A number that is no greater.
+inline float float_below(double x) {
+    const auto rounded = static_cast<float>(x);
+    return static_cast<double>(rounded) > x ? std::nextafter(rounded, -std::numeric_limits<float>::infinity())
+                                            : rounded;
 }
 
 /// Where it is 0 something small: far beyond all boxes, but a number, and 0 times it is 0.

@@ -53,7 +53,9 @@ class ModelBuilder {
             edges += cut_.nodes[id].edges.size() + cut_.nodes[id].stop_edges.size();
         }
         spells_out_groups_ = edges <= most_edges_spelt_out;
-        if (!spells_out_groups_) model_.edges.reserve(edges + cut_.nodes.size());
+        if (spells_out_groups_) return;
+        model_.edges.reserve(edges + cut_.nodes.size());
+        model_.looks.reserve(edges + cut_.nodes.size());
     }
 
     void build() {
@@ -72,7 +74,18 @@ class ModelBuilder {
         edge.box = bounds_.node[cut_.root];
         edge.similarity = true;
         edge.find_upright();
+        add(edge, {});
+    }
+
+    /// Fills in what the edge says of its look. `holder`: of a primitive.
+    void add(const TraceEdge& edge, TraceLook look, std::uint32_t holder = TraceLook::none) {
+        look.child = edge.child;
+        look.levels = edge.levels;
+        look.child_has_mean = model_.source(edge.child).terminal;
+        const std::uint32_t node = edge.to_primitive ? holder : edge.child;
+        if (node != TraceLook::none) look.node = model_.layers.source[node];
         model_.edges.push_back(edge);
+        model_.looks.push_back(look);
     }
 
     void add_node(NodeId id) {
@@ -157,36 +170,38 @@ class ModelBuilder {
         TraceEdge edge;
         edge.child = source.child[shape.index()];
         edge.to_primitive = true;
-        edge.material = source.materials[colour];
+        TraceLook look;
+        look.material = source.materials[colour].value_or(TraceLook::none);
         run.looks.push_back({shape, colour, static_cast<std::uint32_t>(model_.edges.size())});
-        model_.edges.push_back(edge);
+        add(edge, look);
     }
 
     std::uint32_t add_edges(NodeId id, const std::vector<CutEdge>& edges, const std::vector<Box>& boxes) {
         const Affine frame_from_graph = inverse(model_.graph_from_frame[id]);
-        std::vector<BoxedItem> items;
+        std::vector<std::uint32_t> numbers;
         std::set<EdgeKey> met; // parts that coincide are drawn once
         for (const Part& part : parts_of(edges, boxes)) {
             if (!met.insert(key_of(part.edge)).second) continue;
             TraceEdge edge;
             edge.child = part.edge.child;
             edge.to_primitive = cut_.nodes[edge.child].primitive.has_value();
-            edge.holder = part.holder.value_or(id);
             edge.levels = part.edge.levels;
             edge.similarity = part.edge.similarity;
-            edge.tint = part.edge.tint;
-            edge.material = part.edge.material;
+            TraceLook look;
+            look.tint = part.edge.tint;
+            look.material = part.edge.material.value_or(TraceLook::none);
             edge.turns = part.turns;
             const Affine& graph_from_child = model_.graph_from_frame[edge.child];
             set_map(edge, frame_from_graph * part.edge.node_from_child * graph_from_child,
                     part.edge.stretch * graph_from_child.linear[0][0] * frame_from_graph.linear[0][0]);
             edge.find_upright();
             edge.box = transformed(frame_from_graph, part.box);
-            const auto number = static_cast<std::uint32_t>(model_.edges.size());
-            if (!edge.box.empty()) items.emplace_back(edge.box, 1, number);
-            model_.edges.push_back(edge);
+            numbers.push_back(static_cast<std::uint32_t>(model_.edges.size()));
+            add(edge, look, part.holder.value_or(id));
         }
-        return cut_.nodes[id].unbounded ? no_tree : build_box_tree(items, model_.boxes);
+        if (cut_.nodes[id].unbounded) return no_tree;
+        std::vector<BoxedItem> items = grouped_items(model_, numbers);
+        return build_box_tree(items, model_.boxes);
     }
 
     /// An instance and the box of what it draws, in the frame that the graph gives the node.
@@ -194,7 +209,7 @@ class ModelBuilder {
         CutEdge edge;
         Box box;
         double turns = 1;
-        std::optional<NodeId> holder = {}; ///< TraceEdge's, unless it is the node itself
+        std::optional<NodeId> holder = {}; ///< of a primitive, unless it is the node itself
     };
 
     /// The instances, with the primitives of small groups in place of the groups: a box more to test is
@@ -395,7 +410,10 @@ TraceModel::TraceModel(std::shared_ptr<const PreparedCut> ready, const View& see
     add_specks(*this);
     add_unrollings(*this);
     even = is_even(*this);
-    if (even) even_parts = graftal::even_parts(*this);
+    if (!even) return;
+    even_parts = graftal::even_parts(*this);
+    even_offsets = graftal::even_offsets(*this);
+    even_triangles = graftal::even_triangles(*this, even_parts);
 }
 
 const SelfShadows& TraceModel::self_shadows() const {

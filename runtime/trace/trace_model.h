@@ -20,6 +20,7 @@
 #include "runtime/trace/even_parts.h"
 #include "runtime/trace/lanes.h"
 #include "runtime/trace/layers.h"
+#include "runtime/trace/leaf_group.h"
 #include "runtime/trace/mesh_store.h"
 #include "runtime/trace/specks.h"
 
@@ -53,21 +54,29 @@ struct alignas(64) TraceEdge {
     bool to_primitive = false;     ///< leads to one
     LaneMap parent_from_child;
     LaneMap child_from_parent;
-    // What the looks of hits ask for, in one line of the cache:
+    Box box;          ///< of what the child draws, in the parent's frame
+    double turns = 1; ///< of a primitive: length_in_turns() of the graph's instance
+
+    void find_upright();
+};
+
+/// What the look of a hit asks of an edge on the way there, in one line of the processor's caches.
+struct alignas(64) TraceLook {
     PathTint tint;
-    std::optional<MaterialId> material;
-    /// Of a primitive: the node that holds it, also where its parts stand in place of it; no_edge: the one
+    std::uint32_t material = none;
+    /// The last node on the way through the edge that is no primitive, as the graph numbers it; none: the one
     /// before.
-    std::uint32_t holder = no_edge;
+    std::uint32_t node = none;
+    std::uint32_t child = 0;
+    unsigned levels = 0;
     /// Of an unrolling's edges that lead several levels down: the way is one of its edges or the node's, and
     /// then one of that child's. `last` may be marked as one from a cut node.
     std::uint32_t before = no_edge, last = no_edge;
-    std::uint32_t length = 1; ///< of the way, in edges
-    bool as_one = true;       ///< its tint, material and holder are those of the whole way; no mark is on it
-    Box box;                  ///< of what the child draws, in the parent's frame
-    double turns = 1;         ///< of a primitive: length_in_turns() of the graph's instance
+    std::uint16_t length = 1;    ///< of the way, in edges
+    bool as_one = true;          ///< its tint, material and node are those of the whole way
+    bool child_has_mean = false; ///< marked edges from the child have the colours below it in front of them
 
-    void find_upright();
+    static constexpr std::uint32_t none = UINT32_MAX;
 };
 
 /// What is some levels below a node, as if it were parts of its own: boxes are sooner tested than frames are
@@ -168,6 +177,7 @@ struct TraceModel {
 
     std::vector<TraceNode> nodes; ///< as layers.cut.nodes
     std::vector<TraceEdge> edges; ///< the first leads to the root, from world space
+    std::vector<TraceLook> looks; ///< by edge
     std::vector<BoxNode> boxes;
     std::vector<PackedNode> packed_boxes; ///< of runs
     std::vector<Unrolling> unrollings;
@@ -194,6 +204,8 @@ struct TraceModel {
     /// primitives: rays go through it sooner (traversal_even.h).
     bool even = false;
     std::vector<EvenPart> even_parts; ///< by edge, if it is
+    std::vector<EvenOffset> even_offsets;
+    std::vector<EvenTriangles> even_triangles; ///< of groups
 
     /// Up to where a hit will do, if none can be nearer by more than this share of the half width: of a model
     /// in a plane that is drawn in specks; else before all.

@@ -27,13 +27,13 @@ Instructions best_instructions() {
 Traversal::Traversal(const TraceModel& model, Instructions instructions)
     : model_(model), instructions_(instructions) {
     frames_.resize(16);
-    entries_.resize(128);
+    later_.resize(128);
     if (!model.even) return;
     even_frames_.resize(16);
-    even_entries_.resize(128);
     packet_ = std::make_unique<PacketRoom>();
     packet_->has_textures = std::ranges::any_of(model.textures.of_material,
                                                 [](const auto& texture) { return texture != nullptr; });
+    EvenPlaces{*this, model, {}}.find_root();
 }
 
 Traversal::~Traversal() = default;
@@ -127,7 +127,7 @@ void Traversal::show_best(SurfaceHit& hit) {
     path_.clear();
     std::size_t length = 0;
     for (const std::uint32_t edge : way_)
-        length += model_.edges[edge & ~from_cut].length;
+        length += model_.looks[edge & ~from_cut].length;
     more_work_ += RayWork::shaded * length;
     if (best_.proxy_node != no_edge || model_.projection.error_px() > SelfShadows::lit_as_px)
         for (const std::uint32_t edge : way_)
@@ -174,12 +174,10 @@ std::uint32_t Traversal::closest_each(std::span<const Ray> rays, const RayRange&
             : run_packet<EvenPacket<Instructions::portable>>(*this, model_, range, rays, alone);
     found &= ~alone;
     for (const PacketRoom::Hit& hit : packet_->hits) {
-        const TraceEdge& edge = model_.edges[packet_->ways[hit.way_end - 1] & ~from_cut];
-        if (edge.as_one) continue;
-        __builtin_prefetch(&model_.edges[edge.before].tint);
-        __builtin_prefetch(&model_.edges[edge.before]);
-        __builtin_prefetch(&model_.edges[edge.last & ~from_cut].tint);
-        __builtin_prefetch(&model_.edges[edge.last & ~from_cut]);
+        const TraceLook& look = model_.looks[packet_->ways[hit.way_end - 1] & ~from_cut];
+        if (look.as_one) continue;
+        __builtin_prefetch(&model_.looks[look.before]);
+        __builtin_prefetch(&model_.looks[look.last & ~from_cut]);
     }
     for (std::uint32_t left = found; left != 0; left &= left - 1) {
         const auto lane = static_cast<std::size_t>(std::countr_zero(left));
@@ -201,7 +199,7 @@ bool Traversal::all_opaque() const {
 }
 
 void Traversal::append_to_path(std::uint32_t edge) {
-    const TraceEdge& whole = model_.edges[edge & ~from_cut];
+    const TraceLook& whole = model_.looks[edge & ~from_cut];
     if (whole.before == no_edge) {
         path_.push_back(edge);
         return;
@@ -228,10 +226,8 @@ const TraceMesh& Traversal::shell_of(const Frame& frame) {
 }
 
 std::optional<MaterialId> Traversal::material_of(std::uint32_t edge) const {
-    const TraceEdge& whole = model_.edges[edge & ~from_cut];
-    if (whole.before == no_edge) return whole.material;
-    const std::optional<MaterialId> material = material_of(whole.last);
-    return material ? material : material_of(whole.before);
+    const std::uint32_t material = model_.looks[edge & ~from_cut].material;
+    return material != TraceLook::none ? std::optional<MaterialId>(material) : std::nullopt;
 }
 
 const Texture::Texel& Traversal::texel(MaterialId material, std::uint32_t edge, double turns,
@@ -283,24 +279,22 @@ double Traversal::light_share_at_best() const {
 
 /// As descend() (detail/piece.h), several edges at once where an unrolling knows what comes of them.
 void Traversal::look_along(std::uint32_t step, WayLook& look, SurfaceHit& hit) const {
-    const TraceEdge& edge = model_.edges[step & ~from_cut];
-    if (edge.length > 1 && !edge.as_one) {
+    const TraceLook& edge = model_.looks[step & ~from_cut];
+    if (!edge.as_one) {
         look_along(edge.before, look, hit);
         return look_along(edge.last, look, hit);
     }
-    if (step & from_cut && look.parent != no_edge && model_.source(look.parent).terminal)
+    if (step & from_cut && look.has_mean)
         look.inherited = model_.source(look.parent).mean.over(look.inherited);
     look.tint = look.tint * edge.tint;
-    if (edge.material) {
+    if (edge.material != TraceLook::none) {
         look.material = edge.material;
-        hit.material = &model_.prepared.cut.materials[*edge.material];
+        hit.material = &model_.prepared.cut.materials[edge.material];
         look.inherited = hit.material->rgb;
     }
     look.parent = edge.child;
-    if (!edge.to_primitive)
-        hit.node = model_.layers.source[edge.child];
-    else if (edge.holder != no_edge)
-        hit.node = model_.layers.source[edge.holder];
+    look.has_mean = edge.child_has_mean;
+    if (edge.node != TraceLook::none) hit.node = edge.node;
     hit.levels += edge.levels;
 }
 

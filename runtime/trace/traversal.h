@@ -72,8 +72,9 @@ class Traversal final : public Surfaces {
     template<Instructions instructions, bool any>
     struct EvenKernel; ///< through even models (traversal_even.h)
     template<Instructions instructions>
-    struct EvenPacket; ///< eight rays at once through even models (traversal_packet.h)
-    struct PacketRoom; ///< its memory
+    struct EvenPacket;   ///< eight rays at once through even models (traversal_packet.h)
+    struct PacketRoom;   ///< its memory
+    struct LaterEntries; ///< what a ray is to look into later (later_entries.h)
 
     /// The ray in some frame: origin + (t - base) / unit * direction.
     struct LocalRay {
@@ -106,8 +107,13 @@ class Traversal final : public Surfaces {
 
     /// An edge or a node of boxes to go into, and from where on.
     struct Entry {
-        double at = 0; ///< in units from the frame's base
+        float at = 0; ///< in units from the frame's base
         std::uint32_t entry = 0;
+        std::uint32_t frame = 0;
+    };
+    /// One that is kept for later.
+    struct Later {
+        std::int64_t key = 0; ///< where it is, and its number: the nearer, the less
         std::uint32_t frame = 0;
     };
 
@@ -116,7 +122,7 @@ class Traversal final : public Surfaces {
         Double4 offset;   ///< translation of world_from_node
         double entry = 1; ///< and its scale; `scale`, a product of norms, may differ by a rounding
         double scale = 1;
-        double least_detail = 0;
+        double least_detail = 0, most_detail = 0; ///< of a unit anywhere within the node's reach, or outside
         std::uint32_t edge = 0, node = 0, steps = 0;
         bool cut = false;
     };
@@ -127,10 +133,16 @@ class Traversal final : public Surfaces {
         Float4 near; ///< the origin
         float least = 0;
     };
-    struct EvenEntry {
-        float at = 0;
-        std::uint32_t entry = 0;
-        std::uint32_t frame = 0;
+    /// Where the root of an even model lies, and what rays look into there.
+    struct EvenRoot {
+        EvenPlace place;
+        std::uint32_t tree = no_tree; ///< none: it is entered as any other part
+    };
+    /// What rays look into of a node with so many levels left, where nothing is culled.
+    struct EvenTree {
+        std::uint32_t node = no_edge, steps = 0;
+        std::uint32_t tree = no_tree;
+        bool cut = false;
     };
 
     /// The best hit so far.
@@ -210,7 +222,8 @@ class Traversal final : public Surfaces {
         PathTint tint = {};
         Rgb inherited;
         std::optional<MaterialId> material = {};
-        std::uint32_t parent = no_edge;
+        std::uint32_t parent = 0; ///< if it has_mean
+        bool has_mean = false;
     };
     void look_along(std::uint32_t step, WayLook& look, SurfaceHit& hit) const;
     void surface_at_best(SurfaceHit& hit) const;
@@ -225,12 +238,11 @@ class Traversal final : public Surfaces {
     const TraceModel& model_;
     Instructions instructions_;
     std::vector<Frame> frames_;
-    std::size_t depth_ = 0; ///< frames in use
-    std::vector<Entry> entries_;
+    std::vector<Later> later_;
     std::vector<EvenFrame> even_frames_;
-    std::vector<EvenEntry> even_entries_;
-    std::size_t entry_count_ = 0;        ///< in use, of either
-    std::unique_ptr<PacketRoom> packet_; ///< null where rays go one by one
+    EvenRoot even_root_;
+    std::array<EvenTree, 64> even_trees_; ///< by a hash
+    std::unique_ptr<PacketRoom> packet_;  ///< null where rays go one by one
     Best best_;
     /// Shells asked for lately, by a hash of their keys: the store has to be locked.
     std::array<std::pair<MeshStore::Key, const TraceMesh*>, 64> meshes_{};

@@ -5,26 +5,27 @@
 // all frames; of a frame's place a scale and an offset are left. Only traversal.cpp includes this.
 
 #include "compiler/primitives/passage.h"
+#include "runtime/trace/later_entries.h"
+#include "runtime/trace/packet_room.h"
 #include "runtime/trace/traversal_even_places.h"
 
 namespace graftal {
 
 template<Instructions instructions, bool any> struct Traversal::EvenKernel : EvenPlaces {
-    EvenFrame* frames; ///< and entries: Traversal's
-    EvenEntry* entries;
-    EvenEntry* top; ///< behind the last entry in use
-    // In every frame:
-    Double4 direction, inverse;
-    bool is_parallel;       ///< to some of a cube's faces
-    Float8 reciprocal[3];   ///< of the direction, never infinite
-    std::size_t side_in[3]; ///< of boxes
-
-    using Entry = EvenEntry;
     using Frame = EvenFrame;
 
+    Frame* frames; ///< Traversal's
+    LaterEntries later;
+    std::uint32_t first_placed = 0; ///< from there down frames know where they lie in the world
+    // In every frame:
+    Double4 direction, inverse;
+    bool is_parallel;     ///< to some of a cube's faces
+    Float8 reciprocal[3]; ///< of the direction, never infinite
+    /// Sides of boxes where the ray goes in and out, as a node has them one after the other.
+    std::size_t in[3], out[3];
+
     GRAFTAL_INLINE explicit EvenKernel(Traversal& traversal, const TraceModel& traced, const RayRange& asked)
-        : EvenPlaces{traversal, traced, asked}, frames(self.even_frames_.data()),
-          entries(self.even_entries_.data()), top(entries) {}
+        : EvenPlaces{traversal, traced, asked}, frames(self.even_frames_.data()), later{self.later_} {}
 
     GRAFTAL_INLINE bool run(const Ray& ray) {
         self.best_.found = false;
@@ -32,18 +33,22 @@ template<Instructions instructions, bool any> struct Traversal::EvenKernel : Eve
         self.ray_ = ray;
         self.visit_limit_ = self.visits_ + model.most_visits;
         self.hurries_ = false;
-        Entry entry;
-        return enter_world(ray, entry) && go_on(entry);
+        if (!enter_world(ray)) return false;
+        if (self.even_root_.tree == no_tree) return go_on({});
+        std::int64_t key = 0;
+        return enter_root(key) && go_on({LaterEntries::at_in(key), LaterEntries::entry_in(key), 1});
     }
 
     /// From an entry on, until nothing is left; true if something nearer was met.
-    GRAFTAL_INLINE bool go_on(Entry entry) {
-        for (bool more = true; more || pop(entry);) {
-            if (entry.entry & BoxNode::inner) {
-                more = test_boxes(entry.entry & ~BoxNode::inner, entry.frame, entry);
+    GRAFTAL_INLINE bool go_on(const Entry& first) {
+        std::int64_t key = LaterEntries::key_of(first.at, first.entry);
+        std::uint32_t frame = first.frame;
+        for (bool more = true; more || pop(key, frame);) {
+            if (LaterEntries::entry_in(key) & BoxNode::inner) {
+                more = test_boxes(LaterEntries::entry_in(key) & ~BoxNode::inner, frame, key);
                 continue;
             }
-            more = enter(entry);
+            more = enter(key, frame);
             if (any && self.best_.found) return true;
             if (self.visits_ > self.visit_limit_ && !self.goes_on()) break;
         }
@@ -51,21 +56,24 @@ template<Instructions instructions, bool any> struct Traversal::EvenKernel : Eve
     }
 
     /// Takes the nearest entry, if one is left that is nearer than the best hit.
-    GRAFTAL_INLINE bool pop(Entry& entry) {
-        while (top != entries) {
-            entry = *--top;
-            const Frame& frame = frames[entry.frame];
-            if (frame.base + static_cast<double>(entry.at) * frame.unit < self.best_.t) return true;
+    GRAFTAL_INLINE bool pop(std::int64_t& key, std::uint32_t& number) {
+        while (later.top != later.first) {
+            --later.top;
+            key = later.top->key;
+            number = later.top->frame;
+            const Frame& frame = frames[number];
+            if (frame.base + static_cast<double>(LaterEntries::at_in(key)) * frame.unit < self.best_.t)
+                return true;
         }
         return false;
     }
 
-    GRAFTAL_INLINE bool enter_world(const Ray& ray, Entry& entry) {
+    GRAFTAL_INLINE bool enter_world(const Ray& ray) {
         Frame& frame = frames[0];
         const Double4 origin = lanes_of(ray.origin);
         direction = lanes_of(ray.direction);
-        frame.speed = largest_component(direction);
-        frame.unit = 1 / frame.speed;
+        frame.speed = power_below(largest_component(direction));
+        frame.unit = inverse_power(frame.speed);
         direction = direction * splat(frame.unit);
         inverse = 1 / direction;
         const Double4 magnitude = direction < 0 ? -direction : direction;
@@ -77,32 +85,45 @@ template<Instructions instructions, bool any> struct Traversal::EvenKernel : Eve
         if (!(inside.least <= inside.most)) return false;
         frame.origin = origin + splat(inside.least) * direction;
         frame.base = inside.least * frame.unit;
-        frame.offset = Double4{};
-        frame.entry = frame.scale = 1;
-        frame.steps = model.prepared.root_steps;
-        frame.cut = false;
-        frame.least_detail = model.least_detail_per_unit;
+        place_world(frame);
         const Float4 divisor = never_zero(__builtin_convertvector(direction, Float4));
         const Float4 quotient = 1 / divisor;
+        std::size_t sides[3];
         for (int axis = 0; axis < 3; ++axis) {
             reciprocal[axis] = spread<instructions>(quotient[axis]);
-            side_in[axis] = quotient[axis] < 0 ? 1 : 0;
+            sides[axis] = quotient[axis] < 0 ? 1 : 0;
         }
-        entry = {0, 0, 0};
+        set_sides(sides);
         return true;
+    }
+
+    GRAFTAL_INLINE void set_sides(const std::size_t (&side_in)[3]) {
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            in[axis] = 3 * side_in[axis] + axis;
+            out[axis] = 3 * (1 - side_in[axis]) + axis;
+        }
     }
 
     /// As range_in(), of a ray that is parallel to no side.
     GRAFTAL_INLINE RayRange range_between(const Box& box, const Double4& origin, RayRange within) const {
         const Double4 a = (lanes_of(box.min) - origin) * inverse, b = (lanes_of(box.max) - origin) * inverse;
+        const Double4 enter = b < a ? b : a, leave = a < b ? b : a;
         for (int axis = 0; axis < 3; ++axis) {
-            within.least = std::max(within.least, std::min(a[axis], b[axis]));
-            within.most = std::min(within.most, std::max(a[axis], b[axis]));
+            const double from = enter[axis], to = leave[axis];
+            within.least = within.least < from ? from : within.least;
+            within.most = to < within.most ? to : within.most;
         }
         return within;
     }
 
-    GRAFTAL_INLINE bool test_boxes(std::uint32_t number, std::uint32_t frame_number, Entry& nearest) {
+    /// Of all boxes of a node.
+    static GRAFTAL_INLINE const Float8& sides_at(const BoxNode& node, std::size_t number) {
+        return *(&node.side[0][0] + number);
+    }
+
+    /// Puts the nearest of the boxes that the ray meets in the place of their node, and keeps the others, the
+    /// farthest first; false if there is none.
+    GRAFTAL_INLINE bool test_boxes(std::uint32_t number, std::uint32_t frame_number, std::int64_t& nearest) {
         const BoxNode& node = model.boxes[number];
         const Frame& frame = frames[frame_number];
         // A little more, for what single precision leaves out.
@@ -111,74 +132,87 @@ template<Instructions instructions, bool any> struct Traversal::EvenKernel : Eve
         for (int axis = 0; axis < 3; ++axis) {
             const Float8 origin = spread<instructions>(frame.near[axis]);
             // Lanes of no numbers stay so by the last axis.
-            enters = greater(enters, (node.side[side_in[axis]][axis] - origin) * reciprocal[axis]);
-            leaves = lesser(leaves, (node.side[1 - side_in[axis]][axis] - origin) * reciprocal[axis]);
+            enters = greater(enters, (sides_at(node, in[axis]) - origin) * reciprocal[axis]);
+            leaves = lesser(leaves, (sides_at(node, out[axis]) - origin) * reciprocal[axis]);
         }
-        std::uint32_t lanes = bits_of<instructions>(enters <= leaves);
-        if (lanes == 0) return false;
-        const auto entry_of = [&](std::uint32_t bits) GRAFTAL_INLINED_LAMBDA {
+        std::uint32_t met = bits_of<instructions>(enters <= leaves);
+        if (met == 0) return false;
+        nearest = later.nearest_of(met, frame_number, [&](std::uint32_t bits) GRAFTAL_INLINED_LAMBDA {
             const auto lane = static_cast<std::size_t>(std::countr_zero(bits));
-            return Entry{enters[lane], node.entry[lane], frame_number};
-        };
-        nearest = entry_of(lanes);
-        lanes &= lanes - 1;
-        if (lanes == 0) return true;
-        reserve_entries();
-        Entry* const first = top;
-        do {
-            Entry entry = entry_of(lanes);
-            if (entry.at <= nearest.at) std::swap(entry, nearest);
-            Entry* place = top++;
-            for (; place > first && place[-1].at < entry.at; --place)
-                *place = place[-1];
-            *place = entry;
-        } while ((lanes &= lanes - 1) != 0);
+            return LaterEntries::key_of(enters[lane], node.entry[lane]);
+        });
         return true;
     }
 
-    /// For the others of eight.
-    GRAFTAL_INLINE void reserve_entries() {
-        const auto count = static_cast<std::size_t>(top - entries);
-        if (count + 7 <= self.even_entries_.size()) return;
-        self.even_entries_.resize(2 * self.even_entries_.size());
-        entries = self.even_entries_.data();
-        top = entries + count;
+    /// What any part that is entered does, for a root of which it is known what is in it.
+    GRAFTAL_INLINE bool enter_root(std::int64_t& nearest) {
+        ++self.visits_;
+        Frame& frame = frames[1];
+        static_cast<EvenPlace&>(frame) = self.even_root_.place;
+        take_ray(model.even_parts.front(), frames[0], 0, frame);
+        return test_boxes(self.even_root_.tree, 1, nearest);
     }
 
-    /// Puts the nearest of what it leads to in its place; false if there is nothing.
-    GRAFTAL_INLINE bool enter(Entry& entry) {
+    GRAFTAL_INLINE void take_ray(const EvenPart& part, const Frame& parent, double at, Frame& frame) const {
+        frame.base = parent.base + at * parent.unit;
+        frame.speed = parent.speed * part.growth;
+        frame.unit = parent.unit * part.stretch;
+        frame.origin = (parent.origin + splat(at) * direction) * splat(part.shrink()) + part.shift;
+        frame.least = static_cast<float>((range.least - frame.base) * frame.speed);
+        frame.near = __builtin_convertvector(frame.origin, Float4);
+    }
+
+    /// Puts the nearest of what an entry leads to in its place, and the frame of that; false if there is
+    /// nothing.
+    GRAFTAL_INLINE bool enter(std::int64_t& key, std::uint32_t& number) {
         ++self.visits_;
-        const EvenPart& part = model.even_parts[entry.entry];
-        if (part.kind != EvenPart::Kind::node) {
-            meet_leaf(part, frames[entry.frame], entry);
+        const std::uint32_t edge = LaterEntries::entry_in(key);
+        if (LeafGroup::is(edge)) {
+            meet_triangles(LeafGroup(edge), frames[number], LaterEntries::at_in(key), number);
             return false;
         }
-        const std::uint32_t number = entry.frame + 1;
+        const EvenPart& part = model.even_parts[edge];
+        if (part.kind != EvenPart::Kind::node) {
+            meet_leaf(part, frames[number], {LaterEntries::at_in(key), edge, number});
+            return false;
+        }
+        ++number;
         if (number == self.even_frames_.size()) {
             self.even_frames_.resize(2 * number);
             frames = self.even_frames_.data();
         }
-        const Frame& parent = frames[entry.frame];
+        const Frame& parent = frames[number - 1];
         Frame& frame = frames[number];
-        const double at = entry.at;
-        frame.base = parent.base + at * parent.unit;
-        frame.speed = parent.speed * part.growth;
-        frame.unit = parent.unit * part.stretch;
-        frame.origin = (parent.origin + splat(at) * direction) * splat(part.shrink) + part.shift;
-        if (!go_to_child(part, entry.entry, parent, frame)) return false;
+        take_ray(part, parent, LaterEntries::at_in(key), frame);
+        if (!culls) {
+            step_to_child(part, edge, parent, frame);
+            if (!(frame.scale > least_scale)) return false;
+            const std::uint32_t tree = self.hurries_ ? no_tree : known_tree(part, frame);
+            if (tree != no_tree) return test_boxes(tree, number, key);
+            frame.cut = is_cut(model.nodes[part.child], frame, INFINITY);
+        } else if (!go_to_child(part, edge, parent, frame)) {
+            return false;
+        }
         const TraceNode& node = model.nodes[part.child];
         if (frame.cut && node.stop_tree == no_tree) {
+            place_frames(number);
             meet_proxy(node, frame, number);
             return false;
         }
-        frame.least = static_cast<float>((range.least - frame.base) * frame.speed);
-        frame.near = __builtin_convertvector(frame.origin, Float4);
         if (frame.cut && node.stop_edge_count == 1) { // about as large as the node: no box to test
-            entry = {0, node.first_edge + node.edge_count, number};
+            key = LaterEntries::key_of(0, node.first_edge + node.edge_count);
             return true;
         }
-        const std::uint32_t tree = frame.cut ? node.stop_tree : tree_of(node, frame);
-        return tree != no_tree && test_boxes(tree, number, entry);
+        const std::uint32_t tree = frame.cut ? node.stop_tree : tree_of(node, frame, part, parent);
+        key = LaterEntries::key_of(0, tree | BoxNode::inner);
+        return tree != no_tree;
+    }
+
+    /// Fills in where frames lie in the world, where nobody asked so far.
+    GRAFTAL_INLINE void place_frames(std::uint32_t number) {
+        if (culls) return;
+        for (std::uint32_t i = first_placed + 1; i <= number; ++i)
+            place_child(frames[i].edge & ~from_cut, frames[i - 1], frames[i]);
     }
 
     GRAFTAL_INLINE void meet_leaf(const EvenPart& part, const Frame& parent, const Entry& entry) {
@@ -188,7 +222,7 @@ template<Instructions instructions, bool any> struct Traversal::EvenKernel : Eve
         Vec3 origin, along;
         double unit;
         if (part.kind == EvenPart::Kind::cube && !is_parallel) {
-            origin = vec3_of(near * splat(part.shrink) + part.shift);
+            origin = vec3_of(near * splat(part.shrink()) + part.shift);
             along = vec3_of(direction);
             unit = parent.unit * part.stretch;
             if (!meet_cube(origin, range_from(base, parent.speed * part.growth), hit)) return;
@@ -199,7 +233,7 @@ template<Instructions instructions, bool any> struct Traversal::EvenKernel : Eve
             const double largest = edge.similarity ? edge.growth : largest_component(turned);
             if (!(largest > 0 && largest < 1 / least_scale)) return;
             const double shrink = edge.similarity ? edge.stretch : 1 / largest;
-            origin = vec3_of(edge.upright ? near * splat(part.shrink) + part.shift
+            origin = vec3_of(edge.upright ? near * splat(part.shrink()) + part.shift
                                           : point_through(edge.child_from_parent, near));
             along = vec3_of(edge.upright ? direction : turned * splat(shrink));
             unit = parent.unit * shrink;
@@ -212,15 +246,69 @@ template<Instructions instructions, bool any> struct Traversal::EvenKernel : Eve
         }
         set_best(base + hit.t * unit, hit.normal);
         if (any) return;
-        prefetch_look(entry.entry);
-        self.best_.point = origin + hit.t * along;
-        self.best_.turns = part.turns;
+        keep_leaf(part, entry.entry, parent, entry.frame, origin + hit.t * along);
+    }
+
+    /// Of the best hit: the child of the edge, met at a point in its frame.
+    GRAFTAL_INLINE void keep_leaf(const EvenPart& part, std::uint32_t edge, const Frame& parent,
+                                  std::uint32_t number, const Vec3& point) {
+        prefetch_look(edge);
+        if (self.packet_->has_textures) {
+            self.best_.point = point;
+            self.best_.turns = model.edges[edge].turns;
+        }
         self.best_.proxy_node = no_edge;
         self.best_.is_upright = part.upright;
-        if (!part.upright)
-            place(parent, model.edges[entry.entry].parent_from_child, self.best_.world_from_leaf);
-        keep_way(entry.frame);
-        self.way_.push_back(entry.entry | (parent.cut ? from_cut : 0));
+        if (!part.upright) {
+            place_frames(number);
+            place(parent, model.edges[edge].parent_from_child, self.best_.world_from_leaf);
+        }
+        keep_way(number);
+        self.way_.push_back(edge | (parent.cut ? from_cut : 0));
+    }
+
+    /// Each as meet_leaf() would meet it, one after the other.
+    GRAFTAL_INLINE void meet_triangles(const LeafGroup& group, const Frame& parent, double at,
+                                       std::uint32_t number) {
+        self.visits_ += group.count - 1;
+        const EvenTriangles& all = model.even_triangles[model.even_parts[group.first].group];
+        if (!all.similar) self.more_work_ += RayWork::stretched * group.count;
+        const double base = parent.base + at * parent.unit;
+        const Double4 near = parent.origin + splat(at) * direction;
+        const auto along = [&](const Double4* row) GRAFTAL_INLINED_LAMBDA {
+            return row[0] * splat(direction[0]) + row[1] * splat(direction[1]) + row[2] * splat(direction[2]);
+        };
+        const auto place = [&](const Double4* row) GRAFTAL_INLINED_LAMBDA {
+            return row[0] * splat(near[0]) + row[1] * splat(near[1]) + row[2] * splat(near[2]) + row[3];
+        };
+        const Double4 dx = along(all.row[1]), dy = along(all.row[2]), dz = along(all.row[0]);
+        Double4 growth = all.growth, stretch = all.stretch;
+        if (!all.similar) {
+            growth = largest_of(dx, dy, dz);
+            stretch = 1 / growth;
+        }
+        const Double4 from_plane = place(all.row[0]);
+        const Double4 t = -from_plane / (dz * stretch);
+        const Double4 speed = parent.speed * growth;
+        const Long4 ahead = (growth > splat(0.0)) & (growth < splat(1 / least_scale)) &
+                            (t > (range.least - base) * speed) & (t < (self.best_.t - base) * speed);
+        const std::uint32_t used = (1u << group.count) - 1;
+        if ((bits_of<instructions>(ahead) & used) == 0) return;
+        constexpr double root3 = 1.7320508075688772;
+        const Double4 x = place(all.row[1]) + t * (dx * stretch), y = place(all.row[2]) + t * (dy * stretch);
+        std::uint32_t met =
+            used & bits_of<instructions>(ahead & (y >= splat(-0.5 - passage_rounding)) &
+                                         (root3 * size_of(x) + y <= splat(1 + passage_rounding)));
+        const Double4 in_world = base + t * (parent.unit * stretch);
+        for (; met != 0; met &= met - 1) {
+            const int lane = std::countr_zero(met);
+            if (!(t[lane] < (self.best_.t - base) * speed[lane])) continue;
+            set_best(in_world[lane], {0, 0, 1});
+            if (any) return;
+            const std::uint32_t edge = group.first + static_cast<std::uint32_t>(lane);
+            keep_leaf(model.even_parts[edge], edge, parent, number,
+                      {x[lane], y[lane], from_plane[lane] + t[lane] * (dz[lane] * stretch[lane])});
+        }
     }
 
     /// As the primitive is met (cube.cpp).
@@ -287,9 +375,9 @@ template<Instructions instructions, bool any> struct Traversal::EvenKernel : Eve
     }
 
     GRAFTAL_INLINE void keep_way(std::uint32_t number) {
-        self.way_.clear();
+        self.way_.resize(number);
         for (std::uint32_t i = 1; i <= number; ++i)
-            self.way_.push_back(frames[i].edge);
+            self.way_[i - 1] = frames[i].edge;
     }
 };
 

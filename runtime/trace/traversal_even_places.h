@@ -12,6 +12,7 @@ struct Traversal::EvenPlaces {
     Traversal& self;
     const TraceModel& model;
     const RayRange range;
+    const bool culls = model.projection.culls();
 
     GRAFTAL_INLINE Ball world_ball(const TraceNode& node, const EvenPlace& frame, double radius) const {
         return {vec3_of(node.ball_centre * splat(frame.entry) + frame.offset), frame.scale * radius};
@@ -28,9 +29,14 @@ struct Traversal::EvenPlaces {
         return graftal::is_cut(node, frame.steps, detail);
     }
 
-    /// As Kernel::tree_of().
-    GRAFTAL_INLINE std::uint32_t tree_of(const TraceNode& node, EvenPlace& frame) const {
-        double most = INFINITY;
+    /// As Kernel::tree_of(), and what it finds. Where the node's reach is within its parent's, what is known
+    /// of that often tells.
+    GRAFTAL_INLINE std::uint32_t tree_of(const TraceNode& node, EvenPlace& frame, const EvenPart& part,
+                                         const EvenPlace& parent) const {
+        if (part.within) {
+            frame.least_detail = parent.least_detail;
+            frame.most_detail = parent.most_detail;
+        }
         bool known = false;
         for (std::uint32_t i = 0; i < node.unrolling_count; ++i) {
             const Unrolling& unrolling = model.unrollings[node.first_unrolling + i];
@@ -38,14 +44,19 @@ struct Traversal::EvenPlaces {
             const double size = frame.scale * unrolling.least_size;
             const bool has_leaves = unrolling.leaf_tree != no_tree;
             if (has_leaves && frame.steps == unrolling.last_steps) return unrolling.leaf_tree;
-            if (!known && (has_leaves || !(size * frame.least_detail > 1))) {
-                const auto details = model.projection.detail_range(world_ball(node, frame, node.reach));
-                frame.least_detail = surely_more * details.least;
-                most = details.most;
-                known = true;
+            const double largest = frame.scale * unrolling.most_size;
+            if (!known) {
+                const bool told = !has_leaves || largest * frame.most_detail <= surely_more ||
+                                  largest * frame.least_detail > 1;
+                if (!told || !(size * frame.least_detail > 1)) {
+                    const auto details = model.projection.detail_range(world_ball(node, frame, node.reach));
+                    frame.least_detail = surely_more * details.least;
+                    frame.most_detail = details.most;
+                    known = true;
+                }
             }
             if (!(size * frame.least_detail > 1)) continue;
-            const bool all_cut = has_leaves && frame.scale * unrolling.most_size * most <= surely_more;
+            const bool all_cut = has_leaves && largest * frame.most_detail <= surely_more;
             return all_cut ? unrolling.leaf_tree : unrolling.tree;
         }
         return node.tree;
@@ -54,23 +65,72 @@ struct Traversal::EvenPlaces {
     /// Goes to the child of an edge; false if it is nothing.
     GRAFTAL_INLINE bool go_to_child(const EvenPart& part, std::uint32_t edge, const EvenPlace& parent,
                                     EvenPlace& child) const {
-        child.offset = splat(parent.entry) * part.offset + parent.offset;
-        child.entry = parent.entry * part.entry;
+        place_child(edge, parent, child);
+        step_to_child(part, edge, parent, child);
+        if (!(child.scale > least_scale)) return false;
+        child.cut = is_cut(model.nodes[part.child], child, parent.least_detail);
+        return true;
+    }
+
+    GRAFTAL_INLINE void place_child(std::uint32_t edge, const EvenPlace& parent, EvenPlace& child) const {
+        const Double4 offset = model.even_offsets[edge].offset;
+        child.offset = splat(parent.entry) * offset + parent.offset;
+        child.entry = parent.entry * offset[3];
+    }
+
+    /// All but where it lies in the world and whether it is cut.
+    GRAFTAL_INLINE void step_to_child(const EvenPart& part, std::uint32_t edge, const EvenPlace& parent,
+                                      EvenPlace& child) const {
         child.scale = parent.scale * part.stretch;
         child.edge = edge | (parent.cut ? from_cut : 0);
         child.node = part.child;
         child.steps = parent.steps == unlimited_steps ? parent.steps : parent.steps - part.levels;
-        if (!(child.scale > least_scale)) return false;
-        child.cut = is_cut(model.nodes[part.child], child, parent.least_detail);
         child.least_detail = model.least_detail_per_unit;
-        return true;
+        child.most_detail = INFINITY;
+    }
+
+    GRAFTAL_INLINE void place_world(EvenPlace& world) const {
+        world.offset = Double4{};
+        world.entry = world.scale = 1;
+        world.steps = model.prepared.root_steps;
+        world.cut = false;
+        world.least_detail = model.least_detail_per_unit;
+        world.most_detail = INFINITY;
+    }
+
+    /// Rays begin there, all alike.
+    void find_root() const {
+        const EvenPart& part = model.even_parts.front();
+        if (part.kind != EvenPart::Kind::node) return;
+        EvenPlace world;
+        EvenRoot& root = self.even_root_;
+        place_world(world);
+        if (!go_to_child(part, 0, world, root.place) || root.place.cut) return;
+        root.tree = tree_of(model.nodes[part.child], root.place, part, world);
+    }
+
+    /// Of boxes to look into, where nothing is culled: the node and the levels left tell. no_tree: it has to
+    /// be looked at more closely.
+    GRAFTAL_INLINE std::uint32_t known_tree(const EvenPart& part, EvenPlace& frame) const {
+        const std::uint32_t number = part.child;
+        EvenTree& known = self.even_trees_[(7 * number + frame.steps) % self.even_trees_.size()];
+        if (known.node != number || known.steps != frame.steps) find_tree(part, frame, known);
+        frame.cut = known.cut;
+        return known.tree;
+    }
+
+    GRAFTAL_INLINE void find_tree(const EvenPart& part, const EvenPlace& frame, EvenTree& known) const {
+        const TraceNode& node = model.nodes[part.child];
+        EvenPlace place = frame;
+        place.cut = graftal::is_cut(node, frame.steps, INFINITY);
+        known = {part.child, frame.steps, no_tree, place.cut};
+        if (place.cut && node.stop_edge_count == 1) return;
+        known.tree = place.cut ? node.stop_tree : tree_of(node, place, part, place);
     }
 
     /// What will be asked of the edge to a leaf that was met, if nothing nearer is.
     GRAFTAL_INLINE void prefetch_look(std::uint32_t number) const {
-        const TraceEdge& edge = model.edges[number];
-        __builtin_prefetch(&edge);
-        __builtin_prefetch(&edge.tint);
+        __builtin_prefetch(&model.looks[number]);
     }
 
     GRAFTAL_INLINE void place(const EvenPlace& parent, const LaneMap& parent_from_leaf,

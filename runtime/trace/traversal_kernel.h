@@ -13,6 +13,7 @@
 
 #include "compiler/detail/least_width.h"
 #include "compiler/support/stretch.h"
+#include "runtime/trace/later_entries.h"
 #include "runtime/trace/ray_range.h"
 #include "runtime/trace/traversal.h"
 
@@ -23,10 +24,11 @@ template<Instructions instructions, bool any> struct Traversal::Kernel {
     Traversal& self;
     const TraceModel& model;
     const RayRange range;
+    LaterEntries later{self.later_};
+    Frame* frames = self.frames_.data(); ///< Traversal's
+    std::size_t depth = 0;               ///< frames in use
 
     GRAFTAL_INLINE bool run(const Ray& ray) {
-        self.depth_ = 0;
-        self.entry_count_ = 0;
         self.best_.found = false;
         self.best_.t = range.most;
         self.ray_ = ray;
@@ -34,47 +36,75 @@ template<Instructions instructions, bool any> struct Traversal::Kernel {
         self.patience_ = self.visits_ + most_patience;
         self.hurries_ = false;
         if (!self.flat_met_.empty()) self.flat_met_.clear();
-        const double enough = model.near_enough(ray, near_enough_share),
-                     plenty = model.near_enough(ray, plenty_share);
-        push_world(ray);
-        try_edge(self.frames_.front(), 0);
+        constexpr double before_all = -std::numeric_limits<double>::infinity();
+        double enough = before_all, plenty = before_all;
+        if (model.most_half_width > 0) {
+            enough = model.near_enough(ray, near_enough_share);
+            plenty = model.near_enough(ray, plenty_share);
+        }
         Entry entry;
-        bool more = false;
-        while (more || pop(0, entry)) {
-            more = go_into(entry);
+        if (!enter_world(ray)) return false;
+        for (bool more = true; more || pop(later.first, entry);) {
+            if (entry.entry & BoxNode::inner) {
+                more = go_on_in_boxes(entry);
+                continue;
+            }
+            more = enter(entry);
             if (any && self.best_.found) return true;
             if (self.best_.t <= plenty || (self.best_.t <= enough && self.visits_ > self.patience_)) break;
-            if (!self.goes_on()) break;
+            if (self.visits_ > self.visit_limit_ && !self.goes_on()) break;
         }
         return self.best_.found;
     }
 
-    /// Takes the nearest entry of those from that number on, if one is left that is nearer than the best hit.
-    GRAFTAL_INLINE bool pop(std::size_t least_count, Entry& entry) {
-        while (self.entry_count_ > least_count) {
-            entry = self.entries_[--self.entry_count_];
+    /// Takes the nearest entry of those from there on, if one is left that is nearer than the best hit.
+    GRAFTAL_INLINE bool pop(const Later* least, Entry& entry) {
+        while (later.top > least) {
+            --later.top;
+            entry = entry_of(later.top->key, later.top->frame);
             if (t_of(entry) < self.best_.t) return true;
         }
         return false;
     }
 
-    GRAFTAL_INLINE double t_of(const Entry& entry) const {
-        const Frame& frame = self.frames_[entry.frame];
-        return frame.base + entry.at * frame.unit;
+    static GRAFTAL_INLINE Entry entry_of(std::int64_t key, std::uint32_t frame) {
+        return {LaterEntries::at_in(key), LaterEntries::entry_in(key), frame};
     }
 
-    /// Puts the nearest of what it leads to in its place; false if there is nothing.
-    GRAFTAL_INLINE bool go_into(Entry& entry) {
-        if (!(entry.entry & BoxNode::inner)) return enter(entry);
-        self.depth_ = entry.frame + 1;
+    GRAFTAL_INLINE double t_of(const Entry& entry) const {
+        const Frame& frame = frames[entry.frame];
+        return frame.base + static_cast<double>(entry.at) * frame.unit;
+    }
+
+    /// Puts the nearest of the boxes that it leads to in its place; false if there is none.
+    GRAFTAL_INLINE bool go_on_in_boxes(Entry& entry) {
+        depth = entry.frame + 1;
         if (entry.entry & BoxNode::packed)
             return test_packed(entry.entry & ~(BoxNode::inner | BoxNode::packed), entry.frame, entry);
         return test_boxes(model.boxes, entry.entry & ~BoxNode::inner, entry.frame, entry);
     }
 
+    /// Puts the nearest of what it leads to in its place; false if there is nothing. An entry may be several
+    /// edges, to primitives.
+    GRAFTAL_INLINE bool enter(Entry& entry) {
+        std::uint32_t others = 0;
+        if (LeafGroup::is(entry.entry)) {
+            const LeafGroup group(entry.entry);
+            entry.entry = group.first;
+            others = group.count - 1;
+        }
+        for (;; --others, ++entry.entry) {
+            const bool more = enter_one(entry);
+            if (others == 0 || (any && self.best_.found)) return more;
+        }
+    }
+
     GRAFTAL_INLINE Frame& push() {
-        if (self.depth_ == self.frames_.size()) self.frames_.emplace_back();
-        return self.frames_[self.depth_++];
+        if (depth == self.frames_.size()) {
+            self.frames_.resize(2 * depth);
+            frames = self.frames_.data();
+        }
+        return frames[depth++];
     }
 
     /// What every frame of the world has; ready_direction() is left.
@@ -83,8 +113,8 @@ template<Instructions instructions, bool any> struct Traversal::Kernel {
         frame.world_from_node = LaneMap();
         frame.origin = lanes_of(ray.origin);
         frame.direction = lanes_of(ray.direction);
-        frame.speed = largest_component(frame.direction);
-        frame.unit = 1 / frame.speed;
+        frame.speed = power_below(largest_component(frame.direction));
+        frame.unit = inverse_power(frame.speed);
         frame.direction = frame.direction * splat(frame.unit);
         frame.base = 0;
         frame.scale = 1;
@@ -95,7 +125,8 @@ template<Instructions instructions, bool any> struct Traversal::Kernel {
         return frame;
     }
 
-    GRAFTAL_INLINE void push_world(const Ray& ray) {
+    /// Takes the ray to the box of the model; false if it misses that.
+    GRAFTAL_INLINE bool enter_world(const Ray& ray) {
         Frame& frame = push_ray(ray);
         frame.items = false;
         frame.specks = false;
@@ -103,26 +134,30 @@ template<Instructions instructions, bool any> struct Traversal::Kernel {
         frame.faint = false;
         frame.margin = Vec3(model.widest * model.most_half_width);
         ready_direction(frame);
+        double at = 0;
+        if (!finds(frame, model.edges.front(), at)) return false;
+        frame.origin = frame.origin + splat(at) * frame.direction;
+        frame.base = at * frame.unit;
+        return true;
     }
 
-    /// Where boxes are few or infinite: in double precision.
+    /// Where boxes are few or infinite: in double precision; false if the edge's is not met, else from where
+    /// on.
+    GRAFTAL_INLINE bool finds(const Frame& frame, const TraceEdge& edge, double& at) const {
+        at = (range.least - frame.base) * frame.speed;
+        if (is_endless(model.nodes[edge.child])) return true;
+        const RayRange within{at, (self.best_.t - frame.base) * frame.speed};
+        const Ray ray{vec3_of(frame.origin), vec3_of(frame.direction)};
+        const RayRange inside = range_in(enlarged(edge.box, frame.margin), ray, within);
+        at = inside.least;
+        return inside.least <= inside.most;
+    }
+
     GRAFTAL_INLINE void try_edge(const Frame& frame, std::uint32_t number) {
-        const TraceEdge& edge = model.edges[number];
-        const TraceNode& child = model.nodes[edge.child];
-        double at = (range.least - frame.base) * frame.speed;
-        if (!is_endless(child)) {
-            const RayRange within{at, (self.best_.t - frame.base) * frame.speed};
-            const Ray ray{vec3_of(frame.origin), vec3_of(frame.direction)};
-            const RayRange inside = range_in(enlarged(edge.box, frame.margin), ray, within);
-            if (!(inside.least <= inside.most)) return;
-            at = inside.least;
-        }
-        push_entry({at, number, static_cast<std::uint32_t>(self.depth_ - 1)});
-    }
-
-    GRAFTAL_INLINE void push_entry(const Entry& entry) {
-        reserve_entries(1);
-        self.entries_[self.entry_count_++] = entry;
+        double at = 0;
+        if (!finds(frame, model.edges[number], at)) return;
+        later.reserve();
+        *later.top++ = {LaterEntries::key_of(float_below(at), number), static_cast<std::uint32_t>(depth - 1)};
     }
 
     GRAFTAL_INLINE bool test_boxes(const std::vector<BoxNode>& boxes, std::uint32_t number,
@@ -153,7 +188,7 @@ template<Instructions instructions, bool any> struct Traversal::Kernel {
     template<typename SideOf, typename EntryOf>
     GRAFTAL_INLINE bool test_lanes(const SideOf& side_of, const EntryOf& number_of, std::uint32_t used,
                                    std::uint32_t frame_number, Entry& nearest) {
-        const Frame& frame = self.frames_[frame_number];
+        const Frame& frame = frames[frame_number];
         // A little more, for what single precision leaves out.
         const float most = static_cast<float>((self.best_.t - frame.base) * frame.speed) + 2e-6f;
         Float8 enters = spread<instructions>(frame.least), leaves = spread<instructions>(most);
@@ -168,59 +203,44 @@ template<Instructions instructions, bool any> struct Traversal::Kernel {
         }
         std::uint32_t lanes = bits_of<instructions>(enters <= leaves) & used;
         if (lanes == 0) return false;
-        const auto entry_of = [&](std::uint32_t bits) {
-            const auto lane = static_cast<std::size_t>(std::countr_zero(bits));
-            return Entry{static_cast<double>(enters[lane]), number_of(lane), frame_number};
-        };
-        nearest = entry_of(lanes);
-        reserve_entries(7);
-        Entry* const first = self.entries_.data() + self.entry_count_;
-        Entry* end = first;
-        while ((lanes &= lanes - 1) != 0) {
-            Entry entry = entry_of(lanes);
-            if (entry.at <= nearest.at) std::swap(entry, nearest);
-            Entry* place = end++;
-            for (; place > first && place[-1].at < entry.at; --place)
-                *place = place[-1];
-            *place = entry;
-        }
-        self.entry_count_ += static_cast<std::size_t>(end - first);
+        const std::int64_t key =
+            later.nearest_of(lanes, frame_number, [&](std::uint32_t bits) GRAFTAL_INLINED_LAMBDA {
+                const auto lane = static_cast<std::size_t>(std::countr_zero(bits));
+                return LaterEntries::key_of(enters[lane], number_of(lane));
+            });
+        nearest = entry_of(key, frame_number);
         return true;
     }
 
-    GRAFTAL_INLINE void reserve_entries(std::size_t count) {
-        if (self.entry_count_ + count > self.entries_.size()) self.entries_.resize(2 * self.entries_.size());
-    }
-
-    GRAFTAL_INLINE bool enter(Entry& entry) {
+    GRAFTAL_INLINE bool enter_one(Entry& entry) {
         ++self.visits_;
-        if (self.frames_[entry.frame].items) {
+        if (frames[entry.frame].items) {
             meet_item(entry);
             return false;
         }
-        self.depth_ = entry.frame + 1;
+        depth = entry.frame + 1;
         const TraceEdge& edge = model.edges[entry.entry];
         const TraceNode& node = model.nodes[edge.child];
-        double flatness = self.frames_[entry.frame].flatness;
+        double flatness = frames[entry.frame].flatness;
         if (!edge.similarity) {
             self.more_work_ += RayWork::stretched;
             flatness *= edge.flatness;
             if (!(flatness > flattest_placement)) // the product of many flat maps need not be flat
-                flatness = self.placed_flatness(self.frames_[entry.frame].world_from_node, edge);
+                flatness = self.placed_flatness(frames[entry.frame].world_from_node, edge);
             if (!(flatness > flattest_placement)) {
                 self.meet_flat(entry.frame, entry.entry, range, any);
                 return false;
             }
         }
         LocalRay ray;
-        if (self.frames_[entry.frame].specks && node.speck_count > 0) {
-            const Frame& parent = self.frames_[entry.frame];
+        if (frames[entry.frame].specks && node.speck_count > 0) {
+            const Frame& parent = frames[entry.frame];
             if (!take_ray(edge, parent, entry, ray) ||
                 misses_specks(node, ray, parent.margin.x * edge.growth))
                 return false;
         }
         if (node.kind == TraceNode::Kind::primitive) {
-            const Frame& parent = self.frames_[entry.frame];
+            const Frame& parent = frames[entry.frame];
             if (parent.faint && node.primitive != PrimitiveKind::plane)
                 meet_faint(node, edge, parent, entry);
             else if (take_ray(edge, parent, entry, ray))
@@ -228,7 +248,7 @@ template<Instructions instructions, bool any> struct Traversal::Kernel {
             return false;
         }
         Frame& frame = push(); // parents may move, but no more after this
-        const Frame& parent = self.frames_[entry.frame];
+        const Frame& parent = frames[entry.frame];
         if (!take_ray(edge, parent, entry, frame)) return false;
         if (edge.keeps_directions) {
             frame.reciprocal = parent.reciprocal;
@@ -308,7 +328,7 @@ template<Instructions instructions, bool any> struct Traversal::Kernel {
         }
         if (frame.cut && node.faint && !frame.faint)
             frame.faint = (detail < INFINITY ? detail : detail_of(node, frame)) <= 1;
-        const auto number = static_cast<std::uint32_t>(self.depth_ - 1);
+        const auto number = static_cast<std::uint32_t>(depth - 1);
         frame.margin = margin_of(node, frame);
         if (node.kind == TraceNode::Kind::unbounded) {
             for (std::uint32_t i = 0; i < node.edge_count; ++i)

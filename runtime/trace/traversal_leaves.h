@@ -34,10 +34,10 @@ Traversal::Kernel<instructions, any>::meet_primitive(const Primitive& primitive,
 template<Instructions instructions, bool any>
 GRAFTAL_INLINE void Traversal::Kernel<instructions, any>::meet_shell(const TraceMesh& mesh,
                                                                      std::uint32_t frame_number) {
-    const std::size_t others = self.entry_count_;
+    const std::ptrdiff_t others = later.top - later.first; // they may move
     Entry entry;
     bool more = mesh.tree != no_tree && test_boxes(mesh.boxes, mesh.tree, frame_number, entry);
-    while (more || pop(others, entry)) {
+    while (more || pop(later.first + others, entry)) {
         more = entry.entry & BoxNode::inner &&
                test_boxes(mesh.boxes, entry.entry & ~BoxNode::inner, frame_number, entry);
         if (!more && !(entry.entry & BoxNode::inner)) meet_triangle(mesh, entry.entry, entry);
@@ -49,7 +49,7 @@ GRAFTAL_INLINE void Traversal::Kernel<instructions, any>::meet_triangle(const Tr
                                                                         std::uint32_t triangle,
                                                                         const Entry& entry) {
     ++self.visits_;
-    const Frame& frame = self.frames_[entry.frame];
+    const Frame& frame = frames[entry.frame];
     const Double4 near = frame.origin + splat(entry.at) * frame.direction;
     const double base = t_of(entry);
     PrimitiveHit hit;
@@ -96,7 +96,7 @@ GRAFTAL_INLINE void Traversal::Kernel<instructions, any>::meet_faint_proxy(const
                         world_ball(node, frame, node.ball_radius), range))
         return;
     self.best_.proxy_node = frame.node;
-    self.keep_way(static_cast<std::uint32_t>(self.depth_ - 1));
+    self.keep_way(static_cast<std::uint32_t>(depth - 1));
 }
 
 template<Instructions instructions, bool any>
@@ -113,7 +113,7 @@ GRAFTAL_INLINE void Traversal::Kernel<instructions, any>::meet_proxy(const Trace
     self.best_.normal = hit.normal;
     self.best_.proxy_node = frame.node;
     compose(frame.world_from_node, node.node_from_proxy, self.best_.world_from_leaf);
-    self.keep_way(static_cast<std::uint32_t>(self.depth_ - 1));
+    self.keep_way(static_cast<std::uint32_t>(depth - 1));
 }
 
 } // namespace graftal

@@ -108,8 +108,8 @@ template<Instructions instructions> struct Traversal::EvenPacket : EvenPlaces {
         std::uint32_t parallel = 0;
         for (int i = 0; i < 2; ++i) {
             const Double4 speed =
-                largest_of(direction[0].half[i], direction[1].half[i], direction[2].half[i]);
-            const Double4 unit = 1 / speed;
+                power_below(largest_of(direction[0].half[i], direction[1].half[i], direction[2].half[i]));
+            const Double4 unit = inverse_power(speed);
             Double4 least = range.least * speed, most = best.half[i] * speed;
             for (int axis = 0; axis < 3; ++axis) {
                 direction[axis].half[i] = direction[axis].half[i] * unit;
@@ -141,11 +141,7 @@ template<Instructions instructions> struct Traversal::EvenPacket : EvenPlaces {
             most_reciprocal[axis] = spread<instructions>(greatest<instructions>(reciprocal[axis], 0xff));
         }
         frame.hits_then = UINT32_MAX;
-        frame.offset = Double4{};
-        frame.entry = frame.scale = 1;
-        frame.steps = model.prepared.root_steps;
-        frame.cut = false;
-        frame.least_detail = model.least_detail_per_unit;
+        place_world(frame);
         return true;
     }
 
@@ -260,12 +256,18 @@ template<Instructions instructions> struct Traversal::EvenPacket : EvenPlaces {
 
     /// Whether so few rays go there that each goes by itself. A leaf is not worth the way there.
     GRAFTAL_INLINE bool is_left_alone(const Going& going) const {
-        return std::popcount(going.mask) <= few &&
+        return std::popcount(going.mask) <= few && !LeafGroup::is(going.entry) &&
                (going.entry & BoxNode::inner || !meets_together(model.even_parts[going.entry]));
     }
 
     GRAFTAL_INLINE Next go_together(Going& going) {
         if (going.entry & BoxNode::inner) return test_boxes(going);
+        if (LeafGroup::is(going.entry)) {
+            const LeafGroup group(going.entry);
+            for (going.entry = group.first; going.entry < group.first + group.count; ++going.entry)
+                meet_leaf(model.even_parts[going.entry], going);
+            return Next::end;
+        }
         const EvenPart& part = model.even_parts[going.entry];
         if (part.kind == EvenPart::Kind::node) return enter(part, going);
         if (!meets_together(part)) return Next::alone;
@@ -285,7 +287,7 @@ template<Instructions instructions> struct Traversal::EvenPacket : EvenPlaces {
             const Double4 at = doubles_of(going.at, i);
             for (int axis = 0; axis < 3; ++axis)
                 frame.origin[axis].half[i] =
-                    (parent.origin[axis].half[i] + at * direction[axis].half[i]) * splat(part.shrink) +
+                    (parent.origin[axis].half[i] + at * direction[axis].half[i]) * splat(part.shrink()) +
                     splat(part.shift[axis]);
             frame.base.half[i] = parent.base.half[i] + at * parent.unit.half[i];
             frame.unit.half[i] = parent.unit.half[i] * part.stretch;
@@ -307,7 +309,7 @@ template<Instructions instructions> struct Traversal::EvenPacket : EvenPlaces {
             going.entry = node.first_edge + node.edge_count;
             return Next::on;
         }
-        const std::uint32_t tree = frame.cut ? node.stop_tree : tree_of(node, frame);
+        const std::uint32_t tree = frame.cut ? node.stop_tree : tree_of(node, frame, part, parent);
         going.entry = tree | BoxNode::inner;
         return tree == no_tree ? Next::end : Next::on;
     }
@@ -365,10 +367,10 @@ template<Instructions instructions> struct Traversal::EvenPacket : EvenPlaces {
         alone.direction = Double4{of(direction[0]), of(direction[1]), of(direction[2]), 0};
         alone.inverse = Double4{of(inverse[0]), of(inverse[1]), of(inverse[2]), 0};
         alone.is_parallel = false;
-        for (int axis = 0; axis < 3; ++axis) {
+        for (int axis = 0; axis < 3; ++axis)
             alone.reciprocal[axis] = spread<instructions>(reciprocal[axis][lane]);
-            alone.side_in[axis] = side_in[axis];
-        }
+        alone.set_sides(side_in);
+        alone.first_placed = going.frame;
         const double before = of(best), slack = rounding * (std::abs(before) + std::abs(frame.base));
         // Also what is a little farther: it may come first.
         self.best_.t = before < INFINITY ? before + 2 * slack : before;

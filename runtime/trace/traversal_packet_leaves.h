@@ -21,7 +21,7 @@ Traversal::EvenPacket<instructions>::bring_near(const EvenPart& part, const Trac
     near.is_map = growth == growth;
     if (part.upright) {
         for (int axis = 0; axis < 3; ++axis) {
-            near.origin[axis] = from[axis] * splat(part.shrink) + splat(part.shift[axis]);
+            near.origin[axis] = from[axis] * splat(part.shrink()) + splat(part.shift[axis]);
             near.along[axis] = direction[axis].half[half];
         }
     } else {
@@ -140,7 +140,7 @@ GRAFTAL_INLINE std::size_t Traversal::EvenPacket<instructions>::keep_hit(const E
     PacketRoom::Hit& hit = room.hits.emplace_back();
     hit.is_upright = part.upright;
     if (!part.upright) place(parent, model.edges[going.entry].parent_from_child, hit.world_from_leaf);
-    hit.turns = part.turns;
+    if (room.has_textures) hit.turns = model.edges[going.entry].turns;
     prefetch_look(going.entry);
     hit.way = room.ways.size();
     for (std::uint32_t i = 1; i <= going.frame; ++i)

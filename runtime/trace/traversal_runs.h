@@ -9,8 +9,8 @@ namespace graftal {
 
 template<Instructions instructions, bool any>
 void Traversal::Kernel<instructions, any>::meet_item(const Entry& entry) {
-    self.depth_ = entry.frame + 1;
-    const Frame& frame = self.frames_[entry.frame];
+    depth = entry.frame + 1;
+    const Frame& frame = frames[entry.frame];
     const TraceRun& run = model.runs[model.nodes[frame.node].run];
     const RunItem& item = (*run.run)[entry.entry];
     const Affine& run_from_frame = model.graph_from_frame[frame.node];
@@ -29,7 +29,7 @@ template<Instructions instructions, bool any>
 void Traversal::Kernel<instructions, any>::meet_body(RunShape shape, const Affine& run_from_body,
                                                      const TraceRun& run, const RunItem& item, const Ray& ray,
                                                      const Entry& entry) {
-    const Frame& frame = self.frames_[entry.frame];
+    const Frame& frame = frames[entry.frame];
     // Its axes are at right angles: dividing by the squares of their lengths turns the map round.
     const Mat3& m = run_from_body.linear;
     const Vec3 squares(glm::dot(m[0], m[0]), glm::dot(m[1], m[1]), glm::dot(m[2], m[2]));

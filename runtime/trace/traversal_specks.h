@@ -58,7 +58,7 @@ GRAFTAL_INLINE void Traversal::Kernel<instructions, any>::meet_specks(const Trac
                                                                       std::uint32_t frame_number) {
     const std::uint32_t first_edge = node.first_edge + node.edge_count;
     for (std::uint32_t i = 0; i < node.speck_count; ++i) {
-        const Frame& frame = self.frames_[frame_number];
+        const Frame& frame = frames[frame_number];
         std::uint32_t lanes = specks_near(model.specks[node.first_speck + i], frame, frame.margin.x);
         const std::uint32_t held = std::min(4u, node.stop_edge_count - std::min(node.stop_edge_count, 4 * i));
         self.lose_patience(held - std::min(held, static_cast<std::uint32_t>(std::popcount(lanes))));

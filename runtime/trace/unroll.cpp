@@ -72,6 +72,7 @@ class Unroller {
             pass_groups(parts);
             if (has_groups(parts)) { // half of the way
                 model_.edges.resize(edges);
+                model_.looks.resize(edges);
                 break;
             }
             for (const std::uint32_t edge : parts.edges)
@@ -237,14 +238,7 @@ class Unroller {
         const TraceEdge& first = model_.edges[before];
         const TraceEdge& second = model_.edges[last & ~from_cut];
         TraceEdge edge;
-        edge.before = before;
-        edge.last = last;
         edge.turns = second.turns;
-        edge.length = first.length + second.length;
-        edge.as_one = first.as_one && second.as_one && !(last & from_cut);
-        edge.tint = first.tint * second.tint;
-        edge.material = second.material ? second.material : first.material;
-        edge.holder = second.holder != no_edge ? second.holder : first.child;
         edge.child = second.child;
         edge.to_primitive = second.to_primitive;
         edge.levels = first.levels + second.levels;
@@ -259,8 +253,24 @@ class Unroller {
         edge.growth = 1 / edge.stretch;
         edge.find_upright();
         edge.box = box_of(first, second, parent_from_middle, parent_from_child);
+        model_.looks.push_back(look_of(before, last));
         model_.edges.push_back(edge);
         return static_cast<std::uint32_t>(model_.edges.size() - 1);
+    }
+
+    TraceLook look_of(std::uint32_t before, std::uint32_t last) const {
+        const TraceLook& first = model_.looks[before];
+        const TraceLook& second = model_.looks[last & ~from_cut];
+        TraceLook look = second;
+        look.tint = first.tint * second.tint;
+        if (second.material == TraceLook::none) look.material = first.material;
+        if (second.node == TraceLook::none) look.node = first.node;
+        look.levels = first.levels + second.levels;
+        look.before = before;
+        look.last = last;
+        look.length = static_cast<std::uint16_t>(first.length + second.length);
+        look.as_one = first.as_one && second.as_one && !(last & from_cut && first.child_has_mean);
+        return look;
     }
 
     Box box_of(const TraceEdge& first, const TraceEdge& second, const Affine& parent_from_middle,
@@ -305,9 +315,7 @@ class Unroller {
     }
 
     std::uint32_t tree_over(const std::vector<std::uint32_t>& edges) {
-        std::vector<BoxedItem> items;
-        for (const std::uint32_t edge : edges)
-            if (!model_.edges[edge].box.empty()) items.emplace_back(model_.edges[edge].box, 1, edge);
+        std::vector<BoxedItem> items = grouped_items(model_, edges);
         return build_box_tree(items, model_.boxes);
     }
 

@@ -359,8 +359,6 @@ void TraceEdge::find_upright() {
     const auto scales = [](const Mat3& m) { return m == Mat3(m[0][0]) && m[0][0] > 0; };
     const Mat3 linear = parent_from_child.affine().linear, inverse = child_from_parent.affine().linear;
     upright = similarity && scales(linear) && scales(inverse);
-    int exponent = 0;
-    keeps_directions = upright && std::frexp(stretch, &exponent) == 0.5 && inverse[0][0] * stretch == 1;
 }
 
 std::uint32_t TraceRun::edge_of(RunShape shape, std::uint16_t colour) const {

@@ -48,8 +48,7 @@ struct alignas(64) TraceEdge {
     std::uint32_t child = 0;
     unsigned levels = 0;
     bool similarity = false;       ///< then a path's norm is the product of its stretches
-    bool upright = false;          ///< only scales evenly and moves
-    bool keeps_directions = false; ///< and to the last bit those of rays: scales by a power of two
+    bool upright = false;          ///< only scales evenly and moves: rays keep their directions
     bool to_primitive = false;     ///< leads to one
     LaneMap parent_from_child;
     LaneMap child_from_parent;

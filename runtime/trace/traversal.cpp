@@ -47,15 +47,16 @@ Traversal::~Traversal() = default;
 namespace {
 
 // The kernel is made in here: what nobody else has the address of stays in registers.
-template<typename Kernel>
-bool run_portable(Traversal& traversal, const TraceModel& model, const RayRange& range, const Ray& ray) {
-    return Kernel{traversal, model, range}.run(ray);
+template<typename Kernel, typename... From>
+bool run_portable(Traversal& traversal, const TraceModel& model, const RayRange& range, const Ray& ray,
+                  const From*... from) {
+    return Kernel{traversal, model, range}.run(ray, from...);
 }
 
-template<typename Kernel>
+template<typename Kernel, typename... From>
 GRAFTAL_AVX2 bool run_avx2(Traversal& traversal, const TraceModel& model, const RayRange& range,
-                           const Ray& ray) {
-    return Kernel{traversal, model, range}.run(ray);
+                           const Ray& ray, const From*... from) {
+    return Kernel{traversal, model, range}.run(ray, from...);
 }
 
 template<typename Packet>
@@ -96,15 +97,21 @@ Rgb colour_of(const Texture::Texel& texel) {
 
 } // namespace
 
-template<template<Instructions, bool> typename AnyKernel, bool any>
-bool Traversal::run(const Ray& ray, const RayRange& range) {
+template<template<Instructions, bool> typename AnyKernel, bool any, typename... From>
+bool Traversal::run(const Ray& ray, const RayRange& range, const From*... from) {
     if (instructions_ == Instructions::avx2)
-        return run_avx2<AnyKernel<Instructions::avx2, any>>(*this, model_, range, ray);
-    return run_portable<AnyKernel<Instructions::portable, any>>(*this, model_, range, ray);
+        return run_avx2<AnyKernel<Instructions::avx2, any>>(*this, model_, range, ray, from...);
+    return run_portable<AnyKernel<Instructions::portable, any>>(*this, model_, range, ray, from...);
 }
 
 template<bool any> bool Traversal::run(const Ray& ray, const RayRange& range) {
-    return model_.even ? run<EvenKernel, any>(ray, range) : run<Kernel, any>(ray, range);
+    if (model_.even) return run<EvenKernel, any>(ray, range);
+    return run<Kernel, any>(ray, range, static_cast<const Entry*>(nullptr));
+}
+
+bool Traversal::resume(const Entry& from, const RayRange& range, bool any) {
+    const Ray ray = ray_;
+    return any ? run<Kernel, true>(ray, range, &from) : run<Kernel, false>(ray, range, &from);
 }
 
 bool Traversal::goes_on() {

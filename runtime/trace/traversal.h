@@ -66,6 +66,7 @@ class Traversal final : public Surfaces {
     std::uint64_t given_up() const { return given_up_; }
 
   private:
+    struct Places;     ///< which parts are looked into (traversal_places.h)
     template<Instructions instructions, bool any>
     struct Kernel;     ///< the traversal proper (traversal_kernel.h)
     struct EvenPlaces; ///< which parts of an even model are looked into (traversal_even_places.h)
@@ -83,8 +84,8 @@ class Traversal final : public Surfaces {
         double speed = 1; ///< 1 / unit
     };
 
-    /// An object on the way from the root, and the ray in its frame.
-    struct alignas(32) Frame : LocalRay {
+    /// An object on the way from the root, wherever the ray is.
+    struct alignas(32) Place {
         LaneMap world_from_node;
         double scale = 1;        ///< norm of world_from_node
         double flatness = 1;     ///< at most its least stretch, as a share of the largest
@@ -97,7 +98,11 @@ class Traversal final : public Surfaces {
         bool faint = false;  ///< they stand for a set without area (least_width.h)
         bool specks = false; ///< they lead to nodes that are cut and faint
         Vec3 margin{0.0};    ///< by which parts may reach out of their boxes
-        float least = 0;     ///< where the ray begins, in units from the base
+    };
+
+    /// And the ray in its frame.
+    struct alignas(32) Frame : LocalRay, Place {
+        float least = 0; ///< where the ray begins, in units from the base
         /// By axis: the side of boxes where the ray goes in, the origin less the margin as that and the other
         /// side see it, and the reciprocal of the direction.
         Int4 side_in;
@@ -196,9 +201,11 @@ class Traversal final : public Surfaces {
     /// Fills in what is seen at the best hit.
     void show_best(SurfaceHit& hit);
     void show_packed(std::size_t lane, const Ray& ray, std::span<SurfaceHit> hits);
-    template<template<Instructions, bool> typename AnyKernel, bool any>
-    bool run(const Ray& ray, const RayRange& range);
+    template<template<Instructions, bool> typename AnyKernel, bool any, typename... From>
+    bool run(const Ray& ray, const RayRange& range, const From*... from);
     template<bool any> bool run(const Ray& ray, const RayRange& range);
+    /// Takes ray_ on from an entry of a frame that is ready; true if something nearer than best_.t was met.
+    bool resume(const Entry& from, const RayRange& range, bool any);
     /// As visits to so many parts would take it, which lanes saw are not met.
     void lose_patience(std::uint64_t parts) { patience_ -= std::min(patience_, parts); }
     /// False once the ray went into too many parts, and hurrying did not help.

@@ -197,6 +197,10 @@ struct TraceModel {
     /// Up to where a hit will do, if none can be nearer by more than this share of the half width: of a model
     /// in a plane that is drawn in specks; else before all.
     double near_enough(const Ray& ray, double share) const;
+    /// Whether rays may ask that: what they meet may then depend on the order of parts.
+    bool is_content() const;
+    /// Of the box of such a model.
+    double most_thickness() const { return 0.1 * most_half_width; }
 
     /// Of the view's lights; measured when they are first asked for.
     const SelfShadows& self_shadows() const;

@@ -54,6 +54,7 @@ class Traversal final : public Surfaces {
     std::uint32_t closest_each(std::span<const Ray> rays, const RayRange& range,
                                std::span<SurfaceHit> hits) override;
     bool meets_any(const Ray& ray, const RayRange& range) override;
+    std::uint32_t meets_any_each(std::span<const Ray> rays, std::span<const RayRange> ranges) override;
     bool all_opaque() const override;
 
     /// Nodes and primitives that rays went into so far.
@@ -72,9 +73,13 @@ class Traversal final : public Surfaces {
     struct EvenPlaces; ///< which parts of an even model are looked into (traversal_even_places.h)
     template<Instructions instructions, bool any>
     struct EvenKernel; ///< through even models (traversal_even.h)
+    template<Instructions instructions, typename Packet, typename PlacesOf, typename Frame>
+    struct PacketWalk; ///< eight rays at once (traversal_packet.h)
     template<Instructions instructions>
-    struct EvenPacket; ///< eight rays at once through even models (traversal_packet.h)
-    struct PacketRoom; ///< its memory
+    struct EvenPacket; ///< through even models (traversal_packet_even.h)
+    template<Instructions instructions>
+    struct TurnedPacket; ///< through others (traversal_packet_turned.h)
+    struct PacketRoom;   ///< their memory
 
     /// The ray in some frame: origin + (t - base) / unit * direction.
     struct LocalRay {
@@ -200,6 +205,9 @@ class Traversal final : public Surfaces {
     void keep_way(std::uint32_t frame_number);
     /// Fills in what is seen at the best hit.
     void show_best(SurfaceHit& hit);
+    bool go_together(std::size_t rays) const;
+    std::uint32_t run_packet(std::span<const Ray> rays, std::span<const RayRange> ranges, bool any,
+                             std::uint32_t& to_go_alone);
     void show_packed(std::size_t lane, const Ray& ray, std::span<SurfaceHit> hits);
     template<template<Instructions, bool> typename AnyKernel, bool any, typename... From>
     bool run(const Ray& ray, const RayRange& range, const From*... from);
@@ -250,6 +258,7 @@ class Traversal final : public Surfaces {
     std::vector<std::uint32_t> flat_way_; ///< edges from the frame to the part under way
     std::uint64_t visit_limit_ = 0;       ///< of the ray
     bool hurries_ = false;                ///< the ray has passed the limit
+    bool met_flat_ = false;               ///< rays of a packet that went on alone met flat parts
     std::vector<std::uint32_t>
         way_; ///< edges through the frames to the best hit, those from cut nodes marked
     std::vector<std::uint32_t> path_; ///< of the graph, likewise, once the ray is done

@@ -56,6 +56,8 @@ class Traversal final : public Surfaces {
     bool meets_any(const Ray& ray, const RayRange& range) override;
     std::uint32_t meets_any_each(std::span<const Ray> rays, std::span<const RayRange> ranges) override;
     bool all_opaque() const override;
+    /// Whether several rays may go together at all: where what they meet depends on no order of parts.
+    bool takes_packets() const { return packet_ != nullptr; }
 
     /// Nodes and primitives that rays went into so far.
     std::uint64_t visits() const { return visits_; }

@@ -27,13 +27,14 @@ Instructions best_instructions() {
 namespace {
 
 /// Whether packets may go through a model that is not even: what a ray meets in it does not depend on how far
-/// it had come before.
+/// it had come before. Through sets without area they may, but each ray meets specks of its own.
 bool goes_in_packets(const TraceModel& model) {
     const auto is_plain = [](const TraceNode& node) {
         return node.kind == TraceNode::Kind::parts || node.kind == TraceNode::Kind::run ||
                (node.kind == TraceNode::Kind::primitive && !is_endless(node));
     };
-    return std::ranges::all_of(model.nodes, is_plain) && !model.is_content();
+    const bool in_specks = model.projection.culls() && model.nodes[model.edges.front().child].faint;
+    return std::ranges::all_of(model.nodes, is_plain) && !model.is_content() && !in_specks;
 }
 
 } // namespace

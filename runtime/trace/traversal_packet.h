@@ -408,6 +408,12 @@ struct Traversal::PacketWalk : PlacesOf {
     /// `inverse`: one over what the rays go along the axes.
     static Crossing cross_cube(const Near& near, const Double4 (&inverse)[3]);
     static Crossing cross_triangle(const Near& near);
+    /// What counts of four rays that are where they start from.
+    void ready_range(Near& near, int half) const;
+    /// Meets what stands for a node that is cut, in whose frame the rays are; as keep_crossings().
+    bool meet_proxy(const TraceNode& node, Near (&near)[2], std::uint32_t mask);
+    /// Four rays that pass the unit sphere.
+    static std::uint32_t passing_sphere(const Near& near);
     /// By each of the rays of the mask by itself.
     Crossing cross_any(const Primitive& primitive, const Near& near, int half, std::uint32_t mask) const;
     /// Whether any ray meets what it crosses before all else. If so, the last of the room's hits, which the

@@ -119,7 +119,8 @@ struct Traversal::EvenPacket
         const Frame& parent = frames[going.frame];
         if (!this->go_to_child(part, going.entry, parent, frame)) return Next::end;
         const TraceNode& node = model.nodes[part.child];
-        if (frame.cut && node.stop_tree == no_tree) return Next::alone;
+        const bool is_proxy = frame.cut && node.stop_tree == no_tree;
+        if (is_proxy && node.faint) return Next::alone;
         this->count(going);
         for (int i = 0; i < 2; ++i) {
             const Double4 at = doubles_of(going.at, i);
@@ -131,10 +132,35 @@ struct Traversal::EvenPacket
             frame.unit.half[i] = parent.unit.half[i] * part.stretch;
             frame.speed.half[i] = parent.speed.half[i] * part.growth;
         }
+        if (is_proxy) {
+            meet_proxy(node, frame, going);
+            return Next::end;
+        }
         for (int axis = 0; axis < 3; ++axis)
             frame.near[axis] = floats_of(frame.origin[axis]);
         this->ready_rays(frame, frame.near, going.mask);
         return this->go_in(node, frame.cut, frame.cut ? node.stop_tree : this->tree_of(node, frame), going);
+    }
+
+    /// What stands for the node of the frame, which is the next after that where the rays are.
+    GRAFTAL_INLINE void meet_proxy(const TraceNode& node, const Frame& frame, const Going& going) {
+        Near near[2];
+        for (int i = 0; i < 2; ++i) {
+            for (int axis = 0; axis < 3; ++axis) {
+                near[i].origin[axis] = frame.origin[axis].half[i];
+                near[i].along[axis] = direction[axis].half[i];
+            }
+            near[i].base = frame.base.half[i];
+            near[i].unit = frame.unit.half[i];
+            near[i].speed = frame.speed.half[i];
+            near[i].is_map = near[i].base == near[i].base;
+        }
+        if (!Walk::meet_proxy(node, near, going.mask)) return;
+        PacketRoom::Hit& hit = room.hits.back();
+        hit.proxy_node = frame.node;
+        this->place(frame, node.node_from_proxy, hit.world_from_leaf);
+        this->keep_way(going.frame + 1, hit);
+        hit.way_end = room.ways.size();
     }
 
     GRAFTAL_INLINE void meet_leaf(const EvenPart& part, const Going& going) {
@@ -198,8 +224,7 @@ struct Traversal::EvenPacket
         }
         near.unit = parent.unit.half[half] * stretch;
         near.speed = parent.speed.half[half] * growth;
-        near.least = (least.half[half] - near.base) * near.speed;
-        near.most = (best.half[half] - near.base) * near.speed;
+        this->ready_range(near, half);
         return near;
     }
 

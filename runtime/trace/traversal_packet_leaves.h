@@ -55,11 +55,60 @@ Traversal::PacketWalk<instructions, Packet, PlacesOf, Frame>::cross_triangle(con
 }
 
 template<Instructions instructions, typename Packet, typename PlacesOf, typename Frame>
+GRAFTAL_INLINE void
+Traversal::PacketWalk<instructions, Packet, PlacesOf, Frame>::ready_range(Near& near, int half) const {
+    near.least = (least.half[half] - near.base) * near.speed;
+    near.most = (best.half[half] - near.base) * near.speed;
+}
+
+/// As Kernel::meet_proxy().
+template<Instructions instructions, typename Packet, typename PlacesOf, typename Frame>
+GRAFTAL_INLINE bool Traversal::PacketWalk<instructions, Packet, PlacesOf, Frame>::meet_proxy(
+    const TraceNode& node, Near (&near)[2], std::uint32_t mask) {
+    const LaneMap& map = node.proxy_from_node;
+    Crossing crossing[2];
+    for (int i = 0; i < 2; ++i) {
+        Near& n = near[i];
+        Double4 origin[3], along[3];
+        for (int axis = 0; axis < 3; ++axis) {
+            origin[axis] =
+                through(map, n.origin[0], n.origin[1], n.origin[2], axis) + splat(map.translation[axis]);
+            along[axis] = through(map, n.along[0], n.along[1], n.along[2], axis);
+        }
+        const Double4 growth = largest_of(along[0], along[1], along[2]), stretch = 1 / growth;
+        for (int axis = 0; axis < 3; ++axis) {
+            n.origin[axis] = origin[axis];
+            n.along[axis] = along[axis] * stretch;
+        }
+        n.unit = n.unit * stretch;
+        n.speed = n.speed * growth;
+        ready_range(n, i);
+        crossing[i] = cross_any(PrimitiveKind::sphere, n, i, mask);
+        crossing[i].in_world = n.base + crossing[i].t * n.unit;
+    }
+    return keep_crossings(near, crossing, mask);
+}
+
+/// As it is met (sphere.cpp), up to where that is known.
+template<Instructions instructions, typename Packet, typename PlacesOf, typename Frame>
+GRAFTAL_INLINE std::uint32_t
+Traversal::PacketWalk<instructions, Packet, PlacesOf, Frame>::passing_sphere(const Near& near) {
+    const auto dot = [](const Double4(&a)[3], const Double4(&b)[3])
+                         GRAFTAL_INLINED_LAMBDA { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; };
+    const Double4 middle = -dot(near.origin, near.along) / dot(near.along, near.along);
+    Double4 point[3];
+    for (int axis = 0; axis < 3; ++axis)
+        point[axis] = near.origin[axis] + middle * near.along[axis];
+    return bits_of<instructions>(1 - dot(point, point) < 0);
+}
+
+template<Instructions instructions, typename Packet, typename PlacesOf, typename Frame>
 GRAFTAL_INLINE auto Traversal::PacketWalk<instructions, Packet, PlacesOf, Frame>::cross_any(
     const Primitive& primitive, const Near& near, int half, std::uint32_t mask) const -> Crossing {
     Crossing crossing{};
-    const std::uint32_t maps = bits_of<instructions>(near.is_map);
-    for (std::uint32_t left = mask >> (4 * half) & maps & 15; left != 0; left &= left - 1) {
+    std::uint32_t may = bits_of<instructions>(near.is_map);
+    if (primitive == PrimitiveKind::sphere) may &= ~passing_sphere(near);
+    for (std::uint32_t left = mask >> (4 * half) & may & 15; left != 0; left &= left - 1) {
         const int j = std::countr_zero(left);
         const auto here = [&](const Double4(&lanes)[3]) { return Vec3(lanes[0][j], lanes[1][j], lanes[2][j]); };
         // Also what lies so little beyond the best hit that it may be as near.

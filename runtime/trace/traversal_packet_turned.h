@@ -136,23 +136,31 @@ struct Traversal::TurnedPacket
             return Next::end;
         }
         if (!this->go_to_child(edge, node, going.entry, parent, frame)) return Next::end;
-        if (frame.cut && node.stop_tree == no_tree) return Next::alone;
+        const bool is_proxy = frame.cut && node.stop_tree == no_tree;
+        if (is_proxy && (frame.faint || node.faint)) return Next::alone;
         if (frame.cut && frame.faint && node.speck_count > 0 && frame.flatness == 1) return Next::alone;
         if (this->is_shell(node, frame)) return Next::alone;
         this->count(going);
+        Near near[2];
         for (int i = 0; i < 2; ++i) {
-            Near near;
-            take_rays(edge, parent, at.half[i], i, near);
-            for (int axis = 0; axis < 3; ++axis) {
-                frame.origin[axis].half[i] = near.origin[axis];
-                frame.direction[axis].half[i] = near.along[axis];
-            }
-            frame.base.half[i] = near.base;
-            frame.unit.half[i] = near.unit;
-            frame.speed.half[i] = near.speed;
-            if (!edge.similarity) going.mask &= ~(~bits_of<instructions>(near.is_map) << (4 * i) & 15 << (4 * i));
+            take_rays(edge, parent, at.half[i], i, near[i]);
+            if (!edge.similarity)
+                going.mask &= ~((~bits_of<instructions>(near[i].is_map) & 15) << (4 * i));
         }
         if (going.mask == 0) return Next::end;
+        if (is_proxy) {
+            meet_proxy(node, frame, going, near);
+            return Next::end;
+        }
+        for (int i = 0; i < 2; ++i) {
+            for (int axis = 0; axis < 3; ++axis) {
+                frame.origin[axis].half[i] = near[i].origin[axis];
+                frame.direction[axis].half[i] = near[i].along[axis];
+            }
+            frame.base.half[i] = near[i].base;
+            frame.unit.half[i] = near[i].unit;
+            frame.speed.half[i] = near[i].speed;
+        }
         frame.margin = this->margin_of(node, frame);
         if (edge.upright)
             keep_directions(parent, frame);
@@ -226,9 +234,15 @@ struct Traversal::TurnedPacket
         }
     }
 
-    GRAFTAL_INLINE void ready_range(Near& near, int half) const {
-        near.least = (least.half[half] - near.base) * near.speed;
-        near.most = (best.half[half] - near.base) * near.speed;
+    /// What stands for the node of the frame, which is the next after that where the rays were.
+    GRAFTAL_INLINE void meet_proxy(const TraceNode& node, const Frame& frame, const Going& going,
+                                   Near (&near)[2]) {
+        if (!Walk::meet_proxy(node, near, going.mask)) return;
+        PacketRoom::Hit& hit = room.hits.back();
+        hit.proxy_node = frame.node;
+        compose(frame.world_from_node, node.node_from_proxy, hit.world_from_leaf);
+        Walk::keep_way(going.frame + 1, hit);
+        hit.way_end = room.ways.size();
     }
 
     GRAFTAL_INLINE void meet_leaf(const TraceEdge& edge, const TraceNode& node, const Going& going,
@@ -241,7 +255,7 @@ struct Traversal::TurnedPacket
         Crossing crossing[2];
         for (int i = 0; i < 2; ++i) {
             take_rays(edge, parent, at.half[i], i, near[i]);
-            ready_range(near[i], i);
+            this->ready_range(near[i], i);
             if (!cube && !triangle) {
                 crossing[i] = this->cross_any(node.primitive, near[i], i, going.mask);
                 crossing[i].in_world = near[i].base + crossing[i].t * near[i].unit;
@@ -367,7 +381,7 @@ struct Traversal::TurnedPacket
                     near[i].along[axis][j] = inner.direction[axis];
                 }
             }
-            ready_range(near[i], i);
+            this->ready_range(near[i], i);
             crossing[i] = this->cross_any(primitive, near[i], i, mask);
             crossing[i].in_world = near[i].base + crossing[i].t / near[i].speed;
         }

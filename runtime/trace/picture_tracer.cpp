@@ -117,13 +117,14 @@ class Worker {
                 rays[static_cast<std::size_t>(i - first)] = seen.ray;
                 randoms.push_back(seen.random);
             }
-            shader_.look_ahead(std::span(rays).first(randoms.size()), randoms);
+            shader_.look_ahead(std::span(rays).first(randoms.size()), ahead_);
             for (int i = first; i < end && more; ++i) {
                 if (i > first && cancelled()) return false;
                 const auto number = static_cast<std::size_t>(i - first);
                 ++camera_rays_;
                 SurfaceHit met;
-                const Rgb rgb = shader_.radiance_ahead(number, aovs_ ? &met : nullptr);
+                const Rgb rgb =
+                    shader_.radiance(rays[number], randoms[number], aovs_ ? &met : nullptr, ahead_, number);
                 if (aovs_) seen_ = AovSample(met, rays[number], view_);
                 more = take(i, rgb);
             }
@@ -289,6 +290,7 @@ class Worker {
     const Film& film_;
     const View& view_;
     const TraceControl& control_;
+    Shader::Ahead ahead_;
     std::vector<SampleStream> randoms_; ///< of the sights ahead
     std::uint64_t camera_rays_ = 0, noisy_pixels_ = 0;
     std::vector<Rgb> row_, sums_;

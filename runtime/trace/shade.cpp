@@ -40,6 +40,17 @@ double finite_or_zero(double value) {
 
 } // namespace
 
+/// A way that light may have come, seen from the camera.
+struct Shader::Path {
+    Ray ray;
+    Rgb weight{1.0};
+    double counts = 1; ///< how much it counts, for POV-Ray's bailout; no haze takes from that
+    RayRange range;
+    unsigned surfaces = 0, bounces = 0;
+    bool takes_sky = true; ///< if it ends in the sky: else the surface that it was scattered by has its light
+    Inside inside;
+};
+
 /// A ray's way on from a surface.
 struct Shader::Way {
     Rgb share;
@@ -120,12 +131,22 @@ Shader::Shader(const View& view, Surfaces& surfaces, const ShaderLimits& limits,
 
 Shader::~Shader() = default;
 
-Rgb Shader::radiance(const Ray& ray, SampleStream& random, SurfaceHit* first, const Ahead* ahead) {
+void Shader::look_ahead(std::span<const Ray> rays, Ahead& ahead) {
+    ahead.met = surfaces_.closest_each(rays, {0, limits_.farthest}, ahead.hits);
+}
+
+Rgb Shader::radiance(const Ray& ray, SampleStream& random, SurfaceHit* first, const Ahead& ahead,
+                     std::size_t number) {
+    const Known known{ahead.met >> number & 1 ? &ahead.hits[number] : nullptr};
+    return radiance(ray, random, first, &known);
+}
+
+Rgb Shader::radiance(const Ray& ray, SampleStream& random, SurfaceHit* first, const Known* known) {
     if (first) *first = {};
     Path path;
     path.ray = ray;
     path.inside = camera_inside_;
-    Rgb sum = follow(path, random, first, ahead);
+    Rgb sum = follow(path, random, first, known);
     while (!waiting_.empty()) {
         path = waiting_.back();
         waiting_.pop_back();
@@ -135,17 +156,19 @@ Rgb Shader::radiance(const Ray& ray, SampleStream& random, SurfaceHit* first, co
 }
 
 /// The light that comes along a path, without what waits then.
-Rgb Shader::follow(Path& path, SampleStream& random, SurfaceHit* first, const Ahead* ahead) {
+Rgb Shader::follow(Path& path, SampleStream& random, SurfaceHit* first, const Known* known) {
     Rgb sum(0.0);
     const unsigned most = most_surfaces + bounces_;
     for (; path.surfaces < most && path.counts >= limits_.least_weight; ++path.surfaces) {
         SurfaceHit hit;
-        const Ahead* const known = path.surfaces == 0 ? ahead : nullptr;
-        if (known) hit = known->hit;
-        const bool found = known ? closest_with_ground(path.ray, path.range, known->found, hit)
-                                 : closest(path.ray, path.range, hit);
+        const bool found = closest(path.ray, path.range, hit, path.surfaces == 0 ? known : nullptr);
         if (first && path.surfaces == 0 && found) *first = hit;
-        const double caught = meet_catcher(path.ray, path.range, found, hit);
+        double caught = 0; // of what lies behind the catcher
+        if (view_.catcher) {
+            RayRange before = path.range;
+            before.most = found ? hit.t : limits_.farthest;
+            caught = meet_catcher(path.ray, before, hit);
+        }
         if (view_.haze) {
             const double length = found || caught > 0 ? hit.t : std::min(limits_.farthest, largest_size);
             const double left = view_.haze->left_after(path.ray.origin, path.ray.direction, length);
@@ -154,9 +177,8 @@ Rgb Shader::follow(Path& path, SampleStream& random, SurfaceHit* first, const Ah
         }
         if (caught > 0) {
             path.weight *= path.inside.left_after(hit.t);
-            Point point = known ? known->point : point_of(path, hit, random);
-            point.inside = &path.inside;
-            sum += caught * path.weight * lit(point, false, random, known);
+            const Point point = point_of(path, hit, random);
+            sum += caught * path.weight * lit(point, false, random);
             path.weight *= 1 - caught;
             path.counts *= 1 - caught;
             path.ray.origin = point.position;
@@ -170,11 +192,11 @@ Rgb Shader::follow(Path& path, SampleStream& random, SurfaceHit* first, const Ah
             break;
         }
         path.weight *= path.inside.left_after(hit.t);
-        Point point = known ? known->point : point_of(path, hit, random);
-        point.inside = &path.inside;
+        const Point point = point_of(path, hit, random);
         const double scattered = path.bounces < bounces_ ? scattered_by(point) : 0;
-        const bool sky_later = leaves_sky(path.counts, scattered);
-        sum += path.weight * lit(point, sky_later, random, known);
+        // A ray that finds either a surface or the sky tells more than one for each.
+        const bool sky_later = !bright_sky_ && path.counts * scattered >= limits_.least_weight;
+        sum += path.weight * lit(point, sky_later, random);
         if (!goes_on(path, point, scattered, sky_later, random)) break;
         path.range.least = least_distance(point.position, path.bounces > 0 ? shadow_pixels : mirror_pixels);
     }
@@ -237,10 +259,6 @@ bool Shader::goes_on(Path& path, const Point& point, double scattered, bool sky_
     return (pane.counts > 0 ? pane : mirror).lead(path, point.position);
 }
 
-bool Shader::leaves_sky(double counts, double scattered) const {
-    return !bright_sky_ && counts * scattered >= limits_.least_weight;
-}
-
 double Shader::scattered_by(const Point& point) {
     return point.shone_on * point.body * (point.material->diffuse + point.material->translucency) *
            largest(point.rgb);
@@ -260,14 +278,12 @@ bool Shader::first_hit(const Ray& ray, SurfaceHit& hit) {
     return closest(ray, {}, hit);
 }
 
-bool Shader::closest(const Ray& ray, RayRange range, SurfaceHit& hit) {
+bool Shader::closest(const Ray& ray, RayRange range, SurfaceHit& hit, const Known* known) {
     range.most = std::min(range.most, limits_.farthest);
-    return closest_with_ground(ray, range, surfaces_.closest(ray, range, hit), hit);
-}
-
-bool Shader::closest_with_ground(const Ray& ray, RayRange range, bool found, SurfaceHit& hit) const {
+    if (known && known->hit) hit = *known->hit;
+    const bool found = known ? known->hit != nullptr : surfaces_.closest(ray, range, hit);
     if (!view_.ground) return found;
-    range.most = std::min(range.most, found ? hit.t : limits_.farthest);
+    if (found) range.most = hit.t;
     double t = 0;
     if (!meet_ground(ray, range, t)) return found;
     hit = {t, {0, 1, 0}, view_.ground->material.rgb, &view_.ground->material};
@@ -278,11 +294,8 @@ bool Shader::closest_with_ground(const Ray& ray, RayRange range, bool found, Sur
     return true;
 }
 
-/// The opacity of the catcher where the ray meets it, in front of what else it meets; 0: nowhere. `found`:
-/// whether `hit` is that; the catcher takes its place.
-double Shader::meet_catcher(const Ray& ray, RayRange range, bool found, SurfaceHit& hit) const {
-    if (!view_.catcher) return 0;
-    range.most = found ? hit.t : limits_.farthest;
+/// The opacity of the catcher where the ray meets it, in front of what else it meets; 0: nowhere.
+double Shader::meet_catcher(const Ray& ray, const RayRange& range, SurfaceHit& hit) const {
     double t = 0;
     if (!meet_level(view_.catcher->centre.y, ray, range, t)) return 0;
     const double opacity = view_.catcher->opacity(ray(t));

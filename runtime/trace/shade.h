@@ -56,6 +56,12 @@ struct SkyChoice;
 /// ComputeRefraction, ComputeShadowColour, ComputeSky.)
 class Shader {
   public:
+    /// What some rays meet first, the ground left out.
+    struct Ahead {
+        std::array<SurfaceHit, Surfaces::most_together> hits;
+        std::uint32_t met = 0; ///< one bit for each ray
+    };
+
     /// Keeps references to the view and the surfaces. `ground_texture`: of the ground's material; null: the
     /// ground shows its colour.
     Shader(const View& view, Surfaces& surfaces, const ShaderLimits& limits = {},
@@ -69,12 +75,12 @@ class Shader {
     Rgb radiance(const Ray& ray, SampleStream& random, SurfaceHit* first = nullptr) {
         return radiance(ray, random, first, nullptr);
     }
-    /// Takes rays that radiance_ahead() is to be asked about, and their numbers: what neighbours of a picture
-    /// meet first, and whether that is in the shadow of a lamp, is sooner found together. Requires as many
-    /// streams as rays, at most Surfaces::most_together.
-    void look_ahead(std::span<const Ray> rays, std::span<const SampleStream> randoms);
-    /// radiance() of one of the rays that look_ahead() last took, by its number.
-    Rgb radiance_ahead(std::size_t number, SurfaceHit* first = nullptr);
+    /// The same of one of the rays that look_ahead() was asked for, by its number. What they meet first is
+    /// sooner found for neighbours of a picture together.
+    Rgb radiance(const Ray& ray, SampleStream& random, SurfaceHit* first, const Ahead& ahead,
+                 std::size_t number);
+    /// Requires at most Surfaces::most_together rays.
+    void look_ahead(std::span<const Ray> rays, Ahead& ahead);
     /// The same where nothing is sampled.
     Rgb radiance(const Ray& ray) {
         SampleStream unused(0, 0);
@@ -103,41 +109,32 @@ class Shader {
     struct Point;
     struct Path;
     struct Way;
-    struct Shine; ///< what a lamp sends to a point, if nothing is in the way
-    struct Ahead; ///< what is known of a ray before it is followed (shade_point.h)
 
-    Rgb radiance(const Ray& ray, SampleStream& random, SurfaceHit* first, const Ahead* ahead);
-    bool closest(const Ray& ray, RayRange range, SurfaceHit& hit);
-    /// Puts the ground in the place of a surface that it hides; `found`: whether there is one.
-    bool closest_with_ground(const Ray& ray, RayRange range, bool found, SurfaceHit& hit) const;
+    /// Of a ray whose first surface is known; `hit` is null where there is none.
+    struct Known {
+        const SurfaceHit* hit;
+    };
+    Rgb radiance(const Ray& ray, SampleStream& random, SurfaceHit* first, const Known* known);
+    bool closest(const Ray& ray, RayRange range, SurfaceHit& hit, const Known* known = nullptr);
     /// Where and how the ground is met; false beyond the range, along it, and where its picture is clear.
     bool meet_ground(const Ray& ray, const RayRange& range, double& t) const;
     static bool meet_level(double height, const Ray& ray, const RayRange& range, double& t);
-    double meet_catcher(const Ray& ray, RayRange range, bool found, SurfaceHit& hit) const;
+    double meet_catcher(const Ray& ray, const RayRange& range, SurfaceHit& hit) const;
     const Texture::Texel& ground_texel(Vec3 point) const;
     /// Whether the surface mirrors and refracts by facets: of the list of lights, POV-Ray's are sharp.
     bool is_blurred(const Material& material) const;
     Point point_of(const Path& path, const SurfaceHit& hit, SampleStream& random) const;
     void share_light(Point& point) const;
-    Rgb lit(const Point& point, bool sky_later, SampleStream& random, const Ahead* ahead);
-    void find_shines(const Point& point, bool sky_later, SampleStream& random,
-                     std::vector<Shine>& shines) const;
-    void shine_of_sky(const Point& point, double least, bool shine_only, SampleStream& random,
-                      std::vector<Shine>& shines) const;
-    void shine_of_sky(const SkyChoice& choice, const Point& point, double body, Vec3 direction, double least,
-                      std::vector<Shine>& shines) const;
-    void shine_of(const Lamp& lamp, const Point& point, double least, std::vector<Shine>& shines) const;
-    void prepare(Ahead& ahead) const;
-    void shade_together();
+    Rgb lit(const Point& point, bool sky_later, SampleStream& random);
+    Rgb from_sky(const Point& point, double least, bool shine_only, SampleStream& random);
+    Rgb sky_light(const SkyChoice& choice, const Point& point, double body, Vec3 direction, double least);
     Rgb shine(const Point& point, Vec3 to_light) const;
-    Rgb follow(Path& path, SampleStream& random, SurfaceHit* first = nullptr, const Ahead* ahead = nullptr);
-    /// Whether a surface leaves the sky's light to the ray that it scatters: it tells more than one for each.
-    bool leaves_sky(double counts, double scattered) const;
+    Rgb follow(Path& path, SampleStream& random, SurfaceHit* first = nullptr, const Known* known = nullptr);
     static double scattered_by(const Point& point);
     bool goes_on(Path& path, const Point& point, double scattered, bool sky_later, SampleStream& random);
     bool scatter(Path& path, const Point& point, double choice, SampleStream& random) const;
-    bool is_shaded(const Shine& shine);
-    Rgb light_through(const Shine& shine, bool shaded, const Inside& start);
+    Rgb light_of(const Lamp& lamp, const Point& point, double least);
+    Rgb light_through(Ray to_light, RayRange range, const Inside& start);
     Rgb sky(Vec3 direction) const;
     double least_distance(Vec3 point, double pixels) const;
 
@@ -149,8 +146,6 @@ class Shader {
     const SkyLight* sky_ = nullptr;           ///< that is sampled
     const SkySampling* bright_sky_ = nullptr; ///< where it has bright parts
     std::vector<Path> waiting_;               ///< of the ray under way: what is to be followed still
-    std::vector<Shine> shines_;               ///< of the point under way
-    std::vector<Ahead> ahead_;                ///< by number
     bool all_opaque_;
     Inside camera_inside_; ///< of the ground
     Rgb ambient_light_;

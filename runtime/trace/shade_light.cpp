@@ -22,36 +22,14 @@ constexpr double dark_exponent = 40;
 
 } // namespace
 
-Rgb Shader::lit(const Point& point, bool sky_later, SampleStream& random, const Ahead* ahead) {
+Rgb Shader::lit(const Point& point, bool sky_later, SampleStream& random) {
+    const double least = least_distance(point.position, shadow_pixels);
     Rgb sum = point.body * point.material->ambient * ambient_light_ * point.rgb;
     if (point.material->emission > 0) sum += point.body * point.material->emission * point.rgb;
-    if (ahead)
-        random = ahead->random_after;
-    else
-        find_shines(point, sky_later, random, shines_);
-    Rgb shining(0.0), sky(0.0);
-    for (const Shine& shine : ahead ? ahead->shines : shines_) {
-        const bool shaded = ahead ? shine.is_shaded : is_shaded(shine);
-        const Rgb light = shine.before * light_through(shine, shaded, *point.inside) * shine.after;
-        (shine.is_of_sky() ? sky : shining) += light;
-    }
-    return sum + point.shone_on * (shining + sky);
-}
-
-/// What may shine on a point, by one choice for each light that has an extent.
-void Shader::find_shines(const Point& point, bool sky_later, SampleStream& random,
-                         std::vector<Shine>& shines) const {
-    shines.clear();
-    const double least = least_distance(point.position, shadow_pixels);
-    const auto add = [&](const Lamp& lamp, std::size_t number) {
-        const std::size_t before = shines.size();
-        shine_of(lamp, point, least, shines);
-        if (shines.size() > before) shines.back().lamp = static_cast<std::uint32_t>(number);
-    };
-    for (std::size_t i = 0; i < lamps_.size(); ++i)
-        add(lamps_[i], i);
-    for (std::size_t i = 0; i < areas_.size(); ++i) {
-        const Area& area = areas_[i];
+    Rgb shining(0.0);
+    for (const Lamp& lamp : lamps_)
+        shining += light_of(lamp, point, least);
+    for (const Area& area : areas_) {
         glm::dvec2 place = random.next();
         if (area.round) {
             const double radius = std::sqrt(place.x), turn = 2 * std::numbers::pi * place.y;
@@ -62,47 +40,44 @@ void Shader::find_shines(const Point& point, bool sky_later, SampleStream& rando
         Lamp part = area.middle;
         part.at += place.x * area.a + place.y * area.b;
         if (part.sun) part.at = glm::normalize(part.at);
-        add(part, lamps_.size() + i);
+        shining += light_of(part, point, least);
     }
-    if (sky_) shine_of_sky(point, least, sky_later, random, shines);
+    if (sky_) shining += from_sky(point, least, sky_later, random);
+    return sum + point.shone_on * shining;
 }
 
 /// `shine_only`: without what is scattered.
-void Shader::shine_of_sky(const Point& point, double least, bool shine_only, SampleStream& random,
-                          std::vector<Shine>& shines) const {
+Rgb Shader::from_sky(const Point& point, double least, bool shine_only, SampleStream& random) {
     const Material& material = *point.material;
     const double body = shine_only ? 0 : point.body;
     const double front = body * material.diffuse + material.specular;
     const double back = body * material.translucency;
-    if (!(front + back > 0)) return;
+    if (!(front + back > 0)) return Rgb(0.0);
     const SkyChoice choice{front / (front + back), material.specular > 0};
-    shine_of_sky(choice, point, body, choice.direction(point.normal, random.next()), least, shines);
+    Rgb light = sky_light(choice, point, body, choice.direction(point.normal, random.next()), least);
     if (bright_sky_)
-        shine_of_sky(choice, point, body,
-                     bright_sky_->direction(random.next()) * sky_->picture_from_world, least, shines);
+        light += sky_light(choice, point, body,
+                           bright_sky_->direction(random.next()) * sky_->picture_from_world, least);
+    return light;
 }
 
 /// Of the sky in one direction, over what the strategies that may have chosen it give to it.
-void Shader::shine_of_sky(const SkyChoice& choice, const Point& point, double body, Vec3 direction,
-                          double least, std::vector<Shine>& shines) const {
+Rgb Shader::sky_light(const SkyChoice& choice, const Point& point, double body, Vec3 direction,
+                      double least) {
     const Material& material = *point.material;
     const double along = glm::dot(point.normal, direction);
-    if (!(std::abs(along) >= least_cosine)) return;
+    if (!(std::abs(along) >= least_cosine)) return Rgb(0.0);
     const bool behind = along < 0;
     Rgb share = body * (behind ? -material.translucency : material.diffuse) * along * point.rgb;
     if (!behind && choice.shines) share += shine(point, direction);
-    if (!(largest(share) > 0)) return;
+    if (!(largest(share) > 0)) return Rgb(0.0);
     const Rgb light = sky_->radiance(direction);
-    if (!(largest(light) > 0)) return;
+    if (!(largest(light) > 0)) return Rgb(0.0);
     double density_pi = choice.density_pi(along);
     if (bright_sky_)
         density_pi += std::numbers::pi * bright_sky_->density(sky_->picture_from_world * direction);
-    if (!(density_pi > 0)) return;
-    shines.push_back({.before = share / density_pi * light,
-                      .after = Rgb(1.0),
-                      .to_light = {point.position, direction},
-                      .range = {least},
-                      .lamp = Shine::of_sky});
+    if (!(density_pi > 0)) return Rgb(0.0);
+    return share / density_pi * light * light_through({point.position, direction}, {least}, *point.inside);
 }
 
 /// The specular share of a light from there.
@@ -119,8 +94,7 @@ Rgb Shader::shine(const Point& point, Vec3 to_light) const {
     return share * metal_colour(material.metallic, point.rgb, glm::dot(to_light, point.normal));
 }
 
-void Shader::shine_of(const Lamp& lamp, const Point& point, double least,
-                      std::vector<Shine>& shines) const {
+Rgb Shader::light_of(const Lamp& lamp, const Point& point, double least) {
     const Material& material = *point.material;
     Ray to_light{point.position, lamp.at};
     RayRange range{least};
@@ -132,30 +106,22 @@ void Shader::shine_of(const Lamp& lamp, const Point& point, double least,
     }
     const double cosine = glm::dot(point.normal, to_light.direction);
     // Also if the cosine is not a number, as of a light that lies on the surface.
-    if (!(std::abs(cosine) >= least_cosine)) return;
+    if (!(std::abs(cosine) >= least_cosine)) return Rgb(0.0);
     const bool behind = cosine < 0;
     Rgb share = point.body * (behind ? -material.translucency : material.diffuse) * cosine * point.rgb;
     if (!lamp.shadowless && !behind) share += shine(point, to_light.direction);
-    if (!(largest(share) > 0)) return;
-    shines.push_back({.before = share,
-                      .after = lamp.rgb,
-                      .to_light = to_light,
-                      .range = range,
-                      .is_through = lamp.shadowless || !(range.least < range.most)});
-}
-
-bool Shader::is_shaded(const Shine& shine) {
-    if (shine.is_through) return false;
-    double t = 0;
-    return (view_.ground && meet_ground(shine.to_light, shine.range, t)) ||
-           surfaces_.meets_any(shine.to_light, shine.range);
+    if (!(largest(share) > 0)) return Rgb(0.0);
+    if (!lamp.shadowless) share *= light_through(to_light, range, *point.inside);
+    return share * lamp.rgb;
 }
 
 /// The share of a light that comes straight through what is in its way.
-Rgb Shader::light_through(const Shine& shine, bool shaded, const Inside& start) {
+Rgb Shader::light_through(Ray to_light, RayRange range, const Inside& start) {
+    if (!(range.least < range.most)) return Rgb(1.0);
+    double t = 0;
+    const bool shaded =
+        (view_.ground && meet_ground(to_light, range, t)) || surfaces_.meets_any(to_light, range);
     if (!shaded || all_opaque_) return Rgb(shaded ? 0.0 : 1.0);
-    Ray to_light = shine.to_light;
-    RayRange range = shine.range;
     Inside inside = start;
     Rgb left(1.0);
     for (int pane = 0; pane < most_panes && largest(left) >= least_light; ++pane) {

@@ -111,7 +111,8 @@ void Traversal::show_packed(std::size_t lane, const Ray& ray, std::span<SurfaceH
     if (met.shown != PacketRoom::Hit::no_ray) {
         hits[lane] = hits[met.shown];
         hits[lane].t = best.t;
-        hits[lane].normal = normal_at_best();
+        const bool same_face = packet_->best[met.shown].normal == best.normal;
+        if (!same_face) hits[lane].normal = normal_at_best();
         return;
     }
     const auto way = packet_->ways.begin();

@@ -47,9 +47,9 @@ struct alignas(64) TraceEdge {
                          ///< it is not too little
     std::uint32_t child = 0;
     unsigned levels = 0;
-    bool similarity = false;       ///< then a path's norm is the product of its stretches
-    bool upright = false;          ///< only scales evenly and moves: rays keep their directions
-    bool to_primitive = false;     ///< leads to one
+    bool similarity = false;   ///< then a path's norm is the product of its stretches
+    bool upright = false;      ///< only scales evenly and moves: rays keep their directions
+    bool to_primitive = false; ///< leads to one
     LaneMap parent_from_child;
     LaneMap child_from_parent;
     // What the looks of hits ask for, in one line of the cache:

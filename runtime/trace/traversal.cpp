@@ -7,11 +7,11 @@
 
 #include "compiler/primitives/texture_space.h"
 #include "compiler/support/stretch.h"
+#include "runtime/trace/packet_room.h"
 #include "runtime/trace/surface_normal.h"
 #include "runtime/trace/traversal_even.h"
 #include "runtime/trace/traversal_kernel.h"
 #include "runtime/trace/traversal_leaves.h"
-#include "runtime/trace/packet_room.h"
 #include "runtime/trace/traversal_runs.h"
 #include "runtime/trace/traversal_specks.h"
 

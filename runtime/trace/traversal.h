@@ -69,19 +69,17 @@ class Traversal final : public Surfaces {
     std::uint64_t given_up() const { return given_up_; }
 
   private:
-    struct Places;     ///< which parts are looked into (traversal_places.h)
+    struct Places; ///< which parts are looked into (traversal_places.h)
     template<Instructions instructions, bool any>
     struct Kernel;     ///< the traversal proper (traversal_kernel.h)
     struct EvenPlaces; ///< which parts of an even model are looked into (traversal_even_places.h)
     template<Instructions instructions, bool any>
     struct EvenKernel; ///< through even models (traversal_even.h)
     template<Instructions instructions, typename Packet, typename PlacesOf, typename Frame>
-    struct PacketWalk; ///< eight rays at once (traversal_packet.h)
-    template<Instructions instructions>
-    struct EvenPacket; ///< through even models (traversal_packet_even.h)
-    template<Instructions instructions>
-    struct TurnedPacket; ///< through others (traversal_packet_turned.h)
-    struct PacketRoom;   ///< their memory
+    struct PacketWalk;                                     ///< eight rays at once (traversal_packet.h)
+    template<Instructions instructions> struct EvenPacket; ///< through even models (traversal_packet_even.h)
+    template<Instructions instructions> struct TurnedPacket; ///< through others (traversal_packet_turned.h)
+    struct PacketRoom;                                       ///< their memory
 
     /// The ray in some frame: origin + (t - base) / unit * direction.
     struct LocalRay {

@@ -155,9 +155,9 @@ struct Traversal::PacketWalk : PlacesOf {
                 const auto i = static_cast<std::size_t>(axis);
                 Byte8 bytes;
                 std::memcpy(&bytes, packed.side[side][i].data(), sizeof(bytes));
-                node.side[side][axis] = spread<instructions>(packed.origin[i]) +
-                                        __builtin_convertvector(bytes, Float8) *
-                                            spread<instructions>(packed.step[i]);
+                node.side[side][axis] =
+                    spread<instructions>(packed.origin[i]) +
+                    __builtin_convertvector(bytes, Float8) * spread<instructions>(packed.step[i]);
             }
         for (std::size_t lane = 0; lane < 8; ++lane)
             node.entry[lane] = packed.first + packed.offset[lane];
@@ -283,7 +283,8 @@ struct Traversal::PacketWalk : PlacesOf {
             if (packet().is_mixed(frame, axis)) continue;
             const std::size_t in = packet().side_in(frame, axis);
             const Float8 from = node.side[in][axis] - spread<instructions>(packet().extreme_in(frame, axis)),
-                         to = node.side[1 - in][axis] - spread<instructions>(packet().extreme_out(frame, axis));
+                         to = node.side[1 - in][axis] -
+                              spread<instructions>(packet().extreme_out(frame, axis));
             const Float8 low = packet().least_reciprocal_of(frame, axis),
                          high = packet().most_reciprocal_of(frame, axis);
             enters = greater(enters, lesser(from * low, from * high));

@@ -171,10 +171,10 @@ struct Traversal::EvenPacket
         for (int i = 0; i < 2; ++i) {
             near[i] = bring_near(part, edge, going, i);
             const Double4 over[3] = {inverse[0].half[i], inverse[1].half[i], inverse[2].half[i]};
-            crossing[i] = part.kind == EvenPart::Kind::cube       ? Walk::cross_cube(near[i], over)
-                          : part.kind == EvenPart::Kind::triangle ? Walk::cross_triangle(near[i])
-                                                                  : this->cross_any(model.nodes[part.child].primitive,
-                                                                                    near[i], i, going.mask);
+            crossing[i] = part.kind == EvenPart::Kind::cube ? Walk::cross_cube(near[i], over)
+                          : part.kind == EvenPart::Kind::triangle
+                              ? Walk::cross_triangle(near[i])
+                              : this->cross_any(model.nodes[part.child].primitive, near[i], i, going.mask);
             crossing[i].in_world = near[i].base + crossing[i].t * near[i].unit;
         }
         if (!this->keep_crossings(near, crossing, going.mask)) return;

@@ -9,10 +9,8 @@ namespace graftal {
 
 /// As the primitive is met (cube.cpp), by rays that are parallel to no side.
 template<Instructions instructions, typename Packet, typename PlacesOf, typename Frame>
-GRAFTAL_INLINE auto
-Traversal::PacketWalk<instructions, Packet, PlacesOf, Frame>::cross_cube(const Near& near,
-                                                                         const Double4 (&inverse)[3])
-    -> Crossing {
+GRAFTAL_INLINE auto Traversal::PacketWalk<instructions, Packet, PlacesOf, Frame>::cross_cube(
+    const Near& near, const Double4 (&inverse)[3]) -> Crossing {
     Double4 enter[3], leave[3];
     for (int axis = 0; axis < 3; ++axis) {
         const Double4 a = (-1 - near.origin[axis]) * inverse[axis],
@@ -110,7 +108,9 @@ GRAFTAL_INLINE auto Traversal::PacketWalk<instructions, Packet, PlacesOf, Frame>
     if (primitive == PrimitiveKind::sphere) may &= ~passing_sphere(near);
     for (std::uint32_t left = mask >> (4 * half) & may & 15; left != 0; left &= left - 1) {
         const int j = std::countr_zero(left);
-        const auto here = [&](const Double4(&lanes)[3]) { return Vec3(lanes[0][j], lanes[1][j], lanes[2][j]); };
+        const auto here = [&](const Double4(&lanes)[3]) {
+            return Vec3(lanes[0][j], lanes[1][j], lanes[2][j]);
+        };
         // Also what lies so little beyond the best hit that it may be as near.
         const double slack =
             2 * rounding * (std::abs(best.half[half][j]) + std::abs(near.base[j])) * near.speed[j];

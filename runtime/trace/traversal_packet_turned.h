@@ -144,8 +144,7 @@ struct Traversal::TurnedPacket
         Near near[2];
         for (int i = 0; i < 2; ++i) {
             take_rays(edge, parent, at.half[i], i, near[i]);
-            if (!edge.similarity)
-                going.mask &= ~((~bits_of<instructions>(near[i].is_map) & 15) << (4 * i));
+            if (!edge.similarity) going.mask &= ~((~bits_of<instructions>(near[i].is_map) & 15) << (4 * i));
         }
         if (going.mask == 0) return Next::end;
         if (is_proxy) {
@@ -306,8 +305,7 @@ struct Traversal::TurnedPacket
                                     splat(run_from_frame.linear[axis][axis]) +
                                 splat(run_from_frame.translation[axis] - item.base[axis]);
             }
-            if (!item.shape.is_sphere())
-                by_body &= ~(passing_line(direction, from[i], item) << (4 * i));
+            if (!item.shape.is_sphere()) by_body &= ~(passing_line(direction, from[i], item) << (4 * i));
             if (item.ball) by_ball &= ~(passing_ball(direction, from[i], item) << (4 * i));
         }
         if (by_body != 0)
@@ -387,8 +385,8 @@ struct Traversal::TurnedPacket
         }
         if (!this->keep_crossings(near, crossing, mask)) return;
         PacketRoom::Hit& hit = room.hits.back();
-        compose(frame.world_from_node,
-                LaneMap(inverse(model.graph_from_frame[frame.node]) * run_from_body), hit.world_from_leaf);
+        compose(frame.world_from_node, LaneMap(inverse(model.graph_from_frame[frame.node]) * run_from_body),
+                hit.world_from_leaf);
         hit.turns = length_in_turns(run_from_body.linear);
         keep_way(going, run.edge_of(shape, item.colour), hit);
     }

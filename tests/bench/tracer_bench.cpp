@@ -150,8 +150,8 @@ struct SunRays {
 
 SunRays sun_rays(const TraceModel& model) {
     const std::vector<Ray> camera = camera_rays(model.view);
-    const Vec3 towards = glm::normalize(model.view.camera.up + 0.8 * model.view.camera.right -
-                                        model.view.camera.direction);
+    const Vec3 towards =
+        glm::normalize(model.view.camera.up + 0.8 * model.view.camera.right - model.view.camera.direction);
     Traversal traversal(model);
     SunRays sun;
     for_each_packet(camera, [&](std::span<const Ray> packet) {

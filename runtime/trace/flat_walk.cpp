@@ -188,6 +188,7 @@ void Traversal::keep_flat_way(std::uint32_t frame_number) {
 }
 
 void Traversal::meet_flat(std::uint32_t frame_number, std::uint32_t number, const RayRange& range, bool any) {
+    met_flat_ = true;
     more_work_ += RayWork::crushed;
     const Frame& frame = frames_[frame_number];
     FlatPart start = flat_child(frame.world_from_node, number, frame.steps, frame.cut);

@@ -131,6 +131,12 @@ GRAFTAL_INLINE Double4 largest_of(const Double4& x, const Double4& y, const Doub
     return ab < c ? c : ab;
 }
 
+/// An axis of direction_through(), of four vectors.
+GRAFTAL_INLINE Double4 through(const LaneMap& map, const Double4& x, const Double4& y, const Double4& z,
+                               int axis) {
+    return splat(map.column[0][axis]) * x + splat(map.column[1][axis]) * y + splat(map.column[2][axis]) * z;
+}
+
 GRAFTAL_INLINE Float8 lesser(const Float8& a, const Float8& b) {
     return a < b ? a : b;
 }

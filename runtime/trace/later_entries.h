@@ -1,6 +1,7 @@
 #pragma once
 
-// What rays are to look into later, the nearest at the end; only traversal.cpp includes this.
+// What rays are to look into later, the nearest at the end; only traversal.cpp and traversal_packets.cpp
+// include this.
 
 #include <bit>
 #include <cstddef>

@@ -12,16 +12,31 @@
 namespace graftal {
 
 struct Traversal::PacketRoom {
-    /// An object on the way from the root, and all rays in its frame.
-    struct alignas(64) Frame : EvenPlace {
+    /// All rays in a frame.
+    struct alignas(64) Rays {
         Double8 origin[3]; ///< by axis
         Double8 base, unit, speed;
-        Float8 near[3]; ///< the origin
         Float8 least;
-        float extreme[2][3];         ///< the least and the greatest of `near`, by axis
+        float extreme[2][3];         ///< the least and the greatest of the origins, by axis
         float first_least;           ///< the least of `least`
         Float8 most;                 ///< what is nearer than the rays' best hits is less than this
         std::uint32_t hits_then = 0; ///< hits of the packet when that was so
+    };
+
+    /// An object on the way from the root of an even model, and the rays in its frame.
+    struct EvenFrame : EvenPlace, Rays {
+        Float8 near[3]; ///< the origin
+    };
+
+    /// An object on the way from the root of any model, and the rays in its frame.
+    struct Frame : Place, Rays {
+        Double8 direction[3];
+        Float8 near[2][3]; ///< the origin less the margin, as the lower sides of boxes and the upper see it
+        Float8 reciprocal[3];
+        float least_reciprocal[3], most_reciprocal[3]; ///< of all rays
+        std::uint32_t side_in[3];                      ///< of boxes, unless rays go in by both
+        bool mixed[3];                                 ///< then
+        bool any_mixed;
     };
 
     /// An edge or a node of boxes that rays are to look into. Where each of them enters its box is computed
@@ -33,6 +48,7 @@ struct Traversal::PacketRoom {
         std::uint32_t mask = 0;                             ///< one bit for each ray that meets its box
         std::uint32_t box = no_box;                         ///< eight times the node of boxes, and the lane
         static constexpr std::uint32_t no_box = UINT32_MAX; ///< the rays are at its beginning
+        static constexpr std::uint32_t packed = 1u << 31;   ///< marks a box of a PackedNode
     };
 
     /// What some rays have met, as Best.
@@ -42,13 +58,16 @@ struct Traversal::PacketRoom {
         bool in_world = false;
         double turns = 1;
         std::uint32_t proxy_node = UINT32_MAX;
+        const TraceMesh::Colour* mesh_colour = nullptr;
+        double cell = 0;
         std::size_t way = 0, way_end = 0; ///< of `ways`
         std::size_t shown = no_ray;       ///< a ray of which it is known what is seen there
         static constexpr std::size_t no_ray = SIZE_MAX;
     };
 
     bool has_textures = false; ///< then what is seen depends on where a part is met
-    std::vector<Frame> frames = std::vector<Frame>(16);
+    std::vector<EvenFrame> even_frames;
+    std::vector<Frame> frames; ///< either these or those
     std::vector<Entry> entries = std::vector<Entry>(128);
     std::size_t top = 0; ///< entries in use
     std::vector<Hit> hits;
@@ -70,11 +89,6 @@ struct Traversal::PacketRoom {
     Entry* reserve(std::size_t count) {
         if (top + count > entries.size()) entries.resize(2 * entries.size());
         return entries.data() + top;
-    }
-
-    Frame& frame(std::size_t number) {
-        if (number >= frames.size()) frames.resize(2 * frames.size());
-        return frames[number];
     }
 };
 

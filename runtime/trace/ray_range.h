@@ -19,6 +19,13 @@ inline constexpr int most_crossings = 256;
 /// Allows for the rounding of what is a little more than enough.
 inline constexpr double surely_more = 1 - 1e-6;
 
+/// What is compiled for AVX2, if the machine may have it.
+#if defined(__x86_64__)
+#define GRAFTAL_AVX2 __attribute__((target("avx2")))
+#else
+#define GRAFTAL_AVX2
+#endif
+
 /// One bit for each lane that is true.
 template<Instructions instructions> GRAFTAL_INLINE std::uint32_t bits_of(const Int8& lanes) {
 #if defined(__x86_64__) && !defined(__clang__)

@@ -374,8 +374,6 @@ void TraceEdge::find_upright() {
     const auto scales = [](const Mat3& m) { return m == Mat3(m[0][0]) && m[0][0] > 0; };
     const Mat3 linear = parent_from_child.affine().linear, inverse = child_from_parent.affine().linear;
     upright = similarity && scales(linear) && scales(inverse);
-    int exponent = 0;
-    keeps_directions = upright && std::frexp(stretch, &exponent) == 0.5 && inverse[0][0] * stretch == 1;
 }
 
 std::uint32_t TraceRun::edge_of(RunShape shape, std::uint16_t colour) const {
@@ -423,13 +421,20 @@ const SelfShadows& TraceModel::self_shadows() const {
     });
 }
 
+bool TraceModel::is_content() const {
+    const Box& box = prepared.bounds;
+    if (!(most_half_width > 0) || prepared.root_steps != unlimited_steps || box.empty()) return false;
+    const Vec3 size = box.size();
+    return std::min({size.x, size.y, size.z}) <= most_thickness();
+}
+
 double TraceModel::near_enough(const Ray& ray, double share) const {
     constexpr double before_all = -std::numeric_limits<double>::infinity();
+    if (!is_content()) return before_all;
     const Box& box = prepared.bounds;
-    if (!(most_half_width > 0) || prepared.root_steps != unlimited_steps || box.empty()) return before_all;
     const Vec3 size = box.size();
     for (int axis = 0; axis < 3; ++axis) {
-        if (size[axis] > 0.1 * most_half_width || ray.direction[axis] == 0) continue;
+        if (size[axis] > most_thickness() || ray.direction[axis] == 0) continue;
         const double slope = std::abs(ray.direction[axis]);
         const double middle = (box.centre()[axis] - ray.origin[axis]) / ray.direction[axis];
         const Ball here{ray(middle), 2 * most_half_width};

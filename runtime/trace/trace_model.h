@@ -48,10 +48,9 @@ struct alignas(64) TraceEdge {
                          ///< it is not too little
     std::uint32_t child = 0;
     unsigned levels = 0;
-    bool similarity = false;       ///< then a path's norm is the product of its stretches
-    bool upright = false;          ///< only scales evenly and moves
-    bool keeps_directions = false; ///< and to the last bit those of rays: scales by a power of two
-    bool to_primitive = false;     ///< leads to one
+    bool similarity = false;   ///< then a path's norm is the product of its stretches
+    bool upright = false;      ///< only scales evenly and moves: rays keep their directions
+    bool to_primitive = false; ///< leads to one
     LaneMap parent_from_child;
     LaneMap child_from_parent;
     Box box;          ///< of what the child draws, in the parent's frame
@@ -210,6 +209,10 @@ struct TraceModel {
     /// Up to where a hit will do, if none can be nearer by more than this share of the half width: of a model
     /// in a plane that is drawn in specks; else before all.
     double near_enough(const Ray& ray, double share) const;
+    /// Whether rays may ask that: what they meet may then depend on the order of parts.
+    bool is_content() const;
+    /// Of the box of such a model.
+    double most_thickness() const { return 0.1 * most_half_width; }
 
     /// Of the view's lights; measured when they are first asked for.
     const SelfShadows& self_shadows() const;

@@ -7,11 +7,11 @@
 
 #include "compiler/primitives/texture_space.h"
 #include "compiler/support/stretch.h"
+#include "runtime/trace/packet_room.h"
 #include "runtime/trace/surface_normal.h"
 #include "runtime/trace/traversal_even.h"
 #include "runtime/trace/traversal_kernel.h"
 #include "runtime/trace/traversal_leaves.h"
-#include "runtime/trace/traversal_packet_leaves.h"
 #include "runtime/trace/traversal_runs.h"
 #include "runtime/trace/traversal_specks.h"
 
@@ -24,65 +24,55 @@ Instructions best_instructions() {
     return Instructions::portable;
 }
 
-Traversal::Traversal(const TraceModel& model, Instructions instructions)
-    : model_(model), instructions_(instructions) {
-    frames_.resize(16);
-    later_.resize(128);
-    if (!model.even) return;
-    even_frames_.resize(16);
-    packet_ = std::make_unique<PacketRoom>();
-    packet_->has_textures = std::ranges::any_of(model.textures.of_material,
-                                                [](const auto& texture) { return texture != nullptr; });
-    EvenPlaces{*this, model, {}}.find_root();
-}
-
-Traversal::~Traversal() = default;
-
-#if defined(__x86_64__)
-#define GRAFTAL_AVX2 __attribute__((target("avx2")))
-#else
-#define GRAFTAL_AVX2
-#endif
-
 namespace {
 
-// The kernel is made in here: what nobody else has the address of stays in registers.
-template<typename Kernel>
-bool run_portable(Traversal& traversal, const TraceModel& model, const RayRange& range, const Ray& ray) {
-    return Kernel{traversal, model, range}.run(ray);
-}
-
-template<typename Kernel>
-GRAFTAL_AVX2 bool run_avx2(Traversal& traversal, const TraceModel& model, const RayRange& range,
-                           const Ray& ray) {
-    return Kernel{traversal, model, range}.run(ray);
-}
-
-template<typename Packet>
-std::uint32_t run_packet(Traversal& traversal, const TraceModel& model, const RayRange& range,
-                         std::span<const Ray> rays, std::uint32_t& tied) {
-    Packet packet(traversal, model, range);
-    packet.run(rays);
-    tied = packet.tied;
-    return packet.found;
-}
-
-template<typename Packet>
-GRAFTAL_AVX2 std::uint32_t run_packet_avx2(Traversal& traversal, const TraceModel& model,
-                                           const RayRange& range, std::span<const Ray> rays,
-                                           std::uint32_t& tied) {
-    Packet packet(traversal, model, range);
-    packet.run(rays);
-    tied = packet.tied;
-    return packet.found;
+/// Whether packets may go through a model that is not even: what a ray meets in it does not depend on how far
+/// it had come before. Through sets without area they may, but each ray meets specks of its own.
+bool goes_in_packets(const TraceModel& model) {
+    const auto is_plain = [](const TraceNode& node) {
+        return node.kind == TraceNode::Kind::parts || node.kind == TraceNode::Kind::run ||
+               (node.kind == TraceNode::Kind::primitive && !is_endless(node));
+    };
+    const bool in_specks = model.projection.culls() && model.nodes[model.edges.front().child].faint;
+    return std::ranges::all_of(model.nodes, is_plain) && !model.is_content() && !in_specks;
 }
 
 } // namespace
 
+Traversal::Traversal(const TraceModel& model, Instructions instructions)
+    : model_(model), instructions_(instructions) {
+    frames_.resize(16);
+    later_.resize(128);
+    if (model.even) {
+        even_frames_.resize(16);
+        EvenPlaces{*this, model, {}}.find_root();
+    }
+    if (!model.even && !goes_in_packets(model)) return;
+    packet_ = std::make_unique<PacketRoom>();
+    if (model.even)
+        packet_->even_frames.resize(16);
+    else
+        packet_->frames.resize(16);
+    packet_->has_textures = std::ranges::any_of(model.textures.of_material,
+                                                [](const auto& texture) { return texture != nullptr; });
+}
+
+Traversal::~Traversal() = default;
+
 namespace {
 
-/// Fewer rays go alone.
-constexpr std::size_t least_packet = 3;
+// The kernel is made in here: what nobody else has the address of stays in registers.
+template<typename Kernel, typename... From>
+bool run_portable(Traversal& traversal, const TraceModel& model, const RayRange& range, const Ray& ray,
+                  const From*... from) {
+    return Kernel{traversal, model, range}.run(ray, from...);
+}
+
+template<typename Kernel, typename... From>
+GRAFTAL_AVX2 bool run_avx2(Traversal& traversal, const TraceModel& model, const RayRange& range,
+                           const Ray& ray, const From*... from) {
+    return Kernel{traversal, model, range}.run(ray, from...);
+}
 
 Rgb colour_of(const Texture::Texel& texel) {
     static const std::array<double, 256> linear = [] {
@@ -96,15 +86,21 @@ Rgb colour_of(const Texture::Texel& texel) {
 
 } // namespace
 
-template<template<Instructions, bool> typename AnyKernel, bool any>
-bool Traversal::run(const Ray& ray, const RayRange& range) {
+template<template<Instructions, bool> typename AnyKernel, bool any, typename... From>
+bool Traversal::run(const Ray& ray, const RayRange& range, const From*... from) {
     if (instructions_ == Instructions::avx2)
-        return run_avx2<AnyKernel<Instructions::avx2, any>>(*this, model_, range, ray);
-    return run_portable<AnyKernel<Instructions::portable, any>>(*this, model_, range, ray);
+        return run_avx2<AnyKernel<Instructions::avx2, any>>(*this, model_, range, ray, from...);
+    return run_portable<AnyKernel<Instructions::portable, any>>(*this, model_, range, ray, from...);
 }
 
 template<bool any> bool Traversal::run(const Ray& ray, const RayRange& range) {
-    return model_.even ? run<EvenKernel, any>(ray, range) : run<Kernel, any>(ray, range);
+    if (model_.even) return run<EvenKernel, any>(ray, range);
+    return run<Kernel, any>(ray, range, static_cast<const Entry*>(nullptr));
+}
+
+bool Traversal::resume(const Entry& from, const RayRange& range, bool any) {
+    const Ray ray = ray_;
+    return any ? run<Kernel, true>(ray, range, &from) : run<Kernel, false>(ray, range, &from);
 }
 
 bool Traversal::goes_on() {
@@ -133,61 +129,6 @@ void Traversal::show_best(SurfaceHit& hit) {
         for (const std::uint32_t edge : way_)
             append_to_path(edge);
     surface_at_best(hit);
-}
-
-/// Of a ray of a packet. Of those that meet the same part, one has to look along the way there.
-void Traversal::show_packed(std::size_t lane, const Ray& ray, std::span<SurfaceHit> hits) {
-    const PacketRoom::Best& best = packet_->best[lane];
-    PacketRoom::Hit& met = packet_->hits[best.hit];
-    ray_ = ray;
-    best_.t = best.t;
-    best_.normal = best.normal;
-    best_.point = best.point;
-    best_.turns = met.turns;
-    best_.is_upright = met.is_upright;
-    if (!met.is_upright) best_.world_from_leaf = met.world_from_leaf;
-    best_.proxy_node = met.proxy_node;
-    best_.mesh_colour = nullptr;
-    best_.in_world = met.in_world;
-    best_.crushed = false;
-    if (met.shown != PacketRoom::Hit::no_ray) {
-        hits[lane] = hits[met.shown];
-        hits[lane].t = best.t;
-        hits[lane].normal = normal_at_best();
-        return;
-    }
-    const auto way = packet_->ways.begin();
-    way_.assign(way + static_cast<std::ptrdiff_t>(met.way), way + static_cast<std::ptrdiff_t>(met.way_end));
-    show_best(hits[lane]);
-    if (met.proxy_node == no_edge && !packet_->has_textures) met.shown = lane;
-}
-
-std::uint32_t Traversal::closest_each(std::span<const Ray> rays, const RayRange& range,
-                                      std::span<SurfaceHit> hits) {
-    // Rays that may be given up go alone: how far they come depends on the order of their parts.
-    if (!packet_ || rays.size() < least_packet || model_.most_visits < TraceModel::usual_visits)
-        return Surfaces::closest_each(rays, range, hits);
-    std::uint32_t alone = 0;
-    std::uint32_t found =
-        instructions_ == Instructions::avx2
-            ? run_packet_avx2<EvenPacket<Instructions::avx2>>(*this, model_, range, rays, alone)
-            : run_packet<EvenPacket<Instructions::portable>>(*this, model_, range, rays, alone);
-    found &= ~alone;
-    for (const PacketRoom::Hit& hit : packet_->hits) {
-        const TraceLook& look = model_.looks[packet_->ways[hit.way_end - 1] & ~from_cut];
-        if (look.as_one) continue;
-        __builtin_prefetch(&model_.looks[look.before]);
-        __builtin_prefetch(&model_.looks[look.last & ~from_cut]);
-    }
-    for (std::uint32_t left = found; left != 0; left &= left - 1) {
-        const auto lane = static_cast<std::size_t>(std::countr_zero(left));
-        show_packed(lane, rays[lane], hits);
-    }
-    for (; alone != 0; alone &= alone - 1) {
-        const auto lane = static_cast<std::size_t>(std::countr_zero(alone));
-        found |= static_cast<std::uint32_t>(closest(rays[lane], range, hits[lane])) << lane;
-    }
-    return found;
 }
 
 bool Traversal::meets_any(const Ray& ray, const RayRange& range) {

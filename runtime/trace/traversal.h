@@ -54,7 +54,10 @@ class Traversal final : public Surfaces {
     std::uint32_t closest_each(std::span<const Ray> rays, const RayRange& range,
                                std::span<SurfaceHit> hits) override;
     bool meets_any(const Ray& ray, const RayRange& range) override;
+    std::uint32_t meets_any_each(std::span<const Ray> rays, std::span<const RayRange> ranges) override;
     bool all_opaque() const override;
+    /// Whether several rays may go together at all: where what they meet depends on no order of parts.
+    bool takes_packets() const { return packet_ != nullptr; }
 
     /// Nodes and primitives that rays went into so far.
     std::uint64_t visits() const { return visits_; }
@@ -66,14 +69,17 @@ class Traversal final : public Surfaces {
     std::uint64_t given_up() const { return given_up_; }
 
   private:
+    struct Places; ///< which parts are looked into (traversal_places.h)
     template<Instructions instructions, bool any>
     struct Kernel;     ///< the traversal proper (traversal_kernel.h)
     struct EvenPlaces; ///< which parts of an even model are looked into (traversal_even_places.h)
     template<Instructions instructions, bool any>
     struct EvenKernel; ///< through even models (traversal_even.h)
-    template<Instructions instructions>
-    struct EvenPacket;   ///< eight rays at once through even models (traversal_packet.h)
-    struct PacketRoom;   ///< its memory
+    template<Instructions instructions, typename Packet, typename PlacesOf, typename Frame>
+    struct PacketWalk;                                     ///< eight rays at once (traversal_packet.h)
+    template<Instructions instructions> struct EvenPacket; ///< through even models (traversal_packet_even.h)
+    template<Instructions instructions> struct TurnedPacket; ///< through others (traversal_packet_turned.h)
+    struct PacketRoom;                                       ///< their memory
     struct LaterEntries; ///< what a ray is to look into later (later_entries.h)
 
     /// The ray in some frame: origin + (t - base) / unit * direction.
@@ -84,8 +90,8 @@ class Traversal final : public Surfaces {
         double speed = 1; ///< 1 / unit
     };
 
-    /// An object on the way from the root, and the ray in its frame.
-    struct alignas(32) Frame : LocalRay {
+    /// An object on the way from the root, wherever the ray is.
+    struct alignas(32) Place {
         LaneMap world_from_node;
         double scale = 1;        ///< norm of world_from_node
         double flatness = 1;     ///< at most its least stretch, as a share of the largest
@@ -98,7 +104,11 @@ class Traversal final : public Surfaces {
         bool faint = false;  ///< they stand for a set without area (least_width.h)
         bool specks = false; ///< they lead to nodes that are cut and faint
         Vec3 margin{0.0};    ///< by which parts may reach out of their boxes
-        float least = 0;     ///< where the ray begins, in units from the base
+    };
+
+    /// And the ray in its frame.
+    struct alignas(32) Frame : LocalRay, Place {
+        float least = 0; ///< where the ray begins, in units from the base
         /// By axis: the side of boxes where the ray goes in, the origin less the margin as that and the other
         /// side see it, and the reciprocal of the direction.
         Int4 side_in;
@@ -207,10 +217,15 @@ class Traversal final : public Surfaces {
     void keep_way(std::uint32_t frame_number);
     /// Fills in what is seen at the best hit.
     void show_best(SurfaceHit& hit);
+    bool go_together(std::size_t rays) const;
+    std::uint32_t run_packet(std::span<const Ray> rays, std::span<const RayRange> ranges, bool any,
+                             std::uint32_t& to_go_alone);
     void show_packed(std::size_t lane, const Ray& ray, std::span<SurfaceHit> hits);
-    template<template<Instructions, bool> typename AnyKernel, bool any>
-    bool run(const Ray& ray, const RayRange& range);
+    template<template<Instructions, bool> typename AnyKernel, bool any, typename... From>
+    bool run(const Ray& ray, const RayRange& range, const From*... from);
     template<bool any> bool run(const Ray& ray, const RayRange& range);
+    /// Takes ray_ on from an entry of a frame that is ready; true if something nearer than best_.t was met.
+    bool resume(const Entry& from, const RayRange& range, bool any);
     /// As visits to so many parts would take it, which lanes saw are not met.
     void lose_patience(std::uint64_t parts) { patience_ -= std::min(patience_, parts); }
     /// False once the ray went into too many parts, and hurrying did not help.
@@ -255,6 +270,7 @@ class Traversal final : public Surfaces {
     std::vector<std::uint32_t> flat_way_; ///< edges from the frame to the part under way
     std::uint64_t visit_limit_ = 0;       ///< of the ray
     bool hurries_ = false;                ///< the ray has passed the limit
+    bool met_flat_ = false;               ///< rays of a packet that went on alone met flat parts
     std::vector<std::uint32_t>
         way_; ///< edges through the frames to the best hit, those from cut nodes marked
     std::vector<std::uint32_t> path_; ///< of the graph, likewise, once the ray is done

@@ -8,31 +8,28 @@
 #include <cstring>
 #include <vector>
 
-#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
 #include "compiler/detail/least_width.h"
-#include "compiler/support/stretch.h"
 #include "runtime/trace/later_entries.h"
-#include "runtime/trace/ray_range.h"
-#include "runtime/trace/traversal.h"
+#include "runtime/trace/traversal_places.h"
 
 namespace graftal {
 
 /// `any`: whatever is met first will do, and only that it is.
-template<Instructions instructions, bool any> struct Traversal::Kernel {
-    Traversal& self;
-    const TraceModel& model;
-    const RayRange range;
+template<Instructions instructions, bool any> struct Traversal::Kernel : Places {
     LaterEntries later{self.later_};
-    Frame* frames = self.frames_.data(); ///< Traversal's
-    std::size_t depth = 0;               ///< frames in use
+    Traversal::Frame* frames = self.frames_.data(); ///< Traversal's
+    std::size_t depth = 0;                          ///< frames in use
 
-    GRAFTAL_INLINE bool run(const Ray& ray) {
+    GRAFTAL_INLINE Kernel(Traversal& traversal, const TraceModel& traced, const RayRange& asked)
+        : Places{traversal, traced, asked} {}
+
+    /// `from`: an entry of a frame that is ready, from which on the ray is to go (Traversal::resume()); null:
+    /// from the world on.
+    GRAFTAL_INLINE bool run(const Ray& ray, const Entry* from) {
         self.best_.found = false;
-        self.best_.t = range.most;
         self.ray_ = ray;
-        self.visit_limit_ = self.visits_ + model.most_visits;
         self.patience_ = self.visits_ + most_patience;
         self.hurries_ = false;
         if (!self.flat_met_.empty()) self.flat_met_.clear();
@@ -43,7 +40,13 @@ template<Instructions instructions, bool any> struct Traversal::Kernel {
             plenty = model.near_enough(ray, plenty_share);
         }
         Entry entry;
-        if (!enter_world(ray)) return false;
+        if (from) {
+            entry = *from;
+        } else {
+            self.best_.t = range.most;
+            self.visit_limit_ = self.visits_ + model.most_visits;
+            if (!enter_world(ray)) return false;
+        }
         for (bool more = true; more || pop(later.first, entry);) {
             if (entry.entry & BoxNode::inner) {
                 more = go_on_in_boxes(entry);
@@ -250,7 +253,7 @@ template<Instructions instructions, bool any> struct Traversal::Kernel {
         Frame& frame = push(); // parents may move, but no more after this
         const Frame& parent = frames[entry.frame];
         if (!take_ray(edge, parent, entry, frame)) return false;
-        if (edge.keeps_directions) {
+        if (edge.upright) {
             frame.reciprocal = parent.reciprocal;
             frame.side_in = parent.side_in;
         } else {
@@ -268,8 +271,7 @@ template<Instructions instructions, bool any> struct Traversal::Kernel {
         if (edge.upright) {
             const double growth = edge.child_from_parent.column[0][0];
             ray.origin = near * splat(growth) + edge.child_from_parent.translation;
-            ray.direction = edge.keeps_directions ? parent.direction
-                                                  : parent.direction * splat(growth) * splat(edge.stretch);
+            ray.direction = parent.direction;
             ray.speed = parent.speed * edge.growth;
             ray.unit = parent.unit * edge.stretch;
             return true;
@@ -292,33 +294,10 @@ template<Instructions instructions, bool any> struct Traversal::Kernel {
         return true;
     }
 
-    /// Where the edge's child lies in the world.
-    GRAFTAL_INLINE void place_child(const Frame& parent, const TraceEdge& edge,
-                                    LaneMap& world_from_child) const {
-        if (!edge.upright) return compose(parent.world_from_node, edge.parent_from_child, world_from_child);
-        const Double4 scale = splat(edge.parent_from_child.column[0][0]);
-        for (int i = 0; i < 3; ++i)
-            world_from_child.column[i] = parent.world_from_node.column[i] * scale;
-        world_from_child.translation =
-            point_through(parent.world_from_node, edge.parent_from_child.translation);
-    }
-
     /// The frame has its ray.
     GRAFTAL_INLINE bool enter_node(const TraceEdge& edge, const TraceNode& node, const Frame& parent,
                                    Frame& frame, Entry& entry) {
-        place_child(parent, edge, frame.world_from_node);
-        frame.edge = entry.entry | (parent.cut ? from_cut : 0);
-        frame.node = edge.child;
-        frame.steps = parent.steps == unlimited_steps ? parent.steps : parent.steps - edge.levels;
-        frame.scale =
-            edge.similarity ? parent.scale * edge.stretch : largest_stretch(linear_of(frame.world_from_node));
-        if (!(frame.scale > least_scale)) return false;
-        frame.faint = parent.faint;
-        double detail = INFINITY;
-        frame.cut = is_cut(node, frame, parent.least_detail, detail);
-        frame.least_detail = model.least_detail_per_unit;
-        frame.items = node.kind == TraceNode::Kind::run;
-        frame.specks = false;
+        if (!go_to_child(edge, node, entry.entry, parent, frame)) return false;
         if (frame.cut && node.stop_tree == no_tree) {
             if (frame.faint || node.faint)
                 meet_faint_proxy(node, frame);
@@ -326,8 +305,6 @@ template<Instructions instructions, bool any> struct Traversal::Kernel {
                 meet_proxy(node, frame);
             return false;
         }
-        if (frame.cut && node.faint && !frame.faint)
-            frame.faint = (detail < INFINITY ? detail : detail_of(node, frame)) <= 1;
         const auto number = static_cast<std::uint32_t>(depth - 1);
         frame.margin = margin_of(node, frame);
         if (node.kind == TraceNode::Kind::unbounded) {
@@ -377,91 +354,6 @@ template<Instructions instructions, bool any> struct Traversal::Kernel {
         const Float4 inwards = frame.side_in != 0 ? -margin : margin;
         frame.origin_in = origin + inwards;
         frame.origin_out = origin - inwards;
-    }
-
-    GRAFTAL_INLINE Ball world_ball(const TraceNode& node, const Frame& frame, double radius) const {
-        return {vec3_of(point_through(frame.world_from_node, node.ball_centre)), frame.scale * radius};
-    }
-
-    GRAFTAL_INLINE double detail_of(const TraceNode& node, const Frame& frame) const {
-        const Ball ball = world_ball(node, frame, node.ball_radius);
-        return 2 * ball.radius * model.projection.detail_per_unit(ball);
-    }
-
-    /// The rule of the cut (detail.h). `least_detail`: of a unit, anywhere in the node's ball; sets the
-    /// detail if it has to look.
-    GRAFTAL_INLINE bool is_cut(const TraceNode& node, const Frame& frame, double least_detail,
-                               double& detail) const {
-        if (self.hurries_ && node.cullable) return true;
-        const double diameter = 2 * frame.scale * node.ball_radius;
-        const bool surely_large = !node.cullable || diameter * least_detail > node.cut_detail;
-        if (!surely_large) detail = detail_of(node, frame);
-        return graftal::is_cut(node, frame.steps, detail);
-    }
-
-    /// Whether copies lie in each other in it so often that its shell is drawn.
-    GRAFTAL_INLINE bool is_shell(const TraceNode& node, const Frame& frame) const {
-        if (!model.has_shells || frame.cut || !node.shell.any()) return false;
-        const double detail = 2 * frame.scale * node.ball_radius *
-                              model.projection.detail_per_unit(world_ball(node, frame, node.ball_radius));
-        return node.shell.has(detail);
-    }
-
-    /// The parts that are farthest down, of those that are drawn for sure if none is cut; or what is drawn of
-    /// them, if all of them are.
-    GRAFTAL_INLINE std::uint32_t tree_of(const TraceNode& node, Frame& frame) const {
-        if (model.has_shells || node.unrolling_count == 0) return node.tree;
-        double most = INFINITY;
-        bool known = false;
-        for (std::uint32_t i = 0; i < node.unrolling_count; ++i) {
-            const Unrolling& unrolling = model.unrollings[node.first_unrolling + i];
-            if (frame.steps < unrolling.least_steps) continue;
-            if (!(frame.flatness * unrolling.flattest_edge > flattest_placement)) continue;
-            const double size = frame.scale * unrolling.least_size;
-            const bool has_leaves = unrolling.leaf_tree != no_tree && !frame.faint;
-            if (has_leaves && frame.steps == unrolling.last_steps) return unrolling.leaf_tree;
-            const bool has_specks = unrolling.most_speck_size < INFINITY && frame.flatness == 1;
-            if (!known && (has_leaves || has_specks || !(size * frame.least_detail > 1))) {
-                const auto details = model.projection.detail_range(world_ball(node, frame, node.reach));
-                frame.least_detail = surely_more * details.least;
-                most = details.most;
-                known = true;
-            }
-            if (!(size * frame.least_detail > 1)) continue;
-            frame.specks = has_specks && frame.scale * unrolling.most_speck_size * most <= surely_more;
-            const bool all_cut = has_leaves && frame.scale * unrolling.most_size * most <= surely_more;
-            return all_cut ? unrolling.leaf_tree : unrolling.tree;
-        }
-        return node.tree;
-    }
-
-    /// What a shell may reach out of the boxes of its parts by, in the frame.
-    GRAFTAL_INLINE double shell_margin(const TraceNode& node, const Frame& frame) const {
-        return 1.5 /
-               (frame.scale * model.projection.detail_per_unit(world_ball(node, frame, node.ball_radius)));
-    }
-
-    /// By how much parts may reach out of their boxes, in the frame: what is too thin is drawn wider
-    /// (least_width.h).
-    GRAFTAL_INLINE Vec3 margin_of(const TraceNode& node, const Frame& frame) const {
-        constexpr double flat = 1e-3; // some levels below, parts may be flat enough
-        if (!node.widens && frame.flatness > flat) return Vec3(0.0);
-        constexpr double unculled = 4e-3; // more than half_width_needed() gives
-        const double half_width = model.projection.culls()
-                                      ? model.widest * model.projection.most_half_width(
-                                                           world_ball(node, frame, 2 * node.ball_radius))
-                                      : unculled * frame.scale;
-        if (frame.flatness == 1) return Vec3(half_width / frame.scale);
-        // What a ball measures along the axes: the rows of the inverse, of which the columns' products are
-        // cofactors.
-        const LaneMap& map = frame.world_from_node;
-        const Vec3 a = vec3_of(map.column[0]), b = vec3_of(map.column[1]), c = vec3_of(map.column[2]);
-        const Vec3 bc = glm::cross(b, c);
-        const double scale = half_width / std::abs(glm::dot(a, bc));
-        constexpr double most = 1e18; // far beyond all boxes, and a number yet when it is multiplied
-        return glm::min(
-            scale * Vec3(glm::length(bc), glm::length(glm::cross(c, a)), glm::length(glm::cross(a, b))),
-            Vec3(most));
     }
 
     /// What counts of a ray that starts there.

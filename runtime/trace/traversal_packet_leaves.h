@@ -1,64 +1,20 @@
 #pragma once
 
-// How a packet of rays meets cubes and triangles, four rays at a time. Only traversal.cpp includes this.
+// How a packet of rays meets primitives, four rays at a time. Only traversal_packets.cpp includes this.
 
+#include "compiler/primitives/passage.h"
 #include "runtime/trace/traversal_packet.h"
 
 namespace graftal {
 
-template<Instructions instructions>
-GRAFTAL_INLINE typename Traversal::EvenPacket<instructions>::Near
-Traversal::EvenPacket<instructions>::bring_near(const EvenPart& part, const TraceEdge& edge,
-                                                const Going& going, int half) const {
-    const Frame& parent = room.frames[going.frame];
-    const Double4 at = doubles_of(going.at, half);
-    Near near;
-    near.base = parent.base.half[half] + at * parent.unit.half[half];
-    Double4 from[3];
-    for (int axis = 0; axis < 3; ++axis)
-        from[axis] = parent.origin[axis].half[half] + at * direction[axis].half[half];
-    Double4 growth = splat(part.growth), stretch = splat(part.stretch);
-    near.is_map = growth == growth;
-    if (part.upright) {
-        for (int axis = 0; axis < 3; ++axis) {
-            near.origin[axis] = from[axis] * splat(part.shrink()) + splat(part.shift[axis]);
-            near.along[axis] = direction[axis].half[half];
-        }
-    } else {
-        const LaneMap& map = edge.child_from_parent;
-        const auto through = [&](const Double4& x, const Double4& y, const Double4& z, int axis)
-                                 GRAFTAL_INLINED_LAMBDA {
-                                     return splat(map.column[0][axis]) * x + splat(map.column[1][axis]) * y +
-                                            splat(map.column[2][axis]) * z;
-                                 };
-        for (int axis = 0; axis < 3; ++axis) {
-            near.origin[axis] = through(from[0], from[1], from[2], axis) + splat(map.translation[axis]);
-            near.along[axis] =
-                through(direction[0].half[half], direction[1].half[half], direction[2].half[half], axis);
-        }
-        if (!edge.similarity) {
-            growth = largest_of(near.along[0], near.along[1], near.along[2]);
-            near.is_map = (growth > splat(0.0)) & (growth < splat(1 / least_scale));
-            stretch = 1 / growth;
-        }
-        for (int axis = 0; axis < 3; ++axis)
-            near.along[axis] = near.along[axis] * stretch;
-    }
-    near.unit = parent.unit.half[half] * stretch;
-    const Double4 speed = parent.speed.half[half] * growth;
-    near.least = (range.least - near.base) * speed;
-    near.most = (best.half[half] - near.base) * speed;
-    return near;
-}
-
-/// As EvenKernel::meet_cube().
-template<Instructions instructions>
-GRAFTAL_INLINE typename Traversal::EvenPacket<instructions>::Crossing
-Traversal::EvenPacket<instructions>::cross_cube(const Near& near, int half) const {
+/// As the primitive is met (cube.cpp), by rays that are parallel to no side.
+template<Instructions instructions, typename Packet, typename PlacesOf, typename Frame>
+GRAFTAL_INLINE auto Traversal::PacketWalk<instructions, Packet, PlacesOf, Frame>::cross_cube(
+    const Near& near, const Double4 (&inverse)[3]) -> Crossing {
     Double4 enter[3], leave[3];
     for (int axis = 0; axis < 3; ++axis) {
-        const Double4 a = (-1 - near.origin[axis]) * inverse[axis].half[half],
-                      b = (1 - near.origin[axis]) * inverse[axis].half[half];
+        const Double4 a = (-1 - near.origin[axis]) * inverse[axis],
+                      b = (1 - near.origin[axis]) * inverse[axis];
         enter[axis] = b < a ? b : a;
         leave[axis] = a < b ? b : a;
     }
@@ -80,10 +36,10 @@ Traversal::EvenPacket<instructions>::cross_cube(const Near& near, int half) cons
     return crossing;
 }
 
-/// As EvenKernel::meet_triangle().
-template<Instructions instructions>
-GRAFTAL_INLINE typename Traversal::EvenPacket<instructions>::Crossing
-Traversal::EvenPacket<instructions>::cross_triangle(const Near& near) {
+/// Likewise (triangle.cpp).
+template<Instructions instructions, typename Packet, typename PlacesOf, typename Frame>
+GRAFTAL_INLINE auto
+Traversal::PacketWalk<instructions, Packet, PlacesOf, Frame>::cross_triangle(const Near& near) -> Crossing {
     constexpr double root3 = 1.7320508075688772;
     Crossing crossing;
     const Double4 t = -near.origin[2] / near.along[2];
@@ -96,28 +52,96 @@ Traversal::EvenPacket<instructions>::cross_triangle(const Near& near) {
     return crossing;
 }
 
-template<Instructions instructions>
-GRAFTAL_INLINE void Traversal::EvenPacket<instructions>::meet_leaf(const EvenPart& part, const Going& going) {
-    count(going);
-    const TraceEdge& edge = model.edges[going.entry];
-    Near near[2];
+template<Instructions instructions, typename Packet, typename PlacesOf, typename Frame>
+GRAFTAL_INLINE void
+Traversal::PacketWalk<instructions, Packet, PlacesOf, Frame>::ready_range(Near& near, int half) const {
+    near.least = (least.half[half] - near.base) * near.speed;
+    near.most = (best.half[half] - near.base) * near.speed;
+}
+
+/// As Kernel::meet_proxy().
+template<Instructions instructions, typename Packet, typename PlacesOf, typename Frame>
+GRAFTAL_INLINE bool Traversal::PacketWalk<instructions, Packet, PlacesOf, Frame>::meet_proxy(
+    const TraceNode& node, Near (&near)[2], std::uint32_t mask) {
+    const LaneMap& map = node.proxy_from_node;
     Crossing crossing[2];
+    for (int i = 0; i < 2; ++i) {
+        Near& n = near[i];
+        Double4 origin[3], along[3];
+        for (int axis = 0; axis < 3; ++axis) {
+            origin[axis] =
+                through(map, n.origin[0], n.origin[1], n.origin[2], axis) + splat(map.translation[axis]);
+            along[axis] = through(map, n.along[0], n.along[1], n.along[2], axis);
+        }
+        const Double4 growth = largest_of(along[0], along[1], along[2]), stretch = 1 / growth;
+        for (int axis = 0; axis < 3; ++axis) {
+            n.origin[axis] = origin[axis];
+            n.along[axis] = along[axis] * stretch;
+        }
+        n.unit = n.unit * stretch;
+        n.speed = n.speed * growth;
+        ready_range(n, i);
+        crossing[i] = cross_any(PrimitiveKind::sphere, n, i, mask);
+        crossing[i].in_world = n.base + crossing[i].t * n.unit;
+    }
+    return keep_crossings(near, crossing, mask);
+}
+
+/// As it is met (sphere.cpp), up to where that is known.
+template<Instructions instructions, typename Packet, typename PlacesOf, typename Frame>
+GRAFTAL_INLINE std::uint32_t
+Traversal::PacketWalk<instructions, Packet, PlacesOf, Frame>::passing_sphere(const Near& near) {
+    const auto dot = [](const Double4(&a)[3], const Double4(&b)[3])
+                         GRAFTAL_INLINED_LAMBDA { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; };
+    const Double4 middle = -dot(near.origin, near.along) / dot(near.along, near.along);
+    Double4 point[3];
+    for (int axis = 0; axis < 3; ++axis)
+        point[axis] = near.origin[axis] + middle * near.along[axis];
+    return bits_of<instructions>(1 - dot(point, point) < 0);
+}
+
+template<Instructions instructions, typename Packet, typename PlacesOf, typename Frame>
+GRAFTAL_INLINE auto Traversal::PacketWalk<instructions, Packet, PlacesOf, Frame>::cross_any(
+    const Primitive& primitive, const Near& near, int half, std::uint32_t mask) const -> Crossing {
+    Crossing crossing{};
+    std::uint32_t may = bits_of<instructions>(near.is_map);
+    if (primitive == PrimitiveKind::sphere) may &= ~passing_sphere(near);
+    for (std::uint32_t left = mask >> (4 * half) & may & 15; left != 0; left &= left - 1) {
+        const int j = std::countr_zero(left);
+        const auto here = [&](const Double4(&lanes)[3]) {
+            return Vec3(lanes[0][j], lanes[1][j], lanes[2][j]);
+        };
+        // Also what lies so little beyond the best hit that it may be as near.
+        const double slack =
+            2 * rounding * (std::abs(best.half[half][j]) + std::abs(near.base[j])) * near.speed[j];
+        const RayRange range{near.least[j], near.most[j] < INFINITY ? near.most[j] + slack : near.most[j]};
+        PrimitiveHit hit;
+        if (!intersect(primitive, {here(near.origin), here(near.along)}, range, hit)) continue;
+        crossing.t[j] = hit.t;
+        for (int axis = 0; axis < 3; ++axis)
+            crossing.normal[axis][j] = hit.normal[axis];
+        crossing.crossed[j] = -1;
+    }
+    return crossing;
+}
+
+template<Instructions instructions, typename Packet, typename PlacesOf, typename Frame>
+GRAFTAL_INLINE bool Traversal::PacketWalk<instructions, Packet, PlacesOf, Frame>::keep_crossings(
+    const Near (&near)[2], const Crossing (&crossing)[2], std::uint32_t mask) {
     Double8 t;
     std::uint32_t hit = 0, close = 0;
     for (int i = 0; i < 2; ++i) {
-        near[i] = bring_near(part, edge, going, i);
-        crossing[i] = part.kind == EvenPart::Kind::cube ? cross_cube(near[i], i) : cross_triangle(near[i]);
         const Long4 crossed = crossing[i].crossed & near[i].is_map;
-        t.half[i] = near[i].base + crossing[i].t * near[i].unit;
+        t.half[i] = crossing[i].in_world;
         hit |= bits_of<instructions>(crossed & (crossing[i].t < near[i].most)) << (4 * i);
         const Double4 slack = rounding * (size_of(t.half[i]) + size_of(near[i].base));
         close |= bits_of<instructions>(crossed & (size_of(t.half[i] - best.half[i]) <= slack)) << (4 * i);
     }
-    hit &= going.mask;
-    tied = (tied & ~hit) | (close & going.mask);
-    if (hit == 0) return;
+    hit &= mask;
     found |= hit;
-    const std::size_t number = keep_hit(part, going);
+    if (any) return false;
+    tied = (tied & ~hit) | (close & mask);
+    if (hit == 0) return false;
     for (; hit != 0; hit &= hit - 1) {
         const int lane = std::countr_zero(hit), i = lane / 4, j = lane % 4;
         best.half[i][j] = t.half[i][j];
@@ -125,29 +149,13 @@ GRAFTAL_INLINE void Traversal::EvenPacket<instructions>::meet_leaf(const EvenPar
         const Near& n = near[i];
         PacketRoom::Best& to = room.best[static_cast<std::size_t>(lane)];
         to.t = t.half[i][j];
-        to.hit = number;
+        to.hit = room.hits.size();
         to.normal = {c.normal[0][j], c.normal[1][j], c.normal[2][j]};
         for (int axis = 0; axis < 3; ++axis)
             to.point[axis] = n.origin[axis][j] + c.t[j] * n.along[axis][j];
     }
-}
-
-/// What the rays share that hit an entry's leaf.
-template<Instructions instructions>
-GRAFTAL_INLINE std::size_t Traversal::EvenPacket<instructions>::keep_hit(const EvenPart& part,
-                                                                         const Going& going) {
-    const Frame& parent = room.frames[going.frame];
-    PacketRoom::Hit& hit = room.hits.emplace_back();
-    hit.is_upright = part.upright;
-    if (!part.upright) place(parent, model.edges[going.entry].parent_from_child, hit.world_from_leaf);
-    if (room.has_textures) hit.turns = model.edges[going.entry].turns;
-    prefetch_look(going.entry);
-    hit.way = room.ways.size();
-    for (std::uint32_t i = 1; i <= going.frame; ++i)
-        room.ways.push_back(room.frames[i].edge);
-    room.ways.push_back(going.entry | (parent.cut ? from_cut : 0));
-    hit.way_end = room.ways.size();
-    return room.hits.size() - 1;
+    room.hits.emplace_back();
+    return true;
 }
 
 } // namespace graftal

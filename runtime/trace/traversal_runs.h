@@ -3,6 +3,7 @@
 // How the traversal meets the items of runs; only traversal.cpp includes it.
 
 #include "compiler/primitives/texture_space.h"
+#include "runtime/trace/run_bodies.h"
 #include "runtime/trace/traversal_kernel.h"
 
 namespace graftal {
@@ -30,15 +31,9 @@ void Traversal::Kernel<instructions, any>::meet_body(RunShape shape, const Affin
                                                      const TraceRun& run, const RunItem& item, const Ray& ray,
                                                      const Entry& entry) {
     const Frame& frame = frames[entry.frame];
-    // Its axes are at right angles: dividing by the squares of their lengths turns the map round.
-    const Mat3& m = run_from_body.linear;
-    const Vec3 squares(glm::dot(m[0], m[0]), glm::dot(m[1], m[1]), glm::dot(m[2], m[2]));
-    const Vec3 from_base = ray.origin - run_from_body.translation;
-    const Vec3 origin = from_base * m / squares;
-    const Vec3 direction = ray.direction * m / squares;
-    const double largest = largest_component(lanes_of(direction));
-    if (!(largest > 0 && largest < 1 / least_scale)) return;
-    const Ray inner{origin, direction / largest};
+    Ray inner;
+    double largest;
+    if (!take_into_body(run_from_body, ray, inner, largest)) return;
     const double base = t_of(entry), speed = frame.speed * largest;
     RayRange near = range_from(base, speed);
     PrimitiveHit hit;
@@ -48,7 +43,7 @@ void Traversal::Kernel<instructions, any>::meet_body(RunShape shape, const Affin
     double turns = 1;
     if (model.clear_texels) {
         look = run.edge_of(shape, item.colour);
-        turns = length_in_turns(m);
+        turns = length_in_turns(run_from_body.linear);
         for (int crossing = 0; self.is_clear(look, entry.frame, turns, inner(hit.t)); ++crossing) {
             near.least = hit.t;
             if (crossing == most_crossings || !intersect(primitive, inner, near, hit)) return;
@@ -57,7 +52,7 @@ void Traversal::Kernel<instructions, any>::meet_body(RunShape shape, const Affin
     if (!set_best(base + hit.t / speed)) return;
     if (look == no_edge) {
         look = run.edge_of(shape, item.colour);
-        turns = length_in_turns(m);
+        turns = length_in_turns(run_from_body.linear);
     }
     self.best_.normal = hit.normal;
     self.best_.point = inner(hit.t);

@@ -3,6 +3,7 @@
 #include "runtime/trace/leaf_group.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <memory>
 #include <random>
@@ -69,8 +70,8 @@ TEST(LeafGroup, HoldsWhatLiesInOneBox) {
 }
 
 /// Copies of itself with fans in between, some of squeezed triangles. Halves keep directions to the last bit,
-/// in the general way, too.
-Graph random_model(std::mt19937_64& random) {
+/// in the general way, too. `turn`: of the copies, in degrees.
+Graph random_model(std::mt19937_64& random, double turn = 0) {
     std::uniform_real_distribution<double> unit(-1, 1);
     const auto any = [&] { return Vec3(unit(random), unit(random), unit(random)); };
     Graph graph = empty_graph();
@@ -84,7 +85,9 @@ Graph random_model(std::mt19937_64& random) {
         place(graph, self, fan, Affine::translate(any()) * Affine::scale(Vec3(0.5)), {{1, 1, 0}, 0.5});
     }
     for (std::size_t i = 0; i < 2 + random() % 3; ++i)
-        place(graph, self, self, Affine::translate(any()) * Affine::scale(Vec3(0.5)), {{0, 1, 1}, 0.3});
+        place(graph, self, self,
+              Affine::translate(any()) * Affine::rotate({1, 2, 0}, turn) * Affine::scale(Vec3(0.5)),
+              {{0, 1, 1}, 0.3});
     place(graph, self, cube, Affine::translate(any()) * Affine::scale(Vec3(0.125)));
     place(graph, graph.root, self, {});
     return graph;
@@ -130,6 +133,54 @@ TEST(LeafGroup, IsMetAsItsTrianglesAlone) {
     }
     EXPECT_GT(hits, 3000u);
     EXPECT_GT(groups, 50u);
+}
+
+/// In models that turn no parts, and in others.
+TEST(LeafGroup, IsMetByPacketsAsByTheirRays) {
+    std::mt19937_64 random(23);
+    std::uniform_real_distribution<double> unit(-1, 1);
+    const auto any = [&] { return Vec3(unit(random), unit(random), unit(random)); };
+    std::size_t hits[2] = {}, groups[2] = {};
+    for (int number = 0; number < 32; ++number) {
+        SCOPED_TRACE(number);
+        const bool turned = number % 2 != 0;
+        DetailOptions options;
+        options.error_px = 0;
+        options.steps = 2 + number % 3;
+        const auto model = traced(random_model(random, turned ? 35 : 0), options);
+        ASSERT_EQ(model->even, !turned);
+        groups[turned] += groups_in(*model);
+        Traversal together(*model), narrow(*model, Instructions::portable), alone(*model);
+        ASSERT_TRUE(together.takes_packets());
+        for (int i = 0; i < 400; ++i) {
+            const Vec3 from = 3.0 * any(), along = 0.5 * any() - from;
+            std::array<Ray, Surfaces::most_together> rays;
+            for (Ray& ray : rays)
+                ray = {from, along + 0.02 * any()};
+            std::array<RayRange, Surfaces::most_together> ranges;
+            ranges.fill({i % 2 ? 1e-6 : 0.0});
+            std::array<SurfaceHit, Surfaces::most_together> seen, other;
+            const std::uint32_t met = together.closest_each(rays, ranges[0], seen);
+            ASSERT_EQ(narrow.closest_each(rays, ranges[0], other), met) << i;
+            ASSERT_EQ(together.meets_any_each(rays, ranges), met) << i;
+            for (std::size_t k = 0; k < rays.size(); ++k) {
+                SurfaceHit hit;
+                ASSERT_EQ(alone.closest(rays[k], ranges[k], hit), (met >> k & 1) != 0) << i;
+                if (!(met >> k & 1)) continue;
+                ++hits[turned];
+                for (const SurfaceHit* one : {&seen[k], &other[k]}) {
+                    ASSERT_EQ(hit.t, one->t) << i;
+                    ASSERT_EQ(hit.normal, one->normal) << i;
+                    ASSERT_EQ(hit.rgb, one->rgb) << i;
+                    ASSERT_EQ(hit.node, one->node) << i;
+                }
+            }
+        }
+    }
+    for (const int turned : {0, 1}) {
+        EXPECT_GT(hits[turned], 5000u);
+        EXPECT_GT(groups[turned], 30u);
+    }
 }
 
 } // namespace

@@ -1,6 +1,7 @@
 // Rays in packets meet what each of them meets alone, to the last bit, by whatever instructions.
 
 #include <array>
+#include <bit>
 #include <cstddef>
 #include <memory>
 #include <optional>
@@ -23,9 +24,12 @@ using test::traced;
 constexpr std::size_t together = Surfaces::most_together;
 using Packet = std::array<Ray, together>;
 
+/// What becomes of copies of the whole.
+enum class Copies { even, turned, squeezed };
+
 /// Parts on a lattice, so that many touch or lie in each other, in as many colours. Some are triangles, in
 /// any direction, or balls.
-Graph random_model(std::mt19937_64& random, bool terminal) {
+Graph random_model(std::mt19937_64& random, bool terminal, Copies copies = Copies::even) {
     Graph graph = empty_graph();
     const ObjectId cube = graph.primitive(PrimitiveKind::cube);
     const ObjectId triangle = graph.primitive(PrimitiveKind::triangle);
@@ -52,10 +56,19 @@ Graph random_model(std::mt19937_64& random, bool terminal) {
             place(graph, self, cube, even, tint);
             break;
         default:
-            place(graph, self, self, even, tint);
+            // By quarters of a turn many keep touching, by others directions go to several sides of boxes.
+            if (copies != Copies::even && random() % 2)
+                place(graph, self, self,
+                      even * Affine::rotate({0, 0, 1}, random() % 2 ? 90 : 10) *
+                          Affine::scale(Vec3(1, copies == Copies::squeezed ? 0.3 + share() : 1, 1)),
+                      tint);
+            else
+                place(graph, self, self, even, tint);
         }
     }
-    place(graph, self, self, Affine::translate(Vec3(0.5)) * Affine::scale(Vec3(0.25)));
+    place(graph, self, self,
+          Affine::translate(Vec3(0.5)) * Affine::rotate({1, 1, 0}, copies == Copies::even ? 0 : 45) *
+              Affine::scale(Vec3(0.25)));
     if (terminal) graph.objects[self].terminal = Instance{cube, {}, {}, {}, {}};
     place(graph, graph.root, self, {});
     return graph;
@@ -84,8 +97,21 @@ Packet random_packet(const View& view, std::mt19937_64& random) {
 }
 
 struct Tally {
-    std::size_t rays = 0, hits = 0;
+    std::size_t rays = 0, hits = 0, shaded = 0;
 };
+
+/// Each with a range of its own, as shadow rays have.
+void expect_same_shadows(const Packet& rays, Traversal& alone, Traversal& packet, Traversal& portable,
+                         std::mt19937_64& random, Tally& tally) {
+    std::array<RayRange, together> ranges;
+    for (RayRange& range : ranges)
+        range = {random() % 2 ? 0.1 : 1e-6, random() % 2 ? INFINITY : 2.0};
+    const std::uint32_t met = packet.meets_any_each(rays, ranges);
+    ASSERT_EQ(portable.meets_any_each(rays, ranges), met);
+    for (std::size_t k = 0; k < together; ++k)
+        ASSERT_EQ(alone.meets_any(rays[k], ranges[k]), (met >> k & 1) != 0) << k;
+    tally.shaded += static_cast<std::size_t>(std::popcount(met));
+}
 
 void expect_as_alone(const TraceModel& model, std::mt19937_64& random, int packets, Tally& tally) {
     Traversal alone(model), packet(model), portable(model, Instructions::portable);
@@ -113,6 +139,7 @@ void expect_as_alone(const TraceModel& model, std::mt19937_64& random, int packe
                 ASSERT_EQ(hit.levels, other->levels) << k;
             }
         }
+        expect_same_shadows(rays, alone, packet, portable, random, tally);
     }
     EXPECT_EQ(packet.visits(), portable.visits());
 }
@@ -135,6 +162,29 @@ TEST(TraversalPacket, MeetsWhatItsRaysMeetAlone) {
     }
     EXPECT_GT(even, 100u);
     EXPECT_GT(tally.hits, tally.rays / 10);
+}
+
+TEST(TraversalPacket, MeetsTurnedAndSqueezedPartsAsAlone) {
+    for (const Copies copies : {Copies::turned, Copies::squeezed}) {
+        Tally tally;
+        std::size_t together_in = 0;
+        for (std::uint64_t seed = 1; seed <= 90; ++seed) {
+            SCOPED_TRACE(seed);
+            std::mt19937_64 random(seed);
+            const Graph graph = random_model(random, seed % 2 != 0, copies);
+            DetailOptions options;
+            options.error_px = seed % 3 == 0 ? 0 : static_cast<double>(seed % 3);
+            if (options.error_px == 0 || seed % 5 == 0) options.steps = static_cast<unsigned>(1 + seed % 4);
+            const auto model = traced(graph, options);
+            if (model->even) continue; // too few levels to turn any
+            together_in += Traversal(*model).takes_packets();
+            expect_as_alone(*model, random, 40, tally);
+            if (HasFatalFailure()) return;
+        }
+        EXPECT_GT(together_in, 70u);
+        EXPECT_GT(tally.hits, tally.rays / 10);
+        EXPECT_GT(tally.shaded, tally.rays / 10);
+    }
 }
 
 TEST(TraversalPacket, LeavesRaysAloneThatMayBeGivenUp) {

@@ -1,0 +1,102 @@
+// Rays of real scenes meet together what each of them meets alone, to the last bit: those of the camera, and
+// those from what they meet to a sun.
+
+#include <array>
+#include <bit>
+#include <memory>
+#include <span>
+#include <string>
+
+#include <glm/geometric.hpp>
+#include <gtest/gtest.h>
+
+#include "compiler/session/session.h"
+#include "compiler/session/stages.h"
+#include "runtime/trace/camera_rays.h"
+#include "runtime/trace/traversal.h"
+
+namespace graftal {
+namespace {
+
+constexpr ImageSize size{96, 64};
+constexpr int across = 4, down = 2;
+using Packet = std::array<Ray, Surfaces::most_together>;
+using Hits = std::array<SurfaceHit, Surfaces::most_together>;
+
+std::unique_ptr<TraceModel> load(const std::string& path) {
+    StageOptions options;
+    options.view.size = size;
+    options.detail.error_px = 1;
+    Compilation compilation;
+    Session session(std::string(GRAFTAL_SOURCE_DIR "/") + path);
+    const auto viewed = session.viewed(options, compilation);
+    const auto prepared = viewed ? session.prepared(options, compilation) : nullptr;
+    if (!prepared) return nullptr;
+    return std::make_unique<TraceModel>(prepared, viewed->view, resolved(options.detail, *viewed));
+}
+
+void expect_same(const SurfaceHit& a, const SurfaceHit& b) {
+    ASSERT_EQ(a.t, b.t);
+    ASSERT_EQ(a.normal, b.normal);
+    ASSERT_EQ(a.rgb, b.rgb);
+    ASSERT_EQ(a.material, b.material);
+    ASSERT_EQ(a.light_share, b.light_share);
+    ASSERT_EQ(a.node, b.node);
+    ASSERT_EQ(a.levels, b.levels);
+}
+
+struct Tally {
+    int hits = 0, shaded = 0;
+};
+
+void compare(Traversal& together, Traversal& alone, const Packet& rays, Tally& tally) {
+    Hits hits;
+    const std::uint32_t met = together.closest_each(rays, {}, hits);
+    Packet to_sun;
+    std::array<RayRange, Surfaces::most_together> ranges;
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+        SurfaceHit hit;
+        ASSERT_EQ(alone.closest(rays[i], {}, hit), (met >> i & 1) != 0) << i;
+        if (!(met >> i & 1)) continue;
+        expect_same(hits[i], hit);
+        ranges[count] = {1e-4 * hit.t};
+        to_sun[count++] = {rays[i](hit.t), glm::normalize(Vec3(1, 2, 1.5))};
+    }
+    tally.hits += std::popcount(met);
+    if (count == 0) return;
+    const std::uint32_t shaded =
+        together.meets_any_each(std::span(to_sun).first(count), std::span(ranges).first(count));
+    for (std::size_t i = 0; i < count; ++i)
+        ASSERT_EQ(alone.meets_any(to_sun[i], ranges[i]), (shaded >> i & 1) != 0) << i;
+    tally.shaded += std::popcount(shaded);
+}
+
+TEST(Packets, MeetWhatTheirRaysMeetAloneInScenes) {
+    for (const char* path :
+         {"scenes/abop/fig1_25.lsys", "scenes/hart/elm.inst", "scenes/plants/autumn.inst",
+          "scenes/plants/maple_1.lsys", "scenes/plants/grass.inst", "scenes/ifs/sierpinski_tetrahedron.rifs",
+          "tests/bench/models/turned_pound_sign.inst"}) {
+        SCOPED_TRACE(path);
+        const auto model = load(path);
+        ASSERT_TRUE(model);
+        Traversal together(*model), alone(*model);
+        EXPECT_TRUE(together.takes_packets());
+        const CameraRays camera(model->view);
+        Tally tally;
+        for (int y = 0; y < size.height; y += down)
+            for (int x = 0; x < size.width; x += across) {
+                Packet rays;
+                for (std::size_t i = 0; i < rays.size(); ++i)
+                    rays[i] = camera.through(x + static_cast<double>(i % across) + 0.5,
+                                             y + static_cast<double>(i / across) + 0.5);
+                compare(together, alone, rays, tally);
+                if (HasFatalFailure()) return;
+            }
+        EXPECT_GT(tally.hits, 100);
+        EXPECT_GT(tally.shaded, 10);
+    }
+}
+
+} // namespace
+} // namespace graftal

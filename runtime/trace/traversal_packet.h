@@ -378,8 +378,6 @@ struct Traversal::PacketWalk : PlacesOf {
         if (!met.is_upright) met.world_from_leaf = self.best_.world_from_leaf;
         met.turns = self.best_.turns;
         met.proxy_node = self.best_.proxy_node;
-        met.mesh_colour = self.best_.mesh_colour;
-        met.cell = self.best_.cell;
         met.in_world = self.best_.in_world;
         met.way = room.ways.size();
         room.ways.insert(room.ways.end(), self.way_.begin(), self.way_.end());

@@ -18,11 +18,12 @@
 
 namespace graftal {
 
-/// `Packet`: what is derived from this. `PlacesOf` says which parts are looked into, `Frame` is the packet's
-/// own. With `any`, whatever a ray meets first will do, and only that it meets something.
-template<Instructions instructions, typename Packet, typename PlacesOf, typename Frame>
+/// `Packet`: what is derived from this. `PlacesOf` says which parts are looked into, `FrameOf` is the
+/// packet's own frame. With `any`, whatever a ray meets first will do, and only that it meets something.
+template<Instructions instructions, typename Packet, typename PlacesOf, typename FrameOf>
 struct Traversal::PacketWalk : PlacesOf {
     using Entry = PacketRoom::Entry;
+    using Frame = FrameOf;
     using PlacesOf::model;
     using PlacesOf::self;
 

@@ -58,8 +58,6 @@ struct Traversal::PacketRoom {
         bool in_world = false;
         double turns = 1;
         std::uint32_t proxy_node = UINT32_MAX;
-        const TraceMesh::Colour* mesh_colour = nullptr;
-        double cell = 0;
         std::size_t way = 0, way_end = 0; ///< of `ways`
         std::size_t shown = no_ray;       ///< a ray of which it is known what is seen there
         static constexpr std::size_t no_ray = SIZE_MAX;

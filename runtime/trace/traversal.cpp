@@ -27,14 +27,16 @@ Instructions best_instructions() {
 namespace {
 
 /// Whether packets may go through a model that is not even: what a ray meets in it does not depend on how far
-/// it had come before. Through sets without area they may, but each ray meets specks of its own.
+/// it had come before. Shells reach out of the boxes of what they stand for, so that a ray which has met
+/// something may pass them by. Sets without area are left out because each ray meets specks of its own.
 bool goes_in_packets(const TraceModel& model) {
     const auto is_plain = [](const TraceNode& node) {
         return node.kind == TraceNode::Kind::parts || node.kind == TraceNode::Kind::run ||
                (node.kind == TraceNode::Kind::primitive && !is_endless(node));
     };
     const bool in_specks = model.projection.culls() && model.nodes[model.edges.front().child].faint;
-    return std::ranges::all_of(model.nodes, is_plain) && !model.is_content() && !in_specks;
+    return std::ranges::all_of(model.nodes, is_plain) && !model.has_shells && !model.is_content() &&
+           !in_specks;
 }
 
 } // namespace
@@ -46,8 +48,9 @@ Traversal::Traversal(const TraceModel& model, Instructions instructions)
     if (model.even) {
         even_frames_.resize(16);
         EvenPlaces{*this, model, {}}.find_root();
+    } else if (!goes_in_packets(model)) {
+        return;
     }
-    if (!model.even && !goes_in_packets(model)) return;
     packet_ = std::make_unique<PacketRoom>();
     if (model.even)
         packet_->even_frames.resize(16);

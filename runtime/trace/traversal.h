@@ -75,7 +75,7 @@ class Traversal final : public Surfaces {
     struct EvenPlaces; ///< which parts of an even model are looked into (traversal_even_places.h)
     template<Instructions instructions, bool any>
     struct EvenKernel; ///< through even models (traversal_even.h)
-    template<Instructions instructions, typename Packet, typename PlacesOf, typename Frame>
+    template<Instructions instructions, typename Packet, typename PlacesOf, typename FrameOf>
     struct PacketWalk;                                     ///< eight rays at once (traversal_packet.h)
     template<Instructions instructions> struct EvenPacket; ///< through even models (traversal_packet_even.h)
     template<Instructions instructions> struct TurnedPacket; ///< through others (traversal_packet_turned.h)

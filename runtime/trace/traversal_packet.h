@@ -18,11 +18,12 @@
 
 namespace graftal {
 
-/// `Packet`: what is derived from this. `PlacesOf` says which parts are looked into, `Frame` is the packet's
-/// own. With `any`, whatever a ray meets first will do, and only that it meets something.
-template<Instructions instructions, typename Packet, typename PlacesOf, typename Frame>
+/// `Packet`: what is derived from this. `PlacesOf` says which parts are looked into, `FrameOf` is the
+/// packet's own frame. With `any`, whatever a ray meets first will do, and only that it meets something.
+template<Instructions instructions, typename Packet, typename PlacesOf, typename FrameOf>
 struct Traversal::PacketWalk : PlacesOf {
     using Entry = PacketRoom::Entry;
+    using Frame = FrameOf;
     using PlacesOf::model;
     using PlacesOf::self;
 
@@ -388,8 +389,6 @@ struct Traversal::PacketWalk : PlacesOf {
         if (!met.is_upright) met.world_from_leaf = self.best_.world_from_leaf;
         met.turns = self.best_.turns;
         met.proxy_node = self.best_.proxy_node;
-        met.mesh_colour = self.best_.mesh_colour;
-        met.cell = self.best_.cell;
         met.in_world = self.best_.in_world;
         met.way = room.ways.size();
         room.ways.insert(room.ways.end(), self.way_.begin(), self.way_.end());

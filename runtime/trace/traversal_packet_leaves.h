@@ -8,8 +8,8 @@
 namespace graftal {
 
 /// As the primitive is met (cube.cpp), by rays that are parallel to no side.
-template<Instructions instructions, typename Packet, typename PlacesOf, typename Frame>
-GRAFTAL_INLINE auto Traversal::PacketWalk<instructions, Packet, PlacesOf, Frame>::cross_cube(
+template<Instructions instructions, typename Packet, typename PlacesOf, typename FrameOf>
+GRAFTAL_INLINE auto Traversal::PacketWalk<instructions, Packet, PlacesOf, FrameOf>::cross_cube(
     const Near& near, const Double4 (&inverse)[3]) -> Crossing {
     Double4 enter[3], leave[3];
     for (int axis = 0; axis < 3; ++axis) {
@@ -37,9 +37,9 @@ GRAFTAL_INLINE auto Traversal::PacketWalk<instructions, Packet, PlacesOf, Frame>
 }
 
 /// Likewise (triangle.cpp).
-template<Instructions instructions, typename Packet, typename PlacesOf, typename Frame>
+template<Instructions instructions, typename Packet, typename PlacesOf, typename FrameOf>
 GRAFTAL_INLINE auto
-Traversal::PacketWalk<instructions, Packet, PlacesOf, Frame>::cross_triangle(const Near& near) -> Crossing {
+Traversal::PacketWalk<instructions, Packet, PlacesOf, FrameOf>::cross_triangle(const Near& near) -> Crossing {
     constexpr double root3 = 1.7320508075688772;
     Crossing crossing;
     const Double4 t = -near.origin[2] / near.along[2];
@@ -52,16 +52,16 @@ Traversal::PacketWalk<instructions, Packet, PlacesOf, Frame>::cross_triangle(con
     return crossing;
 }
 
-template<Instructions instructions, typename Packet, typename PlacesOf, typename Frame>
+template<Instructions instructions, typename Packet, typename PlacesOf, typename FrameOf>
 GRAFTAL_INLINE void
-Traversal::PacketWalk<instructions, Packet, PlacesOf, Frame>::ready_range(Near& near, int half) const {
+Traversal::PacketWalk<instructions, Packet, PlacesOf, FrameOf>::ready_range(Near& near, int half) const {
     near.least = (least.half[half] - near.base) * near.speed;
     near.most = (best.half[half] - near.base) * near.speed;
 }
 
 /// As Kernel::meet_proxy().
-template<Instructions instructions, typename Packet, typename PlacesOf, typename Frame>
-GRAFTAL_INLINE bool Traversal::PacketWalk<instructions, Packet, PlacesOf, Frame>::meet_proxy(
+template<Instructions instructions, typename Packet, typename PlacesOf, typename FrameOf>
+GRAFTAL_INLINE bool Traversal::PacketWalk<instructions, Packet, PlacesOf, FrameOf>::meet_proxy(
     const TraceNode& node, Near (&near)[2], std::uint32_t mask) {
     const LaneMap& map = node.proxy_from_node;
     Crossing crossing[2];
@@ -88,9 +88,9 @@ GRAFTAL_INLINE bool Traversal::PacketWalk<instructions, Packet, PlacesOf, Frame>
 }
 
 /// As it is met (sphere.cpp), up to where that is known.
-template<Instructions instructions, typename Packet, typename PlacesOf, typename Frame>
+template<Instructions instructions, typename Packet, typename PlacesOf, typename FrameOf>
 GRAFTAL_INLINE std::uint32_t
-Traversal::PacketWalk<instructions, Packet, PlacesOf, Frame>::passing_sphere(const Near& near) {
+Traversal::PacketWalk<instructions, Packet, PlacesOf, FrameOf>::passing_sphere(const Near& near) {
     const auto dot = [](const Double4(&a)[3], const Double4(&b)[3])
                          GRAFTAL_INLINED_LAMBDA { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; };
     const Double4 middle = -dot(near.origin, near.along) / dot(near.along, near.along);
@@ -100,8 +100,8 @@ Traversal::PacketWalk<instructions, Packet, PlacesOf, Frame>::passing_sphere(con
     return bits_of<instructions>(1 - dot(point, point) < 0);
 }
 
-template<Instructions instructions, typename Packet, typename PlacesOf, typename Frame>
-GRAFTAL_INLINE auto Traversal::PacketWalk<instructions, Packet, PlacesOf, Frame>::cross_any(
+template<Instructions instructions, typename Packet, typename PlacesOf, typename FrameOf>
+GRAFTAL_INLINE auto Traversal::PacketWalk<instructions, Packet, PlacesOf, FrameOf>::cross_any(
     const Primitive& primitive, const Near& near, int half, std::uint32_t mask) const -> Crossing {
     Crossing crossing{};
     std::uint32_t may = bits_of<instructions>(near.is_map);
@@ -125,8 +125,8 @@ GRAFTAL_INLINE auto Traversal::PacketWalk<instructions, Packet, PlacesOf, Frame>
     return crossing;
 }
 
-template<Instructions instructions, typename Packet, typename PlacesOf, typename Frame>
-GRAFTAL_INLINE bool Traversal::PacketWalk<instructions, Packet, PlacesOf, Frame>::keep_crossings(
+template<Instructions instructions, typename Packet, typename PlacesOf, typename FrameOf>
+GRAFTAL_INLINE bool Traversal::PacketWalk<instructions, Packet, PlacesOf, FrameOf>::keep_crossings(
     const Near (&near)[2], const Crossing (&crossing)[2], std::uint32_t mask) {
     Double8 t;
     std::uint32_t hit = 0, close = 0;

@@ -2,8 +2,8 @@
 
 // Packets through models that turn or squeeze parts: every frame has the rays' directions there, and their
 // reciprocals. In some frames rays go into boxes by different sides; then every lane sorts its own. What
-// stands for sets without area, proxies and shells are met alone, from the packet's frame on. Only
-// traversal_packets.cpp includes this.
+// stands for sets without area is met alone, from the packet's frame on. Only traversal_packets.cpp includes
+// this.
 
 #include "compiler/primitives/texture_space.h"
 #include "runtime/trace/run_bodies.h"
@@ -140,7 +140,6 @@ struct Traversal::TurnedPacket
         const bool is_proxy = frame.cut && node.stop_tree == no_tree;
         if (is_proxy && (frame.faint || node.faint)) return Next::alone;
         if (frame.cut && frame.faint && node.speck_count > 0 && frame.flatness == 1) return Next::alone;
-        if (this->is_shell(node, frame)) return Next::alone;
         this->count(going);
         Near near[2];
         for (int i = 0; i < 2; ++i) {

@@ -102,8 +102,7 @@ void Traversal::show_packed(std::size_t lane, const Ray& ray, std::span<SurfaceH
     best_.is_upright = met.is_upright;
     if (!met.is_upright) best_.world_from_leaf = met.world_from_leaf;
     best_.proxy_node = met.proxy_node;
-    best_.mesh_colour = met.mesh_colour;
-    best_.cell = met.cell;
+    best_.mesh_colour = nullptr;
     best_.in_world = met.in_world;
     best_.crushed = false;
     if (met.shown != PacketRoom::Hit::no_ray) {
@@ -116,7 +115,7 @@ void Traversal::show_packed(std::size_t lane, const Ray& ray, std::span<SurfaceH
     const auto way = packet_->ways.begin();
     way_.assign(way + static_cast<std::ptrdiff_t>(met.way), way + static_cast<std::ptrdiff_t>(met.way_end));
     show_best(hits[lane]);
-    if (met.proxy_node == no_edge && !met.mesh_colour && !packet_->has_textures) met.shown = lane;
+    if (met.proxy_node == no_edge && !packet_->has_textures) met.shown = lane;
 }
 
 } // namespace graftal

@@ -73,10 +73,9 @@ void compare(Traversal& together, Traversal& alone, const Packet& rays, Tally& t
 }
 
 TEST(Packets, MeetWhatTheirRaysMeetAloneInScenes) {
-    for (const char* path :
-         {"scenes/abop/fig1_25.lsys", "scenes/hart/elm.inst", "scenes/plants/autumn.inst",
-          "scenes/plants/maple_1.lsys", "scenes/plants/grass.inst", "scenes/ifs/sierpinski_tetrahedron.rifs",
-          "tests/bench/models/turned_pound_sign.inst"}) {
+    for (const char* path : {"scenes/abop/fig1_25.lsys", "scenes/hart/elm.inst", "scenes/plants/autumn.inst",
+                             "scenes/plants/pine.inst", "scenes/plants/grass.inst",
+                             "scenes/ifs/menger_sponge.rifs", "tests/bench/models/turned_pound_sign.inst"}) {
         SCOPED_TRACE(path);
         const auto model = load(path);
         ASSERT_TRUE(model);

@@ -6,12 +6,14 @@
 #include <cstdint>
 #include <mutex>
 #include <numbers>
+#include <utility>
 #include <vector>
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
 #include "compiler/light/longitude.h"
+#include "compiler/support/angle.h"
 #include "compiler/support/check.h"
 
 namespace graftal {
@@ -125,15 +127,15 @@ struct Layer {
     Clouds clouds;
     double threshold;
     Rgb ambient;
-    glm::dvec2 turn;
+    std::pair<double, double> turn; ///< cosine and sine
 
     Layer(const SkyLight& over, const Clouds& what)
         : sky(over), clouds(what), threshold(threshold_of(what.cover)), ambient(over.on_paper()),
-          turn(std::cos(what.turn_deg * std::numbers::pi / 180),
-               std::sin(what.turn_deg * std::numbers::pi / 180)) {}
+          turn(cos_sin_deg(what.turn_deg)) {}
 
     glm::dvec2 turned(glm::dvec2 p) const {
-        return {turn.x * p.x - turn.y * p.y, turn.y * p.x + turn.x * p.y};
+        const auto [cosine, sine] = turn;
+        return {cosine * p.x - sine * p.y, sine * p.x + cosine * p.y};
     }
 
     /// Optical, straight upwards.

@@ -1,7 +1,7 @@
 #pragma once
 
 // Which parts of an even model rays look into, and where these lie in the world: that does not depend on the
-// rays. Only traversal.cpp includes this.
+// rays. Only traversal.cpp and traversal_packets.cpp include this.
 
 #include "runtime/trace/even_parts.h"
 #include "runtime/trace/traversal_kernel.h"
@@ -18,7 +18,7 @@ struct Traversal::EvenPlaces {
         return {vec3_of(node.ball_centre * splat(frame.entry) + frame.offset), frame.scale * radius};
     }
 
-    /// As Kernel::is_cut().
+    /// As Places::is_cut().
     GRAFTAL_INLINE bool is_cut(const TraceNode& node, const EvenPlace& frame, double least_detail) const {
         if (self.hurries_ && node.cullable) return true;
         double detail = INFINITY;
@@ -29,7 +29,7 @@ struct Traversal::EvenPlaces {
         return graftal::is_cut(node, frame.steps, detail);
     }
 
-    /// As Kernel::tree_of(), and what it finds. Where the node's reach is within its parent's, what is known
+    /// As Places::tree_of(), and what it finds. Where the node's reach is within its parent's, what is known
     /// of that often tells.
     GRAFTAL_INLINE std::uint32_t tree_of(const TraceNode& node, EvenPlace& frame, const EvenPart& part,
                                          const EvenPlace& parent) const {

@@ -75,9 +75,7 @@ struct Traversal::Places {
     /// Whether copies lie in each other in it so often that its shell is drawn.
     GRAFTAL_INLINE bool is_shell(const TraceNode& node, const Place& frame) const {
         if (!model.has_shells || frame.cut || !node.shell.any()) return false;
-        const double detail = 2 * frame.scale * node.ball_radius *
-                              model.projection.detail_per_unit(world_ball(node, frame, node.ball_radius));
-        return node.shell.has(detail);
+        return node.shell.has(detail_of(node, frame));
     }
 
     /// The parts that are farthest down, of those that are drawn for sure if none is cut; or what is drawn of

@@ -3,30 +3,17 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <functional>
-#include <numbers>
-#include <numeric>
-#include <span>
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
 #include "compiler/detail/congruence.h"
 #include "compiler/detail/ellipsoid_fit.h"
-#include "compiler/detail/shadow.h"
-#include "compiler/graph/walk.h"
+#include "compiler/detail/subtree_shadow.h"
 
 namespace graftal {
 
 namespace {
-
-using std::numbers::pi;
-
-/// How much is spent on a node.
-struct Effort {
-    std::size_t pieces;
-    int grid;
-};
 
 /// Parts of all subtrees together, and the least and most of one.
 constexpr std::size_t all_pieces = 50'000, fewest_pieces = 8, most_pieces = 192;
@@ -34,177 +21,15 @@ constexpr std::size_t all_pieces = 50'000, fewest_pieces = 8, most_pieces = 192;
 constexpr std::size_t most_edges = 10'000;
 /// With more nodes than this, shadows are taken along six directions.
 constexpr std::size_t many_nodes = 3000;
-constexpr int coarse_grid = 64, fine_grid = 128;
 constexpr std::size_t fine_factor = 12; ///< so many more parts to see what a cycle ends in
 constexpr int most_rounds = 10;
 /// Bodies that may be drawn for cycles, besides once for each node. Any scene of ours needs less than a
 /// tenth.
 constexpr std::uint64_t most_repeated_draws = 4'000'000;
-/// How much more a measurement may cost for a primitive of several bodies.
-constexpr std::size_t bodies_a_piece = 4;
-
-/// The axes of an icosahedron, then those of a dodecahedron, turned away from the coordinate axes and
-/// towards all sides alike.
-std::vector<Vec3> directions(std::size_t count) {
-    const double g = std::numbers::phi;
-    std::vector<Vec3> axes;
-    for (const double s : {1.0, -1.0})
-        axes.insert(axes.end(), {{0, s, g}, {g, 0, s}, {s, g, 0}});
-    for (const double s : {1.0, -1.0}) {
-        axes.insert(axes.end(), {{s, 1, 1}, {-s, s, -1}});
-        axes.insert(axes.end(), {{0, s / g, g}, {g, 0, s / g}, {s / g, g, 0}});
-    }
-    axes.resize(count);
-    const Affine turn = Affine::rotate({0.36, 0.48, 0.8}, 37);
-    double sign = 1;
-    for (Vec3& axis : axes) {
-        axis = sign * glm::normalize(turn(axis));
-        sign = -sign;
-    }
-    return axes;
-}
-
-/// A subtree's shadow. Areas are in squares of the ball's radius.
-struct Measured {
-    std::vector<double> area; ///< by direction
-    double mean = 0;
-    Vec3 centre{0.0};
-    std::vector<double> seen; ///< by edge
-};
-
-struct Part {
-    NodeId node = 0;
-    Affine place;
-    double scale = 1;
-    std::uint32_t edge = 0; ///< of the subtree's root, that it hangs on
-    std::optional<MaterialId> material;
-};
-
-/// Unfolds subtrees, largest parts first, and takes their shadows.
-class Measurer {
-  public:
-    Measurer(const CutGraph& cut, std::size_t direction_count)
-        : cut_(cut), directions_(directions(direction_count)), coarse_(coarse_grid), fine_(fine_grid) {}
-
-    const std::vector<Vec3>& along() const { return directions_; }
-    /// Bodies drawn so far: what all this costs.
-    std::uint64_t draws() const { return coarse_.bodies_drawn() + fine_.bodies_drawn(); }
-
-    Measured measure(NodeId node, const Effort& effort) {
-        unfold(node, effort.pieces);
-        place_bodies();
-        Measured result;
-        result.seen.assign(cut_.nodes[node].edges.size(), 0);
-        area_of_part_.assign(parts_.size(), 0);
-        Shadow& shadow = effort.grid == coarse_grid ? coarse_ : fine_;
-        const double square = 4.0 / (effort.grid * effort.grid);
-        for (const Vec3& direction : directions_) {
-            shadow.start(direction, cut_.nodes[node].ball);
-            result.area.push_back(square * draw(shadow, result.seen));
-            result.mean += result.area.back() / static_cast<double>(directions_.size());
-        }
-        const double sum = std::accumulate(area_of_part_.begin(), area_of_part_.end(), 0.0);
-        result.centre = cut_.nodes[node].ball.centre;
-        for (std::size_t i = 0; i < parts_.size() && sum > 0; ++i)
-            result.centre += area_of_part_[i] / sum * (bodies_[i].centre - cut_.nodes[node].ball.centre);
-        return result;
-    }
-
-  private:
-    struct Body {
-        Primitive primitive = PrimitiveKind::sphere;
-        Affine place;
-        Vec3 centre{0.0};
-    };
-
-    std::size_t bodies_of(const Part& part) const {
-        const auto& primitive = cut_.nodes[part.node].primitive;
-        return primitive && *primitive != PrimitiveKind::plane ? Shadow::bodies_of(*primitive) : 1;
-    }
-
-    bool opens(const Part& part) const { return !cut_.nodes[part.node].edges.empty(); }
-
-    void unfold(NodeId root, std::size_t most) {
-        parts_.clear();
-        std::size_t bodies = 0;
-        using Waiting = std::pair<double, std::int64_t>; // its size, and less its place among the parts
-        Walk<Waiting, std::less<>> largest;
-        const auto open = [&](const Part& parent, std::size_t reused) {
-            const std::vector<CutEdge>& edges = cut_.nodes[parent.node].edges;
-            for (std::uint32_t i = 0; i < edges.size(); ++i) {
-                const CutEdge& edge = edges[i];
-                Part part{edge.child, parent.place * edge.node_from_child, parent.scale * edge.stretch,
-                          reused == SIZE_MAX ? i : parent.edge,
-                          edge.material ? edge.material : parent.material};
-                const std::size_t at = i == 0 && reused != SIZE_MAX ? reused : parts_.size();
-                if (at == parts_.size()) parts_.emplace_back();
-                parts_[at] = part;
-                bodies += bodies_of(part);
-                // The earlier of two that are alike first.
-                if (opens(part))
-                    largest.push(
-                        {part.scale * cut_.nodes[part.node].ball.radius, -static_cast<std::int64_t>(at)});
-            }
-        };
-        open({root, {}, 1, 0, {}}, SIZE_MAX);
-        // A cycle of single instances would be opened for ever, and never make more parts.
-        Waiting next;
-        while (largest.visits() < 4 * most && bodies < bodies_a_piece * most && largest.next(next)) {
-            const auto at = static_cast<std::size_t>(-next.second);
-            const Part part = parts_[at];
-            if (parts_.size() + cut_.nodes[part.node].edges.size() <= most + 1) open(part, at);
-        }
-    }
-
-    void place_bodies() {
-        bodies_.clear();
-        for (const Part& part : parts_) {
-            const CutNode& node = cut_.nodes[part.node];
-            const Primitive primitive = node.primitive.value_or(PrimitiveKind::sphere);
-            bodies_.push_back(
-                {primitive,
-                 node.primitive ? part.place * solid_part(node, part) : part.place * node.node_from_proxy,
-                 part.place(node.primitive ? node.ball.centre : node.node_from_proxy.translation)});
-        }
-    }
-
-    /// Where the material's picture is clear a primitive throws no shadow: it is as much smaller.
-    Affine solid_part(const CutNode& primitive, const Part& part) const {
-        const double coverage = part.material ? cut_.materials[*part.material].coverage : 1;
-        if (coverage == 1) return {};
-        const Vec3 centre = primitive.ball.centre;
-        return Affine::translate(centre) * Affine::scale(Vec3(std::sqrt(coverage))) *
-               Affine::translate(-centre);
-    }
-
-    /// The area of the union: the sum of the parts' areas, which is exact, times the share of it that the
-    /// grid finds not to overlap. Good for what is much thinner than the grid, too.
-    double draw(Shadow& shadow, std::vector<double>& seen) {
-        order_.clear();
-        for (std::size_t i = 0; i < parts_.size(); ++i)
-            order_.emplace_back(shadow.depth(bodies_[i].centre), i);
-        std::sort(order_.begin(), order_.end());
-        double area = 0, samples = 0, uncovered = 0;
-        for (const auto& [depth, i] : order_) {
-            if (bodies_[i].primitive == PrimitiveKind::plane) continue;
-            const Shadow::Cover cover = shadow.draw(bodies_[i].primitive, bodies_[i].place);
-            area += cover.area;
-            samples += cover.samples;
-            uncovered += cover.uncovered;
-            area_of_part_[i] += cover.area;
-            seen[parts_[i].edge] += cover.area * (cover.samples > 0 ? cover.uncovered / cover.samples : 0.5);
-        }
-        return samples > 0 ? area * uncovered / samples : area;
-    }
-
-    const CutGraph& cut_;
-    std::vector<Vec3> directions_;
-    Shadow coarse_, fine_;
-    std::vector<Part> parts_;
-    std::vector<Body> bodies_;
-    std::vector<double> area_of_part_;
-    std::vector<std::pair<double, std::size_t>> order_;
-};
+/// Of growth_of_area(), about 1.
+constexpr double same_area = 1e-6;
+/// Of the shadow of the ellipsoid in a node's box, for what stands for the node to be full.
+constexpr double full_share = 0.5;
 
 /// Fits the groups of congruent nodes, masters first.
 class Fitter {
@@ -212,7 +37,7 @@ class Fitter {
     Fitter(CutGraph& cut, const Symmetry& symmetry, WorkMeter* meter)
         : cut_(cut), symmetry_(symmetry), congruence_(find_congruence(cut, symmetry)),
           members_(cut.nodes.size()), seen_(cut.nodes.size()), shadowless_(cut.nodes.size(), false),
-          meter_(meter) {
+          ends_full_(cut.nodes.size(), false), meter_(meter) {
         for (NodeId id = 0; id < cut.nodes.size(); ++id) {
             members_[congruence_.root[id]].push_back(id);
             box_half_.emplace_back();
@@ -230,7 +55,7 @@ class Fitter {
                 std::ranges::count_if(members, [&](NodeId id) { return wanted[id]; }));
         effort_.pieces =
             std::clamp(all_pieces / std::max<std::size_t>(groups, 1), fewest_pieces, most_pieces);
-        Measurer measurer(cut_, groups > many_nodes ? 6 : 16);
+        ShadowMeasurer measurer(cut_, groups > many_nodes ? 6 : 16);
         measurer_ = &measurer;
         const EllipsoidFit fit(measurer.along());
         fit_ = &fit;
@@ -245,8 +70,10 @@ class Fitter {
         }
         draws_ = measurer.draws();
         weigh_edges();
-        for (NodeId id = 0; id < cut_.nodes.size(); ++id)
-            cut_.nodes[id].shadowless = shadowless_[congruence_.root[id]];
+        for (NodeId id = 0; id < cut_.nodes.size(); ++id) {
+            const NodeId root = congruence_.root[id];
+            cut_.nodes[id].shadowless = shadowless_[root] && !ends_full_[root];
+        }
     }
 
     std::uint64_t draws() const { return draws_; }
@@ -294,9 +121,9 @@ class Fitter {
         return components;
     }
 
-    Measured measure(NodeId root, const Effort& effort) {
+    SubtreeShadow measure(NodeId root, const Effort& effort, bool ended = false) {
         const std::uint64_t before = measurer_->draws();
-        Measured measured = measurer_->measure(root, effort);
+        SubtreeShadow measured = measurer_->measure(root, effort, ended);
         if (meter_) meter_->add(measurer_->draws() - before);
         return measured;
     }
@@ -304,6 +131,10 @@ class Fitter {
     void fit_single(NodeId root) {
         if (cut_.nodes[root].unending && !reaches_area(root)) {
             shadowless_[root] = true;
+            ends_full_[root] =
+                ends_full(root) && std::ranges::all_of(cut_.nodes[root].edges, [&](const CutEdge& edge) {
+                    return ends_full_[congruence_.root[edge.child]];
+                });
             return;
         }
         take(root, measure(root, effort_), 1);
@@ -319,12 +150,28 @@ class Fitter {
         return false;
     }
 
+    /// Whether what is drawn of a shadowless node where it is cut covers about as much as its ellipsoid does:
+    /// a full terminal, say, not a line along it. A node that is not cullable is never cut itself.
+    bool ends_full(NodeId root) {
+        const CutNode& node = cut_.nodes[root];
+        if (!node.cullable) return true;
+        if (node.stop_edges.empty() || is_flat(node)) return false;
+        double area = 0;
+        for (const Vec3& direction : measurer_->along())
+            area += projected_area(node.node_from_proxy, direction);
+        area /= static_cast<double>(measurer_->along().size()) * node.ball.radius * node.ball.radius;
+        return measure(root, effort_, true).mean >= full_share * area;
+    }
+
     void fit_cycle() {
-        const bool grows = growth_of_area() > 1 + 1e-6;
+        const double growth = growth_of_area();
+        const bool grows = growth > 1 + same_area;
         if (!grows &&
             std::none_of(roots_.begin(), roots_.end(), [&](NodeId id) { return reaches_area(id); })) {
-            for (const NodeId root : roots_)
+            for (const NodeId root : roots_) {
                 shadowless_[root] = true;
+                ends_full_[root] = growth > 1 - same_area && ends_full(root);
+            }
             return;
         }
         const std::uint64_t begin = measurer_->draws();
@@ -345,7 +192,7 @@ class Fitter {
         for (int round = 0; round < most_rounds; ++round) {
             double change = 0;
             for (std::size_t i = 0; i < roots_.size(); ++i) {
-                const Measured measured = measure(roots_[i], effort_);
+                const SubtreeShadow measured = measure(roots_[i], effort_);
                 take(roots_[i], measured, 1);
                 change =
                     std::max(change, std::abs(measured.mean - mean[i]) / std::max(measured.mean, 1e-300));
@@ -364,20 +211,20 @@ class Fitter {
         const std::uint64_t rounds = allowed / std::max<std::uint64_t>(round_draws, 1) / 2;
         if (rounds < 4) return;
         Effort fine{std::min(fine_factor * effort_.pieces, fine_factor * all_pieces / (8 * roots_.size())),
-                    fine_grid};
+                    Effort::fine_grid};
         fine.pieces = std::clamp(fine.pieces, effort_.pieces, rounds * effort_.pieces);
         double limit = 0;
-        std::vector<Measured> measured;
+        std::vector<SubtreeShadow> measured;
         for (const NodeId root : roots_)
             measured.push_back(measure(root, fine));
-        for (const Measured& m : measured)
+        for (const SubtreeShadow& m : measured)
             limit += m.mean;
         const auto together = [&](double scale) {
             for (std::size_t i = 0; i < roots_.size(); ++i)
                 take(roots_[i], measured[i], scale);
             double sum = 0;
             for (const NodeId root : roots_)
-                sum += measure(root, {effort_.pieces, fine_grid}).mean;
+                sum += measure(root, {effort_.pieces, Effort::fine_grid}).mean;
             return sum;
         };
         double low = 0.5, high = 1.5;
@@ -416,7 +263,7 @@ class Fitter {
     }
 
     /// Makes what was measured the proxy of the root and of all that are congruent to it.
-    void take(NodeId root, const Measured& measured, double scale) {
+    void take(NodeId root, const SubtreeShadow& measured, double scale) {
         if (!(measured.mean > 0)) return;
         const Ball& ball = cut_.nodes[root].ball;
         Eigen::Matrix3d form = fit_->form(measured.area);
@@ -474,10 +321,11 @@ class Fitter {
     std::vector<Vec3> box_half_;               ///< by node
     std::vector<std::vector<double>> seen_;    ///< by node, then by edge
     std::vector<bool> shadowless_;             ///< by root
-    Effort effort_{most_pieces, coarse_grid};
+    std::vector<bool> ends_full_;              ///< by root: of shadowless sets of dimension 2
+    Effort effort_{most_pieces, Effort::coarse_grid};
     std::uint64_t draws_ = 0, repeated_draws_ = 0;
     std::vector<NodeId> roots_; ///< of the component under way
-    Measurer* measurer_ = nullptr;
+    ShadowMeasurer* measurer_ = nullptr;
     const EllipsoidFit* fit_ = nullptr;
     WorkMeter* meter_ = nullptr;
 };

@@ -18,7 +18,8 @@ namespace graftal {
 /// unless there are so many that it would take too long.
 /// Those that contract too fast for a shadow of their own (dimension <= 2, and no primitive on the way: see
 /// `shadowless`) keep the ellipsoid in their box: a part that is culled is drawn as large as the error, and
-/// lines stay visible.
+/// lines stay visible. Where a full terminal ends a set of dimension 2, it covers about as much at each
+/// level: it is drawn as it is, and its node is not marked.
 ///
 /// Returns how many bodies it drew, which is what it costs, and what the meter counts; null: nobody does.
 std::uint64_t fit_proxies(CutGraph& cut, const Symmetry& symmetry, WorkMeter* meter = nullptr);

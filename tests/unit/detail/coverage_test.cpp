@@ -231,6 +231,30 @@ TEST(Coverage, ASetWithoutAreaKeepsTheEllipsoidInItsBox) {
     }
 }
 
+/// As the graph, which has this terminal.
+Graph ended_by(Graph graph, const Primitive& kind, const Affine& place) {
+    const ObjectId terminal = graph.primitive(kind);
+    for (Object& object : graph.objects)
+        if (object.terminal) object.terminal = Instance{terminal, place, {}, {}, {}};
+    return graph;
+}
+
+// Found with Cycles: wider than what it stood for, the tetrahedron's picture was 14 of 255 too dark.
+TEST(Coverage, AFullTerminalOfDimensionTwoIsDrawnAsItIs) {
+    const Graph tetrahedron = test::gasket(true);
+    EXPECT_FALSE(fitted(tetrahedron).root().shadowless);
+    EXPECT_FALSE(fitted(ended_by(tetrahedron, PrimitiveKind::sphere, {})).root().shadowless);
+    const Affine line = Affine::scale({0.01, 1, 0.01});
+    EXPECT_TRUE(fitted(ended_by(tetrahedron, PrimitiveKind::cylinder, line)).root().shadowless) << "too thin";
+    EXPECT_TRUE(fitted(test::gasket(false)).root().shadowless) << "of dimension 1.58";
+    Graph dust = tetrahedron;
+    for (Instance& part : dust.objects[dust.root].instances)
+        part.parent_from_child = part.parent_from_child * Affine::scale(Vec3(0.9));
+    EXPECT_TRUE(fitted(dust).root().shadowless) << "of dimension 1.74";
+    const Affine tile = Affine::scale({1, 1, 0.01});
+    EXPECT_TRUE(fitted(ended_by(test::gasket(false), PrimitiveKind::cube, tile)).root().shadowless);
+}
+
 TEST(Coverage, ATreesTwigsAreWhatItsLimitCovers) {
     // A trunk and two crowns of 0.6 its size: the dimension is less than 2, the trunks have area.
     Graph graph;

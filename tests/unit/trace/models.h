@@ -45,13 +45,14 @@ inline std::unique_ptr<TraceModel> traced(const Graph& graph, const DetailOption
         view, options);
 }
 
-/// Four half-size copies of itself at the corners of a tetrahedron, to the limit; the leaf a ball.
-inline Graph tetrahedron() {
+/// Four copies of itself at the corners of a tetrahedron, to the limit; the leaf a ball. Where they are
+/// smaller than half of it, the set is dust.
+inline Graph tetrahedron(double scale = 0.5) {
     Graph graph = empty_graph();
     const ObjectId ball = graph.primitive(PrimitiveKind::sphere);
     const ObjectId self = graph.add({"self", {}, {}, {}, {}});
     for (const Vec3 corner : {Vec3(1, 1, 1), Vec3(1, -1, -1), Vec3(-1, 1, -1), Vec3(-1, -1, 1)})
-        place(graph, self, self, Affine::translate(0.5 * corner) * Affine::scale(Vec3(0.5)),
+        place(graph, self, self, Affine::translate(0.5 * corner) * Affine::scale(Vec3(scale)),
               {corner * 0.5 + 0.5, 0.5});
     graph.objects[self].terminal = Instance{ball, {}, {}, {}, {}};
     place(graph, graph.root, self, {});

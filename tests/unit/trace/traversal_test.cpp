@@ -85,22 +85,47 @@ TEST(Traversal, MeetsAPrimitiveThroughTwoInstances) {
 }
 
 TEST(Traversal, IsTheSameByAllInstructions) {
-    const auto model = traced(test::tetrahedron(), culled());
-    Traversal portable(*model, Instructions::portable), best(*model);
-    std::mt19937_64 random(3);
-    std::uniform_real_distribution<double> unit(-1, 1);
-    std::size_t hits = 0;
-    for (int i = 0; i < 20'000; ++i) {
-        const Ray ray{{unit(random), unit(random), 4}, {0.2 * unit(random), 0.2 * unit(random), -1}};
-        SurfaceHit a, b;
-        ASSERT_EQ(portable.closest(ray, {}, a), best.closest(ray, {}, b));
-        ASSERT_EQ(a.t, b.t);
-        ASSERT_EQ(a.normal, b.normal);
-        ASSERT_EQ(a.rgb, b.rgb);
-        hits += a.t > 0;
+    for (const double scale : {0.5, 0.45}) {
+        const auto model = traced(test::tetrahedron(scale), culled());
+        Traversal portable(*model, Instructions::portable), best(*model);
+        std::mt19937_64 random(3);
+        std::uniform_real_distribution<double> unit(-1, 1);
+        std::size_t hits = 0;
+        for (int i = 0; i < 20'000; ++i) {
+            const Ray ray{{unit(random), unit(random), 4}, {0.2 * unit(random), 0.2 * unit(random), -1}};
+            SurfaceHit a, b;
+            ASSERT_EQ(portable.closest(ray, {}, a), best.closest(ray, {}, b));
+            ASSERT_EQ(a.t, b.t);
+            ASSERT_EQ(a.normal, b.normal);
+            ASSERT_EQ(a.rgb, b.rgb);
+            hits += a.t > 0;
+        }
+        EXPECT_GT(hits, 1000u) << scale;
+        EXPECT_EQ(portable.visits(), best.visits());
     }
-    EXPECT_GT(hits, 1000u);
-    EXPECT_EQ(portable.visits(), best.visits());
+}
+
+// What is culled covers as much as what it stands for.
+TEST(Traversal, CoversWithoutSmallPartsWhatItCoversWithAll) {
+    DetailOptions all = exact(), some = culled();
+    all.steps = some.steps = 13;
+    Graph tetrahedron = test::tetrahedron();
+    for (Object& object : tetrahedron.objects)
+        if (object.terminal) object.terminal->parent_from_child = Affine::scale(Vec3(0.75)); // apart, then
+    const auto whole = traced(tetrahedron, all), cut = traced(tetrahedron, some);
+    Traversal exact_rays(*whole), cut_rays(*cut);
+    const Vec3 askew = glm::normalize(Vec3(0.31, 0.23, -1)); // along some directions its shadow is full
+    std::mt19937_64 random(7);
+    std::uniform_real_distribution<double> unit(-1, 1);
+    double hits = 0, all_hits = 0;
+    for (int i = 0; i < 20'000; ++i) {
+        const Vec3 aim{unit(random), unit(random), unit(random)};
+        const Ray ray{aim - 10.0 * askew, askew};
+        all_hits += exact_rays.meets_any(ray, {});
+        hits += cut_rays.meets_any(ray, {});
+    }
+    EXPECT_GT(all_hits, 1000);
+    EXPECT_NEAR(hits / all_hits, 1, 0.1);
 }
 
 TEST(Traversal, GoesAsDeepAsTheErrorAsks) {
@@ -282,10 +307,11 @@ TEST(Traversal, WorkCountsWhatIsLookedAtInTheWorld) {
 }
 
 TEST(Traversal, WorkCountsThePathToWhatIsSeen) {
-    const auto model = traced(test::tetrahedron(), culled());
+    const auto model = traced(test::tetrahedron(0.45), culled());
     Traversal traversal(*model);
     SurfaceHit hit;
-    ASSERT_TRUE(traversal.closest({{0.5, 0.5, 10}, {0, 0, -1}}, {}, hit));
+    const double tip = 0.5 / (1 - 0.45);
+    ASSERT_TRUE(traversal.closest({{tip, tip, 10}, {0, 0, -1}}, {}, hit));
     EXPECT_GE(traversal.work(), RayWork::part * traversal.visits() + RayWork::shaded * 6);
 }
 
@@ -307,7 +333,8 @@ TEST(Traversal, DrawsWhatIsHardlyProvedToContract) {
 }
 
 TEST(Traversal, SurvivesRaysAndModelsOfAllKinds) {
-    EXPECT_GT(shoot(*traced(test::tetrahedron(), culled()), 20'000), 1000u);
+    for (const double scale : {0.5, 0.45})
+        EXPECT_GT(shoot(*traced(test::tetrahedron(scale), culled()), 20'000), 1000u) << scale;
     Graph planes = empty_graph();
     place(planes, planes.root, planes.primitive(PrimitiveKind::plane), {});
     place(planes, planes.root, planes.primitive(PrimitiveKind::torus), Affine::translate({0, 3, 0}));

@@ -40,7 +40,7 @@ def measured(folder, seconds=300, **ask):
     server = http.server.ThreadingHTTPServer(('127.0.0.1', 0), lambda *words: Handler(*words, directory=folder))
     server.said, server.done = {'fault': f'no answer within {seconds} s'}, threading.Event()
     threading.Thread(target=server.serve_forever, daemon=True).start()
-    with tempfile.TemporaryDirectory() as profile:
+    with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as profile:  # it may still write there
         url = f'http://127.0.0.1:{server.server_port}/?{urllib.parse.urlencode(ask)}'
         browser = subprocess.Popen(['chromium', *FLAGS, f'--user-data-dir={profile}', '--remote-debugging-port=0', url],
                                    stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)

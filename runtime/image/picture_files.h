@@ -9,15 +9,11 @@
 
 namespace graftal {
 
-/// Pictures in files other than PNG (png_files.h), by OpenImageIO; image.h is the interface to use. The code
-/// lies in a module that image.cpp loads. Each function returns what went wrong, in words, or "".
+/// Reads pictures in files other than PNG (png_files.h), and writes GIF, by OpenImageIO; image.h is the
+/// interface to use. The code lies in a module that image.cpp loads. Each function returns what went wrong,
+/// in words, or "".
 struct PictureFiles {
     std::string (*read)(const std::string& path, RowSink& sink);
-    std::string (*write_exr)(const std::string& path, const Image& image, const ImageMetadata& metadata,
-                             const MoreChannels* more);
-    /// The same file of rows that come one after the other.
-    std::string (*write_exr_rows)(const std::string& path, const RowShape& shape, RowSource& rows,
-                                  const ImageMetadata& metadata);
     /// Pictures of one size as an animated GIF. `on_frame` is called before each; false gives up, with
     /// "interrupted".
     std::string (*write_gif)(const std::string& path, const std::vector<std::string>& frames,

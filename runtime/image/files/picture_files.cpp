@@ -174,77 +174,6 @@ std::string read(const std::string& path, RowSink& sink) {
     }
 }
 
-/// Adds the channels to those of the picture, and names them in the specification.
-std::vector<float> joined(const Image& image, const MoreChannels& more, OIIO::ImageSpec& spec) {
-    const auto own = static_cast<std::size_t>(image.channels), others = more.names.size();
-    spec.nchannels += static_cast<int>(others);
-    for (const std::string& name : more.names) {
-        if (name == "A") spec.alpha_channel = static_cast<int>(spec.channelnames.size());
-        if (name == "Z") spec.z_channel = static_cast<int>(spec.channelnames.size());
-        spec.channelnames.push_back(name);
-    }
-    std::vector<float> samples;
-    samples.reserve(spec.image_pixels() * (own + others));
-    for (std::size_t pixel = 0; pixel < spec.image_pixels(); ++pixel) {
-        const auto first = image.pixels.begin() + static_cast<std::ptrdiff_t>(pixel * own);
-        const auto other = more.samples.begin() + static_cast<std::ptrdiff_t>(pixel * others);
-        samples.insert(samples.end(), first, first + static_cast<std::ptrdiff_t>(own));
-        samples.insert(samples.end(), other, other + static_cast<std::ptrdiff_t>(others));
-    }
-    return samples;
-}
-
-void tag(OIIO::ImageSpec& spec, const char* name, const std::string& value) {
-    if (!value.empty()) spec.attribute(name, value);
-}
-
-OIIO::ImageSpec exr_spec(const RowShape& shape, const ImageMetadata& metadata) {
-    OIIO::ImageSpec spec(shape.width, shape.height, shape.channels, OIIO::TypeDesc::FLOAT);
-    spec.attribute("oiio:ColorSpace", "Linear"); // and colour belongs to alpha already, as EXR has it
-    spec.attribute("DateTime", ""); // else OpenImageIO writes the time, and no two files would be the same
-    tag(spec, "Software", metadata.software);
-    tag(spec, stamp_keyword, metadata.stamp);
-    tag(spec, "ImageDescription", metadata.description);
-    return spec;
-}
-
-std::string write_exr_rows(const std::string& path, const RowShape& shape, RowSource& rows,
-                           const ImageMetadata& metadata) {
-    const OIIO::ImageSpec spec = exr_spec(shape, metadata);
-    constexpr int band = 16; // rows that OpenEXR compresses together
-    const std::size_t row_samples =
-        static_cast<std::size_t>(shape.width) * static_cast<std::size_t>(shape.channels);
-    std::vector<float> samples(band * row_samples);
-    std::string problem;
-    const std::string error = write_checked(path, [&](OIIO::ImageOutput& output) {
-        if (!output.open(path, spec)) return false;
-        for (int y = 0; y < shape.height; y += band) {
-            const int end = std::min(y + band, shape.height);
-            for (int row = y; row < end && problem.empty(); ++row)
-                problem = rows.give(samples.data() + static_cast<std::size_t>(row - y) * row_samples);
-            if (!problem.empty() || !output.write_scanlines(y, end, 0, OIIO::TypeDesc::FLOAT, samples.data()))
-                return false;
-        }
-        return true;
-    });
-    return problem.empty() ? error : problem;
-}
-
-std::string write_exr(const std::string& path, const Image& image, const ImageMetadata& metadata,
-                      const MoreChannels* more) {
-    OIIO::ImageSpec spec = exr_spec({image.width, image.height, image.channels}, metadata);
-    std::vector<float> all;
-    if (more) {
-        all = joined(image, *more, spec);
-        for (const auto& [name, text] : more->tags)
-            tag(spec, name.c_str(), text);
-    }
-    const float* const samples = more ? all.data() : image.pixels.data();
-    return write_checked(path, [&](OIIO::ImageOutput& output) {
-        return output.open(path, spec) && output.write_image(OIIO::TypeDesc::FLOAT, samples);
-    });
-}
-
 /// Levels of a frame, three channels of 8 bit.
 std::string read_frame(const std::string& path, OIIO::ImageSpec& spec, std::vector<std::uint8_t>& levels) {
     const std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::open(path);
@@ -286,7 +215,6 @@ extern "C" const graftal::PictureFiles* graftal_picture_files() {
     // Pictures are small; a pool of threads would outlive main(), where leak checkers stumble over it.
     static const bool single_threaded = OIIO::attribute("threads", 1);
     static_cast<void>(single_threaded);
-    static constexpr graftal::PictureFiles files{graftal::read, graftal::write_exr, graftal::write_exr_rows,
-                                                 graftal::write_gif};
+    static constexpr graftal::PictureFiles files{graftal::read, graftal::write_gif};
     return &files;
 }

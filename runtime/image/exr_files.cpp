@@ -1,0 +1,190 @@
+#include "runtime/image/exr_files.h"
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdint>
+#include <cstdio>
+#include <cstring>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include <openexr.h>
+
+namespace graftal {
+
+namespace {
+
+/// The file that OpenEXR writes to. It keeps the first thing that goes wrong.
+class ExrFile {
+  public:
+    explicit ExrFile(const std::string& path) : file_(std::fopen(path.c_str(), "wb")) {
+        if (!file_) error_ = std::strerror(errno);
+        exr_context_initializer_t how = EXR_DEFAULT_CONTEXT_INITIALIZER;
+        how.user_data = this;
+        how.write_fn = &ExrFile::write;
+        how.error_handler_fn = [](exr_const_context_t, exr_result_t, const char*) {}; // else it prints
+        if (file_) check(exr_start_write(&context_, path.c_str(), EXR_WRITE_FILE_DIRECTLY, &how));
+    }
+    ~ExrFile() {
+        if (encodes_) exr_encoding_destroy(context_, &encoder_);
+        if (context_) exr_finish(&context_);
+        if (file_) std::fclose(file_);
+    }
+    ExrFile(const ExrFile&) = delete;
+    ExrFile& operator=(const ExrFile&) = delete;
+
+    bool ok() const { return error_.empty(); }
+
+    /// `channels`: by name, as a pixel has them together.
+    bool begin(int width, int height, std::span<const std::string> channels) {
+        if (!ok()) return false;
+        channels_ = channels;
+        width_ = width;
+        int part = 0;
+        check(exr_add_part(context_, nullptr, EXR_STORAGE_SCANLINE, &part));
+        check(exr_initialize_required_attr_simple(context_, 0, width, height, EXR_COMPRESSION_ZIP));
+        for (const std::string& name : channels)
+            check(exr_add_channel(context_, 0, name.c_str(), EXR_PIXEL_FLOAT, EXR_PERCEPTUALLY_LOGARITHMIC, 1,
+                                  1));
+        return ok();
+    }
+
+    void tag(const char* name, const std::string& text) {
+        if (ok() && !text.empty()) check(exr_attr_set_string(context_, 0, name, text.c_str()));
+    }
+
+    /// After the tags.
+    int rows_at_once() {
+        int rows = 1;
+        if (ok()) check(exr_write_header(context_));
+        if (ok()) check(exr_get_scanlines_per_chunk(context_, 0, &rows));
+        return rows;
+    }
+
+    /// So many rows, or those that are left at the bottom.
+    bool add(int y, const float* samples) {
+        exr_chunk_info_t chunk;
+        if (!ok() || !check(exr_write_scanline_chunk_info(context_, 0, y, &chunk))) return false;
+        const bool first = !std::exchange(encodes_, true);
+        check(first ? exr_encoding_initialize(context_, 0, &chunk, &encoder_)
+                    : exr_encoding_update(context_, 0, &chunk, &encoder_));
+        if (!ok()) return false;
+        for (exr_coding_channel_info_t& channel : std::span(encoder_.channels, channels_.size())) {
+            const auto at = std::ranges::find(channels_, channel.channel_name) - channels_.begin();
+            const auto pixel = static_cast<std::int32_t>(sizeof(float) * channels_.size());
+            channel.encode_from_ptr = reinterpret_cast<const std::uint8_t*>(samples + at);
+            channel.user_pixel_stride = pixel;
+            channel.user_line_stride = width_ * pixel;
+            channel.user_bytes_per_element = sizeof(float);
+            channel.user_data_type = EXR_PIXEL_FLOAT;
+        }
+        if (first) check(exr_encoding_choose_default_routines(context_, 0, &encoder_));
+        return ok() && check(exr_encoding_run(context_, 0, &encoder_));
+    }
+
+    /// What went wrong, or "".
+    std::string finish() {
+        if (std::exchange(encodes_, false)) exr_encoding_destroy(context_, &encoder_);
+        if (context_) check(exr_finish(&context_)); // writes where the chunks are
+        if (file_ && std::fclose(std::exchange(file_, nullptr)) != 0) note(errno);
+        return error_;
+    }
+
+  private:
+    static std::int64_t write(exr_const_context_t, void* self, const void* bytes, std::uint64_t count,
+                              std::uint64_t offset, exr_stream_error_func_ptr_t) {
+        ExrFile& file = *static_cast<ExrFile*>(self);
+        const bool is_there =
+            offset == file.offset_ || ::fseeko(file.file_, static_cast<off_t>(offset), SEEK_SET) == 0;
+        if (!is_there || std::fwrite(bytes, 1, count, file.file_) != count) {
+            file.note(errno);
+            return -1;
+        }
+        file.offset_ = offset + count;
+        return static_cast<std::int64_t>(count);
+    }
+
+    void note(int number) {
+        if (ok()) error_ = std::strerror(number ? number : EIO);
+    }
+
+    bool check(exr_result_t result) {
+        if (ok() && result != EXR_ERR_SUCCESS) error_ = exr_get_default_error_message(result);
+        return ok();
+    }
+
+    std::FILE* file_;
+    std::uint64_t offset_ = 0;
+    exr_context_t context_ = nullptr;
+    exr_encode_pipeline_t encoder_ = EXR_ENCODE_PIPELINE_INITIALIZER;
+    bool encodes_ = false;
+    std::span<const std::string> channels_;
+    int width_ = 0;
+    std::string error_;
+};
+
+/// As OpenEXR has them: grey is luminance.
+std::vector<std::string> names_of(int channels) {
+    if (channels <= 2)
+        return channels == 1 ? std::vector<std::string>{"Y"} : std::vector<std::string>{"Y", "A"};
+    std::vector<std::string> names{"R", "G", "B", "A"};
+    names.resize(static_cast<std::size_t>(channels));
+    return names;
+}
+
+void tag(ExrFile& file, const ImageMetadata& metadata) {
+    file.tag("Software", metadata.software);
+    file.tag("comments", metadata.description);
+    file.tag(stamp_keyword, metadata.stamp);
+}
+
+} // namespace
+
+std::string write_exr_rows(const std::string& path, const RowShape& shape, RowSource& rows,
+                           const ImageMetadata& metadata) {
+    ExrFile file(path);
+    const std::vector<std::string> names = names_of(shape.channels);
+    file.begin(shape.width, shape.height, names);
+    tag(file, metadata);
+    const int band = file.rows_at_once();
+    const std::size_t row_samples = static_cast<std::size_t>(shape.width) * names.size();
+    std::vector<float> samples(static_cast<std::size_t>(band) * row_samples);
+    for (int y = 0; y < shape.height && file.ok(); y += band) {
+        for (int row = y; row < std::min(y + band, shape.height); ++row) {
+            std::string problem = rows.give(samples.data() + static_cast<std::size_t>(row - y) * row_samples);
+            if (!problem.empty()) return problem;
+        }
+        file.add(y, samples.data());
+    }
+    return file.finish();
+}
+
+std::string write_exr(const std::string& path, const Image& image, const ImageMetadata& metadata,
+                      const MoreChannels* more) {
+    ExrFile file(path);
+    std::vector<std::string> names = names_of(image.channels);
+    const std::size_t own = names.size(), others = more ? more->names.size() : 0;
+    if (more) names.insert(names.end(), more->names.begin(), more->names.end());
+    file.begin(image.width, image.height, names);
+    tag(file, metadata);
+    if (more)
+        for (const auto& [name, text] : more->tags)
+            file.tag(name.c_str(), text);
+    const int band = file.rows_at_once();
+    const auto width = static_cast<std::size_t>(image.width);
+    std::vector<float> samples(static_cast<std::size_t>(band) * width * names.size());
+    for (int y = 0; y < image.height && file.ok(); y += band) {
+        float* to = samples.data();
+        const auto first = static_cast<std::size_t>(y) * width,
+                   end = static_cast<std::size_t>(std::min(y + band, image.height)) * width;
+        for (std::size_t pixel = first; pixel < end; ++pixel) {
+            to = std::copy_n(image.pixels.data() + pixel * own, own, to);
+            if (more) to = std::copy_n(more->samples.data() + pixel * others, others, to);
+        }
+        file.add(y, samples.data());
+    }
+    return file.finish();
+}
+
+} // namespace graftal

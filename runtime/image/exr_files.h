@@ -1,0 +1,18 @@
+#pragma once
+
+#include <string>
+
+#include "runtime/image/image.h"
+
+namespace graftal {
+
+/// Writes OpenEXR files of 32-bit floats, in scan lines that ZIP compresses sixteen at a time, by OpenEXR's
+/// core library; image.h is the interface to use. The bytes depend on the arguments only. Both return what
+/// went wrong, in words, or "".
+std::string write_exr(const std::string& path, const Image& image, const ImageMetadata& metadata,
+                      const MoreChannels* more);
+/// The same file of rows that come one after the other.
+std::string write_exr_rows(const std::string& path, const RowShape& shape, RowSource& rows,
+                           const ImageMetadata& metadata);
+
+} // namespace graftal

@@ -23,6 +23,7 @@ struct Material {
     double emission = 0;     ///< light of its own
     double metallic = 0;     ///< how much of its colour highlights and reflections take on
     double transparency = 0; ///< the share of light that goes straight in, and out again
+    double filter = 1;       ///< how much of its colour that takes on; 0: none, as behind a veil
     double ior = 1;          ///< index of refraction; above 1, the surface reflects by Fresnel's formula
     /// The path in scene units that leaves of white light the material's own rgb; 0: it is the surface that
     /// colours what goes through it.
@@ -40,6 +41,8 @@ struct Material {
     bool operator==(const Material& other) const;
 
     bool is_transparent() const { return transparency > 0; }
+    /// Whether it covers what is behind it by a share, and does nothing else to it.
+    bool is_veil() const { return is_transparent() && filter == 0 && !has_coat(); }
     /// Whether what it mirrors, or shows behind itself, is blurred.
     bool is_blurred() const { return blur > 0 && (reflection > 0 || is_transparent()); }
     /// Whether it has a clear coat, which reflects more the more a ray grazes it. What the coat reflects
@@ -67,6 +70,7 @@ inline constexpr FinishNumber finish_numbers[] = {
     {.name = "emission", .value = &Material::emission, .most = 1e6, .always = false},
     {.name = "metallic", .value = &Material::metallic, .always = false},
     {.name = "transparency", .value = &Material::transparency, .always = false},
+    {.name = "filter", .value = &Material::filter, .always = false},
     {.name = "ior", .value = &Material::ior, .most = 10, .least = 1, .always = false},
     {.name = "absorption", .value = &Material::absorption, .most = largest_size, .always = false},
     {.name = "blur", .value = &Material::blur, .always = false},

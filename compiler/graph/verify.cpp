@@ -130,6 +130,8 @@ class Verifier {
                 flaw(graph_.root, "material '{}' is a metal with an index of refraction", material.name);
             if (material.absorption > 0 && !material.is_transparent())
                 flaw(graph_.root, "material '{}' is opaque and absorbs", material.name);
+            if (material.filter != 1 && !material.is_transparent())
+                flaw(graph_.root, "material '{}' is opaque and has a filter", material.name);
             if (material.blur > 0 && !material.is_blurred())
                 flaw(graph_.root, "material '{}' has nothing to blur", material.name);
         }

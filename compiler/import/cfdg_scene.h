@@ -20,8 +20,9 @@ namespace graftal::cfdg {
 /// How far the smallest shapes lie in front of the largest: what a shape of scale s draws lies at lift * (1 -
 /// s).
 inline constexpr double lift = 0.02;
-/// Of one element of a rule over the one before.
-inline constexpr double lift_of_order = 1e-7;
+/// Of one element of a rule over the one before: both engines see one veil behind another from a hundred
+/// thousandth of a picture's size on.
+inline constexpr double lift_of_order = 1e-5;
 /// What a `z` of 1 is.
 inline constexpr double lift_of_z = 10;
 

@@ -434,7 +434,7 @@ void Unfolding::write_nodes() {
                 comment(words);
         line(fmt::format("canonical object {} {{", node.name), shape.span);
         ++depth_;
-        const double step = std::min(lift_of_order, 1e-5 / static_cast<double>(node.lines.size() + 1));
+        const double step = std::min(lift_of_order, 1e-3 / static_cast<double>(node.lines.size() + 1));
         std::size_t order = 0, drawn = 0;
         for (const Line& one : node.lines) {
             Affine map = one.map;

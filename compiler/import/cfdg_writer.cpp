@@ -141,13 +141,15 @@ void Writer::write_path(const Shape& shape, const std::string& name) {
     if (evaluator_.draws.drawn() > 0) return fail(shape.span, "this path draws random numbers");
     line(fmt::format("canonical object {} {{", name), shape.span);
     ++depth_;
+    // All of them below what lies in front of the path.
+    const double step = std::max(lift_of_order / static_cast<double>(parts->size() + 1), 1e-9);
     std::size_t order = 0;
     for (const PathPart& part : *parts) {
         Target target = first_target;
         const std::optional<std::string> inks = ink_text(part.change.colours, target);
         if (!inks) return fail(part.span, "this changes a colour away from another");
         Affine map = part.change.map;
-        map.translation.z += lift_of_order * static_cast<double>(order++);
+        map.translation.z += step * static_cast<double>(order++);
         for (const Polygon& polygon : part.polygons)
             line(fmt::format("{}{}  material: flat{}", polygon_text(polygon), moves_text(map), *inks),
                  part.span);

@@ -125,6 +125,9 @@ void lower_finish(const SceneFields& fields, Material& material) {
     if (!material.is_transparent() && fields.flag("absorption"))
         fields.error("absorption", "'absorption' colours what goes through; give 'transparency' as well");
     if (!material.is_transparent()) material.absorption = 0;
+    if (!material.is_transparent() && fields.flag("filter"))
+        fields.error("filter", "'filter' colours what goes through; give 'transparency' as well");
+    if (!material.is_transparent()) material.filter = 1;
     if (fields.flag("blur") && material.blur > 0 && !material.is_blurred())
         fields.error("blur",
                      "'blur' blurs what a surface mirrors or lets through; give 'reflection', 'ior' or "

@@ -63,7 +63,11 @@ std::string shine_text(const Material& m) {
 /// What a pigment says of light that goes through (optics.h).
 std::string clearness(const Material& m) {
     if (!m.is_transparent()) return {};
-    return (m.absorption > 0 ? "transmit " : "filter ") + number_text(m.transparency);
+    const double filter = m.absorption > 0 ? 0 : m.filter;
+    if (filter == 0) return "transmit " + number_text(m.transparency);
+    std::string text = "filter " + number_text(m.transparency * filter);
+    if (filter < 1) text += " transmit " + number_text(m.transparency * (1 - filter));
+    return text;
 }
 
 constexpr std::string_view clear_texture = "texture { pigment { rgbt 1 } finish { ";

@@ -53,7 +53,7 @@ const std::vector<FieldRule>& rules(Kind kind) {
         {"translucency", Shape::number}, {"emission", Shape::number},   {"texture", Shape::text},
         {"around", Shape::number},       {"metallic", Shape::number},   {"transparency", Shape::number},
         {"ior", Shape::number},          {"absorption", Shape::number}, {"from", Shape::name},
-        {"blur", Shape::number}};
+        {"blur", Shape::number},         {"filter", Shape::number}};
     static const std::vector<FieldRule> none;
     switch (kind) {
     case Kind::camera:

@@ -356,6 +356,10 @@ class GltfWriter {
         pbr.baseColorFactor = {plain.r, plain.g, plain.b, 1};
         const Material material = surface.material ? scene_.materials[*surface.material] : Material();
         const PbrMaterial look = pbr_of(material);
+        if (look.opacity < 1) {
+            pbr.baseColorFactor[3] = look.opacity;
+            made.alphaMode = "BLEND";
+        }
         pbr.metallicFactor = look.metallic;
         pbr.roughnessFactor = look.roughness;
         if (look.emission > 0) {
@@ -382,9 +386,9 @@ class GltfWriter {
             uses("KHR_materials_ior");
         }
         if (!material.texture.empty()) {
-            pbr.baseColorFactor = {1, 1, 1, 1};
+            pbr.baseColorFactor = {1, 1, 1, look.opacity};
             pbr.baseColorTexture.index = texture_of(*surface.material);
-            made.alphaMode = "MASK"; // at 1/2, as graftal's
+            if (look.opacity == 1) made.alphaMode = "MASK"; // at 1/2, as graftal's
         }
         model_.materials.push_back(std::move(made));
         return known->second;

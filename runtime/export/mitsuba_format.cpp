@@ -206,6 +206,11 @@ class MitsubaWriter {
                 "            <string name=\"filename\" value=\"{}\"/>\n        </texture>\n",
                 id, xml_text(picture));
             file_.text("        <bsdf type=\"twosided\">\n");
+        } else if (pbr.opacity < 1) {
+            file_.print(
+                "    <bsdf type=\"mask\" id=\"{}\">\n        <float name=\"opacity\" value=\"{}\"/>\n", id,
+                shortest(pbr.opacity));
+            file_.text("        <bsdf type=\"twosided\">\n");
         } else {
             file_.print("    <bsdf type=\"twosided\" id=\"{}\">\n", id);
         }
@@ -220,7 +225,7 @@ class MitsubaWriter {
             file_.print("            <float name=\"alpha\" value=\"{}\"/>\n",
                         shortest(std::max(alpha, 1e-3)));
         file_.text("        </bsdf>\n");
-        if (look.pictured) file_.text("        </bsdf>\n");
+        if (look.pictured || pbr.opacity < 1) file_.text("        </bsdf>\n");
         file_.text("    </bsdf>\n");
     }
 

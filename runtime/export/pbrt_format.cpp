@@ -55,6 +55,10 @@ class PbrtWriter {
     PictureCopies& pictures() { return pictures_; }
 
   private:
+    double opacity_of(const RendererLook& look) const {
+        return look.material ? pbr_of(renderer_.scene().materials[*look.material]).opacity : 1;
+    }
+
     void camera() {
         const View& view = job_.view;
         const Camera& eye = view.camera;
@@ -159,7 +163,10 @@ class PbrtWriter {
                 floats(surface.uv);
                 file_.text(" ]\n");
             }
-            if (renderer_.looks()[look].pictured) file_.print("  \"texture alpha\" [ \"alpha_{}\" ]\n", look);
+            if (renderer_.looks()[look].pictured)
+                file_.print("  \"texture alpha\" [ \"alpha_{}\" ]\n", look);
+            else if (const double opacity = opacity_of(renderer_.looks()[look]); opacity < 1)
+                file_.print("  \"float alpha\" [ {} ]\n", shortest(opacity));
             if (shines) file_.text("AttributeEnd\n");
         }
         file_.text("ObjectEnd\n");

@@ -163,7 +163,7 @@ class SvgWriter {
 
     void parts_of(std::size_t number) {
         const SeenNode at = nodes_[number];
-        std::string colour; // of the group that is open
+        std::string colour; // and clearness, of the group that is open
         const auto close = [&] {
             if (!colour.empty()) file_.text("</g>\n");
             colour.clear();
@@ -177,15 +177,24 @@ class SvgWriter {
                 file_.print("<use href=\"#n{}\" transform=\"{}\"/>\n", number_of({part.node, seen}), place);
                 continue;
             }
-            const std::string own = svg_colour(node.look.colour());
+            const std::string own = look_of(node.look);
             if (own != colour) {
                 close();
                 colour = own;
-                file_.print("<g color=\"{}\">\n", colour);
+                file_.print("<g {}>\n", colour);
             }
             file_.print("<use href=\"#s{}\" transform=\"{}\"/>\n", shape_number(*node.shape, seen), place);
         }
         close();
+    }
+
+    /// What a group of shapes says of its colour, and of how much of it covers what is behind.
+    std::string look_of(const SceneLook& look) const {
+        std::string text = fmt::format("color=\"{}\"", svg_colour(look.colour()));
+        const double clear = look.material ? scene_.materials[*look.material].transparency : 0;
+        if (clear > 0)
+            text += fmt::format(" fill-opacity=\"{0}\" stroke-opacity=\"{0}\"", svg_number(1 - clear));
+        return text;
     }
 
     const ExportedScene& scene_;

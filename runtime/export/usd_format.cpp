@@ -261,7 +261,8 @@ class UsdWriter {
                 line(fmt::format("color3f inputs:diffuseColor.connect = <{}/colour.outputs:result>", here));
             else
                 line("color3f inputs:diffuseColor = " + vector_text(colour));
-            if (look.transmission > 0) line("float inputs:opacity = " + float_text(1 - look.transmission));
+            const double opacity = look.opacity - look.transmission; // one of them says something
+            if (opacity < 1) line("float inputs:opacity = " + float_text(opacity));
         }
         line("float inputs:metallic = " + float_text(look.metallic));
         line("float inputs:roughness = " + float_text(look.roughness));

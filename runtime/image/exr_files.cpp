@@ -79,7 +79,11 @@ class ExrFile {
             channel.user_bytes_per_element = sizeof(float);
             channel.user_data_type = EXR_PIXEL_FLOAT;
         }
-        if (first) check(exr_encoding_choose_default_routines(context_, 0, &encoder_));
+        if (first && check(exr_encoding_choose_default_routines(context_, 0, &encoder_))) {
+            compress_ = encoder_.compress_fn;
+            encoder_.encoding_user_data = this;
+            encoder_.compress_fn = &ExrFile::compress;
+        }
         return ok() && check(exr_encoding_run(context_, 0, &encoder_));
     }
 
@@ -105,6 +109,15 @@ class ExrFile {
         return static_cast<std::int64_t>(count);
     }
 
+    /// What is not smaller is stored as it is, and readers tell it by its size; OpenEXR 3.1's core stores
+    /// what it compressed to that very size.
+    static exr_result_t compress(exr_encode_pipeline_t* encoder) {
+        const exr_result_t result = static_cast<ExrFile*>(encoder->encoding_user_data)->compress_(encoder);
+        if (result == EXR_ERR_SUCCESS && encoder->compressed_bytes == encoder->packed_bytes)
+            std::memcpy(encoder->compressed_buffer, encoder->packed_buffer, encoder->packed_bytes);
+        return result;
+    }
+
     void note(int number) {
         if (ok()) error_ = std::strerror(number ? number : EIO);
     }
@@ -118,6 +131,7 @@ class ExrFile {
     std::uint64_t offset_ = 0;
     exr_context_t context_ = nullptr;
     exr_encode_pipeline_t encoder_ = EXR_ENCODE_PIPELINE_INITIALIZER;
+    exr_result_t (*compress_)(exr_encode_pipeline_t*) = nullptr; ///< OpenEXR's
     bool encodes_ = false;
     std::span<const std::string> channels_;
     int width_ = 0;

@@ -17,7 +17,8 @@ inline constexpr double shadow_pixels = 1e-3;
 
 /// What a surface makes of white light on its way through. An interior that absorbs has the colour in itself.
 inline Rgb colour_of_pane(const Material& material, Rgb rgb) {
-    return material.transparency * (material.absorption > 0 ? Rgb(1.0) : rgb);
+    const double filter = material.absorption > 0 ? 0 : material.filter;
+    return material.transparency * (filter * rgb + Rgb(1 - filter));
 }
 
 inline double largest(Rgb rgb) {

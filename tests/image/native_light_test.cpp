@@ -72,7 +72,7 @@ const std::string glassware = R"(
                      transparency: 0.95 ior: 1.5 }
     material jade { color: 0.3, 0.8, 0.5 ambient: 0.1 diffuse: 0.5 specular: 0.3 transparency: 0.7
                     ior: 1.3 reflection: 0.8 absorption: 1.5 }
-    material film { color: 0.9, 0.5, 0.2 ambient: 0.1 diffuse: 0.6 transparency: 0.6 }
+    material film { color: 0.9, 0.5, 0.2 ambient: 0.1 diffuse: 0.6 transparency: 0.6 filter: 0.4 }
     material tile { ambient: 0.1 diffuse: 0.7 specular: 0 }
     object things {
         sphere translate: -1.3, 1.05, 0.4 material glass
@@ -321,7 +321,7 @@ const LitScene scenes[] = {
      false},
     {"PanesInARow", {130, 90}, on_magenta + R"(
         material pane { color: 0.9, 0.4, 0.3 ambient: 0.05 diffuse: 0.6 transparency: 0.8 reflection: 0.2 }
-        material gauze { transparency: 0.5 translucency: 0.3 diffuse: 0.4 specular: 0.4 }
+        material gauze { transparency: 0.5 filter: 0 translucency: 0.3 diffuse: 0.4 specular: 0.4 }
         material foil { color: 0.9, 0.8, 0.3 transparency: 0.4 metallic: 1 reflection: 0.6 }
         object things {
             triangle scale: 2 rotate: y, 20 translate: -1, 0, 0 material pane tint: 0.2, 0.7, 0.9, 0.7

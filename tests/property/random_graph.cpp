@@ -92,6 +92,7 @@ class Generator {
             if (material.ambient > 0.75) material.metallic = material.roughness;
             if (material.rgb.r < 0.25) material.transparency = material.rgb.g;
             if (material.is_transparent() && material.rgb.b < 0.5) material.absorption = 0.1 + material.rgb.b;
+            if (material.is_transparent() && material.rgb.b > 0.75) material.filter = 4 - 4 * material.rgb.b;
             if (material.rgb.g > 0.75 && material.reflection > 0) material.blur = material.roughness;
             graph_.materials.push_back(material);
         }

@@ -180,6 +180,21 @@ TEST(Formats, WriteTheSameBytesAgain) {
     }
 }
 
+TEST(Formats, CoverByTheShareOfAVeil) {
+    const std::map<std::string, std::string> says = {{"m.gltf", "\"alphaMode\": \"BLEND\""},
+                                                     {"m.usda", "float inputs:opacity = 0.25\n"},
+                                                     {"m.mtl", "d 0.25\n"},
+                                                     {"m.svg", "fill-opacity=\"0.25\""},
+                                                     {"m.xml", "<float name=\"opacity\" value=\"0.25\"/>"},
+                                                     {"m.pbrt", "\"float alpha\" [ 0.25 ]"}};
+    for (const auto& [name, text] : says) {
+        Exporting exporting("m.inst", "material veil { color: 1, 0, 0  transparency: 0.75  filter: 0 }\n"
+                                      "object m { cube scale: 1, 1, 0.001  material: veil }\n");
+        ASSERT_TRUE(exporting.to(name == "m.mtl" ? "m.obj" : name)) << name << exporting.said();
+        EXPECT_THAT(exporting.read(name), HasSubstr(text)) << name;
+    }
+}
+
 TEST(Formats, HoldModelsOfNothingButPlanes) {
     for (const ExportFormat& format : export_formats()) {
         Exporting exporting("m.inst", "object m { plane }\n");

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <optional>
 #include <string>
@@ -108,6 +109,29 @@ TEST(ContextFree, PathsBecomePolygons) {
     ASSERT_TRUE(model.graph) << model.said();
     EXPECT_THAT(model.translation, HasSubstr("instance: polygon(0, 0, 2, 0, "));
     EXPECT_EQ(model.leaves().size(), 2u);
+}
+
+// Found beside Context Free's pictures: parts of a path lay as high as the shape in front of it.
+TEST(ContextFree, APathLiesBelowWhatFollowsIt) {
+    const std::string square = "MOVETO(0, 0) LINETO(1, 0) LINETO(1, 1) CLOSEPOLY() FILL()[] ";
+    const ImportedShapes model("a.cfdg", "startshape A\nshape A { B [] SQUARE [] }\npath B { " + square +
+                                             square + square + "}");
+    ASSERT_TRUE(model.graph) << model.said();
+    std::vector<double> heights;
+    for (const UnfoldedLeaf& leaf : model.leaves())
+        heights.push_back(leaf.world_from_object.translation.z);
+    ASSERT_EQ(heights.size(), 4u);
+    std::ranges::sort(heights);
+    EXPECT_GE(heights[3] - heights[0], 1e-5) << "far enough for rays that come through a veil";
+    EXPECT_LT(heights[2] - heights[0], 0.9e-5);
+}
+
+TEST(ContextFree, AlphaCoversByAShare) {
+    const ImportedShapes model("a.cfdg", "startshape A\nshape A { SQUARE [a -0.5 sat 1 b 1] }");
+    ASSERT_TRUE(model.graph) << model.said();
+    const auto veil = std::ranges::find_if(model.graph->materials, &Material::is_veil);
+    ASSERT_NE(veil, model.graph->materials.end());
+    EXPECT_NEAR(veil->transparency, 0.5, 1e-9);
 }
 
 TEST(ContextFree, VariablesAndFunctions) {

@@ -110,7 +110,16 @@ TEST(Ink, AlphaMakesMaterialsSheer) {
     const InstModel model("material m { color: 1,1,1 transparency: 0.5 }\nobject a { instance: sphere "
                           "material: m ink: 1, 0, 0 ink { alpha 0.5 } }");
     ASSERT_TRUE(model.graph) << model.said();
-    EXPECT_NEAR(model.graph->materials[*model.root().instances[0].material].transparency, 0.75, 1e-9);
+    const Material& sheer = model.graph->materials[*model.root().instances[0].material];
+    EXPECT_NEAR(sheer.transparency, 0.75, 1e-9);
+    EXPECT_NEAR(sheer.filter, 0.25 / 0.75, 1e-9)
+        << "half goes by the surface, and half of the rest takes its colour";
+    const InstModel plain("object a { instance: sphere ink: 1, 0, 0 ink { alpha 0.25 } }");
+    ASSERT_TRUE(plain.graph) << plain.said();
+    EXPECT_TRUE(plain.graph->materials[*plain.root().instances[0].material].is_veil());
+    const InstModel full("object a { instance: sphere ink: 1, 0, 0 ink { alpha 0.999 } }");
+    ASSERT_TRUE(full.graph) << full.said();
+    EXPECT_EQ(full.graph->materials[*full.root().instances[0].material].filter, 1) << "rounded to all of it";
 }
 
 TEST(Ink, FaultsAreNamed) {

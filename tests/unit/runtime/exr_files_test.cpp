@@ -1,11 +1,14 @@
 #include "runtime/image/exr_files.h"
 
+#include <array>
 #include <bit>
 #include <cstdint>
 #include <fstream>
 #include <iterator>
 #include <random>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -54,6 +57,30 @@ TEST_F(ExrFiles, KeepEveryBit) {
             EXPECT_EQ(back.channels, channels);
             EXPECT_EQ(bits_of(back.pixels), bits_of(image.pixels));
         }
+}
+
+/// Small pictures of few values become about as large as they were.
+TEST_F(ExrFiles, KeepWhatCompressesToItsOwnSize) {
+    int of_own_size = 0;
+    for (int width = 1; width <= 12; ++width)
+        for (const int values : {2, 5, 16, 64}) {
+            Image image{width, 1, 3, {}};
+            for (int i = 0; i < 3 * width; ++i)
+                image.pixels.push_back(static_cast<float>(i * 7 % values) / 4);
+            ASSERT_EQ(write_exr(path("a.exr"), image, {}, nullptr), "");
+            Image back;
+            ASSERT_TRUE(read_image(path("a.exr"), back).ok());
+            ASSERT_EQ(back, image) << width << " " << values;
+            const std::string all = bytes("a.exr");
+            std::vector<std::array<char, 4>> planes; // blue first, as OpenEXR sorts them
+            for (const int channel : {2, 1, 0})
+                for (int x = 0; x < width; ++x)
+                    planes.push_back(std::bit_cast<std::array<char, 4>>(
+                        image.pixels[static_cast<std::size_t>(3 * x + channel)]));
+            const std::string raw(planes.front().data(), 4 * planes.size());
+            of_own_size += all.ends_with(raw);
+        }
+    EXPECT_GT(of_own_size, 0);
 }
 
 TEST_F(ExrFiles, AreTheSameByRows) {

@@ -116,6 +116,8 @@ def optics(draw, solid):
         fields.append(f'transparency: {number(draw.random())}')
         if solid and draw.chance(0.4):
             fields.append(f'absorption: {number(draw.log_uniform(0.01, 100))}')
+        elif draw.chance(0.5):
+            fields.append(f'filter: {number(draw.random())}')
     if any(field.startswith(('ior', 'transparency')) for field in fields) and draw.chance(0.3):
         fields.append(f'blur: {number(draw.random())}')
     return fields

@@ -153,7 +153,93 @@ void tag(ExrFile& file, const ImageMetadata& metadata) {
     file.tag(stamp_keyword, metadata.stamp);
 }
 
+class ExrReader {
+  public:
+    explicit ExrReader(const std::string& path) {
+        exr_context_initializer_t how = EXR_DEFAULT_CONTEXT_INITIALIZER;
+        how.error_handler_fn = [](exr_const_context_t, exr_result_t, const char*) {};
+        good_ = exr_start_read(&context_, path.c_str(), &how) == EXR_ERR_SUCCESS;
+    }
+    ~ExrReader() {
+        if (decodes_) exr_decoding_destroy(context_, &decoder_);
+        if (context_) exr_finish(&context_);
+    }
+    ExrReader(const ExrReader&) = delete;
+    ExrReader& operator=(const ExrReader&) = delete;
+
+    bool read(std::uint64_t most_samples, Image& image) {
+        if (!good_ || !is_plain()) return false;
+        exr_attr_box2i_t box;
+        std::int32_t band = 0;
+        if (!done(exr_get_data_window(context_, 0, &box)) ||
+            !done(exr_get_scanlines_per_chunk(context_, 0, &band)))
+            return false;
+        const std::int64_t width = std::int64_t{box.max.x} - box.min.x + 1,
+                           height = std::int64_t{box.max.y} - box.min.y + 1;
+        const auto channels = static_cast<std::int64_t>(names_.size());
+        if (width < 1 || height < 1 || width > most_side || height > most_side ||
+            static_cast<std::uint64_t>(width * height * channels) > most_samples)
+            return false;
+        image = {static_cast<int>(width), static_cast<int>(height), static_cast<int>(channels), {}};
+        image.pixels.resize(static_cast<std::size_t>(width * height * channels));
+        for (std::int64_t row = 0; row < height; row += band)
+            if (!read_rows(static_cast<int>(box.min.y + row),
+                           image.pixels.data() + static_cast<std::size_t>(row * width * channels), image))
+                return false;
+        return true;
+    }
+
+  private:
+    static constexpr std::int64_t most_side = 1 << 20;
+
+    static bool done(exr_result_t result) { return result == EXR_ERR_SUCCESS; }
+
+    bool is_plain() {
+        int parts = 0;
+        exr_storage_t storage = EXR_STORAGE_TILED;
+        const exr_attr_chlist_t* channels = nullptr;
+        if (!done(exr_get_count(context_, &parts)) || parts != 1 ||
+            !done(exr_get_storage(context_, 0, &storage)) || storage != EXR_STORAGE_SCANLINE ||
+            !done(exr_get_channels(context_, 0, &channels)) ||
+            (channels->num_channels != 3 && channels->num_channels != 4))
+            return false;
+        names_ = names_of(channels->num_channels);
+        return std::ranges::all_of(std::span(channels->entries, names_.size()), [&](const auto& entry) {
+            return std::ranges::count(names_, entry.name.str) == 1 && entry.x_sampling == 1 &&
+                   entry.y_sampling == 1 && entry.pixel_type != EXR_PIXEL_UINT;
+        });
+    }
+
+    bool read_rows(int y, float* samples, const Image& image) {
+        exr_chunk_info_t chunk;
+        if (!done(exr_read_scanline_chunk_info(context_, 0, y, &chunk))) return false;
+        const bool first = !std::exchange(decodes_, true);
+        if (!done(first ? exr_decoding_initialize(context_, 0, &chunk, &decoder_)
+                        : exr_decoding_update(context_, 0, &chunk, &decoder_)))
+            return false;
+        for (exr_coding_channel_info_t& channel : std::span(decoder_.channels, names_.size())) {
+            const auto at = std::ranges::find(names_, channel.channel_name) - names_.begin();
+            channel.decode_to_ptr = reinterpret_cast<std::uint8_t*>(samples + at);
+            channel.user_pixel_stride = static_cast<std::int32_t>(sizeof(float) * names_.size());
+            channel.user_line_stride = image.width * channel.user_pixel_stride;
+            channel.user_bytes_per_element = sizeof(float);
+            channel.user_data_type = EXR_PIXEL_FLOAT;
+        }
+        if (first && !done(exr_decoding_choose_default_routines(context_, 0, &decoder_))) return false;
+        return done(exr_decoding_run(context_, 0, &decoder_));
+    }
+
+    exr_context_t context_ = nullptr;
+    exr_decode_pipeline_t decoder_ = EXR_DECODE_PIPELINE_INITIALIZER;
+    bool good_ = false, decodes_ = false;
+    std::vector<std::string> names_; ///< of the channels, as Image has them
+};
+
 } // namespace
+
+bool read_povray_exr(const std::string& path, std::uint64_t most_samples, Image& image) {
+    return ExrReader(path).read(most_samples, image);
+}
 
 std::string write_exr_rows(const std::string& path, const RowShape& shape, RowSource& rows,
                            const ImageMetadata& metadata) {

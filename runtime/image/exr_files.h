@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <string>
 
 #include "runtime/image/image.h"
@@ -14,5 +15,10 @@ std::string write_exr(const std::string& path, const Image& image, const ImageMe
 /// The same file of rows that come one after the other.
 std::string write_exr_rows(const std::string& path, const RowShape& shape, RowSource& rows,
                            const ImageMetadata& metadata);
+
+/// Reads what POV-Ray leaves: scan lines of red, green and blue, alpha or not, not larger than
+/// `most_samples`. False for all else, which read_image() of image.h may know. For files that a program of
+/// ours made just now: a damaged one is better read by OpenEXR's larger library.
+bool read_povray_exr(const std::string& path, std::uint64_t most_samples, Image& image);
 
 } // namespace graftal

@@ -159,6 +159,11 @@ Status read_image(const std::string& path, Image& image) {
     return read_rows(path, sink);
 }
 
+Status read_povray_image(const std::string& path, Image& image) {
+    if (is_exr_name(path) && read_povray_exr(path, most_samples, image)) return {};
+    return read_image(path, image);
+}
+
 Status write_image(const std::string& path, const Image& image, SampleFormat format,
                    const ImageMetadata& metadata, const MoreChannels* more) {
     PendingFile pending(path);

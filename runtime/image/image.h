@@ -83,6 +83,9 @@ Status read_rows(const std::string& path, RowSink& sink);
 /// The same, all of it; refuses pictures of more than 2^28 samples (1 GiB).
 Status read_image(const std::string& path, Image& image);
 
+/// The same of a picture that POV-Ray has just made.
+Status read_povray_image(const std::string& path, Image& image);
+
 /// Gives the rows of a picture that outlives it.
 class ImageRows : public RowSource {
   public:

@@ -52,7 +52,7 @@ Status finish_picture(const PovrayJob& job, const RenderOptions& options, const 
                       const CancelFlag& cancel) {
     const std::string raw = job.directory + "/" + job.picture;
     Image image;
-    Status status = read_image(raw, image);
+    Status status = read_povray_image(raw, image);
     std::error_code ignored;
     std::filesystem::remove(raw, ignored);
     if (!status.ok()) return status;

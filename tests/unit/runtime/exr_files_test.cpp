@@ -83,6 +83,26 @@ TEST_F(ExrFiles, KeepWhatCompressesToItsOwnSize) {
     EXPECT_GT(of_own_size, 0);
 }
 
+TEST_F(ExrFiles, OfPovraysKindAreReadAsOpenImageIoReadsThem) {
+    for (const int channels : {3, 4})
+        for (const int height : {1, 16, 37}) {
+            const Image image = noise(19, height, channels);
+            ASSERT_EQ(write_exr(path("a.exr"), image, {}, nullptr), "");
+            Image back;
+            ASSERT_TRUE(read_povray_exr(path("a.exr"), 1 << 20, back));
+            EXPECT_EQ(bits_of(back.pixels), bits_of(image.pixels));
+            EXPECT_FALSE(read_povray_exr(path("a.exr"), 19u * height * channels - 1, back)) << "too large";
+        }
+    Image back;
+    ASSERT_EQ(write_exr(path("grey.exr"), noise(2, 2, 1), {}, nullptr), "");
+    EXPECT_FALSE(read_povray_exr(path("grey.exr"), 100, back));
+    std::ofstream(path("no.exr")) << "v/1\x01 this is none";
+    EXPECT_FALSE(read_povray_exr(path("no.exr"), 100, back));
+    EXPECT_FALSE(read_povray_exr(path("nowhere.exr"), 100, back));
+    std::ofstream(path("cut.exr"), std::ios::binary) << bytes("a.exr").substr(0, bytes("a.exr").size() / 2);
+    EXPECT_FALSE(read_povray_exr(path("cut.exr"), 1 << 20, back));
+}
+
 TEST_F(ExrFiles, AreTheSameByRows) {
     const ImageMetadata metadata{"graftal", "graftal render a.inst", "mark"};
     const Image image = noise(13, 37, 3);

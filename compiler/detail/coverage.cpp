@@ -9,6 +9,7 @@
 
 #include "compiler/detail/congruence.h"
 #include "compiler/detail/ellipsoid_fit.h"
+#include "compiler/detail/lit_colours.h"
 #include "compiler/detail/subtree_shadow.h"
 
 namespace graftal {
@@ -337,6 +338,7 @@ std::uint64_t fit_proxies(CutGraph& cut, const Symmetry& symmetry, WorkMeter* me
     fitter.run();
     set_mean_colours(cut);
     set_finishes(cut);
+    set_lit_colours(cut);
     return fitter.draws();
 }
 

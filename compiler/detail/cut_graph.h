@@ -57,6 +57,7 @@ struct CutNode {
     Ball ball;
     Affine node_from_proxy; ///< places the unit sphere: the ellipsoid in the node's box, until fit_proxies()
     MeanColour mean;
+    std::optional<MeanColour> lit;    ///< what its proxy shows in place of `mean`: see set_lit_colours()
     std::optional<MaterialId> finish; ///< of what is seen most in its limit; none: that it inherits
 };
 
@@ -68,6 +69,11 @@ struct CutGraph {
     bool tinted = false;     ///< some instance has a tint
     bool contractive = true; ///< every edge within a cycle has stretch < 1: products of stretches end
 };
+
+/// What stands for a node has it.
+inline const MeanColour& colour_of_proxy(const CutNode& node) {
+    return node.lit ? *node.lit : node.mean;
+}
 
 /// Every node once, and after the nodes it leads to except those that lead back to it.
 std::vector<NodeId> masters_first(const CutGraph& cut);

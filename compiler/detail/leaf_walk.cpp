@@ -59,7 +59,8 @@ bool LeafWalk::next(WalkedLeaf& leaf) {
             leaf.primitive = PrimitiveKind::sphere;
             leaf.representative_from_leaf = visit_.representative_from_node * shape.node_from_proxy;
             for (const Paint& paint : paints_)
-                leaf.colours.push_back(paint.tint.over(colours_of(paint).mean.over(paint.inherited)));
+                leaf.colours.push_back(
+                    paint.tint.over(colour_of_proxy(colours_of(paint)).over(paint.inherited)));
             leaf.culled_detail = detail <= 1 ? detail : 0;
             leaf.normals = normals();
             leaf.light_share = light_share(detail);

@@ -167,7 +167,7 @@ void PartRays::meet(const At& at, const Primitive& primitive, const Affine& worl
     if (any_) return;
     const CutNode& node = cut_.nodes[at.node];
     best_.material = proxy && node.finish ? node.finish : at.material;
-    best_.rgb = at.tint.over(proxy ? node.mean.over(at.inherited) : at.inherited);
+    best_.rgb = at.tint.over(proxy ? colour_of_proxy(node).over(at.inherited) : at.inherited);
     best_.normal = glm::normalize(glm::transpose(leaf_from_world.linear) * hit.normal);
     if (!proxy || !limit_normals_) return;
     NormalField field;

@@ -38,14 +38,6 @@ double mean_shadow(Vec3 half) {
     return pi * std::pow((ab + bc + ca) / 3, 1 / p);
 }
 
-/// Of a convex body too: of a cylinder, half of whose balls are seen.
-double mean_shadow(const RunItem& item) {
-    const double r = item.radius;
-    if (item.shape.is_sphere()) return pi * r * r;
-    const double middle = 0.5 * r * (1 + (item.ball ? 1 : item.shape.top_radius()));
-    return (2 * pi * middle * glm::length(item.axis) + (item.ball ? 4 : 2) * pi * middle * middle) / 4;
-}
-
 class RunCellBuilder {
   public:
     RunCellBuilder(CutGraph& cut, const std::shared_ptr<const RunSource>& source, const RunBounds& bounds,
@@ -149,6 +141,13 @@ class RunCellBuilder {
 };
 
 } // namespace
+
+double mean_shadow(const RunItem& item) {
+    const double r = item.radius;
+    if (item.shape.is_sphere()) return pi * r * r;
+    const double middle = 0.5 * r * (1 + (item.ball ? 1 : item.shape.top_radius()));
+    return (2 * pi * middle * glm::length(item.axis) + (item.ball ? 4 : 2) * pi * middle * middle) / 4;
+}
 
 CutEdge edge_to_body(const RunSource& source, const RunItem& item) {
     return edge_to(source, item, item.shape, run_from_body(item), glm::length(item.axis));

@@ -44,6 +44,10 @@ inline constexpr std::size_t cell_level = 1;
 CutEdge edge_to_body(const RunSource& source, const RunItem& item);
 CutEdge edge_to_ball(const RunSource& source, const RunItem& item);
 
+/// The mean over all directions of an item's shadow, its ball's with it: a quarter of the surface of a convex
+/// body. Of a cylinder half of whose balls are seen.
+double mean_shadow(const RunItem& item);
+
 /// Calls `visit` on the edges that a visit of the node follows, in their order (followed_edges()).
 template<typename Visit> void for_each_edge(const CutNode& node, bool cut, const Visit& visit) {
     if (!node.cell || cut) {

@@ -148,7 +148,7 @@ class Placing {
         if (node.finish) proxy.material = node.finish;
         proxy.faint = piece.faint || node.shadowless;
         place_primitive(PrimitiveKind::sphere, piece.world_from_node * node.node_from_proxy, proxy,
-                        node.mean.over(piece.inherited));
+                        colour_of_proxy(node).over(piece.inherited));
     }
 
     void place_primitive(const Primitive& primitive, const Affine& world_from_primitive, const Piece& piece,

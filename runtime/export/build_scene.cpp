@@ -275,7 +275,7 @@ class SceneBuilder {
         if (node.shadowless && width > 0)
             part.node_from_part = widened(PrimitiveKind::sphere, node.node_from_proxy, width);
         part.node = leaf(PrimitiveKind::sphere, errors * largest_stretch(part.node_from_part.linear));
-        scene_.nodes[id].mean = node.mean;
+        scene_.nodes[id].mean = colour_of_proxy(node);
         push_part(id, part);
     }
 
@@ -332,7 +332,7 @@ class SceneBuilder {
                 culls_ ? 2 * node.ball.radius * at.scale * errors : std::numeric_limits<double>::infinity();
             const bool cut = is_cut(node, at.steps, detail, detail_.error_world ? 0 : detail_.error_px);
             if (followed_edges(node, cut).empty() && cut) {
-                add(at, PrimitiveKind::sphere, at.place * node.node_from_proxy, node.mean);
+                add(at, PrimitiveKind::sphere, at.place * node.node_from_proxy, colour_of_proxy(node));
                 continue;
             }
             const std::size_t first = stack.size();

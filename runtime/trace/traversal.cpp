@@ -263,7 +263,7 @@ void Traversal::surface_at_best(SurfaceHit& hit) const {
         inherited = colour_of(texel(*material, way_.back(), best_.turns, best_.point));
     if (best_.proxy_node != no_edge) {
         const CutNode& stands_for = model_.source(best_.proxy_node);
-        inherited = stands_for.mean.over(inherited);
+        inherited = colour_of_proxy(stands_for).over(inherited);
         if (stands_for.finish) hit.material = &materials[*stands_for.finish];
     }
     hit.t = best_.t;

@@ -53,7 +53,7 @@ std::optional<std::vector<Leaf>> plain_unfolding(const TraceModel& model, std::s
             if (!add(*node.primitive, piece.world_from_node, piece.inherited)) return std::nullopt;
         } else if (edge_count(node, is_cut) == 0) {
             if (!add(PrimitiveKind::sphere, piece.world_from_node * node.node_from_proxy,
-                     node.mean.over(piece.inherited)))
+                     colour_of_proxy(node).over(piece.inherited)))
                 return std::nullopt;
         } else {
             for_each_edge(node, is_cut,

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "compiler/detail/cut_graph.h"
+#include "compiler/detail/lit_colours.h"
 
 namespace graftal {
 namespace {
@@ -57,6 +58,32 @@ TEST_F(Finishes, OfWhatMostlyInheritsAreNone) {
     EXPECT_EQ(finish(add({{solid, 2}, {solid, 1, leaf}})), std::nullopt);
     const NodeId plain = add({{solid, 1}});
     EXPECT_EQ(finish(add({{plain, 1, leaf}})), leaf);
+}
+
+// Found beside ABOP's Fig. 2.8a: bark looked too bright in what stood for leaves, which scatter more light.
+TEST_F(Finishes, ColoursCountByTheLightThatTheyScatter) {
+    cut.materials[bark] = {.rgb = {0.8, 0.2, 0}, .diffuse = 0.4};
+    cut.materials[leaf] = {.rgb = {0, 0.6, 0.1}, .diffuse = 0.8, .translucency = 0.2};
+    const NodeId twig = add({{solid, 1, bark}, {solid, 3, leaf}});
+    const NodeId tinted = add({{twig, 1}});
+    cut.nodes[tinted].edges.front().tint = PathTint{Rgb(0.3, 0, 0), 0.5};
+    const NodeId inheriting = add({{twig, 1}, {solid, 1}});
+    set_mean_colours(cut);
+    set_finishes(cut);
+    set_lit_colours(cut);
+    const auto expect = [&](NodeId node, Rgb colour, double open) {
+        ASSERT_TRUE(cut.nodes[node].lit);
+        for (int c = 0; c < 3; ++c)
+            EXPECT_NEAR(cut.nodes[node].lit->fixed[c], colour[c], 1e-9) << node << " " << c;
+        EXPECT_NEAR(cut.nodes[node].lit->open, open, 1e-9) << node;
+    };
+    // A quarter of it scatters 0.4 of its colour, the rest all; the leaf's finish all, too.
+    expect(twig, {0.25 * 0.4 * 0.8, 0.25 * 0.4 * 0.2 + 0.75 * 0.6, 0.75 * 0.1}, 0);
+    const double scatter = 0.25 * 0.4 + 0.75;
+    expect(tinted, {0.3 * scatter + 0.5 * 0.08, 0.5 * 0.47, 0.5 * 0.075}, 0);
+    EXPECT_EQ(cut.nodes[inheriting].finish, std::nullopt);
+    expect(inheriting, 0.5 * Rgb(0.08, 0.47, 0.075) / Material().diffuse, 0.5);
+    EXPECT_NEAR(cut.nodes[twig].mean.fixed.r, 0.2, 1e-9) << "the pigment's mean stays what it was";
 }
 
 TEST_F(Finishes, OfCyclesAreThoseOfTheLimit) {

@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 
+#include "compiler/inst/lower_scatter.h"
 #include "compiler/inst/variant_name.h"
 #include "compiler/lower/lower_transform.h"
 #include "compiler/support/hue.h"

@@ -23,6 +23,8 @@ constexpr int most_generations = 2000;
 constexpr std::size_t most_nodes = 60'000;
 constexpr std::size_t most_unfolded_lines = 600'000;
 constexpr std::size_t most_loop_turns = 2'000'000;
+/// Of all shapes together: each turn of a loop may add one to those before it.
+constexpr std::size_t most_colour_steps = 4'000'000;
 constexpr std::size_t longest_unfolding = 48'000'000;
 /// The share of the picture below which Context Free draws no shape: 0.3 pixels of 500.
 constexpr double too_small = 6e-4;
@@ -384,6 +386,9 @@ void Unfolding::place(const Element& element, const Surroundings& at, const Unde
     const std::optional<ShapeValue> shape = evaluator_.shape(element, at);
     const std::optional<Change> own = shape ? evaluator_.change(element.modification, at) : std::nullopt;
     if (!own) return;
+    colour_steps_ += under.change.colours.size();
+    if (colour_steps_ > most_colour_steps)
+        return fail(element.span, "the loops of this grammar change colours too often");
     Change change = under.change;
     change.add(*own);
     const auto found = grammar_.numbers.find(shape->name);

@@ -90,7 +90,7 @@ class Unfolding : private SceneWriter {
     std::priority_queue<std::pair<double, std::size_t>> open_; ///< by size
     Vec3 least_{1e300}, most_{-1e300};                         ///< of what is drawn
     double extent_ = 0;
-    std::size_t lines_ = 0, turns_ = 0, written_ = 0;
+    std::size_t lines_ = 0, turns_ = 0, colour_steps_ = 0, written_ = 0;
     bool full_ = false, fills_ = false, noted_ = false, drawn_ = false;
     std::uint64_t salt_ = 0; ///< of all random numbers
 };

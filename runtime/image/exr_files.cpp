@@ -37,8 +37,8 @@ class ExrFile {
     bool ok() const { return error_.empty(); }
 
     /// `channels`: by name, as a pixel has them together.
-    bool begin(int width, int height, std::span<const std::string> channels) {
-        if (!ok()) return false;
+    void begin(int width, int height, std::span<const std::string> channels) {
+        if (!ok()) return;
         channels_ = channels;
         width_ = width;
         int part = 0;
@@ -47,7 +47,6 @@ class ExrFile {
         for (const std::string& name : channels)
             check(exr_add_channel(context_, 0, name.c_str(), EXR_PIXEL_FLOAT, EXR_PERCEPTUALLY_LOGARITHMIC, 1,
                                   1));
-        return ok();
     }
 
     void tag(const char* name, const std::string& text) {
@@ -63,13 +62,13 @@ class ExrFile {
     }
 
     /// So many rows, or those that are left at the bottom.
-    bool add(int y, const float* samples) {
+    void add(int y, const float* samples) {
         exr_chunk_info_t chunk;
-        if (!ok() || !check(exr_write_scanline_chunk_info(context_, 0, y, &chunk))) return false;
+        if (!ok() || !check(exr_write_scanline_chunk_info(context_, 0, y, &chunk))) return;
         const bool first = !std::exchange(encodes_, true);
         check(first ? exr_encoding_initialize(context_, 0, &chunk, &encoder_)
                     : exr_encoding_update(context_, 0, &chunk, &encoder_));
-        if (!ok()) return false;
+        if (!ok()) return;
         for (exr_coding_channel_info_t& channel : std::span(encoder_.channels, channels_.size())) {
             const auto at = std::ranges::find(channels_, channel.channel_name) - channels_.begin();
             const auto pixel = static_cast<std::int32_t>(sizeof(float) * channels_.size());
@@ -84,7 +83,7 @@ class ExrFile {
             encoder_.encoding_user_data = this;
             encoder_.compress_fn = &ExrFile::compress;
         }
-        return ok() && check(exr_encoding_run(context_, 0, &encoder_));
+        if (ok()) check(exr_encoding_run(context_, 0, &encoder_));
     }
 
     /// What went wrong, or "".
@@ -147,10 +146,31 @@ std::vector<std::string> names_of(int channels) {
     return names;
 }
 
-void tag(ExrFile& file, const ImageMetadata& metadata) {
+/// `give_row`: fills in a row, and says what went wrong, or "".
+template<typename GiveRow>
+std::string write_bands(const std::string& path, int width, int height,
+                        const std::vector<std::string>& channels, const ImageMetadata& metadata,
+                        const std::vector<std::pair<std::string, std::string>>& tags,
+                        const GiveRow& give_row) {
+    ExrFile file(path);
+    file.begin(width, height, channels);
     file.tag("Software", metadata.software);
     file.tag("comments", metadata.description);
     file.tag(stamp_keyword, metadata.stamp);
+    for (const auto& [name, text] : tags)
+        file.tag(name.c_str(), text);
+    const int band = file.rows_at_once();
+    const std::size_t row_samples = static_cast<std::size_t>(width) * channels.size();
+    std::vector<float> samples(static_cast<std::size_t>(band) * row_samples);
+    for (int y = 0; y < height && file.ok(); y += band) {
+        for (int row = y; row < std::min(y + band, height); ++row) {
+            std::string problem =
+                give_row(row, samples.data() + static_cast<std::size_t>(row - y) * row_samples);
+            if (!problem.empty()) return problem;
+        }
+        file.add(y, samples.data());
+    }
+    return file.finish();
 }
 
 class ExrReader {
@@ -243,48 +263,26 @@ bool read_povray_exr(const std::string& path, std::uint64_t most_samples, Image&
 
 std::string write_exr_rows(const std::string& path, const RowShape& shape, RowSource& rows,
                            const ImageMetadata& metadata) {
-    ExrFile file(path);
-    const std::vector<std::string> names = names_of(shape.channels);
-    file.begin(shape.width, shape.height, names);
-    tag(file, metadata);
-    const int band = file.rows_at_once();
-    const std::size_t row_samples = static_cast<std::size_t>(shape.width) * names.size();
-    std::vector<float> samples(static_cast<std::size_t>(band) * row_samples);
-    for (int y = 0; y < shape.height && file.ok(); y += band) {
-        for (int row = y; row < std::min(y + band, shape.height); ++row) {
-            std::string problem = rows.give(samples.data() + static_cast<std::size_t>(row - y) * row_samples);
-            if (!problem.empty()) return problem;
-        }
-        file.add(y, samples.data());
-    }
-    return file.finish();
+    return write_bands(path, shape.width, shape.height, names_of(shape.channels), metadata, {},
+                       [&](int, float* to) { return rows.give(to); });
 }
 
 std::string write_exr(const std::string& path, const Image& image, const ImageMetadata& metadata,
                       const MoreChannels* more) {
-    ExrFile file(path);
+    static const MoreChannels none;
+    const MoreChannels& others = more ? *more : none;
     std::vector<std::string> names = names_of(image.channels);
-    const std::size_t own = names.size(), others = more ? more->names.size() : 0;
-    if (more) names.insert(names.end(), more->names.begin(), more->names.end());
-    file.begin(image.width, image.height, names);
-    tag(file, metadata);
-    if (more)
-        for (const auto& [name, text] : more->tags)
-            file.tag(name.c_str(), text);
-    const int band = file.rows_at_once();
+    const std::size_t own = names.size();
+    names.insert(names.end(), others.names.begin(), others.names.end());
     const auto width = static_cast<std::size_t>(image.width);
-    std::vector<float> samples(static_cast<std::size_t>(band) * width * names.size());
-    for (int y = 0; y < image.height && file.ok(); y += band) {
-        float* to = samples.data();
-        const auto first = static_cast<std::size_t>(y) * width,
-                   end = static_cast<std::size_t>(std::min(y + band, image.height)) * width;
-        for (std::size_t pixel = first; pixel < end; ++pixel) {
+    return write_bands(path, image.width, image.height, names, metadata, others.tags, [&](int y, float* to) {
+        const std::size_t first = static_cast<std::size_t>(y) * width;
+        for (std::size_t pixel = first; pixel < first + width; ++pixel) {
             to = std::copy_n(image.pixels.data() + pixel * own, own, to);
-            if (more) to = std::copy_n(more->samples.data() + pixel * others, others, to);
+            to = std::copy_n(others.samples.data() + pixel * others.names.size(), others.names.size(), to);
         }
-        file.add(y, samples.data());
-    }
-    return file.finish();
+        return std::string();
+    });
 }
 
 } // namespace graftal

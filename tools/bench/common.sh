@@ -57,6 +57,19 @@ need() {
         { echo "${0#"$root"/}: needs '$1', of the Debian package '$2'" >&2 && exit 3; }
 }
 
+# timed FILE COMMAND...: runs it, and writes its seconds of wall, its seconds of processors and its peak KiB into FILE. No
+# seconds are 0, since others are divided by them. Fails as the command does.
+timed() {
+    local file=$1 status=0 TIMEFORMAT='%3R %3U %3S' wall user system kib
+    shift
+    { time /usr/bin/time -q -o "$file" -f %M "$@" 2>&3; } 3>&2 2>"$file.seconds" || status=$?
+    read -r wall user system <"$file.seconds"
+    read -r kib <"$file"
+    awk -v w="$wall" -v c="$user" -v s="$system" -v k="$kib" \
+        'BEGIN { c += s; print (w ? w : 0.001), (c ? c : 0.001), k }' >"$file"
+    return $status
+}
+
 # publish PAGE PART [WORD...] <TABLE: shows the table; with --write puts it into that part of docs/PAGE.md, with --check
 # compares it. WORDs are those that make the command measure this part alone.
 publish() {

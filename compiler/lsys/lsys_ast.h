@@ -158,6 +158,7 @@ struct LsysBlock {
     std::optional<LsysValue> width;
     std::optional<LsysValue> thickness;
     std::optional<LsysValue> thinnest;
+    std::optional<LsysValue> taper;
     std::optional<LsysValue> seed;
     std::optional<LsysSteps> steps;
     std::optional<LsysContextFilter> filter;

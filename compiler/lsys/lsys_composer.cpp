@@ -27,10 +27,10 @@ double angle_between(Vec3 a, Vec3 b) {
 }
 
 void place_piece(Turtle& turtle, ModuleId piece, const TurtlePart& part, Span span, double snap) {
-    if (FoldedWord::is_branch(piece))
-        turtle.append_branch(part, span, {.snap = snap});
-    else
-        turtle.append(part, span, {.snap = snap});
+    if (!FoldedWord::is_branch(piece)) return turtle.append(part, span, {.snap = snap});
+    turtle.open_branch();
+    turtle.append_branch(part, span, {.snap = snap});
+    turtle.close_branch();
 }
 
 } // namespace
@@ -245,7 +245,10 @@ bool LsysComposer::advance(Task& task) {
 /// False if its part is missing, whose task is then the last.
 bool LsysComposer::draw_piece(Task& task, ModuleId piece) {
     double snap = 0;
+    const bool is_branch = FoldedWord::is_branch(piece);
+    if (is_branch) task.turtle.open_branch();
     TurtleState state = state_of(task.turtle, snap);
+    if (is_branch) task.turtle.close_branch();
     state.variant = variants_.child(task.start.variant, task.module, 0, task.at);
     if (const TurtlePart* part = parts_.find(piece, 0, state)) {
         place_piece(task.turtle, piece, *part, task.span, snap);

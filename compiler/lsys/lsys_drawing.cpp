@@ -140,6 +140,7 @@ class Drawer {
     TurtleContext turtle_context(TurtleBodies& bodies, Diagnostics& diagnostics, bool lines) const {
         TurtleContext context = graftal::turtle_context(grammar_, bodies, diagnostics);
         context.lines = lines;
+        context.taper = branch_taper(grammar_);
         return context;
     }
 
@@ -308,6 +309,7 @@ class Drawer {
         for (steps_ = first_limit_steps; steps_ <= last_limit_steps; steps_ *= 2) {
             Composition composition(*this, graph, pool, draws_lines(grammar_), models_);
             composition.turtle.limit = true;
+            if (composition.turtle.lines) composition.turtle.taper = 1; // they are as thick as they are long
             const std::optional<TurtlePart> part = composition.variant(0);
             if (composition.composer.gave_up()) break;
             if (!part) return std::nullopt;
@@ -342,6 +344,7 @@ class Drawer {
         ObjectPool pool(scratch);
         Composition composition(*this, scratch, pool, false, stand_ins(scratch));
         composition.turtle.tallies = true;
+        composition.turtle.taper = 1; // only lengths matter
         return composition.variant(0);
     }
 

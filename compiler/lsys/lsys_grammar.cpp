@@ -135,6 +135,8 @@ class GrammarBuilder {
         grammar_.width = size(block_.width, "width");
         grammar_.thickness = size(block_.thickness, "thickness");
         grammar_.thinnest = size(block_.thinnest, "thinnest").value_or(0);
+        grammar_.taper = setting(
+            block_.taper, [](double x) { return x > 0 && x <= 1; }, "taper", "be above 0 and at most 1");
         if (block_.thinnest && !block_.thickness)
             diagnostics_.error(block_.thinnest->span, "'thinnest' is the least width beside a 'thickness'");
         if (block_.width && block_.thickness)

@@ -23,7 +23,7 @@ void connect_tables(LsysBlock& block, const ExpressionTables& tables) {
             for (Expression& value : field.values)
                 connect(value);
     for (std::optional<LsysValue>* value :
-         {&block.angle, &block.step, &block.width, &block.thickness, &block.thinnest})
+         {&block.angle, &block.step, &block.width, &block.thickness, &block.thinnest, &block.taper})
         if (*value) connect((*value)->value);
     for (LsysEnvironment& statement : block.environment)
         for (Expression& number : statement.numbers)

@@ -13,6 +13,12 @@ bool draws_lines(const LsysGrammar& grammar);
 /// Whether the width that the turtle starts with depends on the figure.
 bool has_open_width(const LsysGrammar& grammar);
 
+/// By so much the width is multiplied where a branch begins. Of a plant drawn in lines, twigs are finer than
+/// the trunk. It is taken for a plant if it has branches, and its axiom has none: what is put together
+/// around a point, as tilings are, has lines of one width. So has what has polygons, and segments of several
+/// lengths: each would come in several widths too.
+double branch_taper(const LsysGrammar& grammar);
+
 /// The width, or the thickness, that the turtle starts with, if it is not open; else one to go on with until
 /// the figure is known.
 double stated_width(const LsysGrammar& grammar);

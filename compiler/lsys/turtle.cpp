@@ -333,6 +333,7 @@ void Turtle::open_branch() {
     branches_.push_back({start_from_turtle_, state_, writes_, error_, sensitivity_, way_, size_shift_,
                          unit_shift_, width_error_, scale_, second_, mirrored_, width_source_,
                          polygons_.size()});
+    if (context_.taper < 1) taper();
 }
 
 void Turtle::close_branch() {

@@ -95,6 +95,7 @@ struct TurtleContext {
     bool varies_step = false;    ///< symbols multiply it
     bool relative_width = false; ///< widths are per length
     double thinnest = 0;         ///< then the least
+    double taper = 1;            ///< of the width, where a branch begins
     bool varies_angle = false;   ///< symbols multiply it
     bool reverses_turns = false;
     bool two_headings = false;             ///< symbols exchange them
@@ -136,6 +137,10 @@ class Turtle {
     void append(const TurtlePart& part, Span span, const Placing& placing = {});
     /// The same, but the turtle stays as it is: a branch.
     void append_branch(const TurtlePart& part, Span span, const Placing& placing = {});
+
+    /// Begins and ends a branch, as `[` and `]` do.
+    void open_branch();
+    void close_branch();
 
     /// Notes that what is drawn depends on state().variant.
     void read_variant() { note(reads_variant); }
@@ -198,6 +203,7 @@ class Turtle {
     bool head_to(std::span<const double> parameters, Span span);
     void turn_to(Vec3 heading);
     bool widen(double by, Span span);
+    void taper();
     bool widen_by(double factor, Span span);
     bool multiply_angle(double factor, Span span);
     double sense();
@@ -219,8 +225,6 @@ class Turtle {
     void take_exit_width(const TurtlePart& part, const Placing& placing);
     void set_colour(std::span<const double> parameters, int step);
     void cut();
-    void open_branch();
-    void close_branch();
     void close_polygon(int colour, Span span);
     void record_vertex(Vec3 vertex);
     void append_polygons(const TurtlePart& part, double scale, Span span);

@@ -69,6 +69,14 @@ bool Turtle::scale_by(double factor, bool written_too, Span span) {
     return false;
 }
 
+void Turtle::taper() {
+    note(reads_tapers);
+    if (state_.tapers == most_tapers) return;
+    ++state_.tapers;
+    state_.width = at_least_size(context_.taper * read_width());
+    writes_ |= reads_width | reads_tapers;
+}
+
 bool Turtle::widen_by(double factor, Span span) {
     const double width = factor * read_width();
     if (factor >= 0 && width <= largest_size) {

@@ -25,6 +25,7 @@ TurtleState scaled(TurtleState state, double factor) {
 
 bool equal(const TurtleState& a, const TurtleState& b, TurtleStateMask mask) {
     return (!(mask & reads_width) || a.width == b.width) &&
+           (!(mask & reads_tapers) || a.tapers == b.tapers) &&
            (!(mask & reads_colour) || a.colour == b.colour) &&
            (!(mask & reads_elasticity) || a.elasticity == b.elasticity) &&
            (!(mask & reads_tropism) || a.tropism == b.tropism) &&
@@ -48,6 +49,7 @@ bool equal(const TurtleState& a, const TurtleState& b, TurtleStateMask mask) {
 std::uint64_t hash(const TurtleState& state, TurtleStateMask mask) {
     std::uint64_t hash = mask;
     if (mask & reads_width) hash = mixed_number(hash, state.width);
+    if (mask & reads_tapers) hash = mixed(hash, state.tapers);
     if (mask & reads_colour) hash = mixed(hash, static_cast<std::uint64_t>(state.colour));
     if (mask & reads_elasticity) hash = mixed_number(hash, state.elasticity);
     if (mask & reads_tropism) hash = mixed_vector(hash, state.tropism);

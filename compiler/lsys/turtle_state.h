@@ -18,10 +18,11 @@ using Quat = glm::dquat;
 /// comes in. Directions are given in the frame that the part starts in.
 struct TurtleState {
     double width = 0;
-    int colour = 0;        ///< a place in the palette: what is counted goes around it
-    double elasticity = 0; ///< of tropism
-    Vec3 tropism{0.0};     ///< unit vector that segments bend towards
-    Vec3 vertical{0.0};    ///< unit vector that `$` looks at
+    std::uint8_t tapers = 0; ///< of its branch and those that this leaves, at most most_tapers
+    int colour = 0;          ///< a place in the palette: what is counted goes around it
+    double elasticity = 0;   ///< of tropism
+    Vec3 tropism{0.0};       ///< unit vector that segments bend towards
+    Vec3 vertical{0.0};      ///< unit vector that `$` looks at
     std::uint32_t open_polygons = 0;
     bool in_cylinder = false; ///< a generalised one
     Vec3 control_point{0.0};  ///< its last, in the frame of the start
@@ -35,6 +36,10 @@ struct TurtleState {
     Quat second = Quat(1, 0, 0, 0);           ///< the second axes, from those of the turtle
     std::shared_ptr<const TurtleFrame> frame; ///< the world; null where no symbol asks for it
 };
+
+/// Branches of branches become finer so many times: after these they are too fine for one to see a
+/// difference, and parts of a long derivation would come in too many widths.
+inline constexpr std::uint8_t most_tapers = 12;
 
 /// The members of a TurtleState, as a set.
 using TurtleStateMask = std::uint32_t;
@@ -58,6 +63,7 @@ enum TurtleStateBit : TurtleStateMask {
     reads_tropisms = 65536, ///< all but the first
     reads_axes = 131072,    ///< of the world
     reads_origin = 262144,  ///< and its unit
+    reads_tapers = 524288,
 };
 
 /// The same in a frame in which all is this many times as long.

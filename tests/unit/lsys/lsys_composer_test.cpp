@@ -67,6 +67,9 @@ std::vector<GrowingModel> growing_models() {
         {"decomposed", lsys_block("axiom A\nA -> I(5)[+A]A\ndecompose I(n) : n > 0 -> F(n)+(n)I(n-1)"), 5},
         {"cut", lsys_block("axiom A\nA -> F[+A]F[-A]B\nB -> FF%FA"), 5},
         {"branch that is cut", lsys_block("axiom A\nA -> F[+AB]-A\nB -> %"), 6},
+        {"twigs finer than branches",
+         lsys_block("taper 0.8\nangle 25\naxiom X\nX -> F[+X[-F]]F[-!X]X\nF -> FF"), 5},
+        {"finer only so many times", lsys_block("taper 0.8\nangle 25\naxiom X\nX -> [+X]F"), 16},
         {"nothing alike",
          lsys_block("axiom A(1)\nA(x) -> F(x)[+(x)A(x*0.93+0.11)]\\(x*7)^(3)F(x/3)A(x*0.81+0.2)"), 8},
     };
@@ -111,6 +114,25 @@ void expect_same_area(const Figure& wanted, const Graph& graph, const std::strin
     for (const auto& [a, b, c] : Unfolding(graph).triangles)
         in_triangles += area({a, b, c});
     EXPECT_LE(glm::distance(in_triangles, in_polygons), 1e-9 * size) << what;
+}
+
+/// Of all segments, the greatest over the least.
+double range_of_widths(const std::string& statements, unsigned steps) {
+    const CompiledLsys compiled(statements, steps);
+    const std::vector<Stroke> strokes = Unfolding(compiled.graph).strokes;
+    const auto [least, most] = std::ranges::minmax_element(strokes, {}, &Stroke::width);
+    return most->width / least->width;
+}
+
+TEST(LsysComposer, drawsPlantsInLinesWhoseTwigsAreFine) {
+    const std::string plant = "angle 25\naxiom X\nX -> F[+X][-X]FX\nF -> FF";
+    EXPECT_NEAR(range_of_widths(plant, 3), std::pow(0.85, -2), 1e-9); // the last X draw nothing
+    EXPECT_NEAR(range_of_widths("taper 0.5\n" + plant, 3), 4, 1e-9);
+    EXPECT_NEAR(range_of_widths("taper 1\n" + plant, 3), 1, 1e-9);
+    EXPECT_NEAR(range_of_widths("width 0.1\n" + plant, 3), 1, 1e-9);
+    EXPECT_NEAR(range_of_widths("angle 36\naxiom [X]+[X]\nX -> F[+X]F", 3), 1, 1e-9);    // a tiling
+    EXPECT_NEAR(range_of_widths("axiom X(1)\nX(s) -> F(s)[+X(s/2)]F(s/3)", 3), 1, 1e-9); // of lengths
+    EXPECT_NEAR(range_of_widths("axiom X\nX -> F[+{.f.+f.}X]F", 3), 1, 1e-9);            // of leaves
 }
 
 TEST(LsysComposer, drawsWhatThePlainTurtleDraws) {
@@ -175,11 +197,12 @@ std::string random_statements(std::mt19937& random) {
         }
         return out + std::string(open, ']');
     };
-    return fmt::format("width 0.25\nangle {}\ntropism {},-1,0\naxiom {}F{}\nA(x,y) : y < 3 -> {}\nA(x,y) -> "
-                       "{}\nB(x,y) -> {}\n"
-                       "F(x) : x > 0.9 -> F(x/2)F(x/3)",
-                       pick({"90", "60", "25.7", "22.5"}), number(-1, 1), bends ? "T(0.1)" : "",
-                       string(false), string(true), string(true), string(true));
+    return fmt::format(
+        "width 0.25\ntaper {}\nangle {}\ntropism {},-1,0\naxiom {}F{}\nA(x,y) : y < 3 -> {}\nA(x,y) -> "
+        "{}\nB(x,y) -> {}\n"
+        "F(x) : x > 0.9 -> F(x/2)F(x/3)",
+        pick({"1", "0.7"}), pick({"90", "60", "25.7", "22.5"}), number(-1, 1), bends ? "T(0.1)" : "",
+        string(false), string(true), string(true), string(true));
 }
 
 TEST(LsysComposer, drawsRandomModels) {

@@ -51,6 +51,7 @@ class PlainTurtle {
         double width = 0;
         int colour = 0;
         double elasticity = 0;
+        int tapers = 0;
     };
 
     static void rotate(Vec3& a, Vec3& b, double angle_deg) { // a towards b
@@ -116,6 +117,7 @@ class PlainTurtle {
             break;
         case '[':
             stack_.push_back(now_);
+            if (now_.tapers++ < 12) now_.width *= grammar_.taper.value_or(1);
             break;
         case ']':
             now_ = stack_.back(), stack_.pop_back();

@@ -49,13 +49,15 @@ class Outline {
 
     /// Until the piece that reaches farthest is small.
     void unfold_towards(Vec3 direction) {
+        std::vector<double> reaches; // of the pieces
         for (int step = 0; step < most_steps_a_direction && !pieces_.empty(); ++step) {
-            const auto farthest =
-                std::max_element(pieces_.begin(), pieces_.end(), [&](const Piece& a, const Piece& b) {
-                    return reach(a, direction) < reach(b, direction);
-                });
-            std::swap(*farthest, pieces_.back());
+            for (std::size_t i = reaches.size(); i < pieces_.size(); ++i)
+                reaches.push_back(reach(pieces_[i], direction));
+            const auto farthest = std::ranges::max_element(reaches) - reaches.begin();
+            std::swap(pieces_[static_cast<std::size_t>(farthest)], pieces_.back());
             if (!unfold_last()) return;
+            reaches[static_cast<std::size_t>(farthest)] = reaches.back();
+            reaches.pop_back();
         }
     }
 

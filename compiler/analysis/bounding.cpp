@@ -65,7 +65,15 @@ class Bounder {
         : graph_(graph), components_(components), contraction_(contraction), outers_(graph.objects.size()),
           unbounded_(plane_holders(graph, components)), search_(graph, outers_),
           effort_(queries(graph, components)), meter_(control, "bounding", pieces_a_look),
-          pieces_of_ball_(std::clamp<std::size_t>(400'000 / graph.objects.size(), 4, 400)) {}
+          pieces_of_ball_(std::clamp<std::size_t>(400'000 / graph.objects.size(), 4, 400)),
+          wants_ball_(graph.objects.size(), true) {}
+
+    void leave_out_last_balls() {
+        wants_ball_.assign(graph_.objects.size(), false);
+        for (const Object& object : graph_.objects)
+            for (const Instance& instance : object.instances)
+                wants_ball_[instance.master] = true;
+    }
 
     std::vector<ObjectBounds> run() {
         const std::vector<std::uint32_t> places = places_in_components(components_);
@@ -175,6 +183,7 @@ class Bounder {
     }
 
     void find_ball(ObjectId id) {
+        if (!wants_ball_[id]) return;
         Ball ball = tight_ball(graph_, outers_, id, pieces_of_ball_);
         ball.radius = within_range(ball.radius * (1 + 4e-12) + 4e-15 * glm::length(ball.centre));
         if (ball.radius < outers_[id].ball().radius) outers_[id].set_ball(ball);
@@ -207,7 +216,13 @@ class Bounder {
     Effort effort_;
     WorkMeter meter_;
     std::size_t pieces_of_ball_;
+    std::vector<bool> wants_ball_; ///< by object
 };
+
+void require_proof(const Contraction& contraction) {
+    GRAFTAL_CHECK(contraction.verdict == Verdict::proved || contraction.verdict == Verdict::acyclic,
+                  "bound_objects: needs a contraction that is proved or acyclic");
+}
 
 } // namespace
 
@@ -219,12 +234,23 @@ ObjectBounds primitive_bounds(const Primitive& primitive) {
 std::vector<ObjectBounds> bound_objects(const Graph& graph, const Components& components,
                                         const Contraction& contraction, const Control& control,
                                         std::uint64_t* pieces) {
-    GRAFTAL_CHECK(contraction.verdict == Verdict::proved || contraction.verdict == Verdict::acyclic,
-                  "bound_objects: needs a contraction that is proved or acyclic");
+    require_proof(contraction);
     Bounder bounder(graph, components, contraction, control);
     std::vector<ObjectBounds> bounds = bounder.run();
     if (pieces != nullptr) *pieces = bounder.pieces();
     return bounds;
+}
+
+std::vector<Box> bound_boxes(const Graph& graph, const Components& components,
+                             const Contraction& contraction) {
+    require_proof(contraction);
+    const Control control = no_control();
+    Bounder bounder(graph, components, contraction, control);
+    bounder.leave_out_last_balls();
+    std::vector<Box> boxes;
+    for (const ObjectBounds& bounds : bounder.run())
+        boxes.push_back(bounds.box);
+    return boxes;
 }
 
 } // namespace graftal

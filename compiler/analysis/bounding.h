@@ -34,4 +34,9 @@ std::vector<ObjectBounds> bound_objects(const Graph& graph, const Components& co
                                         const Contraction& contraction, const Control& control = no_control(),
                                         std::uint64_t* pieces = nullptr);
 
+/// The boxes of bound_objects(), with the same requirements. Sooner: of an object that no other instances,
+/// no ball is looked for.
+std::vector<Box> bound_boxes(const Graph& graph, const Components& components,
+                             const Contraction& contraction);
+
 } // namespace graftal

@@ -77,11 +77,11 @@ class Bounder {
         DrawnBounds result;
         std::size_t next = nodes + 2;
         for (const CutNode& node : cut_.nodes) {
-            result.node.push_back(bounds_[result.node.size()].box);
+            result.node.push_back(boxes_[result.node.size()]);
             for (const bool stop : {false, true}) {
                 std::vector<Box>& boxes = (stop ? result.stop_edge : result.edge).emplace_back();
                 for (const CutEdge& edge : stop ? node.stop_edges : node.edges)
-                    boxes.push_back(needs_object(edge) ? bounds_[next++].box : box_of(edge));
+                    boxes.push_back(needs_object(edge) ? boxes_[next++] : box_of(edge));
             }
         }
         return result;
@@ -92,31 +92,30 @@ class Bounder {
         const Components components = strong_components(graph_);
         const Contraction contraction = decide_contraction(graph_, components);
         const bool proved = contraction.verdict == Verdict::acyclic || contraction.verdict == Verdict::proved;
-        bounds_ = proved ? bound_objects(graph_, components, contraction) : bounds_by_balls();
+        boxes_ = proved ? bound_boxes(graph_, components, contraction) : boxes_by_balls();
     }
 
     /// The model contracts, but this is another graph of it, and the effort that is spent on a proof is
     /// bounded. Without one, room is left about the balls for what is drawn besides the limit set.
-    std::vector<ObjectBounds> bounds_by_balls() const {
+    std::vector<Box> boxes_by_balls() const {
         constexpr double room = 3;
-        std::vector<ObjectBounds> bounds(graph_.objects.size());
+        std::vector<Box> boxes(graph_.objects.size());
         const std::size_t nodes = cut_.nodes.size();
         for (NodeId id = 0; id < nodes; ++id) {
             const Ball& ball = cut_.nodes[id].ball;
             if (!(ball.radius > 0)) continue;
-            bounds[id].box.include(ball.centre - Vec3(room * ball.radius));
-            bounds[id].box.include(ball.centre + Vec3(room * ball.radius));
+            boxes[id].include(ball.centre - Vec3(room * ball.radius));
+            boxes[id].include(ball.centre + Vec3(room * ball.radius));
         }
-        bounds[nodes] = primitive_bounds(PrimitiveKind::sphere);
-        bounds[nodes + 1] = primitive_bounds(PrimitiveKind::cube);
+        boxes[nodes] = primitive_bounds(PrimitiveKind::sphere).box;
+        boxes[nodes + 1] = primitive_bounds(PrimitiveKind::cube).box;
         for (ObjectId id = 0; id < graph_.objects.size(); ++id) {
             const std::vector<Instance>& instances = graph_.objects[id].instances;
             const std::size_t inside = id < nodes ? cut_.nodes[id].edges.size() : 0;
             for (std::size_t i = inside; i < instances.size(); ++i)
-                bounds[id].box.include(
-                    transformed(instances[i].parent_from_child, bounds[instances[i].master].box));
+                boxes[id].include(transformed(instances[i].parent_from_child, boxes[instances[i].master]));
         }
-        return bounds;
+        return boxes;
     }
 
     bool needs_object(const CutEdge& edge) const {
@@ -127,7 +126,7 @@ class Bounder {
         const auto primitive = cut_.nodes[edge.child].primitive;
         if (primitive && *primitive != PrimitiveKind::plane)
             return box_of_image(*primitive, edge.node_from_child);
-        return transformed(edge.node_from_child, bounds_[edge.child].box);
+        return transformed(edge.node_from_child, boxes_[edge.child]);
     }
 
     void add_object(const CutEdge& edge) {
@@ -139,7 +138,7 @@ class Bounder {
     const CutGraph& cut_;
     bool exact_;
     Graph graph_;
-    std::vector<ObjectBounds> bounds_;
+    std::vector<Box> boxes_;
 };
 
 } // namespace

@@ -113,18 +113,54 @@ Vec3 in_axes(const Camera& camera, Vec3 p) {
     return {glm::dot(p, camera.right), glm::dot(p, camera.up), glm::dot(p, camera.direction)};
 }
 
-/// One step towards equal margins left and right, below and above, which the tighter pair has already.
-void centre_eye(const Camera& camera, const Subject& subject, Vec3& eye) {
-    Vec3 most(-std::numeric_limits<double>::infinity()), least(-most);
-    for (const Vec3 corner : subject.corners) {
-        const Vec3 p = in_axes(camera, corner) - eye;
-        most = glm::max(most, p / p.z);
-        least = glm::min(least, p / p.z);
+/// Moves the eye across until the margins left and right, and below and above, are equal. The tighter pair is
+/// so already.
+class EyeCentring {
+  public:
+    EyeCentring(const Camera& camera, const Subject& subject) : camera_(camera), subject_(subject) {}
+
+    void step(Vec3& eye) {
+        const Vec3 moved = glm::abs(eye - looked_from_);
+        if (outermost_.empty() || std::max(moved.x, moved.y) > 0.9 * farthest_moved) look_from(eye);
+        Vec3 most(-std::numeric_limits<double>::infinity()), least(-most);
+        for (const Vec3& corner : outermost_) {
+            const Vec3 p = corner - eye;
+            most = glm::max(most, p / p.z);
+            least = glm::min(least, p / p.z);
+        }
+        const double depth = in_axes(camera_, Vec3(0.0)).z - eye.z;
+        eye.x += depth * (most.x + least.x) / 2;
+        eye.y += depth * (most.y + least.y) / 2;
     }
-    const double depth = in_axes(camera, Vec3(0.0)).z - eye.z;
-    eye.x += depth * (most.x + least.x) / 2;
-    eye.y += depth * (most.y + least.y) / 2;
-}
+
+  private:
+    static constexpr double farthest_moved = 1.0 / 64;
+
+    /// Of a million corners few can be outermost while the eye stays near: only these are looked at again.
+    void look_from(Vec3 eye) {
+        looked_from_ = eye;
+        outermost_.clear();
+        const Vec3 slack(farthest_moved, farthest_moved, 0);
+        Vec3 most(-std::numeric_limits<double>::infinity()), least(-most);
+        for (const Vec3& corner : subject_.corners) {
+            const Vec3 p = in_axes(camera_, corner) - eye;
+            most = glm::max(most, (p - slack) / p.z);
+            least = glm::min(least, (p + slack) / p.z);
+        }
+        for (const Vec3& corner : subject_.corners) {
+            const Vec3 place = in_axes(camera_, corner), p = place - eye;
+            const Vec3 greatest = (p + slack) / p.z, smallest = (p - slack) / p.z;
+            if (greatest.x >= most.x || greatest.y >= most.y || smallest.x <= least.x ||
+                smallest.y <= least.y)
+                outermost_.push_back(place);
+        }
+    }
+
+    const Camera& camera_;
+    const Subject& subject_;
+    Vec3 looked_from_{0.0};
+    std::vector<Vec3> outermost_; ///< in the camera's axes
+};
 
 /// The nearest eye whose frustum holds all corners, in the camera's axes. Each side plane of the frustum asks
 /// for slope * depth_of_eye <= c: the two that are tighter meet in the answer.
@@ -139,8 +175,9 @@ Vec3 nearest_eye(const Camera& camera, const Subject& subject, Frustum slope) {
     }
     depth = std::min({depth, -(most.x + least.x) / (2 * slope.x), -(most.y + least.y) / (2 * slope.y)});
     Vec3 eye((most.x - least.x) / 2, (most.y - least.y) / 2, depth);
+    EyeCentring centring(camera, subject);
     for (int i = 0; i < 20; ++i)
-        centre_eye(camera, subject, eye);
+        centring.step(eye);
     return eye;
 }
 

@@ -35,6 +35,27 @@ struct Tetrahedron {
     }
 };
 
+/// Of a picture of 400x300, in its widths and heights.
+struct Margins {
+    double left = 1, right = 1, bottom = 1, top = 1;
+
+    Margins(const Camera& camera, const std::vector<Vec3>& corners) {
+        for (const Vec3 corner : corners) {
+            const Vec3 sight = corner - camera.location;
+            const double width = 2 * glm::dot(sight, camera.direction) *
+                                 std::tan(camera.angle_deg * 3.14159265358979323846 / 360);
+            const double x = 0.5 + glm::dot(sight, camera.right) / width;
+            const double y = 0.5 + glm::dot(sight, camera.up) / width * 400 / 300;
+            left = std::min(left, x);
+            right = std::min(right, 1 - x);
+            bottom = std::min(bottom, y);
+            top = std::min(top, 1 - y);
+        }
+    }
+
+    double least() const { return std::min({left, right, bottom, top}); }
+};
+
 double reach(const std::vector<Vec3>& points, Vec3 direction) {
     double most = -INFINITY;
     for (const Vec3 point : points)
@@ -122,23 +143,28 @@ TEST(Outline, FillsThePictureWithTheModelInsteadOfItsBox) {
     const View view = frame(model.graph, unit_box, {400, 300}, {}, model.outliner());
     EXPECT_EQ(view.camera.direction, by_box.camera.direction);
     EXPECT_EQ(view.camera.angle_deg, by_box.camera.angle_deg);
-    double left = 1, right = 0, bottom = 1, top = 0;
-    for (const Vec3 corner : model.corners) {
-        const Vec3 sight = corner - view.camera.location;
-        const double width = 2 * glm::dot(sight, view.camera.direction) *
-                             std::tan(view.camera.angle_deg * 3.14159265358979323846 / 360);
-        const double x = 0.5 + glm::dot(sight, view.camera.right) / width;
-        const double y = 0.5 + glm::dot(sight, view.camera.up) / width * 400 / 300;
-        left = std::min(left, x);
-        right = std::max(right, x);
-        bottom = std::min(bottom, y);
-        top = std::max(top, y);
+    const Margins margins(view.camera, model.corners);
+    EXPECT_GE(margins.least(), 0.05);
+    EXPECT_LE(margins.least(), 0.055);
+    EXPECT_NEAR(margins.left, margins.right, 0.01);
+    EXPECT_NEAR(margins.bottom, margins.top, 0.01);
+}
+
+/// Long needles reach far to one side, so that the eye goes a long way across until the margins are equal.
+TEST(Outline, ManyCornersAreAsWellCentredAsFew) {
+    std::vector<Vec3> corners;
+    const auto within = [](double x) { return x - std::floor(x); };
+    for (int i = 0; i < 20'000; ++i) {
+        const Vec3 even(within(0.819 * i), within(0.671 * i), within(0.549 * i));
+        const double reach = i % 1000 == 7 ? 1 : 0.1;
+        corners.push_back(reach * (2.0 * even - 1.0));
+        if (reach == 1) corners.back() = glm::abs(corners.back());
     }
-    const double least = std::min({left, 1 - right, bottom, 1 - top});
-    EXPECT_GE(least, 0.05);
-    EXPECT_LE(least, 0.055);
-    EXPECT_NEAR(left, 1 - right, 0.01);
-    EXPECT_NEAR(bottom, 1 - top, 0.01);
+    const Outliner outliner = [&](const std::vector<Vec3>&) { return corners; };
+    const Margins margins(frame({}, unit_box, {400, 300}, {}, outliner).camera, corners);
+    EXPECT_NEAR(margins.least(), 0.05, 1e-6);
+    EXPECT_NEAR(margins.left, margins.right, 1e-6);
+    EXPECT_NEAR(margins.bottom, margins.top, 1e-6);
 }
 
 TEST(Outline, ParallelViewsAreFilledAndCentredToo) {

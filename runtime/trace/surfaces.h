@@ -43,14 +43,6 @@ class Surfaces {
     static constexpr std::size_t most_together = 8;
     /// Whether there is any surface within the range.
     virtual bool meets_any(const Ray& ray, const RayRange& range) = 0;
-    /// The same of several rays, at most most_together, each with its range: one bit for each. Faster than
-    /// one by one where neighbours go towards the same light.
-    virtual std::uint32_t meets_any_each(std::span<const Ray> rays, std::span<const RayRange> ranges) {
-        std::uint32_t met = 0;
-        for (std::size_t i = 0; i < rays.size(); ++i)
-            met |= static_cast<std::uint32_t>(meets_any(rays[i], ranges[i])) << i;
-        return met;
-    }
     /// Whether no surface at all lets light through: what looks no further is faster.
     virtual bool all_opaque() const { return false; }
 };

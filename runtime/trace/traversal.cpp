@@ -101,9 +101,9 @@ template<bool any> bool Traversal::run(const Ray& ray, const RayRange& range) {
     return run<Kernel, any>(ray, range, static_cast<const Entry*>(nullptr));
 }
 
-bool Traversal::resume(const Entry& from, const RayRange& range, bool any) {
+bool Traversal::resume(const Entry& from, const RayRange& range) {
     const Ray ray = ray_;
-    return any ? run<Kernel, true>(ray, range, &from) : run<Kernel, false>(ray, range, &from);
+    return run<Kernel, false>(ray, range, &from);
 }
 
 bool Traversal::goes_on() {

@@ -54,7 +54,6 @@ class Traversal final : public Surfaces {
     std::uint32_t closest_each(std::span<const Ray> rays, const RayRange& range,
                                std::span<SurfaceHit> hits) override;
     bool meets_any(const Ray& ray, const RayRange& range) override;
-    std::uint32_t meets_any_each(std::span<const Ray> rays, std::span<const RayRange> ranges) override;
     bool all_opaque() const override;
     /// Whether several rays may go together at all: where what they meet depends on no order of parts.
     bool takes_packets() const { return packet_ != nullptr; }
@@ -218,14 +217,13 @@ class Traversal final : public Surfaces {
     /// Fills in what is seen at the best hit.
     void show_best(SurfaceHit& hit);
     bool go_together(std::size_t rays) const;
-    std::uint32_t run_packet(std::span<const Ray> rays, std::span<const RayRange> ranges, bool any,
-                             std::uint32_t& to_go_alone);
+    std::uint32_t run_packet(std::span<const Ray> rays, const RayRange& range, std::uint32_t& to_go_alone);
     void show_packed(std::size_t lane, const Ray& ray, std::span<SurfaceHit> hits);
     template<template<Instructions, bool> typename AnyKernel, bool any, typename... From>
     bool run(const Ray& ray, const RayRange& range, const From*... from);
     template<bool any> bool run(const Ray& ray, const RayRange& range);
     /// Takes ray_ on from an entry of a frame that is ready; true if something nearer than best_.t was met.
-    bool resume(const Entry& from, const RayRange& range, bool any);
+    bool resume(const Entry& from, const RayRange& range);
     /// As visits to so many parts would take it, which lanes saw are not met.
     void lose_patience(std::uint64_t parts) { patience_ -= std::min(patience_, parts); }
     /// False once the ray went into too many parts, and hurrying did not help.

@@ -19,7 +19,7 @@
 namespace graftal {
 
 /// `Packet`: what is derived from this. `PlacesOf` says which parts are looked into, `FrameOf` is the
-/// packet's own frame. With `any`, whatever a ray meets first will do, and only that it meets something.
+/// packet's own frame.
 template<Instructions instructions, typename Packet, typename PlacesOf, typename FrameOf>
 struct Traversal::PacketWalk : PlacesOf {
     using Entry = PacketRoom::Entry;
@@ -40,17 +40,15 @@ struct Traversal::PacketWalk : PlacesOf {
 
     PacketRoom& room;
     std::vector<Frame>& frames; ///< the room's
-    const bool any;
-    Double8 least, best;     ///< of t
-    std::uint32_t found = 0; ///< rays that have met something
-    std::uint32_t tied = 0;  ///< and something else about as near
-    std::uint32_t lost = 0;  ///< rays that are to go alone, whatever they meet
+    Double8 least, best;        ///< of t
+    std::uint32_t found = 0;    ///< rays that have met something
+    std::uint32_t tied = 0;     ///< and something else about as near
+    std::uint32_t lost = 0;     ///< rays that are to go alone, whatever they meet
     std::uint64_t visits = 0;
     std::span<const Ray> world_rays;
 
-    GRAFTAL_INLINE PacketWalk(Traversal& traversal, std::vector<Frame>& packet_frames, bool asks_any)
-        : PlacesOf{traversal, traversal.model_, {}}, room(*traversal.packet_), frames(packet_frames),
-          any(asks_any) {}
+    GRAFTAL_INLINE PacketWalk(Traversal& traversal, std::vector<Frame>& packet_frames)
+        : PlacesOf{traversal, traversal.model_, {}}, room(*traversal.packet_), frames(packet_frames) {}
 
     /// So many rays go alone: fewer than that have little in common.
     static constexpr int few = 2;
@@ -59,15 +57,14 @@ struct Traversal::PacketWalk : PlacesOf {
     /// As much as the rounding of t may decide which of two hits is the nearer one, times some ten.
     static constexpr double rounding = 1e-14;
 
-    /// Fills in the room's hits. `ranges`: one for each ray, or one for all.
-    GRAFTAL_INLINE void run(std::span<const Ray> rays, std::span<const RayRange> ranges) {
+    /// Fills in the room's hits.
+    GRAFTAL_INLINE void run(std::span<const Ray> rays, const RayRange& range) {
         self.hurries_ = false;
         world_rays = rays;
         room.clear();
-        for (std::size_t lane = 0; lane < 8; ++lane) {
-            const RayRange& range = ranges[std::min({lane, rays.size() - 1, ranges.size() - 1})];
-            least.half[lane / 4][lane % 4] = range.least;
-            best.half[lane / 4][lane % 4] = range.most;
+        for (int i = 0; i < 2; ++i) {
+            least.half[i] = splat(range.least);
+            best.half[i] = splat(range.most);
         }
         const std::uint32_t all = (1u << rays.size()) - 1;
         Going going{Float8{}, 0, 0, 0, all, Entry::no_box};
@@ -87,7 +84,7 @@ struct Traversal::PacketWalk : PlacesOf {
         }
     }
 
-    GRAFTAL_INLINE std::uint32_t to_go_alone() const { return any ? lost & ~found : tied | lost; }
+    GRAFTAL_INLINE std::uint32_t to_go_alone() const { return tied | lost; }
 
     GRAFTAL_INLINE Packet& packet() { return static_cast<Packet&>(*this); }
     GRAFTAL_INLINE const Packet& packet() const { return static_cast<const Packet&>(*this); }
@@ -126,10 +123,7 @@ struct Traversal::PacketWalk : PlacesOf {
     /// False if all rays have met something nearer than the entry is.
     GRAFTAL_INLINE bool leave_out_beaten(Going& going) const {
         if ((going.mask & found) == 0) return true;
-        if (any)
-            going.mask &= ~found;
-        else
-            going.mask &= bits_of<instructions>(going.at <= most_in(frames[going.frame]));
+        going.mask &= bits_of<instructions>(going.at <= most_in(frames[going.frame]));
         return going.mask != 0;
     }
 
@@ -352,7 +346,7 @@ struct Traversal::PacketWalk : PlacesOf {
         const double before = of(best, lane),
                      slack = rounding * (std::abs(before) + std::abs(of(frames[going.frame].base, lane)));
         // Also what is a little farther: it may come first.
-        self.best_.t = !any && before < INFINITY ? before + 2 * slack : before;
+        self.best_.t = before < INFINITY ? before + 2 * slack : before;
         self.best_.found = false;
         self.ray_ = world_rays[static_cast<std::size_t>(lane)];
         self.visit_limit_ = self.visits_ + most_visits;
@@ -367,10 +361,6 @@ struct Traversal::PacketWalk : PlacesOf {
         const std::uint32_t bit = 1u << lane;
         if (self.met_flat_) lost |= bit; // what it meets there depends on what it met before
         if (!met || self.met_flat_) return;
-        if (any) {
-            found |= bit;
-            return;
-        }
         if (before < INFINITY && !(self.best_.t < before - slack)) {
             tied |= bit;
             return;

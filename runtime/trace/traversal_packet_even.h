@@ -31,8 +31,7 @@ struct Traversal::EvenPacket
     Float8 least_reciprocal[3], most_reciprocal[3]; ///< of all rays
     std::size_t sides[3];                           ///< of boxes, where rays go in
 
-    GRAFTAL_INLINE EvenPacket(Traversal& traversal, bool any)
-        : Walk(traversal, traversal.packet_->even_frames, any) {}
+    GRAFTAL_INLINE EvenPacket(Traversal& traversal) : Walk(traversal, traversal.packet_->even_frames) {}
 
     // As PacketWalk asks:
     GRAFTAL_INLINE std::size_t side_in(const Frame&, int axis) const { return sides[axis]; }
@@ -225,9 +224,8 @@ struct Traversal::EvenPacket
         return near;
     }
 
-    template<bool any>
-    GRAFTAL_INLINE bool resume_alone(const Going& going, int lane, const RayRange& range) const {
-        EvenKernel<instructions, any> alone(self, model, range);
+    GRAFTAL_INLINE bool resume(const Going& going, int lane, const RayRange& range) const {
+        EvenKernel<instructions, false> alone(self, model, range);
         while (self.even_frames_.size() <= going.frame)
             self.even_frames_.resize(2 * self.even_frames_.size());
         alone.frames = self.even_frames_.data();
@@ -251,10 +249,6 @@ struct Traversal::EvenPacket
         alone.set_sides(sides);
         alone.first_placed = going.frame;
         return alone.go_on({going.at[lane], going.entry, going.frame});
-    }
-
-    GRAFTAL_INLINE bool resume(const Going& going, int lane, const RayRange& range) const {
-        return this->any ? resume_alone<true>(going, lane, range) : resume_alone<false>(going, lane, range);
     }
 };
 

@@ -139,7 +139,6 @@ GRAFTAL_INLINE bool Traversal::PacketWalk<instructions, Packet, PlacesOf, FrameO
     }
     hit &= mask;
     found |= hit;
-    if (any) return false;
     tied = (tied & ~hit) | (close & mask);
     if (hit == 0) return false;
     for (; hit != 0; hit &= hit - 1) {

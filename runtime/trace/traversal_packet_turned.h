@@ -30,8 +30,7 @@ struct Traversal::TurnedPacket
     using Walk::room;
     using Walk::self;
 
-    GRAFTAL_INLINE TurnedPacket(Traversal& traversal, bool any)
-        : Walk(traversal, traversal.packet_->frames, any) {}
+    GRAFTAL_INLINE TurnedPacket(Traversal& traversal) : Walk(traversal, traversal.packet_->frames) {}
 
     // As PacketWalk asks:
     static GRAFTAL_INLINE std::size_t side_in(const Frame& frame, int axis) { return frame.side_in[axis]; }
@@ -416,7 +415,7 @@ struct Traversal::TurnedPacket
         }
         for (std::uint32_t above = 1; above < going.frame; ++above)
             self.frames_[above].edge = frames[above].edge;
-        return self.resume({going.at[lane], going.entry, going.frame}, range, this->any);
+        return self.resume({going.at[lane], going.entry, going.frame}, range);
     }
 };
 

@@ -21,33 +21,31 @@ struct Outcome {
 
 // The packet is made in here: what nobody else has the address of stays in registers.
 template<typename Packet>
-Outcome run_packet(Traversal& traversal, std::span<const Ray> rays, std::span<const RayRange> ranges,
-                   bool any) {
-    Packet packet(traversal, any);
-    packet.run(rays, ranges);
+Outcome run_packet(Traversal& traversal, std::span<const Ray> rays, const RayRange& range) {
+    Packet packet(traversal);
+    packet.run(rays, range);
     return {packet.found, packet.to_go_alone()};
 }
 
 template<typename Packet>
-GRAFTAL_AVX2 Outcome run_packet_avx2(Traversal& traversal, std::span<const Ray> rays,
-                                     std::span<const RayRange> ranges, bool any) {
-    Packet packet(traversal, any);
-    packet.run(rays, ranges);
+GRAFTAL_AVX2 Outcome run_packet_avx2(Traversal& traversal, std::span<const Ray> rays, const RayRange& range) {
+    Packet packet(traversal);
+    packet.run(rays, range);
     return {packet.found, packet.to_go_alone()};
 }
 
 } // namespace
 
-std::uint32_t Traversal::run_packet(std::span<const Ray> rays, std::span<const RayRange> ranges, bool any,
+std::uint32_t Traversal::run_packet(std::span<const Ray> rays, const RayRange& range,
                                     std::uint32_t& to_go_alone) {
     const bool avx2 = instructions_ == Instructions::avx2;
     Outcome outcome;
     if (model_.even)
-        outcome = avx2 ? run_packet_avx2<EvenPacket<Instructions::avx2>>(*this, rays, ranges, any)
-                       : graftal::run_packet<EvenPacket<Instructions::portable>>(*this, rays, ranges, any);
+        outcome = avx2 ? run_packet_avx2<EvenPacket<Instructions::avx2>>(*this, rays, range)
+                       : graftal::run_packet<EvenPacket<Instructions::portable>>(*this, rays, range);
     else
-        outcome = avx2 ? run_packet_avx2<TurnedPacket<Instructions::avx2>>(*this, rays, ranges, any)
-                       : graftal::run_packet<TurnedPacket<Instructions::portable>>(*this, rays, ranges, any);
+        outcome = avx2 ? run_packet_avx2<TurnedPacket<Instructions::avx2>>(*this, rays, range)
+                       : graftal::run_packet<TurnedPacket<Instructions::portable>>(*this, rays, range);
     to_go_alone = outcome.to_go_alone;
     return outcome.found & ~to_go_alone;
 }
@@ -61,7 +59,7 @@ std::uint32_t Traversal::closest_each(std::span<const Ray> rays, const RayRange&
                                       std::span<SurfaceHit> hits) {
     if (!go_together(rays.size())) return Surfaces::closest_each(rays, range, hits);
     std::uint32_t alone = 0;
-    std::uint32_t found = run_packet(rays, {&range, 1}, false, alone);
+    std::uint32_t found = run_packet(rays, range, alone);
     for (const PacketRoom::Hit& hit : packet_->hits) {
         const TraceLook& look = model_.looks[packet_->ways[hit.way_end - 1] & ~from_cut];
         if (look.as_one) continue;
@@ -75,17 +73,6 @@ std::uint32_t Traversal::closest_each(std::span<const Ray> rays, const RayRange&
     for (; alone != 0; alone &= alone - 1) {
         const auto lane = static_cast<std::size_t>(std::countr_zero(alone));
         found |= static_cast<std::uint32_t>(closest(rays[lane], range, hits[lane])) << lane;
-    }
-    return found;
-}
-
-std::uint32_t Traversal::meets_any_each(std::span<const Ray> rays, std::span<const RayRange> ranges) {
-    if (!go_together(rays.size())) return Surfaces::meets_any_each(rays, ranges);
-    std::uint32_t alone = 0;
-    std::uint32_t found = run_packet(rays, ranges, true, alone);
-    for (; alone != 0; alone &= alone - 1) {
-        const auto lane = static_cast<std::size_t>(std::countr_zero(alone));
-        found |= static_cast<std::uint32_t>(meets_any(rays[lane], ranges[lane])) << lane;
     }
     return found;
 }

@@ -142,28 +142,6 @@ double least_distance(const TraceModel& model) {
     return 1e-5 * glm::length(model.prepared.bounds.size());
 }
 
-/// To a sun, from what each packet of neighbours meets; and where the packets end.
-struct SunRays {
-    std::vector<Ray> rays;
-    std::vector<std::size_t> ends;
-};
-
-SunRays sun_rays(const TraceModel& model) {
-    const std::vector<Ray> camera = camera_rays(model.view);
-    const Vec3 towards =
-        glm::normalize(model.view.camera.up + 0.8 * model.view.camera.right - model.view.camera.direction);
-    Traversal traversal(model);
-    SunRays sun;
-    for_each_packet(camera, [&](std::span<const Ray> packet) {
-        for (const Ray& ray : packet) {
-            SurfaceHit hit;
-            if (traversal.closest(ray, {}, hit)) sun.rays.push_back({ray(hit.t), towards});
-        }
-        if (sun.rays.size() > (sun.ends.empty() ? 0 : sun.ends.back())) sun.ends.push_back(sun.rays.size());
-    });
-    return sun;
-}
-
 void light(const TraceModel& model) {
     const std::vector<Ray> rays = scattered_rays(model);
     const double least = least_distance(model);
@@ -185,27 +163,6 @@ void light(const TraceModel& model) {
         return hits;
     });
     const std::uint64_t after = traversal.visits();
-    const SunRays sun = sun_rays(model);
-    std::printf("to a sun:");
-    measure(sun.rays, [&] {
-        std::size_t hits = 0;
-        for (const Ray& ray : sun.rays)
-            hits += traversal.meets_any(ray, {least});
-        return hits;
-    });
-    std::printf("to a sun, in packets:");
-    std::array<RayRange, Surfaces::most_together> ranges;
-    ranges.fill({least});
-    measure(sun.rays, [&] {
-        std::size_t hits = 0, begin = 0;
-        for (const std::size_t end : sun.ends) {
-            const auto packet = std::span(sun.rays).subspan(begin, end - begin);
-            hits += static_cast<std::size_t>(
-                std::popcount(traversal.meets_any_each(packet, std::span(ranges).first(packet.size()))));
-            begin = end;
-        }
-        return hits;
-    });
     const double all = repeats * static_cast<double>(rays.size());
     std::printf("visits a ray: %.2f, any %.2f\n", static_cast<double>(before) / all,
                 static_cast<double>(after - before) / all);

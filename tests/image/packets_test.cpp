@@ -45,31 +45,16 @@ void expect_same(const SurfaceHit& a, const SurfaceHit& b) {
     ASSERT_EQ(a.levels, b.levels);
 }
 
-struct Tally {
-    int hits = 0, shaded = 0;
-};
-
-void compare(Traversal& together, Traversal& alone, const Packet& rays, Tally& tally) {
+void compare(Traversal& together, Traversal& alone, const Packet& rays, int& hits_met) {
     Hits hits;
     const std::uint32_t met = together.closest_each(rays, {}, hits);
-    Packet to_sun;
-    std::array<RayRange, Surfaces::most_together> ranges;
-    std::size_t count = 0;
     for (std::size_t i = 0; i < rays.size(); ++i) {
         SurfaceHit hit;
         ASSERT_EQ(alone.closest(rays[i], {}, hit), (met >> i & 1) != 0) << i;
         if (!(met >> i & 1)) continue;
         expect_same(hits[i], hit);
-        ranges[count] = {1e-4 * hit.t};
-        to_sun[count++] = {rays[i](hit.t), glm::normalize(Vec3(1, 2, 1.5))};
     }
-    tally.hits += std::popcount(met);
-    if (count == 0) return;
-    const std::uint32_t shaded =
-        together.meets_any_each(std::span(to_sun).first(count), std::span(ranges).first(count));
-    for (std::size_t i = 0; i < count; ++i)
-        ASSERT_EQ(alone.meets_any(to_sun[i], ranges[i]), (shaded >> i & 1) != 0) << i;
-    tally.shaded += std::popcount(shaded);
+    hits_met += std::popcount(met);
 }
 
 TEST(Packets, MeetWhatTheirRaysMeetAloneInScenes) {
@@ -82,18 +67,17 @@ TEST(Packets, MeetWhatTheirRaysMeetAloneInScenes) {
         Traversal together(*model), alone(*model);
         EXPECT_TRUE(together.takes_packets());
         const CameraRays camera(model->view);
-        Tally tally;
+        int hits = 0;
         for (int y = 0; y < size.height; y += down)
             for (int x = 0; x < size.width; x += across) {
                 Packet rays;
                 for (std::size_t i = 0; i < rays.size(); ++i)
                     rays[i] = camera.through(x + static_cast<double>(i % across) + 0.5,
                                              y + static_cast<double>(i / across) + 0.5);
-                compare(together, alone, rays, tally);
+                compare(together, alone, rays, hits);
                 if (HasFatalFailure()) return;
             }
-        EXPECT_GT(tally.hits, 100);
-        EXPECT_GT(tally.shaded, 10);
+        EXPECT_GT(hits, 100);
     }
 }
 

@@ -179,9 +179,6 @@ void compare_packets(const TraceModel& model, std::mt19937_64& random) {
         std::array<SurfaceHit, Surfaces::most_together> hits, narrow;
         const std::uint32_t met = packet.closest_each(rays, range, hits);
         ASSERT_EQ(portable.closest_each(rays, range, narrow), met);
-        std::array<RayRange, Surfaces::most_together> ranges;
-        ranges.fill(range);
-        ASSERT_EQ(packet.meets_any_each(rays, ranges), met);
         for (std::size_t k = 0; k < rays.size(); ++k) {
             SurfaceHit hit;
             ASSERT_EQ(alone.closest(rays[k], range, hit), (met >> k & 1) != 0);

@@ -63,7 +63,7 @@ std::string shine_text(const Material& m) {
 /// What a pigment says of light that goes through (optics.h).
 std::string clearness(const Material& m) {
     if (!m.is_transparent()) return {};
-    const double filter = m.absorption > 0 ? 0 : m.filter;
+    const double filter = m.surface_filter();
     if (filter == 0) return "transmit " + number_text(m.transparency);
     std::string text = "filter " + number_text(m.transparency * filter);
     if (filter < 1) text += " transmit " + number_text(m.transparency * (1 - filter));

@@ -15,9 +15,9 @@ inline constexpr double least_light = 1e-10;
 /// so narrow a gap.
 inline constexpr double shadow_pixels = 1e-3;
 
-/// What a surface makes of white light on its way through. An interior that absorbs has the colour in itself.
+/// What a surface makes of white light on its way through.
 inline Rgb colour_of_pane(const Material& material, Rgb rgb) {
-    const double filter = material.absorption > 0 ? 0 : material.filter;
+    const double filter = material.surface_filter();
     return material.transparency * (filter * rgb + Rgb(1 - filter));
 }
 

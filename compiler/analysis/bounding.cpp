@@ -244,7 +244,7 @@ std::vector<ObjectBounds> bound_objects(const Graph& graph, const Components& co
 std::vector<Box> bound_boxes(const Graph& graph, const Components& components,
                              const Contraction& contraction) {
     require_proof(contraction);
-    const Control control = no_control();
+    const Control& control = no_control();
     Bounder bounder(graph, components, contraction, control);
     bounder.leave_out_last_balls();
     std::vector<Box> boxes;

@@ -41,7 +41,8 @@ struct Material {
     bool operator==(const Material& other) const;
 
     bool is_transparent() const { return transparency > 0; }
-    /// How much of its colour the surface gives to light on its way through. Of what absorbs, the inside does.
+    /// How much of its colour the surface gives to light on its way through. Of what absorbs, the inside
+    /// does.
     double surface_filter() const { return absorption > 0 ? 0 : filter; }
     /// Whether it covers what is behind it by a share, and does nothing else to it.
     bool is_veil() const { return is_transparent() && filter == 0 && !has_coat(); }

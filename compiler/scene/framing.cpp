@@ -119,7 +119,42 @@ class EyeCentring {
   public:
     EyeCentring(const Camera& camera, const Subject& subject) : camera_(camera), subject_(subject) {}
 
-    void step(Vec3& eye) {
+    void run(Vec3& eye) {
+        const Vec3 start = eye;
+        const double depth = in_axes(camera_, Vec3(0.0)).z - eye.z;
+        Vec3 step(0.0);
+        for (int i = 0; i < 20; ++i) {
+            step = 0.5 * depth * imbalance(eye);
+            eye.x += step.x;
+            eye.y += step.y;
+        }
+        constexpr double centred = 1e-6;
+        if (std::max(std::abs(step.x), std::abs(step.y)) <= centred) return;
+        eye = start;
+        halve(eye);
+    }
+
+  private:
+    static constexpr double farthest_moved = 1.0 / 64;
+
+    /// Where corners stand much nearer than the middle, the steps above are too long, and lead away.
+    void halve(Vec3& eye) {
+        Vec3 low(std::numeric_limits<double>::infinity()), high(-low);
+        for (const Vec3& corner : subject_.corners) {
+            low = glm::min(low, in_axes(camera_, corner));
+            high = glm::max(high, in_axes(camera_, corner));
+        }
+        for (int i = 0; i < 50; ++i) {
+            const Vec3 off = imbalance(eye); // falls as the eye moves on
+            for (int axis = 0; axis < 2; ++axis) {
+                (off[axis] > 0 ? low : high)[axis] = eye[axis];
+                eye[axis] = 0.5 * (low[axis] + high[axis]);
+            }
+        }
+    }
+
+    /// The slopes of the outermost rays on both sides, added up: 0 where the eye is in the middle.
+    Vec3 imbalance(Vec3 eye) {
         const Vec3 moved = glm::abs(eye - looked_from_);
         if (outermost_.empty() || std::max(moved.x, moved.y) > 0.9 * farthest_moved) look_from(eye);
         Vec3 most(-std::numeric_limits<double>::infinity()), least(-most);
@@ -128,13 +163,8 @@ class EyeCentring {
             most = glm::max(most, p / p.z);
             least = glm::min(least, p / p.z);
         }
-        const double depth = in_axes(camera_, Vec3(0.0)).z - eye.z;
-        eye.x += depth * (most.x + least.x) / 2;
-        eye.y += depth * (most.y + least.y) / 2;
+        return most + least;
     }
-
-  private:
-    static constexpr double farthest_moved = 1.0 / 64;
 
     /// Of a million corners few can be outermost while the eye stays near: only these are looked at again.
     void look_from(Vec3 eye) {
@@ -175,9 +205,7 @@ Vec3 nearest_eye(const Camera& camera, const Subject& subject, Frustum slope) {
     }
     depth = std::min({depth, -(most.x + least.x) / (2 * slope.x), -(most.y + least.y) / (2 * slope.y)});
     Vec3 eye((most.x - least.x) / 2, (most.y - least.y) / 2, depth);
-    EyeCentring centring(camera, subject);
-    for (int i = 0; i < 20; ++i)
-        centring.step(eye);
+    EyeCentring(camera, subject).run(eye);
     return eye;
 }
 

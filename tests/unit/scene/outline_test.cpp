@@ -150,7 +150,7 @@ TEST(Outline, FillsThePictureWithTheModelInsteadOfItsBox) {
     EXPECT_NEAR(margins.bottom, margins.top, 0.01);
 }
 
-/// Long needles reach far to one side, so that the eye goes a long way across until the margins are equal.
+/// Long needles reach far to one side and towards the eye: steps towards equal margins led ever farther away.
 TEST(Outline, ManyCornersAreAsWellCentredAsFew) {
     std::vector<Vec3> corners;
     const auto within = [](double x) { return x - std::floor(x); };
@@ -161,8 +161,9 @@ TEST(Outline, ManyCornersAreAsWellCentredAsFew) {
         if (reach == 1) corners.back() = glm::abs(corners.back());
     }
     const Outliner outliner = [&](const std::vector<Vec3>&) { return corners; };
-    const Margins margins(frame({}, unit_box, {400, 300}, {}, outliner).camera, corners);
-    EXPECT_NEAR(margins.least(), 0.05, 1e-6);
+    const Tetrahedron model;
+    const Margins margins(frame(model.graph, unit_box, {400, 300}, {}, outliner).camera, corners);
+    EXPECT_GE(margins.least(), 0.05); // the eye keeps away from the needle
     EXPECT_NEAR(margins.left, margins.right, 1e-6);
     EXPECT_NEAR(margins.bottom, margins.top, 1e-6);
 }

@@ -7,6 +7,8 @@
 
 #include <glm/geometric.hpp>
 
+#include "compiler/detail/settle.h"
+
 namespace graftal {
 
 namespace {
@@ -74,46 +76,28 @@ std::vector<NodeId> masters_first(const CutGraph& cut) {
 }
 
 void set_mean_colours(CutGraph& cut) {
-    constexpr int sweeps = 48;
-    const std::vector<NodeId> order = masters_first(cut);
-    for (int sweep = 0; sweep < sweeps; ++sweep) {
-        double change = 0;
-        for (const NodeId id : order) {
-            CutNode& node = cut.nodes[id];
-            if (node.primitive || node.edges.empty()) continue;
-            const MeanColour mean = mean_of(cut, node);
-            change = std::max(change, glm::length(mean.fixed - node.mean.fixed));
-            node.mean = mean;
-        }
-        if (change < 1e-7) break;
-    }
+    settle(cut, 48, 1e-7, [&](NodeId id) {
+        const MeanColour before = std::exchange(cut.nodes[id].mean, mean_of(cut, cut.nodes[id]));
+        return glm::length(cut.nodes[id].mean.fixed - before.fixed);
+    });
 }
 
 void set_finishes(CutGraph& cut) {
     constexpr std::size_t most_shares = 8'000'000;
-    constexpr int sweeps = 32;
     const std::size_t width = cut.materials.size() + 1; // the last share is of what inherits
     if (cut.nodes.size() > most_shares / width) return;
     std::vector<double> shares(cut.nodes.size() * width, 0);
     for (NodeId id = 0; id < cut.nodes.size(); ++id)
         shares[id * width + cut.nodes[id].finish.value_or(static_cast<MaterialId>(width - 1))] = 1;
-    const std::vector<NodeId> order = masters_first(cut);
     std::vector<double> sum;
-    for (int sweep = 0; sweep < sweeps; ++sweep) {
+    settle(cut, 32, 1e-4, [&](NodeId id) {
+        set_shares(cut, cut.nodes[id], shares, sum);
         double change = 0;
-        for (const NodeId id : order) {
-            const CutNode& node = cut.nodes[id];
-            if (node.primitive || node.edges.empty()) continue;
-            set_shares(cut, node, shares, sum);
-            for (std::size_t m = 0; m < width; ++m) {
-                double& share = shares[id * width + m];
-                change = std::max(change, std::abs(share - sum[m]));
-                share = sum[m];
-            }
-        }
-        if (change < 1e-4) break;
-    }
-    for (const NodeId id : order)
+        for (std::size_t m = 0; m < width; ++m)
+            change = std::max(change, std::abs(std::exchange(shares[id * width + m], sum[m]) - sum[m]));
+        return change;
+    });
+    for (NodeId id = 0; id < cut.nodes.size(); ++id)
         if (!cut.nodes[id].edges.empty())
             cut.nodes[id].finish = most_seen({shares.data() + id * width, width}, cut.materials);
 }

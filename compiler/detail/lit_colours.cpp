@@ -1,12 +1,13 @@
 #include "compiler/detail/lit_colours.h"
 
-#include <algorithm>
+#include <utility>
 #include <vector>
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
 #include "compiler/detail/run_cells.h"
+#include "compiler/detail/settle.h"
 
 namespace graftal {
 
@@ -81,23 +82,14 @@ Lit lit_of_cell(const CutGraph& cut, const RunCell& cell) {
 } // namespace
 
 void set_lit_colours(CutGraph& cut) {
-    constexpr int sweeps = 48;
-    const std::vector<NodeId> order = masters_first(cut);
     std::vector<Lit> lit(cut.nodes.size());
-    for (const NodeId id : order)
+    for (NodeId id = 0; id < cut.nodes.size(); ++id)
         if (cut.nodes[id].cell) lit[id] = lit_of_cell(cut, *cut.nodes[id].cell);
-    for (int sweep = 0; sweep < sweeps; ++sweep) {
-        double change = 0;
-        for (const NodeId id : order) {
-            const CutNode& node = cut.nodes[id];
-            if (node.primitive || node.edges.empty()) continue;
-            const Lit now = lit_of(cut, node, lit);
-            change = std::max(change, glm::length(now.known - lit[id].known));
-            lit[id] = now;
-        }
-        if (change < 1e-7) break;
-    }
-    for (const NodeId id : order) {
+    settle(cut, 48, 1e-7, [&](NodeId id) {
+        const Lit before = std::exchange(lit[id], lit_of(cut, cut.nodes[id], lit));
+        return glm::length(lit[id].known - before.known);
+    });
+    for (NodeId id = 0; id < cut.nodes.size(); ++id) {
         CutNode& node = cut.nodes[id];
         node.lit.reset();
         if (node.primitive) continue;

@@ -141,8 +141,9 @@ class EyeCentring {
     void halve(Vec3& eye) {
         Vec3 low(std::numeric_limits<double>::infinity()), high(-low);
         for (const Vec3& corner : subject_.corners) {
-            low = glm::min(low, in_axes(camera_, corner));
-            high = glm::max(high, in_axes(camera_, corner));
+            const Vec3 place = in_axes(camera_, corner);
+            low = glm::min(low, place);
+            high = glm::max(high, place);
         }
         for (int i = 0; i < 50; ++i) {
             const Vec3 off = imbalance(eye); // falls as the eye moves on

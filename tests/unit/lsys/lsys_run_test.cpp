@@ -137,7 +137,7 @@ TEST(LsysRuns, TakeNoObjectsWhereNothingRepeats) {
 TEST(LsysRuns, LeaveWhatRepeatsToBeShared) {
     LowerOptions options;
     options.exact = true;
-    const CompiledLsys model("angle 25\naxiom X\nX -> F[+X]F[-X]+X\nF -> FF", 9, options);
+    const CompiledLsys model("taper 1\nangle 25\naxiom X\nX -> F[+X]F[-X]+X\nF -> FF", 8, options);
     EXPECT_EQ(run_items(model.graph), 0u);
     EXPECT_LT(4 * instance_count(model.graph), std::stoul(model.derivation->segments));
 }

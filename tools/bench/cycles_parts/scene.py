@@ -1,4 +1,4 @@
-"""Run by Blender: blender -b --python scene.py -- JOB.json. Builds the solids that `graftal print` has written, to a
+"""Run by Blender: blender -b --python scene.py -- JOB.json. Builds the parts that `graftal print` has written, to a
 depth, as one mesh or as instances of one, lights them, and renders them with Cycles at each number of samples. Prints a
 line of JSON for the set-up and for each picture."""
 import json
@@ -13,17 +13,19 @@ import numpy
 
 JOB = json.load(open(sys.argv[sys.argv.index('--') + 1]))
 
-# Of the cube [-1, 1]^3 and of the tetrahedron in it: corners, and faces that look outwards.
-SOLIDS = {
+# Of the cube [-1, 1]^3, of the tetrahedron in it, and of the triangle in the circle of radius 1: corners, and faces that
+# look outwards.
+PRIMITIVES = {
     'cube': ([(x, y, z) for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)],
              [(0, 1, 3), (0, 3, 2), (4, 6, 7), (4, 7, 5), (0, 4, 5), (0, 5, 1), (2, 3, 7), (2, 7, 6), (0, 2, 6), (0, 6, 4),
               (1, 5, 7), (1, 7, 3)]),
     'tetrahedron': ([(1, 1, 1), (1, -1, -1), (-1, 1, -1), (-1, -1, 1)], [(0, 1, 2), (0, 2, 3), (0, 3, 1), (1, 3, 2)]),
+    'triangle': ([(0, 1, 0), (-math.sqrt(3) / 2, -0.5, 0), (math.sqrt(3) / 2, -0.5, 0)], [(0, 1, 2)]),
 }
 
 
 def matrices(text):
-    """Name -> ([(member, matrix)], (solid, matrix) or None), and the last name, which is the root's."""
+    """Name -> ([(member, matrix)], (primitive, matrix) or None), and the last name, which is the root's."""
     objects = {}
     for name, body in re.findall(r'^(?:canonical )?object (\S+) \{\n(.*?)^\}', text, re.S | re.M):
         members, terminal = [], None
@@ -42,25 +44,38 @@ def matrices(text):
 
 
 def leaves(objects, name, depth, known):
-    """Matrices of all solids of an object so many levels down, (n, 4, 4)."""
-    if name in SOLIDS:
-        return numpy.identity(4)[None]
+    """Primitive -> matrices of all of its kind in an object so many levels down, (n, 4, 4)."""
+    if name in PRIMITIVES:
+        return {name: numpy.identity(4)[None]}
     if (name, depth) not in known:
         members, terminal = objects[name]
-        if depth == 0 and terminal:
-            known[name, depth] = terminal[1][None]
-        else:
-            parts = [matrix @ leaves(objects, member, depth - 1, known) for member, matrix in members]
-            known[name, depth] = numpy.concatenate(parts)
+        found = {}
+        for member, matrix in [terminal] if depth == 0 and terminal else members:
+            for primitive, matrices_of_it in leaves(objects, member, depth - 1, known).items():
+                found.setdefault(primitive, []).append(matrix @ matrices_of_it)
+        known[name, depth] = {primitive: numpy.concatenate(lists) for primitive, lists in found.items()}
     return known[name, depth]
 
 
-def mesh_of(transforms, solid):
-    corners, faces = (numpy.array(rows) for rows in SOLIDS[solid])
-    points = numpy.einsum('nij,kj->nki', transforms[:, :3, :3], corners) + transforms[:, None, :3, 3]
-    triangles = faces[None] + (len(corners) * numpy.arange(len(transforms)))[:, None, None]
-    points, triangles = points.reshape(-1, 3), triangles.reshape(-1, 3)
-    mesh = bpy.data.meshes.new('solids')
+def places_of(objects, part, name):
+    """Matrices of the instances of a part in an object."""
+    if name == part:
+        return [numpy.identity(4)]
+    return [matrix @ place for member, matrix in objects[name][0] if member not in PRIMITIVES
+            for place in places_of(objects, part, member)]
+
+
+def mesh_of(transforms_of):
+    all_points, all_triangles, begun = [], [], 0
+    for primitive, transforms in transforms_of.items():
+        corners, faces = (numpy.array(rows) for rows in PRIMITIVES[primitive])
+        points = numpy.einsum('nij,kj->nki', transforms[:, :3, :3], corners) + transforms[:, None, :3, 3]
+        triangles = begun + faces[None] + (len(corners) * numpy.arange(len(transforms)))[:, None, None]
+        all_points.append(points.reshape(-1, 3))
+        all_triangles.append(triangles.reshape(-1, 3))
+        begun += len(all_points[-1])
+    points, triangles = numpy.concatenate(all_points), numpy.concatenate(all_triangles)
+    mesh = bpy.data.meshes.new('parts')
     mesh.vertices.add(len(points))
     mesh.vertices.foreach_set('co', points.astype(numpy.float32).ravel())
     mesh.loops.add(3 * len(triangles))
@@ -99,8 +114,8 @@ def place(name, data, matrix):
 def build():
     bpy.ops.wm.read_factory_settings(use_empty=True)
     objects, root = matrices(open(JOB['graph']).read())
-    mesh = mesh_of(leaves(objects, JOB.get('of', root), JOB['depth'], {}), JOB['solid'])
-    places = [matrix for _, matrix in objects[root][0]] if 'of' in JOB else [numpy.identity(4)]
+    mesh = mesh_of(leaves(objects, JOB['part'], math.inf if JOB['depth'] is None else JOB['depth'], {}))
+    places = places_of(objects, JOB['part'], root)
     for matrix in places:
         place('part', mesh, mathutils.Matrix(matrix.tolist()))
     scene = bpy.context.scene

@@ -14,7 +14,7 @@ double column(double s) {
 } // namespace
 
 double Haze::left_after(Vec3 from, Vec3 direction, double length) const {
-    const double begin = (from.y - base) / height;
+    const double begin = (from.y - base) / height; // 0 where it is even
     const double end = begin + length * direction.y / height;
     double density = 1;
     if (begin > 0 || end > 0) {

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cmath>
+
 #include "compiler/support/affine.h"
 #include "compiler/support/tint.h"
 
@@ -10,7 +12,10 @@ struct Haze {
     Rgb rgb{0.7, 0.8, 0.9};
     double distance = 0; ///< after which 1/e of what lies behind is left, where it is even
     double base = 0;     ///< the height y from which it thins
-    double height = 1;   ///< over the base, at which it has half of its density left
+    double height =
+        1; ///< over the base, at which it has half of its density left; infinite where it is even everywhere
+
+    bool is_even() const { return std::isinf(height); }
 
     /// The share of what lies behind that is seen through `length` of it along a ray. POV-Ray 3.7's
     /// `fog_type 2`: the density is 1 / (1 + s^2) at s = (y - base) / height > 0, and 1 below. Requires a

@@ -185,12 +185,15 @@ void write_sky_light(SdlWriter& out, const SkyLight& sky, const std::string& fil
 }
 
 void write_haze(SdlWriter& out, const Haze& haze, const PovrayUnits& units) {
-    out << "fog { fog_type 2 distance ";
+    out << "fog { fog_type " << (haze.is_even() ? "1" : "2") << " distance ";
     out.number(units.scale * haze.distance, view_digits) << " ";
     write_rgb(out, haze.rgb);
-    out << " fog_offset ";
-    out.number(units.scale * (haze.base - units.origin.y), view_digits) << " fog_alt ";
-    out.number(units.scale * haze.height, view_digits) << " up <0,1,0> }\n";
+    if (!haze.is_even()) {
+        out << " fog_offset ";
+        out.number(units.scale * (haze.base - units.origin.y), view_digits) << " fog_alt ";
+        out.number(units.scale * haze.height, view_digits) << " up <0,1,0>";
+    }
+    out << " }\n";
 }
 
 /// Its opacity is a pattern of x and z; its light is that of paper.

@@ -117,13 +117,11 @@ Ground resolve(const GroundSetting& setting, const std::vector<Material>& materi
     return ground;
 }
 
-/// Where it says no height, it is as good as even over all that is in the picture.
 Haze resolve(const HazeSetting& setting, const View& view) {
-    constexpr double even = 1e6; // heights in a distance
     Haze haze;
     haze.distance = setting.distance;
     haze.base = setting.base;
-    haze.height = setting.height.value_or(even * setting.distance);
+    haze.height = setting.height.value_or(std::numeric_limits<double>::infinity());
     const Vec3 level(view.camera.direction.x, 0, view.camera.direction.z);
     const double length = glm::length(level);
     Vec3 horizon = length > 0 ? level / length : Vec3(1, 0, 0);

@@ -139,7 +139,8 @@ class Rerooter {
 
     /// Beyond these lengths nothing of it is seen.
     static bool is_sound(const Haze& haze) {
-        return is_size(haze.distance) && is_size(haze.height) && is_place(Vec3(haze.base));
+        return is_size(haze.distance) &&
+               (haze.is_even() || (is_size(haze.height) && is_place(Vec3(haze.base))));
     }
 
     /// A light beyond all distances is a sun, and a lamp reaches no farther. `linear`: of its sides.

@@ -121,5 +121,13 @@ TEST(Studio, AirHidesWhereTheGroundEndsAndNotTheModel) {
     EXPECT_FALSE(seen({}).haze);
 }
 
+TEST(Haze, IsEvenWithoutAHeightHoweverThick) {
+    SceneSettings thick;
+    thick.haze = HazeSetting{.distance = 1e-9, .base = -5};
+    const View view = seen(thick);
+    ASSERT_TRUE(view.haze);
+    EXPECT_NEAR(view.haze->left_after(Vec3(0, 1e6, 0), Vec3(0, 1, 0), 1e-9), std::exp(-1), 1e-12);
+}
+
 } // namespace
 } // namespace graftal

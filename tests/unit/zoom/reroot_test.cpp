@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <memory>
 #include <set>
@@ -331,7 +332,7 @@ TEST(Reroot, TheSkysPictureStaysInTheWorld) {
         EXPECT_NEAR(sky.radiance(part_from_world * direction).r, picture->radiance(direction).r, 1e-9);
 }
 
-TEST(Reroot, LightsAndGroundFollow) {
+TEST(Reroot, LightsGroundAndHazeFollow) {
     const Graph graph = corner_maps(triangle, {});
     const Components components = strong_components(graph);
     const std::vector<ObjectBounds> bounds = bounds_of(graph);
@@ -340,6 +341,7 @@ TEST(Reroot, LightsAndGroundFollow) {
         view.lights = {{.location = Vec3(0, 3, 0), .a = Vec3(0, 0, 0.5), .b = Vec3(0.25, 0, 0)},
                        {.location = Vec3(0, 1, 0), .sun = true}};
         view.ground = Ground{1.0, {}};
+        view.haze = Haze{.distance = 1e-97, .height = std::numeric_limits<double>::infinity()};
         return view;
     };
     Diagnostics diagnostics;
@@ -361,6 +363,8 @@ TEST(Reroot, LightsAndGroundFollow) {
     EXPECT_TRUE(zoomed("1e100").lights[1].sun);
     ASSERT_TRUE(zoomed("1e100").ground) << "the focus lies on it";
     EXPECT_NEAR(zoomed("4").ground->height, 0, 1e-12);
+    ASSERT_TRUE(zoomed("1e100").haze) << "an even one, whose base lies far below in this picture";
+    EXPECT_NEAR(zoomed("1e100").haze->left_after(Vec3(0, 5, 0), Vec3(1, 0, 0), 1000), std::exp(-1), 1e-12);
 }
 
 TEST(Reroot, TheGroundStaysInTheWorld) {

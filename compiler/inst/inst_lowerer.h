@@ -98,6 +98,8 @@ class InstLowerer {
     void call_for(const InstDefinition& definition);
     /// The one object that another file asks for.
     void call_for(const PartCall& part);
+    /// The root of a used model, which a model that uses this one asked for by its name.
+    std::optional<ObjectId> whole_used(const PartCall& part);
     /// An object that nothing in the file refers to.
     std::optional<ObjectId> add_called(const InstDefinition& definition, std::vector<double> arguments,
                                        const std::string& name);

@@ -85,6 +85,8 @@ void InstLowerer::call_for(const PartCall& part) {
     std::optional<ObjectId> root;
     if (const InstDefinition* const definition = index_.match(part.name, part.arguments, name)) {
         root = add_called(*definition, part.arguments, name);
+    } else if (uses_.contains(part.name)) {
+        root = whole_used(part);
     } else if (use_of(part.name)) {
         root = import_called(part.name, part.arguments);
     } else {
@@ -92,6 +94,18 @@ void InstLowerer::call_for(const PartCall& part) {
         ++lowering_.known_failures;
     }
     graph_.root = root.value_or(0);
+}
+
+std::optional<ObjectId> InstLowerer::whole_used(const PartCall& part) {
+    const auto root = by_name_.find(part.name);
+    if (root == by_name_.end()) return std::nullopt; // it did not load
+    if (part.arguments.empty()) return root->second;
+    const auto family = families_.find(part.name);
+    if (family != families_.end() && part.arguments.size() <= family->second.parameters().size())
+        return family->second.exact(part.arguments, uses_.at(part.name), diagnostics_);
+    lowering_.part_missing = true;
+    ++lowering_.known_failures;
+    return std::nullopt;
 }
 
 std::optional<ObjectId> InstLowerer::add_called(const InstDefinition& definition,

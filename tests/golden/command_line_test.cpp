@@ -282,6 +282,21 @@ TEST_F(CommandLine, WhatIsNoModelIsNotShown) {
     }
 }
 
+TEST_F(CommandLine, AUsedModelsOwnUseIsReachedByItsName) {
+    write("ball.inst", "inner size = 0.5\nobject ball { sphere scale: 1 + size }\n");
+    write("pair.inst", "use small = \"ball.inst\"\nobject pair { small }\n");
+    const auto printed = [this](const std::string& master) {
+        write("a.inst", "use pair = \"pair.inst\"\nobject a { " + master + " }\n");
+        return graftal("print a.inst");
+    };
+    EXPECT_THAT(printed("pair.small").out, HasSubstr("matrix: 1.5, 0"));
+    EXPECT_THAT(printed("pair.small(0.25)").out, HasSubstr("matrix: 1.25, 0"));
+    EXPECT_THAT(printed("pair.small(3)").err, HasSubstr("'size' of 'small' lies between 0 and 1, not at 3"));
+    EXPECT_THAT(printed("pair.small(0, 0)").err, HasSubstr("unknown object 'pair.small(0, 0)'"));
+    for (const char* wrong : {"pair.small(3)", "pair.small(0, 0)"})
+        EXPECT_EQ(printed(wrong).status, 1) << wrong;
+}
+
 TEST_F(CommandLine, ProbabilitiesGoThroughThePrintedGraph) {
     const std::string fern = "'" + source_path("scenes/ifs/fern.rifs") + "'";
     const RunResult printed = graftal("print " + fern);

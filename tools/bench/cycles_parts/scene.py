@@ -1,6 +1,7 @@
 """Run by Blender: blender -b --python scene.py -- JOB.json. Builds the parts that `graftal print` has written, to a
 depth, as one mesh or as instances of one, lights them, and renders them with Cycles at each number of samples. Prints a
 line of JSON for the set-up and for each picture."""
+import ctypes
 import json
 import math
 import os
@@ -45,8 +46,9 @@ def matrices(text):
 
 def leaves(objects, name, depth, known):
     """Primitive -> matrices of all of its kind in an object so many levels down, (n, 4, 4)."""
-    if name in PRIMITIVES:
-        return {name: numpy.identity(4)[None]}
+    solid = name.rsplit('.', 1)[-1]  # tetra.tetrahedron is spelt out as four triangles, whose corners a mesh shares
+    if solid in PRIMITIVES:
+        return {solid: numpy.identity(4)[None]}
     if (name, depth) not in known:
         members, terminal = objects[name]
         found = {}
@@ -151,7 +153,9 @@ def seconds():
 
 def forget_peak():
     """The arrays of the set-up are no part of what Cycles needs."""
-    open('/proc/self/clear_refs', 'w').write('5')
+    ctypes.CDLL(None).malloc_trim(0)
+    with open('/proc/self/clear_refs', 'w') as file:
+        file.write('5')
 
 
 def peak_mib():

@@ -100,6 +100,8 @@ class InstLowerer {
     void call_for(const PartCall& part);
     /// The root of a used model, which a model that uses this one asked for by its name.
     std::optional<ObjectId> whole_used(const PartCall& part);
+    /// Without a message: Lowering::part_missing.
+    std::nullopt_t no_part();
     /// An object that nothing in the file refers to.
     std::optional<ObjectId> add_called(const InstDefinition& definition, std::vector<double> arguments,
                                        const std::string& name);

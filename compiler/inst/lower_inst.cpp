@@ -90,8 +90,7 @@ void InstLowerer::call_for(const PartCall& part) {
     } else if (use_of(part.name)) {
         root = import_called(part.name, part.arguments);
     } else {
-        lowering_.part_missing = true;
-        ++lowering_.known_failures;
+        root = no_part();
     }
     graph_.root = root.value_or(0);
 }
@@ -100,9 +99,11 @@ std::optional<ObjectId> InstLowerer::whole_used(const PartCall& part) {
     const auto root = by_name_.find(part.name);
     if (root == by_name_.end()) return std::nullopt; // it did not load
     if (part.arguments.empty()) return root->second;
-    const auto family = families_.find(part.name);
-    if (family != families_.end() && part.arguments.size() <= family->second.parameters().size())
-        return family->second.exact(part.arguments, uses_.at(part.name), diagnostics_);
+    if (part.arguments.size() > inner_count(part.name)) return no_part();
+    return families_.find(part.name)->second.exact(part.arguments, uses_.at(part.name), diagnostics_);
+}
+
+std::nullopt_t InstLowerer::no_part() {
     lowering_.part_missing = true;
     ++lowering_.known_failures;
     return std::nullopt;

@@ -12,8 +12,7 @@ struct Haze {
     Rgb rgb{0.7, 0.8, 0.9};
     double distance = 0; ///< after which 1/e of what lies behind is left, where it is even
     double base = 0;     ///< the height y from which it thins
-    double height =
-        1; ///< over the base, at which it has half of its density left; infinite where it is even everywhere
+    double height = 1;   ///< over the base, at which half of its density is left; infinite: even all over
 
     bool is_even() const { return std::isinf(height); }
 

@@ -17,6 +17,7 @@ struct WorkRates {
     static constexpr double visits = 1.5e7;         ///< parts visited to make a mesh of a node (LeafWalk)
     static constexpr double baked_triangles = 4e6;  ///< triangles of such meshes
     static constexpr double kinds = 4.5e6;          ///< edges of kinds followed to weigh them (Weights)
+    static constexpr double trace_edges = 2e5; ///< edges of a prepared graph made ready for rays (TraceModel)
     /// Of the graph, from the model's text to where it can be unfolded.
     static constexpr double instances = 1.5e5;
     static constexpr double pieces = 3e6; ///< pieces looked at to choose among them (choose_cut())

@@ -18,11 +18,12 @@ DrawReport& DrawReport::operator+=(const DrawReport& other) {
 }
 
 std::span<const Engine> engines() {
-    static const std::array table = {povray_engine, native_engine};
+    static const std::array table = {native_engine, povray_engine};
     return table;
 }
 
 const Engine* find_engine(std::string_view name) {
+    if (name == auto_engine) return &engines().front();
     for (const Engine& engine : engines())
         if (engine.name == name) return &engine;
     return nullptr;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <new>
+#include <optional>
 #include <utility>
 
 #include "compiler/detail/work.h"
@@ -13,218 +14,278 @@ namespace graftal {
 
 namespace {
 
-/// Pixels that one ray is tried for, and the fewest rays: the first look is short whatever comes. The last is
-/// close, since a hundredth of a picture may take all of the work, and still a small share of it.
-constexpr std::uint64_t pixels_of_first_look = 4096, pixels_of_second_look = 256, pixels_of_last_look = 16;
-constexpr std::uint64_t least_first_look = 16, least_second_look = 256;
-/// A first look that finds this much more than what is allowed needs no second.
-constexpr double clear_factor = 8;
-/// Of the work, what a first look may take: its rays are given up in time, and those count as if they went on
-/// to the end.
-constexpr double most_for_first_look = 0.1;
-constexpr double rays_a_look = 3, steps_a_visit = 4;
+/// Rays of the first piece of a look; each piece has at most so many times as many as all before it. The last
+/// is close, one ray for so many pixels: a hundredth of a picture may take all of the work, and a still
+/// smaller share of it is seldom met.
+constexpr std::uint64_t first_piece = 16, growth_of_pieces = 4, pixels_a_ray = 16, least_last = 256;
+/// Of them, before a picture is drawn by what they took.
+constexpr std::uint64_t rays_before_draft = 64;
+/// Shares of the work: of a look, and of all looks.
+constexpr double most_for_a_look = 0.04, most_for_looks = 0.2;
+constexpr double steps_a_visit = 4;
+/// By so much what is culled grows from one try to the next: less for the first tries.
 constexpr double coarser = 1.5;
-constexpr int most_coarser_steps = 9;
+constexpr int small_tries = 2;
+constexpr double coarsest = 57; ///< of errors, as a multiple of the one asked for
+/// A larger error that saves less is of no use: octaves of work for an octave of error.
+constexpr double least_gain = 0.75;
+/// Errors looked at between two tries.
+constexpr int steps_between = 8;
 /// All is made anew after the memory did not suffice: few tries must do.
-constexpr int steps_after_memory = 3;
+const double coarser_after_memory = std::pow(coarser, 3);
 constexpr std::uint64_t fewest_visits = 16;
-/// By how much a coarser picture may take less: more where crowds are seen, hardly any where surfaces
-/// overlap.
-constexpr double most_gain = coarser * coarser * coarser;
-/// Of what is allowed: a look that takes more for shells is broken off, since the picture takes more, too. It
-/// is taken for one that takes so many times what is allowed.
+/// Of what is allowed: a look that takes more for shells is broken off, since the picture takes more, too.
+/// It is taken for one that takes so many times what is allowed.
 constexpr double most_for_shells = 0.5, broken_off = 4;
 /// After so many the picture is made as coarse as may be.
 constexpr int most_broken_looks = 2;
 
+/// What a model takes, in seconds of one processor.
+struct Price {
+    double sample = 0; ///< one for each pixel of the picture
+    double fixed = 0;  ///< the shells that its rays meet
+    bool known = true; ///< else it was too much to be measured
+
+    double of(double samples_a_pixel) const { return fixed + samples_a_pixel * sample; }
+};
+
+/// The price at `share` of the way from one error to another.
+Price between(const Price& a, const Price& b, double share) {
+    const auto mean = [share](double x, double y) {
+        return x > 0 && y > 0 ? std::exp(std::lerp(std::log(x), std::log(y), share)) : std::lerp(x, y, share);
+    };
+    return {mean(a.sample, b.sample), mean(a.fixed, b.fixed), a.known && b.known};
+}
+
 class Fitting {
   public:
-    Fitting(std::shared_ptr<const PreparedCut> prepared, const View& view, const DetailOptions& options,
-            const ModelTextures& textures, double samples_a_pixel, double fewest_a_pixel,
-            const std::function<ShaderLimits(const TraceModel&)>& limits_of, int threads,
-            const std::function<bool()>& cancelled,
-            const std::function<void(const TraceModel&, double)>& on_first_look)
-        : prepared_(std::move(prepared)), view_(view), options_(options), textures_(textures),
-          samples_(samples_a_pixel * view.size.width * view.size.height),
-          least_share_(fewest_a_pixel / samples_a_pixel), limits_of_(limits_of), threads_(threads),
-          cancelled_(cancelled), on_first_look_(on_first_look) {}
+    explicit Fitting(FitRequest request)
+        : ask_(std::move(request)),
+          pixels_(static_cast<double>(ask_.view.size.width) * ask_.view.size.height) {}
 
     FittedModel run() {
-        FittedModel fitted = fit();
-        fitted.tried_seconds = tried_seconds_;
-        return fitted;
+        fit();
+        fitted_.error_px = fitted_.model->options.error_px;
+        fitted_.sample_seconds = price_.sample;
+        fitted_.seconds = price_.of(fitted_.sampling.samples_a_pixel());
+        fitted_.tried_seconds = tried_seconds_;
+        return std::move(fitted_);
     }
 
   private:
-    FittedModel fit() {
-        FittedModel fitted;
-        DetailOptions options = options_;
-        int steps_left = options.culls() ? most_coarser_steps : 0;
-        make_anew(options, steps_left, fitted);
-        fitted.whole_seconds = fitted.seconds;
-        fitted.allowed_seconds = std::numeric_limits<double>::infinity();
-        if (!options.culls()) return fitted;
-        while (steps_left > 0 && too_much(fitted.seconds)) {
-            const double steps = std::log(excess(fitted.seconds)) / std::log(most_gain);
-            const double error_px = options.error_px * std::pow(coarser, std::max(std::ceil(steps), 1.0));
-            if (error_px > most_before_samples * options_.error_px && share_ > least_share_) {
-                share_ = std::max(share_ / excess(fitted.seconds), least_share_);
-                fitted.samples_cut = true;
-                continue;
-            }
-            fitted.work_cut = true;
-            // Each look that is broken off takes much of the time there is: there are to be few.
-            const int least = broken_looks_ < most_broken_looks ? 1 << broken_looks_ : most_coarser_steps;
-            for (int i = 0; (i < least || i < steps) && (i == 0 || steps_left > 0); ++i)
-                make_coarser(options, steps_left);
-            std::vector<ShellSizes> shell_sizes = std::move(fitted.model->shell_sizes);
-            fitted.model.reset();
-            if (!make(std::move(shell_sizes), options, fitted)) {
-                note_memory(options, steps_left, fitted);
-                make_anew(options, steps_left, fitted);
+    /// An error, as a multiple of the one asked for, and what would come of it.
+    struct Choice {
+        double factor = 1;
+        Sampling sampling;
+        double loss = std::numeric_limits<double>::infinity();
+    };
+
+    void fit() {
+        make_anew(1);
+        fitted_.sampling = ask_.wanted;
+        fitted_.whole_seconds = price_.of(ask_.wanted.samples_a_pixel());
+        if (!ask_.options.culls() || fits(ask_.wanted)) return;
+        const Price price_asked = price_;
+        const Choice best = best_choice();
+        if (best.factor != factor_)
+            make_anew(best.factor, best.factor == 1 ? std::optional(price_asked) : std::nullopt);
+        fitted_.sampling = affordable_sampling(ask_.wanted, samples_for(price_));
+        while (price_.known && !fits(fitted_.sampling) && fitted_.model->most_visits > fewest_visits &&
+               !cancelled()) {
+            const std::uint64_t fewer = price_.of(fitted_.sampling.samples_a_pixel()) > 4 * allowed() ? 4 : 2;
+            fitted_.model->most_visits = std::max(fitted_.model->most_visits / fewer, fewest_visits);
+            fitted_.rays_cut = true;
+            price_ = look(*fitted_.model);
+        }
+    }
+
+    bool fits(const Sampling& sampling) const {
+        return price_.known && price_.of(sampling.samples_a_pixel()) <= allowed();
+    }
+
+    /// Tries larger and larger errors, as long as they may still win.
+    Choice best_choice() {
+        Choice best = choice(factor_, price_);
+        for (int tries = 1; factor_ < coarsest && !cancelled(); ++tries) {
+            if (!(std::log2(factor_ * coarser) < best.loss)) break;
+            if (tried_seconds_ > most_for_looks * work_seconds_ && best.loss < infinite_loss) break;
+            const double factor_before = factor_;
+            const Price price_before = price_;
+            make_anew(factor_ * next_step(tries));
+            if (best.loss < infinite_loss && gain(price_before, factor_ / factor_before) < least_gain) break;
+            for (int i = 1; i <= steps_between; ++i) {
+                const double share = static_cast<double>(i) / steps_between;
+                const Choice next =
+                    choice(std::exp(std::lerp(std::log(factor_before), std::log(factor_), share)),
+                           between(price_before, price_, share));
+                if (next.loss < best.loss) best = next;
             }
         }
-        while (too_much(fitted.seconds) && fitted.model->most_visits > fewest_visits) {
-            const std::uint64_t fewer = excess(fitted.seconds) > 4 ? 4 : 2;
-            fitted.model->most_visits = std::max(fitted.model->most_visits / fewer, fewest_visits);
-            fitted.work_cut = fitted.rays_cut = true;
-            fitted.seconds = seconds_for(*fitted.model);
+        if (!(best.loss < infinite_loss)) best.factor = factor_;
+        return best;
+    }
+
+    /// Octaves of work that an octave of error saves.
+    double gain(const Price& before, double step) const {
+        const double samples = ask_.wanted.samples_a_pixel();
+        return price_.known ? std::log2(before.of(samples) / price_.of(samples)) / std::log2(step) : 1;
+    }
+
+    double next_step(int tries) const {
+        if (broken_looks_ >= most_broken_looks) return std::max(coarsest / factor_, coarser);
+        return tries <= small_tries && broken_looks_ == 0 ? coarser : coarser * coarser;
+    }
+
+    Choice choice(double factor, const Price& price) const {
+        Choice made{factor, affordable_sampling(ask_.wanted, samples_for(price)), infinite_loss};
+        if (price.known && price.of(made.sampling.samples_a_pixel()) <= allowed())
+            made.loss = std::log2(factor) + loss_of_samples(ask_.wanted, made.sampling);
+        return made;
+    }
+
+    /// A pixel.
+    double samples_for(const Price& price) const {
+        return price.known ? std::max(allowed() - price.fixed, 0.0) / std::max(price.sample, 1e-12) : 0;
+    }
+
+    /// A model of this error, whose price may be known, or of the smallest larger one for which the memory
+    /// suffices.
+    void make_anew(double factor, const std::optional<Price>& known = {}) {
+        std::vector<ShellSizes> shell_sizes;
+        if (fitted_.model) shell_sizes = std::move(fitted_.model->shell_sizes);
+        fitted_.model.reset();
+        while (!make(std::exchange(shell_sizes, {}), factor, known)) {
+            fitted_.out_of_memory = true;
+            if (!ask_.options.culls() || factor >= coarsest || failed_seconds_ > work_seconds_)
+                throw std::bad_alloc();
+            factor *= coarser_after_memory;
         }
-        fitted.allowed_seconds = allowed();
-        return fitted;
-    }
-
-    static void make_coarser(DetailOptions& options, int& steps_left) {
-        --steps_left;
-        options.error_px *= coarser;
-        if (options.error_world) *options.error_world *= coarser;
-    }
-
-    void note_memory(DetailOptions& options, int& steps_left, FittedModel& fitted) {
-        fitted.out_of_memory = true;
-        if (steps_left == 0 || failed_seconds_ > work_seconds_) throw std::bad_alloc();
-        for (int i = 0; i < steps_after_memory && steps_left > 0; ++i)
-            make_coarser(options, steps_left);
-    }
-
-    /// As coarse as the memory asks for.
-    void make_anew(DetailOptions& options, int& steps_left, FittedModel& fitted) {
-        while (!make({}, options, fitted))
-            note_memory(options, steps_left, fitted);
     }
 
     /// False where it takes more memory than there is.
-    bool make(std::vector<ShellSizes> shell_sizes, const DetailOptions& options, FittedModel& fitted) {
-        const std::uint64_t instances = prepared_->instances;
-        work_seconds_ = work_beside_graph(options_.work_seconds, instances);
+    bool make(std::vector<ShellSizes> shell_sizes, double factor, const std::optional<Price>& known) {
+        const std::uint64_t instances = ask_.prepared->instances;
+        work_seconds_ = work_beside_graph(ask_.options.work_seconds, instances);
         slowness_ = slowness_of_graph(instances);
+        DetailOptions options = ask_.options;
+        options.error_px *= factor;
+        if (options.error_world) *options.error_world *= factor;
         try {
-            fitted.model = std::make_unique<TraceModel>(prepared_, view_, options, textures_,
-                                                        std::move(shell_sizes), self_shadow_store_);
-            tried_seconds_ += slowness_ * static_cast<double>(fitted.model->weighed) / WorkRates::kinds;
-            fitted.error_px = options.error_px;
-            fitted.seconds = seconds_for(*fitted.model);
+            fitted_.model = std::make_unique<TraceModel>(ask_.prepared, ask_.view, options, ask_.textures,
+                                                         std::move(shell_sizes), self_shadow_store_);
+            tried_seconds_ +=
+                slowness_ * (static_cast<double>(fitted_.model->weighed) / WorkRates::kinds +
+                             static_cast<double>(fitted_.model->edges.size()) / WorkRates::trace_edges);
+            factor_ = factor;
+            price_ = known ? *known : look(*fitted_.model);
             return true;
         } catch (const std::bad_alloc&) {
-            fitted.model.reset();
+            fitted_.model.reset();
             failed_seconds_ += static_cast<double>(instances) / WorkRates::instances;
             return false;
         }
     }
 
-    /// Trying and samples that meet nothing take their share, too; the rest keeps half in any case.
-    double allowed() const {
-        const double spent = tried_seconds_ + share_ * samples_ / WorkRates::samples;
-        return std::max(work_seconds_ - spent, 0.5 * work_seconds_);
-    }
+    /// What trying has left of the work: half in any case.
+    double allowed() const { return std::max(work_seconds_ - tried_seconds_, 0.5 * work_seconds_); }
 
-    double excess(double seconds) const { return share_ * seconds / allowed(); }
-
-    bool too_much(double seconds) const { return excess(seconds) > 1 && !cancelled_(); }
+    bool cancelled() const { return ask_.cancelled(); }
 
     static double shell_seconds(const TraceModel& model) {
         return static_cast<double>(model.meshes.shell_work()) / WorkRates::shell_points;
     }
 
-    /// Each look is at more of the picture, until one finds too much.
-    double seconds_for(TraceModel& model) {
-        const auto pixels =
-            static_cast<std::uint64_t>(view_.size.width) * static_cast<std::uint64_t>(view_.size.height);
-        const std::uint64_t first = std::max(pixels / pixels_of_first_look, least_first_look);
-        const std::uint64_t second = std::max(pixels / pixels_of_second_look, least_second_look);
-        const std::uint64_t last = std::max(pixels / pixels_of_last_look, second);
-        const int broken_before = broken_looks_;
-        double seconds = look_briefly(model, first);
-        if (!std::exchange(looked_, true) && on_first_look_) on_first_look_(model, seconds);
-        if (broken_looks_ > broken_before || excess(seconds) > clear_factor) return seconds;
-        PictureTracer tracer(model, limits_of_(model));
-        for (std::uint64_t done = 0; done < last; done += second) {
-            seconds = look_on(model, tracer, done, std::min(done + second, last));
-            if (broken_looks_ > broken_before || too_much(seconds)) break;
-        }
-        return seconds;
-    }
+    double second_of_steps() const { return slowness_ / WorkRates::ray_steps; }
 
-    /// Parts that each of so many rays may go into.
-    std::uint64_t visits_of_first_look(std::uint64_t rays) const {
-        const double steps = most_for_first_look * work_seconds_ * WorkRates::ray_steps / slowness_;
-        const double visits = steps / (rays_a_look * steps_a_visit * static_cast<double>(rays));
-        return static_cast<std::uint64_t>(std::clamp<double>(visits, fewest_visits, 1e9));
-    }
+    /// Steps that a look may take.
+    double steps_of_a_look() const { return most_for_a_look * work_seconds_ / second_of_steps(); }
 
-    /// By rays that are given up early, and count as if they went on to the end.
-    double look_briefly(TraceModel& model, std::uint64_t rays) {
+    /// By rays all over the picture, piece by piece, until the steps of a look are spent. A ray that would go
+    /// on for longer than they allow is given up, and counts as if it went on to the end.
+    Price look(TraceModel& model) {
+        const auto last = std::max(static_cast<std::uint64_t>(pixels_) / pixels_a_ray, least_last);
         const std::uint64_t whole_visits = model.most_visits;
-        if (options_.culls()) model.most_visits = std::min(whole_visits, visits_of_first_look(rays));
-        const auto visits_left = static_cast<double>(whole_visits - model.most_visits);
-        PictureTracer tracer(model, limits_of_(model));
-        const double seconds = look_on(model, tracer, 0, rays);
-        const double steps_left =
-            static_cast<double>(tracer.statistics().given_up) * steps_a_visit * visits_left;
+        const double most_steps = steps_of_a_look();
+        if (ask_.options.culls()) {
+            const double most_visits = most_steps / (steps_a_visit * first_piece);
+            model.most_visits =
+                std::min(whole_visits,
+                         std::max(static_cast<std::uint64_t>(std::min(most_visits, 1e9)), fewest_visits));
+        }
+        PictureTracer tracer(model, ask_.limits_of(model));
+        Price price;
+        std::uint64_t rays = 0;
+        while (rays < last && price.known && !cancelled()) {
+            const double spent = static_cast<double>(tracer.statistics().work);
+            std::uint64_t piece = first_piece;
+            if (rays > 0) {
+                const double affordable = static_cast<double>(rays) * (most_steps / std::max(spent, 1.0) - 1);
+                if (affordable < first_piece) break;
+                piece =
+                    std::min(growth_of_pieces * rays, static_cast<std::uint64_t>(std::min(affordable, 1e9)));
+            }
+            piece = std::min(piece, last - rays);
+            price.known = look_on(model, tracer, rays, rays + piece);
+            rays += piece;
+            price.sample = sample_seconds(tracer, rays, whole_visits - model.most_visits);
+            price.fixed = shell_seconds(model);
+            if (rays >= rays_before_draft || rays >= last) draft(model, whole_visits, price.sample);
+        }
+        draft(model, whole_visits, price.sample);
         model.most_visits = whole_visits;
-        return seconds + steps_left * second_of_steps() * samples_ / static_cast<double>(rays);
+        // What was seen before it was broken off depends on the threads.
+        return price.known ? price : Price{0, broken_off * allowed(), false};
     }
 
-    /// What the picture takes by all rays that the tracer has tried, those from `begin` to `end` now.
-    double look_on(TraceModel& model, PictureTracer& tracer, std::uint64_t begin, std::uint64_t end) {
+    void draft(TraceModel& model, std::uint64_t whole_visits, double seconds) {
+        if (std::exchange(drafted_, true) || !ask_.on_first_look) return;
+        const std::uint64_t visits = std::exchange(model.most_visits, whole_visits);
+        ask_.on_first_look(model, seconds);
+        model.most_visits = visits;
+    }
+
+    double sample_seconds(const PictureTracer& tracer, std::uint64_t rays, std::uint64_t visits_left) const {
+        const TraceStatistics& tried = tracer.statistics();
+        const double steps = static_cast<double>(tried.work) + steps_a_visit *
+                                                                   static_cast<double>(tried.given_up) *
+                                                                   static_cast<double>(visits_left);
+        return pixels_ * (steps * second_of_steps() / static_cast<double>(rays) + 1 / WorkRates::samples);
+    }
+
+    /// By the rays from `begin` to `end`. False if they met more shells than there is work for.
+    bool look_on(TraceModel& model, PictureTracer& tracer, std::uint64_t begin, std::uint64_t end) {
         const double shells_before = shell_seconds(model);
         const std::uint64_t work_before = tracer.statistics().work;
         TraceControl control;
-        control.threads = threads_;
+        control.threads = ask_.threads;
         const double most_shells = most_for_shells * allowed();
-        const auto too_many_shells = [&] { return options_.culls() && shell_seconds(model) > most_shells; };
-        control.cancelled = [&] { return cancelled_() || too_many_shells(); };
-        if (options_.culls())
+        const auto too_many_shells = [&] {
+            return ask_.options.culls() && shell_seconds(model) > most_shells;
+        };
+        control.cancelled = [&] { return cancelled() || too_many_shells(); };
+        if (ask_.options.culls())
             model.meshes.make_until(static_cast<std::uint64_t>(most_shells * WorkRates::shell_points));
         tracer.probe(begin, end, control);
         model.meshes.make_until(UINT64_MAX);
         if (too_many_shells()) { // how many there are by now depends on the threads
             tried_seconds_ += most_shells;
             ++broken_looks_;
-            return broken_off * allowed() / share_;
+            return false;
         }
-        const TraceStatistics& tried = tracer.statistics();
-        const double shells = shell_seconds(model);
-        tried_seconds_ +=
-            second_of_steps() * static_cast<double>(tried.work - work_before) + shells - shells_before;
-        return second_of_steps() * static_cast<double>(tried.work) * samples_ / static_cast<double>(end) +
-               shells;
+        tried_seconds_ += second_of_steps() * static_cast<double>(tracer.statistics().work - work_before) +
+                          shell_seconds(model) - shells_before;
+        return true;
     }
 
-    double second_of_steps() const { return slowness_ / WorkRates::ray_steps; }
+    static constexpr double infinite_loss = std::numeric_limits<double>::infinity();
 
-    const std::shared_ptr<const PreparedCut> prepared_;
+    FitRequest ask_;
+    const double pixels_;
     const std::shared_ptr<SelfShadowStore> self_shadow_store_ = std::make_shared<SelfShadowStore>();
-    const View& view_;
-    const DetailOptions& options_;
-    const ModelTextures& textures_;
-    const double samples_, least_share_;
-    double share_ = 1; ///< of the samples that are taken
-    const std::function<ShaderLimits(const TraceModel&)>& limits_of_;
-    const int threads_;
-    const std::function<bool()>& cancelled_;
-    const std::function<void(const TraceModel&, double)>& on_first_look_;
-    bool looked_ = false;
+    FittedModel fitted_;
+    Price price_;       ///< of the model
+    double factor_ = 1; ///< of its error
+    bool drafted_ = false;
     double work_seconds_ = 0;   ///< for the rays, and for what is tried
     double slowness_ = 1;       ///< of their steps
     double failed_seconds_ = 0; ///< that models took for which the memory did not suffice
@@ -234,14 +295,8 @@ class Fitting {
 
 } // namespace
 
-FittedModel fit_work(std::shared_ptr<const PreparedCut> prepared, const View& view,
-                     const DetailOptions& options, const ModelTextures& textures, double samples_a_pixel,
-                     double fewest_a_pixel, const std::function<ShaderLimits(const TraceModel&)>& limits_of,
-                     int threads, const std::function<bool()>& cancelled,
-                     const std::function<void(const TraceModel&, double)>& on_first_look) {
-    return Fitting(std::move(prepared), view, options, textures, samples_a_pixel, fewest_a_pixel, limits_of,
-                   threads, cancelled, on_first_look)
-        .run();
+FittedModel fit_work(FitRequest request) {
+    return Fitting(std::move(request)).run();
 }
 
 } // namespace graftal

@@ -21,95 +21,90 @@ namespace graftal {
 
 namespace {
 
-std::string samples_in_words(const std::vector<Sampling>& samplings) {
-    const double samples = samplings.back().samples_a_pixel();
-    return samples > 1 ? fmt::format("{:.0f}", samples) : "one";
-}
-
-/// Of a picture with all samples that were asked for.
-double seconds_as_asked(const FittedModel& fitted, const Looks& looks, ImageSize size) {
-    return fitted.whole_seconds * samples_a_pixel(looks.wanted) / samples_a_pixel(looks.tried) +
-           least_seconds(looks.wanted, size);
-}
-
-/// That have to be allowed for it.
-double work_as_asked(const FittedModel& fitted, const Looks& looks, ImageSize size) {
-    return std::max(seconds_as_asked(fitted, looks, size),
-                    least_seconds(looks.wanted, size) / most_for_samples);
-}
-
 /// The picture that was asked for, for messages.
 struct Asked {
     Span span; ///< of the model
     ImageSize size;
     std::uint64_t drawn_pixels; ///< of them
-    const DetailOptions& detail;
+    const PicturePlan& plan;
+    bool by_default; ///< nobody has named the work, or the samples
 };
 
+/// "4 samples per pixel", "1 sample per pixel", "1 sample per 8x8 pixels"
+std::string samples_text(double a_pixel) {
+    if (a_pixel > 0 && a_pixel < 1) {
+        const double block = std::round(std::sqrt(1 / a_pixel));
+        return fmt::format("1 sample per {0:g}x{0:g} pixels", block);
+    }
+    return fmt::format("{:g} sample{} per pixel", a_pixel, a_pixel == 1 ? "" : "s");
+}
+
+std::string samples_text(const Sampling& sampling) {
+    return samples_text(sampling.samples_a_pixel());
+}
+
+/// What has to be allowed for the picture as it was asked for.
+Limit limit_for(const FittedModel& fitted, const DetailOptions& detail) {
+    Limit limit = limit_of_work(detail.work_seconds);
+    limit.need = fmt::format("the picture as asked would take about {} seconds of one processor",
+                             readable_seconds(fitted.whole_seconds));
+    return limit;
+}
+
 /// Says what the work allowed has cost, or what a picture that leaves nothing out will take.
-void report_work(const FittedModel& fitted, const Looks& looks, const Asked& asked,
-                 Diagnostics& diagnostics) {
-    const Span& span = asked.span;
-    const double allowed = asked.detail.work_seconds;
-    const double seconds = seconds_as_asked(fitted, looks, asked.size);
+void report_work(const FittedModel& fitted, const Asked& asked, Diagnostics& diagnostics) {
+    const DetailOptions& detail = asked.plan.detail;
+    const Sampling& wanted = asked.plan.wanted;
+    const CoarserError error{fitted.error_px, detail.error_px};
     if (fitted.out_of_memory)
-        warn_of_limit(span, limit_of_memory(asked.detail.memory_bytes),
-                      {fitted.error_px, asked.detail.error_px}, diagnostics);
-    if (!asked.detail.culls()) {
-        if (!(seconds > allowed)) return;
+        warn_of_limit(asked.span, limit_of_memory(detail.memory_bytes), error, diagnostics);
+    if (!detail.culls()) {
+        if (!(fitted.whole_seconds > detail.work_seconds)) return;
         diagnostics
-            .note(span,
+            .note(asked.span,
                   fmt::format(
                       "this picture takes about {} seconds of one processor, because nothing is left out",
-                      readable_seconds(seconds)))
+                      readable_seconds(fitted.whole_seconds)))
             .with_hint("use --error 0.5 to leave out invisible detail");
         return;
     }
-    Limit limit = limit_of_work(allowed);
-    limit.need = fmt::format("the picture as asked would take about {} seconds of one processor",
-                             readable_seconds(work_as_asked(fitted, looks, asked.size)));
-    const std::string samples = samples_in_words(looks.affordable);
-    const std::string samples_with_noun = samples == "one" ? "one sample" : samples + " samples";
-    if (!fitted.work_cut) {
-        if (looks.fewer() && !(looks.wanted.back().noise_255 > 0)) // else see report_noise()
-            diagnostics
-                .warning(span, fmt::format("{} allow {} per pixel, not {}", limit.allowed, samples_with_noun,
-                                           samples_in_words(looks.wanted)))
-                .with_hint(limit.need + ": give them with " + limit.option +
-                           ", or ask for fewer samples with --antialias");
+    Limit limit = limit_for(fitted, detail);
+    const bool fewer = fitted.sampling != wanted;
+    if (fitted.rays_cut) limit.besides = ", and graftal gives up rays that meet too many parts";
+    if (fewer) limit.besides += fmt::format(", by {}", samples_text(fitted.sampling));
+    if (fitted.rays_cut || error.px > error.asked_px) {
+        warn_of_limit(asked.span, limit, error, diagnostics);
         return;
     }
-    if (fitted.rays_cut) limit.besides = ", and graftal gives up rays that meet too many parts";
-    const int block = looks.affordable.back().block;
-    if (block > 1)
-        limit.besides += fmt::format(", one per {0} by {0} pixels", block);
-    else if (looks.fewer())
-        limit.besides += fitted.rays_cut ? fmt::format(", {} per pixel", samples)
-                                         : fmt::format(", by {} per pixel", samples_with_noun);
-    warn_of_limit(span, limit, {fitted.error_px, asked.detail.error_px}, diagnostics);
+    // Who asks for nothing is told before the picture starts (on_start); for noise see report_noise().
+    if (!fewer || asked.by_default || wanted.noise_255 > 0) return;
+    diagnostics
+        .warning(asked.span, fmt::format("{} allow {}, not {:g}", limit.allowed,
+                                         samples_text(fitted.sampling), wanted.samples_a_pixel()))
+        .with_hint(limit.need + ": give them with " + limit.option +
+                   ", or ask for fewer samples with --antialias");
 }
 
-/// Says where the work allowed left more noise than was asked for; where nobody asked, only if that is much.
-void report_noise(const TraceStatistics& rays, const Looks& looks, const Asked& asked, bool by_default,
+/// Says where the work that somebody allowed left more noise than was asked for.
+void report_noise(const TraceStatistics& rays, const FittedModel& fitted, const Asked& asked,
                   Diagnostics& diagnostics) {
-    const double noticed = by_default ? 0.25 : 0.01; // of the picture
+    constexpr double noticed = 0.01; // of the picture
     const double share = static_cast<double>(rays.noisy_pixels) / static_cast<double>(asked.drawn_pixels);
-    if (!looks.fewer() || !(share > noticed)) return;
-    const Limit limit = limit_of_work(asked.detail.work_seconds);
+    if (asked.by_default || fitted.sampling == asked.plan.wanted || !(share > noticed)) return;
+    const Limit limit = limit_of_work(asked.plan.detail.work_seconds);
     diagnostics
         .warning(asked.span,
-                 fmt::format("{} allow {} samples per pixel: in {:.0f} % of the picture the noise is above "
-                             "{:g} of 255 steps",
-                             limit.allowed, samples_in_words(looks.affordable), 100 * share,
-                             looks.wanted.back().noise_255))
+                 fmt::format("{} allow {}: in {:.0f} % of the picture the noise is above {:g} of 255 steps",
+                             limit.allowed, samples_text(fitted.sampling), 100 * share,
+                             asked.plan.wanted.noise_255))
         .with_hint(fmt::format("allow more with {}, or ask for less with --quality, --noise or --size",
                                limit.option));
 }
 
 /// Says what a picture takes that is too large even for one sample a pixel.
-void report_size(const Looks& looks, const Asked& asked, Diagnostics& diagnostics) {
-    const double seconds = least_seconds(looks.affordable, asked.size);
-    if (!asked.detail.culls() || !(seconds > asked.detail.work_seconds)) return;
+void report_size(const FittedModel& fitted, const Asked& asked, Diagnostics& diagnostics) {
+    const double seconds = least_seconds(fitted.sampling, asked.size);
+    if (!asked.plan.detail.culls() || !(seconds > asked.plan.detail.work_seconds)) return;
     diagnostics
         .note(asked.span, fmt::format("a picture of this size takes at least {} seconds of one processor",
                                       readable_seconds(seconds)))
@@ -121,7 +116,8 @@ void report_shells(const TraceModel& model, const Asked& asked, Diagnostics& dia
     constexpr double step_of_details = 1.5; // a shell serves sizes of half an octave
     const double coarsest = model.meshes.coarsest_shell();
     if (coarsest > step_of_details)
-        warn_of_shells(asked.span, {coarsest * model.options.error_px, asked.detail.error_px}, diagnostics);
+        warn_of_shells(asked.span, {coarsest * model.options.error_px, asked.plan.detail.error_px},
+                       diagnostics);
 }
 
 /// What of the picture is drawn.
@@ -145,12 +141,32 @@ class Drawing {
         numbers_.emplace(cut);
     }
 
-    /// One look after the other. `work`: samples a pixel of all looks, earlier and later ones too.
-    Status run(const TraceModel& model, const std::vector<Sampling>& samplings, double work) {
+    /// Coarse looks, one after the other. `work`: samples a pixel of all looks, earlier and later ones too.
+    Status look(const TraceModel& model, const std::vector<Sampling>& looks, double work) {
         work_ = work;
-        PictureTracer tracer(model, limits_of(model, options_));
-        const Status status = run(tracer, samplings);
-        report_.rays += tracer.statistics();
+        report_.finished = false;
+        for (const Sampling& sampling : looks)
+            if (Status status = look(model, sampling); !status.ok()) return status;
+        return {};
+    }
+
+    /// The finest look, after others or alone. `sample_seconds`: as FittedModel's.
+    Status finish(const TraceModel& model, const Sampling& finest, double sample_seconds) {
+        work_ = done_ + finest.samples_a_pixel();
+        report_.finished = false;
+        std::vector<NoiseMeter> meters;
+        if (options_.progressive && finest.most_samples > 0 && !numbers_ && has_room_for_samples()) {
+            meters.resize(pixels());
+            samples_ = &meters;
+            Sampling round = finest;
+            const double soon = std::max(1.0, std::ceil(seconds_a_round / std::max(sample_seconds, 1e-9)));
+            for (double count = soon; 2 * count < finest.most_samples; count *= growth_of_rounds) {
+                round.most_samples = static_cast<int>(count);
+                if (Status status = look(model, round); !status.ok()) return status;
+            }
+        }
+        Status status = look(model, finest);
+        report_.finished = status.ok();
         return status;
     }
 
@@ -159,19 +175,25 @@ class Drawing {
     const NativeReport& report() const { return report_; }
 
   private:
-    Status run(PictureTracer& tracer, const std::vector<Sampling>& samplings) {
-        report_.finished = false;
-        for (const Sampling& sampling : samplings) {
-            const std::size_t traced = trace(tracer, sampling);
-            const bool complete = traced == pixels();
-            if (!complete && !worth_leaving()) return interrupted();
-            const Status status = write();
-            if (!status.ok()) return status;
-            note(sampling, traced);
-            if (!complete) return interrupted();
-        }
-        report_.finished = true;
-        return {};
+    /// Samples that are added between two pictures: the first round takes so many seconds of one processor.
+    static constexpr double seconds_a_round = 2, growth_of_rounds = 3;
+
+    bool has_room_for_samples() const {
+        constexpr std::uint64_t share = 4; // of the memory
+        return pixels() * sizeof(NoiseMeter) < options_.compile.detail.memory_bytes / share;
+    }
+
+    Status look(const TraceModel& model, const Sampling& sampling) {
+        PictureTracer tracer(model, limits_of(model, options_));
+        const std::size_t traced = trace(tracer, sampling);
+        report_.rays.noisy_pixels = 0; // of the last look alone
+        report_.rays += tracer.statistics();
+        const bool complete = traced == pixels();
+        if (!complete && !worth_leaving()) return interrupted();
+        const Status status = write();
+        if (!status.ok()) return status;
+        note(sampling, traced);
+        return complete ? status : interrupted();
     }
 
     std::size_t pixels() const { return window_.pixels(); }
@@ -194,24 +216,29 @@ class Drawing {
     /// Returns the number of finished pixels: all, unless it was interrupted.
     std::size_t trace(PictureTracer& tracer, const Sampling& sampling) {
         const Stopwatch watch;
+        const double done = samples_ ? samples_done_ : 0;
         std::size_t traced = 0;
         TraceControl control;
         control.threads = options_.threads;
         control.sequence = options_.sequence;
+        control.samples = samples_;
         control.cancelled = [this] { return cancel_.raised(); };
         control.on_tile = [&](const Tile& tile) {
             traced += tile.pixels();
             const double share = static_cast<double>(traced) / static_cast<double>(pixels());
-            tell((done_ + share * sampling.samples_a_pixel()) / work_);
+            tell((done_ + share * (sampling.samples_a_pixel() - done)) / work_);
         };
         tracer.trace(sampling, control, window_, picture_, numbers_ ? &aovs_ : nullptr);
-        done_ += sampling.samples_a_pixel();
+        done_ += sampling.samples_a_pixel() - done;
+        if (samples_) samples_done_ = sampling.samples_a_pixel();
         report_.seconds += watch.seconds();
         return traced;
     }
 
     void tell(double fraction) const {
-        if (options_.on_progress) options_.on_progress({report_.pictures ? "refining" : "tracing", fraction});
+        if (options_.on_progress)
+            options_.on_progress(
+                {report_.pictures ? "refining" : "tracing", fraction, report_.samples_a_pixel});
     }
 
     Status write() {
@@ -250,25 +277,19 @@ class Drawing {
     std::optional<ObjectNumbers> numbers_; ///< if there are AOVs
     NativeReport report_;
     Stopwatch watch_;
-    double work_ = 0, done_ = 0; ///< samples a pixel
+    std::vector<NoiseMeter>* samples_ = nullptr;    ///< TraceControl::samples, in finish()
+    double work_ = 0, done_ = 0, samples_done_ = 0; ///< samples a pixel; the last: of samples_
 };
 
 /// The first of progressive pictures, before anything is known but what a few rays took: so coarse that it is
 /// soon there. Nothing if that is not so.
-std::optional<Sampling> first_draft(const TraceModel& model, const Sampling& first, double seconds_a_sample) {
+std::vector<Sampling> first_draft(const TraceModel& model, const Sampling& finest, double sample_seconds) {
     constexpr double soon = 0.05, too_late = 1; // seconds of one processor
-    if (model.has_shells) return std::nullopt;  // to make them takes time that nobody knows
-    const Sampling draft = draft_before(first, seconds_a_sample, soon).value_or(first);
-    return draft.samples_a_pixel() * seconds_a_sample < too_late ? std::optional(draft) : std::nullopt;
-}
-
-/// "4 samples per pixel", "1 sample per pixel", "1 sample per 8x8 pixels"
-std::string samples_text(double a_pixel) {
-    if (a_pixel > 0 && a_pixel < 1) {
-        const double block = std::round(std::sqrt(1 / a_pixel));
-        return fmt::format("1 sample per {0:g}x{0:g} pixels", block);
-    }
-    return fmt::format("{:g} sample{} per pixel", a_pixel, a_pixel == 1 ? "" : "s");
+    if (model.has_shells) return {};            // to make them takes time that nobody knows
+    std::vector<Sampling> looks = looks_before(finest, sample_seconds, soon);
+    if (looks.empty() || looks.front().samples_a_pixel() * sample_seconds > too_late) return {};
+    looks.resize(1);
+    return looks;
 }
 
 std::string in_words(const NativeReport& report) {
@@ -283,6 +304,15 @@ std::string in_words(const NativeReport& report) {
         text += fmt::format("; the first of {} pictures after {:.2f} s", report.pictures,
                             report.first_picture_seconds);
     return text;
+}
+
+/// What a picture will take that starts now. A lack that somebody asked for is a warning (report_work()).
+DrawStart start_of(const FittedModel& fitted, const PicturePlan& plan, bool by_default) {
+    DrawStart start{fitted.seconds, fitted.whole_seconds, {}};
+    if (by_default && fitted.sampling != plan.wanted)
+        start.fewer =
+            fmt::format("{} in place of {:g}", samples_text(fitted.sampling), plan.wanted.samples_a_pixel());
+    return start;
 }
 
 StageOptions stages_of(const RenderOptions& options) {
@@ -317,7 +347,7 @@ std::optional<NativeReport> trace_fitted(const PreparedView& prepared, const Ren
     compilation.times.push_back({"prepare", preparing.seconds()});
     const Stopwatch drawing_watch;
     const Sampling& sampling = options.fit->sampling;
-    compilation.status = drawing.run(*model, {sampling}, sampling.samples_a_pixel());
+    compilation.status = drawing.finish(*model, sampling, 0);
     compilation.times.push_back({"trace", drawing_watch.seconds()});
     if (!compilation.status.ok()) return std::nullopt;
     return drawing.report();
@@ -380,46 +410,42 @@ std::optional<NativeReport> trace_model(const PreparedView& prepared, const Rend
     const Graph& graph = prepared.viewed->model->graph;
     const View& view = prepared.viewed->view;
     if (options.fit) return trace_fitted(prepared, options, preparing, cancel, compilation, sink);
-    PicturePlan plan = plan_picture(prepared, options);
-    const DetailOptions& detail = plan.detail;
-    const Looks& looks = plan.looks;
-    const double samples = samples_a_pixel(looks.tried);
-    const double least_a_sample = least_seconds({{.block = 1}}, view.size);
+    const PicturePlan plan = plan_picture(prepared, options);
     Drawing drawing(view, prepared.prepared->cut, options, sink, cancel);
     const double seconds_before = preparing.seconds();
-    std::optional<Sampling> draft;
-    const auto draw_draft = [&](const TraceModel& tried, double seconds) {
-        draft = first_draft(tried, looks.wanted.front(), seconds / samples + least_a_sample);
-        if (!draft) return;
-        compilation.status = drawing.run(tried, {*draft}, samples_a_pixel(looks.wanted));
-    };
+    std::vector<Sampling> draft;
     std::function<void(const TraceModel&, double)> on_first_look;
-    if (options.progressive) on_first_look = draw_draft;
+    if (options.progressive)
+        on_first_look = [&](const TraceModel& tried, double sample_seconds) {
+            draft = first_draft(tried, plan.wanted, sample_seconds);
+            compilation.status = drawing.look(tried, draft, plan.wanted.samples_a_pixel());
+        };
     const FittedModel fitted = fit_picture(
-        prepared, options, [&] { return cancel.raised() || !compilation.status.ok(); }, on_first_look, plan);
+        prepared, options, plan, [&] { return cancel.raised() || !compilation.status.ok(); }, on_first_look);
     if (!compilation.status.ok() && !cancel.raised()) return std::nullopt;
     const TraceModel& model = *fitted.model;
-    const Asked asked{graph.objects[graph.root].span, view.size, window_of(options, view.size).pixels(),
-                      detail};
-    report_work(fitted, looks, asked, compilation.diagnostics);
-    report_size(looks, asked, compilation.diagnostics);
+    const Asked asked{graph.objects[graph.root].span, view.size, window_of(options, view.size).pixels(), plan,
+                      options.is_by_default(view.quality)};
+    report_work(fitted, asked, compilation.diagnostics);
+    report_size(fitted, asked, compilation.diagnostics);
     compilation.times.push_back({"prepare", preparing.seconds()});
-    if (detail.culls() && !detail.steps) note_shadowless(model.prepared.cut, graph, compilation.diagnostics);
-    std::vector<Sampling> samplings = looks.affordable;
-    if (draft && samplings.size() > 1 && samplings.front().block == draft->block)
-        samplings.erase(samplings.begin());
-    if (options.draft_seconds && !draft) {
-        const double seconds_a_sample = fitted.seconds / samples + least_a_sample;
-        if (const auto before = draft_before(samplings.front(), seconds_a_sample, *options.draft_seconds))
-            samplings.insert(samplings.begin(), *before);
-    }
+    if (plan.detail.culls() && !plan.detail.steps)
+        note_shadowless(model.prepared.cut, graph, compilation.diagnostics);
+    if (options.on_start && !cancel.raised()) options.on_start(start_of(fitted, plan, asked.by_default));
     const Stopwatch drawing_watch;
-    compilation.status = drawing.run(model, samplings, drawing.done() + samples_a_pixel(samplings));
+    constexpr double soon = 0.3; // seconds of one processor
+    if (options.progressive) {
+        std::vector<Sampling> looks = looks_before(fitted.sampling, fitted.sample_seconds, soon);
+        std::erase_if(looks,
+                      [&](const Sampling& look) { return !draft.empty() && look.block >= draft[0].block; });
+        compilation.status = drawing.look(model, looks, drawing.done() + fitted.sampling.samples_a_pixel());
+    }
+    if (compilation.status.ok())
+        compilation.status = drawing.finish(model, fitted.sampling, fitted.sample_seconds);
     compilation.times.push_back({"trace", drawing_watch.seconds()});
     report_shells(model, asked, compilation.diagnostics);
     NativeReport report = drawing.report();
-    const bool by_default = !options.samples && !options.noise_255 && view.quality == Quality::normal;
-    report_noise(report.rays, looks, asked, by_default, compilation.diagnostics);
+    report_noise(report.rays, fitted, asked, compilation.diagnostics);
     report.first_picture_seconds += seconds_before;
     if (!compilation.status.ok() && report.pictures == 0) return std::nullopt;
     return report;
@@ -433,21 +459,19 @@ std::optional<PictureFit> fit_natively(PictureSession& session, const RenderOpti
         !prepare_model(session, stages, model, compilation))
         return std::nullopt;
     const CancelFlag cancel = session.control().cancel;
-    PicturePlan plan = plan_picture(model, options);
-    const FittedModel fitted = fit_picture(
-        model, options, [&] { return cancel.raised(); }, {}, plan);
+    const PicturePlan plan = plan_picture(model, options);
+    const FittedModel fitted = fit_picture(model, options, plan, [&] { return cancel.raised(); });
     if (cancel.raised()) {
         compilation.status = Status::failure("interrupted");
         return std::nullopt;
     }
     const Graph& graph = model.viewed->model->graph;
     const ImageSize size = model.viewed->view.size;
-    const Asked asked{graph.objects[graph.root].span, size, whole_of(size).pixels(), plan.detail};
-    report_work(fitted, plan.looks, asked, compilation.diagnostics);
-    report_size(plan.looks, asked, compilation.diagnostics);
-    PictureFit fit = fit_of(fitted, plan, size);
-    fit.size = size;
-    return fit;
+    const Asked asked{graph.objects[graph.root].span, size, whole_of(size).pixels(), plan,
+                      options.is_by_default(model.viewed->view.quality)};
+    report_work(fitted, asked, compilation.diagnostics);
+    report_size(fitted, asked, compilation.diagnostics);
+    return fit_of(fitted, size);
 }
 
 } // namespace graftal

@@ -149,6 +149,11 @@ void note_lacks(const CompiledModel& model, Diagnostics& diagnostics) {
             .with_hint("use --engine native to draw the 'blur' of materials");
 }
 
+/// Seconds of one processor that a picture may take: with the usual quality, twenty of two processors.
+double work_of(const RenderOptions& options, Quality quality) {
+    return options.work_seconds.value_or(by_quality(quality, 20.0, 40.0, 1200.0));
+}
+
 /// The lights that POV-Ray is to follow, and how many they are.
 struct FollowedLights {
     LightListSize size;
@@ -318,7 +323,7 @@ std::optional<PovrayReport> render_by_povray(PictureSession& session, const Rend
     note_lacks(*model, compilation.diagnostics);
     const double light_seconds = seconds_a_light(job, mean_overlap(model->cut, model->view));
     const FollowedLights lights = followed_lights(
-        *model, light_seconds, options.work(model->view.quality, true), compilation.diagnostics);
+        *model, light_seconds, work_of(options, model->view.quality), compilation.diagnostics);
     const auto emit = [&] {
         return prepare(*model, options, session.textures(), temporary, lights.size, job);
     };
@@ -337,7 +342,8 @@ std::optional<PovrayReport> render_by_povray(PictureSession& session, const Rend
     if (options.on_start) {
         if (worth_a_trial(time, options.compile.detail.work_seconds))
             time = tried_time(job, time).value_or(time);
-        if (!job.cancel.raised()) options.on_start(time.seconds());
+        if (!job.cancel.raised())
+            options.on_start({.seconds = time.seconds(), .whole_seconds = time.seconds(), .fewer = {}});
         set_limit();
     }
     const auto trace = [&] {

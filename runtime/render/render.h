@@ -16,6 +16,15 @@ namespace graftal {
 struct DrawProgress {
     std::string_view stage;         ///< such as "tracing"
     std::optional<double> fraction; ///< of the stage, in [0, 1], where it is known
+    double samples = 0;             ///< a pixel that has been looked at so often; 0: unknown
+};
+
+/// What an engine says before it starts on a picture: within a factor of two or so where seconds are many.
+struct DrawStart {
+    double seconds = 0;       ///< of one processor that it will take
+    double whole_seconds = 0; ///< that the picture as it was asked for would take
+    std::string fewer;        ///< "4 samples per pixel in place of 64": what it does without, though nobody
+                              ///< asked for less work; or ""
 };
 
 /// How much is culled of a model, and how many rays its picture takes, so that its work is within limits
@@ -49,20 +58,20 @@ struct RenderOptions {
     int threads = 0;               ///< 0: as many as the engine likes
     bool aovs = false;             ///< of an EXR: further channels (aov_channels.h)
     bool progressive = false;      ///< write coarse pictures first, each in place of the last
-    /// Of one processor, about: a coarse picture that takes so long comes before the first that takes longer.
-    std::optional<double> draft_seconds;
-    bool unconfined = false; ///< PovrayJob::unconfined
-    std::string keep;        ///< a directory for the scene, to stay; empty: a temporary one
+    bool unconfined = false;       ///< PovrayJob::unconfined
+    std::string keep;              ///< a directory for the scene, to stay; empty: a temporary one
     std::function<void(const DrawProgress&)> on_progress;
-    /// Called by an engine that shows nothing for long, before it starts, with the seconds of one processor
-    /// that it will take: within a factor of two or so where they are many.
-    std::function<void(double seconds)> on_start;
+    /// Called before the picture starts.
+    std::function<void(const DrawStart&)> on_start;
 
-    /// Seconds of one processor that a picture may take: more where soft light is sampled.
-    double work(Quality quality, bool soft) const {
-        const double unasked =
-            soft ? by_quality(quality, 60.0, 120.0, 1200.0) : by_quality(quality, 30.0, 30.0, 300.0);
-        return work_seconds.value_or(unasked);
+    /// Seconds of one processor that a picture may take, unless limit_work() has said: on two processors a
+    /// picture of normal quality is there within ten seconds, whatever comes before it.
+    double work(Quality quality) const {
+        return work_seconds.value_or(by_quality(quality, 5.0, 15.0, 600.0));
+    }
+    /// Whether nobody has said how much work a picture may take, or how fine its light is to be.
+    bool is_by_default(Quality quality) const {
+        return !samples && !noise_255 && !work_seconds && quality != Quality::best;
     }
     void limit_work(double seconds) { compile.detail.work_seconds = work_seconds.emplace(seconds); }
 };
@@ -100,8 +109,9 @@ struct Engine {
                                       Compilation& compilation);
 };
 
-/// All engines; the first is the one for who names none.
+/// All engines; the first is the one for who names none, or this:
 std::span<const Engine> engines();
+inline constexpr std::string_view auto_engine = "auto";
 
 /// Null for an unknown name.
 const Engine* find_engine(std::string_view name);

@@ -9,93 +9,56 @@ namespace graftal {
 
 namespace {
 
-/// False where the coarsest look is left alone.
-bool look_less_closely(std::vector<Sampling>& samplings, int coarsest_block) {
-    Sampling& finest = samplings.back();
-    if (finest.most_samples > 1) {
-        finest.most_samples /= 2;
-        return true;
-    }
-    const int depth = finest.antialias.value_or(1);
-    if (depth > 2) {
-        --*finest.antialias;
-        return true;
-    }
-    const int block = depth > 1 ? 1 : 2 * finest.block;
-    if (block > coarsest_block) return false;
-    if (samplings.size() > 1)
-        samplings.pop_back();
-    else
-        finest = {block, {}};
-    return true;
-}
+/// Octaves of error for an octave of samples: of light through four samples or more, below, and of edges.
+constexpr double loss_of_light = 0.15, loss_of_last_light = 0.4, loss_of_edges = 0.35;
+/// The same for an octave of a block's width.
+constexpr double loss_of_pixels = 1.3;
+constexpr double enough_light = 4; // samples
 
 } // namespace
-
-std::vector<Sampling> samplings_of(std::optional<int> antialias, bool progressive) {
-    std::vector<Sampling> all;
-    if (progressive)
-        for (const int block : {8, 4, 2, 1})
-            all.push_back({block, {}});
-    if (antialias || !progressive) all.push_back({1, antialias});
-    return all;
-}
-
-std::vector<Sampling> samplings_of_soft_light(int most_samples, double noise_255, bool progressive) {
-    std::vector<Sampling> all;
-    if (progressive) {
-        for (const int block : {8, 4, 2})
-            all.push_back({.block = block});
-        for (int samples = 1; samples < most_samples; samples *= 4)
-            all.push_back({.most_samples = samples});
-    }
-    all.push_back({.most_samples = most_samples, .noise_255 = noise_255});
-    return all;
-}
-
-std::optional<Sampling> draft_before(const Sampling& first, double seconds_a_sample, double seconds) {
-    constexpr int coarsest_block = 16;
-    Sampling draft = first;
-    while (draft.samples_a_pixel() * seconds_a_sample > seconds && draft.block < coarsest_block)
-        draft = {.block = 2 * draft.block};
-    return draft.block > first.block ? std::optional(draft) : std::nullopt;
-}
 
 SampleGoal sample_goal(Quality quality) {
     return by_quality<SampleGoal>(quality, {16, 6}, {64, 3}, {1024, 1});
 }
 
-double samples_a_pixel(const std::vector<Sampling>& samplings) {
-    double sum = 0;
-    for (const Sampling& sampling : samplings)
-        sum += sampling.samples_a_pixel();
-    return sum;
-}
-
-double least_seconds(const std::vector<Sampling>& samplings, ImageSize size) {
-    return samples_a_pixel(samplings) * size.width * size.height / WorkRates::samples;
-}
-
-std::vector<Sampling> with_fewer_samples(std::vector<Sampling> samplings, ImageSize size, double seconds) {
-    while (least_seconds(samplings, size) > seconds && look_less_closely(samplings, 1)) {
+std::vector<Sampling> looks_before(const Sampling& finest, double seconds_a_sample, double soon_seconds) {
+    constexpr int coarsest = 16;
+    constexpr double small_share = 0.1;
+    const double samples = finest.samples_a_pixel();
+    std::vector<Sampling> looks;
+    if (samples * seconds_a_sample <= soon_seconds) return looks;
+    for (int block = coarsest; block > finest.block; block /= 2) {
+        const double taken = 1.0 / (block * block);
+        if (taken > small_share * samples) break;
+        // Whatever is coarser than one that is soon there comes too late to be of use.
+        if (block < coarsest && taken * seconds_a_sample <= soon_seconds) looks.clear();
+        looks.push_back({.block = block});
     }
-    return samplings;
+    return looks;
 }
 
-std::vector<Sampling> with_more_samples(std::vector<Sampling> samplings, const Sampling& wanted,
-                                        double seconds_a_sample, double seconds) {
-    const double coarse = samples_a_pixel(samplings) - samplings.back().samples_a_pixel();
-    const double most = std::clamp(std::floor(seconds / seconds_a_sample - coarse), 0.0,
-                                   static_cast<double>(wanted.most_samples));
-    samplings.back().most_samples = std::max(samplings.back().most_samples, static_cast<int>(most));
-    return samplings;
+double least_seconds(const Sampling& sampling, ImageSize size) {
+    return sampling.samples_a_pixel() * size.width * size.height / WorkRates::samples;
 }
 
-std::vector<Sampling> within_seconds(std::vector<Sampling> samplings, double seconds_a_sample,
-                                     double seconds) {
-    while (seconds_a_sample * samples_a_pixel(samplings) > seconds && look_less_closely(samplings, 8)) {
-    }
-    return samplings;
+Sampling affordable_sampling(const Sampling& wanted, double samples_a_pixel) {
+    if (samples_a_pixel >= wanted.samples_a_pixel()) return wanted;
+    if (samples_a_pixel >= 2 || (samples_a_pixel >= 1 && wanted.most_samples > 0))
+        return {.most_samples = static_cast<int>(samples_a_pixel), .noise_255 = wanted.noise_255};
+    if (samples_a_pixel >= 1) return {};
+    const double width = std::ceil(std::sqrt(1 / std::max(samples_a_pixel, 1e-9)) - 1e-9);
+    return {.block = static_cast<int>(std::min<double>(width, coarsest_block))};
+}
+
+double loss_of_samples(const Sampling& wanted, const Sampling& had) {
+    const double want = wanted.samples_a_pixel(), have = had.samples_a_pixel();
+    const double in_pixel = std::max(have, 1.0);
+    const double loss_of_block = loss_of_pixels * std::log2(had.block);
+    if (!(want > in_pixel)) return loss_of_block;
+    if (wanted.most_samples == 0) return loss_of_edges * std::log2(want / in_pixel) + loss_of_block;
+    const double light = std::log2(want / std::max(in_pixel, std::min(enough_light, want)));
+    const double last_light = std::log2(std::min(enough_light, want) / std::min(in_pixel, enough_light));
+    return loss_of_light * light + loss_of_last_light * std::max(last_light, 0.0) + loss_of_block;
 }
 
 } // namespace graftal

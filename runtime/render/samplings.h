@@ -8,16 +8,6 @@
 
 namespace graftal {
 
-/// The looks at a picture, from coarse to fine; only the last unless it is `progressive`.
-std::vector<Sampling> samplings_of(std::optional<int> antialias, bool progressive);
-
-/// The same for light that is sampled.
-std::vector<Sampling> samplings_of_soft_light(int most_samples, double noise_255, bool progressive);
-
-/// A look in blocks that takes about `seconds` of one processor, to be had before the first look: nothing if
-/// that takes no more. `seconds_a_sample`: that the samples of a picture take together, one a pixel.
-std::optional<Sampling> draft_before(const Sampling& first, double seconds_a_sample, double seconds);
-
 /// What a quality asks for: the most samples of a pixel, and the noise that is left.
 struct SampleGoal {
     int most_samples = 0;
@@ -25,23 +15,22 @@ struct SampleGoal {
 };
 SampleGoal sample_goal(Quality quality);
 
-/// Of all looks together.
-double samples_a_pixel(const std::vector<Sampling>& samplings);
+/// Coarse looks that come before the finest one: each at blocks half as wide as those before it. They take
+/// only a small share of what it takes, and the first about `soon_seconds` of one processor.
+/// `seconds_a_sample`: of a picture with one sample a pixel. No look where the finest is there as soon.
+std::vector<Sampling> looks_before(const Sampling& finest, double seconds_a_sample, double soon_seconds);
 
-/// Of one processor, for samples that meet nothing: no coarser model takes less.
-double least_seconds(const std::vector<Sampling>& samplings, ImageSize size);
+/// The samples of one processor that meet nothing take so many seconds: no coarser model takes less.
+double least_seconds(const Sampling& sampling, ImageSize size);
 
-/// Takes samples away from the finest look, or the look itself, until `seconds` of one processor are enough
-/// for the samples even if they meet nothing. One sample stays for each pixel.
-std::vector<Sampling> with_fewer_samples(std::vector<Sampling> samplings, ImageSize size, double seconds);
+/// The finest sampling up to `wanted` that has at most so many samples a pixel. Below one, pixels share
+/// samples in blocks, of coarsest_block pixels a side at most.
+Sampling affordable_sampling(const Sampling& wanted, double samples_a_pixel);
+inline constexpr int coarsest_block = 8;
 
-/// Gives the finest look more samples, as many as it wants at most, while all take no more than `seconds`.
-std::vector<Sampling> with_more_samples(std::vector<Sampling> samplings, const Sampling& wanted,
-                                        double seconds_a_sample, double seconds);
-
-/// As with_fewer_samples() until all samples take no more than `seconds`, where each of a picture takes so
-/// long. One sample stays for each square of 8 by 8 pixels.
-std::vector<Sampling> within_seconds(std::vector<Sampling> samplings, double seconds_a_sample,
-                                     double seconds);
+/// How much worse a picture looks by a sampling than by the one wanted, in octaves of the size of what is
+/// left out: 1 is as bad as parts twice as large that are missing. Grows evenly as samples go: noise is
+/// better than parts that are missing, and these are better than pixels that are missing.
+double loss_of_samples(const Sampling& wanted, const Sampling& had);
 
 } // namespace graftal

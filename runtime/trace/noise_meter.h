@@ -13,8 +13,6 @@ namespace graftal {
 /// The mean of the samples of a pixel, and how far off it may be.
 class NoiseMeter {
   public:
-    explicit NoiseMeter(const Film& film) : film_(&film) {}
-
     /// Welford's running variance, of the luminance.
     void add(const Rgb& sample) {
         ++count_;
@@ -29,16 +27,15 @@ class NoiseMeter {
     Rgb mean() const { return count_ > 0 ? sum_ / static_cast<double>(count_) : Rgb(0.0); }
 
     /// The standard error of the mean as the film shows it: in steps of 8 bits. Requires two samples.
-    double error_255() const {
+    double error_255(const Film& film) const {
         const double error = std::sqrt(squares_ / (count_ - 1.0) / count_);
-        const auto shown = [&](double luminance) { return 255 * developed(luminance, *film_); };
+        const auto shown = [&](double luminance) { return 255 * developed(luminance, film); };
         return 0.5 * (shown(mean_ + error) - shown(std::max(mean_ - error, 0.0)));
     }
 
   private:
     static double luminance_of(const Rgb& rgb) { return glm::dot(rgb, Rgb(0.2126, 0.7152, 0.0722)); }
 
-    const Film* film_;
     std::uint32_t count_ = 0;
     Rgb sum_{0.0};
     double mean_ = 0, squares_ = 0;

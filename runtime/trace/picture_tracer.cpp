@@ -17,7 +17,6 @@
 #include "compiler/support/counter_random.h"
 #include "runtime/system/worker_threads.h"
 #include "runtime/trace/camera_rays.h"
-#include "runtime/trace/noise_meter.h"
 #include "runtime/trace/pixel_filter.h"
 #include "runtime/trace/sample_stream.h"
 #include "runtime/trace/traversal.h"
@@ -195,26 +194,33 @@ class Worker {
             for (int x = tile.x; x < tile.x + tile.width; ++x) {
                 const auto seed = (static_cast<std::uint64_t>(y) << 32 | static_cast<std::uint32_t>(x)) ^
                                   control_.sequence << 48;
-                NoiseMeter meter(film_);
+                NoiseMeter fresh;
+                NoiseMeter& meter = control_.samples ? (*control_.samples)[index_in_window(x, y)] : fresh;
+                const auto is_calm = [&] {
+                    return meter.count() > 0 && meter.count() % samples_a_round == 0 &&
+                           meter.error_255(film_) < sampling.noise_255;
+                };
                 AovSum sum;
-                bool calm = false;
+                bool calm = is_calm();
+                const int before = static_cast<int>(meter.count());
+                const int more = calm ? 0 : sampling.most_samples - before;
                 const auto offset_of = [&](SampleStream& random) {
                     const glm::dvec2 place = random.next();
                     return glm::dvec2(filter.offset(place.x), filter.offset(place.y));
                 };
                 const auto sample = [&](int i) {
-                    SampleStream random(seed, static_cast<std::uint32_t>(i));
+                    SampleStream random(seed, static_cast<std::uint32_t>(before + i));
                     const glm::dvec2 offset = offset_of(random);
                     return sight(x + 0.5 + offset.x, y + 0.5 + offset.y, random);
                 };
-                const bool whole = look(sampling.most_samples, sample, [&](int i, const Rgb& rgb) {
+                const bool whole = look(more, sample, [&](int i, const Rgb& rgb) {
                     meter.add(rgb);
                     if (aovs_) {
-                        SampleStream random(seed, static_cast<std::uint32_t>(i));
+                        SampleStream random(seed, static_cast<std::uint32_t>(before + i));
                         const glm::dvec2 offset = offset_of(random);
                         sum.add(seen_, 1, glm::dot(offset, offset));
                     }
-                    calm = meter.count() % samples_a_round == 0 && meter.error_255() < sampling.noise_255;
+                    calm = is_calm();
                     return !calm;
                 });
                 if (!whole) return false;
@@ -363,6 +369,8 @@ bool PictureTracer::trace(const Sampling& sampling, const TraceControl& control,
     GRAFTAL_CHECK(picture.channels == 3 && picture.width == window.width && picture.height == window.height,
                   "trace: a picture of another size");
     GRAFTAL_CHECK(!aovs || 3 * aovs->size() == picture.pixels.size(), "trace: AOVs of another size");
+    GRAFTAL_CHECK(!control.samples || 3 * control.samples->size() == picture.pixels.size(),
+                  "trace: samples of another size");
     const std::vector<Tile> tiles = tiles_of(model_.view.size, sampling.block, window);
     std::mutex telling;
     return run(tiles.size(), control, [&](Worker& worker, std::uint64_t number) {

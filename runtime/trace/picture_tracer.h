@@ -3,9 +3,11 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
+#include <vector>
 
 #include "runtime/image/image.h"
 #include "runtime/trace/aovs.h"
+#include "runtime/trace/noise_meter.h"
 #include "runtime/trace/shade.h"
 #include "runtime/trace/trace_model.h"
 
@@ -57,6 +59,9 @@ struct TraceStatistics {
 
 struct TraceControl {
     int threads = 0; ///< 0: as many as the machine has
+    /// Null, or the samples that each pixel of the window has so far, by light that is sampled: a trace goes
+    /// on after them, and then the picture is the one that a single trace of as many samples makes.
+    std::vector<NoiseMeter>* samples = nullptr;
     /// Of the samples' random numbers: pictures of different sequences differ in their noise.
     std::uint64_t sequence = 0;
     /// Asked before every ray, by all threads at once: one tile may hold millions of rays. Once it says true,

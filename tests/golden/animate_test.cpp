@@ -21,7 +21,7 @@ using testing::StartsWith;
 const std::string two_steps = pound_sign + "--steps 2 ";
 const std::string weed = "'" + source_path("scenes/abop/fig1_24f.lsys") + "' ";
 const std::string tree = "'" + source_path("scenes/hart/ternary_tree.inst") + "' ";
-const std::string few_pixels = " --size 48x36 --antialias off --plain-light ";
+const std::string few_pixels = " --size 48x36 --antialias off --plain-light --engine povray ";
 
 /// A cycle that contracts while k < 1.
 const std::string dust = "let k = 0.5\n"

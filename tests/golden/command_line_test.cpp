@@ -52,7 +52,7 @@ TEST_F(CommandLine, UsageErrorsAreStatusTwoAndPointAtTheHelp) {
          "--tile: this part is not within the 99x99 pixels of the picture"},
         {"render a.inst --size 99x99 --engine native --tile 0,0,10x0", "--tile: '0,0,10x0' is not a part"},
         {"render a.inst --size 99x99 --engine native --tile 0,0", "--tile: '0,0' is not a part"},
-        {"render a.inst --size 99x99 --tile 0,0,10x10", "--tile needs '--engine native'"},
+        {"render a.inst --engine povray --size 99x99 --tile 0,0,10x10", "--tile needs '--engine native'"},
         {"render a.inst --size 99x99 --engine native --tile 0,0,10x10 --progressive",
          "--tile draws once, at its finest: leave out --progressive"},
         {"render a.inst --memory 2X", "--memory: '2X' is not"},
@@ -71,13 +71,16 @@ TEST_F(CommandLine, UsageErrorsAreStatusTwoAndPointAtTheHelp) {
         {"render a.inst --bits 16 --linear", "--linear and --bits exclude each other"},
         {"render a.inst --threads 0", "--threads: '0' is not"},
         {"render a.inst --antialias 12", "--antialias: '12' is neither"},
-        {"render a.inst --engine luxury", "--engine: 'luxury' is not one of: povray, native"},
-        {"animate a.inst --engine ''", "--engine: '' is not one of: povray, native"},
+        {"render a.inst --engine luxury", "--engine: 'luxury' is not one of: auto, native, povray"},
+        {"animate a.inst --engine ''", "--engine: '' is not one of: auto, native, povray"},
         {"stats a.inst --engine native", "--engine"},
-        {"render a.inst --progressive", "graftal: --progressive needs '--engine native': POV-Ray shows"},
+        {"render a.inst --engine povray --progressive",
+         "graftal: --progressive needs '--engine native': POV-Ray shows"},
+        {"render a.inst --progressive --no-progressive", "exclude each other"},
         {"render a.inst --engine native --engine povray --progressive", "--progressive needs"},
         {"animate a.inst --engine native --progressive", "--progressive"},
-        {"render a.inst --aovs -o a.exr", "--aovs needs '--engine native': POV-Ray gives colours only"},
+        {"render a.inst --engine povray --aovs -o a.exr",
+         "--aovs needs '--engine native': POV-Ray gives colours only"},
         {"render a.inst --aovs --engine native", "--aovs: only an EXR has room for more channels: name"},
         {"render a.inst --aovs --engine native -o a.png", "with '-o FILE.exr'"},
         {"render a.inst --engine native --keep here", "--keep: the native engine writes no scene"},
@@ -198,7 +201,8 @@ TEST_F(CommandLine, PicturesToReadAreRegularFiles) {
 }
 
 TEST_F(CommandLine, MissingProgramsAreNamedWithTheirPackages) {
-    const RunResult povray = shell("PATH=/nowhere \"$graftal\" render " + gasket + " -o a.png");
+    const RunResult povray =
+        shell("PATH=/nowhere \"$graftal\" render --engine povray " + gasket + " -o a.png");
     EXPECT_EQ(povray.status, 3);
     EXPECT_EQ(povray.err,
               "graftal: cannot find the program 'povray'; install it with 'apt-get install povray'\n");
@@ -310,7 +314,8 @@ TEST_F(CommandLine, ProbabilitiesGoThroughThePrintedGraph) {
 }
 
 TEST_F(CommandLine, UnwritableTemporaryFolderIsStatusThree) {
-    const RunResult result = shell("TMPDIR=/nowhere/at/all \"$graftal\" render " + gasket + " -o a.png");
+    const RunResult result =
+        shell("TMPDIR=/nowhere/at/all \"$graftal\" render --engine povray " + gasket + " -o a.png");
     EXPECT_EQ(result.status, 3);
     EXPECT_THAT(result.err, HasSubstr("temporary directory"));
     EXPECT_EQ(files(), "");

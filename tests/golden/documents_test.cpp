@@ -84,7 +84,7 @@ TEST_F(DocumentsTest, VersionIsTextOrJson) {
                     "print(d[\"name\"], d[\"version\"], *d[\"engines\"], *d[\"languages\"])'")
                   .out,
               graftal("version").out.substr(0, graftal("version").out.size() - 1) +
-                  " povray native lsys rifs inst\n");
+                  " native povray lsys rifs inst\n");
 }
 
 TEST_F(DocumentsTest, EveryPageOfTheManualIsSetWithoutAWarning) {
@@ -135,7 +135,8 @@ TEST_F(DocumentsTest, AllShellsOfferTheCommands) {
 TEST_F(DocumentsTest, AllShellsOfferOptionsAndTheirWords) {
     for (const char* const name : shells) {
         EXPECT_THAT(offers(name, "graftal render --eng"), Each(StartsWith("--engine"))) << name;
-        EXPECT_THAT(offers(name, "graftal render --engine "), UnorderedElementsAre("povray", "native"))
+        EXPECT_THAT(offers(name, "graftal render --engine "),
+                    UnorderedElementsAre("auto", "povray", "native"))
             << name;
         EXPECT_THAT(offers(name, "graftal animate --ease s"), UnorderedElementsAre("smooth")) << name;
         EXPECT_THAT(offers(name, "graftal print --after merge"), UnorderedElementsAre("merge_equivalent"))

@@ -249,7 +249,7 @@ TEST_F(Farm, PovrayDrawsFramesAndSweepsAndNoTiles) {
             "--engine povray --frames 2 --turn 20 -o job --result film.png -q");
     succeed("farm submit job --local 2 -q");
     succeed("farm merge job -q");
-    succeed("animate " + gasket + farm_pixels + "--frames 2 --turn 20 -o one.png -q");
+    succeed("animate --engine povray " + gasket + farm_pixels + "--frames 2 --turn 20 -o one.png -q");
     expect_same("film.png", "one.png");
 }
 

@@ -83,7 +83,7 @@ TEST_F(Materials, BlurIsDrawnByTheNativeEngineAlone) {
     EXPECT_THAT(graftal("check matt.inst").err,
                 HasSubstr("matt.inst:1:14: error: 'blur' blurs what a surface "));
     const std::string small = " -q --size 48x36 ";
-    const RunResult by_povray = graftal("render satin.inst --size 48x36 -o p.png");
+    const RunResult by_povray = graftal("render --engine povray satin.inst --size 48x36 -o p.png");
     EXPECT_EQ(by_povray.status, 0) << by_povray.err;
     EXPECT_THAT(by_povray.err, HasSubstr("POV-Ray's picture shows all mirrors and glass sharp"));
     EXPECT_EQ(graftal("render satin.inst --engine native --threads 1 -o a.png" + small).status, 0);

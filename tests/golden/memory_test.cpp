@@ -41,8 +41,8 @@ TEST_F(Memory, OfOtherProgramsIsTheirs) {
     shell("mkdir bin");
     write("bin/povray", "#!/bin/sh\nulimit -d >limit.txt\nexit 1\n");
     shell("chmod +x bin/povray");
-    const RunResult result =
-        shell("PATH=$PWD/bin:$PATH \"$graftal\" render --unconfined ball.inst --size 8x8 --keep kept");
+    const RunResult result = shell("PATH=$PWD/bin:$PATH \"$graftal\" render --engine povray --unconfined "
+                                   "ball.inst --size 8x8 --keep kept");
     EXPECT_EQ(result.status, 3) << result.err;
     EXPECT_EQ(shell("cat kept/limit.txt limit.txt").out, shell("ulimit -d").out);
 }

@@ -44,7 +44,7 @@ TEST_F(Native, MakesAPictureNamedAfterTheModelHere) {
     EXPECT_EQ(files(), "sierpinski.png");
     EXPECT_EQ(temporary_files(), "");
     expect_size("sierpinski.png", 96, 54);
-    EXPECT_THAT(read("sierpinski.png"), HasSubstr("graftal render sierpinski.inst --engine native"))
+    EXPECT_THAT(read("sierpinski.png"), HasSubstr("graftal render sierpinski.inst --size 96x54"))
         << "says which command made it";
 }
 
@@ -56,8 +56,7 @@ TEST_F(Native, SaysHowManySamplesThereAre) {
                  {"--antialias 3", ": 16 samples per pixel in "},
                  {"--antialias 3 --antialias off", ": 1 sample per pixel in "},
                  {"--antialias 3 --progressive", ": 16 samples per pixel in "},
-                 {"--antialias 3 --progressive", "; the first of 5 pictures after 0."},
-                 {"--antialias off --progressive", "; the first of 4 pictures after 0."}};
+                 {"--antialias 3 --no-progressive", ": 16 samples per pixel in "}};
     for (const auto& [options, samples] : cases) {
         const RunResult result = render(gasket + small + options);
         EXPECT_EQ(result.status, 0) << options << result.err;
@@ -140,7 +139,7 @@ TEST_F(Native, FaultyModelIsStatusOneAndTouchesNoFile) {
         {gasket + "--at down", "error: the address does not exist"},
         {gasket + "--set k=1", "error: "},
     };
-    for (const std::string progressive : {"", "--progressive "})
+    for (const std::string progressive : {"", "--no-progressive "})
         for (const auto& [arguments, message] : cases) {
             const RunResult result = render("-o a.png " + progressive + arguments);
             EXPECT_EQ(result.status, 1) << arguments;
@@ -229,8 +228,9 @@ TEST_F(NativeAnimation, FramesOfOneEngineAreNotTheOthers) {
     };
     EXPECT_EQ(found("--engine native"), 0);
     EXPECT_EQ(found("--engine native --threads 1"), 2);
-    EXPECT_EQ(found("--engine povray"), 0);
     EXPECT_EQ(found(""), 2) << "the default";
+    EXPECT_EQ(found("--engine auto"), 2);
+    EXPECT_EQ(found("--engine povray"), 0);
     EXPECT_EQ(found("--engine native"), 0);
 }
 

@@ -108,8 +108,8 @@ TEST_F(Outputs, APictureOfAnotherSizeIsNone) {
             .ok());
     write("bin/povray",
           "#!/bin/sh\ncp '" + path("bin/still.png") + "' picture.png\necho 'POV-Ray finished' >&2\n");
-    const RunResult result =
-        shell("chmod +x bin/povray; PATH=$PWD/bin:$PATH $graftal render m.rifs -q --size 16x12 -o a.png");
+    const RunResult result = shell("chmod +x bin/povray; PATH=$PWD/bin:$PATH $graftal render --engine povray "
+                                   "m.rifs -q --size 16x12 -o a.png");
     EXPECT_EQ(result.status, 3);
     EXPECT_THAT(result.err, HasSubstr("graftal: POV-Ray wrote a picture of 2 x 3 pixels, not 16 x 12\n"));
     EXPECT_EQ(files(), "bin m.rifs");

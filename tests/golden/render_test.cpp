@@ -23,7 +23,7 @@ using testing::HasSubstr;
 class Render : public CommandLine {};
 
 TEST_F(Render, MakesAPictureNamedAfterTheModelHere) {
-    const RunResult result = graftal("render " + gasket + small);
+    const RunResult result = graftal("render --engine povray " + gasket + small);
     EXPECT_EQ(result.status, 0) << result.err;
     EXPECT_EQ(result.out, "");
     EXPECT_THAT(result.err, testing::StartsWith("sierpinski.png: "));
@@ -43,28 +43,29 @@ TEST_F(Render, TwoRunsGiveTheSameBytes) {
     }
     EXPECT_EQ(shell("diff -r a b").status, 0) << "scene or palettes differ";
     EXPECT_NE(shell("cat a/*.pov").out, "");
-    ASSERT_EQ(graftal("render " + pound_sign + small + "-o c.png --threads 1").status, 0);
-    ASSERT_EQ(graftal("render " + pound_sign + small + "-o d.png --threads 2").status, 0);
+    ASSERT_EQ(graftal("render --engine povray " + pound_sign + small + "-o c.png --threads 1").status, 0);
+    ASSERT_EQ(graftal("render --engine povray " + pound_sign + small + "-o d.png --threads 2").status, 0);
     EXPECT_EQ(compare_images(picture("c.png"), picture("d.png")).differing, 0u);
 }
 
 TEST_F(Render, QuietIsSilent) {
-    const RunResult result = graftal("render --quiet " + gasket + small);
+    const RunResult result = graftal("render --engine povray --quiet " + gasket + small);
     EXPECT_EQ(result.status, 0);
     EXPECT_EQ(result.out + result.err, "");
     EXPECT_EQ(files(), "sierpinski.png");
 }
 
 TEST_F(Render, PictureSaysWhichCommandMadeIt) {
-    ASSERT_EQ(graftal("render " + gasket + small + "-o 'a b.png'").status, 0);
-    EXPECT_THAT(read("a b.png"), HasSubstr("graftal render sierpinski.inst --size 96x54"))
+    ASSERT_EQ(graftal("render --engine povray " + gasket + small + "-o 'a b.png'").status, 0);
+    EXPECT_THAT(read("a b.png"), HasSubstr("graftal render sierpinski.inst --engine povray --size 96x54"))
         << "and nothing of this machine";
     EXPECT_THAT(read("a b.png"), HasSubstr("graftal 0."));
 }
 
 TEST_F(Render, LinearPngAndExrHoldTheSameValues) {
-    ASSERT_EQ(graftal("render " + gasket + small + "--antialias off --linear -o a.png").status, 0);
-    ASSERT_EQ(graftal("render " + gasket + small + "--antialias off -o a.exr").status, 0);
+    ASSERT_EQ(
+        graftal("render --engine povray " + gasket + small + "--antialias off --linear -o a.png").status, 0);
+    ASSERT_EQ(graftal("render --engine povray " + gasket + small + "--antialias off -o a.exr").status, 0);
     // An EXR of POV-Ray has half floats, of 11 bits.
     EXPECT_LE(compare_images(picture("a.png"), picture("a.exr")).max, 1.0 / 2048);
 }
@@ -72,7 +73,7 @@ TEST_F(Render, LinearPngAndExrHoldTheSameValues) {
 TEST_F(Render, SoftLightIsFollowedByBothEngines) {
     write("m.inst", "sky { zenith: 0.6, 0.6, 0.6  bounces: 2 }\nmaterial white { color: 1, 1, 1  diffuse: 1  "
                     "ambient: 0  specular: 0 }\nobject m { sphere material: white }\n");
-    const RunResult povray = graftal("render m.inst" + small + "-o a.png");
+    const RunResult povray = graftal("render --engine povray m.inst" + small + "-o a.png");
     EXPECT_EQ(povray.status, 0);
     EXPECT_THAT(povray.err, testing::HasSubstr("no light from surface to surface"));
     const RunResult native = graftal("render m.inst --engine native" + small + "-o b.png");
@@ -96,20 +97,23 @@ TEST_F(Render, LightThatIsMoreThanAPointStaysInPovraysList) {
         SCOPED_TRACE(light);
         write("m.inst", light + scene);
         EXPECT_LT(engines_differ("m.inst --size 96x54 --listed-lights", 0.1).mean, 1.0 / 255);
-        ASSERT_EQ(graftal("render m.inst --size 96x54 --work 0.01 -q -o few.png").status, 0);
+        ASSERT_EQ(graftal("render --engine povray m.inst --size 96x54 --work 0.01 -q -o few.png").status, 0);
         EXPECT_LT(compare_images(picture("few.png"), picture("native.png")).mean, 12.0 / 255);
     }
 }
 
 TEST_F(Render, OldPictureIsReplacedWhole) {
     write("a.png", "old");
-    ASSERT_EQ(graftal("render " + gasket + small + "-o a.png").status, 0);
+    ASSERT_EQ(graftal("render --engine povray " + gasket + small + "-o a.png").status, 0);
     EXPECT_EQ(picture("a.png").width, 96);
     EXPECT_EQ(files(), "a.png");
 }
 
 TEST_F(Render, KeptSceneCanBeRenderedByHand) {
-    ASSERT_EQ(graftal("render " + pound_sign + small + "--antialias off -q --keep kept -o a.png").status, 0);
+    ASSERT_EQ(
+        graftal("render --engine povray " + pound_sign + small + "--antialias off -q --keep kept -o a.png")
+            .status,
+        0);
     ASSERT_EQ(shell("cd kept && povray +Iscene.pov +Ob.png +W96 +H54 -D -A +FN8 File_Gamma=srgb 2>/dev/null")
                   .status,
               0);
@@ -117,8 +121,8 @@ TEST_F(Render, KeptSceneCanBeRenderedByHand) {
 }
 
 TEST_F(Render, CameraOfTheCommandLineMovesThePicture) {
-    ASSERT_EQ(graftal("render " + gasket + small + "-q -o a.png").status, 0);
-    ASSERT_EQ(graftal("render " + gasket + small +
+    ASSERT_EQ(graftal("render --engine povray " + gasket + small + "-q -o a.png").status, 0);
+    ASSERT_EQ(graftal("render --engine povray " + gasket + small +
                       "-q -o b.png --camera 'location=0,0,9 look_at=0,0,0' --camera 'orthographic width=40'")
                   .status,
               0);
@@ -241,7 +245,7 @@ class InterruptedRender : public Render {
             ::setenv("TMPDIR", (directory_.path() + "/tmp").c_str(), 1);
             const std::string model = source_path("scenes/hart/sierpinski.inst"), picture = path("a.png");
             ::execl(GRAFTAL_PROGRAM, "graftal", "render", model.c_str(), "-o", picture.c_str(), "--size",
-                    "96x54", "--unconfined", nullptr);
+                    "96x54", "--engine", "povray", "--unconfined", nullptr);
             ::_exit(126);
         }
         for (int i = 0; i < 2000 && !exists("child"); ++i)

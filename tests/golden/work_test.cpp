@@ -48,8 +48,9 @@ TEST_F(Work, WhatLiesInEachOtherIsDrawnByBothEngines) {
             model);
         EXPECT_EQ(native.status, 0) << native.err;
         EXPECT_THAT(native.err, Not(HasSubstr("given up")));
-        const RunResult povray =
-            shell(std::string("\"$graftal\" render --plain-light --size 96x54 -o povray.png ") + model);
+        const RunResult povray = shell(
+            std::string("\"$graftal\" render --engine povray --plain-light --size 96x54 -o povray.png ") +
+            model);
         EXPECT_EQ(povray.status, 0) << povray.err;
         // Each has a shell of its own: as fine as its octave, or half octave, of sizes asks for.
         const Image a = picture("native.png"), b = picture("povray.png");
@@ -134,8 +135,8 @@ TEST_F(Work, AShellTakesWhatThereIsAndIsNotGivenUpForIt) {
 
 TEST_F(Work, OfPovrayIsSaidBeforeItStarts) {
     write("ball.inst", "object ball { sphere }\n");
-    const std::string render = "render ball.inst --plain-light -q -o a.png --size ";
-    EXPECT_EQ(graftal(render + "64x36").err, "");
+    const std::string render = "render --engine povray ball.inst --plain-light -o a.png --size ";
+    EXPECT_THAT(graftal(render + "64x36").err, Not(HasSubstr("seconds")));
     EXPECT_THAT(graftal(render + "64x36 --work 0.001").err,
                 ContainsRegex("graftal: POV-Ray will take about 0\\.[0-9]+ seconds"));
 }
@@ -150,8 +151,9 @@ TEST_F(Work, OfRaysThroughACrowdIsSaidToo) {
                         "  V -> gYRY\n"
                         "  Y -> [&VR]FF/+(30)[V][R[&/]-F]R\n"
                         "}\n");
-    EXPECT_THAT(graftal("render crowd.lsys --plain-light -q -o a.png --size 64x36 --work 0.3").err,
-                HasSubstr("graftal: POV-Ray will take about "));
+    EXPECT_THAT(
+        graftal("render --engine povray crowd.lsys --plain-light -o a.png --size 64x36 --work 0.3").err,
+        HasSubstr("graftal: POV-Ray will take about "));
 }
 
 TEST_F(Work, IsAPositiveNumber) {

@@ -47,7 +47,7 @@ TEST_F(Zoom, WrongAddressesAndFactors) {
     };
     for (const Case& c : cases) {
         const RunResult result =
-            graftal("render " + gasket + c.options + std::string(" -o a.png --size 48x27"));
+            graftal("render --engine povray " + gasket + c.options + std::string(" -o a.png --size 48x27"));
         EXPECT_EQ(result.status, c.status) << c.options;
         EXPECT_THAT(result.err, HasSubstr(c.message)) << c.options;
         EXPECT_EQ(files(), "") << c.options;

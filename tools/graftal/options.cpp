@@ -43,20 +43,26 @@ void add_render(CLI::App& app, Options& options) {
         "--linear", [&] { options.render.format = SampleFormat::linear16; },
         "Write a 16-bit PNG of linear values, for measurements (default: 8-bit sRGB)");
     add_bits(app, options)->excludes("--linear");
-    app.add_flag("--progressive", options.render.progressive,
-                 "With --engine native: write coarse pictures first, then finer ones under the same name; "
-                 "Ctrl-C keeps the last one");
-    add_value(
-        app, "--tile", "X,Y,WxH",
-        "With --engine native: draw only this part of the picture, W by H pixels from X,Y on (0,0 is the top "
-        "left); they are those of the whole, to the last bit",
-        "a part such as 640,0,640x360", parse_tile, [&](const Tile& tile) { options.render.tile = tile; })
+    app.add_flag_callback(
+        "--progressive", [&options] { options.progressive = true; },
+        "Write coarse pictures first, then finer ones under the same name; Ctrl-C keeps the last one "
+        "(default, "
+        "except with --tile and --engine povray)");
+    app.add_flag_callback(
+           "--no-progressive", [&options] { options.progressive = false; },
+           "Write one picture, when it is finished")
+        ->excludes("--progressive");
+    add_value(app, "--tile", "X,Y,WxH",
+              "Draw only this part of the picture, W by H pixels from X,Y on (0,0 is the top "
+              "left); they are those of the whole, to the last bit",
+              "a part such as 640,0,640x360", parse_tile,
+              [&](const Tile& tile) { options.render.tile = tile; })
         ->needs("--size");
     app.add_flag("--aovs", options.render.aovs,
-                 "With --engine native and an EXR: write the channels A, coverage, Z, normal, albedo, id and "
+                 "With an EXR: write the channels A, coverage, Z, normal, albedo, id and "
                  "levels too");
     app.add_flag("--watch", options.watch,
-                 "Draw again, with --engine native, whenever the model changes or a file that it uses, until "
+                 "Draw again whenever the model changes or a file that it uses, until "
                  "Ctrl-C");
     app.add_option("--keep", options.render.keep, "Keep POV-Ray's scene and its palettes in this directory")
         ->type_name("DIR");
@@ -66,11 +72,11 @@ void add_render(CLI::App& app, Options& options) {
                "  graftal render tree.inst --camera \"location=0,2,9 look_at=0,1,0 angle=30\"\n"
                "  graftal render gasket.inst --steps 6 --error 0        # six levels, with every part\n"
                "  graftal print tree.inst | graftal render - -o tree.png\n"
-               "  graftal render fern.rifs --engine native              # the same picture, much sooner\n"
-               "  graftal render forest.inst --engine native --progressive --size 1920x1080\n"
-               "  graftal render tree.inst --engine native --aovs -o tree.exr  # depth, normals, ... too\n"
+               "  graftal render forest.inst --quality best --size 1920x1080\n"
                "  graftal render fern.rifs --watch                      # and again after each save\n"
-               "  graftal render fern.rifs --engine native --size 40000x30000 --tile 0,0,1000x1000");
+               "  graftal render fern.rifs --engine povray              # the same picture by POV-Ray\n"
+               "  graftal render tree.inst --aovs -o tree.exr           # depth, normals, ... too\n"
+               "  graftal render fern.rifs --size 40000x30000 --tile 0,0,1000x1000");
 }
 
 void add_animate(CLI::App& app, Options& options) {
@@ -321,7 +327,7 @@ std::string refusal_of_size(const Options& options, bool in_parts) {
     if (!options.render.tile->lies_in(size))
         return fmt::format("--tile: this part is not within the {}x{} pixels of the picture", size.width,
                            size.height);
-    if (options.render.progressive || options.watch)
+    if (options.progressive == true || options.watch)
         return fmt::format("--tile draws once, at its finest: leave out {}",
                            options.watch ? "--watch" : "--progressive");
     return {};
@@ -335,7 +341,8 @@ std::string complete(Options& options, bool in_parts) {
     }
     if (const std::string refused = options.watch ? refusal_to_watch(options) : ""; !refused.empty())
         return refused;
-    if (!options.engine) options.engine = options.watch ? &native_engine : &engines().front();
+    if (!options.engine) options.engine = &engines().front();
+    options.render.progressive = options.progressive.value_or(false);
     const std::string refused = options.engine->refusal(options.render);
     if (!refused.empty()) return refused;
     const std::string extension = std::filesystem::path(options.render.output).extension().string();

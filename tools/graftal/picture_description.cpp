@@ -11,7 +11,7 @@ namespace graftal {
 std::string picture_description(const CLI::App& command, const Engine& engine) {
     static const std::set<std::string> unseen = {"--output", "--keep-frames", "--time",        "--quiet",
                                                  "--keep",   "--card",        "--dump-after",  "--threads",
-                                                 "--engine", "--json",        "--progressive", "--help",
+                                                 "--engine", "--json",        "--progressive", "--no-progressive", "--help",
                                                  "--root",   "--unconfined",  "--watch"};
     std::vector<std::string> words = {"graftal", command.get_name()};
     for (const CLI::Option* const option : command.get_options())

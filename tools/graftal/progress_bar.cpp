@@ -1,5 +1,6 @@
 #include "tools/graftal/progress_bar.h"
 
+#include <cmath>
 #include <cstdio>
 
 #include <fmt/format.h>
@@ -17,30 +18,51 @@ std::string bar(double fraction) {
                        100 * fraction);
 }
 
+/// " 12 s left", " 3 min left"
+std::string time_left(double seconds) {
+    if (!(seconds >= 1)) return {};
+    return seconds < 100 ? fmt::format(", {:.0f} s left", seconds)
+                         : fmt::format(", {:.0f} min left", std::ceil(seconds / 60));
+}
+
 } // namespace
 
-ProgressBar::ProgressBar(bool wanted) : enabled_(wanted && ::isatty(STDERR_FILENO)) {}
+ProgressBar::ProgressBar(bool wanted)
+    : wanted_(wanted), in_place_(::isatty(STDERR_FILENO)), told_(Clock::now()), begun_(told_) {}
 
 ProgressBar::~ProgressBar() {
     clear();
 }
 
 void ProgressBar::show(const std::string& text) {
-    if (!enabled_ || text == shown_) return;
-    std::fputs(("\r\033[K" + text).c_str(), stderr);
-    std::fflush(stderr);
-    shown_ = text;
+    if (!wanted_ || text == shown_) return;
+    if (in_place_) {
+        std::fputs(("\r\033[K" + text).c_str(), stderr);
+        std::fflush(stderr);
+        shown_ = text;
+        return;
+    }
+    const Clock::time_point now = Clock::now();
+    if (now - told_ < time_between_lines) return;
+    told_ = now;
+    std::fputs(("graftal: " + text + "\n").c_str(), stderr);
 }
 
-void ProgressBar::show(const std::string& what, double fraction) {
-    show(fmt::format("{:<18}", what) + bar(fraction));
+void ProgressBar::show(const std::string& what, double fraction, const std::string& more) {
+    if (fraction < fraction_) begun_ = Clock::now();
+    fraction_ = fraction;
+    const double seconds = std::chrono::duration<double>(Clock::now() - begun_).count();
+    const std::string rest = more + (fraction > 0 ? time_left(seconds * (1 - fraction) / fraction) : "");
+    show(in_place_ ? fmt::format("{:<18}", what) + bar(fraction) + rest
+                   : fmt::format("{}, {:.0f} %", what, 100 * fraction) + rest);
 }
 
 void ProgressBar::show(const DrawProgress& progress) {
     if (progress.fraction)
-        show(std::string(progress.stage), *progress.fraction);
+        show(std::string(progress.stage), *progress.fraction,
+             progress.samples > 0 ? fmt::format(", {:.3g} samples", progress.samples) : "");
     else
-        show(fmt::format("{:<18}...", progress.stage));
+        show(in_place_ ? fmt::format("{:<18}...", progress.stage) : std::string(progress.stage));
 }
 
 void ProgressBar::clear() {

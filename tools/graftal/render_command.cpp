@@ -11,17 +11,42 @@
 
 namespace graftal {
 
+namespace {
+
+/// What is to be said before a picture starts, or "".
+std::string start_text(const Engine& engine, const RenderOptions& render, const DrawStart& start) {
+    const std::string seconds = readable_seconds(start.seconds);
+    if (&engine != &engines().front()) {
+        // Besides what the compiler takes, of the same work.
+        if (!(start.seconds > 0.5 * render.compile.detail.work_seconds)) return {};
+        return fmt::format(
+            "{} will take about {} seconds of one processor; '--engine {}' is faster; a larger "
+            "--error or a smaller --memory or --size means less work",
+            engine.summary, seconds, engines().front().name);
+    }
+    const bool best = render.compile.view.quality == Quality::best;
+    if (!start.fewer.empty() && !best)
+        return fmt::format(
+            "a picture of {}, in about {} seconds of one processor; '--quality best' takes its "
+            "time, '--work {}' draws all",
+            start.fewer, seconds, readable_seconds(1.2 * start.whole_seconds));
+    constexpr double long_seconds = 20;
+    return start.seconds > long_seconds ? fmt::format("about {} seconds of one processor", seconds) : "";
+}
+
+} // namespace
+
 int run_render(const Options& options) {
     ProgressBar bar(!options.quiet);
     RenderOptions render = options.render;
+    render.progressive = options.progressive.value_or(!render.tile && options.engine == &engines().front());
     render.on_progress = [&](const DrawProgress& progress) { bar.show(progress); };
-    render.on_start = [&](double seconds) {
-        // Besides what the compiler takes, of the same work.
-        if (!(seconds > 0.5 * options.render.compile.detail.work_seconds)) return;
+    render.on_start = [&](const DrawStart& start) {
+        if (options.quiet) return;
+        const std::string text = start_text(*options.engine, options.render, start);
+        if (text.empty()) return;
         bar.clear();
-        say(fmt::format("graftal: POV-Ray will take about {} seconds of one processor; '--engine native' is "
-                        "faster; a larger --error or a smaller --memory or --size means less work\n",
-                        readable_seconds(seconds)));
+        say("graftal: " + text + "\n");
     };
 
     Compilation compilation;

@@ -212,7 +212,7 @@ void add_view(CLI::App& app, Options& options) {
     add_value(
         app, "--work", "SECONDS",
         "Limit of the work for a picture, roughly in seconds of one processor; graftal draws coarser where a "
-        "picture would take more (default by --quality: 30, 30 or 300; under soft light 60, 120 or 1200)",
+        "picture would take more (default by --quality: 5, 15 or 600; with POV-Ray 20, 40 or 1200)",
         "a number of seconds above 0", [](const std::string& text) { return parse_at_least(text, 1e-3); },
         [&](double seconds) { options.render.limit_work(seconds); });
     app.add_flag("--visible-only", compile.detail.visible_only,
@@ -221,7 +221,8 @@ void add_view(CLI::App& app, Options& options) {
         {"draft", Quality::draft}, {"normal", Quality::normal}, {"best", Quality::best}};
     add_plain_light(app, options);
     app.add_option("--quality", options.render.compile.view.quality,
-                   "How closely soft light is followed (default normal)")
+                   "How closely the picture is looked at, and how long that may take: see --work and --noise "
+                   "(default normal)")
         ->transform(CLI::CheckedTransformer(qualities).description(""))
         ->type_name("draft|normal|best")
         ->take_last();
@@ -243,19 +244,19 @@ namespace {
 constexpr int most_samples_a_pixel = 65'536;
 
 std::string engine_names(std::string_view between) {
-    std::string names;
+    std::string names(auto_engine);
     for (const Engine& engine : engines())
-        names += fmt::format("{}{}", names.empty() ? "" : between, engine.name);
+        names += fmt::format("{}{}", between, engine.name);
     return names;
 }
 
-/// "Renderer: povray, POV-Ray 3.7; native, graftal's own ray tracer (default povray)"
+/// "Renderer: native, graftal's own ray tracer; povray, POV-Ray 3.7 (default auto: native)"
 std::string engines_text() {
     std::string text = "Renderer";
     for (const Engine& engine : engines())
         text +=
             fmt::format("{}{}, {}", &engine == &engines().front() ? ": " : "; ", engine.name, engine.summary);
-    return text + fmt::format(" (default {})", engines().front().name);
+    return text + fmt::format(" (default {}: {})", auto_engine, engines().front().name);
 }
 
 } // namespace
@@ -281,17 +282,17 @@ void add_drawing(CLI::App& app, Options& options) {
         ->type_name(engine_names("|"))
         ->take_last();
     app.add_option("--samples", options.render.samples,
-                   "Soft light, native engine: so many samples per pixel, in place of --quality's")
+                   "Soft light: so many samples per pixel, in place of --quality's")
         ->check(CLI::Range(1, most_samples_a_pixel).description(""))
         ->type_name("N")
         ->take_last();
     app.add_option("--noise", options.render.noise_255,
-                   "Soft light, native engine: no more samples where the error is below N of 255 steps")
+                   "Soft light: no more samples where the error is below N of 255 steps")
         ->check(CLI::Range(0.0, 255.0).description(""))
         ->type_name("N")
         ->take_last();
     app.add_flag("--listed-lights", options.render.listed_lights,
-                 "Soft light, native engine: as POV-Ray draws it, from the same list of lights");
+                 "Soft light: as POV-Ray draws it, from the same list of lights");
     app.add_flag("--unconfined", options.render.unconfined,
                  "Run POV-Ray unconfined: with your permissions, your environment and no limits (for a "
                  "program in its place that runs it somewhere else)");

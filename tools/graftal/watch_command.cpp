@@ -26,8 +26,6 @@ namespace {
 
 /// A save may be several changes: it is over when nothing has changed for so long, or when it never ends.
 constexpr std::chrono::milliseconds quiet_time{50}, longest_save{1000};
-/// A first look after a change: with what comes before it, less than a tenth of a second for a small model.
-constexpr double draft_seconds = 0.04;
 
 /// "leaf.inst, bark.png and 3 more"
 std::string names_text(const std::set<std::string>& names) {
@@ -53,8 +51,8 @@ class Watching {
         session_.set_control(
             {CancelFlag([this, interrupted] { return interrupted.raised() || files_.changed(); }), {}});
         session_.on_file([this](const std::string& path) { watch(path); });
+        render_.progressive = options.progressive.value_or(true);
         render_.on_progress = [this](const DrawProgress& progress) { bar_.show(progress); };
-        render_.draft_seconds = draft_seconds;
     }
 
     int run() {

@@ -141,7 +141,7 @@ def is_due(name, words, output, code):
     """Whether the command may leave this file or folder: what it was asked for, the palettes of a scene, which are called
     after the model, a card, and what an end before the end leaves on purpose."""
     if code not in (0, 1):
-        return name.endswith('.frames') if 'animate' in words else name == output and '--progressive' in words
+        return name.endswith('.frames') if 'animate' in words else name == output and 'render' in words and '--no-progressive' not in words
     scene = r'(model\.\w+)(_[IPT]_\d+\.png|_sky\.exr)$' if 'compile' in words and output else '$^'
     stem = re.escape(output.rsplit('.', 1)[0]) + r'(_[IPT]_\d+|_sky|_\d+)?\.\w+$' if output else '$^'
     cards = [file for option, card in zip(words, words[1:]) if option == '--card'

@@ -1,7 +1,5 @@
 #include "runtime/render/samplings.h"
 
-#include <algorithm>
-
 #include <gtest/gtest.h>
 
 #include "compiler/detail/work.h"
@@ -9,51 +7,67 @@
 namespace graftal {
 namespace {
 
-constexpr ImageSize size{100, 80};
-constexpr double a_sample_seconds = size.width * size.height / WorkRates::samples;
+const Sampling edges{.antialias = 3}; // 16 samples
+const Sampling light{.most_samples = 64, .noise_255 = 3};
+constexpr Sampling one_a_pixel{};
 
-TEST(Samplings, AllLooksTogether) {
-    EXPECT_EQ(samples_a_pixel(samplings_of(2, false)), 4);
-    EXPECT_EQ(samples_a_pixel(samplings_of({}, false)), 1);
-    EXPECT_EQ(samples_a_pixel(samplings_of({}, true)), 1 + 1 / 4.0 + 1 / 16.0 + 1 / 64.0);
-    EXPECT_EQ(samples_a_pixel(samplings_of(9, true)), 65536 + samples_a_pixel(samplings_of({}, true)));
+TEST(Samplings, AsManySamplesAsAreAffordable) {
+    EXPECT_EQ(affordable_sampling(edges, 16), edges);
+    EXPECT_EQ(affordable_sampling(edges, 1e9), edges);
+    EXPECT_EQ(affordable_sampling(edges, 15.9), (Sampling{.most_samples = 15}));
+    EXPECT_EQ(affordable_sampling(edges, 2), (Sampling{.most_samples = 2}));
+    EXPECT_EQ(affordable_sampling(edges, 1.9), one_a_pixel) << "in the middle of each pixel";
+    EXPECT_EQ(affordable_sampling(light, 7.5), (Sampling{.most_samples = 7, .noise_255 = 3}));
+    EXPECT_EQ(affordable_sampling(light, 1), (Sampling{.most_samples = 1, .noise_255 = 3}));
 }
 
-TEST(Samplings, FewerUntilTheTimeSuffices) {
-    for (const bool progressive : {false, true})
-        for (int depth = 1; depth <= 9; ++depth) {
-            const std::vector<Sampling> all = samplings_of(depth, progressive);
-            EXPECT_EQ(samples_a_pixel(with_fewer_samples(all, size, least_seconds(all, size))),
-                      samples_a_pixel(all));
-            const std::vector<Sampling> few = with_fewer_samples(all, size, 100 * a_sample_seconds);
-            EXPECT_LE(samples_a_pixel(few), 100);
-            EXPECT_EQ(few.back().antialias.value_or(1), std::min(depth, 4)) << "4^3 samples";
-            const std::vector<Sampling> least = with_fewer_samples(all, size, 0);
-            EXPECT_EQ(least.back().samples_a_pixel(), 1) << "every pixel keeps one";
+TEST(Samplings, PixelsShareSamplesWhereEachTakesLong) {
+    for (const Sampling& wanted : {edges, light, one_a_pixel}) {
+        EXPECT_EQ(affordable_sampling(wanted, 0.99).block, 2);
+        EXPECT_EQ(affordable_sampling(wanted, 0.25).block, 2);
+        EXPECT_EQ(affordable_sampling(wanted, 0.2).block, 3);
+        EXPECT_EQ(affordable_sampling(wanted, 0).block, coarsest_block);
+    }
+}
+
+TEST(Samplings, NeverTakeMoreThanIsAffordable) {
+    for (const Sampling& wanted : {edges, light, one_a_pixel})
+        for (double samples = 1.0 / (coarsest_block * coarsest_block); samples < 100; samples *= 1.07)
+            EXPECT_LE(affordable_sampling(wanted, samples).samples_a_pixel(), samples * (1 + 1e-12));
+}
+
+/// Fewer samples never look better, and no step is a cliff: one sample less costs less than parts twice as
+/// large.
+TEST(Samplings, LossGrowsEvenly) {
+    for (const Sampling& wanted : {edges, light, one_a_pixel}) {
+        EXPECT_EQ(loss_of_samples(wanted, wanted), 0);
+        double last = 0;
+        for (double samples = 70; samples > 0.02; samples *= 0.97) {
+            const double loss = loss_of_samples(wanted, affordable_sampling(wanted, samples));
+            EXPECT_GE(loss, last) << samples;
+            EXPECT_LT(loss, last + 1.5) << samples;
+            last = loss;
         }
+        EXPECT_GT(last, 3) << "blocks are worse than parts eight times as large";
+    }
 }
 
-TEST(Samplings, BlocksWhereSamplesTakeLong) {
-    const std::vector<Sampling> all = samplings_of(3, false);
-    EXPECT_EQ(within_seconds(all, 1, 16).back().samples_a_pixel(), 16);
-    EXPECT_EQ(within_seconds(all, 1, 15).back().samples_a_pixel(), 4);
-    EXPECT_EQ(within_seconds(all, 1, 3).back().samples_a_pixel(), 1);
-    EXPECT_EQ(within_seconds(all, 1, 0.3).back().block, 2);
-    EXPECT_EQ(within_seconds(all, 1, 0).back().block, 8);
-    const std::vector<Sampling> looks = within_seconds(samplings_of(3, true), 1, 0.1);
-    EXPECT_EQ(looks.size(), 2u);
-    EXPECT_EQ(looks.back().block, 4);
+TEST(Samplings, LooksComeBeforeALongOne) {
+    EXPECT_TRUE(looks_before(light, 1e-3, 0.1).empty()) << "it is there as soon";
+    const std::vector<Sampling> looks = looks_before(light, 1, 0.1);
+    ASSERT_EQ(looks.size(), 2u);
+    EXPECT_EQ(looks[0].block, 4) << "a sixteenth of a second";
+    EXPECT_EQ(looks[1].block, 2);
+    EXPECT_EQ(looks_before(light, 1e6, 0.1).front().block, 16) << "the coarsest, however long it takes";
+    double taken = 0;
+    for (const Sampling& look : looks_before(one_a_pixel, 1, 0.01))
+        taken += look.samples_a_pixel();
+    EXPECT_LT(taken, 0.1) << "a small share of the finest";
+    EXPECT_TRUE(looks_before({.block = 16}, 1e6, 0.1).empty());
 }
 
-TEST(Samplings, ADraftComesBeforeALongLook) {
-    const Sampling fine{.antialias = 2};
-    EXPECT_FALSE(draft_before(fine, 1, 4)) << "it takes no longer itself";
-    EXPECT_EQ(draft_before(fine, 1, 3.9)->samples_a_pixel(), 1 / 4.0);
-    EXPECT_EQ(draft_before(fine, 1, 0.1)->block, 4);
-    EXPECT_EQ(draft_before(fine, 1e6, 0.1)->block, 16) << "the coarsest, however long it takes";
-    EXPECT_FALSE(draft_before({.block = 8}, 1, 0.1));
-    EXPECT_EQ(draft_before({.block = 8}, 1, 0.01)->block, 16);
-    EXPECT_EQ(draft_before({.most_samples = 128}, 1, 0.3)->samples_a_pixel(), 1 / 4.0);
+TEST(Samplings, SamplesThatMeetNothingTakeTime) {
+    EXPECT_DOUBLE_EQ(least_seconds(light, {100, 80}), 64 * 100 * 80 / WorkRates::samples);
 }
 
 } // namespace

@@ -28,11 +28,11 @@ MODES = {
     'points, .ply': (['points', SCENES / 'hart/pound_sign.rifs', '-q', '--points', '3e6'], 'out.ply'),
     'collage': (['collage', 'models/target.png', SCENES / 'ifs/fern.rifs'], None),
     'compare, .exr': (['compare', 'models/a.exr', 'models/a.exr'], None),
-    'render, POV-Ray': (['render', SCENES / 'hart/pound_sign.rifs', '-q', '--size', '160x120', '--plain-light'], 'out.png'),
-    'render, native, .exr': (['render', SCENES / 'abop/fig1_24f.lsys', '-q', '--size', '320x240', '--engine', 'native'],
+    'render, POV-Ray': (['render', '--engine', 'povray', SCENES / 'hart/pound_sign.rifs', '-q', '--size', '160x120', '--plain-light'], 'out.png'),
+    'render, native, .exr': (['render', SCENES / 'abop/fig1_24f.lsys', '-q', '--size', '320x240', '--no-progressive'],
                              'out.exr'),
     'animate, native, .gif': ([*TURN, '--engine', 'native'], 'out.gif'),
-    'animate, POV-Ray, frames': (TURN, 'out/'),
+    'animate, POV-Ray, frames': ([*TURN, '--engine', 'povray'], 'out/'),
 }
 
 

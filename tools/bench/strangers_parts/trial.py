@@ -14,7 +14,7 @@ COMMANDS = {
     'compile small': (['compile', '--size', '64x36'], 'small.pov'),
     'compile': (['compile'], 'scene.pov'),
     'native': (['render', '--engine', 'native'], 'native.png'),
-    'povray': (['render'], 'povray.png'),
+    'povray': (['render', '--engine', 'povray'], 'povray.png'),
 }
 
 

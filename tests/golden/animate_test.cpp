@@ -295,7 +295,7 @@ TEST_F(Animate, EnvironmentIsStatusThree) {
     }
     EXPECT_EQ(read("taken") + read("b.frames"), "minemine");
     EXPECT_EQ(graftal("animate none.inst").status, 3);
-    EXPECT_EQ(shell("PATH=/nowhere \"$graftal\" animate " + two_steps + "-o a.gif").status, 3);
+    EXPECT_EQ(shell("PATH=/nowhere \"$graftal\" animate --engine povray " + two_steps + "-o a.gif").status, 3);
     EXPECT_EQ(files(), before);
 }
 

@@ -101,7 +101,7 @@ TEST_F(DocumentsTest, EveryPageOfTheManualIsSetWithoutAWarning) {
     // Each option stands in the page with the sign that one types.
     const std::string render = shell("'" GRAFTAL_PROGRAM "' manual render | groff -man -Tascii -P-cbou").out;
     for (const char* option :
-         {"--size WxH", "--engine povray|native", "-o FILE, --output FILE", "--visible-only"})
+         {"--size WxH", "--engine auto|native|povray", "-o FILE, --output FILE", "--visible-only"})
         EXPECT_THAT(render, HasSubstr(option));
 }
 

@@ -184,7 +184,7 @@ TEST_F(Native, NoSpaceIsStatusThreeAndLeavesTheOldPicture) {
     EXPECT_EQ(files(), "a.png");
 
     // The first of the pictures is small, the last is not.
-    const RunResult some = with_room(6, elm + "--plain-light --size 320x180 --progressive");
+    const RunResult some = with_room(30, elm + "--plain-light --size 320x180 --antialias 4");
     EXPECT_EQ(some.status, 3);
     EXPECT_THAT(some.err, StartsWith("graftal: cannot write picture 'a.png': File too large\n"
                                      "a.png: unfinished: 1 sample per "));

@@ -51,23 +51,23 @@ bool is_in_blocks(const Image& image, int side) {
 
 /// Pixels along each side of the blocks that a picture is made of.
 int block_of(const Image& image) {
-    for (const int side : {8, 4, 2})
+    for (const int side : {16, 8, 4, 2})
         if (is_in_blocks(image, side)) return side;
     return 1;
 }
 
 TEST_F(Progressive, EveryPictureIsWholeAndFinerThanTheLast) {
-    BackgroundRun run = start("render", "a.png", {"--size", "320x180", "--antialias", "1", "--progressive"});
+    BackgroundRun run = start("render", "a.png", {"--size", "640x360", "--antialias", "3"});
     std::vector<Image> seen;
     while (run.running()) {
         const Image image = picture("a.png");
         if (image.width == 0) continue;
-        ASSERT_EQ(image.width, 320);
-        ASSERT_EQ(image.height, 180);
+        ASSERT_EQ(image.width, 640);
+        ASSERT_EQ(image.height, 360);
         if (seen.empty() || image.pixels != seen.back().pixels) seen.push_back(image);
     }
     EXPECT_EQ(run.wait(), 0) << run.messages();
-    EXPECT_GE(seen.size(), 2u) << "of 5";
+    EXPECT_GE(seen.size(), 2u) << "of 4 or so";
     for (std::size_t i = 1; i < seen.size(); ++i) {
         EXPECT_LE(block_of(seen[i]), block_of(seen[i - 1]));
         if (block_of(seen[i - 1]) > 1) {
@@ -75,7 +75,8 @@ TEST_F(Progressive, EveryPictureIsWholeAndFinerThanTheLast) {
         }
     }
     EXPECT_EQ(files(), "a.png");
-    EXPECT_EQ(start("render", "b.png", {"--size", "320x180", "--antialias", "1"}).wait(), 0);
+    EXPECT_EQ(start("render", "b.png", {"--size", "640x360", "--antialias", "3", "--no-progressive"}).wait(),
+              0);
     EXPECT_EQ(compare_images(picture("a.png"), picture("b.png")).differing, 0u)
         << "the last is what there would have been at once";
 }
@@ -83,9 +84,10 @@ TEST_F(Progressive, EveryPictureIsWholeAndFinerThanTheLast) {
 TEST_F(Progressive, WithoutSamplesTheLastIsTheSameToo) {
     for (const std::string size : {"37x23", "8x8", "1x1"}) { // blocks and tiles that are not whole
         for (const std::string antialias : {"off", "2"}) {
-            ASSERT_EQ(start("render", "a.png", {"--size", size, "--antialias", antialias}).wait(), 0);
-            BackgroundRun run =
-                start("render", "b.png", {"--size", size, "--antialias", antialias, "--progressive"});
+            ASSERT_EQ(start("render", "a.png", {"--size", size, "--antialias", antialias, "--no-progressive"})
+                          .wait(),
+                      0);
+            BackgroundRun run = start("render", "b.png", {"--size", size, "--antialias", antialias});
             ASSERT_EQ(run.wait(), 0) << run.messages();
             EXPECT_EQ(compare_images(picture("a.png"), picture("b.png")).differing, 0u) << size << antialias;
         }
@@ -94,8 +96,7 @@ TEST_F(Progressive, WithoutSamplesTheLastIsTheSameToo) {
 
 TEST_F(Progressive, InterruptionLeavesTheBestPictureSoFar) {
     for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
-        BackgroundRun run =
-            start("render", "a.png", {"--size", "1280x720", "--antialias", "4", "--progressive"});
+        BackgroundRun run = start("render", "a.png", {"--size", "1280x720", "--antialias", "4"});
         run.wait_until([&] { return exists("a.png"); });
         run.send(signal);
         EXPECT_EQ(run.wait(), 128 + signal);
@@ -117,7 +118,7 @@ TEST_F(Progressive, InterruptionBeforeAPictureLeavesNothing) {
         for (const bool progressive : {false, true}) {
             // Progressive, it takes seconds to the first; else, minutes.
             BackgroundRun run = progressive
-                                    ? start("render", "a.png", {"--size", "4000x3000", "--progressive"})
+                                    ? start("render", "a.png", {"--size", "4000x3000"})
                                     : start("render", "a.png", {"--antialias", "9", "--work", "20000"});
             run.wait_until([&] { return run.catches(SIGTERM); });
             run.send(SIGTERM);

@@ -82,12 +82,13 @@ TEST_F(Work, WhereEveryRayMeetsTooMuchFewerAreTraced) {
                         "  map b { rotate <3, 1, 2>, 77 scale 0.6, 0.65, 0.7 }\n"
                         "  terminal cone scale 0.96 translate 0, 0.5, 0.3\n"
                         "}\n");
-    const RunResult result = shell(
-        "\"$graftal\" render --engine native --plain-light --size 160x90 --work 0.002 --steps 35 cones.rifs "
-        "-o a.png --threads 2");
+    const RunResult result = shell("\"$graftal\" render --engine native --plain-light --size 1600x900 --work "
+                                   "0.001 --steps 35 cones.rifs "
+                                   "-o a.png --threads 2");
     EXPECT_EQ(result.status, 0) << result.err;
-    EXPECT_THAT(result.err, HasSubstr("and graftal gives up rays that meet too many parts, one per"));
-    EXPECT_EQ(picture("a.png").width, 160);
+    EXPECT_THAT(result.err,
+                HasSubstr("and graftal gives up rays that meet too many parts, by 1 sample per "));
+    EXPECT_EQ(picture("a.png").width, 1600);
 }
 
 // Copies that lie in each other are drawn as one shell: it has the terminal's own material.

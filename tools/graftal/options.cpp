@@ -266,7 +266,7 @@ struct CommandEntry {
 };
 
 constexpr CommandEntry commands[] = {
-    {Command::render, "render", "Draw a picture of a model, with POV-Ray or graftal's own ray tracer",
+    {Command::render, "render", "Draw a picture of a model, with graftal's own ray tracer or POV-Ray",
      add_render},
     {Command::animate, "animate", "Make an animation of a model that turns, grows or changes", add_animate},
     {Command::points, "points", "Draw a model by random points, as a picture or a point cloud", add_points},
@@ -343,7 +343,8 @@ std::string complete(Options& options, bool in_parts) {
         return refused;
     if (!options.engine) options.engine = &engines().front();
     options.render.progressive = options.progressive.value_or(false);
-    const std::string refused = options.engine->refusal(options.render);
+    const bool draws = options.command == Command::render || options.command == Command::animate;
+    const std::string refused = draws ? options.engine->refusal(options.render) : "";
     if (!refused.empty()) return refused;
     const std::string extension = std::filesystem::path(options.render.output).extension().string();
     const bool from_stdin = options.operands.front() == "-";

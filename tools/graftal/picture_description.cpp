@@ -9,10 +9,10 @@
 namespace graftal {
 
 std::string picture_description(const CLI::App& command, const Engine& engine) {
-    static const std::set<std::string> unseen = {"--output", "--keep-frames", "--time",        "--quiet",
-                                                 "--keep",   "--card",        "--dump-after",  "--threads",
-                                                 "--engine", "--json",        "--progressive", "--no-progressive", "--help",
-                                                 "--root",   "--unconfined",  "--watch"};
+    static const std::set<std::string> unseen = {
+        "--output",     "--keep-frames", "--time",       "--quiet", "--keep",        "--card",
+        "--dump-after", "--threads",     "--engine",     "--json",  "--progressive", "--no-progressive",
+        "--help",       "--root",        "--unconfined", "--watch"};
     std::vector<std::string> words = {"graftal", command.get_name()};
     for (const CLI::Option* const option : command.get_options())
         if (option->get_positional())

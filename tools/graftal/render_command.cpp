@@ -20,9 +20,9 @@ std::string start_text(const Engine& engine, const RenderOptions& render, const 
         // Besides what the compiler takes, of the same work.
         if (!(start.seconds > 0.5 * render.compile.detail.work_seconds)) return {};
         return fmt::format(
-            "{} will take about {} seconds of one processor; '--engine {}' is faster; a larger "
+            "POV-Ray will take about {} seconds of one processor; '--engine {}' is faster; a larger "
             "--error or a smaller --memory or --size means less work",
-            engine.summary, seconds, engines().front().name);
+            seconds, engines().front().name);
     }
     const bool best = render.compile.view.quality == Quality::best;
     if (!start.fewer.empty() && !best)

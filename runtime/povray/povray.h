@@ -18,8 +18,9 @@ struct PovrayJob {
     std::string picture = "picture.png";
     int width = 0;
     int height = 0;
-    int threads = 0;              ///< 0: as many as POV-Ray likes
-    std::optional<int> antialias; ///< N: adaptive, up to 2^N x 2^N samples a pixel, N in 1..9; nothing: off
+    int threads = 0;                ///< 0: as many as POV-Ray likes
+    std::optional<int> antialias;   ///< N: adaptive, up to 2^N x 2^N samples a pixel, N in 1..9; nothing: off
+    double antialias_threshold = 0; ///< by so much corners of what is divided differ, as shares of white
     enum class Format {
         srgb8,    ///< 8-bit PNG
         linear16, ///< 16-bit PNG of linear values, at most 1

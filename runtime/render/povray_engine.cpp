@@ -161,10 +161,10 @@ struct FollowedLights {
 };
 
 /// Those that it can follow in so many seconds, as soft as the quality asks at most. Fewer show their number
-/// as bands in the shade.
+/// as bands in the shadows.
 FollowedLights affordable_lights(const View& view, double seconds_a_light, double seconds,
                                  std::size_t asked_count) {
-    constexpr LightListSize least{.disc = 3, .dome = 8, .area = 6};
+    constexpr LightListSize least{.disc = 2, .dome = 6, .area = 4};
     const LightListSize asked = list_size(view.quality);
     const double share = std::min(seconds / seconds_a_light / static_cast<double>(asked_count), 1.0);
     const auto part = [share](unsigned least_count, unsigned count) {
@@ -324,6 +324,8 @@ std::optional<PovrayReport> render_by_povray(PictureSession& session, const Rend
     const double light_seconds = seconds_a_light(job, mean_overlap(model->cut, model->view));
     const FollowedLights lights = followed_lights(
         *model, light_seconds, work_of(options, model->view.quality), compilation.diagnostics);
+    // Where light is but roughly what it should be, edges need not be more exact.
+    if (lights.size != list_size(model->view.quality)) job.antialias_threshold = 0.1;
     const auto emit = [&] {
         return prepare(*model, options, session.textures(), temporary, lights.size, job);
     };

@@ -140,14 +140,14 @@ constexpr const char* first_picture = "Save this model as\n.IR crystal.rifs :\n"
                                       "}\n"
                                       ".EE\n.PP\nThis command draws it, as\n.IR crystal.png :\n"
                                       ".PP\n.EX\n"
-                                      "graftal render crystal.rifs \\-\\-engine native\n"
+                                      "graftal render crystal.rifs\n"
                                       ".EE\n";
 constexpr const char* first_examples =
     "graftal check crystal.rifs                             # what is wrong with it\n"
     "graftal stats crystal.rifs --steps 12                  # exact counts, dimension, bounds\n"
-    "graftal render crystal.rifs                            # by POV-Ray\n"
-    "graftal render crystal.rifs --engine native --watch    # again after each save\n"
-    "graftal animate crystal.rifs --engine native           # once around it: crystal.gif\n"
+    "graftal render crystal.rifs --watch                    # again after each save\n"
+    "graftal render crystal.rifs --engine povray            # by POV-Ray\n"
+    "graftal animate crystal.rifs                           # once around it: crystal.gif\n"
     "graftal help render                                    # the options of a command\n";
 
 constexpr const char* exit_status = ".TP\n0\nSuccess.\n"

@@ -76,7 +76,7 @@ class Worker {
     }
 
     TraceStatistics statistics() const {
-        return {camera_rays_, traversal_.work(), traversal_.given_up(), noisy_pixels_};
+        return {camera_rays_, traversal_.work() + shader_.work(), traversal_.given_up(), noisy_pixels_};
     }
 
   private:

@@ -7,6 +7,7 @@
 
 #include <glm/geometric.hpp>
 
+#include "compiler/detail/work.h"
 #include "compiler/scene/ground.h"
 #include "compiler/support/axes_across.h"
 #include "compiler/support/number_range.h"
@@ -111,6 +112,8 @@ Shader::Shader(const View& view, Surfaces& surfaces, const ShaderLimits& limits,
     } else {
         ambient_light_ = Rgb(1.0);
     }
+    work_of_a_point_ = RayWork::lamp * lamps_.size() + RayWork::soft_lamp * areas_.size();
+    if (sky_) work_of_a_point_ += bright_sky_ ? RayWork::bright_sky : RayWork::sky;
     if (view.catcher) {
         catcher_paper_.rgb = view.catcher->rgb;
         catcher_paper_.ambient = 0;

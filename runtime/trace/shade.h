@@ -87,6 +87,9 @@ class Shader {
         return radiance(ray, unused);
     }
 
+    /// Steps that light has taken, besides those of rays (RayWork).
+    std::uint64_t work() const { return work_; }
+
     /// True where radiance() estimates: more samples make a better picture.
     bool samples() const { return sky_ || !areas_.empty(); }
 
@@ -146,6 +149,7 @@ class Shader {
     const SkyLight* sky_ = nullptr;           ///< that is sampled
     const SkySampling* bright_sky_ = nullptr; ///< where it has bright parts
     std::vector<Path> waiting_;               ///< of the ray under way: what is to be followed still
+    std::uint64_t work_ = 0, work_of_a_point_ = 0;
     bool all_opaque_;
     Inside camera_inside_; ///< of the ground
     Rgb ambient_light_;

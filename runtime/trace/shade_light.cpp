@@ -23,6 +23,7 @@ constexpr double dark_exponent = 40;
 } // namespace
 
 Rgb Shader::lit(const Point& point, bool sky_later, SampleStream& random) {
+    work_ += work_of_a_point_;
     const double least = least_distance(point.position, shadow_pixels);
     Rgb sum = point.body * point.material->ambient * ambient_light_ * point.rgb;
     if (point.material->emission > 0) sum += point.body * point.material->emission * point.rgb;

@@ -5,6 +5,7 @@ find_package(Python REQUIRED COMPONENTS Interpreter Development.Module)
 find_package(pybind11 REQUIRED)
 pybind11_add_module(graftal_python MODULE NO_EXTRAS runtime/python/module.cpp)
 target_link_libraries(graftal_python PRIVATE graftal_library)
+target_compile_definitions(graftal_python PRIVATE GRAFTAL_VERSION="${PROJECT_VERSION}")
 set_target_properties(graftal_python PROPERTIES OUTPUT_NAME _graftal LIBRARY_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/python/graftal
                       BUILD_RPATH "$ORIGIN/../.." INSTALL_RPATH "$ORIGIN/../../../${CMAKE_INSTALL_LIBDIR}"
                       UNITY_BUILD OFF CXX_VISIBILITY_PRESET hidden)

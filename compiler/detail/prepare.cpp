@@ -73,7 +73,7 @@ bool refuse_endless(const Graph& graph, const Components& components, const Deta
     if (!components.unending[graph.root] || options.steps || options.culls()) return false;
     diagnostics
         .error(graph.objects[graph.root].span, "the recursion has no end, and no option limits its depth")
-        .with_hint("set a depth with --steps N, or a smallest size in pixels with --error");
+        .with_hint("set a depth with '--steps N', or a smallest size in pixels with --error");
     return true;
 }
 

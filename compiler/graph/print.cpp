@@ -79,7 +79,7 @@ class Printer {
         if (camera.orthographic) out_ += "  orthographic\n";
         print_number("  width", camera.width);
         print_number("  height", camera.height);
-        if (camera.aperture > 0) print_numbers("  aperture", {camera.aperture});
+        if (camera.aperture) print_numbers("  aperture", {*camera.aperture});
         print_vector("  focus", camera.focus);
         out_ += "}\n";
     }

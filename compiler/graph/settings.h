@@ -22,10 +22,10 @@ struct CameraSetting {
     std::optional<Vec3> direction;   ///< in which a camera without a location looks
     std::optional<double> angle_deg; ///< horizontal angle of view, in (0, 180)
     bool orthographic = false;
-    std::optional<double> width;  ///< orthographic: width of the view in scene units
-    std::optional<double> height; ///< with a width: the view shows this height too, and is wider if it must
-    double aperture = 0;          ///< radius of the lens; 0: all is sharp
-    std::optional<Vec3> focus;    ///< what is sharp, as everything at its depth; nothing: look_at
+    std::optional<double> width;    ///< orthographic: width of the view in scene units
+    std::optional<double> height;   ///< with a width: the view shows this height too, and is wider if it must
+    std::optional<double> aperture; ///< radius of the lens; 0 or nothing: all is sharp
+    std::optional<Vec3> focus;      ///< what is sharp, as everything at its depth; nothing: look_at
     bool operator==(const CameraSetting&) const = default;
 };
 

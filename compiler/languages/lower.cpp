@@ -32,7 +32,7 @@ LoweredText lower_root(FileId file, const std::string& path, const LowerOptions&
     const Language* const language = language_of(file, sources, languages());
     if (options.time && !options.steps && !(language && language->has_time)) {
         diagnostics
-            .error(Span{file, 0, 0}, fmt::format("--steps {}: only L-systems have times between two steps",
+            .error(Span{file, 0, 0}, fmt::format("only L-systems have times between two steps, such as {}",
                                                  shortest(*options.time)))
             .with_hint("give a whole number");
         return {};
@@ -61,7 +61,7 @@ LoweredText lower_model(const std::string& path, const LowerOptions& options, So
     std::string text;
     const std::string file = model_path(path).file;
     if (file != "-" && !options.root.empty() && !lies_in(file, options.root)) {
-        diagnostics.error(Span(), fmt::format("'{}' leads out of --root '{}'", file, options.root));
+        diagnostics.error(Span(), fmt::format("'{}' leads out of the root folder '{}'", file, options.root));
         return {};
     }
     status = read_text(file, text);

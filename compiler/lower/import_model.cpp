@@ -66,7 +66,7 @@ Status check_regular(const std::string& path, const Lowering& lowering) {
     std::error_code code;
     // Asked first: of what lies outside nobody learns whether it is there.
     if (!root.empty() && !lies_in(path, root))
-        return Status::failure(fmt::format("'{}' leads out of --root '{}'", path, root));
+        return Status::failure(fmt::format("'{}' leads out of the root folder '{}'", path, root));
     if (lowering.help.on_file) lowering.help.on_file(path);
     if (!std::filesystem::exists(path, code))
         return Status::failure(fmt::format("cannot open '{}': {}", path, std::strerror(ENOENT)));

@@ -37,7 +37,7 @@ CameraSetting lower_camera(const SceneFields& fields) {
         "angle", [](double x) { return x >= least_size && x < 180; }, "lie between 0 and 180 degrees");
     camera.width = fields.size("width");
     camera.height = fields.size("height");
-    camera.aperture = fields.size("aperture").value_or(0);
+    camera.aperture = fields.size("aperture");
     camera.focus = fields.place("focus");
     if (fields.flag("focus") && !fields.flag("aperture"))
         fields.error("focus", "without an 'aperture' everything is in focus");
@@ -223,10 +223,11 @@ void check_set_names(const Environment& known_lets, const std::vector<std::strin
     known.insert(known.end(), settings.begin(), settings.end());
     for (const auto& [name, value] : lowering.options.set) {
         if (std::find(known.begin(), known.end(), name) == known.end())
-            lowering.diagnostics.error(Span(), fmt::format("--set {}: the model has no 'let {}'", name, name))
+            lowering.diagnostics.error(Span(), fmt::format("the model has no 'let {}' to set", name))
                 .with_hint(choices(name, known));
         if (!std::isfinite(value))
-            lowering.diagnostics.error(Span(), fmt::format("--set {}: the value is not finite", name));
+            lowering.diagnostics.error(Span(),
+                                       fmt::format("'{}' is set to a value that is not finite", name));
     }
 }
 
@@ -255,7 +256,8 @@ Environment evaluate_lets(const std::vector<SceneStatement>& statements, Environ
             const auto set = lowering.options.set.find(let.keyword);
             if (set != lowering.options.set.end() && lowering.at_root_model()) {
                 value = set->second;
-                if (is_inner) check_inner(value, Span(), fmt::format("--set {}", let.keyword), lowering);
+                if (is_inner)
+                    check_inner(value, Span(), fmt::format("'{}' as it is set", let.keyword), lowering);
             }
             const auto given = inner.find(let.keyword);
             if (is_inner && given != inner.end()) value = given->second;
@@ -320,7 +322,7 @@ void lower_settings(const std::vector<SceneStatement>& statements, const Environ
             graph.settings.steps = static_cast<unsigned>(*steps);
         else
             lowering.diagnostics.error(
-                Span(), fmt::format("--set steps: it must {}, not {}", steps_demand, shortest(*steps)));
+                Span(), fmt::format("'steps' as it is set must {}, not {}", steps_demand, shortest(*steps)));
     }
     for (const SceneStatement& statement : statements)
         for (const SceneField& field : statement.fields)

@@ -318,7 +318,7 @@ class LsysLowering {
         if (!steps) steps = graph_.settings.steps;
         if (!steps)
             diagnostics_.error(span, fmt::format("'lsys {}' has no number of steps", block.source->name.text))
-                .with_hint(is_root(block) ? "add 'steps 5' to it, or '--steps 5' to the command"
+                .with_hint(is_root(block) ? "add 'steps 5' to it, or give '--steps 5'"
                                           : "add 'steps 5' to it");
         else if (*steps > max_derivation_steps)
             diagnostics_.error(span, fmt::format("a derivation has at most {} steps", max_derivation_steps));

@@ -145,7 +145,7 @@ void Emitter::sort_into_buckets() {
 
 void Emitter::write_header() {
     out_ << "#version 3.7;\n// " << harmless(options_.scene_name) << ": "
-         << fmt::format("{} placements of {} bodies, {} triangles in meshes, drawing {:.4g} leaves.\n",
+         << fmt::format("{} placements of {} bodies, {} triangles in meshes, drawing {:.4g} primitives.\n",
                         cut_.placement_count, cut_.bodies.size(), bodies_.triangle_count(), cut_.leaf_count)
          << "// Written by graftal. The model's space is right-handed, y up";
 }

@@ -375,6 +375,8 @@ CameraSetting merge(const CameraSetting& model, const CameraSetting& over) {
         merged.width = over.width;
         merged.height = over.height;
     }
+    if (over.aperture) merged.aperture = over.aperture;
+    if (over.focus) merged.focus = over.focus;
     if (over.orthographic || over.width)
         merged.orthographic = true;
     else if (over.angle_deg)

@@ -133,12 +133,12 @@ Haze resolve(const HazeSetting& setting, const View& view) {
 }
 
 /// Behind the eye nothing can be sharp.
-Lens resolve_lens(const SceneSettings& settings, const Camera& camera, const Box& bounds) {
-    if (!settings.camera || !(settings.camera->aperture > 0) || camera.orthographic) return {};
-    const CameraSetting& setting = *settings.camera;
+Lens resolve_lens(const CameraSetting& setting, const Camera& camera, const Box& bounds) {
+    const double radius = setting.aperture.value_or(0);
+    if (!(radius > 0) || camera.orthographic) return {};
     const Vec3 focus = setting.focus ? *setting.focus : setting.look_at.value_or(bounds.centre());
     const double depth = glm::dot(focus - camera.location, camera.direction);
-    return depth > 0 ? Lens{setting.aperture, depth} : Lens{};
+    return depth > 0 ? Lens{radius, depth} : Lens{};
 }
 
 /// Pictures under a sky are soft; those under a clear one, whose colours are measured, are for daylight.
@@ -197,12 +197,12 @@ View frame(const Graph& graph, const Box& bounds, ImageSize size, const CameraOv
     GRAFTAL_CHECK(!bounds.empty(), "frame: empty bounds");
     GRAFTAL_CHECK(size.width > 0 && size.height > 0, "frame: empty picture");
     const CameraSetting setting = merge(graph.settings.camera.value_or(CameraSetting{}), camera);
-    return view_through(frame_camera(setting, bounds, outliner, size), graph, bounds, size,
+    return view_through(frame_camera(setting, bounds, outliner, size), setting, graph, bounds, size,
                         sample_colours(graph), light);
 }
 
-View view_through(const Camera& camera, const Graph& graph, const Box& bounds, ImageSize size,
-                  const std::vector<Rgb>& colours, DefaultLight light) {
+View view_through(const Camera& camera, const CameraSetting& setting, const Graph& graph, const Box& bounds,
+                  ImageSize size, const std::vector<Rgb>& colours, DefaultLight light) {
     const SceneSettings& settings = graph.settings;
     const bool flat = thickness(bounds) <= flat_share;
     View view;
@@ -224,7 +224,7 @@ View view_through(const Camera& camera, const Graph& graph, const Box& bounds, I
         view.shows_sky_light = !settings.background;
     }
     view.film = resolve_film(settings, view.sky_light.has_value());
-    view.lens = resolve_lens(settings, camera, bounds);
+    view.lens = resolve_lens(setting, camera, bounds);
     if (settings.background) {
         view.sky.zenith = settings.background->rgb;
         view.sky.horizon = settings.background->horizon.value_or(settings.background->rgb);

@@ -132,9 +132,9 @@ enum class DefaultLight {
 View frame(const Graph& graph, const Box& bounds, ImageSize size, const CameraOverride& camera = {},
            const Outliner& outliner = {}, DefaultLight light = DefaultLight::studio);
 
-/// The view through a camera that is settled; the rest is chosen as frame() does it, for a model of these
-/// bounds that shows these colours (backdrop.h).
-View view_through(const Camera& camera, const Graph& graph, const Box& bounds, ImageSize size,
-                  const std::vector<Rgb>& colours, DefaultLight light = DefaultLight::studio);
+/// The view through a camera that is settled, with the lens of `setting`; the rest is chosen as frame() does
+/// it, for a model of these bounds that shows these colours (backdrop.h).
+View view_through(const Camera& camera, const CameraSetting& setting, const Graph& graph, const Box& bounds,
+                  ImageSize size, const std::vector<Rgb>& colours, DefaultLight light = DefaultLight::studio);
 
 } // namespace graftal

@@ -133,7 +133,7 @@ std::optional<Source> read_source(const std::string& path, const std::string& ro
                                   Status& status) {
     const std::string file = model_path(path).file;
     if (file != "-" && !root.empty() && !lies_in(file, root)) {
-        diagnostics.error(Span(), fmt::format("'{}' leads out of --root '{}'", file, root));
+        diagnostics.error(Span(), fmt::format("'{}' leads out of the root folder '{}'", file, root));
         return std::nullopt;
     }
     Source source{path, {}};
@@ -203,6 +203,21 @@ std::optional<unsigned> levels_of(const AnalysedModel& model, std::optional<unsi
     return asked && !model.derivation ? asked : model.graph.settings.steps;
 }
 
+namespace {
+
+/// Where --camera asks for a lens and the picture has none.
+void warn_of_no_lens(const ViewedModel& viewed, const ViewOptions& options, Diagnostics& diagnostics) {
+    const CameraOverride& asked = options.camera;
+    if (viewed.view.lens.radius > 0 || !(asked.focus || asked.aperture.value_or(0) > 0)) return;
+    const Graph& graph = viewed.model->graph;
+    diagnostics
+        .warning(graph.objects[graph.root].span, "the camera has no lens here: all of the picture is sharp")
+        .with_hint(
+            "a lens needs 'aperture', a camera in perspective that has the focus before it, and no --zoom");
+}
+
+} // namespace
+
 std::optional<ViewedModel> look_at(std::shared_ptr<const AnalysedModel> model, std::optional<unsigned> steps,
                                    const ViewOptions& options, Diagnostics& diagnostics) {
     std::optional<ViewedModel> viewed;
@@ -210,7 +225,9 @@ std::optional<ViewedModel> look_at(std::shared_ptr<const AnalysedModel> model, s
         viewed = zoom_in(*model, steps, options, diagnostics);
     else
         viewed = {model, steps, view_of(*model, steps, options, false), {}};
-    if (viewed) viewed->view.quality = options.quality;
+    if (!viewed) return std::nullopt;
+    viewed->view.quality = options.quality;
+    warn_of_no_lens(*viewed, options, diagnostics);
     return viewed;
 }
 

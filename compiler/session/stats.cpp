@@ -10,6 +10,47 @@ namespace graftal {
 
 namespace {
 
+constexpr StatsKey keys[] = {
+    {"model", "the file"},
+    {"language", "the language that it is written in"},
+    {"objects", "different parts of the model; graftal keeps equal parts once"},
+    {"instances", "placements of parts within parts"},
+    {"written objects", "the same before graftal has merged equal parts"},
+    {"written instances", "the same before graftal has merged equal parts"},
+    {"steps", "derivation steps or levels of recursion; - if they have no end"},
+    {"primitives",
+     "spheres, cylinders, polygons and other simple shapes in the whole figure, exactly; - if they "
+     "have no end"},
+    {"contraction verdict",
+     "whether parts within themselves shrink: proved, refuted or undecided; acyclic if "
+     "no part contains itself"},
+    {"contraction rate", "size of a part relative to the part around it, on the cycle that shrinks least"},
+    {"contraction cycle", "the parts of this cycle"},
+    {"contraction lower", "the true rate of the model is at least this"},
+    {"contraction upper", "the true rate of the model is at most this"},
+    {"contraction certificate rate", "the rate that the proof uses; below 1, so the model converges"},
+    {"contraction certificate depth", "how many placements deep the proof looks"},
+    {"contraction certificate holds", "whether a second check of the proof succeeds"},
+    {"dimension", "similarity dimension: 1 for a line, 2 for a surface, between them for a fern; right where "
+                  "copies do not overlap"},
+    {"bounds min", "least x, y and z of a box that contains the figure"},
+    {"bounds max", "greatest x, y and z of this box"},
+    {"unbounded", "whether the model has an endless plane, which the bounds leave out"},
+    {"error", "largest distance of a point from its exact place, in the model's units"},
+    {"time", "age of the plant in steps, with the elapsed share of the next step"},
+    {"modules", "letters of the word that the rules make, exactly"},
+    {"segments", "lines that the word draws, such as internodes, exactly"},
+    {"compiled way", "composed of parts, derived letter by letter, or folded into a cycle without end"},
+    {"compiled parts", "different parts that graftal composed the plant of"},
+    {"compiled size_step", "how far graftal rounded sizes, as a step of their natural logarithm"},
+    {"compiled variants", "versions that graftal made of each random part"},
+    {"compiled drift", "error of the mean number of segments and shapes over these versions; 0.05 is 5 %"},
+    {"families parameters", "the inner parameters of a model that is placed with `~`"},
+    {"families members", "different leaves or other members that the plant places"},
+    {"families possible", "members that the parameters can choose among"},
+    {"families error", "largest distance of an argument from the value that stands for it"},
+};
+
 using Json = nlohmann::ordered_json;
 
 const char* name_of(Verdict verdict) {
@@ -84,7 +125,7 @@ Json json_of(const AnalysedModel& model, std::optional<unsigned> steps, const So
         {"instances", instance_count(graph) + run_part_count(graph)},
         {"written", {{"objects", model.written.objects}, {"instances", model.written.instances}}},
         {"steps", or_null(model.derivation ? model.derivation->steps : steps)},
-        {"leaves", empty ? Json("0") : or_null(count_leaves(graph, model.components, steps))},
+        {"primitives", empty ? Json("0") : or_null(count_leaves(graph, model.components, steps))},
         {"contraction", contraction_json(model)},
         {"dimension",
          converges && !empty ? or_null(similarity_dimension(graph, model.components)) : Json(nullptr)},
@@ -130,13 +171,19 @@ void append_lines(const Json& json, const std::string& prefix, std::string& out)
 } // namespace
 
 std::string stats_json(const AnalysedModel& model, std::optional<unsigned> steps, const SourceMap& sources) {
-    return json_of(model, steps, sources).dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+    Json json = json_of(model, steps, sources);
+    json["leaves"] = json["primitives"]; // its former name, for one version
+    return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
 std::string stats_text(const AnalysedModel& model, std::optional<unsigned> steps, const SourceMap& sources) {
     std::string text;
     append_lines(json_of(model, steps, sources), "", text);
     return text;
+}
+
+std::span<const StatsKey> stats_keys() {
+    return keys;
 }
 
 } // namespace graftal

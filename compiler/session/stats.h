@@ -1,7 +1,9 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string>
+#include <string_view>
 
 #include "compiler/session/values.h"
 
@@ -13,5 +15,14 @@ std::string stats_json(const AnalysedModel& model, std::optional<unsigned> steps
 
 /// The same for people, one line a key.
 std::string stats_text(const AnalysedModel& model, std::optional<unsigned> steps, const SourceMap& sources);
+
+/// A key of stats_text(), without the name of a family: "contraction rate", "families members".
+struct StatsKey {
+    std::string_view name;
+    std::string_view meaning;
+};
+
+/// The keys that stats_text() may print, in its order. Each key that it prints is one of them.
+std::span<const StatsKey> stats_keys();
 
 } // namespace graftal

@@ -113,9 +113,10 @@ Status output_target(const std::string& path, std::string& target) {
     }
     target = at.string();
     if (!is_special_file(target) || std::filesystem::is_directory(target, error)) return {};
-    return Status::failure(fmt::format("cannot write '{}': it is not a regular file (use '-o -' to write to "
-                                       "standard output, if the command can)",
-                                       path));
+    return Status::failure(
+        fmt::format("cannot write '{}': it is not a regular file (the name '-' is standard "
+                    "output, where graftal can write to that)",
+                    path));
 }
 
 int lock_path(const std::string& path) {

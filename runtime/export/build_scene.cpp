@@ -407,7 +407,7 @@ std::optional<ExportedScene> build_scene(const PreparedCut& prepared, const View
             .error(model, fmt::format("this model has more than {} parts that differ, or more than {} "
                                       "objects: too many to export",
                                       limits.parts, limits.nodes))
-            .with_hint("leave out more with a larger --error, or set a depth with --steps N");
+            .with_hint("leave out more with a larger --error, or set a depth with '--steps N'");
     return scene;
 }
 

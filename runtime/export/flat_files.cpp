@@ -39,12 +39,13 @@ bool refuse_size(const ExportJob& job, const std::function<std::uint64_t(const S
         sum_over_leaves(job.scene, [](const SceneShape& shape) { return mesh_size(shape, false).triangles; });
     const std::string large =
         size < BigCount(1) << 60 ? readable_bytes(size.convert_to<double>()) : in_words(size) + " bytes";
-    job.diagnostics
-        .error(job.model, fmt::format("'{}' would have {} leaves with {} triangles, {}", job.options.output,
-                                      in_words(leaves), in_words(triangles), large))
-        .with_hint(fmt::format("{}leave out more with a larger --error or fewer --steps, or choose a format "
-                               "that shares parts, such as .usda",
-                               vertices < UINT32_MAX ? "allow it with --limit, " : ""));
+    refuse_as_too_large(
+        job,
+        fmt::format("'{}' would have {} primitives with {} triangles, {}", job.options.output,
+                    in_words(leaves), in_words(triangles), large),
+        fmt::format("{}leave out more with a larger --error or fewer --steps, or choose a format "
+                    "that shares parts, such as .usda",
+                    vertices < UINT32_MAX ? "allow it with --limit, " : ""));
     return true;
 }
 

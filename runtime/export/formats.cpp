@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <filesystem>
+#include <utility>
 
 #include "compiler/support/small_letters.h"
 
@@ -48,6 +49,11 @@ const ExportWish* find_vain_wish(const ExportFormat& format, const ExportOptions
     for (const ExportWish& wish : wishes)
         if (wish.asked(options) && !(format.*wish.has)) return &wish;
     return nullptr;
+}
+
+void refuse_as_too_large(const ExportJob& job, std::string problem, std::string_view hint) {
+    job.too_large = true;
+    job.diagnostics.error(job.model, std::move(problem)).with_hint(std::string(hint));
 }
 
 } // namespace graftal

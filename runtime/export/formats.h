@@ -19,9 +19,10 @@ namespace graftal {
 /// What is said besides the model and its view.
 struct ExportOptions {
     std::string output;
-    std::uint64_t most_bytes = std::uint64_t{1} << 30; ///< of a file
-    std::optional<double> unit_mm;                     ///< what a unit of the model measures
-    std::optional<unsigned> levels;                    ///< instances within instances, at most
+    std::uint64_t most_bytes = std::uint64_t{1} << 30;     ///< of a file
+    std::uint64_t fitted_bytes = std::uint64_t{128} << 20; ///< of one for which graftal chooses the error
+    std::optional<double> unit_mm;                         ///< what a unit of the model measures
+    std::optional<unsigned> levels;                        ///< instances within instances, at most
     bool instancing = false;
     bool plotter = false;
     std::uint64_t memory_bytes = std::uint64_t{2} << 30; ///< that may be used
@@ -40,8 +41,13 @@ struct ExportJob {
     TextureStore& textures;
     const CancelFlag& cancel;
     Diagnostics& diagnostics;
-    bool& too_large; ///< set where the file would be larger than options.most_bytes; the status says it
+    /// Set where the model has too much for the file: a larger error may help. Diagnostics or the status say
+    /// it.
+    bool& too_large;
 };
+
+/// An error among the job's diagnostics, which a model with fewer parts may not have.
+void refuse_as_too_large(const ExportJob& job, std::string problem, std::string_view hint);
 
 /// What it has written.
 struct ExportReport {

@@ -113,15 +113,15 @@ class GltfWriter {
         const auto most = static_cast<double>(job_.options.most_bytes);
         const bool fits = bytes <= most;
         if (fits && bytes * copies_in_memory <= static_cast<double>(job_.options.memory_bytes)) return false;
-        job_.diagnostics
-            .error(job_.model,
-                   fmt::format("with {:.0f} nodes, '{}' would have meshes of {:.3g} triangles, about {:.3g} "
-                               "bytes",
-                               groups_.nodes, job_.options.output, groups_.triangles, bytes))
-            .with_hint(fmt::format("allow more nodes with --nodes, {} with {}, or tables of places with "
-                                   "--instancing; leave out more with a larger --error or fewer --steps; or "
-                                   "choose .usda, which nests parts",
-                                   fits ? "more memory" : "a larger file", fits ? "--memory" : "--limit"));
+        refuse_as_too_large(
+            job_,
+            fmt::format("with {:.0f} nodes, '{}' would have meshes of {:.3g} triangles, about {:.3g} "
+                        "bytes",
+                        groups_.nodes, job_.options.output, groups_.triangles, bytes),
+            fmt::format("allow more nodes with --nodes, {} with {}, or tables of places with "
+                        "--instancing; leave out more with a larger --error or fewer --steps; or "
+                        "choose .usda, which nests parts",
+                        fits ? "more memory" : "a larger file", fits ? "--memory" : "--limit"));
         return true;
     }
 
@@ -486,6 +486,7 @@ Status write_gltf_file(const ExportJob& job, ExportReport& report, bool binary) 
     constexpr std::size_t most_looks = 1'000'000;
     const std::optional<ExportedScene> scene =
         resolve_looks(job.scene, {most_looks}, job.model, job.diagnostics);
+    job.too_large = !scene;
     if (!scene) return {};
     GltfWriter writer(job, *scene);
     Status made = writer.make();

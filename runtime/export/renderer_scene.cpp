@@ -21,6 +21,7 @@ std::optional<RendererScene> RendererScene::make(const ExportJob& job, double by
                                                  double bytes_of_place) {
     std::optional<ExportedScene> resolved =
         resolve_looks(job.scene, {most_renderer_nodes}, job.model, job.diagnostics);
+    job.too_large = !resolved;
     if (!resolved) return std::nullopt;
     RendererScene made;
     made.scene_ = std::move(*resolved);
@@ -28,12 +29,12 @@ std::optional<RendererScene> RendererScene::make(const ExportJob& job, double by
                                               .triangles_of_node = bytes_of_place / bytes_of_triangle});
     const double bytes = made.groups_.triangles * bytes_of_triangle + made.groups_.nodes * bytes_of_place;
     if (bytes > static_cast<double>(job.options.most_bytes)) {
-        job.diagnostics
-            .error(job.model,
-                   fmt::format("with one level of instances, '{}' would have {:.3g} triangles in {:.3g} "
-                               "places, about {:.3g} bytes",
-                               job.options.output, made.groups_.triangles, made.groups_.nodes, bytes))
-            .with_hint("allow it with --limit, or leave out more with a larger --error or fewer --steps");
+        refuse_as_too_large(
+            job,
+            fmt::format("with one level of instances, '{}' would have {:.3g} triangles in {:.3g} "
+                        "places, about {:.3g} bytes",
+                        job.options.output, made.groups_.triangles, made.groups_.nodes, bytes),
+            "allow it with --limit, or leave out more with a larger --error or fewer --steps");
         return std::nullopt;
     }
     made.places_ = places_of(made.scene_, made.groups_);

@@ -211,17 +211,18 @@ Status write_nested(const ExportJob& job, ExportReport& report) {
     if (!page) return {};
     const std::optional<ExportedScene> scene =
         resolve_looks(job.scene, {most_svg_nodes}, job.model, job.diagnostics);
+    job.too_large = !scene;
     if (!scene) return {};
     OutputFile file(job.options.output, job.options.most_bytes, job.too_large);
     if (!file.ok()) return file.status();
     SvgWriter writer(*scene, file);
     const bool fits = writer.find_nodes(*page);
     if (!fits || writer.parts() * svg_part_bytes > job.options.most_bytes) {
-        job.diagnostics
-            .error(job.model,
-                   fmt::format("'{}' would have {}{} parts, about {} bytes", job.options.output,
-                               fits ? "" : "more than ", writer.parts(), writer.parts() * svg_part_bytes))
-            .with_hint("leave out more with a larger --error or fewer --steps");
+        refuse_as_too_large(job,
+                            fmt::format("'{}' would have {}{} parts, about {} bytes", job.options.output,
+                                        fits ? "" : "more than ", writer.parts(),
+                                        writer.parts() * svg_part_bytes),
+                            "leave out more with a larger --error or fewer --steps");
         return {};
     }
     if (job.options.unit_mm)
@@ -296,12 +297,12 @@ Status write_plotted(const ExportJob& job, ExportReport& report) {
         page = page_of(job, page->scale * plotted_page_mm / std::max(page->width, page->height));
     PenStrokes strokes;
     if (!gather_strokes(job, *page, strokes)) {
-        job.diagnostics
-            .error(job.model,
-                   fmt::format("'{}' would have {} strokes, more than {}", job.options.output,
-                               in_words(sum_over_leaves(job.scene, [](const SceneShape&) { return 1; })),
-                               most_pen_strokes))
-            .with_hint("leave out more with a larger --error or fewer --steps");
+        refuse_as_too_large(
+            job,
+            fmt::format("'{}' would have {} strokes, more than {}", job.options.output,
+                        in_words(sum_over_leaves(job.scene, [](const SceneShape&) { return 1; })),
+                        most_pen_strokes),
+            "leave out more with a larger --error or fewer --steps");
         return {};
     }
     OutputFile file(job.options.output, job.options.most_bytes, job.too_large);

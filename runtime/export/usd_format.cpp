@@ -363,10 +363,10 @@ bool refuse_usd_size(const ExportJob& job, const ExportedScene& scene) {
         bytes += parts * (parts >= fewest_points ? usd_point_bytes : usd_part_bytes);
     }
     if (bytes <= job.options.most_bytes) return false;
-    job.diagnostics
-        .error(job.model, fmt::format("'{}' would have {} instances, about {:.3g} bytes", job.options.output,
-                                      count(scene).parts, static_cast<double>(bytes)))
-        .with_hint("allow it with --limit, or leave out more with a larger --error or fewer --steps");
+    refuse_as_too_large(job,
+                        fmt::format("'{}' would have {} instances, about {:.3g} bytes", job.options.output,
+                                    count(scene).parts, static_cast<double>(bytes)),
+                        "allow it with --limit, or leave out more with a larger --error or fewer --steps");
     return true;
 }
 
@@ -376,16 +376,17 @@ Status write_usd(const ExportJob& job, ExportReport& report) {
     const std::uint64_t wanted = std::max(fewest_wanted_parts, most_times_parts * count(job.scene).parts);
     std::optional<ExportedScene> scene =
         resolve_looks(job.scene, {most_usd_looks, wanted, TintsOn::instances}, job.model, job.diagnostics);
+    job.too_large = !scene;
     if (!scene) return {};
     if (job.options.levels) {
         // The file's root places the model's.
         scene = with_levels(*scene, std::max(*job.options.levels, 2u) - 1, most_usd_parts);
         if (!scene) {
-            job.diagnostics
-                .error(job.model,
-                       fmt::format("with {} levels of instances, '{}' would have more than {} parts",
-                                   *job.options.levels, job.options.output, most_usd_parts))
-                .with_hint("allow more --levels, or leave out more with a larger --error or fewer --steps");
+            refuse_as_too_large(
+                job,
+                fmt::format("with {} levels of instances, '{}' would have more than {} parts",
+                            *job.options.levels, job.options.output, most_usd_parts),
+                "allow more --levels, or leave out more with a larger --error or fewer --steps");
             return {};
         }
     }

@@ -72,7 +72,11 @@ Status write_sweep_table(const std::string& path, const JobFolder& folder, const
         row.first.push_back(std::filesystem::path(folder.part(job, task)).filename().string());
         row.first.push_back(fmt::format("{:.3f}", record->seconds));
         std::vector<std::pair<std::string, std::string>> cells;
-        if (!record->stats.empty()) flatten("", Json::parse(record->stats), cells);
+        if (!record->stats.empty()) {
+            Json stats = Json::parse(record->stats);
+            stats.erase("leaves"); // the old name of primitives
+            flatten("", stats, cells);
+        }
         for (auto& [name, value] : cells) {
             if (known.emplace(name, true).second) stats_names.push_back(name);
             row.stats[name] = std::move(value);

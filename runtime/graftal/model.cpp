@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cmath>
+#include <cstdint>
 #include <mutex>
 #include <utility>
 
@@ -12,6 +14,7 @@
 #include "compiler/session/stats.h"
 #include "compiler/support/number_range.h"
 #include "runtime/export/export_model.h"
+#include "runtime/graftal/library_words.h"
 #include "runtime/graftal/listed_graph.h"
 #include "runtime/image/image.h"
 #include "runtime/points/draw_points.h"
@@ -45,7 +48,8 @@ Severity severity_of(graftal::Severity severity) {
 }
 
 Message message_of(const Diagnostic& finding, const SourceMap& sources) {
-    Message message{severity_of(finding.severity), {}, 0, 0, finding.message, finding.hint};
+    Message message{severity_of(finding.severity), {}, 0, 0, in_library_words(finding.message),
+                    in_library_words(finding.hint)};
     if (!finding.span.known()) return message;
     const Position at = sources.position(finding.span.file, finding.span.begin);
     message.file = sources.name(finding.span.file);
@@ -59,7 +63,7 @@ std::vector<Message> messages_of(const Compilation& compilation) {
     for (const Diagnostic& finding : compilation.diagnostics.all())
         messages.push_back(message_of(finding, compilation.sources));
     if (!compilation.status.ok())
-        messages.push_back({Severity::error, {}, 0, 0, compilation.status.message(), {}});
+        messages.push_back({Severity::error, {}, 0, 0, in_library_words(compilation.status.message()), {}});
     return messages;
 }
 
@@ -160,6 +164,16 @@ void Model::unset(const std::string& name) {
 
 void Model::steps(std::optional<unsigned> steps) {
     parts_->options.compile.lower.steps = steps;
+    parts_->options.compile.lower.time.reset();
+}
+
+void Model::time(double steps) {
+    if (steps >= 0 && steps <= UINT32_MAX && steps == std::floor(steps)) {
+        this->steps(static_cast<unsigned>(steps));
+        return;
+    }
+    parts_->options.compile.lower.steps.reset();
+    parts_->options.compile.lower.time = steps;
 }
 
 void Model::seed(std::optional<std::uint64_t> seed) {
@@ -167,15 +181,23 @@ void Model::seed(std::optional<std::uint64_t> seed) {
 }
 
 void Model::camera(const Camera& camera) {
-    parts_->options.compile.view.camera = {.location = vec3_of(camera.location),
-                                           .look_at = vec3_of(camera.look_at),
-                                           .up = vec3_of(camera.up),
-                                           .direction = {},
-                                           .angle_deg = camera.angle_deg,
-                                           .orthographic = camera.orthographic,
-                                           .width = camera.width,
-                                           .height = {},
-                                           .focus = {}};
+    CameraOverride& asked = parts_->options.compile.view.camera;
+    asked = {.location = vec3_of(camera.location),
+             .look_at = vec3_of(camera.look_at),
+             .up = vec3_of(camera.up),
+             .direction = {},
+             .angle_deg = camera.angle_deg,
+             .orthographic = camera.orthographic,
+             .width = camera.width,
+             .height = {},
+             .aperture = asked.aperture,
+             .focus = asked.focus};
+}
+
+void Model::lens(std::optional<double> aperture, const std::optional<Vector>& focus) {
+    CameraOverride& asked = parts_->options.compile.view.camera;
+    asked.aperture = aperture;
+    asked.focus = vec3_of(focus);
 }
 
 void Model::size(int width, int height) {
@@ -236,7 +258,7 @@ Result<Stats> Model::stats() {
         stats.objects = model->graph.objects.size();
         stats.instances = instance_count(model->graph) + run_part_count(model->graph);
         stats.steps = model->derivation ? model->derivation->steps : levels;
-        stats.leaves = count_leaves(model->graph, model->components, levels).value_or("");
+        stats.primitives = count_leaves(model->graph, model->components, levels).value_or("");
         if (!model->bounds.empty()) {
             stats.dimension = similarity_dimension(model->graph, model->components);
             const Box& box = model->bounds[model->graph.root].box;
@@ -341,6 +363,9 @@ Result<Drawn> Model::export_to(const std::string& path, const ExportSettings& se
                                          parts_->error_asked,
                                          {.output = path,
                                           .most_bytes = settings.most_bytes,
+                                          .fitted_bytes = settings.most_bytes == ExportSettings().most_bytes
+                                                              ? ExportOptions().fitted_bytes
+                                                              : settings.most_bytes,
                                           .unit_mm = settings.unit_mm,
                                           .levels = settings.levels,
                                           .instancing = settings.instancing,

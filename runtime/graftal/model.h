@@ -61,7 +61,7 @@ struct Stats {
     std::size_t objects = 0;
     std::size_t instances = 0;     ///< edges of the graph
     std::optional<unsigned> steps; ///< nothing: without an end
-    std::string leaves;            ///< parts after unfolding, to the last digit; empty where they have no end
+    std::string primitives; ///< shapes after unfolding, to the last digit; empty where they have no end
     std::optional<double> dimension;
     std::optional<Vector> least, most; ///< corners of the box that holds it
     std::string json;                  ///< all of it, as `graftal stats --json` prints it
@@ -109,7 +109,9 @@ struct ExportSettings {
     std::optional<std::size_t> nodes; ///< at most, each the place of a mesh; 30,000 before
     bool instancing = false;          ///< glTF: a node a mesh, with a table of places
     bool plotter = false;             ///< SVG: each line once, in the order of a pen
-    std::uint64_t most_bytes = std::uint64_t{1} << 30; ///< of the file; a larger one is refused
+    /// Of the file. Where the whole model takes more, and no error_px() was asked for, small parts are left
+    /// out, with a warning, until the file has no more: or 128 MiB, if this is as here. Else it is refused.
+    std::uint64_t most_bytes = std::uint64_t{1} << 30;
 };
 
 enum class Engine {
@@ -143,8 +145,11 @@ class GRAFTAL_API Model {
     void set(const std::string& name, double value); ///< a `let` of the model
     void unset(const std::string& name);
     void steps(std::optional<unsigned> steps); ///< nothing: as the model says
+    void time(double steps); ///< the same between two steps, such as 7.5, of an L-system. Requires steps >= 0
     void seed(std::optional<std::uint64_t> seed);
     void camera(const Camera& camera);
+    /// The radius of the camera's lens, 0 for none, and the place that is sharp; nothing: as the model says.
+    void lens(std::optional<double> aperture, const std::optional<Vector>& focus);
     void size(int width, int height);         ///< in pixels, each at least 1; 1280 x 720 before
     void zoom(std::optional<double> factor);  ///< about the point looked at. Requires a positive factor
     void error_px(double pixels);             ///< what is smaller is left out; 0: nothing is; 0.5 before

@@ -282,6 +282,9 @@ std::optional<PointsReport> draw_points(PictureSession& session, const PointsOpt
     report.maps = game->map_count();
     const ChaosSource source(*game, compile.lower.seed.value_or(0));
     const Graph& graph = viewed->model->graph;
+    if (viewed->view.lens.radius > 0)
+        compilation.diagnostics.warning(graph.objects[graph.root].span,
+                                        "random points have no lens: all of them are sharp");
     const Box& box = viewed->model->bounds[graph.root].box;
     compilation.status = options.card.empty()
                              ? place_points(source, viewed->view, options, nullptr, cancel, report)

@@ -6,6 +6,7 @@
 #include <exception>
 #include <memory>
 #include <optional>
+#include <regex>
 #include <string>
 #include <utility>
 #include <vector>
@@ -22,11 +23,34 @@ using namespace graftal::v1;
 
 namespace {
 
+/// A message with the library's functions written as the keywords of graftal/__init__.py: "steps(5)" as
+/// "steps=5", "memory()" as "memory_bytes=".
+std::string in_python_words(const std::string& message) {
+    static const std::regex memory("\\bmemory\\("), work("\\bwork\\(");
+    static const std::regex call(
+        "\\b(engine|error_px|instancing|levels|memory_bytes|most_bytes|nodes|quality|seed|size|steps|work_s)"
+        "\\(([^()]*)\\)");
+    const std::string renamed =
+        std::regex_replace(std::regex_replace(message, memory, "memory_bytes("), work, "work_s(");
+    return std::regex_replace(renamed, call, "$1=$2");
+}
+
 /// The exception of graftal/__init__.py, which carries the messages.
 [[noreturn]] void raise_error(const std::vector<Message>& messages, bool cancelled) {
     py::object error = py::module_::import("graftal").attr(cancelled ? "Cancelled" : "ModelError");
-    PyErr_SetObject(error.ptr(), error(text_of(messages), messages).ptr());
+    PyErr_SetObject(error.ptr(), error(in_python_words(text_of(messages)), messages).ptr());
     throw py::error_already_set();
+}
+
+/// Warnings become Python's, each a graftal.ModelWarning.
+void warn(const std::vector<Message>& messages) {
+    for (const Message& message : messages) {
+        if (message.severity != Severity::warning) continue;
+        std::string text = in_python_words(text_of({message}));
+        text.pop_back(); // the end of its last line
+        const py::object category = py::module_::import("graftal").attr("ModelWarning");
+        if (PyErr_WarnEx(category.ptr(), text.c_str(), 2) != 0) throw py::error_already_set();
+    }
 }
 
 /// Runs without Python's lock. Ctrl-C, and what `progress` throws, end it.
@@ -50,6 +74,7 @@ template<typename Work> auto value_of(Model& model, const py::object& progress, 
     model.on_progress({});
     if (thrown) std::rethrow_exception(thrown);
     if (!result) raise_error(result.messages, result.cancelled);
+    warn(result.messages);
     return std::move(*result.value);
 }
 
@@ -101,9 +126,11 @@ PYBIND11_MODULE(_graftal, module) {
         .def_readonly("file", &Message::file)
         .def_readonly("line", &Message::line)
         .def_readonly("column", &Message::column)
-        .def_readonly("text", &Message::text)
-        .def_readonly("hint", &Message::hint)
-        .def("__repr__", [](const Message& message) { return text_of({message}); });
+        .def_property_readonly("text", [](const Message& message) { return in_python_words(message.text); })
+        .def_property_readonly("hint", [](const Message& message) { return in_python_words(message.hint); })
+        .def("__repr__", [](const Message& message) { return in_python_words(text_of({message})); });
+
+    module.attr("version") = GRAFTAL_VERSION;
 
     py::class_<Model>(module, "Model")
         .def_static("from_file", &Model::from_file)
@@ -113,6 +140,7 @@ PYBIND11_MODULE(_graftal, module) {
         .def("set", &Model::set)
         .def("unset", &Model::unset)
         .def("steps", &Model::steps)
+        .def("time", &Model::time)
         .def("seed", &Model::seed)
         .def("size", &Model::size)
         .def("zoom", &Model::zoom)
@@ -137,6 +165,10 @@ PYBIND11_MODULE(_graftal, module) {
                  model.camera({vector_of(location), vector_of(look_at), vector_of(up), angle_deg,
                                orthographic, width});
              })
+        .def(
+            "lens",
+            [](Model& model, std::optional<double> aperture,
+               const std::optional<std::array<double, 3>>& focus) { model.lens(aperture, vector_of(focus)); })
         .def("stats",
              [](Model& model, const py::object& progress) {
                  return value_of(model, progress, [&] { return model.stats(); }).json;

@@ -65,7 +65,7 @@ void report_work(const FittedModel& fitted, const Asked& asked, Diagnostics& dia
                   fmt::format(
                       "this picture takes about {} seconds of one processor, because nothing is left out",
                       readable_seconds(fitted.whole_seconds)))
-            .with_hint("use --error 0.5 to leave out invisible detail");
+            .with_hint("use '--error 0.5' to leave out invisible detail");
         return;
     }
     Limit limit = limit_for(fitted, detail);

@@ -143,10 +143,10 @@ void note_lacks(const CompiledModel& model, Diagnostics& diagnostics) {
         diagnostics
             .note(span, "POV-Ray's picture has no light from surface to surface: each material's 'ambient' "
                         "stands for it")
-            .with_hint("use --engine native to follow the 'bounces' of the sky");
+            .with_hint("use '--engine native' to follow the 'bounces' of the sky");
     if (shows_blur(graph, view))
         diagnostics.note(span, "POV-Ray's picture shows all mirrors and glass sharp")
-            .with_hint("use --engine native to draw the 'blur' of materials");
+            .with_hint("use '--engine native' to draw the 'blur' of materials");
 }
 
 /// Seconds of one processor that a picture may take: with the usual quality, twenty of two processors.
@@ -261,9 +261,9 @@ std::string count_text(double count) {
     return count < 1e6 ? fmt::format("{:.0f}", count) : fmt::format("{:.2e}", count);
 }
 
-std::string leaves_text(const PovrayReport& report) {
+std::string primitives_text(const PovrayReport& report) {
     std::string text =
-        fmt::format("{} leaves as {} placements", count_text(report.leaf_count), report.placement_count);
+        fmt::format("{} primitives as {} placements", count_text(report.leaf_count), report.placement_count);
     if (report.triangle_count > 0) text += fmt::format(" of meshes with {} triangles", report.triangle_count);
     return text +
            (report.error_px > 0 ? fmt::format(", error {:.2g} px", report.error_px) : ", nothing left out");
@@ -293,7 +293,7 @@ constinit const Engine povray_engine = {
         const std::optional<PovrayReport> drawn = render_by_povray(session, options, compilation);
         if (!drawn) return std::nullopt;
         DrawReport report;
-        report.summary = fmt::format("{}; POV-Ray {:.1f} s, peak {}, estimated {}", leaves_text(*drawn),
+        report.summary = fmt::format("{}; POV-Ray {:.1f} s, peak {}, estimated {}", primitives_text(*drawn),
                                      drawn->povray_seconds, bytes_text(drawn->peak_bytes),
                                      bytes_text(drawn->estimated_bytes));
         report.error_px = drawn->error_px;
@@ -302,7 +302,7 @@ constinit const Engine povray_engine = {
 };
 
 std::string cut_text(const Cut& cut) {
-    return leaves_text(report_of(cut));
+    return primitives_text(report_of(cut));
 }
 
 std::optional<PovrayReport> render_by_povray(PictureSession& session, const RenderOptions& options,

@@ -22,7 +22,7 @@ struct PovrayReport {
 std::optional<PovrayReport> render_by_povray(PictureSession& session, const RenderOptions& options,
                                              Compilation& compilation);
 
-/// "8.2e+12 leaves as 514 placements, error 0.4 px"
+/// "8.2e+12 primitives as 514 placements, error 0.4 px"
 std::string cut_text(const Cut& cut);
 
 } // namespace graftal

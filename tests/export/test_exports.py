@@ -57,7 +57,7 @@ class Exports(unittest.TestCase):
     def leaves(self, model, words):
         key = ('leaves', model, *words)
         if key not in self.known:
-            self.known[key] = json.loads(self.graftal('stats', SOURCE / 'scenes' / model, *words, '--json').stdout)['leaves']
+            self.known[key] = json.loads(self.graftal('stats', SOURCE / 'scenes' / model, *words, '--json').stdout)['primitives']
         return self.known[key]
 
     def triangles(self, model, words):

@@ -53,7 +53,8 @@ void hold(Options& options, const fuzz::Scratch& scratch) {
     options.points.points = std::min<std::uint64_t>(options.points.points.value_or(2000), 2000);
     options.points.card.clear();
     options.render.keep.clear();
-    options.file.most_bytes = std::min<std::uint64_t>(options.file.most_bytes, 1u << 20);
+    options.file.most_bytes = options.file.fitted_bytes =
+        std::min<std::uint64_t>(options.file.most_bytes, 1u << 20);
 }
 
 /// What a command writes to, in the folder; "" where it says something.

@@ -167,6 +167,19 @@ TEST_F(Animate, SweepsRunTogetherWithTheCamera) {
     EXPECT_THAT(shorter.err, HasSubstr("graftal: 'b' also holds 1 frame of another animation\n"));
 }
 
+TEST_F(Animate, TheLensOpensAndItsFocusMoves) {
+    write("ball.inst", "object a { sphere }\n");
+    const std::string film = "animate -q ball.inst --frames 2 --engine native -o ";
+    const std::string at = " --camera 'location=0,0,9 look_at=0,0,0 angle=30 ";
+    ASSERT_EQ(graftal(film + "a" + at + "aperture=0..2 focus=0,0,5'" + few_pixels).status, 0);
+    EXPECT_GT(differing(frame("a", 1), frame("a", 2)), 10u);
+    ASSERT_EQ(graftal(film + "b" + at + "aperture=2 focus=0,0,1..0,0,7'" + few_pixels).status, 0);
+    EXPECT_GT(differing(frame("b", 1), frame("b", 2)), 10u);
+    const RunResult flat =
+        graftal("render ball.inst -q --engine native -o c.png --camera 'width=3 aperture=1'" + small);
+    EXPECT_THAT(flat.err, HasSubstr("warning: the camera has no lens here: all of the picture is sharp"));
+}
+
 TEST_F(Animate, ShutterShowsTheMeanOfItsMoments) {
     // A bright bar goes a quarter of the picture in a frame: exposed all the time, it leaves an even trace.
     write("bar.inst",

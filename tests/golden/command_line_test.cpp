@@ -91,6 +91,11 @@ TEST_F(CommandLine, UsageErrorsAreStatusTwoAndPointAtTheHelp) {
         {"render a.inst --camera location=1,2", "--camera: 'location=1,2' is not of the form location=X,Y,Z"},
         {"render a.inst --camera 'angle=180'", "--camera: angle must lie between 0 and 180 degrees"},
         {"render a.inst --camera 'zoom=2'", "--camera: 'zoom=2' is none of"},
+        {"render a.inst --camera aperture=-1",
+         "--camera: aperture must be 0, or a radius from 1e-100 to 1e100"},
+        {"points a.inst --camera aperture=x", "--camera: aperture must be 0, or"},
+        {"animate a.inst --camera aperture=0..-1", "--camera: aperture must be 0, or"},
+        {"export a.inst --camera focus=1,2", "--camera: 'focus=1,2' is not of the form focus=X,Y,Z"},
         {"render a.inst -o a.jpg", "graftal: 'a.jpg': the name of a picture must end in .png or .exr\n"},
         {"render -", "standard input has no name"},
         {"animate a.inst --frames 0", "--frames: '0' is not a whole number from 1 to 100000"},
@@ -238,7 +243,7 @@ TEST_F(CommandLine, SettingsCanBeSetLikeLets) {
     EXPECT_EQ(wrong.status, 1);
     EXPECT_EQ(
         wrong.err,
-        "graftal: error: --set angel: the model has no 'let angel'\n"
+        "graftal: error: the model has no 'let angel' to set\n"
         "    hint: did you mean 'angle'? known here: size, angle, step, width, thickness, steps, seed\n");
     EXPECT_THAT(graftal("print koch.lsys --set step=-1").err,
                 HasSubstr("graftal: error: 'step' must be positive, not -1\n"));
@@ -246,7 +251,7 @@ TEST_F(CommandLine, SettingsCanBeSetLikeLets) {
     EXPECT_EQ(graftal("stats set.inst --json --set steps=3").out,
               graftal("stats set.inst --json --steps 3").out);
     EXPECT_THAT(graftal("check set.inst --set steps=2.5").err,
-                HasSubstr("--set steps: it must be a whole number"));
+                HasSubstr("'steps' as it is set must be a whole number"));
     EXPECT_THAT(graftal("check set.inst --set angle=4").err, HasSubstr("hint: known here: steps\n"));
 }
 

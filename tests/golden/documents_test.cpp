@@ -77,6 +77,25 @@ TEST_F(DocumentsTest, HelpOfACommandIsItsOwnHelp) {
     EXPECT_THAT(unknown.err, HasSubstr("there is no command 'rendr' (did you mean 'render'?"));
 }
 
+TEST_F(DocumentsTest, ManyOptionsStandUnderHeadingsBehindTheExamples) {
+    for (const std::string command : {"render", "animate", "points", "export", "compile"}) {
+        const std::string help = graftal(command + " --help").out;
+        const std::size_t examples = help.find("\nExample"), general = help.find("\nGeneral:"),
+                          camera = help.find("\nCamera:"), experts = help.find("\nFor experts:");
+        EXPECT_LT(examples, general) << command;
+        EXPECT_LT(general, camera) << command;
+        EXPECT_LT(camera, experts) << command;
+        EXPECT_NE(experts, std::string::npos) << command;
+        // No option has been forgotten: bash completes those that exist.
+        EXPECT_EQ(help.find("\nOptions:"), std::string::npos) << help;
+        for (const std::string& option : offers("bash", "graftal " + command + " --"))
+            EXPECT_THAT(help, HasSubstr(option)) << command;
+        const std::string page = graftal("manual " + command).out;
+        EXPECT_THAT(page, HasSubstr(".SS Camera\n"));
+    }
+    EXPECT_EQ(graftal("compare --help").out.find("General:"), std::string::npos);
+}
+
 TEST_F(DocumentsTest, VersionIsTextOrJson) {
     EXPECT_EQ(graftal("version").out, graftal("--version").out);
     EXPECT_EQ(shell("'" GRAFTAL_PROGRAM

@@ -17,22 +17,25 @@ class Export : public CommandLine {
   protected:
     void SetUp() override {
         CommandLine::SetUp();
-        write("m.rifs",
-              "rifs m {\n map a { scale 1/2 }\n map b { scale 1/2 translate <1, 0, 0> }\n map c { scale 1/2 "
-              "translate <0, 1, 0> }\n terminal cube\n}\n");
+        write("m.rifs", model);
     }
+
+    static constexpr const char* maps = " map a { scale 1/2 }\n map b { scale 1/2 translate <1, 0, 0> }\n "
+                                        "map c { scale 1/2 translate <0, 1, 0> }\n";
+    const std::string model = std::string("rifs m {\n") + maps + " terminal cube\n}\n";
+    const std::string flat = std::string("rifs m {\n") + maps + "}\n";
 };
 
 TEST_F(Export, WritesEachFormatAndSaysWhat) {
     const std::pair<const char*, const char*> cases[] = {
-        {"a.obj", "a.obj: 27 leaves: 324 triangles, 1 materials\n"},
-        {"b.ply", "b.ply: 27 leaves: 324 triangles\n"},
-        {"c.stl", "c.stl: 27 leaves: 324 triangles, "},
-        {"d.usda", "d.usda: 27 leaves: "},
-        {"e.glb", "e.glb: 27 leaves: "},
-        {"f.gltf", "f.gltf: 27 leaves: "},
-        {"g.pbrt", "g.pbrt: 27 leaves: "},
-        {"h.xml", "h.xml: 27 leaves: "},
+        {"a.obj", "a.obj: 27 primitives: 324 triangles, 1 materials\n"},
+        {"b.ply", "b.ply: 27 primitives: 324 triangles\n"},
+        {"c.stl", "c.stl: 27 primitives: 324 triangles, "},
+        {"d.usda", "d.usda: 27 primitives: "},
+        {"e.glb", "e.glb: 27 primitives: "},
+        {"f.gltf", "f.gltf: 27 primitives: "},
+        {"g.pbrt", "g.pbrt: 27 primitives: "},
+        {"h.xml", "h.xml: 27 primitives: "},
     };
     for (const auto& [name, said] : cases) {
         const RunResult result = graftal(std::string("export m.rifs --steps 3 -o ") + name);
@@ -72,11 +75,11 @@ TEST_F(Export, RefusesWrongCommandLines) {
 
 TEST_F(Export, RefusesModelsThatDoNotFit) {
     const std::pair<const char*, const char*> cases[] = {
-        {"export m.rifs --steps 80 -o a.ply",
-         "error: 'a.ply' would have 1.47e+38 leaves with 1.77e+39 triangles"},
-        {"export m.rifs --steps 8 --limit 1K -o a.stl",
-         "error: 'a.stl' would have 6561 leaves with 78732 triangles, 3.75 MiB"},
-        {"export m.rifs --steps 80 -o a.glb", "error: with "},
+        {"export m.rifs --steps 80 --error 0 -o a.ply",
+         "error: 'a.ply' would have 1.47e+38 primitives with 1.77e+39 triangles"},
+        {"export m.rifs --steps 8 --error 0 --limit 1K -o a.stl",
+         "error: 'a.stl' would have 6561 primitives with 78732 triangles, 3.75 MiB"},
+        {"export m.rifs --steps 80 --error 0 -o a.glb", "error: with "},
         {"export m.rifs --steps 80 --limit 1K -o a.usda", "error: 'a.usda' would have "},
         {"export m.rifs --error 0 -o a.usda", "error: the recursion has no end"},
         {"export cube.inst -o a.svg", "error: the model is in no plane"},
@@ -89,6 +92,30 @@ TEST_F(Export, RefusesModelsThatDoNotFit) {
         EXPECT_THAT(result.err, HasSubstr(said)) << command;
     }
     EXPECT_EQ(files(), "cube.inst m.rifs");
+}
+
+TEST_F(Export, WritesAModelThatWouldBeTooLargeCoarser) {
+    for (const std::string ending : {"obj", "ply", "stl", "glb", "gltf", "pbrt", "svg", "usda"}) {
+        for (const char* const depth : {"", " --steps 80"}) {
+            const std::string name = "a." + ending, command = "export m.rifs --limit 64K -o " + name + depth;
+            write("m.rifs", ending == "svg" ? flat : model);
+            const RunResult result = graftal(command);
+            EXPECT_EQ(result.status, 0) << command << "\n" << result.err;
+            if (ending != "usda" && ending != "svg") // which nest parts, so that the whole model fits
+                EXPECT_THAT(result.err, HasSubstr("; so graftal "
+                                                  "leaves out parts smaller than "))
+                    << command;
+            EXPECT_LE(read(name).size(), 64u << 10) << command;
+            EXPECT_GT(read(name).size(), 1000u) << command;
+        }
+    }
+    // What no error mends is refused, with nothing left behind.
+    write("m.rifs", model);
+    std::filesystem::remove(path("a.usda"));
+    const RunResult refused = graftal("export m.rifs --limit 100 -o a.usda");
+    EXPECT_EQ(refused.status, 1);
+    EXPECT_THAT(refused.err, HasSubstr("--limit"));
+    EXPECT_FALSE(exists("a.usda"));
 }
 
 TEST_F(Export, AFolderThatIsNotThereIsTheEnvironments) {

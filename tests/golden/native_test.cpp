@@ -135,7 +135,7 @@ TEST_F(Native, FaultyModelIsStatusOneAndTouchesNoFile) {
         {"dust.inst", "does not contract"},
         {gasket + "--error 0", "error: the recursion has no end, and no option limits its depth"},
         {gasket + "--error-world 0",
-         "hint: set a depth with --steps N, or a smallest size in pixels with --error"},
+         "hint: set a depth with '--steps N', or a smallest size in pixels with --error"},
         {gasket + "--at down", "error: the address does not exist"},
         {gasket + "--set k=1", "error: "},
     };

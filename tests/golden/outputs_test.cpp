@@ -118,7 +118,7 @@ TEST_F(Outputs, APictureOfAnotherSizeIsNone) {
 TEST_F(Outputs, TimesThatALanguageDoesNotKnowHaveAPlace) {
     const RunResult result = graftal("check --steps 7.5 m.rifs");
     EXPECT_EQ(result.status, 1);
-    EXPECT_THAT(result.err, testing::StartsWith("m.rifs:1:1: error: --steps 7.5: only L-systems have times"));
+    EXPECT_THAT(result.err, testing::StartsWith("m.rifs:1:1: error: only L-systems have times between two steps, such as 7.5"));
 }
 
 } // namespace

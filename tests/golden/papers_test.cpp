@@ -65,11 +65,11 @@ TEST_F(Papers, TuftsOfBambooHaveThreeLeaves) {
     // P7: one tuft, two, or three.
     write("leaf.lsys", with_axiom("scenes/papers/bamboo.lsys", "S"));
     write("tuft.lsys", with_axiom("scenes/papers/bamboo.lsys", "Y"));
-    const long leaf = std::stol(stats("leaf.lsys --steps 0")["leaves"].get<std::string>());
+    const long leaf = std::stol(stats("leaf.lsys --steps 0")["primitives"].get<std::string>());
     std::set<long> leaves;
     for (int seed = 1; seed <= 12; ++seed) {
         const Json json = stats("tuft.lsys --exact --steps 1 --seed " + std::to_string(seed));
-        leaves.insert(std::stol(json["leaves"].get<std::string>()) / leaf);
+        leaves.insert(std::stol(json["primitives"].get<std::string>()) / leaf);
     }
     EXPECT_EQ(leaves, (std::set<long>{3, 6, 9}));
 }

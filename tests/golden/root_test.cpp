@@ -48,7 +48,7 @@ TEST_F(Root, UsesStayInside) {
             const RunResult result = graftal("check --root room room/" + name);
             EXPECT_EQ(result.status, 1) << used;
             EXPECT_THAT(result.err, testing::StartsWith("room/" + name + ":1:12: error: '")) << used;
-            EXPECT_THAT(result.err, HasSubstr("' leads out of --root 'room'\n")) << used;
+            EXPECT_THAT(result.err, HasSubstr("' leads out of the root folder 'room'\n")) << used;
         }
     }
     for (const std::string used : {"parts/leaf.inst", "inner.inst", "parts/../inner.inst"}) {
@@ -68,7 +68,7 @@ TEST_F(Root, TexturesStayInside) {
         EXPECT_EQ(result.status, picture == "bark.png" ? 0 : 1) << picture << result.err;
         if (result.status == 0) continue;
         EXPECT_THAT(result.err, HasSubstr("room/t.inst:1:23: error: '")) << picture;
-        EXPECT_THAT(result.err, HasSubstr("leads out of --root 'room'")) << picture;
+        EXPECT_THAT(result.err, HasSubstr("leads out of the root folder 'room'")) << picture;
     }
 }
 
@@ -79,7 +79,7 @@ TEST_F(Root, EnvironmentsStayInside) {
         EXPECT_EQ(result.status, picture == "bark.png" ? 0 : 1) << picture << result.err;
         if (result.status == 0) continue;
         EXPECT_THAT(result.err, HasSubstr("room/t.inst:1:20: error: '")) << picture;
-        EXPECT_THAT(result.err, HasSubstr("leads out of --root 'room'")) << picture;
+        EXPECT_THAT(result.err, HasSubstr("leads out of the root folder 'room'")) << picture;
     }
 }
 
@@ -91,7 +91,7 @@ TEST_F(Root, EveryCommandThatReadsModelsHasIt) {
         EXPECT_EQ(graftal(command + " --root room room/a.inst").status, 1) << command;
         const RunResult outside = graftal(command + " --root room out/leaf.inst");
         EXPECT_EQ(outside.status, 1) << command;
-        EXPECT_THAT(outside.err, HasSubstr("'out/leaf.inst' leads out of --root 'room'")) << command;
+        EXPECT_THAT(outside.err, HasSubstr("'out/leaf.inst' leads out of the root folder 'room'")) << command;
     }
     EXPECT_EQ(files(), "entrance out room");
     EXPECT_THAT(graftal("check --root none room/a.inst").err, HasSubstr("--root: 'none' is not a folder"));

@@ -1,5 +1,10 @@
 #include "tests/golden/command_line.h"
 
+#include <fstream>
+#include <iterator>
+#include <set>
+#include <sstream>
+
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>
 
@@ -7,6 +12,11 @@ namespace graftal {
 namespace {
 
 using Json = nlohmann::json;
+
+std::string read_file(const std::string& path) {
+    std::ifstream file(path);
+    return {std::istreambuf_iterator<char>(file), {}};
+}
 
 class Stats : public CommandLine {
   protected:
@@ -19,14 +29,14 @@ class Stats : public CommandLine {
 
 TEST_F(Stats, HaveTheirDocumentedKeys) {
     const Json json = stats(pound_sign);
-    for (const char* key : {"model", "language", "objects", "instances", "steps", "leaves", "contraction",
+    for (const char* key : {"model", "language", "objects", "instances", "steps", "primitives", "contraction",
                             "dimension", "bounds", "error"})
         EXPECT_TRUE(json.contains(key)) << key;
     for (const char* key : {"verdict", "rate", "cycle"})
         EXPECT_TRUE(json["contraction"].contains(key)) << key;
     EXPECT_EQ(json["language"], "rifs");
     EXPECT_TRUE(json["steps"].is_null());
-    EXPECT_TRUE(json["leaves"].is_null());
+    EXPECT_TRUE(json["primitives"].is_null());
     EXPECT_EQ(json["error"], 0);
 }
 
@@ -36,7 +46,7 @@ TEST_F(Stats, OfThePoundSignAreThoseOfThePaper) {
     EXPECT_NEAR(json["contraction"]["rate"].get<double>(), 0.5, 1e-9);
     EXPECT_NEAR(json["dimension"].get<double>(), 2.807354922, 1e-8);
     EXPECT_EQ(json["steps"], 3);
-    EXPECT_EQ(json["leaves"], "392");
+    EXPECT_EQ(json["primitives"], "392");
     for (int axis = 0; axis < 3; ++axis) {
         EXPECT_NEAR(json["bounds"]["min"][axis].get<double>(), -1, 1e-9);
         EXPECT_NEAR(json["bounds"]["max"][axis].get<double>(), 1, 1e-9);
@@ -45,12 +55,12 @@ TEST_F(Stats, OfThePoundSignAreThoseOfThePaper) {
 
 TEST_F(Stats, CountsAreExactAtAHundredLevels) {
     // 8 * 7^99
-    EXPECT_EQ(stats(pound_sign + " --steps 100")["leaves"],
+    EXPECT_EQ(stats(pound_sign + " --steps 100")["primitives"],
               "3696544582428294847251026021828819212408232227319571886781594664447647382442203497144");
 }
 
 TEST_F(Stats, AbsurdDepthIsNoCountButNoCrash) {
-    EXPECT_TRUE(stats(pound_sign + " --steps 4000000000")["leaves"].is_null());
+    EXPECT_TRUE(stats(pound_sign + " --steps 4000000000")["primitives"].is_null());
 }
 
 TEST_F(Stats, OfAnEndingModel) {
@@ -60,7 +70,7 @@ TEST_F(Stats, OfAnEndingModel) {
     EXPECT_EQ(json["contraction"]["verdict"], "acyclic");
     EXPECT_TRUE(json["contraction"]["rate"].is_null());
     EXPECT_TRUE(json["dimension"].is_null());
-    EXPECT_EQ(json["leaves"], "2");
+    EXPECT_EQ(json["primitives"], "2");
 }
 
 TEST_F(Stats, SayWhatIsWrittenAndWhatIsLeftWhenEqualObjectsAreMerged) {
@@ -94,7 +104,7 @@ TEST_F(Stats, OfAWordThatDrawsNothing) {
     const Json json = stats("word.lsys");
     EXPECT_EQ(json["modules"], "9");
     EXPECT_EQ(json["segments"], "0");
-    EXPECT_EQ(json["leaves"], "0");
+    EXPECT_EQ(json["primitives"], "0");
     EXPECT_EQ(json["objects"], 0);
     EXPECT_TRUE(json["bounds"].is_null());
     EXPECT_THAT(graftal("stats word.lsys").err,
@@ -131,9 +141,47 @@ TEST_F(Stats, NamesThatAreNoUtf8AreStillJson) {
     EXPECT_TRUE(stats("\xff.inst").contains("model"));
 }
 
+TEST_F(Stats, EachKeyIsExplainedInTheHelpAndOnThePage) {
+    write("leaf.inst", "inner k = 0 members 5\nobject leaf { sphere scale: 1, lerp(1, 2, k), 1 }\n");
+    write("family.lsys", "use leaf = \"leaf.inst\"\nlsys a {\n steps 0\n axiom ~leaf(0.26)\n}\n");
+    const std::string help = graftal("stats --help").out, page = read_file(source_path("docs/language.md"));
+    const std::size_t table = page.find("### How a model is compiled");
+    const std::string section = page.substr(table, page.find("*Composed.*", table) - table);
+    std::set<std::string> keys;
+    for (const std::string& model :
+         {pound_sign, std::string("family.lsys"), "'" + source_path("scenes/plants/growing_herb.lsys") + "'",
+          "'" + source_path("scenes/plants/autumn_tree.lsys") + "'"}) {
+        const RunResult result = graftal("stats " + model);
+        ASSERT_EQ(result.status, 0) << result.err;
+        std::istringstream lines(result.out);
+        for (std::string line; std::getline(lines, line);) {
+            std::string key = line.substr(0, line.find("  "));
+            if (line.size() > 28 && key.size() > 28) key = line.substr(0, line.rfind(' '));
+            std::istringstream words(key);
+            std::string first, name, last;
+            words >> first;
+            if (first == "families") words >> name; // the model's own
+            std::string known = first;
+            while (words >> last)
+                known += " " + last;
+            keys.insert(known);
+        }
+    }
+    EXPECT_GE(keys.size(), 30u);
+    for (const std::string& key : keys) {
+        EXPECT_THAT(help, testing::HasSubstr("\n  " + key + " ")) << key;
+        EXPECT_THAT(section, testing::HasSubstr("`" + key.substr(key.rfind(' ') + 1) + "`")) << key;
+    }
+}
+
+TEST_F(Stats, JsonKeepsTheFormerNameOfPrimitives) {
+    const Json json = stats(pound_sign + " --steps 3");
+    EXPECT_EQ(json["leaves"], json["primitives"]);
+}
+
 TEST_F(Stats, PlainTextHasTheSameFigures) {
     const RunResult result = graftal("stats " + pound_sign + " --steps 3");
-    EXPECT_THAT(result.out, testing::HasSubstr("leaves                       392\n"));
+    EXPECT_THAT(result.out, testing::HasSubstr("primitives                   392\n"));
     EXPECT_THAT(result.out, testing::HasSubstr("contraction verdict          proved\n"));
 }
 

@@ -6,6 +6,7 @@ import pathlib
 import resource
 import struct
 import subprocess
+import sys
 import tempfile
 import threading
 import unittest
@@ -65,10 +66,91 @@ class Package(unittest.TestCase):
     def program(self, *words):
         return subprocess.run([PROGRAM, *words], check=True, capture_output=True, text=True).stdout
 
+    def printed_stats(self, *words):
+        """As the program prints them, with its counts as numbers, and under their newest names only."""
+        printed = json.loads(self.program("stats", *words, "--json"))
+        self.assertEqual(printed.pop("leaves"), printed["primitives"])
+        for key in ("primitives", "modules", "segments"):
+            if printed.get(key) is not None:
+                printed[key] = int(printed[key])
+        return printed
+
     def test_stats_are_those_of_the_program(self):
         for name in ("hart/pound_sign.rifs", "abop/fig1_25.lsys", "hart/elm.inst"):
-            printed = json.loads(self.program("stats", scene(name), "--steps", "5", "--json"))
+            printed = self.printed_stats(scene(name), "--steps", "5")
             self.assertEqual(graftal.load(scene(name), steps=5).stats(), printed)
+
+    def test_counts_are_integers_however_large(self):
+        stats = graftal.load(scene("abop/fig1_24f.lsys"), steps=100).stats()
+        for key in ("objects", "instances", "primitives", "modules", "segments"):
+            self.assertIs(type(stats[key]), int, key)
+        self.assertGreater(stats["segments"], 10**40)
+
+    def test_steps_may_lie_between_two(self):
+        herb = scene("plants/growing_herb.lsys")
+        stats = graftal.load(herb, steps=7.5).stats()
+        self.assertEqual(stats["time"], 7.5)
+        self.assertEqual(stats, self.printed_stats(herb, "--steps", "7.5"))
+        self.assertEqual(graftal.load(herb, steps=7.0).stats(), self.printed_stats(herb, "--steps", "7"))
+        with self.assertRaises(ValueError):
+            graftal.load(herb, steps=-1)
+
+    def test_a_limit_that_is_not_given_stays(self):
+        model = graftal.load(scene("hart/pound_sign.rifs")).limits(work_s=1e-3)
+        for more in ({}, {"threads": 1}, {"memory_bytes": 1 << 30}):
+            model.limits(**more)
+            with self.assertWarnsRegex(graftal.ModelWarning, "work_s="):
+                model.render((640, 360), "best")
+
+    def test_messages_speak_of_python(self):
+        said = []
+        for model in (graftal.load(scene("hart/pound_sign.rifs"), bogus=1), graftal.load(scene("ifs/fern.rifs"), steps=2.5),
+                      graftal.lsys("lsys a {\n axiom F\n F -> FF\n}\n")):
+            with self.assertRaises(graftal.ModelError) as caught:
+                model.stats()
+            said.append(str(caught.exception))
+            said += [part for message in caught.exception.messages for part in (repr(message), message.text, message.hint)]
+        with self.assertRaises(graftal.ModelError) as caught:
+            graftal.load(scene("ifs/fern.rifs")).limits(error_px=2).export(self.path("a.obj"), most_bytes=1000)
+        said.append(str(caught.exception))
+        for text in said:
+            self.assertNotIn("--", text)
+            self.assertNotIn("command", text)
+        self.assertIn("give 'steps=5'", said[8])
+        self.assertIn("most_bytes=", said[-1])
+        self.assertIn("error_px=", said[-1])
+
+    def test_a_file_that_would_be_too_large_is_written_coarser(self):
+        with self.assertWarnsRegex(graftal.ModelWarning, "leaves out parts smaller than"):
+            graftal.load(scene("ifs/fern.rifs")).export(self.path("a.obj"), most_bytes=1_000_000)
+        self.assertLessEqual(os.path.getsize(self.path("a.obj")), 1_000_000)
+
+    def test_a_model_and_the_package_say_what_they_are(self):
+        self.assertEqual(f"graftal {graftal.__version__}\n", self.program("version"))
+        self.assertEqual(repr(graftal.load("fern.rifs", steps=7.5, k=2).set(seed=3)),
+                         "graftal.Model('fern.rifs', steps=7.5, k=2, seed=3)")
+        self.assertEqual(repr(graftal.rifs("rifs x {}")), "graftal.Model('model.rifs')")
+
+    def test_a_package_without_its_module_says_how_to_build_it(self):
+        package = pathlib.Path(self.path("python/graftal"))
+        package.mkdir(parents=True)
+        (package / "__init__.py").write_bytes(pathlib.Path(graftal.__file__).read_bytes())
+        command = f"cmake --build '{self.folder.name}' --target graftal_python"
+        for cache, said in (("", "install the package python3-graftal"), ("CMakeCache.txt", command)):
+            if cache:
+                pathlib.Path(self.path(cache)).touch()
+            run = subprocess.run([sys.executable, "-c", "import graftal"], capture_output=True, text=True,
+                                 env={**os.environ, "PYTHONPATH": str(package.parent)})
+            self.assertEqual(run.returncode, 1)
+            self.assertIn(said, run.stderr)
+            self.assertNotIn("circular", run.stderr)
+
+    def test_the_lens_blurs(self):
+        model = graftal.load(scene("hart/pound_sign.rifs"), steps=2)
+        sharp = model.render((64, 36), "draft")
+        blurred = model.camera(aperture=0.5, focus=(0, 0, 0)).render((64, 36), "draft")
+        self.assertFalse(np.array_equal(sharp, blurred))
+        np.testing.assert_array_equal(model.camera().render((64, 36), "draft"), sharp)
 
     def test_pictures_are_those_of_the_program_to_the_bit(self):
         for name in ("hart/pound_sign.rifs", "abop/fig1_24e.lsys"):
@@ -102,7 +184,7 @@ class Package(unittest.TestCase):
                         leaves[o] = 1 if graph.primitives[o] else sum(count(int(c)) for c in below)
                     return leaves[o]
 
-                self.assertEqual(str(count(graph.root)), str(stats["leaves"]))
+                self.assertEqual(count(graph.root), stats["primitives"])
             else:
                 scales = np.abs(np.linalg.det(graph.parent_from_child[graph.parents == graph.children][:, :, :3]))
                 np.testing.assert_allclose(scales, 1 / 27)
@@ -145,7 +227,7 @@ class Package(unittest.TestCase):
     def test_models_of_other_programs_are_read(self):
         koch = pathlib.Path(self.path("curves.l"))
         koch.write_text("Koch { ; of Fractint\n  angle 6\n  axiom f\n  f=f+f--f+f\n}\n")
-        printed = json.loads(self.program("stats", f"{koch}:Koch", "--steps", "4", "--json"))
+        printed = self.printed_stats(f"{koch}:Koch", "--steps", "4")
         self.assertEqual(graftal.load(f"{koch}:Koch", steps=4).stats(), printed)
 
     def test_a_let_a_depth_and_a_text_change_the_picture(self):

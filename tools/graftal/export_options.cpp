@@ -43,9 +43,10 @@ void add_export(CLI::App& app, Options& options) {
     app.add_option("-o,--output", options.render.output, "File to write, " + export_endings())
         ->type_name("FILE");
     add_value(app, "--limit", "BYTES",
-              "Refuse to write a larger file, and say how large it would be; suffixes K M G (default 1G)",
+              "Largest file; suffixes K M G (default 1G). If the whole model takes more, graftal leaves out "
+              "small parts until the file is no larger (by default 128M). With --error it refuses",
               "a number of bytes such as 512M", parse_bytes,
-              [&file](std::uint64_t bytes) { file.most_bytes = bytes; });
+              [&file](std::uint64_t bytes) { file.most_bytes = file.fitted_bytes = bytes; });
     add_value(app, "--unit", "LENGTH",
               fmt::format("What a unit of the model measures, such as 25mm, 1cm, 2m or 1in ({}; default: "
                           "that of the format)",
@@ -81,7 +82,8 @@ void add_export(CLI::App& app, Options& options) {
     app.footer(formats_text() +
                "graftal writes a model that ends whole, and one without end to its --steps. A model without\n"
                "either ends where parts are smaller than --error in the picture, or than --error-world; the\n"
-               "same leaves out parts of the others.\n"
+               "same leaves out parts of the others. If that makes too large a file, and you give neither,\n"
+               "graftal leaves out larger parts, and says how large.\n"
                "Examples:\n"
                "  graftal export tree.lsys -o tree.obj\n"
                "  graftal export sponge.rifs --steps 3 --unit 20mm -o sponge.stl\n"

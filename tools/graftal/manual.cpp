@@ -77,11 +77,18 @@ std::string options(const CommandTree& command) {
     std::string body;
     for (const OptionEntry& operand : command.operands)
         body += fmt::format(".TP\n{}\n{}.\n", italic(operand.value), text(operand.help));
-    for (const OptionEntry& option : command.options) {
-        std::vector<std::string> names;
-        for (const std::string& name : option.names)
-            names.push_back(bold(name) + (option.value.empty() ? "" : " " + italic(option.value)));
-        body += fmt::format(".TP\n{}\n{}.\n", fmt::join(names, ", "), text(option.help));
+    std::vector<std::string> groups;
+    for (const OptionEntry& option : command.options)
+        if (std::ranges::find(groups, option.group) == groups.end()) groups.push_back(option.group);
+    for (const std::string& group : groups) {
+        if (groups.size() > 1) body += fmt::format(".SS {}\n", text(group));
+        for (const OptionEntry& option : command.options) {
+            if (option.group != group) continue;
+            std::vector<std::string> names;
+            for (const std::string& name : option.names)
+                names.push_back(bold(name) + (option.value.empty() ? "" : " " + italic(option.value)));
+            body += fmt::format(".TP\n{}\n{}.\n", fmt::join(names, ", "), text(option.help));
+        }
     }
     return body;
 }

@@ -8,6 +8,7 @@
 #include <fmt/ranges.h>
 
 #include "compiler/passes/pipeline.h"
+#include "tools/graftal/help_format.h"
 
 namespace graftal {
 
@@ -51,6 +52,7 @@ OptionEntry entry_of(const CLI::Option& option) {
                   : option.get_items_expected_max() == 0 ? ""
                                                          : option.get_type_name();
     entry.help = option.get_description();
+    entry.group = option.get_group();
     entry.kind = kind_of(entry.value);
     entry.words = words_of(option.get_name(), entry.value);
     entry.repeats = option.get_multi_option_policy() != CLI::MultiOptionPolicy::TakeLast &&
@@ -58,19 +60,14 @@ OptionEntry entry_of(const CLI::Option& option) {
     return entry;
 }
 
-/// Help ends with "Examples:" and indented lines.
-void take_footer(const std::string& footer, CommandTree& tree) {
-    bool in_examples = false;
-    for (std::string line : CLI::detail::split(footer, '\n')) {
-        if (line.starts_with("Example")) {
-            in_examples = true;
-            const std::size_t first = line.find_first_not_of(' ', line.find(':') + 1);
-            if (first == std::string::npos) continue;
-            line.erase(0, first);
-        }
-        if (in_examples) CLI::detail::ltrim(line);
-        (in_examples ? tree.examples : tree.notes) += line + "\n";
+/// The lines of commands below "Examples:", without indentation.
+std::string plain_examples(const std::string& examples) {
+    std::string lines;
+    for (std::string line : CLI::detail::split(examples, '\n')) {
+        if (line.starts_with("Example")) line.erase(0, line.find(':') + 1);
+        if (!CLI::detail::ltrim(line).empty()) lines += line + "\n";
     }
+    return lines;
 }
 
 CommandTree tree_below(const CLI::App& app, std::vector<std::string> path) {
@@ -78,7 +75,9 @@ CommandTree tree_below(const CLI::App& app, std::vector<std::string> path) {
     path.push_back(app.get_name());
     tree.path = path;
     tree.summary = app.get_description();
-    take_footer(app.get_footer(), tree);
+    const HelpFooter footer = help_footer(app);
+    tree.notes = footer.notes;
+    tree.examples = plain_examples(footer.examples);
     for (const CLI::Option* const option : app.get_options())
         (option->get_positional() ? tree.operands : tree.options).push_back(entry_of(*option));
     for (const CLI::App* const command : app.get_subcommands([](const CLI::App*) { return true; }))

@@ -15,6 +15,7 @@ struct OptionEntry {
     std::vector<std::string> names; ///< "-o", "--output"; none of an operand
     std::string value;              ///< stands for its value: "FILE", "WxH"; "" of a flag
     std::string help;
+    std::string group; ///< the heading that it stands under, such as "Camera"
     ValueKind kind = ValueKind::text;
     std::vector<std::string> words; ///< to offer as its value; it may take others
     bool repeats = false;           ///< it may be given more than once, or takes several values

@@ -119,8 +119,10 @@ std::string set_camera_word(std::string_view word, CameraOverride& camera) {
     const std::size_t equals = std::min(word.find('='), word.size());
     const std::string_view name = word.substr(0, equals);
     const std::string_view text = word.substr(std::min(equals + 1, word.size()));
-    const std::pair<std::string_view, std::optional<Vec3>*> vectors[] = {
-        {"location", &camera.location}, {"look_at", &camera.look_at}, {"up", &camera.up}};
+    const std::pair<std::string_view, std::optional<Vec3>*> vectors[] = {{"location", &camera.location},
+                                                                         {"look_at", &camera.look_at},
+                                                                         {"up", &camera.up},
+                                                                         {"focus", &camera.focus}};
     for (const auto& [vector_name, vector] : vectors) {
         if (name != vector_name) continue;
         *vector = parse_vector(text);
@@ -140,7 +142,13 @@ std::string set_camera_word(std::string_view word, CameraOverride& camera) {
         if (!number || !std::isfinite(*number) || !(*number > 0)) return "width must be a positive number";
         return is_size(*number) ? "" : fmt::format("'{}': {}", word, range_hint);
     }
-    return fmt::format("'{}' is none of location=, look_at=, up=, angle=, orthographic, width=", word);
+    if (name == "aperture") {
+        camera.aperture = number;
+        if (number && (*number == 0 || (*number > 0 && is_size(*number)))) return {};
+        return "aperture must be 0, or a radius from 1e-100 to 1e100";
+    }
+    return fmt::format(
+        "'{}' is none of location=, look_at=, up=, angle=, orthographic, width=, aperture=, focus=", word);
 }
 
 } // namespace

@@ -14,11 +14,13 @@
 #include "compiler/passes/pipeline.h"
 #include "compiler/povray/emit_povray.h"
 #include "compiler/povray/povray_names.h"
+#include "compiler/session/stats.h"
 #include "runtime/render/native_engine.h"
 #include "tools/graftal/animate_options.h"
 #include "tools/graftal/commands.h"
 #include "tools/graftal/documents.h"
 #include "tools/graftal/export_options.h"
+#include "tools/graftal/help_format.h"
 #include "tools/graftal/option_values.h"
 #include "tools/graftal/picture_description.h"
 #include "tools/graftal/points_options.h"
@@ -164,9 +166,12 @@ void add_stats(CLI::App& app, Options& options) {
     add_model(app, options);
     app.add_flag("--json", options.json, "Print one JSON object on standard output");
     add_common(app, options);
-    app.footer("Examples:\n"
-               "  graftal stats scenes/hart/pound_sign.rifs\n"
-               "  graftal stats scenes/hart/pound_sign.rifs --steps 100 --json | jq -r .leaves");
+    std::string keys = "Keys:\n";
+    for (const StatsKey& key : stats_keys())
+        keys += fmt::format("  {:<30} {}\n", key.name, key.meaning);
+    app.footer(keys + "Examples:\n"
+                      "  graftal stats scenes/hart/pound_sign.rifs\n"
+                      "  graftal stats scenes/hart/pound_sign.rifs --steps 100 --json | jq -r .primitives");
 }
 
 void add_after(CLI::App& app, Options& options, const std::string& verb) {
@@ -391,6 +396,7 @@ ParsedCommandLine parse_command_line(std::vector<std::string> words, bool in_par
         "graftal compiles small text models of fractals and plants into object-instance graphs, and\n"
         "the graphs into pictures and POV-Ray scenes.",
         "graftal");
+    app.formatter(help_formatter());
     app.set_version_flag("--version", "graftal " GRAFTAL_VERSION);
     app.require_subcommand(0, 1); // 'graftal help render' names one command, and explains another
     bool help_passes = false;
@@ -402,6 +408,7 @@ ParsedCommandLine parse_command_line(std::vector<std::string> words, bool in_par
     for (const CommandEntry& entry : commands) {
         CLI::App* command = app.add_subcommand(entry.name, entry.summary);
         entry.add(*command, options);
+        group_options(*command);
         command->callback([&options, &entry] { options.command = entry.command; });
     }
     const Documents documents(app);

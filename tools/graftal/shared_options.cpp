@@ -151,8 +151,8 @@ void add_camera(CLI::App& app, Options& options) {
     };
     app.add_option_function<std::vector<std::string>>(
            "--camera", camera,
-           "Camera: any of location=X,Y,Z look_at=X,Y,Z up=X,Y,Z angle=DEGREES orthographic width=UNITS; the "
-           "model sets the rest, or graftal chooses it")
+           "Camera: any of location=X,Y,Z look_at=X,Y,Z up=X,Y,Z angle=DEGREES orthographic width=UNITS "
+           "aperture=RADIUS focus=X,Y,Z; the model sets the rest, or graftal chooses it")
         ->allow_extra_args(false)
         ->type_name("\"WORDS\"");
     const auto address = [&compile](const std::string& text) {
@@ -220,9 +220,10 @@ void add_view(CLI::App& app, Options& options) {
     static const std::map<std::string, Quality> qualities = {
         {"draft", Quality::draft}, {"normal", Quality::normal}, {"best", Quality::best}};
     add_plain_light(app, options);
-    app.add_option("--quality", options.render.compile.view.quality,
-                   "How closely the picture is looked at, and how long that may take: see --work and --noise "
-                   "(default normal)")
+    app.add_option(
+           "--quality", options.render.compile.view.quality,
+           "How finely graftal samples the picture, and how long that may take: see --work and --noise "
+           "(default normal)")
         ->transform(CLI::CheckedTransformer(qualities).description(""))
         ->type_name("draft|normal|best")
         ->take_last();
@@ -282,20 +283,20 @@ void add_drawing(CLI::App& app, Options& options) {
         ->type_name(engine_names("|"))
         ->take_last();
     app.add_option("--samples", options.render.samples,
-                   "Soft light: so many samples per pixel, in place of --quality's")
+                   "Samples per pixel under soft light; overrides --quality")
         ->check(CLI::Range(1, most_samples_a_pixel).description(""))
         ->type_name("N")
         ->take_last();
     app.add_option("--noise", options.render.noise_255,
-                   "Soft light: no more samples where the error is below N of 255 steps")
+                   "Under soft light, take no more samples where the error is below N of 255 levels")
         ->check(CLI::Range(0.0, 255.0).description(""))
         ->type_name("N")
         ->take_last();
     app.add_flag("--listed-lights", options.render.listed_lights,
-                 "Soft light: as POV-Ray draws it, from the same list of lights");
+                 "Draw soft light from the list of lights that POV-Ray gets");
     app.add_flag("--unconfined", options.render.unconfined,
-                 "Run POV-Ray unconfined: with your permissions, your environment and no limits (for a "
-                 "program in its place that runs it somewhere else)");
+                 "Run POV-Ray with your permissions, your environment and no limits (for a program in its "
+                 "place that runs it somewhere else)");
     const auto antialias = [&options](const std::string& text) {
         const auto depth = parse_whole(text, 1, 9);
         if (!depth && text != "off")

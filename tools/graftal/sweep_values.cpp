@@ -37,12 +37,15 @@ Sweep camera_sweep(const std::string& name, const CameraOverride& from, const Ca
             camera.*member = swept(*(from.*member), *(to.*member), t);
             text += text_of(*(camera.*member));
         };
-        for (const auto member : {&CameraOverride::location, &CameraOverride::look_at, &CameraOverride::up})
+        for (const auto member : {&CameraOverride::location, &CameraOverride::look_at, &CameraOverride::up,
+                                  &CameraOverride::focus})
             sweep_vector(member);
         if (from.angle_deg) camera.angle_deg = swept(*from.angle_deg, *to.angle_deg, t);
         if (from.width) camera.width = swept_by_factor(*from.width, *to.width, t);
+        if (from.aperture) camera.aperture = swept(*from.aperture, *to.aperture, t);
         if (from.angle_deg) text += fmt::format("{:.6g}", *camera.angle_deg);
         if (from.width) text += fmt::format("{:.6g}", *camera.width);
+        if (from.aperture) text += fmt::format("{:.6g}", *camera.aperture);
         return text;
     };
     return {"--camera " + name, apply};

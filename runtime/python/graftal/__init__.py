@@ -4,7 +4,7 @@
     fern = graftal.load("fern.rifs", steps=8)
     picture = fern.render((640, 360))         # NumPy array, shape (360, 640, 3), sRGB bytes
     places, colours = fern.points(1_000_000)  # arrays of shape (1000000, 3)
-    fern.stats()["leaves"]
+    fern.stats()["primitives"]
 
 A model is loaded from a file, or from a string by lsys(), rifs() or inst(). Functions that work release Python's lock. Ctrl-C
 ends them. One model is for one thread at a time; several models may run in several threads.
@@ -13,6 +13,7 @@ ends them. One model is for one thread at a time; several models may run in seve
 from __future__ import annotations
 
 import json
+import math
 import os
 import tempfile
 from dataclasses import dataclass
@@ -20,10 +21,25 @@ from typing import Any, Callable, Optional, Sequence, Tuple, Union
 
 import numpy as np
 
-from . import _graftal
+try:
+    from . import _graftal
+except ImportError:
+    _folder = os.path.dirname(os.path.abspath(__file__))
+    if any(name.startswith("_graftal.") and name.endswith(".so") for name in os.listdir(_folder)):
+        raise
+    _build = os.path.dirname(os.path.dirname(_folder))
+    raise ImportError(
+        f"the module of graftal is not in '{_folder}'"
+        + (
+            f": build it with: cmake --build '{_build}' --target graftal_python"
+            if os.path.exists(os.path.join(_build, "CMakeCache.txt"))
+            else ": install the package python3-graftal again"
+        )
+    ) from None
 from ._graftal import Message
 
-__all__ = ["Cancelled", "Graph", "Message", "Model", "ModelError", "inst", "load", "lsys", "rifs"]
+__all__ = ["Cancelled", "Graph", "Message", "Model", "ModelError", "ModelWarning", "inst", "load", "lsys", "rifs"]
+__version__: str = _graftal.version
 
 Progress = Callable[[str, Optional[float]], None]
 Vector = Tuple[float, float, float]
@@ -39,6 +55,10 @@ class ModelError(Exception):
     def __init__(self, text: str, messages: Sequence[Message] = ()) -> None:
         super().__init__(text.rstrip("\n"))
         self.messages = list(messages)
+
+
+class ModelWarning(UserWarning):
+    """A model was drawn or written otherwise than it was asked for, such as coarser."""
 
 
 class Cancelled(ModelError):
@@ -70,17 +90,30 @@ class Graph:
 class Model:
     """A model, and what is asked of it. What has not changed is not made again: a new camera reads nothing."""
 
-    def __init__(self, model: _graftal.Model) -> None:
+    def __init__(self, model: _graftal.Model, name: str) -> None:
         self._model = model
+        self._name = name
+        self._set: "dict[str, float]" = {}
 
-    def set(self, *, steps: Optional[int] = None, seed: Optional[int] = None, **lets: float) -> "Model":
-        """Sets the depth, the seed of random models, and values of `let` in the model."""
+    def __repr__(self) -> str:
+        return f"graftal.Model({', '.join([repr(self._name), *(f'{name}={value!r}' for name, value in self._set.items())])})"
+
+    def set(self, *, steps: Optional[float] = None, seed: Optional[int] = None, **lets: float) -> "Model":
+        """Sets the depth, the seed of random models, and values of `let` in the model.
+
+        `steps`: 7.5 shows a plant that reads the time between its steps 7 and 8.
+        """
         if steps is not None:
-            self._model.steps(steps)
+            if not (math.isfinite(steps) and steps >= 0):
+                raise ValueError(f"steps: {steps!r} is not a number, 0 or more")
+            self._model.time(steps)
+            self._set["steps"] = steps
         if seed is not None:
             self._model.seed(seed)
+            self._set["seed"] = seed
         for name, value in lets.items():
             self._model.set(name, float(value))
+            self._set[name] = value
         return self
 
     def camera(
@@ -91,12 +124,16 @@ class Model:
         angle_deg: Optional[float] = None,
         orthographic: bool = False,
         width: Optional[float] = None,
+        aperture: Optional[float] = None,
+        focus: Optional[Vector] = None,
     ) -> "Model":
-        """Where the camera stands; the model says, or graftal chooses, what is left open.
+        """Sets all of the camera: the model says, or graftal chooses, what you do not give.
 
-        `angle_deg`: horizontal angle of view. `width`: of an orthographic view, in the model's units.
+        `angle_deg`: horizontal angle of view. `width`: of an orthographic view, in the model's units. `aperture`: radius of
+        the lens. `focus`: a point that is sharp.
         """
         self._model.camera(location, look_at, up, angle_deg, orthographic, width)
+        self._model.lens(aperture, focus)
         return self
 
     def zoom(self, factor: Optional[float]) -> "Model":
@@ -105,15 +142,26 @@ class Model:
         return self
 
     def limits(
-        self, *, error_px: Optional[float] = None, memory_bytes: int = 2 << 30, work_s: Optional[float] = None, threads: int = 0
+        self,
+        *,
+        error_px: Optional[float] = None,
+        memory_bytes: Optional[int] = None,
+        work_s: Optional[float] = None,
+        threads: Optional[int] = None,
     ) -> "Model":
-        """What is smaller than `error_px` pixels is left out (0.5 before). `threads` 0: one a processor."""
+        """Sets the limits that you give; the others stay as they are.
+
+        `error_px`: graftal leaves out parts smaller than so many pixels (first 0.5). `memory_bytes`: of memory (first 2 GiB).
+        `work_s`: seconds of one processor for a picture. `threads`: 0, as at first, is one for each processor.
+        """
         if error_px is not None:
             self._model.error_px(error_px)
-        self._model.memory(memory_bytes)
+        if memory_bytes is not None:
+            self._model.memory(memory_bytes)
         if work_s is not None:
             self._model.work(work_s)
-        self._model.threads(threads)
+        if threads is not None:
+            self._model.threads(threads)
         return self
 
     def edit(self, text: str) -> "Model":
@@ -131,8 +179,13 @@ class Model:
         self._model.cancel()
 
     def stats(self, progress: Optional[Progress] = None) -> "dict[str, Any]":
-        """What `graftal stats --json` prints."""
-        return json.loads(self._model.stats(progress))
+        """What `graftal stats --json` prints, with its counts as integers. `graftal stats --help` explains the keys."""
+        stats = json.loads(self._model.stats(progress))
+        del stats["leaves"]  # the old name of primitives
+        for key in ("primitives", "modules", "segments"):
+            if stats.get(key) is not None:
+                stats[key] = int(stats[key])
+        return stats
 
     @property
     def graph(self) -> Graph:
@@ -176,8 +229,9 @@ class Model:
         .obj, .ply, .stl, .svg, .pbrt, .xml).
 
         `engine`, of pictures: "native" or "povray". What follows is for other programs, each for some formats only, as the
-        options of `graftal export` are. `unit_mm`: what a unit of the model measures, in millimetres. `most_bytes`: a larger
-        file is refused.
+        options of `graftal export` are. `unit_mm`: what a unit of the model measures, in millimetres. `most_bytes`: of
+        the file. If the whole model takes more, graftal leaves out small parts until the file has no more (by default 128
+        MiB), with a ModelWarning; if limits() has set error_px, it refuses the model.
         """
         if engine not in ("native", "povray"):
             raise ValueError(f"engine: {engine!r} is neither 'native' nor 'povray'")
@@ -208,25 +262,25 @@ class Model:
         self._model.quality(quality)
 
 
-def load(path: "Union[str, os.PathLike[str]]", *, steps: Optional[int] = None, seed: Optional[int] = None, **lets: float) -> Model:
+def load(path: "Union[str, os.PathLike[str]]", *, steps: Optional[float] = None, seed: Optional[int] = None, **lets: float) -> Model:
     """A model from a file: .lsys, .rifs, .inst, or one that `graftal import` knows. It is read when it is needed first."""
-    return Model(_graftal.Model.from_file(os.fspath(path))).set(steps=steps, seed=seed, **lets)
+    return Model(_graftal.Model.from_file(os.fspath(path)), os.fspath(path)).set(steps=steps, seed=seed, **lets)
 
 
-def _from_text(language: str, text: str, name: str, steps: Optional[int], seed: Optional[int], lets: "dict[str, float]") -> Model:
-    return Model(_graftal.Model.from_text(f"{name}.{language}", text)).set(steps=steps, seed=seed, **lets)
+def _from_text(language: str, text: str, name: str, steps: Optional[float], seed: Optional[int], lets: "dict[str, float]") -> Model:
+    return Model(_graftal.Model.from_text(f"{name}.{language}", text), f"{name}.{language}").set(steps=steps, seed=seed, **lets)
 
 
-def lsys(text: str, *, name: str = "model", steps: Optional[int] = None, seed: Optional[int] = None, **lets: float) -> Model:
+def lsys(text: str, *, name: str = "model", steps: Optional[float] = None, seed: Optional[int] = None, **lets: float) -> Model:
     """A parametric L-system from a string. Files that it names are looked up beside `name`."""
     return _from_text("lsys", text, name, steps, seed, lets)
 
 
-def rifs(text: str, *, name: str = "model", steps: Optional[int] = None, seed: Optional[int] = None, **lets: float) -> Model:
+def rifs(text: str, *, name: str = "model", steps: Optional[float] = None, seed: Optional[int] = None, **lets: float) -> Model:
     """A recurrent iterated function system from a string."""
     return _from_text("rifs", text, name, steps, seed, lets)
 
 
-def inst(text: str, *, name: str = "model", steps: Optional[int] = None, seed: Optional[int] = None, **lets: float) -> Model:
+def inst(text: str, *, name: str = "model", steps: Optional[float] = None, seed: Optional[int] = None, **lets: float) -> Model:
     """Objects and instances from a string."""
     return _from_text("inst", text, name, steps, seed, lets)

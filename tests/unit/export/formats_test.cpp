@@ -147,7 +147,7 @@ TEST(FlatFiles, AreRefusedWithTheirSize) {
     exporting.options.compile.lower.steps = 60;
     for (const char* name : {"m.obj", "m.ply", "m.stl"}) {
         EXPECT_FALSE(exporting.to(name));
-        EXPECT_THAT(exporting.said(), HasSubstr("would have 4.23e+28 leaves with 5.08e+29 triangles"));
+        EXPECT_THAT(exporting.said(), HasSubstr("would have 4.23e+28 primitives with 5.08e+29 triangles"));
         EXPECT_FALSE(std::filesystem::exists(exporting.path(name)));
     }
 }

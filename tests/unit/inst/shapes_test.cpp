@@ -113,7 +113,7 @@ TEST(InstShapes, OnlySoundRegularFilesWithinTheRootAreRead) {
     EXPECT_THAT(errors("pipe.obj"), HasSubstr("is not a regular file"));
     LowerOptions options;
     options.root = folder.path() + "/inner";
-    EXPECT_THAT(errors("leaf.obj", options), HasSubstr("leads out of --root"));
+    EXPECT_THAT(errors("leaf.obj", options), HasSubstr("leads out of the root folder"));
 }
 
 TEST(InstShapes, AModelsOwnNamesHideThoseOfKindsWithShapes) {

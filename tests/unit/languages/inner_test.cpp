@@ -80,7 +80,7 @@ TEST_F(Inner, isALetOfTheRootModel) {
     ASSERT_TRUE(graph_) << report();
     EXPECT_DOUBLE_EQ(heights().front(), 7.2);
     lower("a.inst", {.set = {{"k", 1.5}}});
-    EXPECT_THAT(report(), HasSubstr("--set k: an inner parameter lies between 0 and 1, not at 1.5"));
+    EXPECT_THAT(report(), HasSubstr("'k' as it is set: an inner parameter lies between 0 and 1, not at 1.5"));
 }
 
 TEST_F(Inner, condensationSetsHaveArguments) {

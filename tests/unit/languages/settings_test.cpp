@@ -153,14 +153,14 @@ TEST(Settings, set_of_an_unknown_let_is_an_error_with_a_suggestion) {
     options.set = {{"lenght", 4}};
     const Model model("let length = 2", options);
     EXPECT_FALSE(model.graph);
-    EXPECT_EQ(model.errors(), "graftal: error: --set lenght: the model has no 'let lenght'\n"
+    EXPECT_EQ(model.errors(), "graftal: error: the model has no 'let lenght' to set\n"
                               "    hint: did you mean 'length'? known here: length, steps\n");
 }
 
 TEST(Settings, set_of_nothing_finite_is_an_error) {
     LowerOptions options;
     options.set = {{"a", std::numeric_limits<double>::quiet_NaN()}};
-    EXPECT_THAT(Model("let a = 2", options).errors(), HasSubstr("--set a: the value is not finite"));
+    EXPECT_THAT(Model("let a = 2", options).errors(), HasSubstr("'a' is set to a value that is not finite"));
 }
 
 TEST(Settings, angles_just_inside_the_range_are_good) {

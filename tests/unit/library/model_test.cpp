@@ -103,6 +103,47 @@ TEST(LibraryModel, WritesFilesForOtherPrograms) {
     EXPECT_FALSE(std::filesystem::exists(folder.path() + "/b.stl"));
 }
 
+TEST(LibraryModel, AFileThatWouldBeTooLargeIsWrittenCoarser) {
+    TemporaryDirectory folder;
+    ASSERT_TRUE(folder.create().ok());
+    Model model = small_crystal();
+    const std::uint64_t most = 20'000;
+    const std::string path = folder.path() + "/a.stl";
+    const auto fitted = model.export_to(path, {.most_bytes = most});
+    ASSERT_TRUE(fitted) << fitted.text();
+    EXPECT_LE(std::filesystem::file_size(path), most);
+    EXPECT_NE(fitted.text().find("graftal leaves out parts smaller than "), std::string::npos);
+    // Messages name the library's functions, never options of the command line.
+    EXPECT_NE(fitted.text().find("choose with error_px() how much"), std::string::npos) << fitted.text();
+    EXPECT_EQ(fitted.text().find("--"), std::string::npos) << fitted.text();
+    // Whoever asks for an error gets that one, or nothing.
+    model.error_px(0.01);
+    EXPECT_FALSE(model.export_to(path, {.most_bytes = most}));
+}
+
+TEST(LibraryModel, StepsMayLieBetweenTwo) {
+    const char* const growing = "lsys g {\n axiom A\n A -> F A\n interpret {\n F -> f(age)@O(1)\n }\n}\n";
+    Model model = Model::from_text("g.lsys", growing);
+    model.time(7.5);
+    const auto stats = model.stats();
+    ASSERT_TRUE(stats) << stats.text();
+    EXPECT_NE(stats->json.find("\"time\": 7.5"), std::string::npos) << stats->json;
+    model.time(7);
+    const auto whole = model.stats();
+    ASSERT_TRUE(whole) << whole.text();
+    EXPECT_NE(whole->json.find("\"time\": 7.0"), std::string::npos) << whole->json;
+}
+
+TEST(LibraryModel, TheLensBlursWhatIsOutOfFocus) {
+    Model model = small_crystal();
+    model.camera({.location = Vector{0, 0, 4}, .look_at = Vector{0, 0, 0}, .angle_deg = 40});
+    const auto sharp = model.render();
+    model.lens(0.5, Vector{0, 0, 3});
+    const auto blurred = model.render();
+    ASSERT_TRUE(sharp && blurred) << blurred.text();
+    EXPECT_NE(sharp->rgb, blurred->rgb);
+}
+
 TEST(LibraryModel, RefusesNamesOfNoPicture) {
     Model model = small_crystal();
     EXPECT_FALSE(model.render_to("a.bmp"));

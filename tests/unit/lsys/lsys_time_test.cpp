@@ -347,7 +347,7 @@ TEST(LsysTime, faults) {
                 HasSubstr("m.lsys:2:1: error: productions that read 'step' or 'age' have no limit"));
     EXPECT_EQ(errors_of(tree, {.time = 2.5}), "");
     EXPECT_THAT(errors_of("object a { sphere }", {.time = 2.5}, "a.inst"),
-                HasSubstr("--steps 2.5: only L-systems have times between two steps"));
+                HasSubstr("only L-systems have times between two steps, such as 2.5"));
     EXPECT_EQ(errors_of("object a { sphere }", {.steps = 2, .time = 2.5}, "a.inst"), "");
     EXPECT_THAT(errors_of("lsys m {\nsteps 3\naxiom A\nA -> FA\ninterpret A -> F(1/(age - 0))\n}", {}),
                 HasSubstr("m.lsys:5:18: error: division by zero"));

@@ -238,7 +238,7 @@ TEST(Cut, WithoutCullingABudgetThatCannotBeKeptIsRefused) {
     Diagnostics diagnostics;
     EXPECT_FALSE(cut(test::pound_sign(3, false), {.error_px = 0, .steps = 40}, diagnostics).has_value());
     ASSERT_EQ(diagnostics.error_count(), 1u);
-    EXPECT_NE(diagnostics.all()[0].message.find("leaves need about"), std::string::npos);
+    EXPECT_NE(diagnostics.all()[0].message.find("primitives need about"), std::string::npos);
 }
 
 TEST(Cut, FlatteningIsRefusedBeforeItStarts) {

@@ -185,6 +185,23 @@ TEST(Frame, CameraStatementsAreFollowedFieldByField) {
     EXPECT_EQ(camera.angle_deg, 12);
 }
 
+TEST(Frame, TheLensIsTheModelsOrThatOfTheCommandLine) {
+    Graph graph = model();
+    graph.settings.camera =
+        CameraSetting{.location = Vec3(0, 0, 10), .look_at = Vec3(0, 0, 0), .aperture = 0.5};
+    const auto lens = [&](const CameraOverride& camera) {
+        return frame(graph, unit_cube, {100, 100}, camera).lens;
+    };
+    EXPECT_EQ(lens({}).radius, 0.5);
+    EXPECT_NEAR(lens({}).depth, 10, 1e-12);
+    EXPECT_EQ(lens({.aperture = 0.2}).radius, 0.2);
+    EXPECT_EQ(lens({.aperture = 0}).radius, 0); // takes the model's lens away
+    EXPECT_NEAR(lens({.focus = Vec3(5, 0, 4)}).depth, 6, 1e-12);
+    EXPECT_NEAR(lens({.look_at = Vec3(0, 0, 2)}).depth, 8, 1e-12); // what the camera looks at is sharp
+    graph.settings.camera.reset();
+    EXPECT_EQ(lens({.location = Vec3(0, 0, 10), .aperture = 0.3}).radius, 0.3);
+}
+
 TEST(Frame, LocationAloneLooksAtTheModelAndTakesItAllIn) {
     Graph graph = model();
     graph.settings.camera = CameraSetting{.location = Vec3(7, 3, 9)};

@@ -26,7 +26,7 @@ std::optional<std::string> Writer::text(const Expr& expression, const Scope& sco
 }
 
 std::optional<Writer::Lines> Writer::lines_of(const Modification& modification, const Scope& scope,
-                                              std::size_t order, bool lifts) {
+                                              const Height& height) {
     Lines lines;
     std::array<std::string, 3> moved;
     const auto flush = [&] {
@@ -45,7 +45,7 @@ std::optional<Writer::Lines> Writer::lines_of(const Modification& modification, 
             fail(adjustment.span, "this adjustment within an adjustment is not translated");
             return std::nullopt;
         }
-        const std::optional<Lines> own = lines_of(*inner->value.change, constants_, 0, lifts);
+        const std::optional<Lines> own = lines_of(*inner->value.change, constants_, {.lifts = height.lifts});
         --nested_;
         if (!own) return std::nullopt;
         inner_moves = own->moves + inner_moves;
@@ -67,11 +67,11 @@ std::optional<Writer::Lines> Writer::lines_of(const Modification& modification, 
             fail(move.span, "an adjustment takes at most three numbers");
             return std::nullopt;
         }
-        if (move.word == "x" || move.word == "y" || move.word == "z") {
-            for (std::size_t i = 0; i < n.size(); ++i) {
-                const std::size_t axis = static_cast<std::size_t>(move.word[0] - 'x') + i;
-                if (axis < 3) moved[axis] = sum_of(moved[axis], n[i]);
-            }
+        if (move.word == "z") continue; // an error says that depth has no words
+        if (move.word == "x" || move.word == "y") {
+            const std::size_t axis = move.word == "x" ? 0 : 1;
+            for (std::size_t i = 0; axis + i < 2 && i < n.size(); ++i)
+                moved[axis + i] = sum_of(moved[axis + i], n[i]);
             continue;
         }
         flush();
@@ -83,12 +83,13 @@ std::optional<Writer::Lines> Writer::lines_of(const Modification& modification, 
             const std::optional<Interval> a = expressions_.range(move.values[0]);
             const std::optional<Interval> b = expressions_.range(move.values[n.size() > 1 ? 1 : 0]);
             if (a && b) scale *= std::sqrt(std::abs((a->least + a->most) * (b->least + b->most)) / 4);
-            const bool plain = n.size() == 1 && known[0] && *known[0] > 0;
-            lines.moves += plain ? fmt::format("  scale: {}", n[0])
-                                 : fmt::format("  scale: {}, {}", n[0], n.size() > 1 ? n[1] : n[0]);
-            if (!plain && n.size() == 1 && is_random(n[0]))
-                lines.moves =
-                    lines.moves.substr(0, lines.moves.rfind("  scale:")) + fmt::format("  scale: {}", n[0]);
+            const bool one = n.size() == 1 && ((known[0] && *known[0] > 0) || is_random(n[0]));
+            const std::string second = n.size() > 1 ? n[1] : n[0];
+            if (height.block && !height.lifts && !is_random(n[0]))
+                lines.moves += fmt::format("  scale: {}, {}, 1", n[0], second);
+            else
+                lines.moves +=
+                    one ? fmt::format("  scale: {}", n[0]) : fmt::format("  scale: {}, {}", n[0], second);
         } else if (move.word == "skew") {
             const std::string along = n[0], up = n.size() > 1 ? n[1] : "0";
             lines.moves +=
@@ -99,11 +100,7 @@ std::optional<Writer::Lines> Writer::lines_of(const Modification& modification, 
             lines.moves += fmt::format("  rotate: z, -({0})  scale: 1, -1, 1  rotate: z, {0}", n[0]);
         }
     }
-    const double forward =
-        std::round(1e9 * ((lifts ? lift * (1 - scale) : 0) + lift_of_order * static_cast<double>(order))) /
-        1e9;
-    if (!moved[2].empty()) moved[2] = fmt::format("{}*({})", shortest(lift_of_z), moved[2]);
-    if (forward != 0) moved[2] = sum_of(moved[2], shortest(forward));
+    moved[2] = height_text(height, scale);
     flush();
     std::optional<std::string> inks = inks_of(modification, scope);
     if (!inks) return std::nullopt;

@@ -30,6 +30,11 @@ std::vector<const Adjustment*> moves_of(const Modification& modification) {
     return last_of_each(modification, order);
 }
 
+double size_of(const Affine& map) {
+    const auto& m = map.linear;
+    return std::sqrt(std::abs(m[0][0] * m[1][1] - m[0][1] * m[1][0]));
+}
+
 std::optional<Affine> affine_of(const Modification& modification, const Expressions& expressions,
                                 const Numbers& known) {
     Affine map;

@@ -47,6 +47,12 @@ std::string_view primitive_named(std::string_view name) {
     return {};
 }
 
+bool is_of_paths(std::string_view word) {
+    static constexpr std::array<std::string_view, 8> words = {"p",  "width", "x1", "y1",
+                                                              "x2", "y2",    "rx", "ry"};
+    return std::ranges::find(words, word) != words.end();
+}
+
 std::optional<Channel> channel_of(const Adjustment& adjustment) {
     if (adjustment.word == "h") return Channel::hue;
     if (adjustment.word == "sat") return Channel::saturation;
@@ -105,12 +111,9 @@ std::optional<Change> Evaluator::change(const Modification& modification, const 
     for (const Adjustment* const adjustment : in_order(modification)) {
         if (!spend(adjustment->span)) return std::nullopt;
         const std::string& word = adjustment->word;
-        if (word == "p" || word == "width" || word == "x1" || word == "y1" || word == "x2" || word == "y2" ||
-            word == "rx" || word == "ry")
-            continue; // of operations of a path, which reads them itself
+        if (is_of_paths(word)) continue;
         if (word == "time" || word == "timescale") {
-            if (noted_.insert(adjustment->span.begin).second)
-                file_.diagnostics.note(adjustment->span, fmt::format("'{}' changes nothing here", word));
+            note(adjustment->span, fmt::format("'{}' changes nothing here", word));
             continue;
         }
         std::vector<double> n;
@@ -162,8 +165,7 @@ std::optional<Affine> Evaluator::move(const Adjustment& adjustment, const std::v
     if (word == "z" && count == 1) return Affine::translate({0, 0, n[0]});
     if (word == "r" && count == 1) return Affine::rotate({0, 0, 1}, n[0]);
     if (word == "s" && count <= 3) {
-        const double y = count > 1 ? n[1] : n[0];
-        return scaled_by(n[0], y, std::sqrt(std::abs(n[0] * y)));
+        return scaled_by(n[0], count > 1 ? n[1] : n[0], count > 2 ? third : 1);
     }
     if (word == "skew" && count <= 2) {
         Affine step;
@@ -178,14 +180,12 @@ std::optional<Affine> Evaluator::move(const Adjustment& adjustment, const std::v
         const double x = n[2] - n[0], y = n[3] - n[1], length = std::hypot(x, y);
         return Affine::translate({n[0], n[1], 0}) *
                Affine::rotate({0, 0, 1}, std::atan2(y, x) * 180 / std::numbers::pi) *
-               scaled_by(length, length, length);
+               scaled_by(length, length, 1);
     }
     if (word == "trans" && count == 6) { // the unit square's corners (0, 0), (1, 0) and (1, 1) to these
         Affine step = Affine::translate({n[0], n[1], 0});
         step.linear[0] = {n[2] - n[0], n[3] - n[1], 0};
         step.linear[1] = {n[4] - n[2], n[5] - n[3], 0};
-        const double area = step.linear[0][0] * step.linear[1][1] - step.linear[0][1] * step.linear[1][0];
-        step.linear[2] = {0, 0, std::sqrt(std::abs(area))};
         return step;
     }
     return fail(adjustment.span, fmt::format("'{}' is not translated with {} numbers", word, count));

@@ -28,7 +28,7 @@ void Writer::write_elements(const Elements& elements, std::size_t first, Place& 
             comment(words);
         if (element.kind != Element::Kind::define) {
             write_element(element, place);
-            ++place.order;
+            place.order += width_of(element, place.shape);
             continue;
         }
         if (element.arguments[0].kind == Expr::Kind::modification) {
@@ -64,8 +64,9 @@ void Writer::write_element(const Element& element, Place& place) {
         if (element.name == "FILL" && !recursion_.index("FILL"))
             return fail(element.span, "'FILL' has no words in .inst");
         const std::string master = reference(element, &place, place.scope);
-        const std::optional<Lines> lines =
-            lines_of(element.modification, place.scope, place.order, draws_rules(element));
+        const bool rules = draws_rules(element);
+        const std::optional<Lines> lines = lines_of(element.modification, place.scope,
+                                                    {.order = place.order, .lifts = rules, .calls = rules});
         if (lines) line(fmt::format("instance: {}{}{}", master, lines->moves, lines->inks), element.span);
         break;
     }
@@ -79,15 +80,20 @@ void Writer::write_element(const Element& element, Place& place) {
         write_choice(element, place);
         break;
     case Element::Kind::transform: {
+        Place inner = place;
+        inner.order = 0;
         const std::string object =
-            part(element.body, 0, place, element.span) + parameter_list(place.parameters);
+            part(element.body, 0, inner, element.span) + parameter_list(place.parameters);
         if (element.clones) return fail(element.span, "'clone' has no words in .inst");
+        double order = place.order;
         for (const Expr& change : element.arguments) {
             if (change.kind != Expr::Kind::modification)
                 return fail(change.span, "this transform has no words in .inst");
             const bool lifted = lifts(*change.change, {&element.body}, element.span);
-            if (const std::optional<Lines> lines = lines_of(*change.change, place.scope, place.order, lifted))
+            if (const std::optional<Lines> lines =
+                    lines_of(*change.change, place.scope, {.order = order, .lifts = lifted, .block = true}))
                 line(fmt::format("instance: {}{}{}", object, lines->moves, lines->inks), element.span);
+            order += width_of(element.body, place.shape);
         }
         break;
     }
@@ -208,8 +214,16 @@ void Writer::write_loop(const Element& element, Place& place) {
     const std::optional<std::string> begin =
         element.arguments.size() == 2 ? text(element.arguments.front(), place.scope) : std::nullopt;
     const bool lifted = lifts(element.modification, {&element.body}, element.span);
-    const std::optional<Lines> lines = lines_of(element.modification, place.scope, 1, lifted);
-    if (!count || !lines) return;
+    if (!count) return;
+    const double turn = width_of(element.body, place.shape);
+    const std::optional<double> turns = turns_of(element);
+    const std::optional<Lines> lines = lines_of(element.modification, place.scope,
+                                                {.order = turns ? turn : 0,
+                                                 .lifts = lifted,
+                                                 .block = true,
+                                                 .width = turns ? 0 : width_of(element, place.shape),
+                                                 .each_of = turns ? "" : fmt::format("max(1, {})", *count)});
+    if (!lines) return;
     if (is_random(*count) || (begin && is_random(*begin)))
         return fail(element.span, "a loop of a random number of turns has no words in .inst");
     if (begin) count = fmt::format("({} - ({}))", *count, *begin);
@@ -249,6 +263,7 @@ void Writer::write_indexed_loop(const Element& element, Place& place) {
     if (!element.name.empty()) inner.scope[element.name] = index;
     const std::string object = part(element.body, 0, inner, element.span);
     const bool lifted = lifts(element.modification, {&element.body, &element.other}, element.span);
+    const double width = width_of(element.body, place.shape);
     std::string moves, inks;
     Affine moved;
     bool numbers = true;
@@ -263,7 +278,8 @@ void Writer::write_indexed_loop(const Element& element, Place& place) {
         Scope scope = place.scope;
         scope[element.name] = shortest(at);
         known[element.name] = at;
-        const std::optional<Lines> turn = lines_of(element.modification, scope, 1, lifted);
+        const std::optional<Lines> turn =
+            lines_of(element.modification, scope, {.order = width, .lifts = lifted, .block = true});
         if (!turn || out_.text.size() > longest_output) return;
         if (is_random(turn->moves) || is_random(turn->inks)) // later copies stand on those before them
             return fail(element.span, "a random loop whose index is used has no words in .inst");
@@ -273,13 +289,14 @@ void Writer::write_indexed_loop(const Element& element, Place& place) {
             moved = moved * *map;
             // Lines of one turn telescope to this.
             const double shrunk = lifted ? lift * (1 - std::abs(moved.linear[2][2])) : 0;
-            const Vec3 lies(moved.translation.x, moved.translation.y,
-                            lift_of_z * moved.translation.z + lift_of_order * ++turns + shrunk);
+            Affine written = moved;
+            if (!lifted) written.linear[2][2] = 1;
+            const Vec3 lies(moved.translation.x, moved.translation.y, unit_ * width * ++turns + shrunk);
             moves = "  matrix:";
             for (int row = 0; row < 3; ++row) {
-                moves += fmt::format(" {}, {}, {}, {}{}", rounded(moved.linear[0][row], 1e9),
-                                     rounded(moved.linear[1][row], 1e9), rounded(moved.linear[2][row], 1e9),
-                                     rounded(lies[row], 1e9), row < 2 ? "," : "");
+                moves += fmt::format(" {}, {}, {}, {}{}", shortest(written.linear[0][row]),
+                                     shortest(written.linear[1][row]), shortest(written.linear[2][row]),
+                                     shortest(lies[row]), row < 2 ? "," : "");
             }
         } else {
             moves.insert(0, turn->moves);

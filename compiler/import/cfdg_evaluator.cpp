@@ -86,6 +86,10 @@ std::nullopt_t Evaluator::fail(Span place, std::string message) {
     return std::nullopt;
 }
 
+void Evaluator::note(Span place, std::string message) {
+    if (noted_.insert(place.begin).second) file_.diagnostics.note(place, std::move(message));
+}
+
 bool Evaluator::spend(Span place) {
     if (++work_ <= most_evaluations) return true;
     if (work_ == most_evaluations + 1)

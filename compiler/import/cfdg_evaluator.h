@@ -50,6 +50,10 @@ class Evaluator {
     const Elements* choice(const Element& element, const Surroundings& at);
     std::optional<LoopBounds> bounds(const Element& loop, const Surroundings& at);
 
+    /// Notes what changes nothing, once for each place.
+    void note(Span place, std::string message);
+    std::nullopt_t fail(Span place, std::string message);
+
     /// The random numbers of the rule that is evaluated.
     Draws draws;
     /// That is left for the outlines of all paths: sides that are compared.
@@ -77,7 +81,6 @@ class Evaluator {
     bool colour(const Adjustment& adjustment, const std::vector<double>& n, std::vector<ColourStep>& steps);
     const Definition* definition(std::string_view name, std::string_view space) const;
     bool spend(Span place);
-    std::nullopt_t fail(Span place, std::string message);
 
     const ForeignFile& file_;
     const Grammar& grammar_;
@@ -92,6 +95,9 @@ class Evaluator {
 /// Those of a modification in the order in which they multiply, with colours behind them: x y z, r, s, skew,
 /// f, transform; as written where the modification keeps its order.
 std::vector<const Adjustment*> in_order(const Modification& modification);
+
+/// Whether the adjustment belongs to lines of paths, which read it themselves.
+bool is_of_paths(std::string_view word);
 
 /// Of a color's steps.
 std::optional<Channel> channel_of(const Adjustment& adjustment);

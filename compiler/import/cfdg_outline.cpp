@@ -260,18 +260,20 @@ class Filler {
     std::size_t& left_;
 };
 
-/// Coordinates of polygons lie within 1000, and keep six decimals: what they are multiples of.
-double unit_of(double most) {
-    return most > 900 || (most < 0.1 && most > 0) ? most : 1;
-}
-
-/// What is closer than this may touch where it is rounded.
+/// What is closer than this is rounding.
 double grain(const std::vector<Outline>& outlines) {
     double most = 0;
     for (const Outline& outline : outlines)
         for (const Point point : outline.points)
             most = std::max({most, std::abs(point.x), std::abs(point.y)});
-    return 2e-6 * unit_of(most);
+    return 1e-9 * most;
+}
+
+/// A power of two, of which small numbers are multiples to the bit, where coordinates have another size than
+/// those that polygon(...) takes.
+double unit_of(double most) {
+    constexpr double largest = 900, smallest = 1e-3;
+    return most > 0 && (most > largest || most < smallest) ? std::exp2(std::floor(std::log2(most))) : 1;
 }
 
 Filler filler(const std::vector<Outline>& outlines, bool even_odd, std::size_t& work) {
@@ -459,11 +461,10 @@ std::string polygon_text(const Polygon& polygon) {
         most = std::max({most, std::abs(point.x), std::abs(point.y)});
     const double unit = unit_of(most);
     std::string text;
-    const auto rounded = [&](double value) { return shortest(std::round(1e6 * value / unit) / 1e6); };
     for (const Point point : polygon)
-        text += fmt::format("{}{}, {}", text.empty() ? "" : ", ", rounded(point.x), rounded(point.y));
-    return fmt::format("instance: polygon({}){}", text,
-                       unit == 1 ? "" : fmt::format("  scale: {:.9g}", unit));
+        text += fmt::format("{}{}, {}", text.empty() ? "" : ", ", shortest(point.x / unit),
+                            shortest(point.y / unit));
+    return fmt::format("instance: polygon({}){}", text, unit == 1 ? "" : "  scale: " + shortest(unit));
 }
 
 } // namespace graftal::cfdg

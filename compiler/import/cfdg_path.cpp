@@ -8,6 +8,9 @@
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
 
+#include "compiler/import/cfdg_affine.h"
+#include "compiler/import/cfdg_path_flags.h"
+
 namespace graftal::cfdg {
 
 namespace {
@@ -27,8 +30,8 @@ struct Under {
 
 class Follower {
   public:
-    Follower(const ForeignFile& file, const Grammar& grammar, Evaluator& evaluator)
-        : file_(file), grammar_(grammar), evaluator_(evaluator) {}
+    Follower(const Affine& world, const ForeignFile& file, const Grammar& grammar, Evaluator& evaluator)
+        : world_(world), file_(file), grammar_(grammar), evaluator_(evaluator) {}
 
     std::optional<std::vector<PathPart>> run(const Shape& path, const Surroundings& at) {
         walk(path.rules.front().body, at, {});
@@ -202,17 +205,35 @@ class Follower {
 
     // Operations
 
-    /// Coordinates of version 2 stand in braces by name.
-    std::vector<double> numbers_of(const Element& element, const Surroundings& at, std::string& flags) {
+    /// The numbers and flags in the parentheses of version 3.
+    std::vector<double> arguments_of(const Element& element, const Surroundings& at, PathFlags& flags) {
         std::vector<double> numbers;
         for (const Expr& argument : element.arguments) {
             const std::optional<Value> value = evaluator_.value(argument, at);
-            good_ = good_ && value;
-            if (!value) return numbers;
-            flags += value->flags;
+            good_ = good_ && value && flags.add(value->flags, argument.span);
+            if (!good_) return numbers;
             numbers.insert(numbers.end(), value->numbers.begin(), value->numbers.end());
         }
-        if (!element.arguments.empty()) return numbers;
+        return numbers;
+    }
+
+    /// The flags of version 2, which stand among the adjustments, with a note of those that do nothing.
+    void add_words(const Element& element, PathFlags& flags) {
+        for (const Adjustment& adjustment : element.modification.adjustments) {
+            const bool moves = element.kind == Element::Kind::shape && !is_of_paths(adjustment.word);
+            if (adjustment.word == "p" && !adjustment.values.empty())
+                flags.add_word(adjustment.values[0].text, adjustment.span);
+            else if (!moves && !takes_word(element.name, adjustment.word))
+                evaluator_.note(adjustment.span,
+                                fmt::format("'{}' changes nothing in {}", adjustment.word, element.name));
+        }
+    }
+
+    /// Coordinates of version 2 stand in braces by name.
+    std::vector<double> numbers_of(const Element& element, const Surroundings& at, PathFlags& flags) {
+        std::vector<double> numbers = arguments_of(element, at, flags);
+        add_words(element, flags);
+        if (!element.arguments.empty() || element.name == "CLOSEPOLY") return numbers;
         const auto given = [&](const char* word, double otherwise, bool& there) {
             for (const Adjustment& adjustment : element.modification.adjustments)
                 if (adjustment.word == word && !adjustment.values.empty()) {
@@ -221,8 +242,6 @@ class Follower {
                 }
             return otherwise;
         };
-        for (const Adjustment& adjustment : element.modification.adjustments)
-            if (adjustment.word == "p" && !adjustment.values.empty()) flags += adjustment.values[0].text;
         bool there = false, first = false, second = false, radii = false, one = false;
         numbers = {given("x", 0, there), given("y", 0, there)};
         const double x1 = given("x1", 0, first), y1 = given("y1", 0, first);
@@ -233,7 +252,7 @@ class Follower {
         if (element.name.starts_with("CURVE")) {
             if (first) numbers.insert(numbers.end(), {x1, y1});
             if (second || !first) numbers.insert(numbers.end(), {x2, y2});
-            if (!first) flags += "CF::Continuous";
+            if (!first) flags.add(PathFlag::continuous);
         } else if (element.name.starts_with("ARC")) {
             bool turned = false;
             numbers.insert(numbers.end(), {rx, ry, given("r", 0, turned)});
@@ -253,19 +272,13 @@ class Follower {
 
     void operation(const Element& element, const Surroundings& at, const Affine& place) {
         renew();
-        std::string flags;
+        PathFlags flags(evaluator_, element.name);
         const std::vector<double> n = numbers_of(element, at, flags);
         if (!good_) return;
         const std::string& name = element.name;
-        if (name == "CLOSEPOLY") {
-            if (outlines_.empty() || outlines_.back().points.empty()) return;
-            outlines_.back().closed = true;
-            at_ = outlines_.back().points.front();
-            control_ = at_;
-            return;
-        }
-        if (n.size() < 2 || n.size() > 6)
-            return fail(element.span, fmt::format("'{}' takes coordinates", name));
+        if (!takes_numbers(name, n.size(), flags))
+            return fail(element.span, fmt::format("'{}' does not take {} numbers", name, n.size()));
+        if (name == "CLOSEPOLY") return close(flags.has(PathFlag::align));
         const bool relative = name.ends_with("REL");
         const Point from = at_;
         const auto point = [&](std::size_t i) {
@@ -273,6 +286,7 @@ class Follower {
             return relative ? from + offset : offset;
         };
         const Point to = point(0);
+        pulls_ = {1};
         if (name == "MOVETO" || name == "MOVEREL") {
             outlines_.emplace_back();
             add(to);
@@ -281,7 +295,6 @@ class Follower {
             add(to);
         } else if (name.starts_with("CURVE")) {
             begin();
-            if (n.size() % 2 != 0) return fail(element.span, fmt::format("'{}' takes points", name));
             curve(n, flags, point, to);
         } else {
             begin();
@@ -294,6 +307,18 @@ class Follower {
         }
         if (!name.starts_with("CURVE")) control_ = at_;
         if (points_ > most_points) fail(element.span, "the path has too many points");
+    }
+
+    /// Aligned, the last point becomes the first of the outline, and what leads to it follows.
+    void close(bool aligned) {
+        if (outlines_.empty() || outlines_.back().points.empty()) return;
+        std::vector<Point>& points = outlines_.back().points;
+        outlines_.back().closed = true;
+        const Point moved = points.front() - points.back();
+        for (std::size_t i = 0; aligned && i < pulls_.size() && i + 1 < points.size(); ++i)
+            points[points.size() - 1 - i] += pulls_[pulls_.size() - 1 - i] * moved;
+        at_ = points.front();
+        control_ = at_;
     }
 
     void begin() {
@@ -310,9 +335,9 @@ class Follower {
     }
 
     template<typename At>
-    void curve(const std::vector<double>& n, const std::string& flags, const At& point, Point to) {
+    void curve(const std::vector<double>& n, const PathFlags& flags, const At& point, Point to) {
         const Point from = at_;
-        const bool smooth = flags.find("Continuous") != std::string::npos;
+        const bool smooth = flags.has(PathFlag::continuous);
         Point a = smooth ? 2.0 * from - control_ : n.size() >= 4 ? point(2) : from;
         const std::size_t last = smooth ? 2 : 4;
         const bool cubic = n.size() >= last + 2;
@@ -325,21 +350,22 @@ class Follower {
         } else {
             control_ = b;
         }
+        pulls_.clear();
         for (int i = 1; i <= curve_steps; ++i) {
             const double t = static_cast<double>(i) / curve_steps, u = 1 - t;
             add(u * u * u * from + 3 * u * u * t * a + 3 * u * t * t * b + t * t * t * to);
+            pulls_.push_back(cubic ? t * t * t : t * t);
         }
     }
 
     /// By end points, as SVG's (SVG 1.1, appendix F.6.5).
-    void arc(const std::vector<double>& n, const std::string& flags, Point from, Point to,
-             const Affine& place, const Element& element) {
+    void arc(const std::vector<double>& n, const PathFlags& flags, Point from, Point to, const Affine& place,
+             const Element& element) {
         double rx = n.size() > 2 ? n[2] : 1;
         double ry = n.size() > 4 ? n[3] : rx;
         const double angle = (n.size() > 4 ? n[4] : 0) * std::numbers::pi / 180;
-        const bool large =
-            flags.find("ArcLarge") != std::string::npos || flags.find("large") != std::string::npos;
-        bool clockwise = flags.find("ArcCW") != std::string::npos || flags.find("cw") != std::string::npos;
+        const bool large = flags.has(PathFlag::arc_large);
+        bool clockwise = flags.has(PathFlag::arc_clockwise);
         if (rx < 0) clockwise = !clockwise;
         rx = std::abs(rx);
         ry = std::abs(ry);
@@ -364,8 +390,14 @@ class Follower {
         const int steps =
             std::max(1, static_cast<int>(std::ceil(std::abs(turn) * 180 / std::numbers::pi / arc_step_deg)));
         if (!std::isfinite(turn)) return fail(element.span, "this arc has no numbers");
+        pulls_.clear();
+        // Context Free has a cubic curve for each quarter, of which the last one is pulled.
+        const double quarters = std::max(1.0, std::ceil(std::abs(turn) / (std::numbers::pi / 2) - 1e-9));
+        const double last = 1 - (quarters - 1) * std::numbers::pi / 2 / std::max(std::abs(turn), 1e-300);
         for (int i = 1; i <= steps; ++i) {
             const double t = first + turn * i / steps;
+            const double pulled = std::max(0.0, 1 - (1 - static_cast<double>(i) / steps) / last);
+            pulls_.push_back(pulled * pulled * pulled);
             const Point on(rx * std::cos(t), ry * std::sin(t));
             put(i == steps ? to : centre + Point(c * on.x - s * on.y, s * on.x + c * on.y));
         }
@@ -380,32 +412,48 @@ class Follower {
             return;
         }
         const Change change = changed(under, *own).change;
-        std::string flags;
+        PathFlags flags(evaluator_, element.name);
         Stroke stroke;
-        for (const Expr& argument : element.arguments) {
-            const std::optional<Value> value = evaluator_.value(argument, at);
-            if (!value) {
-                good_ = false;
-                return;
-            }
-            flags += value->flags;
-            if (!value->numbers.empty()) stroke.width = value->numbers.front();
-        }
-        for (const Adjustment& adjustment : element.modification.adjustments) {
+        const std::vector<double> n = arguments_of(element, at, flags);
+        add_words(element, flags);
+        if (!good_) return;
+        if (!takes_numbers(element.name, n.size(), flags))
+            return fail(element.span, fmt::format("'{}' does not take {} numbers", element.name, n.size()));
+        if (element.name == "FILL") return fill(change, element.span, flags.has(PathFlag::even_odd));
+        if (!n.empty()) stroke.width = n.front();
+        for (const Adjustment& adjustment : element.modification.adjustments)
             if (adjustment.word == "width" && !adjustment.values.empty())
                 stroke.width = number(adjustment.values[0], at);
-            if (adjustment.word == "p" && !adjustment.values.empty()) flags += adjustment.values[0].text;
-        }
-        const auto has = [&](std::string_view word, std::string_view old) {
-            return flags.find(word) != std::string::npos || flags.find(old) != std::string::npos;
-        };
-        if (element.name == "FILL") return fill(change, element.span, has("EvenOdd", "evenodd"));
         if (!(stroke.width > 0)) return fail(element.span, "a stroke needs a width");
-        if (has("RoundJoin", "roundjoin")) stroke.join = Join::round;
-        if (has("BevelJoin", "beveljoin")) stroke.join = Join::bevel;
-        if (has("RoundCap", "roundcap")) stroke.cap = Cap::round;
-        if (has("SquareCap", "squarecap")) stroke.cap = Cap::square;
-        draw(stroked(outlines_, stroke, evaluator_.outline_work), change, element.span);
+        if (flags.has(PathFlag::round_join)) stroke.join = Join::round;
+        if (flags.has(PathFlag::bevel_join)) stroke.join = Join::bevel;
+        if (flags.has(PathFlag::round_cap)) stroke.cap = Cap::round;
+        if (flags.has(PathFlag::square_cap)) stroke.cap = Cap::square;
+        if (!flags.has(PathFlag::iso_width))
+            return draw(stroked(outlines_, stroke, evaluator_.outline_work), change, element.span);
+        // The pen is round where the path lies: it draws there, in the same area.
+        Affine pen = world_ * change.map;
+        pen.translation = Vec3(0.0);
+        const double size = size_of(pen);
+        if (!(size > 0)) return;
+        pen.linear[2] = {0, 0, size};
+        pen.linear /= size;
+        std::vector<Outline> moved = outlines_;
+        move(moved, pen);
+        std::optional<std::vector<Polygon>> drawn = stroked(moved, stroke, evaluator_.outline_work);
+        if (drawn)
+            for (Polygon& polygon : *drawn)
+                for (Point& point : polygon)
+                    point = placed(point.x, point.y, inverse(pen));
+        const std::size_t before = parts_.size();
+        draw(std::move(drawn), change, element.span);
+        if (parts_.size() > before) parts_.back().of_world = true;
+    }
+
+    void move(std::vector<Outline>& outlines, const Affine& map) const {
+        for (Outline& outline : outlines)
+            for (Point& point : outline.points)
+                point = placed(point.x, point.y, map);
     }
 
     void fill(const Change& change, Span span, bool even_odd) {
@@ -419,6 +467,7 @@ class Follower {
         if (!polygons->empty()) parts_.push_back({std::move(*polygons), change, span});
     }
 
+    const Affine& world_;
     const ForeignFile& file_;
     const Grammar& grammar_;
     Evaluator& evaluator_;
@@ -426,6 +475,7 @@ class Follower {
     std::vector<Outline> outlines_;
     std::vector<PathPart> parts_;
     Point at_{0.0}, control_{0.0};
+    std::vector<double> pulls_; ///< how far the last points follow where the last one is moved
     std::size_t points_ = 0, turns_ = 0;
     int depth_ = 0;
     bool drawn_ = false; ///< commands since the last operation
@@ -434,10 +484,10 @@ class Follower {
 
 } // namespace
 
-std::optional<std::vector<PathPart>> follow(const Shape& path, const Surroundings& at,
+std::optional<std::vector<PathPart>> follow(const Shape& path, const Surroundings& at, const Affine& world,
                                             const ForeignFile& file, const Grammar& grammar,
                                             Evaluator& evaluator) {
-    return Follower(file, grammar, evaluator).run(path, at);
+    return Follower(world, file, grammar, evaluator).run(path, at);
 }
 
 } // namespace graftal::cfdg

@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <map>
+#include <numeric>
 #include <set>
 #include <utility>
 
@@ -17,6 +19,8 @@ namespace {
 constexpr double unknown = std::numeric_limits<double>::infinity();
 /// Recursion that does not shrink is drawn so deep.
 constexpr int endless_generations = 300;
+/// The logarithm of a size that becomes smaller: an unfolding tells the sizes of all turns apart.
+constexpr double least_growth = -2e-6;
 /// The share of a size that no picture shows.
 constexpr double invisible = 1e-4;
 /// Recursion that shrinks less than by this factor is slow.
@@ -189,6 +193,14 @@ bool Recursion::fades_slowly(std::size_t from) const {
     return false;
 }
 
+std::vector<std::size_t> Recursion::from_the_leaves() const {
+    std::vector<std::size_t> order(grammar_.shapes.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    // Kosaraju's second walk finds components before those that they call.
+    std::ranges::stable_sort(order, std::greater<>(), [&](std::size_t shape) { return component_[shape]; });
+    return order;
+}
+
 void Recursion::mark_callers(std::vector<bool>& marked) const {
     marked.resize(grammar_.shapes.size() + 1);
     std::vector<std::vector<std::size_t>> callers(marked.size());
@@ -290,7 +302,7 @@ void Recursion::find_limits() {
             for (std::size_t i = 0; i < n; ++i)
                 largest = std::max(largest, way[i][i]);
         }
-        shrinks_[component] = largest < -1e-9;
+        shrinks_[component] = largest < least_growth;
         branches_[component] = inner.size() > n && fills(inner, place);
         slow_[component] = largest > slow_growth;
         if (shrinks_[component] && !changes) continue;

@@ -26,6 +26,8 @@ class Recursion {
     /// Whether what is too small to be seen one by one is seen together, below the shape: recursion whose
     /// areas fill the picture, or that shrinks slowly and begins anew at all sizes.
     bool fades_slowly(std::size_t from) const;
+    /// The shapes of the grammar, those that others call before these.
+    std::vector<std::size_t> from_the_leaves() const;
     /// Marks all shapes that lead to a marked one.
     void mark_callers(std::vector<bool>& marked) const;
 

@@ -25,7 +25,8 @@ constexpr std::size_t most_copies = 20'000;
 
 bool moves_in_depth(const Modification& modification) {
     return std::ranges::any_of(modification.adjustments, [](const Adjustment& adjustment) {
-        return adjustment.word == "z" || (adjustment.word == "x" && adjustment.values.size() == 3);
+        return adjustment.word == "z" || (adjustment.word == "x" && adjustment.values.size() == 3) ||
+               (adjustment.word == "y" && adjustment.values.size() == 2);
     });
 }
 
@@ -45,20 +46,25 @@ SceneWriter::SceneWriter(const ForeignFile& file, const Grammar& grammar)
     : file_(file), grammar_(grammar), evaluator_(file, grammar) {
     for (const char* const taken : {"flat", "scene", "n"})
         names_.insert(taken);
-    for (const Shape& shape : grammar_.shapes)
-        for (const Rule& rule : shape.rules)
-            if (holds(rule.body, moves_in_depth)) camera_height_ = 10'000; // above all
     const auto fades = [](const Modification& modification) {
         return std::ranges::any_of(modification.adjustments, [](const Adjustment& adjustment) {
             return adjustment.word == "a" || (adjustment.word == "h" && adjustment.values.size() == 4);
         });
     };
-    for (const Shape& shape : grammar_.shapes)
-        for (const Rule& rule : shape.rules)
-            translucent_ = translucent_ || holds(rule.body, fades);
-    for (const Definition& definition : grammar_.definitions)
-        translucent_ = translucent_ || (definition.value.change && fades(*definition.value.change));
-    translucent_ = translucent_ || (grammar_.start && fades(grammar_.start->modification));
+    const auto anywhere = [&](const auto& test) {
+        return (grammar_.start && test(grammar_.start->modification)) ||
+               std::ranges::any_of(grammar_.shapes,
+                                   [&](const Shape& shape) {
+                                       return std::ranges::any_of(shape.rules, [&](const Rule& rule) {
+                                           return holds(rule.body, test);
+                                       });
+                                   }) ||
+               std::ranges::any_of(grammar_.definitions, [&](const Definition& definition) {
+                   return definition.value.change && test(*definition.value.change);
+               });
+    };
+    translucent_ = anywhere(fades);
+    deep_ = anywhere(moves_in_depth);
 }
 
 /// A polygon of as many corners as a large picture needs.

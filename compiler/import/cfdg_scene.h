@@ -20,12 +20,6 @@ namespace graftal::cfdg {
 /// How far the smallest shapes lie in front of the largest: what a shape of scale s draws lies at lift * (1 -
 /// s).
 inline constexpr double lift = 0.02;
-/// Of one element of a rule over the one before: both engines see one veil behind another from a hundred
-/// thousandth of a picture's size on.
-inline constexpr double lift_of_order = 1e-5;
-/// What a `z` of 1 is.
-inline constexpr double lift_of_z = 10;
-
 /// A number with as many decimals as `steps` has zeros, at most.
 inline std::string rounded(double value, double steps = 1e6) {
     return shortest(std::round(steps * value) / steps);
@@ -59,6 +53,8 @@ class SceneWriter {
     Translation out_{.extension = "inst"};
     int depth_ = 0;
     double camera_height_ = 10;
+    bool translucent_ = false; ///< some colours are
+    bool deep_ = false;        ///< some shapes move in depth
     /// The view of a grammar that says none: where the bounds do not give it. Half of its size.
     std::optional<std::pair<Vec3, Vec3>> middle_and_half_;
 
@@ -70,7 +66,6 @@ class SceneWriter {
 
     std::set<std::string> names_;
     std::map<std::string, std::string> primitives_; ///< that are used
-    bool translucent_ = false;                      ///< some colours are
     Lattice lattice_;
     std::vector<Affine> copies_;
 };

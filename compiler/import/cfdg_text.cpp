@@ -12,9 +12,10 @@ namespace graftal::cfdg {
 
 namespace {
 
-/// Nine nine_digits.
-std::string nine_digits(double value) {
-    return fmt::format("{:.9g}", value == 0 ? 0 : value);
+/// A number that was computed: that of few digits which it differs from by rounding errors, or itself.
+std::string tidy(double value) {
+    const double few = parse_number(fmt::format("{:.12g}", value)).value_or(value);
+    return shortest(std::abs(few - value) <= 1e-15 * std::abs(value) ? few : value);
 }
 
 /// What steps of saturation, brightness or alpha do together: a share of the way to a goal.
@@ -63,19 +64,18 @@ std::string moves_text(const Affine& map) {
     const Vec3 at = map.translation;
     std::string text;
     const double size = std::hypot(m[0][0], m[0][1]);
-    const bool similar = std::abs(m[0][0] - m[1][1]) <= 1e-12 * size &&
-                         std::abs(m[0][1] + m[1][0]) <= 1e-12 * size &&
-                         std::abs(m[2][2] - size) <= 1e-12 * size;
+    const bool similar = std::abs(m[0][0] - m[1][1]) <= 1e-15 * size &&
+                         std::abs(m[0][1] + m[1][0]) <= 1e-15 * size && m[2][2] == 1;
     if (!similar)
-        return fmt::format("  matrix: {}, {}, 0, {},  {}, {}, 0, {},  0, 0, {}, {}", nine_digits(m[0][0]),
-                           nine_digits(m[1][0]), nine_digits(at.x), nine_digits(m[0][1]),
-                           nine_digits(m[1][1]), nine_digits(at.y), nine_digits(m[2][2]), nine_digits(at.z));
-    if (std::abs(size - 1) > 1e-12) text += "  scale: " + nine_digits(size);
-    const double angle = std::atan2(m[0][1], m[0][0]) * 180 / std::numbers::pi;
-    if (std::abs(angle) > 1e-10) text += "  rotate: z, " + nine_digits(angle);
+        return fmt::format("  matrix: {}, {}, 0, {},  {}, {}, 0, {},  0, 0, {}, {}", shortest(m[0][0]),
+                           shortest(m[1][0]), shortest(at.x), shortest(m[0][1]), shortest(m[1][1]),
+                           shortest(at.y), shortest(m[2][2]), shortest(at.z));
+    if (const std::string scale = tidy(size); scale != "1")
+        text += fmt::format("  scale: {0}, {0}, 1", scale);
+    const double angle_deg = std::atan2(m[0][1], m[0][0]) * 180 / std::numbers::pi;
+    if (angle_deg != 0) text += "  rotate: z, " + tidy(angle_deg);
     if (at != Vec3(0.0))
-        text +=
-            fmt::format("  translate: {}, {}, {}", nine_digits(at.x), nine_digits(at.y), nine_digits(at.z));
+        text += fmt::format("  translate: {}, {}, {}", shortest(at.x), shortest(at.y), shortest(at.z));
     return text;
 }
 
@@ -84,7 +84,7 @@ std::optional<std::string> ink_text(const std::vector<ColourStep>& steps, Target
     std::string text;
     double turn = 0;
     const auto flush = [&] {
-        if (wrapped_hue(turn) != 0) text += " hue " + nine_digits(std::remainder(turn, 360));
+        if (wrapped_hue(turn) != 0) text += " hue " + tidy(std::remainder(turn, 360));
         turn = 0;
     };
     for (const ColourStep& step : steps) {
@@ -99,15 +99,14 @@ std::optional<std::string> ink_text(const std::vector<ColourStep>& steps, Target
             flush();
             const double goal = step.kind == ColourStep::Kind::toward ? step.goal : target[0];
             text += fmt::format(" hue {} to {} by {}", step.amount > 0 ? "up" : "down",
-                                nine_digits(wrapped_hue(goal)), nine_digits(std::abs(step.amount)));
+                                tidy(wrapped_hue(goal)), tidy(std::abs(step.amount)));
         }
     }
     flush();
     static constexpr std::array<const char*, 4> names = {"hue", "saturation", "value", "alpha"};
     for (std::size_t channel = 1; channel < ways.size(); ++channel)
         if (const Way& way = ways[channel]; way.share > 0)
-            text +=
-                fmt::format(" {} to {} by {}", names[channel], nine_digits(way.goal), nine_digits(way.share));
+            text += fmt::format(" {} to {} by {}", names[channel], tidy(way.goal), tidy(way.share));
     return text.empty() ? text : "  ink {" + text + " }";
 }
 

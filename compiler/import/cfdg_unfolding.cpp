@@ -8,7 +8,10 @@
 
 #include <fmt/format.h>
 #include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <glm/vec2.hpp>
 
+#include "compiler/import/cfdg_affine.h"
 #include "compiler/import/cfdg_path.h"
 #include "compiler/support/counter_random.h"
 
@@ -25,7 +28,6 @@ constexpr std::size_t most_unfolded_lines = 600'000;
 constexpr std::size_t most_loop_turns = 2'000'000;
 /// Of all shapes together: each turn of a loop may add one to those before it.
 constexpr std::size_t most_colour_steps = 4'000'000;
-constexpr std::size_t longest_unfolding = 48'000'000;
 /// The share of the picture below which Context Free draws no shape: 0.3 pixels of 500.
 constexpr double too_small = 6e-4;
 constexpr double smallest_pixels = 0.3;
@@ -37,9 +39,14 @@ std::uint64_t hash_of(std::string_view text) {
     return hash;
 }
 
-double size_of(const Affine& map) {
-    const auto& m = map.linear;
-    return std::sqrt(std::abs(m[0][0] * m[1][1] - m[0][1] * m[1][0]));
+/// The same for all maps that stretch alike, whatever their size: entries of the metric that a map induces.
+std::string stretch_text(const Affine& map) {
+    const glm::dvec2 across(map.linear[0]), up(map.linear[1]);
+    const double area = std::abs(across.x * up.y - across.y * up.x);
+    const auto entry = [&](double product) { return std::llround(1e6 * std::min(product / area, 1e9)); };
+    if (!(area > 0)) return "flat";
+    return fmt::format("m{},{},{}", entry(glm::dot(across, across)), entry(glm::dot(across, up)),
+                       entry(glm::dot(up, up)));
 }
 
 } // namespace
@@ -68,9 +75,10 @@ Translation Unfolding::write() {
     const std::optional<std::string> inks = ink_text(change->colours, target);
     if (!inks) fail(start.span, "this changes a colour away from another");
     std::string master = primitive_named(shape->name).empty() ? "" : primitive(primitive_named(shape->name));
+    std::optional<std::size_t> first;
     if (grammar_.numbers.contains(shape->name)) {
-        const std::optional<std::size_t> first = unfold_from(*shape, target, change->map);
-        if (first) master = nodes_[*first].name;
+        first = unfold_from(*shape, target, change->map);
+        if (first) master = name_of(*first);
     }
     if (master.empty()) fail(start.span, fmt::format("'{}' is no shape to start from", shape->name));
     if (full_ && !drawn_) fail(start.span, "the grammar makes too many shapes");
@@ -79,13 +87,14 @@ Translation Unfolding::write() {
         middle_and_half_ = {0.5 * (least_ + most_), glm::max(half, Vec3(0.05 * std::max(extent_, 1e-3)))};
     }
     if (file_.diagnostics.has_errors()) return std::move(out_);
+    if (first) find_order(*first);
     write_scene();
-    if (!nodes_.empty()) {
+    if (first) {
         if (full_)
             file_.diagnostics.warning(
                 start.span,
                 fmt::format("the grammar makes more than {} shapes; the smallest are left out", lines_));
-        write_nodes();
+        write_nodes(*first);
     }
     if (inks) write_start(master + moves_text(change->map), *inks);
     write_end();
@@ -97,23 +106,38 @@ std::optional<std::size_t> Unfolding::unfold_from(const ShapeValue& shape, const
                                                   const Affine& world) {
     std::optional<std::size_t> first;
     for (salt_ = 0; salt_ < most_trials && !drawn_ && file_.diagnostics.error_count() == 0; ++salt_) {
-        nodes_.clear();
-        known_.clear();
-        open_ = {};
-        first = node_for(shape, target, std::nullopt, world);
-        while (!open_.empty() && file_.diagnostics.error_count() == 0) {
-            const auto [size, id] = open_.top();
-            open_.pop();
-            // All others are smaller. A canvas of a size is as many pixels wide, if that is more than usual.
-            if (size < std::min(too_small * extent_, grammar_.size ? smallest_pixels : too_small * extent_))
-                break;
-            if (lines_ > most_unfolded_lines || turns_ > most_loop_turns) {
-                full_ = true;
-                break;
-            }
-            unfold(id);
+        const bool known = stretches_;
+        first = unfold_once(shape, target, world);
+        // Some path depends on how it is stretched: so do those that lead to it.
+        if (stretches_ && !known) {
+            turns_ = colour_steps_ = 0;
+            first = unfold_once(shape, target, world);
         }
         if (!random_[grammar_.numbers.at(shape.name)]) break;
+    }
+    return first;
+}
+
+std::optional<std::size_t> Unfolding::unfold_once(const ShapeValue& shape, const Target& target,
+                                                  const Affine& world) {
+    nodes_.clear();
+    known_.clear();
+    uses_.clear();
+    open_ = {};
+    lines_ = 0;
+    full_ = false;
+    const std::optional<std::size_t> first = node_for(shape, target, std::nullopt, world);
+    while (!open_.empty() && file_.diagnostics.error_count() == 0) {
+        const auto [size, id] = open_.top();
+        open_.pop();
+        // All others are smaller. A canvas of a size is as many pixels wide, if that is more than usual.
+        if (size < std::min(too_small * extent_, grammar_.size ? smallest_pixels : too_small * extent_))
+            break;
+        if (lines_ > most_unfolded_lines || turns_ > most_loop_turns) {
+            full_ = true;
+            break;
+        }
+        unfold(id);
     }
     return first;
 }
@@ -235,6 +259,8 @@ std::optional<std::size_t> Unfolding::node_for(const ShapeValue& value, const Ta
     const double size = size_of(world);
     if (recursion_.recurs(shape))
         key += fmt::format("s{}", std::llround(1e6 * std::log(std::max(size, 1e-100))));
+    if (const double depth = world.linear[2][2]; depth != 1) key += fmt::format("z{:a}", depth);
+    if (stretches_) key += stretch_text(world);
     std::vector<std::size_t>& known = known_[key];
     const std::size_t variants = random_[shape] ? most_variants : 1;
     if (known.size() >= variants) return known[random_[shape] ? uses_[key]++ % variants : 0];
@@ -245,9 +271,6 @@ std::optional<std::size_t> Unfolding::node_for(const ShapeValue& value, const Ta
     }
     Node node{.shape = shape, .value = value, .target = target, .left = left, .world = world, .size = size};
     node.seed = hash_of(key) + known.size() + 1000 * salt_;
-    node.name =
-        free_name(named_[shape] == 0 ? value.name : fmt::format("{}_{}", value.name, named_[shape] + 1));
-    ++named_[shape];
     known.push_back(nodes_.size());
     // The first shape, and paths, are drawn whatever their size.
     const bool certain = !from || grammar_.shapes[shape].is_path;
@@ -270,14 +293,19 @@ void Unfolding::unfold(std::size_t id) {
 
 void Unfolding::unfold_path(std::size_t id, const Surroundings& at) {
     const std::optional<std::vector<PathPart>> parts =
-        follow(grammar_.shapes[nodes_[id].shape], at, file_, grammar_, evaluator_);
+        follow(grammar_.shapes[nodes_[id].shape], at, nodes_[id].world, file_, grammar_, evaluator_);
     if (!parts) return;
+    stretches_ = stretches_ || std::ranges::any_of(*parts, &PathPart::of_world);
     for (const PathPart& part : *parts) {
         Target target = nodes_[id].target;
         const std::optional<std::string> inks = ink_text(part.change.colours, target);
         if (!inks) return fail(part.span, "this changes a colour away from another");
         for (const Polygon& polygon : part.polygons) {
-            add_line(id, {polygon_text(polygon), 0, part.change.map, "  material: flat" + *inks, part.span});
+            add_line(id, {.master = polygon_text(polygon) + "  material: flat",
+                          .map = part.change.map,
+                          .colours = part.change.colours,
+                          .span = part.span,
+                          .beside = &polygon != &part.polygons.front()});
             for (const Point point : polygon)
                 see(nodes_[id].world * part.change.map * Affine::translate({point.x, point.y, 0}));
         }
@@ -400,11 +428,10 @@ void Unfolding::place(const Element& element, const Surroundings& at, const Unde
         largest_entry(change.map.translation) > 1e50)
         return fail(element.span, "this grows beyond all bounds");
     Target target = nodes_[under.node].target;
-    std::optional<std::string> inks = ink_text(change.colours, target);
-    if (!inks) return fail(element.span, "this changes a colour away from another");
+    if (!ink_text(change.colours, target))
+        return fail(element.span, "this changes a colour away from another");
     const Affine world = nodes_[under.node].world * change.map;
-    Line line{.map = change.map, .inks = std::move(*inks), .span = element.span};
-    line.map.translation.z *= lift_of_z;
+    Line line{.map = change.map, .colours = shortened(change.colours), .span = element.span};
     if (fills) { // all of the canvas, wherever the shape lies
         fills_ = true;
         line.master = primitive("SQUARE");
@@ -421,43 +448,8 @@ void Unfolding::place(const Element& element, const Surroundings& at, const Unde
     }
     const std::optional<std::size_t> node = node_for(*shape, target, under.node, world);
     if (!node) return;
-    if (!grammar_.shapes[found->second].is_path) line.map.translation.z += lift * (1 - size);
     line.node = *node;
     add_line(under.node, std::move(line));
-}
-
-// Text
-
-void Unfolding::write_nodes() {
-    std::set<std::size_t> commented;
-    for (const Node& node : nodes_) {
-        if (!node.done) continue;
-        const Shape& shape = grammar_.shapes[node.shape];
-        line("");
-        if (commented.insert(node.shape).second)
-            for (const std::string& words : shape.comments)
-                comment(words);
-        line(fmt::format("canonical object {} {{", node.name), shape.span);
-        ++depth_;
-        const double step = std::min(lift_of_order, 1e-3 / static_cast<double>(node.lines.size() + 1));
-        std::size_t order = 0, drawn = 0;
-        for (const Line& one : node.lines) {
-            Affine map = one.map;
-            if (one.fills) map.linear = Mat3(1e4 * std::max(extent_, 1e-3) / size_of(node.world));
-            map.translation.z += step * static_cast<double>(order++);
-            if (one.master.empty() && !nodes_[one.node].done) continue; // too small to be seen
-            const std::string& master = one.master.empty() ? nodes_[one.node].name : one.master;
-            line(fmt::format("{}{}{}{}", master.starts_with("instance:") ? "" : "instance: ", master,
-                             moves_text(map), one.inks),
-                 one.span);
-            ++drawn;
-        }
-        if (drawn == 0) line("nothing");
-        --depth_;
-        line("}");
-        if (out_.text.size() > longest_unfolding)
-            return fail(shape.span, "the grammar makes too many objects");
-    }
 }
 
 } // namespace graftal::cfdg

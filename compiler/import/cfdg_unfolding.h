@@ -10,6 +10,7 @@
 
 #include "compiler/import/cfdg_ast.h"
 #include "compiler/import/cfdg_expression.h"
+#include "compiler/import/cfdg_paint_order.h"
 #include "compiler/import/cfdg_recursion.h"
 #include "compiler/import/cfdg_scene.h"
 #include "compiler/import/cfdg_text.h"
@@ -32,9 +33,10 @@ class Unfolding : private SceneWriter {
         std::string master; ///< a primitive or a polygon; "" of a node
         std::size_t node = 0;
         Affine map;
-        std::string inks;
+        std::vector<ColourStep> colours;
         Span span;
-        bool fills = false; ///< all of the canvas
+        bool fills = false;  ///< all of the canvas
+        bool beside = false; ///< it does not cover the line before it
     };
 
     /// A shape with its arguments.
@@ -46,7 +48,7 @@ class Unfolding : private SceneWriter {
         std::uint64_t seed = 0;
         Affine world; ///< of the largest that is known
         double size = 0;
-        std::string name;
+        std::string name; ///< of its object, if it becomes one
         std::vector<Line> lines;
         bool done = false;
     };
@@ -68,6 +70,8 @@ class Unfolding : private SceneWriter {
                                         std::optional<std::size_t> from, const Affine& world);
     std::optional<std::size_t> unfold_from(const ShapeValue& shape, const Target& target,
                                            const Affine& world);
+    std::optional<std::size_t> unfold_once(const ShapeValue& shape, const Target& target,
+                                           const Affine& world);
     void unfold(std::size_t id);
     void unfold_path(std::size_t id, const Surroundings& at);
     const Rule& rule_of(const Shape& shape);
@@ -77,7 +81,22 @@ class Unfolding : private SceneWriter {
     void place(const Element& element, const Surroundings& at, const Under& under);
     void add_line(std::size_t id, Line line);
     void see(const Affine& world);
-    void write_nodes();
+
+    /// A line of an object to be written: one of its own, or of what it holds the only instance of.
+    struct Written {
+        const Line* line = nullptr;
+        std::size_t node = 0; ///< whose line it is
+        Affine map;
+        std::vector<ColourStep> colours;
+    };
+
+    bool is_drawn(const Line& line) const { return !line.master.empty() || nodes_[line.node].done; }
+    const std::string& name_of(std::size_t id);
+    void find_order(std::size_t first);
+    void write_nodes(std::size_t first);
+    void write_node(std::size_t id, std::vector<std::size_t>& needed);
+    void write_line(std::size_t id, const Written& one, std::vector<std::size_t>& needed);
+    bool is_held(const Written& one) const;
 
     Expressions expressions_;
     Recursion recursion_;
@@ -86,13 +105,17 @@ class Unfolding : private SceneWriter {
     std::vector<Node> nodes_;
     std::map<std::string, std::vector<std::size_t>> known_;    ///< nodes by shape, arguments and target
     std::map<std::string, std::size_t> uses_;                  ///< of random ones
-    std::vector<std::size_t> named_;                           ///< nodes of each shape
+    std::vector<std::size_t> named_;                           ///< objects of each shape
     std::priority_queue<std::pair<double, std::size_t>> open_; ///< by size
     Vec3 least_{1e300}, most_{-1e300};                         ///< of what is drawn
     double extent_ = 0;
     std::size_t lines_ = 0, turns_ = 0, colour_steps_ = 0, written_ = 0;
     bool full_ = false, fills_ = false, noted_ = false, drawn_ = false;
+    bool stretches_ = false; ///< some path depends on how its place stretches
     std::uint64_t salt_ = 0; ///< of all random numbers
+    std::optional<PaintOrder> order_;
+    std::vector<std::uint32_t> instances_; ///< of each node, in others
+    std::set<std::size_t> commented_;      ///< shapes whose comments are written
 };
 
 } // namespace graftal::cfdg

@@ -31,7 +31,7 @@ struct ColourStep {
 
 /// An adjustment whose numbers are known.
 struct Change {
-    Affine map; ///< z by the geometric mean of x and y
+    Affine map; ///< z apart from x and y
     std::vector<ColourStep> colours;
 
     bool operator==(const Change&) const = default;

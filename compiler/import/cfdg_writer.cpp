@@ -31,10 +31,12 @@ Writer::Writer(const ForeignFile& file, const Grammar& grammar)
         const std::string name = plain_name(constant->name);
         if (name == constant->name && !is_own_word(name) && name != "n") constants_[constant->name] = name;
     }
+    find_widths();
 }
 
 Translation Writer::write() {
     comment("from a grammar of Context Free");
+    if (deep_ || unit_ == 0) fail(file_.span(0, 0), "the heights of these shapes have no words in .inst");
     check_definitions();
     write_scene();
     write_constants();
@@ -68,7 +70,7 @@ void Writer::write_start_shape() {
     if (!grammar_.start) return fail(file_.span(0, 0), "the grammar has no 'startshape'");
     const Element& start = *grammar_.start;
     const std::string master = reference(start, nullptr, constants_);
-    if (const std::optional<Lines> lines = lines_of(start.modification, constants_, 0, true))
+    if (const std::optional<Lines> lines = lines_of(start.modification, constants_, {.lifts = true}))
         write_start(master + lines->moves, lines->inks);
 }
 
@@ -136,13 +138,15 @@ void Writer::write_rule(std::size_t index, const Rule& rule, const std::string& 
 }
 
 void Writer::write_path(const Shape& shape, const std::string& name) {
-    const std::optional<std::vector<PathPart>> parts = follow(shape, {}, file_, grammar_, evaluator_);
+    const std::optional<std::vector<PathPart>> parts = follow(shape, {}, {}, file_, grammar_, evaluator_);
     if (!parts) return;
     if (evaluator_.draws.drawn() > 0) return fail(shape.span, "this path draws random numbers");
+    for (const PathPart& part : *parts)
+        if (part.of_world) return fail(part.span, "the width of this stroke has no words in .inst");
     line(fmt::format("canonical object {} {{", name), shape.span);
     ++depth_;
     // All of them below what lies in front of the path.
-    const double step = std::max(lift_of_order / static_cast<double>(parts->size() + 1), 1e-9);
+    const double step = unit_ / static_cast<double>(parts->size() + 1);
     std::size_t order = 0;
     for (const PathPart& part : *parts) {
         Target target = first_target;

@@ -29,7 +29,7 @@ class Writer : private SceneWriter {
         std::size_t shape = 0;
         Scope scope;
         std::vector<std::string> parameters; ///< of the object being written
-        std::size_t order = 0;               ///< of elements in their rule: later ones lie in front
+        double order = 0;                    ///< of elements in their rule: later ones lie in front
     };
 
     /// Elements that become an object of their own.
@@ -69,9 +69,22 @@ class Writer : private SceneWriter {
                      const std::vector<std::string>& more = {});
 
     std::string reference(const Element& element, const Place* from, const Scope& scope);
-    /// `lifts`: of shapes, which lie the higher the smaller they are; not of primitives and paths.
-    std::optional<Lines> lines_of(const Modification& modification, const Scope& scope, std::size_t order,
-                                  bool lifts);
+    /// How a line lies over those before it.
+    struct Height {
+        double order = 0;    ///< in units of the order
+        bool lifts = false;  ///< of shapes, which lie the higher the smaller they are; not of primitives
+        bool block = false;  ///< of what holds elements: where it does not lift, its size changes no heights
+        bool calls = false;  ///< of one shape of rules: it lies over the primitives of its rule
+        double width = 0;    ///< of a turn of a loop: the units of all turns,
+        std::string each_of; ///< and their number, where it is not known; "" else
+    };
+    std::optional<Lines> lines_of(const Modification& modification, const Scope& scope, const Height& height);
+    std::string height_text(const Height& height, double scale) const;
+
+    void find_widths();
+    double width_of(const Elements& elements, std::size_t shape) const;
+    double width_of(const Element& element, std::size_t shape) const;
+    std::optional<double> turns_of(const Element& loop) const;
     std::optional<std::string> inks_of(const Modification& modification, const Scope& scope);
     std::string colour_step(const Adjustment& adjustment, const Scope& scope);
     std::optional<std::string> text(const Expr& expression, const Scope& scope);
@@ -84,7 +97,10 @@ class Writer : private SceneWriter {
     Scope constants_;                       ///< of the file, as `let`s
     std::vector<Part> parts_;               ///< to be written
     std::size_t written_parts_ = 0;
-    int nested_ = 0; ///< adjustments within adjustments
+    int nested_ = 0;             ///< adjustments within adjustments
+    std::vector<double> widths_; ///< of each shape: how many heights its rule needs
+    double widest_ = 1;
+    double unit_ = 0; ///< of heights of an order
 };
 
 } // namespace graftal::cfdg

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+namespace graftal::cfdg {
+
+/// A line of an object, as its place in the order of painting sees it.
+struct PaintedLine {
+    static constexpr std::size_t none = static_cast<std::size_t>(-1);
+
+    std::size_t node = none; ///< the object that it draws; none of a primitive
+    /// A shape of rules, painted when its own turn comes. Primitives and paths are painted with their rule.
+    bool is_call = false;
+    bool beside = false;   ///< it does not cover the line before it: both lie at one height
+    double depth = 0;      ///< how far `z` moves it
+    double log_shrunk = 0; ///< of a call: the logarithm of how much smaller it is
+};
+
+/// Heights of objects' lines over their objects, such that shapes lie in the order in which Context Free
+/// paints them: by depth; then by the size of the shape whose rule draws them, the largest first; then by
+/// generation; then in the order of the lines. Heights add up along each path through the objects.
+class PaintOrder {
+  public:
+    /// Requires objects that do not contain themselves. `extent` is the size of the picture; `translucent`
+    /// shapes lie as far apart as an engine must have them. O(lines).
+    PaintOrder(const std::vector<std::vector<PaintedLine>>& objects, std::size_t root, double extent,
+               bool translucent);
+
+    double height(std::size_t object, std::size_t line) const { return heights_[object][line]; }
+    /// Of what lies highest over the root.
+    double top() const { return top_; }
+
+  private:
+    /// What an object draws, in units of the least distance.
+    struct Spread {
+        double width = 0;  ///< lines of one size and one generation
+        double levels = 0; ///< generations of one size
+    };
+
+    std::vector<std::vector<double>> heights_; ///< first the numbers of lines, then their heights
+    double top_ = 0;
+};
+
+} // namespace graftal::cfdg

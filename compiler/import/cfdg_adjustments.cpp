@@ -52,7 +52,7 @@ std::optional<Writer::Lines> Writer::lines_of(const Modification& modification, 
         inner_inks += own->inks;
     }
     const std::vector<const Adjustment*> moves = moves_of(modification);
-    double scale = 1;
+    Size size;
     for (auto at = moves.rbegin(); at != moves.rend(); ++at) {
         const Adjustment& move = **at;
         std::vector<std::string> n;
@@ -82,9 +82,12 @@ std::optional<Writer::Lines> Writer::lines_of(const Modification& modification, 
                 if (known[i] && *known[i] == 0) n[i] = thinnest;
             const std::optional<Interval> a = expressions_.range(move.values[0]);
             const std::optional<Interval> b = expressions_.range(move.values[n.size() > 1 ? 1 : 0]);
-            if (a && b) scale *= std::sqrt(std::abs((a->least + a->most) * (b->least + b->most)) / 4);
-            const bool one = n.size() == 1 && ((known[0] && *known[0] > 0) || is_random(n[0]));
             const std::string second = n.size() > 1 ? n[1] : n[0];
+            if (a && b)
+                size.known *= std::sqrt(std::abs((a->least + a->most) * (b->least + b->most)) / 4);
+            else if (!is_random(n[0]) && !is_random(second))
+                size.factors += fmt::format("*sqrt(abs(({})*({})))", n[0], second);
+            const bool one = n.size() == 1 && ((known[0] && *known[0] > 0) || is_random(n[0]));
             if (height.block && !height.lifts && !is_random(n[0]))
                 lines.moves += fmt::format("  scale: {}, {}, 1", n[0], second);
             else
@@ -100,7 +103,7 @@ std::optional<Writer::Lines> Writer::lines_of(const Modification& modification, 
             lines.moves += fmt::format("  rotate: z, -({0})  scale: 1, -1, 1  rotate: z, {0}", n[0]);
         }
     }
-    moved[2] = height_text(height, scale);
+    moved[2] = height_text(height, size);
     flush();
     std::optional<std::string> inks = inks_of(modification, scope);
     if (!inks) return std::nullopt;
@@ -149,8 +152,7 @@ std::string Writer::colour_step(const Adjustment& adjustment, const Scope& scope
     if (hue) return fmt::format(" hue {}", *change);
     if (known && *known == 0) return "";
     if (known && *known > 0) return fmt::format(" {} to 1 by {}", channel, shortest(std::min(*known, 1.0)));
-    if (known)
-        return fmt::format(" {} {}", channel, shortest(std::max(0.0, std::round(1e9 * (1 + *known)) / 1e9)));
+    if (known) return fmt::format(" {} {}", channel, shortest(std::max(0.0, 1 + *known)));
     if (!is_random(*change)) return fmt::format(" {0} to ({1} > 0) by min(1, abs({1}))", channel, *change);
     const std::optional<Interval> range = expressions_.range(adjustment.values[0]);
     if (range && range->least >= 0) return fmt::format(" {} to 1 by min(1, {})", channel, *change);

@@ -215,6 +215,8 @@ void Writer::write_loop(const Element& element, Place& place) {
         element.arguments.size() == 2 ? text(element.arguments.front(), place.scope) : std::nullopt;
     const bool lifted = lifts(element.modification, {&element.body}, element.span);
     if (!count) return;
+    const bool random = is_random(*count) || (begin && is_random(*begin));
+    if (begin) count = fmt::format("({} - ({}))", *count, *begin);
     const double turn = width_of(element.body, place.shape);
     const std::optional<double> turns = turns_of(element);
     const std::optional<Lines> lines = lines_of(element.modification, place.scope,
@@ -224,9 +226,7 @@ void Writer::write_loop(const Element& element, Place& place) {
                                                  .width = turns ? 0 : width_of(element, place.shape),
                                                  .each_of = turns ? "" : fmt::format("max(1, {})", *count)});
     if (!lines) return;
-    if (is_random(*count) || (begin && is_random(*begin)))
-        return fail(element.span, "a loop of a random number of turns has no words in .inst");
-    if (begin) count = fmt::format("({} - ({}))", *count, *begin);
+    if (random) return fail(element.span, "a loop of a random number of turns has no words in .inst");
     const std::optional<double> known =
         element.arguments.size() == 1 ? expressions_.number(element.arguments[0]) : std::nullopt;
     if (known && !(*known > 0)) return;

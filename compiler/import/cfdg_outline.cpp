@@ -365,7 +365,7 @@ class Pen {
         const bool smooth = along > std::cos(round_step_deg * std::numbers::pi / 180);
         const bool sharp = !inner && !smooth && (stroke_.join != Join::miter || miter > miter_limit);
         if (!sharp && length > 0) {
-            bank.push_back(at + side * middle * (miter * half_ / length));
+            bank.push_back(at + side * middle * (2 * half_ * half_ / glm::dot(middle, middle)));
             return;
         }
         bank.push_back(at + side * before);
@@ -419,7 +419,7 @@ class Pen {
         const double length = glm::length(middle);
         const double miter = length > 0 ? 2 * half_ / length : 1e9; // over half the width
         if (stroke_.join != Join::bevel && miter <= miter_limit && length > 0)
-            add({b, from, b + outer * middle * (miter * half_ / length), to});
+            add({b, from, b + outer * middle * (2 * half_ * half_ / glm::dot(middle, middle)), to});
         else
             add({b, from, to});
     }

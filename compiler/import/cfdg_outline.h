@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <numbers>
 #include <optional>
 #include <string>
 #include <vector>
@@ -28,6 +29,10 @@ struct Stroke {
 
 /// Corners of simple polygons, as the numbers of `polygon(...)`: rings neither cross nor touch.
 using Polygon = std::vector<Point>;
+
+/// TRIANGLE: of sides of 1 around its middle.
+inline const Polygon triangle = {
+    {0, 1 / std::numbers::sqrt3}, {-0.5, -0.5 / std::numbers::sqrt3}, {0.5, -0.5 / std::numbers::sqrt3}};
 
 /// What outlines fill, by the rule of odd numbers or that of windings other than 0. Nothing if they are too
 /// many to be cut where they cross, or take more than the `work` that is left, which they lessen.

@@ -109,6 +109,7 @@ PaintOrder::PaintOrder(const std::vector<std::vector<PaintedLine>>& objects, std
             for (std::size_t i = 0; i < objects[object].size(); ++i)
                 heights_[object][i] += depth * objects[object][i].depth;
     }
+    gap_ = gap;
     top_ = reach[root].second;
 }
 

@@ -28,6 +28,8 @@ class PaintOrder {
                bool translucent);
 
     double height(std::size_t object, std::size_t line) const { return heights_[object][line]; }
+    /// The least height of one line over another.
+    double gap() const { return gap_; }
     /// Of what lies highest over the root.
     double top() const { return top_; }
 
@@ -39,7 +41,7 @@ class PaintOrder {
     };
 
     std::vector<std::vector<double>> heights_; ///< first the numbers of lines, then their heights
-    double top_ = 0;
+    double top_ = 0, gap_ = 0;
 };
 
 } // namespace graftal::cfdg

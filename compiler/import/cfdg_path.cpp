@@ -190,7 +190,7 @@ class Follower {
         renew();
         std::vector<Point> corners;
         if (kind == "SQUARE") corners = {{-0.5, -0.5}, {0.5, -0.5}, {0.5, 0.5}, {-0.5, 0.5}};
-        if (kind == "TRIANGLE") corners = {{0, 0.577350269}, {-0.5, -0.288675135}, {0.5, -0.288675135}};
+        if (kind == "TRIANGLE") corners = triangle;
         if (kind == "CIRCLE")
             for (int i = 0; i < 48; ++i) {
                 const double t = i * std::numbers::pi / 24;

@@ -13,6 +13,7 @@
 #include "compiler/import/foreign_text.h"
 #include "compiler/import/own_words.h"
 #include "compiler/support/hue.h"
+#include "compiler/support/number.h"
 #include "compiler/support/srgb.h"
 
 namespace graftal::cfdg {
@@ -159,8 +160,8 @@ void SceneWriter::write_scene() {
             screen = rgb_from_hsv(hsv[0], hsv[1], hsv[2]);
             if (hsv[3] < 1) file_.diagnostics.note(grammar_.background->span, "the background covers here");
         }
-    line(fmt::format("background: {}, {}, {}", rounded(linear_from_srgb(screen.r)),
-                     rounded(linear_from_srgb(screen.g)), rounded(linear_from_srgb(screen.b))));
+    line(fmt::format("background: {}, {}, {}", shortest(linear_from_srgb(screen.r)),
+                     shortest(linear_from_srgb(screen.g)), shortest(linear_from_srgb(screen.b))));
     write_camera();
     line("light { sun: 0,0,1  color: 0,0,0 }   # colours are as they are");
     line("material flat { color: 1,1,1  ambient: 1  diffuse: 0  specular: 0 }");
@@ -177,8 +178,8 @@ void SceneWriter::write_camera() {
     const auto view = [&](Vec3 at, double width, double tall, Span span) {
         line(fmt::format("camera {{ orthographic  location: {0},{1},{2}  look_at: {0},{1},0  width: {3}  "
                          "height: {4} }}",
-                         rounded(at.x), rounded(at.y), shortest(camera_height_), rounded(width),
-                         rounded(tall)),
+                         shortest(at.x), shortest(at.y), shortest(camera_height_), shortest(width),
+                         shortest(tall)),
              span);
     };
     if (wide > 0 && high > 0) // the picture is moved by the offset, not the canvas
@@ -193,9 +194,15 @@ void SceneWriter::write_start(const std::string& instance, const std::string& in
     line("");
     line("object scene {");
     ++depth_;
-    for (const Affine& copy : copies_)
+    // Context Free paints the copies of a shape one after the other.
+    double height = 0;
+    const double step = copy_step_ / static_cast<double>(copies_.size());
+    for (const Affine& flat : copies_) {
+        const Affine copy = Affine::translate({0, 0, height}) * flat;
+        height += step;
         line(fmt::format("instance: {}{}  ink: hsv(0, 0, 0){}", instance, moves_text(copy), inks),
              grammar_.start->span);
+    }
     --depth_;
     line("}");
 }
@@ -218,7 +225,7 @@ void SceneWriter::write_end() {
         else if (key == "SQUARE")
             line("    instance: polygon(-0.5, -0.5, 0.5, -0.5, 0.5, 0.5, -0.5, 0.5)  material: flat");
         else
-            line("    instance: polygon(0, 0.57735, -0.5, -0.288675, 0.5, -0.288675)  material: flat");
+            line(fmt::format("    {}  material: flat", polygon_text(triangle)));
         line("}");
     }
     for (const std::string& words : grammar_.tail)

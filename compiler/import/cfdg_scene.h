@@ -20,11 +20,6 @@ namespace graftal::cfdg {
 /// How far the smallest shapes lie in front of the largest: what a shape of scale s draws lies at lift * (1 -
 /// s).
 inline constexpr double lift = 0.02;
-/// A number with as many decimals as `steps` has zeros, at most.
-inline std::string rounded(double value, double steps = 1e6) {
-    return shortest(std::round(steps * value) / steps);
-}
-
 /// What all translations of a grammar share: its text, the scene, and the primitives.
 class SceneWriter {
   protected:
@@ -54,6 +49,7 @@ class SceneWriter {
     int depth_ = 0;
     double camera_height_ = 10;
     bool translucent_ = false; ///< some colours are
+    double copy_step_ = 0;     ///< of a copy of the whole over the one before it
     bool deep_ = false;        ///< some shapes move in depth
     /// The view of a grammar that says none: where the bounds do not give it. Half of its size.
     std::optional<std::pair<Vec3, Vec3>> middle_and_half_;

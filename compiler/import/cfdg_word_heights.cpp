@@ -84,14 +84,17 @@ void Writer::find_widths() {
         unit_ = most_of_lift * lift / widest_;
     else if (2 * widest_ * unit_of_veils <= most_of_lift_of_veils * lift)
         unit_ = unit_of_veils;
+    copy_step_ = unit_;
 }
 
 /// The third number of a `translate`; "" of none.
-std::string Writer::height_text(const Height& height, double scale) const {
-    double known = height.lifts ? lift * (1 - scale) : 0;
-    if (height.calls && std::abs(scale - 1) < 1e-6) known += unit_ * widest_;
+std::string Writer::height_text(const Height& height, const Size& size) const {
+    const bool depends = !size.factors.empty();
+    double known = !height.lifts ? 0 : depends ? lift : lift * (1 - size.known);
+    if (height.calls && (depends || std::abs(size.known - 1) < 1e-6)) known += unit_ * widest_;
     known += unit_ * height.order;
     std::string text = known != 0 ? shortest(known) : "";
+    if (height.lifts && depends) text += fmt::format(" - {}{}", shortest(lift * size.known), size.factors);
     if (!height.each_of.empty())
         text += fmt::format("{}{}/({})", text.empty() ? "" : " + ", shortest(unit_ * height.width),
                             height.each_of);

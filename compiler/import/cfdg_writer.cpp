@@ -98,7 +98,7 @@ void Writer::write_shape(std::size_t index) {
     for (const Rule& rule : shape.rules) {
         double weight = rule.weight.value_or(1);
         if (percents > 0 && !rule.percent) weight *= std::max(0.0, 100 - percents) / weights;
-        write_rule(index, rule, shape.rules.size() > 1 ? fmt::format(" weight {}", rounded(weight)) : "");
+        write_rule(index, rule, shape.rules.size() > 1 ? fmt::format(" weight {}", shortest(weight)) : "");
     }
 }
 

@@ -79,7 +79,12 @@ class Writer : private SceneWriter {
         std::string each_of; ///< and their number, where it is not known; "" else
     };
     std::optional<Lines> lines_of(const Modification& modification, const Scope& scope, const Height& height);
-    std::string height_text(const Height& height, double scale) const;
+    /// How a line changes the size of what it draws.
+    struct Size {
+        double known = 1;    ///< in the mean, where chance decides
+        std::string factors; ///< `*sqrt(...)` for each that depends on parameters
+    };
+    std::string height_text(const Height& height, const Size& size) const;
 
     void find_widths();
     double width_of(const Elements& elements, std::size_t shape) const;

@@ -13,6 +13,7 @@
 #include "compiler/import/cpfg_expression.h"
 #include "compiler/import/foreign_text.h"
 #include "compiler/import/importers.h"
+#include "compiler/support/number.h"
 #include "compiler/support/small_letters.h"
 
 namespace graftal {
@@ -133,7 +134,7 @@ std::optional<std::string> CpfgNames::call(std::string_view name, std::span<cons
     }
     if (name == "curveGAL" && arguments.size() == 1) {
         const CpfgViewCurve* const curve = curve_named(arguments[0], span);
-        return fmt::format("{:.12g}", curve ? curve->curve.length : 0);
+        return shortest(curve ? curve->curve.length : 0);
     }
     if (name == "bran" && arguments.size() == 2) return beta(arguments, span);
     return std::nullopt;

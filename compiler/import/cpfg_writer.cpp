@@ -18,6 +18,7 @@
 #include "compiler/import/cpfg_words.h"
 #include "compiler/import/foreign_text.h"
 #include "compiler/import/importers.h"
+#include "compiler/support/number.h"
 
 namespace graftal {
 
@@ -254,7 +255,7 @@ class SystemWriter {
                 out.line(text);
                 text = "   ";
             }
-            text += fmt::format(" {:.6g}", values[i]);
+            text += " " + shortest(values[i]);
         }
         out.line(text);
     }

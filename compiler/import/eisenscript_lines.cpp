@@ -179,9 +179,8 @@ std::string Writer::inks(const std::vector<Operator>& operators) {
         else if (pool_colours_.empty())
             text = "  ink: hsv(random(0, 360), 1, 1)";
     } else if (set) {
-        const auto rounded = [](double v) { return shortest(std::round(1e4 * v) / 1e4); };
-        text =
-            fmt::format("  ink: hsv({}, {}, {})", rounded(change[0]), rounded(change[1]), rounded(change[2]));
+        text = fmt::format("  ink: hsv({}, {}, {})", shortest(change[0]), shortest(change[1]),
+                           shortest(change[2]));
         if (change[3] < 1) text += fmt::format("  ink {{ alpha {} }}", shortest(change[3]));
     } else {
         static constexpr std::array channels = {"hue", "saturation", "value", "alpha"};

@@ -174,13 +174,11 @@ void Writer::write_camera() {
     const Vec3 location = pivot - Vec3(0.5) - world_from_eye * moved / *camera_.scale;
     const Vec3 ahead = world_from_eye * Vec3(0, 0, -1), up = world_from_eye * Vec3(0, 1, 0);
     const double distance = std::max(1e-3, std::abs(moved.z) / *camera_.scale);
-    const auto rounded = [](Vec3 v) { return vector_text(glm::round(1e5 * v) / 1e5); };
     if (!(glm::length(glm::cross(ahead, up)) > 0.1)) return;
     const double upright = std::clamp(camera_.angle_deg.value_or(22), 1.0, 150.0) * std::numbers::pi / 180;
     const double across = 2 * std::atan(std::tan(upright / 2) * 16 / 9) * 180 / std::numbers::pi;
-    line(fmt::format("camera {{ location: {}  look_at: {}  up: {}  angle: {} }}", rounded(location),
-                     rounded(location + distance * ahead), rounded(up),
-                     shortest(std::round(100 * across) / 100)));
+    line(fmt::format("camera {{ location: {}  look_at: {}  up: {}  angle: {} }}", vector_text(location),
+                     vector_text(location + distance * ahead), vector_text(up), shortest(across)));
 }
 
 } // namespace graftal::eisenscript

@@ -19,16 +19,14 @@ Hsv hsv_of(const std::array<double, 3>& rgb) {
 
 std::string hsv_text(const std::array<double, 3>& rgb) {
     const Hsv hsv = hsv_from_rgb(Rgb(rgb[0], rgb[1], rgb[2]));
-    // To what screens tell apart.
-    const auto rounded = [](double v) { return std::round(1e4 * v) / 1e4; };
-    return fmt::format("hsv({}, {}, {})", shortest(rounded(hsv.hue_deg)), shortest(rounded(hsv.saturation)),
-                       shortest(rounded(hsv.value)));
+    return fmt::format("hsv({}, {}, {})", shortest(hsv.hue_deg), shortest(hsv.saturation),
+                       shortest(hsv.value));
 }
 
 std::string linear_text(const std::array<double, 3>& rgb) {
     std::vector<std::string> parts;
     for (const double part : rgb)
-        parts.push_back(shortest(std::round(1e5 * linear_from_srgb(part)) / 1e5));
+        parts.push_back(shortest(linear_from_srgb(part)));
     return fmt::format("{}", fmt::join(parts, ", "));
 }
 

@@ -147,7 +147,7 @@ class Writer {
         if (!has_palette_ || map.speed == 0) return "";
         const std::array<double, 3>& rgb =
             flame_.palette[static_cast<std::size_t>(std::lround(255 * map.colour))];
-        const auto linear = [](double v) { return number(std::round(1e5 * linear_from_srgb(v)) / 1e5); };
+        const auto linear = [](double v) { return number(linear_from_srgb(v)); };
         return fmt::format("  tint rgb <{}, {}, {}> {}", linear(rgb[0]), linear(rgb[1]), linear(rgb[2]),
                            number(map.speed));
     }

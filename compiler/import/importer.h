@@ -40,9 +40,11 @@ struct Translation {
     std::string text;
     std::vector<Span> origins; ///< of each line of the text; unknown where the importer wrote it by itself
 
-    /// Adds a line, which may be empty. Requires that it holds no line end.
+    /// Adds a line, which may be empty. A line end in it becomes a blank, so that no name and no remark of a
+    /// foreign file can begin a line of its own.
     void line(std::string_view words, Span origin = {}) {
-        text += words;
+        for (const char c : words)
+            text += c == '\n' || c == '\r' ? ' ' : c;
         text += '\n';
         origins.push_back(origin);
     }

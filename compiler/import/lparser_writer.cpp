@@ -14,6 +14,7 @@
 #include "compiler/import/foreign_text.h"
 #include "compiler/import/importers.h"
 #include "compiler/import/lparser_commands.h"
+#include "compiler/support/number.h"
 
 namespace graftal {
 
@@ -97,7 +98,7 @@ class LparserWriter {
         const auto light = [](double x) {
             return x <= 0.04045 ? x / 12.92 : std::pow((x + 0.055) / 1.055, 2.4);
         };
-        return fmt::format("{:.3g}, {:.3g}, {:.3g}", light(r), light(g), light(b));
+        return fmt::format("{}, {}, {}", shortest(light(r)), shortest(light(g)), shortest(light(b)));
     }
 
     /// How many there are.

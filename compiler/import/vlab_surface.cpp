@@ -11,6 +11,7 @@
 
 #include "compiler/import/foreign_text.h"
 #include "compiler/import/importers.h"
+#include "compiler/support/number.h"
 
 namespace graftal {
 
@@ -126,11 +127,11 @@ std::optional<Translation> translate_surface(const ForeignFile& file, const Fore
             Point q{};
             for (std::size_t axis = 0; axis < 3; ++axis)
                 q[axis] = (p[0] * left[axis] + p[1] * heading[axis] + p[2] * up[axis]) / surface.size;
-            text += fmt::format("{}{:.6g}, {:.6g}, {:.6g}",
+            text += fmt::format("{}{}, {}, {}",
                                 k == 0        ? ""
                                 : k % 12 == 0 ? ",  "
                                               : ", ",
-                                0.0 - q[0], q[1] + 0.0, 0.0 - q[2]);
+                                shortest(-q[0]), shortest(q[1]), shortest(-q[2]));
         }
         out.line(text + ")", surface.places[i]);
     }

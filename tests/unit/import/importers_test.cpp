@@ -9,6 +9,8 @@
 #include <gmock/gmock.h>
 
 #include "compiler/import/foreign_text.h"
+#include "compiler/support/number.h"
+#include "compiler/support/srgb.h"
 #include "tests/unit/comma_locale.h"
 #include "tests/unit/import/imported.h"
 
@@ -45,6 +47,35 @@ TEST(Importers, AnErrorInATranslationNamesTheForeignLine) {
     const Imported model("a.ls", "3\n90\n10\nA\nA=F(1e90)A[A\n@\n");
     EXPECT_FALSE(model.graph);
     EXPECT_THAT(model.said(), HasSubstr("a.ls:5:1: note: translated from here"));
+}
+
+TEST(Importers, NoNameBeginsALineOfItsOwn) {
+    Translation translation;
+    translation.line("# leaf\nrifs evil {\r}", {});
+    EXPECT_EQ(translation.text, "# leaf rifs evil { }\n");
+    EXPECT_EQ(translation.origins.size(), 1u);
+    const Imported flame("a.flame",
+                         "<flame name=\"a&#10;rifs evil {&#13;\" scale=\"80\">"
+                         "<xform name=\"x&#10;}\" weight=\"1\" linear=\"1\" coefs=\".5 0 0 .5 0 0\"/>"
+                         "<xform weight=\"1\" linear=\"1\" coefs=\".5 0 0 .5 1 1\"/></flame>");
+    ASSERT_TRUE(flame.graph) << flame.said();
+    for (const char* const name : {"p\nlsys Evil { axiom F }\n.ls", "p\rlsys Evil { axiom F }.ls"}) {
+        const Imported plant(name, "3\n90\n10\nF\n@\n");
+        ASSERT_TRUE(plant.graph) << plant.said();
+        EXPECT_EQ(plant.translation.find("\nlsys Evil"), std::string::npos) << plant.translation;
+    }
+}
+
+TEST(Importers, NumbersReadBackToTheLastBit) {
+    const Imported script("a.es", "set background #804020\n{ color #808080 x 0.1 } box\n");
+    EXPECT_THAT(script.translation, HasSubstr(shortest(128.0 / 255)));
+    EXPECT_THAT(script.translation, HasSubstr("background: " + shortest(linear_from_srgb(128.0 / 255)) +
+                                              ", " + shortest(linear_from_srgb(64.0 / 255))));
+    const Imported flame("a.flame",
+                         "<flame name=\"a\"><xform weight=\"1\" color=\"0\" linear=\"1\" "
+                         "coefs=\".5 0 0 .5 0 0\"/><xform weight=\"1\" color=\"0\" linear=\"1\" "
+                         "coefs=\".5 0 0 .5 1 1\"/><color index=\"0\" rgb=\"128 64 32\"/></flame>");
+    EXPECT_THAT(flame.translation, HasSubstr("rgb <" + shortest(linear_from_srgb(128.0 / 255)) + ", "));
 }
 
 TEST(Importers, UsedModelsMayBeForeign) {

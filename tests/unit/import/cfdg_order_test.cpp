@@ -1,0 +1,160 @@
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+
+#include "tests/unit/import/imported_shapes.h"
+
+namespace graftal::testing {
+namespace {
+
+using ::testing::HasSubstr;
+
+/// A grammar that .inst has no words for, so that it is computed.
+const std::string computed = "v = 1, 2\n";
+
+/// The red part of each shape's colour, in tenths, from the lowest to the highest.
+std::string painted(const std::string& grammar) {
+    const ImportedShapes model("a.cfdg", "startshape A\n" + grammar);
+    EXPECT_TRUE(model.graph) << model.said() << model.translation.substr(0, 2000);
+    std::vector<UnfoldedLeaf> leaves = model.leaves();
+    std::ranges::stable_sort(leaves, {},
+                             [](const UnfoldedLeaf& leaf) { return leaf.world_from_object.translation.z; });
+    std::string order;
+    for (std::size_t i = 0; i < leaves.size(); ++i) {
+        const double linear = leaves[i].tint.over(Rgb(0.5)).r;
+        order += static_cast<char>('0' + std::lround(10 * std::pow(linear, 1 / 2.3)));
+        if (i == 0) continue;
+        EXPECT_LT(leaves[i - 1].world_from_object.translation.z, leaves[i].world_from_object.translation.z)
+            << "nothing tells which of two shapes lies in front, in " << grammar;
+    }
+    return order;
+}
+
+std::string repeated(std::size_t count, const std::string& text) {
+    std::string all;
+    for (std::size_t i = 0; i < count; ++i)
+        all += text;
+    return all;
+}
+
+// Found by a loop of 1100 turns: its last squares covered the smaller circle.
+TEST(ContextFreeOrder, SmallerShapesLieInFrontHoweverLongALoopIs) {
+    for (const std::string& how : {std::string(), computed + "shape Z { Z [x v] }\n"})
+        for (const char* const turns : {"3", "1100", "20000"}) {
+            const std::size_t count = std::stoul(turns);
+            const std::string loop = std::string("loop ") + turns + " [x 0.0001] ";
+            EXPECT_EQ(painted(how + "shape A { B [s 0.5] " + loop + "C [] }\nshape B { CIRCLE [b 1] }\n" +
+                              "shape C { SQUARE [] }"),
+                      repeated(count, "0") + ":");
+            EXPECT_EQ(painted(how + "shape A { B [s 0.999] " + loop + "{ SQUARE [] SQUARE [b 0.5] } }\n" +
+                              "shape B { CIRCLE [b 1] }"),
+                      repeated(count, "05") + ":");
+        }
+}
+
+TEST(ContextFreeOrder, TurnsOfLoopsLieOverEachOther) {
+    const std::string inner = "shape B { loop 3 [y 1] { SQUARE [] CIRCLE [b 0.5] } }";
+    for (const std::string& how : {std::string(), computed + "shape Z { Z [x v] }\n"}) {
+        // A shape's content over that of the same shape before it.
+        EXPECT_EQ(painted(how + "shape A { loop 2 [x 0.1] { B [] } B [b 0.5] }\n" + inner), "050505"
+                                                                                            "050505"
+                                                                                            "575757");
+        EXPECT_EQ(painted(how + "shape A { loop 2 [x 0.1] loop 2 [y 0.1] { SQUARE [] SQUARE [b 1] } }"),
+                  "0:0:0:0:");
+        // Turns that become smaller.
+        EXPECT_EQ(painted(how + "shape A { SQUARE [b 1] loop 3 [s 0.5] { SQUARE [] SQUARE [b 0.5] } }"),
+                  ":050505");
+        EXPECT_EQ(painted(how + "shape A { loop 3 [s 0.5] { B [] } SQUARE [b 1] }\nshape B { SQUARE [] }"),
+                  ":000");
+    }
+    // The number of turns is a parameter, or each turn is another.
+    EXPECT_EQ(
+        painted("shape A { B(3) [] SQUARE [b 1] }\nshape B(n) { loop n [x 1] { SQUARE [] CIRCLE [b 0.5] } }"),
+        ":050505");
+    EXPECT_EQ(painted("shape A { loop i = 3 [x 1] { SQUARE [x i] SQUARE [b 0.5] } SQUARE [b 1] }"),
+              "050505:");
+}
+
+// A rule's own primitives are painted before the shapes that it calls, and those in the order of their calls.
+TEST(ContextFreeOrder, PrimitivesOfARuleLieBelowWhatItCalls) {
+    for (const std::string& how : {std::string(), computed + "shape Z { Z [x v] }\n"})
+        EXPECT_EQ(painted(how + "shape A { B [] SQUARE [] }\nshape B { SQUARE [b 1] }"), "0:");
+    // Those of a generation before those of the next one.
+    EXPECT_EQ(painted(computed + "shape Z { Z [x v] }\nshape A { B [] C [] }\nshape B { D [] }\n"
+                                 "shape D { SQUARE [b 1] }\nshape C { SQUARE [] }"),
+              "0:");
+}
+
+TEST(ContextFreeOrder, LongRecursionKeepsItsOrder) {
+    const std::string chain = "shape A { SQUARE [] A [x 0.01 s 0.999] B [s 0.5] }\nshape B { CIRCLE [b 1] }";
+    const std::string order = painted(computed + "shape Z { Z [x v] }\nCF::Size = [s 4]\n" + chain);
+    // Circles of half the size of the shape that draws them come where recursion is as small.
+    const std::size_t first = order.find(':');
+    EXPECT_EQ(first, static_cast<std::size_t>(std::ceil(std::log(0.5) / std::log(0.999))));
+    EXPECT_GT(order.size(), 1000u);
+    EXPECT_EQ(painted("shape A { loop 200 [] B [] SQUARE [] }\n"
+                      "shape B rule { SQUARE [b 1] } rule 0 { SQUARE [] }")
+                  .front(),
+              '0');
+}
+
+// Found by 'z 1' in a shape of half the size, which lay below a 'z 0.7' beside it.
+TEST(ContextFreeOrder, DepthComesFirstAndHasASizeOfItsOwn) {
+    const auto front = [](const std::string& rest) { return painted("shape A { " + rest).back(); };
+    const std::string deep = "\nshape B { SQUARE [z 1 b 1] }";
+    EXPECT_EQ(front("B [s 0.5] CIRCLE [s 2 z 0.7] }" + deep), ':');
+    EXPECT_EQ(front("B [s 0.5] CIRCLE [s 2 z 1.1] }" + deep), '0');
+    EXPECT_EQ(front("B [s 0.5 0.5 3] CIRCLE [z 2.9] }" + deep), ':');
+    EXPECT_EQ(front("B [s 0.5 0.5 3] CIRCLE [z 3.1] }" + deep), '0');
+    EXPECT_EQ(front("B [s 2 2 0.1 z 0.5] CIRCLE [z 0.59] }" + deep), ':');
+    EXPECT_EQ(front("B [x 0 0 -0.5 s 0.1] CIRCLE [z 0.6] }" + deep), '0');
+    // However many shapes lie between, and however small the steps are.
+    EXPECT_EQ(front("SQUARE [z 0.001 b 1] loop 3000 [] B [s 0.5] }\nshape B { SQUARE [] }"), ':');
+    EXPECT_EQ(front("SQUARE [z -0.001] loop 3000 [z -0.001] SQUARE [z -0.002] SQUARE [b 1] }"), ':');
+}
+
+TEST(ContextFreeOrder, ManyVeilsKeepTheirOrder) {
+    EXPECT_EQ(painted("shape A { loop 500 [] SQUARE [a -0.5] B [s 0.99] }\nshape B { SQUARE [b 1] }"),
+              repeated(500, "0") + ":");
+}
+
+// Found by a lawn that took 75 s, of a chain of 2000 objects.
+TEST(ContextFreeOrder, LongRecursionMakesNoLongChains) {
+    const ImportedShapes model("a.cfdg", R"(startshape field
+tile { s 150 }
+rule field { grass { hue 97 sat 0.72 b 0.76 } }
+rule grass 5 { seedling {} grass {} }
+rule grass { grass { b 0.2 } }
+rule grass { grass { b -0.1 } }
+rule grass 10 { grass { r 5 } }
+rule grass 10 { grass { r -5 } }
+rule grass { grass { x 10 } }
+rule grass 0.01 { }
+rule seedling { SQUARE {} seedling { y 1 r -2 s 0.991 } }
+rule seedling { SQUARE {} seedling { y 1 r 2 s 0.991 } }
+)");
+    ASSERT_TRUE(model.graph) << model.said();
+    std::size_t objects = 0;
+    for (std::size_t at = 0; (at = model.translation.find("canonical object", at)) != std::string::npos; ++at)
+        ++objects;
+    EXPECT_LE(objects, 70u); // 64 blades, the field, a square
+    // The levels of objects within objects.
+    const Graph& graph = *model.graph;
+    std::vector<std::size_t> levels(graph.objects.size());
+    const auto level = [&](const auto& self, ObjectId object) -> std::size_t {
+        std::size_t& known = levels[object];
+        if (known > 0) return known;
+        std::size_t most = 0;
+        for (const Instance& instance : graph.objects[object].instances)
+            most = std::max(most, self(self, instance.master));
+        return known = most + 1;
+    };
+    EXPECT_LE(level(level, graph.root), 6u);
+    EXPECT_THAT(model.said(), ::testing::Not(HasSubstr("too many different inks")));
+}
+
+} // namespace
+} // namespace graftal::testing

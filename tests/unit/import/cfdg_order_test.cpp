@@ -16,8 +16,9 @@ using ::testing::HasSubstr;
 /// A grammar that .inst has no words for, so that it is computed.
 const std::string computed = "v = 1, 2\n";
 
-/// The red part of each shape's colour, in tenths, from the lowest to the highest.
-std::string painted(const std::string& grammar) { // of squares and triangles, which are flat
+/// The red part of each shape's colour, in tenths, from the lowest to the highest. Of squares and triangles:
+/// circles are thick.
+std::string painted(const std::string& grammar) {
     const ImportedShapes model("a.cfdg", "startshape A\n" + grammar);
     EXPECT_TRUE(model.graph) << model.said() << model.translation.substr(0, 2000);
     std::vector<std::pair<double, char>> shapes;

@@ -115,10 +115,11 @@ class PbrtWriter {
         std::string reflectance = fmt::format("\"rgb reflectance\" [ {} ]", pbrt_vector(look.colour));
         if (look.pictured) {
             const std::string picture = pictures_.name(*look.material);
-            file_.print(
-                "Texture \"picture_{0}\" \"spectrum\" \"imagemap\" \"string filename\" [ {1} ]\nTexture "
-                "\"alpha_{0}\" \"float\" \"imagemap\" \"string filename\" [ {1} ]\n",
-                number, pbrt_quoted(picture));
+            file_.print("Texture \"picture_{}\" \"spectrum\" \"imagemap\" \"string filename\" [ {} ]\n",
+                        number, pbrt_quoted(picture));
+            if (material.coverage < 1)
+                file_.print("Texture \"alpha_{}\" \"float\" \"imagemap\" \"string filename\" [ {} ]\n",
+                            number, pbrt_quoted(picture));
             reflectance = fmt::format("\"texture reflectance\" [ \"picture_{}\" ]", number);
         }
         file_.print("MakeNamedMaterial \"look_{}\" ", number);

@@ -234,8 +234,10 @@ std::string PovrayTextures::ground(const Material& material, const Affine& pov_f
 /// The tint over the picture is the weighted mean of a colour and the picture, where there is any of it.
 void PovrayTextures::append_picture(std::string& text, const PlacementGroup& group) {
     const Material& material = group.material;
-    const std::string& name = picture_name(material);
     const PathTint& tint = group.tint;
+    if (material.coverage == 1 && tint.alpha >= 1 - no_tint)
+        return append_plain(text, tint.premultiplied, material);
+    const std::string& name = picture_name(material);
     const std::string pigment = tint.alpha <= no_tint ? name
                                 : tint.alpha >= 1 - no_tint
                                     ? colour_text(tint.premultiplied, clearness(material))

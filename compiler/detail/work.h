@@ -43,6 +43,7 @@ struct RayWork {
     static constexpr std::uint64_t stretched = 1; ///< more, for one that a map other than a similarity places
     static constexpr std::uint64_t widened = 6;   ///< a leaf that is drawn larger than it is
     static constexpr std::uint64_t crushed = 3;   ///< looked at in the world: no ray is taken into its frame
+    static constexpr std::uint64_t nodes = 4;     ///< of a mesh's tree, that take a step together
     static constexpr std::uint64_t shaded = 1;    ///< a level of the path to what is seen
     static constexpr std::uint64_t lamp = 1;      ///< a sharp light on what is seen, besides its ray
     static constexpr std::uint64_t soft_lamp = 3; ///< one that is sampled

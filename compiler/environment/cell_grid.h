@@ -47,17 +47,28 @@ class CellGrid {
     /// Calls look(thing) for all within `size` of a place, and for some others, until it says false.
     template<typename Look> void near(Vec3 place, const Look& look) const {
         const CellPlace middle = cell_of(place, size_);
-        for (std::int64_t x = -1; x <= 1; ++x)
-            for (std::int64_t y = -1; y <= 1; ++y)
-                for (std::int64_t z = -1; z <= 1; ++z) {
-                    const auto cell = cells_.find({middle[0] + x, middle[1] + y, middle[2] + z});
+        look_between({middle[0] - 1, middle[1] - 1, middle[2] - 1},
+                     {middle[0] + 1, middle[1] + 1, middle[2] + 1}, look);
+    }
+
+    /// The same for all within a distance along each axis.
+    template<typename Look> void near(Vec3 place, double distance, const Look& look) const {
+        look_between(cell_of(place - distance, size_), cell_of(place + distance, size_), look);
+    }
+
+  private:
+    template<typename Look>
+    void look_between(const CellPlace& first, const CellPlace& last, const Look& look) const {
+        for (std::int64_t x = first[0]; x <= last[0]; ++x)
+            for (std::int64_t y = first[1]; y <= last[1]; ++y)
+                for (std::int64_t z = first[2]; z <= last[2]; ++z) {
+                    const auto cell = cells_.find({x, y, z});
                     if (cell == cells_.end()) continue;
                     for (const std::uint32_t thing : cell->second)
                         if (!look(thing)) return;
                 }
     }
 
-  private:
     double size_;
     std::unordered_map<CellPlace, std::vector<std::uint32_t>, CellHash> cells_;
 };

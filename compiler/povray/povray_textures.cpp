@@ -183,12 +183,14 @@ void PovrayTextures::append_layered(std::string& text, const PlacementGroup& gro
 }
 
 const std::string& PovrayTextures::picture_name(const Material& material) {
-    std::string& name = pictures_[{material.texture, clearness(material)}];
-    if (name.empty()) name = fmt::format("{}I_{}", prefix_, pictures_.size());
-    return name;
+    Picture& picture = pictures_[{material.texture, clearness(material)}];
+    if (picture.name.empty())
+        picture = {fmt::format("{}I_{}", prefix_, pictures_.size()), material.coverage < 1};
+    return picture.name;
 }
 
-/// Where the picture is clear nothing, else this pigment.
+/// Where the picture is clear nothing, else this pigment. Each ray that comes to such a texture costs a ray
+/// more behind it.
 void PovrayTextures::append_shape(std::string& text, std::string_view pattern, std::string_view pigment,
                                   const Material& material) {
     text += fmt::format("texture {{ {} {{ {}_shape }} texture_map {{ "
@@ -209,31 +211,43 @@ void PovrayTextures::append_shape(std::string& text, std::string_view pattern, s
 
 std::string PovrayTextures::ground(const Material& material, const Affine& pov_from_picture) {
     if (material.texture.empty()) return plain(material.rgb, material);
-    std::string text;
-    append_shape(text, "pigment_pattern", picture_name(material), material);
-    text += " matrix <";
+    std::string place = " matrix <";
     constexpr int place_digits = 12;
     for (int column = 0; column < 4; ++column)
         for (int row = 0; row < 3; ++row) {
-            if (column + row > 0) text += ",";
+            if (column + row > 0) place += ",";
             append_number(
-                text, column < 3 ? pov_from_picture.linear[column][row] : pov_from_picture.translation[row],
+                place, column < 3 ? pov_from_picture.linear[column][row] : pov_from_picture.translation[row],
                 place_digits);
         }
-    return text + "> }";
+    place += ">";
+    std::string text;
+    if (material.coverage == 1) {
+        append_surface(text, picture_name(material) + place, material);
+    } else {
+        append_shape(text, "pigment_pattern", picture_name(material), material);
+        text += place + " }";
+    }
+    return text;
 }
 
 /// The tint over the picture is the weighted mean of a colour and the picture, where there is any of it.
 void PovrayTextures::append_picture(std::string& text, const PlacementGroup& group) {
     const Material& material = group.material;
-    const std::string& name = picture_name(material);
     const PathTint& tint = group.tint;
+    if (material.coverage == 1 && tint.alpha >= 1 - no_tint)
+        return append_plain(text, tint.premultiplied, material);
+    const std::string& name = picture_name(material);
     const std::string pigment = tint.alpha <= no_tint ? name
                                 : tint.alpha >= 1 - no_tint
                                     ? colour_text(tint.premultiplied, clearness(material))
                                     : mean_text(name, tint, clearness(material));
-    append_shape(text, "uv_mapping pigment_pattern", pigment, material);
-    text += " }";
+    if (material.coverage == 1) {
+        append_surface(text, "uv_mapping " + pigment, material);
+    } else {
+        append_shape(text, "uv_mapping pigment_pattern", pigment, material);
+        text += " }";
+    }
 }
 
 std::uint32_t PovrayTextures::texture_of(const PlacementGroup& group) {
@@ -300,13 +314,16 @@ std::string PovrayTextures::declarations(std::vector<PaletteImage>& pictures) co
         if (PaletteLayout(static_cast<std::uint32_t>(palette.size())).picture())
             pictures.push_back(palette_image(palette, file_name(name)));
     }
-    for (const auto& [key, name] : pictures_) {
+    for (const auto& [key, picture] : pictures_) {
+        const std::string file = file_name(picture.name);
+        text += fmt::format("#declare {} = pigment {{ image_map {{ png \"{}\" {}}} }}\n", picture.name, file,
+                            clear_image(key.second));
         // With use_alpha the pattern is 1 where the picture is clear.
-        text += fmt::format("#declare {0} = pigment {{ image_map {{ png \"{1}\" {2}}} }}\n"
-                            "#declare {0}_shape = pigment {{ image_pattern {{ png \"{1}\" use_alpha }} "
-                            "color_map {{ [0 rgb 1] [1 rgb 0] }} }}\n",
-                            name, file_name(name), clear_image(key.second));
-        pictures.push_back({.file_name = file_name(name), .texture = key.first});
+        if (picture.has_clear_parts)
+            text += fmt::format("#declare {}_shape = pigment {{ image_pattern {{ png \"{}\" use_alpha }} "
+                                "color_map {{ [0 rgb 1] [1 rgb 0] }} }}\n",
+                                picture.name, file);
+        pictures.push_back({.file_name = file, .texture = key.first});
     }
     for (const auto& [layers, name] : layers_)
         text += fmt::format("#declare {} = {}\n", name, layers);

@@ -82,8 +82,12 @@ class PovrayTextures {
     std::vector<std::string> finish_declarations_;
     /// Declared names, by index in the cut and what is said of light that goes through.
     std::map<std::pair<std::uint32_t, std::string>, std::string> palettes_;
-    std::map<std::pair<std::string, std::string>, std::string> pictures_; ///< likewise, by Material::texture
-    std::map<std::string, std::string> layers_;                           ///< by their text
+    struct Picture {
+        std::string name;
+        bool has_clear_parts = false;
+    };
+    std::map<std::pair<std::string, std::string>, Picture> pictures_; ///< likewise, by Material::texture
+    std::map<std::string, std::string> layers_;                       ///< by their text
     FinishNames last_finish_;
     bool by_material_;
     std::deque<std::string> textures_;

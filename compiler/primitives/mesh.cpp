@@ -12,23 +12,16 @@
 
 namespace graftal {
 
+std::string fault_of_coordinate(double coordinate) {
+    if (std::abs(coordinate) <= most_mesh_coordinate) return {};
+    return fmt::format("a coordinate is {}, and {} is the most", coordinate, most_mesh_coordinate);
+}
+
 std::optional<MeshData> read_mesh(std::string_view bytes, std::string& fault) {
     std::optional<MeshData> data = bytes.starts_with("ply\n") || bytes.starts_with("ply\r")
                                        ? read_ply(bytes, fault)
                                        : read_obj(bytes, fault);
     if (!data) return std::nullopt;
-    for (const Vec3& v : data->vertices)
-        for (int i = 0; i < 3; ++i)
-            if (!(std::abs(v[i]) <= most_mesh_coordinate)) {
-                fault = fmt::format("a coordinate is {}, and {} is the most", v[i], most_mesh_coordinate);
-                return std::nullopt;
-            }
-    for (const auto& corners : data->uv)
-        for (const auto& uv : corners)
-            if (!(std::abs(uv[0]) <= most_mesh_coordinate && std::abs(uv[1]) <= most_mesh_coordinate)) {
-                fault = "a texture coordinate is no number, or too large";
-                return std::nullopt;
-            }
     for (Vec3& normal : data->normals) {
         const double largest = std::max({std::abs(normal.x), std::abs(normal.y), std::abs(normal.z)});
         // What is no number, and what has no direction, is as if the file had none there.

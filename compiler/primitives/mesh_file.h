@@ -29,12 +29,16 @@ inline constexpr std::size_t most_mesh_vertices = 1'000'000;
 inline constexpr double most_mesh_coordinate = 1e6;
 
 /// Reads a mesh: OBJ (vertices, normals, texture coordinates, faces of any number of corners, cut into fans)
-/// or PLY (ascii or binary; its header says which). Triangles without an area are left out. Nothing, and what
-/// is at fault, for what is neither, is damaged, or has too much or nothing in it: a PLY's counts are held
-/// against the limits and the length of the file before anything is made room for.
+/// or PLY (ascii or binary; its header says which). Leaves out triangles without an area, and those that
+/// come again. Nothing, and what is at fault, for what is neither, is damaged, or has too much or nothing in
+/// it: a PLY's counts are held against the limits and the length of the file before anything is made room
+/// for.
 std::optional<MeshData> read_mesh(std::string_view bytes, std::string& fault);
 
-/// The parts of read_mesh().
+/// What is at fault with a coordinate, of a vertex or of a picture; empty if nothing is.
+std::string fault_of_coordinate(double coordinate);
+
+/// The parts of read_mesh(). What is at fault begins with its line, or in a PLY's elements with its byte.
 std::optional<MeshData> read_obj(std::string_view text, std::string& fault);
 std::optional<MeshData> read_ply(std::string_view bytes, std::string& fault);
 

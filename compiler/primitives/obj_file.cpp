@@ -73,6 +73,8 @@ class ObjReader {
             Vec3 v;
             for (int i = 0; i < 3; ++i)
                 if (!parse(words.next(), v[i])) return fail("a vertex has three numbers");
+            for (int i = 0; i < 3; ++i)
+                if (const std::string fault = fault_of_coordinate(v[i]); !fault.empty()) return fail(fault);
             if (data_.vertices.size() == most_mesh_vertices) return fail("there are too many vertices");
             data_.vertices.push_back(v);
         } else if (keyword == "vt") {
@@ -80,6 +82,9 @@ class ObjReader {
             const std::string_view u = words.next(), v = words.next();
             if (!parse(u, uv[0]) || (!v.empty() && !parse(v, uv[1])))
                 return fail("texture coordinates are one number or two");
+            for (const double coordinate : uv)
+                if (const std::string fault = fault_of_coordinate(coordinate); !fault.empty())
+                    return fail("texture: " + fault);
             if (uv_.size() == 3 * most_mesh_triangles) return fail("there are too many texture coordinates");
             uv_.push_back(uv);
         } else if (keyword == "vn") {

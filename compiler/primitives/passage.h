@@ -19,9 +19,10 @@ namespace graftal {
 
 /// A ray that approaches a plane by less for each unit of its way counts as parallel to it.
 inline constexpr double parallel_to_plane = 1e-20;
-/// A ray parallel to a plane may lie this far outside: where two solids touch it belongs to both, not to
-/// none.
-inline constexpr double passage_rounding = 1e-14;
+/// A ray parallel to a plane may lie this far outside, and one through a flat shape may pass this far beyond
+/// an edge: where two shapes touch it belongs to both, not to none. Their maps may place the edge
+/// differently, by the rounding of each level above them. No picture shows so little of a shape of size 1.
+inline constexpr double passage_rounding = 1e-10;
 
 /// The part of a ray within a convex solid, its ends included; empty if it enters after it leaves.
 struct Passage {

@@ -46,10 +46,11 @@ struct Element {
 
 class PlyReader {
   public:
-    PlyReader(std::string_view bytes, std::string& fault) : rest_(bytes), fault_(fault) {}
+    PlyReader(std::string_view bytes, std::string& fault) : all_(bytes), rest_(bytes), fault_(fault) {}
 
     std::optional<MeshData> read() {
         if (!read_header() || !check_counts()) return std::nullopt;
+        in_header_ = false;
         for (const Element& element : elements_)
             for (std::uint64_t i = 0; i < element.count; ++i)
                 if (!read_element(element)) return std::nullopt;
@@ -59,8 +60,9 @@ class PlyReader {
     }
 
   private:
-    bool fail(std::string what) {
-        fault_ = std::move(what);
+    bool fail(std::string_view what) {
+        fault_ = in_header_ ? fmt::format("line {}: {}", line_, what)
+                            : fmt::format("byte {}: {}", all_.size() - rest_.size() + 1, what);
         return false;
     }
 
@@ -69,6 +71,7 @@ class PlyReader {
         std::string_view text = rest_.substr(0, end);
         rest_.remove_prefix(std::min(end + 1, rest_.size()));
         if (text.ends_with('\r')) text.remove_suffix(1);
+        ++line_;
         return text;
     }
 
@@ -198,6 +201,9 @@ class PlyReader {
             const bool u = name == "u" || name == "s" || name == "texture_u",
                        v = name == "v" || name == "t" || name == "texture_v";
             if (u || v) uv[v ? 1 : 0] = number;
+            const bool place = vertex && (u || v || name == "x" || name == "y" || name == "z");
+            if (const std::string fault = place ? fault_of_coordinate(number) : ""; !fault.empty())
+                return fail(fault);
             has_uv = has_uv || u || v;
         }
         if (!vertex) return true;
@@ -238,8 +244,10 @@ class PlyReader {
         return true;
     }
 
-    std::string_view rest_;
+    std::string_view all_, rest_;
     std::string& fault_;
+    bool in_header_ = true;
+    std::size_t line_ = 0;
     bool has_format_ = false, text_ = false, swapped_ = false, textured_ = false, smooth_ = false;
     std::vector<Element> elements_;
     MeshData data_;

@@ -28,21 +28,34 @@ class Polygon : public Shape {
         for (const PlanePoint& corner : rings.corners)
             points.emplace_back(corner[0], corner[1], 0);
         box = box_about(points);
+        for (const Vec3& point : {box.min, box.max})
+            seam =
+                std::max({seam, passage_rounding * std::abs(point.x), passage_rounding * std::abs(point.y)});
         for (const auto& [a, b, c] : triangles) {
             pieces.push_back({points[a], points[b], points[c]});
             areas.add(0.5 * glm::length(area_normal(pieces.back())));
         }
     }
 
-    /// Whether a point of the plane lies in an odd number of outlines.
+    /// Whether a point of the plane lies in an odd number of outlines, or on one.
     bool holds_point(double x, double y) const {
+        if (!(x >= box.min.x - seam && x <= box.max.x + seam && y >= box.min.y - seam &&
+              y <= box.max.y + seam))
+            return false;
         bool inside = false;
         std::uint32_t first = 0;
         for (const std::uint32_t end : rings.ring_ends) {
             for (std::uint32_t i = first, last = end - 1; i < end; last = i++) {
                 const PlanePoint &a = rings.corners[last], &b = rings.corners[i];
-                if ((a[1] > y) != (b[1] > y) && x < a[0] + (y - a[1]) / (b[1] - a[1]) * (b[0] - a[0]))
-                    inside = !inside;
+                const auto [low, high] = std::minmax(a[1], b[1]);
+                if (!(y >= low - seam && y <= high + seam)) continue;
+                const double across = b[0] - a[0], up = b[1] - a[1];
+                const double beyond = (x - a[0]) * up - (y - a[1]) * across;
+                const auto [left, right] = std::minmax(a[0], b[0]);
+                if (x >= left - seam && x <= right + seam &&
+                    std::abs(beyond) <= seam * (std::abs(across) + std::abs(up)))
+                    return true;
+                if ((a[1] > y) != (b[1] > y) && (beyond < 0) == (up > 0)) inside = !inside;
             }
             first = end;
         }
@@ -55,6 +68,7 @@ class Polygon : public Shape {
     std::vector<Triangle> pieces;
     AreaSampler areas;
     Box box;
+    double seam = 0; ///< what lies nearer to an edge is on it
 };
 
 const Polygon& form_of(const Primitive& primitive) {

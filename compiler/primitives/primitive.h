@@ -77,6 +77,7 @@ struct PrimitiveHit {
     double t = 0;
     Vec3 normal{0, 1, 0}; ///< in the primitive's frame, outwards (of the triangle: +z, of the plane: +y), of
                           ///< unit length
+    std::uint64_t steps = 0; ///< among the parts of the primitive, whether or not any was met
 };
 
 /// How many numbers make a primitive of the kind; `most` is 0 for those of no numbers.

@@ -1,12 +1,15 @@
 #include "compiler/primitives/triangle_mesh.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <tuple>
 #include <utility>
 
 #include <glm/geometric.hpp>
 
 #include "compiler/primitives/symmetry_maps.h"
+#include "compiler/support/id_table.h"
 
 namespace graftal {
 
@@ -29,12 +32,28 @@ bool has_area(const Triangle& t) {
     return glm::length(area_normal(t)) > least_height * longest * longest;
 }
 
+/// The same triangle, turned about so that its least corner is the first.
+Triangle from_least_corner(Triangle t) {
+    const auto less = [](Vec3 a, Vec3 b) { return std::tie(a.x, a.y, a.z) < std::tie(b.x, b.y, b.z); };
+    std::ranges::rotate(t, std::ranges::min_element(t, less));
+    return t;
+}
+
+/// Equal for equal corners: 0 and -0 are equal.
+std::uint64_t hash_of(const Triangle& triangle) {
+    std::uint64_t hash = 0;
+    for (const Vec3& corner : triangle)
+        for (int i = 0; i < 3; ++i)
+            hash = mixed(hash, std::bit_cast<std::uint64_t>(corner[i] + 0.0));
+    return hash;
+}
+
 const TriangleMesh& form_of(const Primitive& primitive) {
     return shape_of<TriangleMesh>(primitive);
 }
 
 /// How much each corner counts at a point of the triangle's plane (barycentric coordinates).
-Vec3 shares_of(const Triangle& t, Vec3 point) {
+std::array<double, 3> shares_of(const Triangle& t, Vec3 point) {
     const Vec3 normal = area_normal(t);
     const double whole = glm::dot(normal, normal);
     const double b = glm::dot(glm::cross(point - t[0], t[2] - t[0]), normal) / whole;
@@ -42,14 +61,12 @@ Vec3 shares_of(const Triangle& t, Vec3 point) {
     return {1 - b - c, b, c};
 }
 
-Vec3 normal_at(const TriangleMesh& form, std::uint32_t number, Vec3 point) {
-    const Triangle& triangle = form.tree.triangles()[number];
-    const Vec3 facet = glm::normalize(area_normal(triangle));
+Vec3 normal_at(const TriangleMesh& form, std::uint32_t number, const std::array<double, 3>& share) {
+    const Vec3 facet = glm::normalize(area_normal(form.tree.triangles()[number]));
     if (form.data.normals.empty()) return facet;
-    const auto& [a, b, c] = form.data.triangles[number];
-    const Vec3 share = shares_of(triangle, point);
-    const std::vector<Vec3>& normals = form.data.normals;
-    const Vec3 sum = share[0] * normals[a] + share[1] * normals[b] + share[2] * normals[c];
+    Vec3 sum(0.0);
+    for (std::size_t k = 0; k < 3; ++k)
+        sum += share[k] * form.data.normals[form.data.triangles[number][k]];
     const double length = glm::length(sum);
     return length > 0 ? sum / length : facet;
 }
@@ -62,7 +79,7 @@ TexturePoint texture_at(const TriangleMesh& form, std::uint32_t number, Vec3 poi
                 size.y > 0 ? (point.y - form.box.min.y) / size.y : 0};
     }
     const auto& uv = form.data.uv[number];
-    const Vec3 share = shares_of(form.tree.triangles()[number], point);
+    const std::array<double, 3> share = shares_of(form.tree.triangles()[number], point);
     TexturePoint result;
     for (std::size_t k = 0; k < 2; ++k)
         result[k] = share[0] * uv[0][k] + share[1] * uv[1][k] + share[2] * uv[2][k];
@@ -81,10 +98,18 @@ MeshData without_slivers(const MeshData& data) {
     MeshData kept;
     constexpr std::uint32_t unknown = UINT32_MAX;
     std::vector<std::uint32_t> number(data.vertices.size(), unknown);
+    IdTable places;
     for (std::size_t i = 0; i < data.triangles.size(); ++i) {
         const auto& [a, b, c] = data.triangles[i];
         const Triangle triangle{data.vertices[a], data.vertices[b], data.vertices[c]};
         if (!has_area(triangle)) continue;
+        const auto next = static_cast<std::uint32_t>(kept.triangles.size());
+        const Triangle place = from_least_corner(triangle);
+        const auto is_there = [&](std::uint32_t other) {
+            const auto& [d, e, f] = kept.triangles[other];
+            return from_least_corner({kept.vertices[d], kept.vertices[e], kept.vertices[f]}) == place;
+        };
+        if (places.find_or_add(hash_of(place), next, is_there) != next) continue;
         std::array<std::uint32_t, 3> corners{};
         for (std::size_t k = 0; k < 3; ++k) {
             const std::uint32_t old = data.triangles[i][k];
@@ -199,14 +224,17 @@ SurfaceSite site(const Primitive& primitive, Vec3 u) {
     const auto number = static_cast<std::uint32_t>(form.areas.piece(u.z));
     const Triangle& triangle = form.tree.triangles()[number];
     const Vec3 point = point_of(triangle, u.x, u.y);
-    return {point, normal_at(form, number, point)};
+    return {point, normal_at(form, number, shares_of(triangle, point))};
 }
 
 bool intersect(const Primitive& primitive, const Ray& ray, const RayRange& range, PrimitiveHit& hit) {
     const TriangleMesh& form = form_of(primitive);
+    TriangleHit met;
     std::uint32_t number = 0;
-    if (!form.tree.meet(ray, range, hit.t, number)) return false;
-    hit.normal = normal_at(form, number, ray(hit.t));
+    hit.steps = 0;
+    if (!form.tree.meet(ray, range, met, number, hit.steps)) return false;
+    hit.t = met.t;
+    hit.normal = normal_at(form, number, met.share);
     return true;
 }
 

@@ -24,7 +24,8 @@ class TriangleMesh : public Shape {
     AreaSampler areas;
 };
 
-/// Without the triangles that have no area, and without the vertices that no triangle has then. Normals get
+/// Without the triangles that have no area or whose corners, in order, are those of an earlier one, and
+/// without the vertices that no triangle has then. Normals get
 /// unit length; one that has none is that of a triangle at the vertex. Requires finite numbers.
 MeshData without_slivers(const MeshData& data);
 

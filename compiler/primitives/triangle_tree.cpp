@@ -7,54 +7,35 @@
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
+
+#include "compiler/support/jacobi.h"
 
 namespace graftal {
 
 namespace {
 
 constexpr std::uint32_t triangles_a_leaf = 4;
+constexpr double infinite = std::numeric_limits<double>::infinity();
 
 Vec3 middle_of(const Triangle& t) {
     return (t[0] + t[1] + t[2]) / 3.0;
 }
 
-/// The part of the range within the box; empty where least > most. Slabs of no thickness count.
-RayRange within(const Box& box, const Ray& ray, RayRange range) {
-    const double slack = 1e-12 * glm::length(box.size());
-    for (int axis = 0; axis < 3; ++axis) {
-        const double low = box.min[axis] - slack - ray.origin[axis],
-                     high = box.max[axis] + slack - ray.origin[axis];
-        if (ray.direction[axis] == 0) {
-            if (low > 0 || high < 0) return {1, 0};
-            continue;
-        }
-        const double a = low / ray.direction[axis], b = high / ray.direction[axis];
-        range.least = std::max(range.least, std::min(a, b));
-        range.most = std::min(range.most, std::max(a, b));
-    }
-    return range;
-}
-
-bool meet_triangle(const Triangle& triangle, const Ray& ray, const RayRange& range, double& t) {
-    // Edges of neighbours leave no gap.
-    constexpr double slack = 1e-12;
-    const Vec3 ab = triangle[1] - triangle[0], ac = triangle[2] - triangle[0];
-    const Vec3 p = glm::cross(ray.direction, ac);
-    const double determinant = glm::dot(ab, p);
-    const double size = glm::length(ab) * glm::length(ac) * glm::length(ray.direction);
-    if (!(std::abs(determinant) > 1e-15 * size)) return false;
-    const Vec3 from = ray.origin - triangle[0];
-    const double u = glm::dot(from, p) / determinant;
-    const Vec3 q = glm::cross(from, ab);
-    const double v = glm::dot(ray.direction, q) / determinant;
-    if (!(u >= -slack && v >= -slack && u + v <= 1 + slack)) return false;
-    t = glm::dot(ac, q) / determinant;
-    return t > range.least && t < range.most;
+/// The part of the range in which a ray is between two places along an axis; empty where least > most.
+RayRange between(double low, double high, double direction, RayRange range) {
+    if (direction == 0) return low > 0 || high < 0 ? RayRange{1, 0} : range;
+    const double a = low / direction, b = high / direction;
+    return {std::max(range.least, std::min(a, b)), std::min(range.most, std::max(a, b))};
 }
 
 double distance2(const Box& box, Vec3 point) {
     const Vec3 out = glm::max(glm::max(box.min - point, point - box.max), Vec3(0.0));
     return glm::dot(out, out);
+}
+
+double half_area(Vec3 size) {
+    return size.x * size.y + size.y * size.z + size.z * size.x;
 }
 
 /// C. Ericson, "Real-Time Collision Detection", 2005, section 5.1.5.
@@ -80,15 +61,31 @@ Vec3 closest_point(const Triangle& t, Vec3 point) {
 
 } // namespace
 
+/// About the root's middle.
+struct TriangleTree::Spread {
+    double count = 0;
+    Vec3 sum{0.0};
+    Mat3 squares{0.0}; ///< sum of outer products
+
+    void add(const Spread& other) {
+        count += other.count;
+        sum += other.sum;
+        squares += other.squares;
+    }
+};
+
 TriangleTree::TriangleTree(std::vector<Triangle> triangles)
     : triangles_(std::move(triangles)), order_(triangles_.size()) {
     std::iota(order_.begin(), order_.end(), 0u);
+    for (const Triangle& triangle : triangles_)
+        for (const Vec3& corner : triangle)
+            extent_ = std::max({extent_, std::abs(corner.x), std::abs(corner.y), std::abs(corner.z)});
     nodes_.emplace_back();
     split(0, 0, static_cast<std::uint32_t>(order_.size()));
 }
 
 /// Halves by the middles along the longest side: as deep as the logarithm of the count.
-void TriangleTree::split(std::uint32_t node, std::uint32_t first, std::uint32_t end) {
+TriangleTree::Spread TriangleTree::split(std::uint32_t node, std::uint32_t first, std::uint32_t end) {
     Box box, middles;
     for (std::uint32_t i = first; i < end; ++i) {
         for (const Vec3& corner : triangles_[order_[i]])
@@ -96,45 +93,134 @@ void TriangleTree::split(std::uint32_t node, std::uint32_t first, std::uint32_t 
         middles.include(middle_of(triangles_[order_[i]]));
     }
     nodes_[node].box = box;
+    Spread spread;
     if (end - first <= triangles_a_leaf) {
         nodes_[node].first = first;
         nodes_[node].count = end - first;
-        return;
+        const Vec3 middle = nodes_.front().box.centre();
+        for (std::uint32_t i = first; i < end; ++i)
+            for (const Vec3& corner : triangles_[order_[i]]) {
+                const Vec3 from = corner - middle;
+                spread.add({1, from, glm::outerProduct(from, from)});
+            }
+    } else {
+        const Vec3 size = middles.size();
+        const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
+        const std::uint32_t half = first + (end - first) / 2;
+        std::nth_element(order_.begin() + first, order_.begin() + half, order_.begin() + end,
+                         [&](std::uint32_t a, std::uint32_t b) {
+                             const double x = middle_of(triangles_[a])[axis],
+                                          y = middle_of(triangles_[b])[axis];
+                             return x != y ? x < y : a < b;
+                         });
+        const auto children = static_cast<std::uint32_t>(nodes_.size());
+        nodes_[node].first = children;
+        nodes_.resize(nodes_.size() + 2);
+        spread = split(children, first, half);
+        spread.add(split(children + 1, half, end));
     }
-    const Vec3 size = middles.size();
-    const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
-    const std::uint32_t half = first + (end - first) / 2;
-    std::nth_element(order_.begin() + first, order_.begin() + half, order_.begin() + end,
-                     [&](std::uint32_t a, std::uint32_t b) {
-                         const double x = middle_of(triangles_[a])[axis], y = middle_of(triangles_[b])[axis];
-                         return x != y ? x < y : a < b;
-                     });
-    const auto children = static_cast<std::uint32_t>(nodes_.size());
-    nodes_[node].first = children;
-    nodes_.resize(nodes_.size() + 2);
-    split(children, first, half);
-    split(children + 1, half, end);
+    add_slabs(node, first, end, spread);
+    return spread;
 }
 
-bool TriangleTree::meet(const Ray& ray, const RayRange& range, double& t, std::uint32_t& triangle) const {
+/// Across the two directions in which the corners spread least, where that leaves much less than the box.
+void TriangleTree::add_slabs(std::uint32_t number, std::uint32_t first, std::uint32_t end,
+                             const Spread& spread) {
+    constexpr double much_less = 0.25;    // of the box's area
+    constexpr double much_thinner = 0.05; // than the box's thinnest side
+    constexpr std::uint32_t many = 64;    // triangles may lie one behind the other
+    const Vec3 size = nodes_[number].box.size();
+    const auto is_worth = [&](Vec3 turned) {
+        return half_area(turned) < much_less * half_area(size) ||
+               (end - first >= many &&
+                std::min({turned.x, turned.y, turned.z}) < much_thinner * std::min({size.x, size.y, size.z}));
+    };
+    const Vec3 mean = spread.sum / spread.count;
+    Mat3 columns = spread.squares / spread.count - glm::outerProduct(mean, mean);
+    const double trace = columns[0][0] + columns[1][1] + columns[2][2];
+    if (!(trace > 0)) return;
+    columns /= trace;
+    Mat3 axes(1.0);
+    make_columns_orthogonal(columns, &axes);
+    std::array<int, 3> order{0, 1, 2};
+    Vec3 variance;
+    for (int i = 0; i < 3; ++i)
+        variance[i] = glm::length(columns[i]);
+    std::ranges::sort(order, [&](int a, int b) { return variance[a] < variance[b]; });
+    // The sides of an even spread: most nodes need no closer look.
+    if (!is_worth(glm::sqrt(12 * trace * variance))) return;
+    std::array<Slab, 3> slabs;
+    Vec3 turned;
+    for (int i = 0; i < 3; ++i) {
+        Slab& slab = slabs[static_cast<std::size_t>(i)];
+        slab = {glm::normalize(axes[order[static_cast<std::size_t>(i)]]), infinite, -infinite};
+        for (std::uint32_t k = first; k < end; ++k)
+            for (const Vec3& corner : triangles_[order_[k]]) {
+                const double at = glm::dot(slab.across, corner);
+                slab.least = std::min(slab.least, at);
+                slab.most = std::max(slab.most, at);
+            }
+        turned[i] = slab.most - slab.least;
+    }
+    if (!is_worth(turned)) return;
+    nodes_[number].slabs = static_cast<std::uint32_t>(slabs_.size());
+    slabs_.insert(slabs_.end(), slabs.begin(), slabs.begin() + 2);
+}
+
+RayRange TriangleTree::within(const Node& node, const Ray& ray, double slack, RayRange range) const {
+    for (int axis = 0; axis < 3; ++axis)
+        range = between(node.box.min[axis] - slack - ray.origin[axis],
+                        node.box.max[axis] + slack - ray.origin[axis], ray.direction[axis], range);
+    if (node.slabs == no_slabs || !(range.least <= range.most)) return range;
+    for (std::uint32_t i = node.slabs; i < node.slabs + 2; ++i) {
+        const Slab& slab = slabs_[i];
+        const double at = glm::dot(slab.across, ray.origin);
+        range = between(slab.least - slack - at, slab.most + slack - at, glm::dot(slab.across, ray.direction),
+                        range);
+    }
+    return range;
+}
+
+/// No more than that of anything in the node.
+double TriangleTree::distance2(const Node& node, Vec3 point) const {
+    double least = graftal::distance2(node.box, point);
+    if (node.slabs == no_slabs) return least;
+    for (std::uint32_t i = node.slabs; i < node.slabs + 2; ++i) {
+        const double at = glm::dot(slabs_[i].across, point);
+        const double out = std::max({slabs_[i].least - at, at - slabs_[i].most, 0.0});
+        least = std::max(least, out * out);
+    }
+    return least;
+}
+
+bool TriangleTree::meet(const Ray& ray, const RayRange& range, TriangleHit& hit, std::uint32_t& triangle,
+                        std::uint64_t& steps) const {
+    const TriangleRay triangle_ray(ray, extent_);
+    const double far =
+        extent_ + std::max({std::abs(ray.origin.x), std::abs(ray.origin.y), std::abs(ray.origin.z)});
+    // Seams, and the rounding of a product with a slab's direction.
+    const double slack = 2 * TriangleRay::seam * far;
+    const double tie = one_depth * far / glm::length(ray.direction);
     RayRange left = range;
     bool met = false;
     std::array<std::uint32_t, 64> stack{};
     std::size_t size = 1;
     while (size > 0) {
         const Node& node = nodes_[stack[--size]];
-        if (const RayRange inside = within(node.box, ray, left); !(inside.least <= inside.most)) continue;
+        ++steps;
+        if (const RayRange inside = within(node, ray, slack, left); !(inside.least <= inside.most)) continue;
         if (node.count == 0) {
-            const std::uint32_t near = node.first, far = node.first + 1;
+            const std::uint32_t near = node.first, far_child = node.first + 1;
             const bool turned =
-                glm::dot(nodes_[far].box.centre() - nodes_[near].box.centre(), ray.direction) < 0;
-            stack[size++] = turned ? near : far;
-            stack[size++] = turned ? far : near;
+                glm::dot(nodes_[far_child].box.centre() - nodes_[near].box.centre(), ray.direction) < 0;
+            stack[size++] = turned ? near : far_child;
+            stack[size++] = turned ? far_child : near;
             continue;
         }
         for (std::uint32_t i = node.first; i < node.first + node.count; ++i)
-            if (double at = 0; meet_triangle(triangles_[order_[i]], ray, left, at)) {
-                left.most = t = at;
+            if (TriangleHit at; triangle_ray.meet(triangles_[order_[i]], left, at)) {
+                left.most = std::max(at.t - tie, left.least);
+                hit = at;
                 triangle = order_[i];
                 met = true;
             }
@@ -149,7 +235,7 @@ Vec3 TriangleTree::farthest(Vec3 direction) const {
             sum += direction[i] * (direction[i] > 0 ? box.max[i] : box.min[i]);
         return sum;
     };
-    double most = -std::numeric_limits<double>::infinity();
+    double most = -infinite;
     Vec3 best = triangles_.front()[0];
     std::array<std::uint32_t, 64> stack{};
     std::size_t size = 1;
@@ -173,16 +259,16 @@ Vec3 TriangleTree::farthest(Vec3 direction) const {
 }
 
 std::uint32_t TriangleTree::nearest(Vec3 point) const {
-    double least = std::numeric_limits<double>::infinity();
+    double least = infinite;
     std::uint32_t best = 0;
     std::array<std::uint32_t, 64> stack{};
     std::size_t size = 1;
     while (size > 0) {
         const Node& node = nodes_[stack[--size]];
-        if (!(distance2(node.box, point) < least)) continue;
+        if (!(distance2(node, point) < least)) continue;
         if (node.count == 0) {
             const bool first =
-                distance2(nodes_[node.first].box, point) <= distance2(nodes_[node.first + 1].box, point);
+                distance2(nodes_[node.first], point) <= distance2(nodes_[node.first + 1], point);
             stack[size++] = first ? node.first + 1 : node.first;
             stack[size++] = first ? node.first : node.first + 1;
             continue;

@@ -4,12 +4,15 @@
 #include <vector>
 
 #include "compiler/primitives/shape_parts.h"
+#include "compiler/primitives/triangle_ray.h"
 #include "compiler/support/bounds.h"
 #include "compiler/support/ray.h"
 
 namespace graftal {
 
-/// A tree of boxes over triangles, for shapes of many.
+/// A tree of boxes over triangles, for shapes of many. A box that is much wider than the triangles in it, as
+/// about a needle askew or a fan of needles, is cut by slabs across (J. Klosowski et al., "Efficient
+/// Collision Detection Using Bounding Volume Hierarchies of k-DOPs", 1998, has fixed ones).
 class TriangleTree {
   public:
     /// Requires at least one triangle, and finite corners.
@@ -17,9 +20,11 @@ class TriangleTree {
 
     const std::vector<Triangle>& triangles() const { return triangles_; }
 
-    /// The first triangle that a ray meets within the range, from either side; false if there is none (T.
-    /// Moeller and B. Trumbore, "Fast, Minimum Storage Ray/Triangle Intersection", 1997).
-    bool meet(const Ray& ray, const RayRange& range, double& t, std::uint32_t& triangle) const;
+    /// The first triangle that a ray meets within the range, from either side; false if there is none. Of
+    /// triangles that lie no farther apart than `one_depth`, any may be the first. Adds to `steps` the nodes
+    /// that the ray came to.
+    bool meet(const Ray& ray, const RayRange& range, TriangleHit& hit, std::uint32_t& triangle,
+              std::uint64_t& steps) const;
 
     /// A corner that is farthest along a direction.
     Vec3 farthest(Vec3 direction) const;
@@ -30,18 +35,35 @@ class TriangleTree {
     /// The numbers of the triangles in parts that lie together, at most so many parts.
     std::vector<std::vector<std::uint32_t>> parts(std::size_t most) const;
 
+    /// A share of the largest coordinate.
+    static constexpr double one_depth = 1e-10;
+
   private:
+    /// What is no farther along a unit vector than between two places.
+    struct Slab {
+        Vec3 across;
+        double least = 0, most = 0;
+    };
     struct Node {
         Box box;
         std::uint32_t first = 0; ///< of its triangles in order_, or its first child; the other follows that
         std::uint32_t count = 0; ///< 0: an inner node
+        std::uint32_t slabs = no_slabs; ///< the first of two
     };
+    static constexpr std::uint32_t no_slabs = UINT32_MAX;
+    /// How corners are spread, of a number of triangles.
+    struct Spread;
 
-    void split(std::uint32_t node, std::uint32_t first, std::uint32_t end);
+    Spread split(std::uint32_t node, std::uint32_t first, std::uint32_t end);
+    void add_slabs(std::uint32_t node, std::uint32_t first, std::uint32_t end, const Spread& spread);
+    RayRange within(const Node& node, const Ray& ray, double slack, RayRange range) const;
+    double distance2(const Node& node, Vec3 point) const;
 
     std::vector<Triangle> triangles_;
     std::vector<std::uint32_t> order_;
     std::vector<Node> nodes_; ///< the first is the root
+    std::vector<Slab> slabs_;
+    double extent_ = 0; ///< the largest coordinate
 };
 
 } // namespace graftal

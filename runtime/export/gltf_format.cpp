@@ -388,7 +388,7 @@ class GltfWriter {
         if (!material.texture.empty()) {
             pbr.baseColorFactor = {1, 1, 1, look.opacity};
             pbr.baseColorTexture.index = texture_of(*surface.material);
-            if (look.opacity == 1) made.alphaMode = "MASK"; // at 1/2, as graftal's
+            if (look.opacity == 1 && material.coverage < 1) made.alphaMode = "MASK"; // at 1/2, as graftal's
         }
         model_.materials.push_back(std::move(made));
         return known->second;

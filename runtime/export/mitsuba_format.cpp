@@ -200,7 +200,7 @@ class MitsubaWriter {
                                    : plastic          ? "diffuse_reflectance"
                                                       : "reflectance";
         const std::string picture = look.pictured ? pictures_.name(*look.material) : "";
-        if (look.pictured) {
+        if (look.pictured && material.coverage < 1) {
             file_.print(
                 "    <bsdf type=\"mask\" id=\"{}\">\n        <texture type=\"bitmap\" name=\"opacity\">\n"
                 "            <string name=\"filename\" value=\"{}\"/>\n        </texture>\n",

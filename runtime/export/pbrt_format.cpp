@@ -59,6 +59,10 @@ class PbrtWriter {
         return look.material ? pbr_of(renderer_.scene().materials[*look.material]).opacity : 1;
     }
 
+    bool has_holes(const RendererLook& look) const {
+        return look.pictured && renderer_.scene().materials[*look.material].coverage < 1;
+    }
+
     void camera() {
         const View& view = job_.view;
         const Camera& eye = view.camera;
@@ -115,10 +119,11 @@ class PbrtWriter {
         std::string reflectance = fmt::format("\"rgb reflectance\" [ {} ]", pbrt_vector(look.colour));
         if (look.pictured) {
             const std::string picture = pictures_.name(*look.material);
-            file_.print(
-                "Texture \"picture_{0}\" \"spectrum\" \"imagemap\" \"string filename\" [ {1} ]\nTexture "
-                "\"alpha_{0}\" \"float\" \"imagemap\" \"string filename\" [ {1} ]\n",
-                number, pbrt_quoted(picture));
+            file_.print("Texture \"picture_{}\" \"spectrum\" \"imagemap\" \"string filename\" [ {} ]\n",
+                        number, pbrt_quoted(picture));
+            if (has_holes(look))
+                file_.print("Texture \"alpha_{}\" \"float\" \"imagemap\" \"string filename\" [ {} ]\n",
+                            number, pbrt_quoted(picture));
             reflectance = fmt::format("\"texture reflectance\" [ \"picture_{}\" ]", number);
         }
         file_.print("MakeNamedMaterial \"look_{}\" ", number);
@@ -163,7 +168,7 @@ class PbrtWriter {
                 floats(surface.uv);
                 file_.text(" ]\n");
             }
-            if (renderer_.looks()[look].pictured)
+            if (has_holes(renderer_.looks()[look]))
                 file_.print("  \"texture alpha\" [ \"alpha_{}\" ]\n", look);
             else if (const double opacity = opacity_of(renderer_.looks()[look]); opacity < 1)
                 file_.print("  \"float alpha\" [ {} ]\n", shortest(opacity));

@@ -1,12 +1,11 @@
 #include "runtime/export/shape_mesh.h"
 
-#include <algorithm>
-#include <numeric>
-#include <tuple>
+#include <utility>
 
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 
+#include "compiler/environment/cell_grid.h"
 #include "compiler/primitives/tessellate.h"
 #include "compiler/primitives/texture_space.h"
 #include "compiler/support/normal_map.h"
@@ -19,28 +18,33 @@ namespace {
 /// are many corners, which rounding has taken apart.
 constexpr double one_corner = 1e-9;
 
-/// Gives them one place, to the last bit. O(n log n).
-void weld(std::vector<Vec3>& vertices) {
+/// The same vertices, with one place for those that are one corner: the first's. O(n).
+std::vector<Vec3> welded(const std::vector<Vec3>& vertices) {
     Box box;
     for (const Vec3& vertex : vertices)
         box.include(vertex);
-    if (box.empty()) return;
-    const double near = one_corner * largest_entry(box.size());
-    std::vector<std::uint32_t> order(vertices.size());
-    std::iota(order.begin(), order.end(), 0u);
-    std::ranges::sort(order, [&](std::uint32_t a, std::uint32_t b) {
-        return std::tie(vertices[a].x, a) < std::tie(vertices[b].x, b);
-    });
-    for (std::size_t i = 0; i < order.size(); ++i)
-        for (std::size_t j = i + 1; j < order.size(); ++j) {
-            const Vec3 apart = vertices[order[j]] - vertices[order[i]];
-            if (!(apart.x <= near)) break;
-            if (largest_entry(apart) <= near) vertices[order[j]] = vertices[order[i]];
-        }
+    const double near = box.empty() ? 0 : one_corner * largest_entry(box.size());
+    if (!(near > 0)) return vertices;
+    std::vector<Vec3> places;
+    places.reserve(vertices.size());
+    constexpr double cell = 4; // few reach into a neighbour, and few corners have room in one
+    CellGrid corners(cell * near);
+    for (std::uint32_t i = 0; i < vertices.size(); ++i) {
+        places.push_back(vertices[i]);
+        bool is_new = true;
+        corners.near(vertices[i] - box.min, near, [&](std::uint32_t corner) {
+            if (largest_entry(vertices[i] - places[corner]) > near) return true;
+            places[i] = places[corner];
+            return is_new = false;
+        });
+        if (is_new) corners.add(vertices[i] - box.min, i);
+    }
+    return places;
 }
 
-/// Each triangle has its own corners.
-ShapeMesh cornered(const TessellatedPrimitive& shape, const Primitive& primitive, const TextureSpace* space) {
+/// Each triangle has its own corners. `places`: of the shape's vertices.
+ShapeMesh cornered(const TessellatedPrimitive& shape, const std::vector<Vec3>& places,
+                   const Primitive& primitive, const TextureSpace* space) {
     ShapeMesh mesh;
     for (const auto& triangle : shape.triangles) {
         std::array<Vec3, 3> corner;
@@ -49,7 +53,7 @@ ShapeMesh cornered(const TessellatedPrimitive& shape, const Primitive& primitive
         const Vec3 facet = glm::normalize(glm::cross(corner[1] - corner[0], corner[2] - corner[0]));
         const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
         for (std::size_t k = 0; k < 3; ++k) {
-            mesh.vertices.push_back(corner[k]);
+            mesh.vertices.push_back(places[triangle[k]]);
             mesh.normals.push_back(shape.normals.empty() ? facet : shape.normals[triangle[k]]);
         }
         if (space)
@@ -73,12 +77,12 @@ const ShapeMesh& ShapeMeshes::of(std::uint32_t number, const SceneLook& look) {
     const auto known = known_.find(key);
     if (known != known_.end()) return known->second;
     const TessellatedPrimitive& mesh = tessellated(shape.primitive, shape.fineness);
+    std::vector<Vec3> places = welded(mesh.vertices);
     ShapeMesh& made = known_[key];
     if (!has_picture(look) && !mesh.normals.empty())
-        made = {mesh.vertices, mesh.normals, {}, mesh.triangles};
+        made = {std::move(places), mesh.normals, {}, mesh.triangles};
     else
-        made = cornered(mesh, shape.primitive, has_picture(look) ? &space : nullptr);
-    weld(made.vertices);
+        made = cornered(mesh, places, shape.primitive, has_picture(look) ? &space : nullptr);
     return made;
 }
 

@@ -254,8 +254,10 @@ class UsdWriter {
         line("uniform token info:id = \"UsdPreviewSurface\"");
         if (pictured) {
             line(fmt::format("color3f inputs:diffuseColor.connect = <{}/picture.outputs:rgb>", here));
-            line(fmt::format("float inputs:opacity.connect = <{}/picture.outputs:a>", here));
-            line("float inputs:opacityThreshold = 0.5");
+            if (material.coverage < 1) {
+                line(fmt::format("float inputs:opacity.connect = <{}/picture.outputs:a>", here));
+                line("float inputs:opacityThreshold = 0.5");
+            }
         } else {
             if (shown.colourless)
                 line(fmt::format("color3f inputs:diffuseColor.connect = <{}/colour.outputs:result>", here));

@@ -8,6 +8,7 @@
 
 #include "compiler/detail/bake.h"
 #include "compiler/detail/work.h"
+#include "compiler/primitives/triangle_ray.h"
 
 namespace graftal {
 
@@ -70,22 +71,17 @@ std::unique_ptr<TraceMesh> trace_mesh(const Baked& baked, const Affine& frame_fr
 
 bool intersect(const TraceMesh::Triangle& triangle, const Ray& ray, const RayRange& range,
                PrimitiveHit& hit) {
-    const Vec3 a = triangle.corners[1] - triangle.corners[0], b = triangle.corners[2] - triangle.corners[0];
-    const Vec3 p = glm::cross(ray.direction, b);
-    const double volume = glm::dot(a, p);
-    if (volume == 0) return false;
-    const Vec3 from_corner = ray.origin - triangle.corners[0];
-    const double u = glm::dot(from_corner, p) / volume;
-    const Vec3 q = glm::cross(from_corner, a);
-    const double v = glm::dot(ray.direction, q) / volume;
-    constexpr double rounding = 1e-12;
-    if (!(u >= -rounding && v >= -rounding && u + v <= 1 + rounding)) return false;
-    const double t = glm::dot(b, q) / volume;
-    if (!(t > range.least && t < range.most)) return false;
-    Vec3 normal = (1 - u - v) * triangle.normals[0] + u * triangle.normals[1] + v * triangle.normals[2];
-    if (!(glm::dot(normal, normal) > 0)) normal = glm::cross(a, b);
+    double extent = 0;
+    for (const Vec3& corner : triangle.corners)
+        extent = std::max({extent, std::abs(corner.x), std::abs(corner.y), std::abs(corner.z)});
+    TriangleHit met;
+    if (!TriangleRay(ray, extent).meet(triangle.corners, range, met)) return false;
+    Vec3 normal(0.0);
+    for (std::size_t k = 0; k < 3; ++k)
+        normal += met.share[k] * triangle.normals[k];
+    if (!(glm::dot(normal, normal) > 0)) normal = area_normal(triangle.corners);
     const double length = glm::length(normal);
-    hit = {t, length > 0 ? normal / length : Vec3(0, 1, 0)};
+    hit = {met.t, length > 0 ? normal / length : Vec3(0, 1, 0)};
     return true;
 }
 

@@ -47,8 +47,7 @@ struct TraceMesh {
     }
 };
 
-/// Meets a triangle from either side, as intersect() of intersect.h does a primitive (T. Moeller and B.
-/// Trumbore, "Fast, Minimum Storage Ray/Triangle Intersection", 1997).
+/// Meets a triangle from either side, as intersect() of intersect.h does a primitive (triangle_ray.h).
 bool intersect(const TraceMesh::Triangle& triangle, const Ray& ray, const RayRange& range, PrimitiveHit& hit);
 
 /// Bakes the shells (detail/shell.h) of what rays would not come through, where they come to it, once for

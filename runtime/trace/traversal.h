@@ -228,6 +228,12 @@ class Traversal final : public Surfaces {
     void lose_patience(std::uint64_t parts) { patience_ -= std::min(patience_, parts); }
     /// False once the ray went into too many parts, and hurrying did not help.
     bool goes_on();
+    /// intersect() of intersect.h, and what that took.
+    bool meet(const Primitive& primitive, const Ray& ray, const RayRange& range, PrimitiveHit& hit) {
+        const bool met = intersect(primitive, ray, range, hit);
+        more_work_ += hit.steps / RayWork::nodes;
+        return met;
+    }
     /// Appends an edge to the path; of an unrolling's edge those that it stands for.
     void append_to_path(std::uint32_t edge);
     /// What a way has given to its end.

@@ -240,7 +240,7 @@ template<Instructions instructions, bool any> struct Traversal::EvenKernel : Eve
             const RayRange near_range = range_from(base, parent.speed * largest);
             if (part.kind == EvenPart::Kind::triangle) {
                 if (!meet_triangle({origin, along}, near_range, hit)) return;
-            } else if (!intersect(model.nodes[part.child].primitive, {origin, along}, near_range, hit)) {
+            } else if (!self.meet(model.nodes[part.child].primitive, {origin, along}, near_range, hit)) {
                 return;
             }
         }

@@ -14,12 +14,12 @@ Traversal::Kernel<instructions, any>::meet_primitive(const Primitive& primitive,
     const Ray ray{vec3_of(local.origin), vec3_of(local.direction)};
     RayRange near = range_from(local.base, local.speed);
     PrimitiveHit hit;
-    if (!intersect(primitive, ray, near, hit)) return;
+    if (!self.meet(primitive, ray, near, hit)) return;
     for (int crossing = 0; model.clear_texels && self.is_clear(entry.entry, entry.frame,
                                                                model.edges[entry.entry].turns, ray(hit.t));
          ++crossing) {
         near.least = hit.t;
-        if (crossing == most_crossings || !intersect(primitive, ray, near, hit)) return;
+        if (crossing == most_crossings || !self.meet(primitive, ray, near, hit)) return;
     }
     if (!set_best(local.base + hit.t * local.unit)) return;
     self.best_.normal = hit.normal;

@@ -7,10 +7,12 @@
 #include <filesystem>
 #include <map>
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "compiler/primitives/mesh_file.h"
+#include "runtime/image/texture.h"
 #include "tests/unit/export/exporting.h"
 
 namespace graftal {
@@ -193,6 +195,39 @@ TEST(Formats, CoverByTheShareOfAVeil) {
         ASSERT_TRUE(exporting.to(name == "m.mtl" ? "m.obj" : name)) << name << exporting.said();
         EXPECT_THAT(exporting.read(name), HasSubstr(text)) << name;
     }
+}
+
+TEST(Formats, CutHolesOnlyWherePicturesHaveThem) {
+    for (const bool clear : {false, true}) {
+        Exporting exporting("m.inst", "material bark { texture: \"bark.png\" }\n"
+                                      "object top { cube material: bark }\n");
+        Texture picture;
+        picture.width = 2;
+        picture.height = 1;
+        picture.texels = {{{200, 100, 50}, false}, {{20, 30, 40}, clear}};
+        PendingFile file(exporting.path("bark.png"));
+        ASSERT_TRUE(write_texture(file, picture).ok());
+        ASSERT_TRUE(file.commit().ok());
+        for (const auto& [name, sign] : {std::pair("m.glb", "MASK"),
+                                         {"m.usda", "opacityThreshold"},
+                                         {"m.pbrt", "texture alpha"},
+                                         {"m.xml", "\"mask\""}}) {
+            ASSERT_TRUE(exporting.to(name)) << exporting.said();
+            EXPECT_EQ(exporting.read(name).find(sign) != std::string::npos, clear) << name;
+        }
+    }
+}
+
+// Corners of one height were compared with each other, all with all.
+TEST(FlatFiles, HoldManyTrianglesInAPlane) {
+    constexpr int steps = 40000;
+    std::string strip = "v 0 0 0\nv 0 1 0\n";
+    for (int i = 1; i <= steps; ++i)
+        strip += fmt::format("v 0 0 {0}\nv 0 1 {0}\nf -4 -3 -2\nf -3 -1 -2\n", i);
+    Exporting exporting("m.inst", "object top { mesh(\"strip.obj\") }\n");
+    ASSERT_TRUE(write_text(exporting.path("strip.obj"), strip).ok());
+    ASSERT_TRUE(exporting.to("m.stl")) << exporting.said();
+    EXPECT_EQ(exporting.read("m.stl").size(), 84u + 50u * 2 * steps);
 }
 
 TEST(Formats, HoldModelsOfNothingButPlanes) {

@@ -398,12 +398,16 @@ TEST(EmitPovray, APictureLiesOnTheGround) {
     scene.group(scene.palette({Rgb(1)}), {});
     View view;
     view.ground = Ground{.height = 3, .material = {.texture = "soil.png", .around = 4}};
-    const std::string text = scene.text(view);
+    std::string text = scene.text(view);
     EXPECT_THAT(text, HasSubstr("image_map { png \"model_I_1.png\" }"));
+    EXPECT_THAT(text, HasSubstr("texture { pigment { I_1 matrix <"));
+    EXPECT_THAT(text, Not(HasSubstr("_shape")));
+    view.ground->material.coverage = 0.9;
+    text = scene.text(view);
     EXPECT_THAT(text, HasSubstr("pigment_pattern { I_1_shape }"));
     EXPECT_THAT(text, HasSubstr("[0.5 pigment { I_1 } finish"));
     EXPECT_THAT(text, HasSubstr("}] } matrix <"));
-    ASSERT_EQ(scene.pictures.size(), 1u);
+    ASSERT_FALSE(scene.pictures.empty());
     EXPECT_EQ(scene.pictures[0].texture, "soil.png");
 }
 
@@ -416,6 +420,7 @@ TEST(EmitPovray, PicturesLieBehindTints) {
     for (const double alpha : {0.0, 0.25, 1.0}) {
         PlacementGroup& group = scene.group(white, {{mesh, {}}}, {alpha * Rgb(0, 1, 0), alpha});
         group.material.texture = "any \"picture\".png";
+        group.material.coverage = 0.5;
     }
     const std::string text = scene.text();
     EXPECT_THAT(text, HasSubstr("uv_vectors { 4,\n    <0,0>,<1,0>,<1,1>,<0,1> }"));
@@ -427,6 +432,15 @@ TEST(EmitPovray, PicturesLieBehindTints) {
     ASSERT_EQ(scene.pictures.size(), 1u);
     EXPECT_EQ(scene.pictures[0].file_name, "model_I_1.png");
     EXPECT_EQ(scene.pictures[0].texture, "any \"picture\".png");
+
+    // Nothing is cut out of pictures that have no clear parts.
+    for (PlacementGroup& group : scene.cut.groups)
+        group.material.coverage = 1;
+    const std::string opaque = scene.text();
+    EXPECT_THAT(opaque, HasSubstr("texture { pigment { uv_mapping I_1 } finish { F_default } }"));
+    EXPECT_THAT(opaque, HasSubstr("pigment { uv_mapping average pigment_map { [0.75 I_1] "));
+    EXPECT_THAT(opaque, HasSubstr("texture { pigment { rgb <0,1,0> } finish"));
+    EXPECT_THAT(opaque, Not(HasSubstr("_shape")));
 }
 
 } // namespace

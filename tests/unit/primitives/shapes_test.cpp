@@ -192,7 +192,7 @@ std::string fault_of_mesh(std::string_view bytes) {
 TEST(MeshFile, ReadsObj) {
     const MeshData data = read("# a leaf\nv 0 0 0\nv 1 0 0\r\nv 1 1 0\nv 0 1 0 1.0\n"
                                "vt 0 0\nvt 1 0\nvt 1 1\nvn 0 0 1\no leaf\nusemtl green\n"
-                               "f 1/1/1 2/2/1 3/3/1 4/1/1\nf -4//1 -3//1 -2//1\n");
+                               "f 1/1/1 2/2/1 3/3/1 4/1/1\nf -4//1 -2//1 -3//1\n");
     EXPECT_EQ(data.vertices.size(), 4u);
     ASSERT_EQ(data.triangles.size(), 3u);
     EXPECT_EQ(data.triangles[1], (std::array<std::uint32_t, 3>{0, 2, 3}));
@@ -242,7 +242,10 @@ TEST(MeshFile, RefusesDamagedObj) {
     EXPECT_THAT(fault_of_mesh("v 0 0\n"), HasSubstr("line 1: a vertex has three numbers"));
     EXPECT_THAT(fault_of_mesh("v 0 0 0\nf 1 2 3\n"), HasSubstr("line 2: '2' names no vertex"));
     EXPECT_THAT(fault_of_mesh("v 0 0 0\nv 1 0 0\nf 1 2\n"), HasSubstr("three corners"));
-    EXPECT_THAT(fault_of_mesh("v 0 0 nan\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"), HasSubstr("a coordinate is"));
+    EXPECT_THAT(fault_of_mesh("v 0 0 0\nv 1 0 nan\nv 0 1 0\nf 1 2 3\n"),
+                HasSubstr("line 2: a coordinate is"));
+    EXPECT_THAT(fault_of_mesh("v 0 0 0\nv 1 0 2e6\n"), HasSubstr("line 2: a coordinate is 2000000"));
+    EXPECT_THAT(fault_of_mesh("v 0 0 0\nvt 1 inf\n"), HasSubstr("line 2: texture: a coordinate is inf"));
     EXPECT_THAT(fault_of_mesh("v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n"), HasSubstr("no triangle"));
     EXPECT_THAT(fault_of_mesh(""), HasSubstr("no triangle"));
 }
@@ -276,7 +279,9 @@ TEST(MeshFile, ReadsPlyAsTextAndBinary) {
         EXPECT_EQ(binary.vertices, text.vertices);
         EXPECT_EQ(binary.triangles, text.triangles);
         EXPECT_EQ(binary.uv, text.uv);
-        EXPECT_THAT(fault_of_mesh(bytes.substr(0, bytes.size() - 2)), HasSubstr("too early"));
+        const std::string too_early =
+            "byte " + std::to_string(bytes.size() - 3) + ": the file ends too early";
+        EXPECT_EQ(fault_of_mesh(bytes.substr(0, bytes.size() - 2)), too_early);
     }
     EXPECT_EQ(text.uv[0][1], (std::array<double, 2>{1, 0}));
 }
@@ -289,9 +294,109 @@ TEST(MeshFile, RefusesDamagedPly) {
                 HasSubstr("names vertex 7"));
     EXPECT_THAT(fault_of_mesh(header("ascii") + "0 0 0 0 0 1 0 0 1 0 0 1 0 0 1 900000 0 1 2"),
                 HasSubstr("longer than the file"));
-    EXPECT_THAT(fault_of_mesh(header("cuneiform")), HasSubstr("no format"));
+    const std::string start = header("ascii");
+    EXPECT_EQ(fault_of_mesh(start + "0 0 nan 0 0 1 0 0 1 0 0 1 0 0 1 3 0 1 2"),
+              "byte " + std::to_string(start.size() + 8) + ": a coordinate is nan, and 1000000 is the most");
+    EXPECT_THAT(fault_of_mesh(header("cuneiform")), HasSubstr("line 2: 'cuneiform' is no format"));
     EXPECT_THAT(fault_of_mesh("ply\nelement vertex x\n"), HasSubstr("no number of elements"));
     EXPECT_THAT(fault_of_mesh("ply\n"), HasSubstr("does not end"));
+}
+
+TEST(MeshFile, KeepsOneOfTrianglesThatCoincide) {
+    // The corners turned about, other numbers of the same places, -0 for 0.
+    const MeshData data = read("v 0 0 0\nv 1 0 0\nv 0 1 0\nv -0 0 0\nv 1 0 0\n"
+                               "f 1 2 3\nf 2 3 1\nf 4 5 3\nf 1 2 3\n");
+    EXPECT_EQ(data.triangles.size(), 1u);
+    EXPECT_EQ(data.vertices.size(), 3u);
+    // The back of a triangle is another triangle: other programs draw one side only.
+    EXPECT_EQ(read("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nf 1 3 2\n").triangles.size(), 2u);
+}
+
+constexpr double turn = 2 * 3.14159265358979;
+
+/// Needles about one point, in a plane askew.
+MeshData fan_of(std::uint32_t needles) {
+    MeshData fan;
+    fan.vertices = {{0, 0, 0}};
+    for (std::uint32_t i = 0; i < needles; ++i) {
+        const double x = std::cos(turn * i / needles), y = std::sin(turn * i / needles);
+        fan.vertices.push_back({x, y, 0.3 * x - 0.6 * y});
+        fan.triangles.push_back({0, 1 + i, 1 + (i + 1) % needles});
+    }
+    return fan;
+}
+
+/// Large triangles of one plane askew, any of which may hold a point.
+MeshData pile_of(std::uint32_t count) {
+    MeshData pile;
+    for (std::uint32_t i = 0; i < 3 * count; ++i) {
+        const double angle = turn * (i % 3) / 3 + 0.001 * i, x = std::cos(angle), y = std::sin(angle);
+        pile.vertices.push_back({x, y, 0.3 * x - 0.6 * y});
+        if (i % 3 == 2) pile.triangles.push_back({i - 2, i - 1, i});
+    }
+    return pile;
+}
+
+/// The most steps of rays that come from the front.
+std::uint64_t most_steps(const MeshData& data) {
+    const Primitive mesh = mesh_primitive("m.obj", data);
+    std::uint64_t most = 0;
+    for (int i = 0; i < 400; ++i) {
+        const double radius = 0.001 + 0.4 * i / 400, angle = 2.4 * i;
+        const Vec3 from(radius * std::cos(angle), radius * std::sin(angle), 5);
+        PrimitiveHit hit;
+        EXPECT_TRUE(intersect(mesh, {from, {0.01, 0.02, -1}}, {}, hit));
+        most = std::max(most, hit.steps);
+    }
+    return most;
+}
+
+TEST(Mesh, RaysComeToFewOfManyTriangles) {
+    EXPECT_LT(most_steps(fan_of(20000)), 1000u);
+    EXPECT_LT(most_steps(pile_of(20000)), 300u);
+}
+
+TEST(Mesh, RaysAlongEdgesMeetIt) {
+    // Parts of a fan are turned to where they belong, so that their corners differ by rounding.
+    for (int needles = 3; needles < 40; ++needles) {
+        MeshData fan;
+        for (int i = 0; i < needles; ++i)
+            for (const double side : {-1.0, 0.0, 1.0}) {
+                const double angle = turn * i / needles + side * turn / 2 / needles;
+                const double radius = side == 0 ? 0 : 1 / std::cos(turn / 2 / needles);
+                fan.vertices.push_back({radius * std::cos(angle), radius * std::sin(angle), 0});
+                if (side == 1) {
+                    const auto last = static_cast<std::uint32_t>(fan.vertices.size() - 1);
+                    fan.triangles.push_back({last - 2, last - 1, last});
+                }
+            }
+        const Primitive mesh = mesh_primitive("fan.obj", fan);
+        for (int i = 0; i < 2 * needles; ++i)
+            for (int k = 0; k < 20; ++k) {
+                const double angle = turn * i / 2 / needles, at = 0.99 * k / 20;
+                const Vec3 edge(at * std::cos(angle), at * std::sin(angle), 0);
+                for (const Vec3& way : {Vec3(0, 0, -1), Vec3(0.3, -0.8, -0.5)}) {
+                    PrimitiveHit hit;
+                    EXPECT_TRUE(intersect(mesh, {edge - 2.0 * way, way}, {}, hit))
+                        << needles << " " << i << " " << k;
+                }
+            }
+    }
+}
+
+TEST(Polygon, RaysAlongASharedEdgeMeetIt) {
+    const double c = std::cos(turn / 20), s = std::sin(turn / 20);
+    const Primitive wedge = made_of(PrimitiveKind::polygon, {0, 0, c, s, c, -s});
+    for (int k = 0; k < 1000; ++k)
+        for (const double side : {-1.0, 1.0})
+            for (const double off : {-1e-15, 0.0, 1e-15}) {
+                const double at = 0.99 * k / 1000;
+                PrimitiveHit hit;
+                EXPECT_TRUE(intersect(wedge, {{at * c + off, side * at * s, 1}, {0, 0, -1}}, {}, hit));
+            }
+    PrimitiveHit hit;
+    EXPECT_FALSE(intersect(wedge, {{0.5 * c, 0.5 * s + 1e-8, 1}, {0, 0, -1}}, {}, hit));
+    EXPECT_FALSE(intersect(wedge, {{c + 1e-8, 0, 1}, {0, 0, -1}}, {}, hit));
 }
 
 TEST(Mesh, KeepsTheFilesPictures) {

@@ -322,8 +322,6 @@ class Writer {
         return nullptr;
     }
 
-    static bool is_point(const Row& row) { return largest_entry(row.map.linear) == 0; }
-
     void write_maps() {
         const std::string name = plain_name(model_.name);
         out_.line(fmt::format("rifs {} {{", is_own_word(name) ? name + "_ifs" : name), model_.span);
@@ -332,7 +330,6 @@ class Writer {
             const Row& row = system_.rows[i];
             for (const std::string& words : row.above)
                 indented_comment(words);
-            if (is_point(row)) continue;
             std::string text = "   ";
             for (const Number& number : row.numbers)
                 text += fmt::format(" {:>9}", shortest(number.value));
@@ -341,20 +338,7 @@ class Writer {
             out_.line(text, row.span());
         }
         out_.line("  }");
-        for (const Row& row : system_.rows)
-            if (is_point(row)) write_point(row);
         out_.line("}");
-    }
-
-    /// A map that leaves one point of everything: a speck, and what the other maps make of it.
-    void write_point(const Row& row) {
-        file_.diagnostics.warning(row.span(),
-                                  "this map leaves one point of everything; a small ball stands for it");
-        const Vec3 at = row.map.translation;
-        const double size = 1e-3 * std::max(1e-3, largest_entry(at));
-        out_.line(fmt::format("  condense sphere  scale {}  translate {}, {}, {}", shortest(size),
-                              shortest(at.x), shortest(at.y), shortest(at.z)),
-                  row.span());
     }
 
     void indented_comment(std::string_view words) { out_.line(fmt::format("    # {}", comment_text(words))); }

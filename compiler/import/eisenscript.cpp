@@ -1,5 +1,7 @@
 #include "compiler/import/eisenscript.h"
 
+#include <cctype>
+
 #include <fmt/format.h>
 
 #include "compiler/import/eisenscript_parser.h"
@@ -38,8 +40,23 @@ std::optional<Translation> translate(const ForeignFile& file, const ForeignModel
     return translation;
 }
 
+/// A line begins with an action, as `3 * { x 1 } box`, or sets something that no other language knows.
 bool recognises(std::string_view text) {
-    return !is_binary(text);
+    for (const TextLine& line : lines_of(text, 0, text.size())) {
+        std::string_view words = trimmed(line.text);
+        for (const std::string_view setting : {"set maxdepth ", "set maxobjects ", "set background "})
+            if (words.starts_with(setting)) return true;
+        const std::size_t star = words.find('*');
+        if (star != std::string_view::npos &&
+            trimmed(words.substr(0, star)).find_first_not_of("0123456789") == std::string_view::npos)
+            words = trimmed(words.substr(star + 1));
+        const std::size_t close = words.find('}');
+        if (!words.starts_with('{') || close == std::string_view::npos) continue;
+        const std::string_view behind = trimmed(words.substr(close + 1));
+        if (!behind.empty() && (std::isalpha(static_cast<unsigned char>(behind[0])) || behind[0] == '{'))
+            return true;
+    }
+    return false;
 }
 
 } // namespace eisenscript
@@ -49,6 +66,7 @@ Importer eisenscript_importer() {
     return {.format = "EisenScript",
             .endings = endings,
             .recognises = eisenscript::recognises,
+            .sign = "rules such as 'rule name { { x 1 } box }'",
             .models = eisenscript::models,
             .translate = eisenscript::translate};
 }

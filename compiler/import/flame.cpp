@@ -327,6 +327,7 @@ Importer flame_importer() {
     return {.format = "fractal flame",
             .endings = endings,
             .recognises = flame::recognises,
+            .sign = "an element '<flame ...>'",
             .models = flame::models,
             .translate = flame::translate};
 }

@@ -16,7 +16,8 @@ namespace graftal::flame {
 
 namespace {
 
-std::vector<double> numbers_in(std::string_view text) {
+/// `all`: becomes false where a word is no number.
+std::vector<double> numbers_in(std::string_view text, bool* all = nullptr) {
     std::vector<double> numbers;
     std::size_t at = 0;
     while (true) {
@@ -24,7 +25,9 @@ std::vector<double> numbers_in(std::string_view text) {
         if (at == std::string_view::npos) return numbers;
         const std::size_t end = std::min(text.find_first_of(" \t\r\n,", at), text.size());
         const std::optional<double> value = parse_number(text.substr(at, end - at));
-        numbers.push_back(value && std::abs(*value) <= 1e50 ? *value : 0);
+        const bool good = value && std::abs(*value) <= 1e50;
+        if (all && !good) *all = false;
+        numbers.push_back(good ? *value : 0);
         at = end;
     }
 }
@@ -97,7 +100,8 @@ bool is_left_out(std::string_view name) {
 
 const pugi::xml_document* Reader::document() {
     const std::string_view text = file_.text();
-    const pugi::xml_parse_result result = document_.load_buffer(text.data(), text.size());
+    const pugi::xml_parse_result result =
+        document_.load_buffer(text.data(), text.size(), pugi::parse_default, pugi::encoding_utf8);
     if (result) return &document_;
     const auto at = static_cast<std::size_t>(
         std::clamp<std::ptrdiff_t>(result.offset, 0, static_cast<std::ptrdiff_t>(text.size())));
@@ -197,8 +201,9 @@ void Reader::read_palette(const pugi::xml_node& node, Flame& flame) {
 Affine Reader::coefficients(const pugi::xml_attribute& attribute, Span place) {
     Affine map;
     if (!attribute) return map;
-    const std::vector<double> n = numbers_in(attribute.value());
-    if (n.size() != 6) {
+    bool all = true;
+    const std::vector<double> n = numbers_in(attribute.value(), &all);
+    if (n.size() != 6 || !all) {
         file_.diagnostics.error(place, fmt::format("'{}' takes six numbers", attribute.name()));
         return map;
     }
@@ -223,7 +228,9 @@ Map Reader::read_map(const pugi::xml_node& node) {
     if (node.attribute("color_speed")) map.speed = node.attribute("color_speed").as_double(0.5);
     map.speed = std::clamp(map.speed, 0.0, 1.0);
     map.opacity = node.attribute("opacity").as_double(1);
-    map.chaos = numbers_in(node.attribute("chaos").value());
+    bool all = true;
+    map.chaos = numbers_in(node.attribute("chaos").value(), &all);
+    if (!all) file_.diagnostics.error(map.span, "'chaos' takes numbers, one for each map");
     map.name = node.attribute("name").value();
     if (std::string_view(node.attribute("plotmode").value()) == "off") map.opacity = 0;
     read_variations(node, map);

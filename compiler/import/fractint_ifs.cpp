@@ -385,8 +385,29 @@ std::optional<Translation> translate(const ForeignFile& file, const ForeignModel
     return Writer(file, model, *system).write();
 }
 
+/// A block that begins with six numbers.
 bool recognises(std::string_view text) {
-    return text.find('{') != std::string_view::npos;
+    constexpr std::size_t least = 6;
+    std::optional<std::size_t> numbers; // of the block so far; nothing outside of one
+    for (const Line& line : lines_of(text, 0, text.size())) {
+        std::string_view words = line.words;
+        if (const std::size_t open = words.find('{'); open != std::string_view::npos) {
+            numbers = 0;
+            words.remove_prefix(open + 1);
+            if (says_3d(words)) words.remove_prefix(words.find(')') + 1);
+        }
+        while (numbers && !trimmed(words).empty()) {
+            words = words.substr(std::min(words.find_first_not_of(" \t,"), words.size()));
+            const LeadingNumber number = leading_number(words);
+            if (number.length == 0) {
+                numbers.reset();
+            } else {
+                if (++*numbers == least) return true;
+                words.remove_prefix(number.length);
+            }
+        }
+    }
+    return false;
 }
 
 } // namespace fractint_ifs
@@ -396,6 +417,7 @@ Importer fractint_ifs_importer() {
     return {.format = "Fractint IFS",
             .endings = endings,
             .recognises = fractint_ifs::recognises,
+            .sign = "a block 'name { .5 0 0 .5 0 0 1 ... }' of rows of numbers",
             .models = fractint_ifs::models,
             .translate = fractint_ifs::translate};
 }

@@ -36,7 +36,7 @@ std::optional<Translation> translate(const ForeignFile& file, const ForeignModel
 }
 
 bool recognises(std::string_view text) {
-    return !is_binary(text);
+    return text.find("startshape") != std::string_view::npos;
 }
 
 } // namespace cfdg
@@ -46,6 +46,7 @@ Importer cfdg_importer() {
     return {.format = "Context Free grammar",
             .endings = endings,
             .recognises = cfdg::recognises,
+            .sign = "'startshape name', and rules",
             .models = cfdg::models,
             .translate = cfdg::translate};
 }

@@ -23,7 +23,6 @@ std::vector<ForeignModel> cpfg_models(const ForeignFile& file) {
 
 /// A line begins with "Lsystem:", and none includes lpfg's header, which is C++.
 bool is_cpfg(std::string_view text) {
-    if (is_binary(text)) return false;
     bool begins = false;
     for (const TextLine& line : lines_of(text, 0, text.size())) {
         const std::string_view words = trimmed(line.text);
@@ -52,7 +51,8 @@ constexpr std::string_view cpfg_endings[] = {"l"};
 } // namespace
 
 Importer cpfg_importer() {
-    return {"cpfg L-system", cpfg_endings, is_cpfg, cpfg_models, translate_cpfg};
+    return {"cpfg L-system", cpfg_endings,  is_cpfg, "a line 'Lsystem: 1', and no header of lpfg",
+            cpfg_models,     translate_cpfg};
 }
 
 } // namespace graftal

@@ -33,7 +33,7 @@ struct Placed {
 
 class SourceReader {
   public:
-    SourceReader(const ForeignFile& file) : file_(file) {}
+    SourceReader(const ForeignFile& file) : file_(file), code_(file) {}
 
     std::optional<CpfgSource> read() {
         const std::size_t errors = file_.diagnostics.error_count();
@@ -89,8 +89,13 @@ class SourceReader {
                 const std::size_t end = std::min(text.find('\n', i), text.size());
                 add_comment(text, i + 2, end, whole);
                 i = end - 1;
-            } else if (text[i] != '\r') {
+            } else if (const auto byte = static_cast<unsigned char>(text[i]); byte < 0x80) {
                 line.push_back({text[i], place});
+            } else {
+                std::size_t next = i;
+                for (const char sign : code_.next(text, next, 0, whole))
+                    line.push_back({sign, place});
+                i = next - 1;
             }
         }
     }
@@ -283,6 +288,7 @@ class SourceReader {
     }
 
     const ForeignFile& file_;
+    CodeReader code_;
     CpfgSource source_;
     CpfgStatement statement_; ///< that is being read
     std::vector<std::pair<std::string, Span>> comments_;

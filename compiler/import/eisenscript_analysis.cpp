@@ -11,8 +11,8 @@ namespace graftal::eisenscript {
 
 namespace {
 
-/// Steps of the count: a second of work.
-constexpr std::size_t most_count_work = 3'000'000;
+/// Steps of the count: a second or two of work. A state counts for each number that it has.
+constexpr std::size_t most_count_work = 12'000'000;
 constexpr std::size_t most_states = 50'000;
 /// Fallbacks that lead from one to the next.
 constexpr int most_fallbacks = 64;
@@ -66,6 +66,9 @@ class Growth {
         : script_(script), limits_(limits), analysis_(analysis),
           sized_(limits.least_size || limits.most_size) {}
 
+    /// Whether the limit of work ended the count.
+    bool gave_up() const { return work_ > most_count_work; }
+
     /// False if there is an end without limits.
     bool run(int& generations, bool& by_objects, double& objects) {
         State top = {0, 1};
@@ -76,14 +79,17 @@ class Growth {
             ++generation;
             next_.clear();
             objects_ += std::exchange(primitives_, 0);
-            for (const auto& [state, number] : now_)
+            for (const auto& [state, number] : now_) {
+                if (gave_up()) break;
                 process(state, number);
+            }
             now_ = std::move(next_);
             double waiting = primitives_;
             for (const auto& [state, number] : now_)
                 waiting += number;
             reached = objects_ >= limits_.objects || waiting >= limits_.objects;
-            if (reached || work_ > most_count_work || now_.size() > most_states) break;
+            if (now_.size() > most_states) work_ = most_count_work + 1;
+            if (reached || gave_up()) break;
         }
         objects = objects_;
         generations = generation;
@@ -109,6 +115,7 @@ class Growth {
         for (const std::size_t rule : group.rules)
             sum += script_.rules[rule].weight.number;
         for (const std::size_t rule : group.rules) {
+            if (gave_up()) return;
             const double share = group.rules.size() == 1 ? 1
                                  : sum > 0               ? script_.rules[rule].weight.number / sum
                                                          : 0;
@@ -125,7 +132,7 @@ class Growth {
             if (left <= 0) {
                 left = *rule.depth;
                 if (rule.fallback && fallbacks < most_fallbacks) {
-                    ++work_;
+                    work_ += inner.size();
                     const State next = called(rule.fallback->text, group, inner, 1);
                     if (!next.empty()) apply(next, number, fallbacks + 1);
                 }
@@ -133,8 +140,9 @@ class Growth {
             }
             left -= 1;
         }
+        work_ += inner.size();
         for (const Action& action : rule.actions)
-            act(action, group, inner, number);
+            if (!gave_up()) act(action, group, inner, number);
     }
 
     void act(const Action& action, const Group& group, const State& state, double number) {
@@ -152,17 +160,17 @@ class Growth {
             for (const auto& [size, times] : sizes) {
                 double power = 1;
                 if (growth == 1) grown[size] += times * count;
-                for (int i = 0; growth != 1 && i < count && work_ <= most_count_work; ++i, ++work_)
+                for (int i = 0; growth != 1 && i < count && !gave_up(); ++i, ++work_)
                     grown[size * (power *= growth)] += times;
             }
             sizes = std::move(grown);
         }
         for (const auto& [size, times] : sizes)
-            call(action.target.text, group, state, number * times, size);
+            if (!gave_up()) call(action.target.text, group, state, number * times, size);
     }
 
     void call(const std::string& name, const Group& group, const State& state, double number, double growth) {
-        ++work_;
+        work_ += state.size();
         const State next = called(name, group, state, growth);
         if (!next.empty())
             next_[next] += number;
@@ -175,6 +183,10 @@ class Growth {
         const Group* const to = analysis_.group(name);
         if (!to) return {};
         State next = {static_cast<double>(to - analysis_.groups().data()), sized_ ? state[1] * growth : 1};
+        if (to->recurs && to->component == from.component) { // then they know the same counts
+            next.insert(next.end(), state.begin() + 2, state.end());
+            return next;
+        }
         for (const std::size_t counter : to->counters) {
             const auto known = std::ranges::find(from.counters, counter);
             next.push_back(known == from.counters.end()
@@ -223,8 +235,15 @@ Analysis::Analysis(const Script& script, const Limits& limits) : script_(script)
         group_of_rule_.push_back(known->second);
     }
     find_components();
+    if (too_deep()) return;
     find_heights();
     count();
+}
+
+const Group* Analysis::too_deep() const {
+    const auto found = std::ranges::find_if(
+        groups_, [](const Group& group) { return group.counters.size() > most_counters; });
+    return found == groups_.end() ? nullptr : &*found;
 }
 
 const Group* Analysis::group(const std::string& name) const {
@@ -286,6 +305,7 @@ void Analysis::find_components() {
                     if (script_.rules[rule].depth) counters.push_back(rule);
             }
             std::ranges::sort(counters);
+            if (counters.size() > most_counters) counters.resize(most_counters + 1); // more than is read
             for (const std::size_t member : members)
                 if (groups_[member].recurs) groups_[member].counters = counters;
             ++components;
@@ -318,7 +338,9 @@ void Analysis::find_heights() {
 
 void Analysis::count() {
     int generations = 0;
-    if (Growth(script_, limits_, *this).run(generations, by_objects_, objects_)) generations_ = generations;
+    Growth growth(script_, limits_, *this);
+    if (growth.run(generations, by_objects_, objects_)) generations_ = generations;
+    gave_up_ = growth.gave_up();
 }
 
 } // namespace graftal::eisenscript

@@ -37,12 +37,18 @@ double growth_of(const Loop& loop);
 /// Which groups there are, and how they call each other. Requires that the script has no error.
 class Analysis {
   public:
+    /// Counts that an object may have as parameters.
+    static constexpr std::size_t most_counters = 98;
+
     /// Must outlive this.
     Analysis(const Script& script, const Limits& limits);
 
     const std::vector<Group>& groups() const { return groups_; }
     /// Null of primitives.
     const Group* group(const std::string& name) const;
+    /// A group whose rules lead to more depths of their own than `most_counters`; null of none. Then nothing
+    /// is counted.
+    const Group* too_deep() const;
     /// Index of the group of a rule.
     std::size_t group_of(std::size_t rule) const { return group_of_rule_[rule]; }
 
@@ -50,6 +56,8 @@ class Analysis {
     /// the one that reaches the number of objects; with chances, where their mean does.
     std::optional<int> generations() const { return generations_; }
     bool by_objects() const { return by_objects_; }
+    /// Whether the count took too much work, and stopped before Structure Synth would.
+    bool gave_up() const { return gave_up_; }
     /// Cubes and other primitives that it then has drawn; with chances, their mean.
     double objects() const { return objects_; }
 
@@ -65,6 +73,7 @@ class Analysis {
     std::vector<std::size_t> group_of_rule_;
     std::optional<int> generations_;
     bool by_objects_ = false;
+    bool gave_up_ = false;
     double objects_ = 0;
 };
 

@@ -1,6 +1,7 @@
 // What `set` says, and the scene that it makes.
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <utility>
@@ -156,11 +157,32 @@ void Writer::write_scene() {
     }
 }
 
+/// That graftal chooses the camera itself, where the script says something of it.
+void Writer::report_no_camera() {
+    std::string words;
+    Span span;
+    for (const Setting& setting : script_.rules.front().settings) {
+        static constexpr std::array names = {"translation", "rotation", "pivot", "scale",
+                                             "perspective-angle"};
+        if (std::ranges::find(names, setting.key) == names.end()) continue;
+        words += fmt::format("{}'set {}'", words.empty() ? "" : ", ", setting.key);
+        if (!span.known()) span = setting.span;
+    }
+    if (words.empty()) return;
+    file_.diagnostics
+        .warning(span, fmt::format("{} {} no camera, and {} nothing here", words,
+                                   words.find(',') == std::string::npos ? "makes" : "make",
+                                   words.find(',') == std::string::npos ? "changes" : "change"))
+        .with_hint(
+            "a camera is 'set translation [0 0 -20]' and 'set scale 0.5', a 'rotation' of nine numbers, "
+            "and a 'pivot'");
+}
+
 /// Structure Synth moves the scene: eye = translation + scale * rotation * (point - pivot), and looks along
 /// -z.
 void Writer::write_camera() {
     if (!camera_.translation || camera_.translation->size() != 3 || !camera_.scale || !(*camera_.scale > 0))
-        return;
+        return report_no_camera();
     Mat3 eye_from_world(1.0);
     if (camera_.rotation && camera_.rotation->size() == 9)
         for (int row = 0; row < 3; ++row)
@@ -174,7 +196,7 @@ void Writer::write_camera() {
     const Vec3 location = pivot - Vec3(0.5) - world_from_eye * moved / *camera_.scale;
     const Vec3 ahead = world_from_eye * Vec3(0, 0, -1), up = world_from_eye * Vec3(0, 1, 0);
     const double distance = std::max(1e-3, std::abs(moved.z) / *camera_.scale);
-    if (!(glm::length(glm::cross(ahead, up)) > 0.1)) return;
+    if (!(glm::length(glm::cross(ahead, up)) > 0.1)) return report_no_camera();
     const double upright = std::clamp(camera_.angle_deg.value_or(22), 1.0, 150.0) * std::numbers::pi / 180;
     const double across = 2 * std::atan(std::tan(upright / 2) * 16 / 9) * 180 / std::numbers::pi;
     line(fmt::format("camera {{ location: {}  look_at: {}  up: {}  angle: {} }}", vector_text(location),

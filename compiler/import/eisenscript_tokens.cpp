@@ -18,8 +18,9 @@ namespace graftal::eisenscript {
 
 namespace {
 
-constexpr std::size_t most_characters = 4'000'000; ///< after substitution
-constexpr int most_substitutions = 100;            ///< in one line, as in Structure Synth
+constexpr std::size_t most_characters = 1'000'000;      ///< after substitution
+constexpr std::size_t most_search_work = 1'000'000'000; ///< characters that are searched for names
+constexpr int most_substitutions = 100;                 ///< in one line, as in Structure Synth
 
 /// A character of the text after substitution.
 struct Character {
@@ -80,6 +81,10 @@ class Preprocessor {
         if (!line.starts_with("#define") || line.size() < 9 || !is_blank(line[7])) {
             if (line.starts_with("#javascript"))
                 file_.diagnostics.error(span, "a program in JavaScript around the script is not translated");
+            else
+                file_.diagnostics.warning(
+                    span, fmt::format("'{}' is no '#define', and changes nothing here",
+                                      comment_text(line.substr(0, line.find_first_of(" \t")))));
             return;
         }
         std::string_view rest = trimmed(line.substr(8));
@@ -96,10 +101,8 @@ class Preprocessor {
             rest = trimmed(rest.substr(0, comment));
         }
         define.value = std::string(rest);
-        if (define.value.find(define.name) != std::string::npos) {
-            file_.diagnostics.error(span, fmt::format("'{}' stands for itself", define.name));
-            good_ = false;
-        }
+        if (define.value.find(define.name) != std::string::npos)
+            fail(span, fmt::format("'{}' stands for itself", define.name), {});
         const auto known = names_.find(define.name);
         if (known != names_.end())
             defines_[known->second] = std::move(define);
@@ -109,6 +112,11 @@ class Preprocessor {
         }
     }
 
+    void fail(Span span, std::string message, std::string hint) {
+        if (good_) file_.diagnostics.error(span, std::move(message)).with_hint(std::move(hint));
+        good_ = false;
+    }
+
     void substitute(std::string_view text, std::size_t begin, std::size_t end) {
         std::vector<Character> line;
         for (std::size_t i = begin; i < end; ++i)
@@ -116,14 +124,19 @@ class Preprocessor {
         std::string plain(text.substr(begin, end - begin));
         int count = 0;
         for (auto name = names_.begin(); name != names_.end() && good_;) {
+            searched_ += plain.size() + 20;
+            if (searched_ > most_search_work) {
+                fail(file_.span(begin, end), "the substitutions of the script take too long",
+                     "the script has too many '#define's for its length: write numbers in their place");
+                break;
+            }
             if (plain.find(name->first) == std::string::npos) {
                 ++name;
                 continue;
             }
-            if (++count > most_substitutions) {
-                file_.diagnostics.error(file_.span(begin, end), "this line has more than 100 substitutions");
-                good_ = false;
-            }
+            if (++count > most_substitutions)
+                fail(file_.span(begin, end), "this line has more than 100 substitutions",
+                     "Structure Synth takes no more either: divide the line");
             replace(line, plain, name->first, name->second);
             name = names_.begin();
         }
@@ -147,8 +160,9 @@ class Preprocessor {
             text += value;
             at = found + name.size();
             if (out_.size() + replaced.size() <= most_characters) continue;
-            file_.diagnostics.error(defines_[define].span, "the substitutions make too long a text");
-            good_ = false;
+            fail(defines_[define].span,
+                 fmt::format("the substitutions make a text of more than {} characters", most_characters),
+                 "shorten this text, or the lines that use it");
         }
         line = std::move(replaced);
         plain = std::move(text);
@@ -158,6 +172,7 @@ class Preprocessor {
     std::map<std::string, std::size_t> names_; ///< in their order, as Structure Synth tries them
     std::vector<Define> defines_;
     std::vector<Character> out_;
+    std::size_t searched_ = 0;
     bool good_ = true;
 };
 

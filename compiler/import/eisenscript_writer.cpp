@@ -19,8 +19,10 @@ namespace graftal::eisenscript {
 
 namespace {
 
-/// Copies that are written one by one.
+/// Copies that are written one by one, in the whole script.
 constexpr std::size_t most_written_copies = 10'000;
+/// Operators of such copies, and colours of pools, in the whole script.
+constexpr std::size_t most_written_words = 300'000;
 bool is_identifier(std::string_view name) {
     if (name.empty() || std::isdigit(static_cast<unsigned char>(name[0]))) return false;
     return std::ranges::all_of(name, [](unsigned char c) { return std::isalnum(c) || c == '_'; });
@@ -48,6 +50,23 @@ Writer::Writer(const ForeignFile& file, const Script& script) : file_(file), scr
     analysis_.emplace(script_, limits_);
     limited_ = analysis_->generations().has_value();
     sized_ = limits_.least_size || limits_.most_size;
+    if (const Group* const group = analysis_->too_deep()) {
+        file_.diagnostics
+            .error(script_.rules[group->rules.front()].name.span,
+                   fmt::format("more than {} depths of rules ('maxdepth') count together here",
+                               Analysis::most_counters))
+            .with_hint(
+                "rules that lead to each other know the depths of all: give fewer of them a 'maxdepth'");
+        return;
+    }
+    if (analysis_->gave_up())
+        file_.diagnostics
+            .warning(
+                file_.span(0, 0),
+                fmt::format("the objects of this script take too long to count: graftal stops after the {} "
+                            "generations that it counted, and Structure Synth may go on",
+                            *analysis_->generations()))
+            .with_hint("'set maxdepth' with a smaller number ends both at one generation");
     check_names();
 }
 
@@ -97,13 +116,14 @@ void Writer::check_names() {
     // References to nothing, in the rules that are used or not, as in Structure Synth.
     static const std::set<std::string, std::less<>> primitives = {
         "box", "sphere", "grid", "line", "dot", "point", "cylinder", "mesh", "template", "tube"};
+    std::vector<std::string> known(primitives.begin(), primitives.end());
+    for (const Group& group : analysis_->groups())
+        if (!group.name.empty()) known.push_back(group.name);
     const auto check = [&](const Token& token) {
         const std::string plain = token.text.substr(0, token.text.find("::"));
         if (analysis_->group(token.text) || primitives.contains(plain) || token.text.starts_with("triangle["))
             return;
-        std::vector<std::string> known(primitives.begin(), primitives.end());
-        for (const Group& group : analysis_->groups())
-            if (!group.name.empty()) known.push_back(group.name);
+        if (file_.diagnostics.full()) return;
         file_.diagnostics.error(token.span, fmt::format("unknown rule '{}'", token.written))
             .with_hint(did_you_mean(token.text, known));
     };
@@ -148,7 +168,8 @@ std::string Writer::expression(const Value& value) const {
 
 void Writer::write_rules() {
     for (std::size_t rule = 0; rule < script_.rules.size(); ++rule)
-        if (!file_.diagnostics.full()) write_rule(rule);
+        if (!stopped_ && !file_.diagnostics.full()) write_rule(rule);
+    if (stopped_) return;
     line("");
     line(fmt::format("object {} {{", free_name("scene")));
     line(fmt::format("    instance: {}  ink: hsv(0, 1, 1)", object_names_[0]));
@@ -206,6 +227,7 @@ void Writer::write_body(const Rule& rule, const Group& group, std::size_t index)
     if (counted) line(fmt::format("when {} > 0 {{", counter_name(index)), rule.name.span), ++depth_;
     const std::size_t before = out_.text.size();
     for (const Action& action : rule.actions) {
+        if (stopped_) return;
         for (const std::string& words : action.comments)
             comment(words);
         write_action(action, index);
@@ -280,21 +302,20 @@ void Writer::write_action(const Action& action, std::size_t from) {
     loops[0].span = action.span;
     const bool grows =
         std::ranges::any_of(action.loops, [](const Loop& loop) { return growth_of(loop) != 1; });
-    std::size_t copies = 1;
     if (grows)
         for (const Loop& loop : action.loops) {
             std::vector<Loop> more;
-            copies *= static_cast<std::size_t>(copies_of(loop));
-            if (copies > most_written_copies) {
-                file_.diagnostics.error(
-                    loop.span, "with 'minsize' or 'maxsize', copies that change their size are at most "
-                               "10000");
+            const auto count = static_cast<std::size_t>(copies_of(loop));
+            if (!take(written_copies_, most_written_copies, loops.size() * count, loop.span,
+                      "copies that change their size under 'minsize' or 'maxsize'"))
                 return;
-            }
             for (const Loop& one : loops) {
                 Loop copy = one;
-                for (int i = 0; i < copies_of(loop); ++i) {
+                for (std::size_t i = 0; i < count; ++i) {
                     copy.operators.insert(copy.operators.end(), loop.operators.begin(), loop.operators.end());
+                    if (!take(written_words_, most_written_words, copy.operators.size(), loop.span,
+                              "operators of copies that change their size under 'minsize' or 'maxsize'"))
+                        return;
                     more.push_back(copy);
                 }
             }
@@ -318,6 +339,17 @@ void Writer::write_action(const Action& action, std::size_t from) {
         write_loops(grows ? std::vector<Loop>{one} : action.loops, target, action.span);
         if (!test.empty()) --depth_, line("}");
     }
+}
+
+/// Takes from what the whole script may write of something; false after the error that this is too much.
+bool Writer::take(std::size_t& taken, std::size_t most, std::size_t count, Span span, std::string_view what) {
+    if (stopped_) return false;
+    taken += count;
+    if (taken <= most) return true;
+    stopped_ = true;
+    file_.diagnostics.error(span, fmt::format("the script has more than {} {}", most, what))
+        .with_hint("graftal writes them one by one: make the counts of the loops smaller");
+    return false;
 }
 
 std::string Writer::target_of(const Action& action, std::size_t from) {
@@ -370,6 +402,9 @@ void Writer::write_loops(const std::vector<Loop>& given, const std::string& targ
         // An object that chance gives one of the colours.
         const Group& group = analysis_->groups()[group_];
         const std::string name = free_name(fmt::format("{}_coloured", object_names_[group_]));
+        if (!take(written_words_, most_written_words, pool_colours_.size(), span,
+                  "colours of pools, for each place that draws one"))
+            return;
         for (const std::string& colour : pool_colours_)
             primitive_lines_[fmt::format("{}{} weight 1#{}", name, parameters(group), colour)] = {
                 fmt::format("instance: {}  ink: {}", target, colour)};
@@ -397,19 +432,19 @@ bool Writer::holds_mesh(const Group& group) const {
 /// Faces between the plane where the parent stands and where each copy does.
 void Writer::write_mesh(const Action& action) {
     std::vector<Affine> places = {Affine()};
+    std::size_t count = 1;
+    for (const Loop& loop : action.loops)
+        count = std::min(most_written_copies + 1, count * static_cast<std::size_t>(copies_of(loop)));
+    if (!take(written_copies_, most_written_copies, count, action.span, "copies of a 'mesh'")) return;
     for (const Loop& loop : action.loops) {
         std::vector<Affine> more;
         const Affine step = map_of(loop);
         for (const Affine& place : places) {
             Affine copy = place;
-            for (int i = 0; i < copies_of(loop) && more.size() <= most_written_copies; ++i)
+            for (int i = 0; i < copies_of(loop); ++i)
                 more.push_back(copy = copy * step);
         }
         places = std::move(more);
-    }
-    if (places.size() > most_written_copies) {
-        file_.diagnostics.error(action.span, "too many copies of a 'mesh'");
-        return;
     }
     std::string colours;
     for (const Loop& loop : action.loops)

@@ -22,6 +22,7 @@ class Writer {
     std::optional<double> number(const Setting& setting);
     std::vector<double> numbers(const Setting& setting, std::size_t count);
     void write_camera();
+    void report_no_camera();
     void write_scene();
     void write_constants();
     void check_names();
@@ -34,6 +35,8 @@ class Writer {
     void write_wrapper_later(std::vector<Loop> loops, std::string target, Span span);
     void write_mesh(const Action& action);
     bool holds_mesh(const Group& group) const;
+
+    bool take(std::size_t& taken, std::size_t most, std::size_t count, Span span, std::string_view what);
 
     std::string reference(const std::string& name, const Group& from, std::optional<std::size_t> rule,
                           bool same_generation, double growth);
@@ -71,8 +74,10 @@ class Writer {
     };
     std::vector<Wrapper> wrappers_; ///< of the object being written
     std::size_t group_ = 0;         ///< being written
-    bool limited_ = false;          ///< objects count generations
-    bool sized_ = false;            ///< and sizes
+    std::size_t written_copies_ = 0, written_words_ = 0;
+    bool stopped_ = false; ///< after the error that something is too much
+    bool limited_ = false; ///< objects count generations
+    bool sized_ = false;   ///< and sizes
     std::string pool_ = "randomhue";
     std::vector<std::string> pool_colours_; ///< of a list
     struct Camera {

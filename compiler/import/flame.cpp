@@ -167,8 +167,7 @@ class Writer {
 
     void write_maps() {
         write_camera();
-        const bool chaotic =
-            std::ranges::any_of(flame_.maps, [](const Map& map) { return !map.chaos.empty(); });
+        const bool chaotic = std::ranges::any_of(flame_.maps, &Map::steers);
         out_.line(fmt::format("rifs {} {{", name_));
         out_.line("  codes 2d {");
         for (const Map& map : flame_.maps) {
@@ -195,16 +194,17 @@ class Writer {
         out_.line("}");
     }
 
-    /// Row i: how likely each map follows map i.
+    /// Row i: the factors of `chaos`, divided by their sum. As flam3 does, random iteration multiplies them
+    /// by the weights of the maps, which stand in the rows of codes.
     void write_chaos() {
         out_.line("  follow matrix {   # 'chaos'");
         for (std::size_t i = 0; i < flame_.maps.size(); ++i) {
             double sum = 0;
             for (std::size_t j = 0; j < flame_.maps.size(); ++j)
-                sum += chaos(i, j) * flame_.maps[j].weight;
+                sum += chaos(i, j);
             std::string row = "   ";
             for (std::size_t j = 0; j < flame_.maps.size(); ++j)
-                row += " " + number(sum > 0 ? chaos(i, j) * flame_.maps[j].weight / sum : 0);
+                row += " " + number(sum > 0 ? chaos(i, j) / sum : 0);
             out_.line(row, flame_.maps[i].span);
         }
         out_.line("  }");
@@ -219,9 +219,7 @@ class Writer {
         if (flame_.last)
             fail(flame_.last->span, "a 'finalxform' of a flame that is no limit set is not translated");
         for (const Map& map : flame_.maps)
-            if (!map.chaos.empty() &&
-                std::ranges::any_of(map.chaos, [](double factor) { return factor != 1; }))
-                fail(map.span, "'chaos' in a flame that is no limit set is not translated");
+            if (map.steers()) fail(map.span, "'chaos' in a flame that is no limit set is not translated");
         if (growing)
             file_.diagnostics
                 .warning(growing->span,
@@ -329,6 +327,7 @@ Importer flame_importer() {
     return {.format = "fractal flame",
             .endings = endings,
             .recognises = flame::recognises,
+            .sign = "an element '<flame ...>'",
             .models = flame::models,
             .translate = flame::translate};
 }

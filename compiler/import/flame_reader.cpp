@@ -16,7 +16,8 @@ namespace graftal::flame {
 
 namespace {
 
-std::vector<double> numbers_in(std::string_view text) {
+/// `all`: becomes false where a word is no number.
+std::vector<double> numbers_in(std::string_view text, bool* all = nullptr) {
     std::vector<double> numbers;
     std::size_t at = 0;
     while (true) {
@@ -24,7 +25,9 @@ std::vector<double> numbers_in(std::string_view text) {
         if (at == std::string_view::npos) return numbers;
         const std::size_t end = std::min(text.find_first_of(" \t\r\n,", at), text.size());
         const std::optional<double> value = parse_number(text.substr(at, end - at));
-        numbers.push_back(value && std::abs(*value) <= 1e50 ? *value : 0);
+        const bool good = value && std::abs(*value) <= 1e50;
+        if (all && !good) *all = false;
+        numbers.push_back(good ? *value : 0);
         at = end;
     }
 }
@@ -38,21 +41,67 @@ std::string name_in_flam3(std::string name) {
     return name;
 }
 
-/// Whether an attribute is a number of a variation: of one that the map has, or of one that it could have.
-/// Whatever its value, it means nothing without the variation.
-bool is_number_of_variation(const pugi::xml_node& node, std::string_view name) {
-    for (std::size_t end = name.find('_'); end != std::string_view::npos; end = name.find('_', end + 1)) {
-        const std::string owner(name.substr(0, end));
-        if (is_variation(owner) || node.attribute(owner.c_str())) return true;
+/// The attributes that a map has, and its curves over time as JWildfire writes them: `weightCurve` of
+/// `weightCurve_enabled`.
+struct Attributes {
+    explicit Attributes(const pugi::xml_node& node) {
+        constexpr std::string_view enabled = "_enabled";
+        for (const pugi::xml_attribute& attribute : node.attributes()) {
+            const std::string_view name = attribute.name();
+            names.insert(name);
+            if (name.ends_with(enabled)) curves.insert(name.substr(0, name.size() - enabled.size()));
+        }
     }
-    return false;
+
+    /// The variation that an attribute is a number of: one that the map has, or one that it could have.
+    /// Whatever its value, the attribute means nothing without the variation. "" for none.
+    std::string_view variation_of(std::string_view name) const {
+        return owner_of(name, [&](auto owner) { return is_variation(owner) || names.contains(owner); });
+    }
+    std::string_view curve_of(std::string_view name) const {
+        return owner_of(name, [&](auto owner) { return curves.contains(owner); });
+    }
+
+    std::set<std::string_view> names, curves;
+
+  private:
+    /// The shortest part of a name before a '_' for which the test holds.
+    template<typename Test> static std::string_view owner_of(std::string_view name, const Test& is_owner) {
+        constexpr std::size_t longest = 200; // no name of a program is longer
+        name = name.substr(0, longest);
+        for (std::size_t end = name.find('_'); end != std::string_view::npos; end = name.find('_', end + 1))
+            if (is_owner(name.substr(0, end))) return name.substr(0, end);
+        return {};
+    }
+};
+
+/// Attributes that are no variation, whatever their value.
+bool is_attribute(std::string_view name) {
+    static const std::set<std::string_view> read = {"weight", "color", "symmetry", "color_speed", "coefs",
+                                                    "post",   "chaos", "opacity",  "name",        "plotmode",
+                                                    "var",    "var1",  "density"};
+    static const std::set<std::string_view> idle = {// they change no single picture
+                                                    "animate",      "var_color",        "pulsation",
+                                                    "slider",       "motion_frequency", "motion_function",
+                                                    "motion_offset"};
+    return read.contains(name) || idle.contains(name);
+}
+
+/// Attributes of JWildfire that change a picture in a way that graftal does not know.
+bool is_left_out(std::string_view name) {
+    static constexpr std::string_view prefixes[] = {"mod_", "wfield_", "material"};
+    static const std::set<std::string_view> names = {"color_type", "targetcolor", "yzCoefs",
+                                                     "yzPost",     "zxCoefs",     "zxPost"};
+    return names.contains(name) ||
+           std::ranges::any_of(prefixes, [&](std::string_view prefix) { return name.starts_with(prefix); });
 }
 
 } // namespace
 
 const pugi::xml_document* Reader::document() {
     const std::string_view text = file_.text();
-    const pugi::xml_parse_result result = document_.load_buffer(text.data(), text.size());
+    const pugi::xml_parse_result result =
+        document_.load_buffer(text.data(), text.size(), pugi::parse_default, pugi::encoding_utf8);
     if (result) return &document_;
     const auto at = static_cast<std::size_t>(
         std::clamp<std::ptrdiff_t>(result.offset, 0, static_cast<std::ptrdiff_t>(text.size())));
@@ -86,7 +135,7 @@ std::optional<Flame> Reader::read(const pugi::xml_node& node) {
             Map map = read_map(child);
             if (name == "finalxform")
                 flame.last = std::move(map);
-            else if (map.weight > 0 || map.weight != map.weight)
+            else
                 flame.maps.push_back(std::move(map));
             if (flame.maps.size() > most_maps) {
                 file_.diagnostics.error(span(child), fmt::format("a flame has at most {} maps", most_maps));
@@ -106,10 +155,26 @@ std::optional<Flame> Reader::read(const pugi::xml_node& node) {
             file_.diagnostics.warning(span(child), fmt::format("'{}' is left out", name));
         }
     }
+    drop_idle_maps(flame);
+    report_left_out();
     if (flame.maps.empty())
         file_.diagnostics.error(span(node), "this flame has no maps ('xform') with a weight");
     if (file_.diagnostics.error_count() > errors) return std::nullopt;
     return flame;
+}
+
+/// Maps without a weight, and the factors of `chaos` that stand for them.
+void Reader::drop_idle_maps(Flame& flame) {
+    std::vector<bool> idle;
+    for (const Map& map : flame.maps)
+        idle.push_back(map.weight == 0);
+    std::erase_if(flame.maps, [](const Map& map) { return map.weight == 0; });
+    for (Map& map : flame.maps) {
+        std::vector<double> kept;
+        for (std::size_t i = 0; i < map.chaos.size() && i < idle.size(); ++i)
+            if (!idle[i]) kept.push_back(map.chaos[i]);
+        map.chaos = std::move(kept);
+    }
 }
 
 void Reader::set_colour(Flame& flame, int index, Rgb encoded) {
@@ -136,8 +201,9 @@ void Reader::read_palette(const pugi::xml_node& node, Flame& flame) {
 Affine Reader::coefficients(const pugi::xml_attribute& attribute, Span place) {
     Affine map;
     if (!attribute) return map;
-    const std::vector<double> n = numbers_in(attribute.value());
-    if (n.size() != 6) {
+    bool all = true;
+    const std::vector<double> n = numbers_in(attribute.value(), &all);
+    if (n.size() != 6 || !all) {
         file_.diagnostics.error(place, fmt::format("'{}' takes six numbers", attribute.name()));
         return map;
     }
@@ -162,7 +228,9 @@ Map Reader::read_map(const pugi::xml_node& node) {
     if (node.attribute("color_speed")) map.speed = node.attribute("color_speed").as_double(0.5);
     map.speed = std::clamp(map.speed, 0.0, 1.0);
     map.opacity = node.attribute("opacity").as_double(1);
-    map.chaos = numbers_in(node.attribute("chaos").value());
+    bool all = true;
+    map.chaos = numbers_in(node.attribute("chaos").value(), &all);
+    if (!all) file_.diagnostics.error(map.span, "'chaos' takes numbers, one for each map");
     map.name = node.attribute("name").value();
     if (std::string_view(node.attribute("plotmode").value()) == "off") map.opacity = 0;
     read_variations(node, map);
@@ -170,51 +238,65 @@ Map Reader::read_map(const pugi::xml_node& node) {
 }
 
 void Reader::read_variations(const pugi::xml_node& node, Map& map) {
-    static const std::set<std::string_view> plain = {"weight",
-                                                     "color",
-                                                     "symmetry",
-                                                     "color_speed",
-                                                     "coefs",
-                                                     "post",
-                                                     "chaos",
-                                                     "opacity",
-                                                     "animate",
-                                                     "name",
-                                                     "plotmode",
-                                                     "var",
-                                                     "var1",
-                                                     "density",
-                                                     "var_color",
-                                                     "pulsation",
-                                                     "slider",
-                                                     "motion_frequency",
-                                                     "motion_function",
-                                                     "motion_offset"};
     bool flat = false;
     std::vector<std::string> unknown;
+    const Attributes attributes(node);
+    const auto fail = [&](std::string message) { file_.diagnostics.error(map.span, std::move(message)); };
     for (const pugi::xml_attribute& attribute : node.attributes()) {
         const std::string name = name_in_flam3(attribute.name());
-        const double value = std::clamp(attribute.as_double(), -1e6, 1e6);
-        if (plain.contains(name)) continue;
-        if (leaves_the_plane(name))
+        if (is_attribute(name)) continue;
+        const std::optional<double> number = parse_number(trimmed(attribute.value()));
+        const double value = std::clamp(number.value_or(0), -1e6, 1e6);
+        const std::string_view owner = attributes.variation_of(name);
+        if (leaves_the_plane(name)) {
             flat = true;
-        else if (is_variation(name) && value != 0)
-            map.variations.emplace_back(name, value);
-        else if (!is_variation(name) && is_number_of_variation(node, name))
+        } else if (is_variation(name)) {
+            if (!number)
+                fail(fmt::format("'{}' takes a number, not '{}'", name, comment_text(attribute.value())));
+            else if (value != 0)
+                map.variations.emplace_back(name, value);
+        } else if (const std::string_view curve = attributes.curve_of(name); !curve.empty()) {
+            leave_out(map, fmt::format("{}_*", curve));
+        } else if (!number || is_left_out(name)) {
+            leave_out(map, name);
+        } else if (name.ends_with("_fx_priority") && is_variation(owner) && value != 0) {
+            fail(fmt::format("'{}' is not translated: the variation is no summand of its map", name));
+        } else if (!owner.empty()) {
             map.numbers.emplace(name, value);
-        else if (!is_variation(name) && value != 0)
+        } else if (value != 0) {
             unknown.push_back(name);
+        } else {
+            leave_out(map, name);
+        }
     }
     // Variations that no file of flam3 has may have numbers of any name: these stand or fall with them.
     const auto is_whole = [](std::string_view name) { return name.find('_') == std::string_view::npos; };
     const bool some_whole = std::ranges::any_of(unknown, is_whole);
     for (const std::string& name : unknown)
-        if (!some_whole || is_whole(name))
-            file_.diagnostics.error(map.span, fmt::format("the variation '{}' is not translated", name));
+        if (!some_whole || is_whole(name)) fail(fmt::format("the variation '{}' is not translated", name));
     read_old_variations(node, map);
     // A map that only flattens makes the one point; one that names no variation is linear.
     if (map.variations.empty() && !node.attribute("coefs").empty())
         map.variations.emplace_back("linear", flat ? 0 : 1);
+}
+
+void Reader::leave_out(const Map& map, const std::string& attribute) {
+    left_out_.insert(comment_text(attribute));
+    if (!left_out_span_.known()) left_out_span_ = map.span;
+}
+
+void Reader::report_left_out() {
+    constexpr std::size_t most_named = 30;
+    if (left_out_.empty()) return;
+    std::string names;
+    std::size_t count = 0;
+    for (const std::string& name : left_out_)
+        if (++count <= most_named) names += fmt::format("{}'{}'", names.empty() ? "" : ", ", name);
+    if (count > most_named) names += fmt::format(" and {} more", count - most_named);
+    file_.diagnostics.warning(left_out_span_,
+                              fmt::format("the flame is drawn without the attributes {}", names));
+    left_out_.clear();
+    left_out_span_ = {};
 }
 
 /// `var="1 0 0 ..."` of old files.

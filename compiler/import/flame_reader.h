@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -35,6 +36,9 @@ struct Map {
     bool is_affine() const {
         return std::ranges::all_of(variations,
                                    [](const auto& one) { return one.first.starts_with("linear"); });
+    }
+    bool steers() const {
+        return std::ranges::any_of(chaos, [](double factor) { return factor != 1; });
     }
     /// Of an affine map.
     Affine whole() const {
@@ -79,11 +83,16 @@ class Reader {
   private:
     static void set_colour(Flame& flame, int index, Rgb encoded);
     static void read_palette(const pugi::xml_node& node, Flame& flame);
+    static void drop_idle_maps(Flame& flame);
     Affine coefficients(const pugi::xml_attribute& attribute, Span place);
     Map read_map(const pugi::xml_node& node);
     void read_variations(const pugi::xml_node& node, Map& map);
     void read_old_variations(const pugi::xml_node& node, Map& map);
+    void leave_out(const Map& map, const std::string& attribute);
+    void report_left_out();
     const ForeignFile& file_;
+    std::set<std::string> left_out_; ///< attributes of the flame that is read, or `curve_*`
+    Span left_out_span_;             ///< of the first map that has some
     pugi::xml_document document_;
 };
 

@@ -7,7 +7,11 @@
 #include <system_error>
 #include <utility>
 
+#include <fmt/format.h>
+
 #include "compiler/support/number.h"
+#include "compiler/support/printable.h"
+#include "compiler/syntax/lookalikes.h"
 
 namespace graftal {
 
@@ -32,9 +36,14 @@ std::string_view trimmed(std::string_view text) {
 }
 
 std::string comment_text(std::string_view text) {
-    std::string plain(trimmed(text));
-    for (char& c : plain)
-        if (c < 0x20 || c > 0x7e) c = c == '\t' ? ' ' : '?';
+    text = trimmed(text);
+    std::string plain;
+    for (std::size_t at = 0; at < text.size();) {
+        const CodePoint point = code_point(text, at);
+        const bool seen = point.value >= 0x20 && point.value < 0x7f;
+        plain += seen ? static_cast<char>(point.value) : point.value == '\t' ? ' ' : '?';
+        at += point.size;
+    }
     return plain;
 }
 
@@ -81,6 +90,42 @@ LeadingNumber leading_number(std::string_view text) {
     if (negative) number.value = -number.value;
     number.length = static_cast<std::size_t>(end - text.data());
     return number;
+}
+
+std::string CodeReader::next(std::string_view text, std::size_t& at, std::size_t begin,
+                             std::optional<std::uint32_t> whole) {
+    const std::size_t from = at;
+    at += code_point(text, at).size;
+    return signs_of(text.substr(from, at - from),
+                    whole ? file_.span(*whole, *whole) : file_.span(begin + from, begin + at));
+}
+
+std::string CodeReader::signs(std::string_view text, Span span) {
+    std::string all;
+    for (std::size_t at = 0; at < text.size();) {
+        const std::size_t size = code_point(text, at).size;
+        all += signs_of(text.substr(at, size), span);
+        at += size;
+    }
+    return all;
+}
+
+std::string CodeReader::signs_of(std::string_view character, Span span) {
+    const char32_t value = code_point(character, 0).value;
+    if (value < 0x80) return std::string(character);
+    if (const std::optional<Lookalike> look = lookalike(value)) {
+        if (warned_.emplace(character).second)
+            file_.diagnostics.warning(
+                span, look->meant == " "
+                          ? fmt::format("U+{:04X} is {}: it is read as a space", static_cast<unsigned>(value),
+                                        look->name)
+                          : fmt::format("'{}' is {}: it is read as {}", character, look->name, look->meant));
+        return std::string(look->meant);
+    }
+    if (value <= 0xFF) return std::string(1, static_cast<char>(value));
+    if (value == CodePoint::invalid) return std::string(character);
+    file_.diagnostics.error(span, unexpected_character(character)).with_hint(lookalike_hint(character));
+    return {};
 }
 
 bool is_binary(std::string_view text) {

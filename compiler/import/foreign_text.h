@@ -1,9 +1,15 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include "compiler/import/importer.h"
 
 namespace graftal {
 
@@ -33,6 +39,28 @@ struct LeadingNumber {
     std::size_t length = 0;
 };
 LeadingNumber leading_number(std::string_view text);
+
+/// Reads the code of formats whose strings have a symbol for each byte: ASCII, and other letters as in
+/// Latin-1. A typographic sign becomes the signs that it stands for, with a warning for each kind; any other
+/// character is an error.
+class CodeReader {
+  public:
+    /// It must outlive this.
+    explicit CodeReader(const ForeignFile& file) : file_(file) {}
+
+    /// The signs of the character at `at`, which moves past it; none after an error. The text begins at
+    /// `begin` in the file, or all of it stands at `whole`. Requires at < text.size().
+    std::string next(std::string_view text, std::size_t& at, std::size_t begin,
+                     std::optional<std::uint32_t> whole = {});
+    /// Those of a whole text, for whose faults `span` stands.
+    std::string signs(std::string_view text, Span span);
+
+  private:
+    std::string signs_of(std::string_view character, Span span);
+
+    const ForeignFile& file_;
+    std::set<std::string, std::less<>> warned_; ///< characters
+};
 
 /// Whether a text has bytes that no text has: NUL. Pictures and programs have.
 bool is_binary(std::string_view text);

@@ -322,8 +322,6 @@ class Writer {
         return nullptr;
     }
 
-    static bool is_point(const Row& row) { return largest_entry(row.map.linear) == 0; }
-
     void write_maps() {
         const std::string name = plain_name(model_.name);
         out_.line(fmt::format("rifs {} {{", is_own_word(name) ? name + "_ifs" : name), model_.span);
@@ -332,7 +330,6 @@ class Writer {
             const Row& row = system_.rows[i];
             for (const std::string& words : row.above)
                 indented_comment(words);
-            if (is_point(row)) continue;
             std::string text = "   ";
             for (const Number& number : row.numbers)
                 text += fmt::format(" {:>9}", shortest(number.value));
@@ -341,20 +338,7 @@ class Writer {
             out_.line(text, row.span());
         }
         out_.line("  }");
-        for (const Row& row : system_.rows)
-            if (is_point(row)) write_point(row);
         out_.line("}");
-    }
-
-    /// A map that leaves one point of everything: a speck, and what the other maps make of it.
-    void write_point(const Row& row) {
-        file_.diagnostics.warning(row.span(),
-                                  "this map leaves one point of everything; a small ball stands for it");
-        const Vec3 at = row.map.translation;
-        const double size = 1e-3 * std::max(1e-3, largest_entry(at));
-        out_.line(fmt::format("  condense sphere  scale {}  translate {}, {}, {}", shortest(size),
-                              shortest(at.x), shortest(at.y), shortest(at.z)),
-                  row.span());
     }
 
     void indented_comment(std::string_view words) { out_.line(fmt::format("    # {}", comment_text(words))); }
@@ -401,8 +385,29 @@ std::optional<Translation> translate(const ForeignFile& file, const ForeignModel
     return Writer(file, model, *system).write();
 }
 
+/// A block that begins with six numbers.
 bool recognises(std::string_view text) {
-    return text.find('{') != std::string_view::npos;
+    constexpr std::size_t least = 6;
+    std::optional<std::size_t> numbers; // of the block so far; nothing outside of one
+    for (const Line& line : lines_of(text, 0, text.size())) {
+        std::string_view words = line.words;
+        if (const std::size_t open = words.find('{'); open != std::string_view::npos) {
+            numbers = 0;
+            words.remove_prefix(open + 1);
+            if (says_3d(words)) words.remove_prefix(words.find(')') + 1);
+        }
+        while (numbers && !trimmed(words).empty()) {
+            words = words.substr(std::min(words.find_first_not_of(" \t,"), words.size()));
+            const LeadingNumber number = leading_number(words);
+            if (number.length == 0) {
+                numbers.reset();
+            } else {
+                if (++*numbers == least) return true;
+                words.remove_prefix(number.length);
+            }
+        }
+    }
+    return false;
 }
 
 } // namespace fractint_ifs
@@ -412,6 +417,7 @@ Importer fractint_ifs_importer() {
     return {.format = "Fractint IFS",
             .endings = endings,
             .recognises = fractint_ifs::recognises,
+            .sign = "a block 'name { .5 0 0 .5 0 0 1 ... }' of rows of numbers",
             .models = fractint_ifs::models,
             .translate = fractint_ifs::translate};
 }

@@ -64,7 +64,6 @@ std::vector<ForeignModel> fractint_models(const ForeignFile& file) {
 
 /// A block that has an axiom or an angle, and no colon behind the word, as those of cpfg have.
 bool is_fractint_lsystem(std::string_view text) {
-    if (is_binary(text)) return false;
     bool found = false;
     each_block(text, [&](std::size_t, std::size_t, std::size_t begin, std::size_t end) {
         if (found) return;
@@ -94,8 +93,9 @@ constexpr std::string_view fractint_lsystem_endings[] = {"l"};
 } // namespace
 
 Importer fractint_lsystem_importer() {
-    return {"Fractint L-system", fractint_lsystem_endings, is_fractint_lsystem, fractint_models,
-            translate_fractint};
+    return {"Fractint L-system", fractint_lsystem_endings,
+            is_fractint_lsystem, "a block 'name { Angle 6 ... }' with an axiom",
+            fractint_models,     translate_fractint};
 }
 
 } // namespace graftal

@@ -10,6 +10,7 @@
 
 #include "compiler/import/foreign_text.h"
 #include "compiler/import/importers.h"
+#include "compiler/support/printable.h"
 #include "compiler/support/small_letters.h"
 
 namespace graftal {
@@ -28,7 +29,8 @@ std::string number_at(std::string_view text, std::size_t& at) {
 
 class FractintReader {
   public:
-    FractintReader(const ForeignFile& file, const ForeignModel& model) : file_(file), model_(model) {}
+    FractintReader(const ForeignFile& file, const ForeignModel& model)
+        : file_(file), code_(file), model_(model) {}
 
     std::optional<FractintSystem> read() {
         const std::size_t errors = file_.diagnostics.error_count();
@@ -76,10 +78,10 @@ class FractintReader {
             system_.axiom_comment = comment;
         } else if (word.text == "angle") {
             const Word number = next_word(line, statement, at, " \t=");
-            system_.angle = std::atoi(number.text.substr(0, 6).c_str());
+            system_.angle = std::atoi(code_.signs(number.text, number.span).substr(0, 6).c_str());
             system_.angle_span = number.span;
             system_.angle_comment = comment;
-        } else if (word.text.size() == 1) {
+        } else if (is_symbol(word.text)) {
             add_rule(word, next_word(line, statement, at, " =\t"), comment);
         } else {
             file_.diagnostics
@@ -92,8 +94,12 @@ class FractintReader {
             file_.diagnostics.warning(extra.span, "this text behind the statement has no meaning");
     }
 
+    static bool is_symbol(std::string_view word) { return code_point(word, 0).size == word.size(); }
+
     void add_rule(const Word& word, const Word& successor, const std::string& comment) {
-        const char letter = word.text[0];
+        const std::string signs = code_.signs(word.text, word.span);
+        if (signs.size() != 1) return;
+        const char letter = signs[0];
         if (fractint_reserved.find(letter) != std::string_view::npos) {
             file_.diagnostics.error(word.span,
                                     fmt::format("'{}' has a fixed meaning and takes no rule", letter));
@@ -114,7 +120,11 @@ class FractintReader {
         FractintString string;
         for (std::size_t at = 0; at < word.text.size();) {
             const std::size_t begin = at;
-            FractintSymbol symbol{word.text[at++], {}, {}};
+            const std::string signs = code_.next(word.text, at, word.span.begin);
+            for (std::size_t i = 0; i + 1 < signs.size(); ++i)
+                string.push_back({signs[i], {}, file_.span(word.span.begin + begin, word.span.begin + at)});
+            if (signs.empty()) continue;
+            FractintSymbol symbol{signs.back(), {}, {}};
             if (takes_number(symbol.letter)) symbol.number = number_at(word.text, at);
             symbol.span = file_.span(word.span.begin + begin, word.span.begin + at);
             string.push_back(std::move(symbol));
@@ -162,6 +172,7 @@ class FractintReader {
     }
 
     const ForeignFile& file_;
+    CodeReader code_;
     const ForeignModel& model_;
     FractintSystem system_;
 };

@@ -55,8 +55,9 @@ struct Translation {
 struct Importer {
     std::string_view format;                   ///< its name for people: "Fractint L-system"
     std::span<const std::string_view> endings; ///< of file names, in small letters, without the dot
-    bool (*recognises)(
-        std::string_view text); ///< asked where formats share an ending; in a time linear in the text
+    /// Whether a text is most likely of this format, and of no other; in a time linear in the text.
+    bool (*recognises)(std::string_view text);
+    std::string_view sign; ///< by which people know a text of the format: "a block 'name { ... }'"
     /// In the order of the text. Reports what keeps it from telling the models apart.
     std::vector<ForeignModel> (*models)(const ForeignFile& file);
     /// Nothing after an error.

@@ -1,6 +1,7 @@
 #include "compiler/import/importers.h"
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <filesystem>
 #include <utility>
@@ -18,6 +19,7 @@
 #include "compiler/import/vlab_surface.h"
 #include "compiler/support/file.h"
 #include "compiler/support/small_letters.h"
+#include "compiler/support/text_encoding.h"
 
 namespace graftal {
 
@@ -28,8 +30,36 @@ std::string ending_of(std::string_view file_name) {
     return ending.empty() ? ending : ending.substr(1);
 }
 
+/// Endings that promise no format: any may stand there.
+constexpr std::array<std::string_view, 2> open_endings = {"lsystem", "txt"};
+
 bool has_ending(const Importer& importer, std::string_view ending) {
     return std::ranges::find(importer.endings, ending) != importer.endings.end();
+}
+
+/// The error that a file is of none of these formats: at its first words, with what each format has.
+void refuse(const ForeignFile& file, const std::vector<const Importer*>& rows) {
+    const std::string_view name = file.sources.name(file.file), text = file.text();
+    std::string formats, signs;
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+        formats += fmt::format("{}{}", i == 0 ? "" : i + 1 == rows.size() ? " or " : ", ", rows[i]->format);
+        signs += fmt::format("{}{}: {}", i == 0 ? "" : "; ", rows[i]->format, rows[i]->sign);
+    }
+    if (const std::size_t nul = text.find('\0'); nul != std::string_view::npos) {
+        file.diagnostics.error(Span(),
+                               fmt::format("'{}' is no {}: its line {} has a byte 0, as no text has", name,
+                                           formats, file.sources.position(file.file, nul).line));
+        return;
+    }
+    const std::size_t first = text.find_first_not_of(" \t\n\f\v");
+    if (first == std::string_view::npos) {
+        file.diagnostics.error(Span(), fmt::format("'{}' is no {}: it is empty", name, formats));
+        return;
+    }
+    const std::size_t end = std::min({text.find('\n', first), first + 80, text.size()});
+    file.diagnostics
+        .error(file.span(first, end), fmt::format("'{}' is no {}: these words begin none", name, formats))
+        .with_hint(signs);
 }
 
 std::vector<std::string> names_of(const std::vector<ForeignModel>& models) {
@@ -51,7 +81,13 @@ std::span<const Importer> importers() {
 
 bool is_foreign(std::string_view file_name) {
     const std::string ending = ending_of(file_name);
-    return std::ranges::any_of(importers(), [&](const Importer& row) { return has_ending(row, ending); });
+    return std::ranges::any_of(importers(), [&](const Importer& row) { return has_ending(row, ending); }) ||
+           std::ranges::find(open_endings, ending) != open_endings.end();
+}
+
+std::string model_text(std::string_view file_name, std::string bytes) {
+    return decoded_text(std::move(bytes),
+                        is_foreign(file_name) ? OtherBytes::windows_1252 : OtherBytes::kept);
 }
 
 ModelPath model_path(std::string_view path) {
@@ -78,20 +114,28 @@ ForeignFile foreign_file(FileId file, SourceMap& sources, Diagnostics& diagnosti
         if (beside.on_file) beside.on_file(path);
         std::string text;
         if (!read_text(path, text).ok()) return std::nullopt;
-        return sources.add(path, std::move(text));
+        return sources.add(path, decoded_text(std::move(text), OtherBytes::windows_1252));
     };
     return {file, sources, diagnostics, read_beside};
 }
 
 const Importer* importer_of(const ForeignFile& file) {
     const std::string ending = ending_of(file.sources.name(file.file));
-    std::string formats;
-    for (const Importer& importer : importers()) {
-        if (!has_ending(importer, ending)) continue;
-        if (importer.recognises(file.text())) return &importer;
-        formats += fmt::format("{}{}", formats.empty() ? "" : " or ", importer.format);
+    std::vector<const Importer*> promised, others;
+    for (const Importer& importer : importers())
+        (has_ending(importer, ending) ? promised : others).push_back(&importer);
+    const bool is_text = !is_binary(file.text());
+    const auto knows = [&](const Importer* row) { return is_text && row->recognises(file.text()); };
+    if (const auto found = std::ranges::find_if(promised, knows); found != promised.end()) return *found;
+    if (const auto found = std::ranges::find_if(others, knows); found != others.end()) {
+        if (!promised.empty())
+            file.diagnostics.note(Span(), fmt::format("'{}' is read as {}: its content is not {}",
+                                                      file.sources.name(file.file), (*found)->format,
+                                                      promised.front()->format));
+        return *found;
     }
-    file.diagnostics.error(Span(), fmt::format("'{}' is no {}", file.sources.name(file.file), formats));
+    if (promised.size() == 1 && is_text) return promised.front(); // its reader says what does not fit
+    refuse(file, promised.empty() ? others : promised);
     return nullptr;
 }
 
@@ -100,8 +144,7 @@ std::optional<ForeignModel> find_model(const Importer& importer, const ForeignFi
     const std::size_t errors = file.diagnostics.error_count();
     const std::vector<ForeignModel> models = importer.models(file);
     if (models.empty()) {
-        if (file.diagnostics.error_count() == errors)
-            file.diagnostics.error(Span(), fmt::format("'{}' holds no model", file.sources.name(file.file)));
+        if (file.diagnostics.error_count() == errors) refuse(file, {&importer});
         return std::nullopt;
     }
     if (name.empty() && models.size() == 1) return models.front();

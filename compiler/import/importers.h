@@ -30,6 +30,10 @@ std::string model_stem(std::string_view path);
 /// Whether the name of a file has an ending of the table.
 bool is_foreign(std::string_view file_name);
 
+/// The text of a model's file from its bytes, in the encoding that they have; foreign ones may have that of
+/// old Windows.
+std::string model_text(std::string_view file_name, std::string bytes);
+
 /// How files beside a foreign one are found.
 struct BesideOptions {
     std::string root{};                                ///< they must lie in this folder; "": anywhere
@@ -40,7 +44,8 @@ struct BesideOptions {
 ForeignFile foreign_file(FileId file, SourceMap& sources, Diagnostics& diagnostics,
                          BesideOptions beside = {});
 
-/// The importer with this ending that knows the text; null after the error that there is none.
+/// The importer that reads the file: one of its ending that knows the text, else any that knows it, with a
+/// note, else the only one of its ending. Null after the error that names the formats.
 const Importer* importer_of(const ForeignFile& file);
 
 /// The model by its name, where capitals count only if they must; "" for the only one. Nothing after the

@@ -20,9 +20,22 @@ std::vector<ForeignModel> lparser_models(const ForeignFile& file) {
     return {{name, file.span(0, std::min<std::size_t>(file.text().find('\n'), file.text().size()))}};
 }
 
-/// No other format ends in .ls.
+/// Lines of depth, angle, thickness and axiom; or a keyword first, and an axiom.
 bool is_lparser(std::string_view text) {
-    return !is_binary(text);
+    constexpr std::size_t numbers = 3;
+    std::size_t statements = 0;
+    bool keywords = false;
+    for (const TextLine& line : lines_of(text, 0, text.size())) {
+        const std::string_view words = trimmed(line.text.substr(0, line.text.find('#')));
+        if (words.empty()) continue;
+        const std::string_view word = words.substr(0, words.find_first_of(" \t"));
+        if (statements == 0) keywords = is_lparser_keyword(word);
+        if (keywords && word == "axiom") return true;
+        if (!keywords && statements == numbers) return true;
+        if (!keywords && leading_number(word).length != word.size()) return false;
+        ++statements;
+    }
+    return false;
 }
 
 std::optional<Translation> translate_lparser(const ForeignFile& file, const ForeignModel& model) {
@@ -41,7 +54,9 @@ constexpr std::string_view lparser_endings[] = {"ls"};
 } // namespace
 
 Importer lparser_importer() {
-    return {"L-Parser", lparser_endings, is_lparser, lparser_models, translate_lparser};
+    return {"L-Parser",     lparser_endings,
+            is_lparser,     "lines of recursion depth, angle, thickness, axiom and rules",
+            lparser_models, translate_lparser};
 }
 
 } // namespace graftal

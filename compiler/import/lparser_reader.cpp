@@ -23,9 +23,17 @@ constexpr std::string_view lparser_keywords[] = {
     "recursion", "mutation",   "angle", "thickness", "min_thickness", "switch_yz", "trace",
     "no_wait",   "poly_limit", "shape", "color",     "axiom",         "rule"};
 
+} // namespace
+
+bool is_lparser_keyword(std::string_view word) {
+    return std::ranges::find(lparser_keywords, word) != std::end(lparser_keywords);
+}
+
+namespace {
+
 class LparserReader {
   public:
-    LparserReader(const ForeignFile& file) : file_(file) {}
+    LparserReader(const ForeignFile& file) : file_(file), code_(file) {}
 
     std::optional<LparserSystem> read() {
         const std::size_t errors = file_.diagnostics.error_count();
@@ -56,8 +64,7 @@ class LparserReader {
         }
         const std::size_t end = std::min(statement.find_first_of(" \t", first), statement.size());
         const std::string_view word = statement.substr(first, end - first);
-        if (number_ == 0 && std::ranges::find(lparser_keywords, word) != std::end(lparser_keywords))
-            system_.has_keywords = true;
+        if (number_ == 0 && is_lparser_keyword(word)) system_.has_keywords = true;
         if (system_.has_keywords)
             read_keyword(word, statement.substr(end), line.begin + end);
         else
@@ -104,14 +111,14 @@ class LparserReader {
         else if (keyword == "poly_limit")
             file_.diagnostics.warning(span_,
                                       "a limit of polygons is left out: graftal draws the whole model");
-        else if (std::ranges::find(lparser_keywords, keyword) == std::end(lparser_keywords))
+        else if (!is_lparser_keyword(keyword))
             file_.diagnostics.error(span_, fmt::format("'{}' is no keyword of L-Parser", keyword));
     }
 
     void set(LparserNumber& number, std::string_view text) {
         number.span = span_;
         number.comment = comment_;
-        const LeadingNumber read = leading_number(text.substr(0, 40));
+        const LeadingNumber read = leading_number(code_.signs(text.substr(0, 60), span_));
         number.value = read.value;
         take_comments(system_.head);
         if (read.length == 0 || !std::isfinite(number.value))
@@ -159,8 +166,10 @@ class LparserReader {
             file_.diagnostics.error(span_, "a rule is written letter=string");
             return;
         }
-        LparserRule rule{.letter = text[first], .span = span_, .comment = comment_};
-        if (trimmed(text.substr(0, equal)).size() > 1)
+        const std::string left = code_.signs(trimmed(text.substr(0, equal)), span_);
+        if (left.empty()) return;
+        LparserRule rule{.letter = left[0], .span = span_, .comment = comment_};
+        if (left.size() > 1)
             file_.diagnostics.warning(span_,
                                       "a rule is for one symbol: of the left side the first one counts");
         rule.successor = string_of(text.substr(equal + 1), begin + equal + 1);
@@ -179,7 +188,11 @@ class LparserReader {
         LparserString string;
         for (std::size_t at = 0; at < text.size();) {
             const std::size_t from = at;
-            const char c = text[at++];
+            const std::string signs = code_.next(text, at, begin);
+            for (std::size_t i = 0; i + 1 < signs.size(); ++i)
+                string.push_back({signs[i], std::nullopt, file_.span(begin + from, begin + at)});
+            if (signs.empty()) continue;
+            const char c = signs.back();
             if (std::isspace(static_cast<unsigned char>(c))) continue;
             LparserSymbol symbol{c, std::nullopt, {}};
             if (c == '(' && string.empty()) {
@@ -200,7 +213,8 @@ class LparserReader {
                     file_.diagnostics.error(file_.span(begin + at, begin + at + 1), "this '(' is not closed");
                     return string;
                 }
-                symbol.number = std::string(text.substr(at + 1, close - at - 1));
+                symbol.number = code_.signs(text.substr(at + 1, close - at - 1),
+                                            file_.span(begin + at + 1, begin + close));
                 at = close + 1;
             }
             symbol.span = file_.span(begin + from, begin + at);
@@ -210,6 +224,7 @@ class LparserReader {
     }
 
     const ForeignFile& file_;
+    CodeReader code_;
     LparserSystem system_;
     Span span_; ///< of the statement
     std::string comment_;

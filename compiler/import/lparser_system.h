@@ -58,6 +58,9 @@ struct LparserSystem {
     std::vector<LparserLine> tail;
 };
 
+/// Whether a word begins a line of Lparser 5.
+bool is_lparser_keyword(std::string_view word);
+
 /// The system of a file; nothing after an error.
 std::optional<LparserSystem> read_lparser(const ForeignFile& file);
 

@@ -94,7 +94,7 @@ std::vector<ForeignModel> surface_models(const ForeignFile& file) {
 }
 
 bool is_surface(std::string_view text) {
-    return !is_binary(text) && text.find("CONTACT POINT") != std::string_view::npos &&
+    return text.find("CONTACT POINT") != std::string_view::npos &&
            (text.find("patch") != std::string_view::npos || text.find("TOP COLOR") != std::string_view::npos);
 }
 
@@ -146,7 +146,8 @@ constexpr std::string_view surface_endings[] = {"s"};
 } // namespace
 
 Importer vlab_surface_importer() {
-    return {"vlab surface", surface_endings, is_surface, surface_models, translate_surface};
+    return {"vlab surface", surface_endings,  is_surface, "'CONTACT POINT' and a patch",
+            surface_models, translate_surface};
 }
 
 } // namespace graftal

@@ -72,7 +72,7 @@ LoweredText lower_model(const std::string& path, const LowerOptions& options, So
 LoweredText lower_text(const std::string& name, std::string text, const LowerOptions& options,
                        SourceMap& sources, Diagnostics& diagnostics, const LowerHelp& help) {
     const ModelPath path = model_path(name == "-" ? standard_input : name);
-    const FileId file = sources.add(path.file, std::move(text));
+    const FileId file = sources.add(path.file, model_text(path.file, std::move(text)));
     const std::optional<FileId> own =
         own_text(file, path.model, sources, diagnostics, {options.root, help.on_file});
     if (!own) return {};

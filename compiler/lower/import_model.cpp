@@ -80,7 +80,8 @@ std::optional<FileId> read_file(Span use_span, const std::string& path, Lowering
     std::string text;
     Status read = check_regular(path, lowering);
     if (read.ok()) read = read_text(path, text);
-    if (read.ok()) return lowering.files[path] = lowering.sources.add(path, std::move(text));
+    if (read.ok())
+        return lowering.files[path] = lowering.sources.add(path, model_text(path, std::move(text)));
     add_chain(lowering.diagnostics.error(use_span, read.message()), lowering);
     return std::nullopt;
 }

@@ -38,7 +38,8 @@ struct RifsPart {
 enum class RifsForm : std::uint8_t { transforms, codes_2d, codes_polar, codes_3d };
 
 struct RifsMap {
-    Name name; ///< of a row without a label: an empty text, at the row
+    Name name;                ///< of a row without a label: an empty text, at the row
+    std::uint32_t number = 0; ///< in its block, from 1: a row without a label is named by it
     RifsForm form = RifsForm::transforms;
     std::vector<TransformLine> transforms;
     std::vector<Expression> codes; ///< without the probability: as many as the form has

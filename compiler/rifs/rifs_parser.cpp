@@ -90,6 +90,7 @@ class RifsParser {
             if (!stream_.accept("{") && !at_rifs_item(stream_)) return false;
         }
         parse_items(block, open);
+        settle_rifs_rows(block, diagnostics_);
         block.broken = diagnostics_.error_count() > errors;
         file_.blocks.push_back(std::move(block));
         return true;

@@ -50,7 +50,7 @@ class SystemBuilder {
         subsystem.first = static_cast<std::uint32_t>(system_.nodes.size());
         map_names_.clear();
         for (const RifsMap& map : block.maps)
-            add_node(map, static_cast<std::uint32_t>(system_.nodes.size() - subsystem.first));
+            add_node(map);
         subsystem.end = static_cast<std::uint32_t>(system_.nodes.size());
         if (block.maps.empty() && !block.broken)
             diagnostics_.error(block.name.span, fmt::format("'rifs {}' has no maps", block.name.text))
@@ -59,11 +59,11 @@ class SystemBuilder {
         system_.blocks.push_back(std::move(subsystem));
     }
 
-    void add_node(const RifsMap& map, std::uint32_t index) {
+    void add_node(const RifsMap& map) {
         RifsNode node;
         node.source = &map;
         node.block = static_cast<std::uint32_t>(system_.blocks.size());
-        node.name = map.name.text.empty() ? fmt::format("w{}", index + 1) : std::string(map.name.text);
+        node.name = map.name.text.empty() ? fmt::format("w{}", map.number) : std::string(map.name.text);
         check_name({node.name, map.name.span}, "a map", map_names_);
         if (!map.broken && !diagnostics_.full()) {
             node.map = evaluate_map(map).value_or(Affine());
@@ -71,7 +71,7 @@ class SystemBuilder {
             node.material = looks_.material(map.look);
             const bool is_row = map.form != RifsForm::transforms;
             node.probability =
-                evaluate_probability(map.probability, lets_, diagnostics_, is_row ? index + 1 : 0);
+                evaluate_probability(map.probability, lets_, diagnostics_, is_row ? map.number : 0);
             sum_ += node.probability.value_or(0);
         }
         system_.nodes.push_back(std::move(node));
@@ -106,7 +106,11 @@ class SystemBuilder {
         const std::string fault = range_fault(result);
         if (fault.empty()) return result;
         Diagnostic& error = diagnostics_.error(map.span, fmt::format("this row {}", fault));
-        if (result.linear != Mat3(0.0)) error.with_hint(range_hint);
+        if (result.linear != Mat3(0.0))
+            error.with_hint(range_hint);
+        else
+            error.with_hint("write 'condense sphere scale ... translate ...' for a point; of itself graftal "
+                            "does so for plain zeros in a block without 'follow' and 'start'");
         return std::nullopt;
     }
 

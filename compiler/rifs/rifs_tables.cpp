@@ -1,10 +1,12 @@
 #include "compiler/rifs/rifs_tables.h"
 
+#include <algorithm>
 #include <utility>
 
 #include <fmt/format.h>
 
 #include "compiler/rifs/rifs_parts.h"
+#include "compiler/support/affine.h"
 #include "compiler/syntax/expression_parser.h"
 
 namespace graftal {
@@ -211,7 +213,70 @@ bool parse_all(TokenStream& stream, RifsFollow& follow) {
     return false;
 }
 
+/// The number of an expression that is one, with a sign or none.
+std::optional<double> literal(const Expression& expression) {
+    if (expression.kind == Expression::Kind::number) return expression.number;
+    if (expression.kind != Expression::Kind::unary || expression.text != "-") return std::nullopt;
+    const std::optional<double> value = literal(expression.operands.front());
+    return value ? std::optional(-*value) : std::nullopt;
+}
+
+/// Where a row of literal numbers maps everything to; nothing if it leaves more than a point.
+std::optional<Vec3> point_of(const RifsMap& row) {
+    if (row.broken || row.form == RifsForm::transforms) return std::nullopt;
+    std::vector<double> numbers;
+    for (const Expression& code : row.codes) {
+        const std::optional<double> number = literal(code);
+        if (!number) return std::nullopt;
+        numbers.push_back(*number);
+    }
+    const std::size_t shift = row.form == RifsForm::codes_3d ? 9 : 4;
+    const std::size_t linear = row.form == RifsForm::codes_polar ? 2 : shift; // the others are angles
+    for (std::size_t i = 0; i < linear; ++i)
+        if (numbers[i] != 0) return std::nullopt;
+    return Vec3(numbers[shift], numbers[shift + 1], row.form == RifsForm::codes_3d ? numbers[shift + 2] : 0);
+}
+
+Expression number_at(double value, Span span) {
+    Expression number;
+    number.number = value;
+    number.span = span;
+    return number;
+}
+
+/// A ball that is small beside its distance from the origin.
+RifsPart speck(const RifsMap& row, Vec3 at) {
+    RifsPart part;
+    part.master = {"sphere", row.span};
+    const double size = 1e-3 * std::max(1e-3, largest_entry(at));
+    part.transforms = {{TransformLine::Kind::scale, {number_at(size, row.span)}, {}, row.span},
+                       {TransformLine::Kind::translate,
+                        {number_at(at.x, row.span), number_at(at.y, row.span), number_at(at.z, row.span)},
+                        {},
+                        row.span}};
+    part.look = row.look;
+    part.probability = row.probability;
+    part.span = row.span;
+    return part;
+}
+
 } // namespace
+
+void settle_rifs_rows(RifsBlock& block, Diagnostics& diagnostics) {
+    std::uint32_t number = 0;
+    for (RifsMap& map : block.maps)
+        map.number = ++number;
+    if (block.follow || !block.start.empty()) return;
+    const auto is_point = [](const RifsMap& map) { return point_of(map).has_value(); };
+    if (std::ranges::all_of(block.maps, is_point)) return;
+    for (const RifsMap& map : block.maps) {
+        const std::optional<Vec3> at = point_of(map);
+        if (!at) continue;
+        diagnostics.warning(map.span, "this row maps everything to one point; a small ball stands for it");
+        block.condense.push_back(speck(map, *at));
+    }
+    std::erase_if(block.maps, is_point);
+}
 
 bool parse_rifs_codes(TokenStream& stream, std::vector<RifsMap>& maps, std::size_t& map_room) {
     stream.next();

@@ -19,4 +19,9 @@ bool parse_rifs_codes(TokenStream& stream, std::vector<RifsMap>& maps, std::size
 /// Parses `follow ...`, from `follow` on.
 std::optional<RifsFollow> parse_rifs_follow(TokenStream& stream);
 
+/// Numbers the maps of a block, and makes condensation sets of its rows that map everything to one point: a
+/// small ball with their probability and look. Rows stay where a digraph or a start may speak of them, and
+/// where the block has no other map. Call it at the end of the block.
+void settle_rifs_rows(RifsBlock& block, Diagnostics& diagnostics);
+
 } // namespace graftal

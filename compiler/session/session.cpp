@@ -1,5 +1,6 @@
 #include "compiler/session/session.h"
 
+#include "compiler/import/importers.h"
 #include "compiler/session/stage_clock.h"
 #include "compiler/support/file.h"
 
@@ -38,8 +39,9 @@ void Session::reload(bool textures_changed) {
     for (FileId file = 1; file < sources_.size() && !changed; ++file) {
         if (sources_.original(file)) continue; // a translation of another
         std::string text;
-        const Status status = read_text(std::string(sources_.name(file)), text);
-        changed = !status.ok() || text != sources_.text(file);
+        const std::string name(sources_.name(file));
+        const Status status = read_text(name, text);
+        changed = !status.ok() || model_text(name, std::move(text)) != sources_.text(file);
     }
     for (const auto& [path, stamp] : meshes_)
         changed = changed || stamp_of(path) != stamp;

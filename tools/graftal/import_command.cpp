@@ -31,10 +31,14 @@ class Importing {
                                      fmt::format("'{}' is of no format that graftal imports", path_.file));
             return exit_fault;
         }
+        if (path_.file != "-" && !root.empty() && !lies_in(path_.file, root)) {
+            found_.diagnostics.error(Span(), fmt::format("'{}' leads out of --root '{}'", path_.file, root));
+            return exit_fault;
+        }
         std::string text;
         found_.status = read_text(path_.file, text);
         if (!found_.status.ok()) return exit_environment;
-        const FileId file = found_.sources.add(path_.file, std::move(text));
+        const FileId file = found_.sources.add(path_.file, model_text(path_.file, std::move(text)));
         const ForeignFile foreign = foreign_file(file, found_.sources, found_.diagnostics, {root, {}});
         const Importer* const importer = importer_of(foreign);
         if (!importer) return exit_fault;

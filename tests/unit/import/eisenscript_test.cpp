@@ -1,4 +1,6 @@
+#include <functional>
 #include <set>
+#include <string>
 
 #include <gmock/gmock.h>
 
@@ -120,6 +122,58 @@ TEST(EisenScript, FaultsHaveTheirPlaces) {
     EXPECT_THAT(said("#define a b\n#define b a\n{ x a } box"), HasSubstr("more than 100 substitutions"));
     EXPECT_THAT(said("r\nrule r { box"), HasSubstr("expected '}' at the end of the rule"));
     EXPECT_THAT(said("set raytracer::shadows false\nbox"), HasSubstr("warning: 'raytracer::shadows'"));
+}
+
+TEST(EisenScript, IgnoredWordsAreNamed) {
+    const auto said = [](const std::string& text) { return ImportedShapes("a.es", text).said(); };
+    EXPECT_THAT(said("#wobble 3\nbox"), HasSubstr("a.es:1:1: warning: '#wobble' is no '#define'"));
+    EXPECT_THAT(said("set recursion depth\nbox"),
+                HasSubstr("warning: 'set recursion depth' changes nothing"));
+    EXPECT_THAT(said("set rotation [1 0 0 0 1 0 0 0 1]\nset scale 2\nbox"),
+                HasSubstr("a.es:1:1: warning: 'set rotation', 'set scale' make no camera"));
+    EXPECT_EQ(said("set translation [0 0 -20]\nset scale 2\nbox"), "");
+}
+
+std::string times(int count, const std::function<std::string(int)>& text) {
+    std::string all;
+    for (int i = 0; i < count; ++i)
+        all += text(i);
+    return all;
+}
+
+/// Small texts that would become large ones, or take long to count.
+TEST(EisenScript, WorkIsBounded) {
+    const auto is_refused = [](const std::string& text, const std::string& why) {
+        const ImportedShapes model("a.es", text);
+        EXPECT_THAT(model.diagnostics.render(model.sources), HasSubstr(why));
+        EXPECT_THAT(model.diagnostics.render(model.sources), HasSubstr("hint: ")) << why;
+        EXPECT_EQ(model.translation, "");
+    };
+    const auto number = [](int i) { return std::to_string(i); };
+    is_refused("a\n" +
+                   times(1500, [&](int i) { return "rule a md " + number(i + 1) + " { { x 1 } a box }\n"; }),
+               "a.es:2:6: error: more than 98 depths of rules ('maxdepth') count together here");
+    is_refused("a\nrule a {\n" + times(200, [](int) { return "100 * { x 1 } 100 * { y 1 } mesh\n"; }) + "}\n",
+               "a.es:4:1: error: the script has more than 10000 copies of a 'mesh'");
+    is_refused("set minsize 0.001\na\nrule a { 9999 * { x 1 s 0.9 } box }\n",
+               "error: the script has more than 300000 operators of copies that change their size");
+    is_refused("set colorpool list:" + times(1000, [&](int) { return "red,"; }) + "red\na\nrule a {\n" +
+                   times(1000, [](int) { return "{ x 1 color random } box\n"; }) + "}\n",
+               "error: the script has more than 300000 colours of pools");
+    is_refused(times(1500, [&](int i) { return "#define a" + number(i) + "x " + number(i) + "\n"; }) +
+                   "a\nrule a {\n" +
+                   times(40,
+                         [&](int i) {
+                             return "{ " +
+                                    times(90, [&](int j) { return "x a" + number(j + 14 * i) + "x "; }) +
+                                    "} box\n";
+                         }) +
+                   "}\n",
+               "error: the substitutions of the script take too long");
+    // One mistake of thousands asks for the nearest name no more than a hundred times.
+    const ImportedShapes unknown("a.es", times(20'000, [&](int i) { return "zz" + number(i) + "\n"; }));
+    EXPECT_EQ(unknown.diagnostics.all().size(), unknown.diagnostics.error_count());
+    EXPECT_LE(unknown.diagnostics.error_count(), 101u);
 }
 
 } // namespace

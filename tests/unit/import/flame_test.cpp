@@ -47,6 +47,60 @@ TEST(Flame, ChaosIsTheDigraph) {
     EXPECT_EQ(instances, 1u); // w1 follows w2 only
 }
 
+/// By map: the share of the random points that it is applied to last.
+std::vector<double> shares(const ImportedShapes& model) {
+    EXPECT_TRUE(model.graph) << model.said();
+    std::vector<double> all;
+    if (!model.graph) return all;
+    double sum = 0;
+    for (const Instance& instance : model.graph->objects[model.graph->root].instances)
+        sum += all.emplace_back(instance.chance);
+    for (double& share : all)
+        share /= sum;
+    return all;
+}
+
+// flam3 chooses map j behind map i by weight_j * chaos_ij.
+TEST(Flame, ChaosMultipliesTheWeightsOnce) {
+    const std::string half = "linear=\".5\" coefs=\"1 0 0 1 ";
+    const auto xform = [&](const std::string& weight, const std::string& chaos, const std::string& at) {
+        return "<xform weight=\"" + weight + "\" chaos=\"" + chaos + "\" " + half + at + " 0\"/>\n";
+    };
+    // p1 = p2 / 4, p2 = p1 + 3/4 p2
+    const std::vector<double> two =
+        shares(ImportedShapes("a.flame", flame(xform("1", "0 1", "1") + xform("3", "1 1", "0"))));
+    ASSERT_EQ(two.size(), 2u);
+    EXPECT_NEAR(two[0], 0.2, 1e-9);
+    EXPECT_NEAR(two[1], 0.8, 1e-9);
+    // A map without weight is drawn never, and its factors stand for nothing.
+    EXPECT_EQ(shares(ImportedShapes("a.flame", flame(xform("1", "0 7 1", "1") + xform("0", "1 1 1", "2") +
+                                                     xform("3", "1 7 1", "0")))),
+              two);
+    const std::vector<double> factors = shares(
+        ImportedShapes("a.flame", flame(xform("1", "2 2", "1") + xform("3", "5 5", "0")))); // are but ratios
+    ASSERT_EQ(factors.size(), 2u);
+    EXPECT_NEAR(factors[0], 0.25, 1e-9);
+}
+
+TEST(Flame, AttributesAreNoVariations) {
+    const auto imported = [](const std::string& map) {
+        return ImportedShapes(
+            "a.flame", flame("<xform weight=\"1\" linear=\"1\" coefs=\".5 0 0 .5 0 0\" " + map + "/>"));
+    };
+    const ImportedShapes curve = imported(
+        "someCurve_enabled=\"false\" someCurve_view_xmax=\"70.0\" someCurve_interpolation=\"SPLINE\" "
+        "mod_hue=\"0.5\" material=\"1\" yzCoefs=\"1 0 0 1 0 0\" label=\"left\" wobble=\"0.0\" "
+        "weird=\"true\"");
+    EXPECT_TRUE(curve.graph) << curve.said();
+    EXPECT_THAT(curve.said(), HasSubstr("a.flame:2:2: warning: the flame is drawn without the attributes "
+                                        "'label', 'material', 'mod_hue', 'someCurve_*', 'weird', 'wobble', "
+                                        "'yzCoefs'\n"));
+    EXPECT_EQ(imported("name=\"left\" chaos=\"1 1\" julian_power=\"3\" swirl=\"0\"").said(), "");
+    EXPECT_THAT(imported("swirl=\"true\"").said(), HasSubstr("error: 'swirl' takes a number, not 'true'"));
+    EXPECT_THAT(imported("linear_fx_priority=\"-1\"").said(),
+                HasSubstr("'linear_fx_priority' is not translated"));
+}
+
 TEST(Flame, OthersAreOrbits) {
     const ImportedShapes model("a.flame",
                                flame("<xform weight=\"1\" swirl=\"1\" linear=\".2\" coefs=\".5 0 0 .5 0 0\"/>"

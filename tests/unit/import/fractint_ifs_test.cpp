@@ -45,6 +45,19 @@ TEST(FractintIfs, WhatDoesNotShrinkIsAnOrbit) {
     EXPECT_THAT(model.said(), HasSubstr("a.ifs:2:2: warning: this map does not shrink"));
 }
 
+TEST(FractintIfs, AMapOfOnePointKeepsItsProbability) {
+    const ImportedShapes model("a.ifs", "p {\n .5 0 0 .5 0 0 .5\n 0 0 0 0 1 1 .1\n .5 0 0 .5 1 0 .4\n}\n");
+    ASSERT_TRUE(model.graph) << model.said();
+    EXPECT_THAT(model.said(), HasSubstr("maps everything to one point; a small ball stands for it"));
+    EXPECT_THAT(model.said(), ::testing::Not(HasSubstr("add up")));
+    double point = 0, all = 0;
+    for (const Instance& instance : model.graph->objects[model.graph->root].instances) {
+        all += instance.chance;
+        if (model.graph->objects[instance.master].primitive) point += instance.chance;
+    }
+    EXPECT_NEAR(point / all, 0.1, 1e-9);
+}
+
 TEST(FractintIfs, FaultsHaveTheirPlaces) {
     EXPECT_THAT(ImportedShapes("a.ifs", "a {\n .5 0 x .5 0 0 1\n}").said(),
                 HasSubstr("a.ifs:2:7: error: 'x' is not a number"));

@@ -90,6 +90,86 @@ TEST(Importers, UsedModelsMayBeForeign) {
     EXPECT_EQ(model.sources.size(), 4u) << "the file is read once: itself, and two translations";
 }
 
+/// Texts of each format that draws something, by an ending of its own.
+const std::vector<std::pair<std::string, std::string>> texts = {
+    {"l", "Koch {\n Angle 6\n Axiom F\n F=F-F\n}\n"},
+    {"l", "Lsystem: 1\nderivation length: 2\nAxiom: F\nF --> F-F\nendlsystem\n"},
+    {"ls", "2\n90\n10\nF\nF=F-F\n@\n"},
+    {"ls", "recursion 2\nangle 90\naxiom F\nrule F = F-F\n"},
+    {"ifs", "dust {\n .5 0 0 .5 -1 0 .5\n .5 0 0 .5 1 0 .5\n}\n"},
+    {"flame", "<flame name=\"a\"><xform weight=\"1\" linear=\"1\" coefs=\".5 0 0 .5 -1 0\"/></flame>\n"},
+    {"es", "set maxdepth 3\nr\nrule r {\n box\n { x -1 s 0.9 } r\n}\n"},
+    {"cfdg", "startshape a\nshape a { SQUARE [x -1] }\n"}};
+
+TEST(Importers, TheBytesOfATextDoNotMatter) {
+    for (const auto& [ending, text] : texts) {
+        const Imported plain("a." + ending, text);
+        ASSERT_TRUE(plain.graph) << text << plain.said();
+        std::string dos, mac, wide = "\xff\xfe", wide_swapped = "\xfe\xff";
+        for (const char c : text) {
+            dos += c == '\n' ? "\r\n" : std::string(1, c);
+            mac += c == '\n' ? '\r' : c;
+            wide += std::string{c, '\0'};
+            wide_swapped += std::string{'\0', c};
+        }
+        for (const std::string& bytes : {"\xef\xbb\xbf" + text, dos, dos + "\x1a", mac, wide, wide_swapped}) {
+            const Imported other("a." + ending, bytes);
+            EXPECT_EQ(other.translation, plain.translation) << ending;
+            EXPECT_EQ(other.said(), plain.said()) << ending;
+        }
+    }
+}
+
+TEST(Importers, ATypographicMinusIsReadOrRefused) {
+    for (const std::string minus : {"\u2212", "\u2013", "\u2014", "\x96"})
+        for (const auto& [ending, text] : texts) {
+            std::string typographic = text;
+            typographic.replace(typographic.rfind('-'), 1, minus);
+            const Imported plain("a." + ending, text), other("a." + ending, typographic);
+            if (!other.graph) {
+                EXPECT_TRUE(other.diagnostics.has_errors()) << typographic;
+                continue;
+            }
+            EXPECT_EQ(other.translation, plain.translation) << typographic;
+            EXPECT_THAT(other.said(), HasSubstr("it is read as -")) << typographic;
+        }
+    const Imported model("a.l:K", "K {\n Angle 6\n Axiom F\n F=F\u2212F\n}\n");
+    ASSERT_TRUE(model.graph);
+    EXPECT_THAT(model.said(), HasSubstr("a.l:4:5: warning: '\u2212' is a minus sign: it is read as -\n"));
+    EXPECT_THAT(Imported("a.l:K", "K {\n Angle 6\n Axiom F\n F=F\u0394F\n}\n").said(),
+                HasSubstr("a.l:4:5: error: unexpected character '\u0394'"));
+    // Letters of Latin-1 are symbols, in either encoding.
+    for (const std::string letter : {"\xe9", "\u00e9"})
+        EXPECT_EQ(
+            Imported("a.l:K", "K {\n Angle 6\n Axiom " + letter + "\n " + letter + "=F+F\n}\n", {.steps = 1})
+                .derivation->segments,
+            "2");
+}
+
+TEST(Importers, TheContentDecides) {
+    for (const auto& [own, text] : texts) {
+        const Imported plain("a." + own, text);
+        for (const std::string ending :
+             {"l", "ls", "ifs", "flame", "es", "cfdg", "s", "txt", "lsystem", "LS"}) {
+            const Imported other("a." + ending, text);
+            EXPECT_EQ(other.translation, plain.translation) << own << " as " << ending << other.said();
+        }
+    }
+    EXPECT_EQ(Imported("a.ls:Koch", two_models).said(),
+              "graftal: note: 'a.ls' is read as Fractint L-system: its content is not L-Parser\n");
+}
+
+TEST(Importers, WhatDoesNotFitIsNamedByItsLine) {
+    EXPECT_THAT(
+        Imported("a.l", "\n# old\nAxiom: F\n").said(),
+        HasSubstr("a.l:2:1: error: 'a.l' is no cpfg L-system or Fractint L-system: these words begin none"));
+    EXPECT_THAT(Imported("a.ifs", "fern\n.5 0 0 .5 0 0\n").said(),
+                HasSubstr("a.ifs:1:1: error: 'a.ifs' is no Fractint IFS"));
+    EXPECT_THAT(Imported("a.txt", std::string("a\n\0", 3)).said(), HasSubstr("its line 2 has a byte 0"));
+    EXPECT_THAT(Imported("a.ls", " \n").said(), HasSubstr("the file has no axiom"));
+    EXPECT_THAT(Imported("a.lsystem", " \n").said(), HasSubstr("it is empty"));
+}
+
 TEST(Importers, HostileFilesEndWithADiagnostic) {
     const std::string nul("Koch {\0 Axiom F\n}", 17);
     const std::string longest = "A { Angle 4\n Axiom " + std::string(2'000'000, 'F') + "\n}";

@@ -323,11 +323,28 @@ TEST(LowerRifs, matricesOfTheWrongShapeOrRange) {
               "w 6:1: the probabilities of row 2 do not add up to 1\n");
 }
 
+TEST(LowerRifs, aRowOfZerosIsABall) {
+    EXPECT_EQ(messages_of("rifs r { codes 2d {\n .5 0 0 .5 0 0 .5\n 0 -0 0 0 1 2 .5\n} }"),
+              "w 3:2: this row maps everything to one point; a small ball stands for it\n");
+    EXPECT_EQ(messages_of("rifs r { codes polar {\n .5 .5 0 0 0 0\n 0 0 9 9 1 2\n} }"),
+              "w 3:2: this row maps everything to one point; a small ball stands for it\n");
+    EXPECT_EQ(messages_of("rifs r { codes 2d {\n .5 0 0 .5 0 0\n 0 0 0 0 1 2\n} start w2 }"),
+              "3:2: this row maps everything to one point\n");
+    EXPECT_EQ(messages_of("rifs r { codes 2d {\n 0 0 0 0 1 2\n} }"),
+              "2:2: this row maps everything to one point\n");
+    // The rows behind it keep their names.
+    EXPECT_EQ(messages_of("rifs r { codes 2d {\n 0 0 0 0 1 2\n .5 0 0 .5 0 0\n w2: .5 0 0 .5 1 0\n} }"),
+              "w 2:2: this row maps everything to one point; a small ball stands for it\n"
+              "4:2: duplicate map 'w2'\n");
+}
+
 TEST(LowerRifs, mapsThatCannotBe) {
-    EXPECT_EQ(messages_of("rifs r { codes 2d {\n 0 0 0 0 1 2\n 1e200*1e200 0 0 1 0 0\n 1/0 0 0 1 0 0\n} }"),
-              "2:2: this row maps everything to one point\n"
-              "3:2: 1e+200 * 1e+200 is not a finite number\n"
-              "4:2: division by zero\n");
+    EXPECT_EQ(
+        messages_of(
+            "rifs r { codes 2d {\n 0 0 0 0 1 2\n 1e200*1e200 0 0 1 0 0\n 1/0 0 0 1 0 0\n} follow all }"),
+        "2:2: this row maps everything to one point\n"
+        "3:2: 1e+200 * 1e+200 is not a finite number\n"
+        "4:2: division by zero\n");
     EXPECT_EQ(messages_of("rifs r { map a { scale <1/2, 0> } }"),
               "1:18: this scale is singular: it flattens what it maps\n");
     EXPECT_EQ(messages_of("rifs r { map a { scale 1/2 probability -.1 } codes 2d { 1 0 0 1 0 0 1.5 } }"),

@@ -18,6 +18,7 @@
 #include "compiler/lsys/lsys_grammar.h"
 #include "compiler/lsys/model_placer.h"
 #include "compiler/support/counter_random.h"
+#include "compiler/syntax/everyday_words.h"
 
 namespace graftal {
 
@@ -269,7 +270,8 @@ class LsysLowering {
             known.emplace_back(block);
         for (const PrimitiveKind kind : all_primitive_kinds)
             if (form_of(kind) == PrimitiveForm::plain) known.emplace_back(name_of(kind));
-        const std::string hint = did_you_mean(name, known);
+        const std::string shape = shape_word_hint(name);
+        const std::string hint = shape.empty() ? did_you_mean(name, known) : shape;
         diagnostics_.error(span, fmt::format("'~{}' names no used model and no block of this file", name))
             .with_hint(
                 hint.empty()

@@ -147,9 +147,10 @@ std::string parameter_count(std::size_t parameters) {
 }
 
 void check_grammar(const LsysGrammar& grammar, const std::vector<LsysUse>& uses, Diagnostics& diagnostics) {
-    // Without the parts that could not be read, a production may seem to fit nothing.
-    const std::set<SymbolId> miscounted =
-        grammar.source->broken ? std::set<SymbolId>() : warn_of_idle_productions(grammar, uses, diagnostics);
+    std::set<SymbolId> miscounted;
+    // Without the parts that an error lost, a production may seem to fit nothing.
+    if (!grammar.source->broken && !diagnostics.has_errors())
+        miscounted = warn_of_idle_productions(grammar, uses, diagnostics);
     GrammarChecks(grammar, uses, miscounted, diagnostics).check_symbols();
 }
 

@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 
 #include "compiler/inst/inst_repeat.h"
+#include "compiler/syntax/everyday_words.h"
 #include "compiler/syntax/expression_parser.h"
 
 namespace graftal {
@@ -264,7 +265,9 @@ class BodyParser {
             if (scattered && lost_group_) return false; // its scatter is in error
             if (scattered) {
                 diagnostics_.error(name.span, fmt::format("'{}' belongs to a scatter", name.text))
-                    .with_hint("open the group with 'scatter:'");
+                    .with_hint(line_word_hint(name.text) +
+                               (line_word_hint(name.text).empty() ? "" : "; or ") +
+                               "open the group with 'scatter:'");
                 return false;
             }
             diagnostics_.error(name.span, fmt::format("unknown keyword '{}'", name.text))
@@ -293,8 +296,7 @@ class BodyParser {
     }
 
     static std::string keyword_hint(const Token& word) {
-        const bool colour = word.is("color") || word.is("colour");
-        if (colour) return "an instance has a 'tint: r, g, b, alpha' or a 'material: NAME'";
+        if (std::string hint = line_word_hint(word.text); !hint.empty()) return hint;
         const std::string meant = did_you_mean(word.text, body_keywords());
         return meant.empty() ? choices(word.text, body_lines()) : meant;
     }

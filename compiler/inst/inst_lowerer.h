@@ -79,6 +79,9 @@ class InstLowerer {
     /// The used model that a name stands for or lies in; null for the file's own names.
     const std::pair<const std::string, Span>* use_of(std::string_view name) const;
     void check_names(const InstDefinition& definition);
+    /// Reports objects where numbers stand: `scale: 0.5, tip scale: 0.8` goes on with the numbers of the
+    /// first line.
+    void check_numbers(const std::vector<Expression>& numbers, const InstDefinition& definition);
     /// Reports and gives false if nothing of this name, or not with as many arguments, can exist.
     bool check_reference(const InstReference& reference);
     /// The kind of a primitive that numbers make. The model's own objects of as many arguments hide it, and
@@ -121,6 +124,8 @@ class InstLowerer {
     /// errors would follow.
     void report(std::size_t index);
     void choose_root();
+    /// A note for each object that is drawn by itself and used by another: `canonical` may be forgotten.
+    void note_drawn_twice();
     void add_scene(const std::vector<const Reached*>& rendered);
     void keep_colours(ObjectId id, Lowered lowered);
 

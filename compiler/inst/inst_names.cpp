@@ -9,6 +9,8 @@
 #include "compiler/lower/inner_parameters.h"
 #include "compiler/lower/lower_settings.h"
 #include "compiler/lower/lower_transform.h"
+#include "compiler/syntax/everyday_words.h"
+#include "compiler/syntax/expression_functions.h"
 
 namespace graftal {
 
@@ -115,10 +117,31 @@ void InstLowerer::check_names(const InstDefinition& definition) {
     for (const InstGroup& group : definition.groups) {
         for (const InstReference& reference : group.masters)
             if (!check_reference(reference)) unknown_.insert(&reference);
+        for (const TransformLine& line : group.transforms)
+            check_numbers(line.numbers, definition);
+        for (const InstTint& tint : group.tints)
+            check_numbers(tint.values, definition);
         if (!group.material || materials_.contains(*group.material)) continue;
         if (const auto id =
                 material_named(*group.material, group.material_span, graph_.materials, diagnostics_))
             materials_.emplace(*group.material, *id);
+    }
+}
+
+void InstLowerer::check_numbers(const std::vector<Expression>& numbers, const InstDefinition& definition) {
+    for (const Expression& number : numbers) {
+        const bool call = number.kind == Expression::Kind::call;
+        if (!call && number.kind != Expression::Kind::name) continue;
+        if (call ? number.table || expression_function(number.text) || chance_function(number.text)
+                 : number.text == "pi" || lets_.contains(number.text) ||
+                       std::ranges::find(definition.parameters, number.text, &InstParameter::name) !=
+                           definition.parameters.end())
+            continue;
+        if (!index_.any(number.text) && !primitive_kind_named(number.text) && !use_of(number.text)) continue;
+        diagnostics_
+            .error(number.span, fmt::format("'{}' is an object, and a number stands here", number.text))
+            .with_hint("begin a new line before it, without a comma: each instance begins its own line");
+        failed_.insert(&definition);
     }
 }
 
@@ -195,7 +218,9 @@ void InstLowerer::unknown_object(Span span, std::string_view name) {
         known.push_back(object);
     std::sort(known.begin(), known.end());
     known.erase(std::unique(known.begin(), known.end()), known.end());
-    const std::string hint = choices(name, known);
+    std::string hint = shape_word_hint(name);
+    if (hint.empty()) hint = line_word_hint(name);
+    if (hint.empty()) hint = choices(name, known);
     error.with_hint(hint.empty() ? fmt::format("the primitives are {}", fmt::join(primitives, ", ")) : hint);
 }
 

@@ -1,6 +1,8 @@
 #include "compiler/inst/lower_inst.h"
 
 #include <algorithm>
+#include <map>
+#include <string_view>
 
 #include <fmt/format.h>
 
@@ -8,6 +10,7 @@
 #include "compiler/inst/inst_lowerer.h"
 #include "compiler/lower/inner_parameters.h"
 #include "compiler/lower/lower_settings.h"
+#include "compiler/syntax/lost_value.h"
 
 namespace graftal {
 
@@ -48,6 +51,7 @@ std::optional<Graph> InstLowerer::run() && {
     enumerate();
     choose_root();
     if (failed()) return std::nullopt;
+    if (lowering_.at_root_model()) note_drawn_twice();
     const Span place = graph_.objects[graph_.root].span;
     if (!drop_empty(graph_, hues_, inks_)) {
         diagnostics_.error(place, "the model draws nothing").with_hint("its conditions leave nothing of it");
@@ -72,7 +76,7 @@ void InstLowerer::enumerate() {
 void InstLowerer::call_for(const InstDefinition& definition) {
     std::vector<double> arguments;
     for (const InstParameter& parameter : definition.parameters)
-        arguments.push_back(parameter.number);
+        arguments.push_back(parameter.is_number() ? parameter.number : lost_value); // an error said so
     const std::string name = inst_object_name(definition.name, arguments);
     if (index_.match(definition.name, arguments, name) != &definition) return; // a duplicate
     if (stopped_ || by_name_.contains(name)) return;
@@ -234,6 +238,28 @@ void InstLowerer::choose_root() {
     const Span place = module_.definitions.empty() ? module_.end : module_.definitions.back().span;
     diagnostics_.error(place, "the model draws nothing: every object is 'canonical'")
         .with_hint("write 'object NAME { ... }' for the object that the picture shows");
+}
+
+void InstLowerer::note_drawn_twice() {
+    std::map<std::string_view, Span> drawn; // by the names of objects without parameters
+    for (const InstDefinition& definition : module_.definitions)
+        if (definition.rendered && definition.parameters.empty())
+            drawn.emplace(definition.name, definition.span);
+    for (const InstDefinition& definition : module_.definitions)
+        for (const InstGroup& group : definition.groups)
+            for (const InstReference& reference : group.masters) {
+                const auto used = drawn.find(reference.name);
+                if (used == drawn.end() || reference.name == definition.name ||
+                    !reference.arguments.empty() || group.terminal) // a terminal may stand for a whole model
+                    continue;
+                diagnostics_
+                    .note(used->second, fmt::format("'{}' is drawn by itself, and again inside '{}'",
+                                                    reference.name, definition.name))
+                    .with_hint(fmt::format("write 'canonical object {}' to draw it only inside others",
+                                           reference.name))
+                    .with_note(reference.span, "it is used here");
+                drawn.erase(used);
+            }
 }
 
 void InstLowerer::add_scene(const std::vector<const Reached*>& rendered) {

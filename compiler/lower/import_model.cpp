@@ -74,6 +74,13 @@ Status check_regular(const std::string& path, const Lowering& lowering) {
     return {};
 }
 
+/// The hint for a file that is not there.
+std::string missing_hint(const Status& status) {
+    return status.message().starts_with("cannot open")
+               ? "paths begin in the folder of the file that names them: put it there, or write the way to it"
+               : "";
+}
+
 /// A regular file, read once.
 std::optional<FileId> read_file(Span use_span, const std::string& path, Lowering& lowering) {
     if (const auto known = lowering.files.find(path); known != lowering.files.end()) return known->second;
@@ -82,7 +89,7 @@ std::optional<FileId> read_file(Span use_span, const std::string& path, Lowering
     if (read.ok()) read = read_text(path, text);
     if (read.ok())
         return lowering.files[path] = lowering.sources.add(path, model_text(path, std::move(text)));
-    add_chain(lowering.diagnostics.error(use_span, read.message()), lowering);
+    add_chain(lowering.diagnostics.error(use_span, read.message()).with_hint(missing_hint(read)), lowering);
     return std::nullopt;
 }
 
@@ -219,7 +226,8 @@ std::optional<std::string> find_beside(Span name_span, std::string_view path, Lo
     std::string found = path_beside(name_span, path, lowering.sources);
     const Status regular = check_regular(found, lowering);
     if (regular.ok()) return found;
-    add_chain(lowering.diagnostics.error(name_span, regular.message()), lowering);
+    add_chain(lowering.diagnostics.error(name_span, regular.message()).with_hint(missing_hint(regular)),
+              lowering);
     return std::nullopt;
 }
 

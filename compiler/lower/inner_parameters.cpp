@@ -67,7 +67,8 @@ std::vector<InnerParameter> inner_parameters(const std::vector<SceneStatement>& 
         for (const SceneField& field : statement.fields) {
             const auto value = lets.find(field.keyword);
             if (value == lets.end()) continue; // reported: its name is no name
-            InnerParameter parameter{field.keyword, value->second, 0, field.span};
+            const double usual = std::isnan(value->second) ? 0 : value->second; // 0 after an error
+            InnerParameter parameter{field.keyword, usual, 0, field.span};
             if (field.values.size() > 1)
                 parameter.members = members_of(field, lets, diagnostics).value_or(usual_members);
             parameters.push_back(std::move(parameter));

@@ -11,6 +11,7 @@
 #include "compiler/lower/named_materials.h"
 #include "compiler/lower/scene_fields.h"
 #include "compiler/support/number.h"
+#include "compiler/syntax/lost_value.h"
 
 namespace graftal {
 
@@ -261,8 +262,7 @@ Environment evaluate_lets(const std::vector<SceneStatement>& statements, Environ
             }
             const auto given = inner.find(let.keyword);
             if (is_inner && given != inner.end()) value = given->second;
-            // A let in error still has a value, so that its uses are not errors too.
-            lets[let.keyword] = value.value_or(1);
+            lets[let.keyword] = value.value_or(lost_value);
         }
     }
     return lets;

@@ -18,6 +18,7 @@
 #include "compiler/lsys/lsys_grammar.h"
 #include "compiler/lsys/model_placer.h"
 #include "compiler/support/counter_random.h"
+#include "compiler/syntax/everyday_words.h"
 
 namespace graftal {
 
@@ -25,6 +26,9 @@ namespace {
 
 /// They are composed by recursion.
 constexpr unsigned max_block_nesting = 256;
+
+constexpr const char* no_steps_hint =
+    "write 'steps 1' to apply each production once; those under 'interpret' need no steps";
 
 class LsysLowering {
   public:
@@ -266,7 +270,8 @@ class LsysLowering {
             known.emplace_back(block);
         for (const PrimitiveKind kind : all_primitive_kinds)
             if (form_of(kind) == PrimitiveForm::plain) known.emplace_back(name_of(kind));
-        const std::string hint = did_you_mean(name, known);
+        const std::string shape = shape_word_hint(name);
+        const std::string hint = shape.empty() ? did_you_mean(name, known) : shape;
         diagnostics_.error(span, fmt::format("'~{}' names no used model and no block of this file", name))
             .with_hint(
                 hint.empty()
@@ -353,10 +358,13 @@ class LsysLowering {
             lowering_.notes.derivation = std::move(drawing->derivation);
             lowering_.notes.derivation->families = families();
         }
+        const bool is_idle =
+            steps == 0u && !is_asked_for_steps(block, grammar) && grammar.has_rules(RuleKind::produce);
         if (drawing->instances.empty() && !drawing->run) {
-            report_nothing(block, steps);
+            report_nothing(block, steps, is_idle);
             return std::nullopt;
         }
+        if (is_idle) warn_of_no_steps(source);
         return add_root(source, std::move(*drawing));
     }
 
@@ -377,14 +385,29 @@ class LsysLowering {
         });
     }
 
-    void report_nothing(const Block& block, std::optional<unsigned> steps) {
+    bool is_asked_for_steps(const Block& block, const LsysGrammar& grammar) {
+        return is_root(block) && asked_steps(grammar);
+    }
+
+    void warn_of_no_steps(const LsysBlock& block) {
+        diagnostics_
+            .warning(block.steps ? block.steps->span : block.name.span,
+                     fmt::format("'lsys {}' takes 0 steps, so its productions never apply", block.name.text))
+            .with_hint(no_steps_hint)
+            .with_note(block.productions.front().span, "the first production is here");
+    }
+
+    void report_nothing(const Block& block, std::optional<unsigned> steps, bool is_idle) {
         const Name& name = block.source->name;
         std::string message = fmt::format("'lsys {}' draws nothing", name.text);
         if (steps) message += fmt::format(" after {} step{}", *steps, *steps == 1 ? "" : "s");
-        if (is_root(block) && lowering_.options.may_draw_nothing)
-            diagnostics_.note(name.span, std::move(message));
-        else
-            diagnostics_.error(name.span, std::move(message));
+        Diagnostic& said = is_root(block) && lowering_.options.may_draw_nothing
+                               ? diagnostics_.note(name.span, std::move(message))
+                               : diagnostics_.error(name.span, std::move(message));
+        said.with_hint(is_idle
+                           ? no_steps_hint
+                           : "no module of the word draws: F draws a segment, and 'interpret A -> F' says "
+                             "how to draw an A");
     }
 
     std::vector<FamilyReport> families() const {

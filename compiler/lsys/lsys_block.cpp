@@ -371,7 +371,7 @@ class BlockParser {
     }
 
     void declare(Name name) {
-        if (is_lsys_keyword(name.text) || name.text == "lsys" || name.text == "main") {
+        if (!can_name_module(name.text)) {
             diagnostics_.error(
                 name.span, fmt::format("'{}' is a word of the language and cannot name a module", name.text));
         } else if (name.text.find('.') != std::string_view::npos) {

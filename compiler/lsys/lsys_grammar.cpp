@@ -65,10 +65,9 @@ class GrammarBuilder {
             rules.resize(grammar_.symbols.size());
         note_times();
         if (!block_.precedence || !block_.precedence->by_text) prefer_contexts();
-        check_symbols(grammar_, uses_, diagnostics_);
+        check_grammar(grammar_, uses_, diagnostics_);
         build_surroundings(block_, grammar_, diagnostics_);
         grammar_.needs_word |= grammar_.has_queries();
-        if (!block_.broken) check_patterns(grammar_, uses_, diagnostics_);
         if (diagnostics_.error_count() > errors_before_) return std::nullopt;
         return std::move(grammar_);
     }

@@ -8,50 +8,18 @@
 
 #include <fmt/format.h>
 
+#include "compiler/lsys/lsys_scanner.h"
+
 namespace graftal {
 
 namespace {
 
 class GrammarChecks {
   public:
-    GrammarChecks(const LsysGrammar& grammar, const std::vector<LsysUse>& uses, Diagnostics& diagnostics)
-        : grammar_(grammar), uses_(uses), diagnostics_(diagnostics) {}
-
-    /// Such a production never fits; it is spoken of once.
-    void check_patterns() {
-        std::set<std::pair<SymbolId, std::size_t>> known;
-        std::set<SymbolId> symbols;
-        for (const LsysUse& use : uses_) {
-            known.emplace(use.symbol, use.arity);
-            symbols.insert(use.symbol);
-        }
-        const auto matches = [&](const LsysPattern& pattern, const LsysFormal& source) {
-            std::string problem;
-            if (grammar_.ignored[pattern.symbol] && !is_bracket(pattern.symbol))
-                problem = fmt::format("contexts skip '{}'", source.symbol);
-            else if (!symbols.contains(pattern.symbol))
-                problem = fmt::format("no axiom or successor has a module '{}'", source.symbol);
-            else if (!known.contains({pattern.symbol, pattern.arity}))
-                problem = fmt::format("no axiom or successor has a module '{}' with {}", source.symbol,
-                                      count(pattern.arity));
-            if (problem.empty()) return true;
-            diagnostics_.warning(source.span, std::move(problem)).with_hint("this context never matches");
-            return false;
-        };
-        const auto occurs = [&](const LsysPattern& pattern, const LsysFormal& source) {
-            const bool known_so = known.contains({pattern.symbol, pattern.arity});
-            if (known_so || is_bracket(pattern.symbol)) return true;
-            diagnostics_
-                .warning(source.span, fmt::format("no axiom or successor has a module '{}' with {}",
-                                                  source.symbol, count(pattern.arity)))
-                .with_hint("this production never fits");
-            return false;
-        };
-        for (const LsysRule& rule : grammar_.rules)
-            if (std::ranges::equal(rule.following, rule.source->following, occurs) &&
-                std::ranges::equal(rule.left, rule.source->left, matches))
-                std::ranges::equal(rule.right, rule.source->right, matches);
-    }
+    /// `miscounted`: symbols whose numbers of parameters a message has compared.
+    GrammarChecks(const LsysGrammar& grammar, const std::vector<LsysUse>& uses,
+                  const std::set<SymbolId>& miscounted, Diagnostics& diagnostics)
+        : grammar_(grammar), uses_(uses), miscounted_(miscounted), diagnostics_(diagnostics) {}
 
     /// Each symbol, and each number of parameters of it, is spoken of once.
     void check_symbols() {
@@ -68,13 +36,16 @@ class GrammarChecks {
         for (const LsysUse& use : uses_) {
             const std::string& name = grammar_.symbols[use.symbol];
             if (!is_letter(name) || use.span.begin != word.end) finish(word);
-            word.text += name;
-            word.end = use.arity == 0 ? use.span.end : 0;
+            if (is_letter(name)) {
+                word.text += name;
+                word.end = use.arity == 0 ? use.span.end : 0;
+            }
             const bool rewritten = grammar_.is_rewritten(use.symbol);
             if (grammar_.commands[use.symbol] != TurtleCommand::none) continue;
             if (!checked.emplace(use.symbol, rewritten ? use.arity : 0).second) continue;
             if (rewritten) {
-                if (!grammar_.source->broken && !is_rewritten(use.symbol, use.arity))
+                if (!grammar_.source->broken && !miscounted_.contains(use.symbol) &&
+                    !is_rewritten(use.symbol, use.arity))
                     warn_of_arity(use, name);
             } else if (!is_letter(name)) {
                 diagnostics_.error(use.span, fmt::format("'{}' means nothing to the turtle", name))
@@ -95,16 +66,6 @@ class GrammarChecks {
                 return grammar_.rules[rule].predecessor.arity == arity;
             });
         });
-    }
-
-    bool is_bracket(SymbolId id) const {
-        return grammar_.commands[id] == TurtleCommand::open_branch ||
-               grammar_.commands[id] == TurtleCommand::close_branch;
-    }
-
-    static std::string count(std::size_t parameters) {
-        return fmt::format("{} parameter{}", parameters == 0 ? "no" : std::to_string(parameters),
-                           parameters == 1 ? "" : "s");
     }
 
     /// Letters that follow each other without anything between them: one name, perhaps, read letter by
@@ -142,13 +103,14 @@ class GrammarChecks {
         for (const Name& module : grammar_.source->modules)
             declared.emplace_back(module.text);
         const std::string meant = did_you_mean(word.text, declared);
+        const bool can_be_declared = word.text.size() <= max_lsys_symbol && can_name_module(word.text);
+        const std::string separate = fmt::format("'modules{}' if you mean this", names);
         diagnostics_.warning(span, fmt::format("{} have no production and draw nothing", quoted))
-            .with_hint(
-                !meant.empty()
-                    ? meant
-                    : fmt::format(
-                          "write 'modules {}' to make one name of them, or 'modules{}' if you mean this",
-                          word.text, names));
+            .with_hint(!meant.empty()    ? meant
+                       : can_be_declared ? fmt::format("write 'modules {}' to make one name of "
+                                                       "them, or {}",
+                                                       word.text, separate)
+                                         : fmt::format("write {}", separate));
     }
 
     void warn_of_arity(const LsysUse& use, const std::string& name) {
@@ -157,8 +119,9 @@ class GrammarChecks {
             for (const std::uint32_t rule : rules[use.symbol])
                 known.insert(grammar_.rules[rule].predecessor.arity);
         diagnostics_
-            .warning(use.span, fmt::format("no production rewrites '{}' with {}", name, count(use.arity)))
-            .with_hint(fmt::format("its productions have {}", count(*known.begin())));
+            .warning(use.span,
+                     fmt::format("no production rewrites '{}' with {}", name, parameter_count(use.arity)))
+            .with_hint(fmt::format("its productions have {}", parameter_count(*known.begin())));
     }
 
     static bool is_letter(const std::string& name) {
@@ -167,17 +130,28 @@ class GrammarChecks {
 
     const LsysGrammar& grammar_;
     const std::vector<LsysUse>& uses_;
+    const std::set<SymbolId>& miscounted_;
     Diagnostics& diagnostics_;
 };
 
 } // namespace
 
-void check_symbols(const LsysGrammar& grammar, const std::vector<LsysUse>& uses, Diagnostics& diagnostics) {
-    GrammarChecks(grammar, uses, diagnostics).check_symbols();
+bool is_bracket(const LsysGrammar& grammar, SymbolId id) {
+    return grammar.commands[id] == TurtleCommand::open_branch ||
+           grammar.commands[id] == TurtleCommand::close_branch;
 }
 
-void check_patterns(const LsysGrammar& grammar, const std::vector<LsysUse>& uses, Diagnostics& diagnostics) {
-    GrammarChecks(grammar, uses, diagnostics).check_patterns();
+std::string parameter_count(std::size_t parameters) {
+    return fmt::format("{} parameter{}", parameters == 0 ? "no" : std::to_string(parameters),
+                       parameters == 1 ? "" : "s");
+}
+
+void check_grammar(const LsysGrammar& grammar, const std::vector<LsysUse>& uses, Diagnostics& diagnostics) {
+    std::set<SymbolId> miscounted;
+    // Without the parts that an error lost, a production may seem to fit nothing.
+    if (!grammar.source->broken && !diagnostics.has_errors())
+        miscounted = warn_of_idle_productions(grammar, uses, diagnostics);
+    GrammarChecks(grammar, uses, miscounted, diagnostics).check_symbols();
 }
 
 } // namespace graftal

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <cstddef>
+#include <set>
+#include <string>
 #include <vector>
 
 #include "compiler/lsys/lsys_grammar.h"
@@ -16,11 +18,17 @@ struct LsysUse {
     Span span;
 };
 
-/// Reports symbols that mean nothing, and warns of modules that no production rewrites and the turtle does
-/// not draw.
-void check_symbols(const LsysGrammar& grammar, const std::vector<LsysUse>& uses, Diagnostics& diagnostics);
+bool is_bracket(const LsysGrammar& grammar, SymbolId id);
+/// "2 parameters", "no parameters"
+std::string parameter_count(std::size_t parameters);
 
-/// Warns of contexts, and of several modules before an arrow, that never match.
-void check_patterns(const LsysGrammar& grammar, const std::vector<LsysUse>& uses, Diagnostics& diagnostics);
+/// Reports symbols that mean nothing. Warns of modules that no production rewrites and the turtle does not
+/// draw, and of productions that never apply.
+void check_grammar(const LsysGrammar& grammar, const std::vector<LsysUse>& uses, Diagnostics& diagnostics);
+
+/// Warns of each production that never applies, whatever the number of steps. Gives the symbols whose modules
+/// have other numbers of parameters than these productions ask for.
+std::set<SymbolId> warn_of_idle_productions(const LsysGrammar& grammar, const std::vector<LsysUse>& uses,
+                                            Diagnostics& diagnostics);
 
 } // namespace graftal

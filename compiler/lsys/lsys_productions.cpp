@@ -141,13 +141,15 @@ class ProductionParser {
         const Span span = join(modules.front().span, modules.back().span);
         const std::string_view text = text_.scanner.text().substr(span.begin, span.end - span.begin);
         const std::string_view word = lsys_name(text);
-        const auto declare = [&] { return fmt::format("declare longer names: modules {}", word); };
+        const bool can_be_declared =
+            word.size() > 1 && word.size() <= max_lsys_symbol && can_name_module(word);
+        const std::string declare = fmt::format("declare longer names: modules {}", word);
         if (statement_.section != LsysSection::block) {
             diagnostics_
                 .error(span,
                        fmt::format("a production of 'interpret' or 'decompose' rewrites one module, not {}",
                                    modules.size()))
-                .with_hint(word.size() > 1 ? declare()
+                .with_hint(can_be_declared ? declare
                                            : "rewrite several modules at once in a derivation step");
             return false;
         }
@@ -160,7 +162,8 @@ class ProductionParser {
         diagnostics_
             .error(text_.scanner.span(word),
                    fmt::format("'{}' is read letter by letter, as modules side by side", word))
-            .with_hint(fmt::format("{}; or write blanks between the modules", declare()));
+            .with_hint(
+                fmt::format("{}write blanks between the modules", can_be_declared ? declare + "; or " : ""));
         return false;
     }
 

@@ -54,6 +54,12 @@ bool is_lsys_keyword(std::string_view word) {
     return std::find(keywords.begin(), keywords.end(), word) != keywords.end();
 }
 
+bool can_name_module(std::string_view text) {
+    const bool begins_with_digit = !text.empty() && text.front() >= '0' && text.front() <= '9';
+    return !is_lsys_keyword(text) && text != "lsys" && text != "main" &&
+           (text.size() == 1 || !begins_with_digit);
+}
+
 std::size_t lsys_arrow_size(std::string_view text) {
     return text.starts_with("->") ? 2 : text.starts_with("-->") ? 3 : 0;
 }

@@ -42,6 +42,8 @@ struct LsysOutline {
 /// The words that begin statements of a block, for suggestions.
 const std::vector<std::string>& lsys_keywords();
 bool is_lsys_keyword(std::string_view word);
+/// Whether `modules` may declare a text of letters, digits and '_' that is no longer than max_lsys_symbol.
+bool can_name_module(std::string_view text);
 
 /// The size of the arrow, `->` or `-->`, at the beginning of a text; 0 if there is none.
 std::size_t lsys_arrow_size(std::string_view text);

@@ -13,6 +13,7 @@
 #include "compiler/rifs/orbit_model.h"
 #include "compiler/rifs/rifs_system.h"
 #include "compiler/support/number.h"
+#include "compiler/syntax/lost_value.h"
 
 namespace graftal {
 
@@ -53,7 +54,7 @@ class OrbitLowering {
             const std::optional<double> value = set != lowering_.options.set.end()
                                                     ? set->second
                                                     : evaluate(expanded(let.value), names, diagnostics_);
-            names.insert_or_assign(std::string(let.name.text), value.value_or(1));
+            names.insert_or_assign(std::string(let.name.text), value.value_or(lost_value));
         }
         return names;
     }

@@ -20,6 +20,7 @@
 #include "compiler/rifs/rifs_chances.h"
 #include "compiler/rifs/rifs_system.h"
 #include "compiler/support/number_range.h"
+#include "compiler/syntax/everyday_words.h"
 
 namespace graftal {
 
@@ -195,8 +196,10 @@ class RifsLowering {
                     known.emplace_back(name_of(kind));
         for (const auto& [used, use] : uses_)
             known.emplace_back(used);
+        const std::string shape = shape_word_hint(name.text);
         diagnostics_.error(name.span, fmt::format("'{}' is neither a primitive nor a used model", name.text))
-            .with_hint(choices(name.text, known) + "; write 'use NAME = \"FILE\"' to load a model");
+            .with_hint((shape.empty() ? choices(name.text, known) : shape) +
+                       "; write 'use NAME = \"FILE\"' to load a model");
         return std::nullopt;
     }
 

@@ -9,6 +9,7 @@
 #include "compiler/rifs/orbit_parser.h"
 #include "compiler/rifs/rifs_parts.h"
 #include "compiler/rifs/rifs_tables.h"
+#include "compiler/syntax/everyday_words.h"
 #include "compiler/syntax/expression_parser.h"
 
 namespace graftal {
@@ -209,7 +210,9 @@ class RifsParser {
         const Token& word = stream_.peek();
         Diagnostic& error =
             stream_.expected("a transform, 'tint', 'material', 'probability', 'terminal' or '}'");
-        if (word.kind == TokenKind::name) error.with_hint(did_you_mean(word.text, words));
+        const std::string everyday = line_word_hint(word.text);
+        if (word.kind == TokenKind::name)
+            error.with_hint(everyday.empty() ? did_you_mean(word.text, words) : everyday);
         return false;
     }
 

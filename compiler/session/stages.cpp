@@ -1,6 +1,8 @@
 #include "compiler/session/stages.h"
 
 #include <algorithm>
+#include <cmath>
+#include <string>
 #include <utility>
 
 #include <fmt/format.h>
@@ -55,13 +57,21 @@ Span span_of(const Graph& graph, const GraphStep& step) {
     return span.known() ? span : object.span;
 }
 
+/// What one way around does to sizes.
+std::string growth_around(const Contraction& contraction) {
+    const auto instances = static_cast<double>(contraction.worst_cycle.size());
+    const double factor = std::pow(contraction.rate(), instances);
+    if (!std::isfinite(factor)) return "it grows without bounds";
+    const std::string times = digits(factor, 6);
+    return times == "1" ? "it keeps its size" : fmt::format("it grows {} times", times);
+}
+
 void report_refuted(const Graph& graph, const Contraction& contraction, Diagnostics& diagnostics) {
     const std::vector<GraphStep>& cycle = contraction.worst_cycle;
     diagnostics
         .error(span_of(graph, cycle.front()),
-               fmt::format("the cycle {} does not contract: its spectral radius is {}{}",
-                           describe_cycle(graph, cycle), digits(contraction.rate(), 6),
-                           cycle.size() > 1 ? " per instance" : ""))
+               fmt::format("the cycle {} does not contract: each time around, {}",
+                           describe_cycle(graph, cycle), growth_around(contraction)))
         .with_hint("an object may contain itself only if every way around the cycle makes it smaller: scale "
                    "down an instance of the cycle");
 }

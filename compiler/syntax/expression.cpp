@@ -9,6 +9,7 @@
 
 #include "compiler/support/number.h"
 #include "compiler/syntax/expression_functions.h"
+#include "compiler/syntax/lost_value.h"
 
 namespace graftal {
 
@@ -41,7 +42,10 @@ class Evaluator {
 
   private:
     std::optional<double> name(const Expression& e) {
-        if (const auto found = environment_.find(e.text); found != environment_.end()) return found->second;
+        if (const auto found = environment_.find(e.text); found != environment_.end()) {
+            if (std::isnan(found->second)) return std::nullopt; // lost_value
+            return found->second;
+        }
         if (const CellPlace* const cell = cells_.find(e.text)) {
             if (cell->dimensions == 0) return cells_.values[cell->first];
             diagnostics_.error(e.span, fmt::format("'{}' is an array", e.text))

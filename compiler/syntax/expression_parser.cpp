@@ -304,6 +304,10 @@ class NumberList {
     std::size_t count() const { return numbers_.size(); }
     const Token& first() const { return first_; }
     bool angle_brackets() const { return mode_.angle_brackets; }
+    /// Whether the last number is a name too many, with its own lines: `translate: 0, 1, 0, tip scale: 0.5`.
+    bool took_instance() const {
+        return count() > max_ && numbers_.back().kind == Expression::Kind::name && is_keyword(stream_.peek());
+    }
 
   private:
     bool take_comma() {
@@ -409,7 +413,9 @@ std::optional<std::vector<Expression>> parse_numbers(TokenStream& stream, std::s
         stream.diagnostics()
             .error(stream.span_from(list.first().span),
                    fmt::format("{} takes {}, not {}", what, count_words(min, max), found))
-            .with_hint(std::string(hint));
+            .with_hint(list.took_instance() ? fmt::format("begin a new line before '{}', without the comma",
+                                                          std::move(list).numbers().back().text)
+                                            : std::string(hint));
         return std::nullopt;
     }
     if (list.angle_brackets() && !stream.accept(">")) {

@@ -42,7 +42,9 @@ bool parse_rotation(TokenStream& stream, TransformLine& line) {
         line.numbers = std::move(*axis);
     } else {
         stream.expected("an axis after 'rotate'")
-            .with_hint("write x, y, z or <x, y, z>, then the degrees: 'rotate: y, 30'");
+            .with_hint(
+                "write x, y, z or <x, y, z>, then the degrees: 'rotate: z, 30' turns in the plane of the "
+                "picture, 'rotate: y, 30' about the upright axis");
         return false;
     }
     std::optional<Expression> degrees =

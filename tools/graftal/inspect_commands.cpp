@@ -18,8 +18,9 @@ namespace {
 
 std::string verdict_text(const Contraction& contraction) {
     return contraction.verdict == Verdict::acyclic
-               ? std::string("no cycles")
-               : fmt::format("contracts by {:.6g} per instance", contraction.rate());
+               ? std::string("nothing in it contains itself")
+               : fmt::format("it contains itself and shrinks: to {:.6g} of its size or less per instance",
+                             contraction.rate());
 }
 
 int check_one(const Options& options, const std::string& path) {

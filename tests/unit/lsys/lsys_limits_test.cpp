@@ -143,29 +143,5 @@ TEST(LsysLimits, blocksThatPlaceBlocks) {
     EXPECT_THAT(said(chain(20'000)), HasSubstr("blocks place each other more than 256 deep"));
 }
 
-TEST(LsysLimits, contextsThatNeverMatchAreSpokenOf) {
-    const auto warnings = [](const std::string& production) {
-        return said(block("steps 2\nignore +\naxiom I(0)+I[I]\n" + production +
-                          "\ninterpret I(n) -> F\ninterpret I -> F"));
-    };
-    const std::string hint = "    hint: this context never matches\n";
-    EXPECT_EQ(warnings("I(n) > I -> I(1)"), "");
-    EXPECT_EQ(warnings("I(n) > [I] -> I(1)"), "");
-    EXPECT_EQ(warnings("B < I(n) > C -> I(1)"),
-              "m.lsys:5:1: warning: no axiom or successor has a module 'B'\n"
-              "    B < I(n) > C -> I(1)\n"
-              "    ^\n" +
-                  hint);
-    EXPECT_EQ(warnings("I(n) > +I -> I(1)"), "m.lsys:5:8: warning: contexts skip '+'\n"
-                                             "    I(n) > +I -> I(1)\n"
-                                             "           ^\n" +
-                                                 hint);
-    EXPECT_EQ(warnings("I(n, m) < I -> F"),
-              "m.lsys:5:1: warning: no axiom or successor has a module 'I' with 2 parameters\n"
-              "    I(n, m) < I -> F\n"
-              "    ^~~~~~~\n" +
-                  hint);
-}
-
 } // namespace
 } // namespace graftal

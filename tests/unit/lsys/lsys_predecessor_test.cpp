@@ -104,7 +104,7 @@ TEST(LsysPredecessors, whatIsHardlyMeant) {
     EXPECT_THAT(derived("axiom B u d\nBud -> F", 1), HasSubstr("'Bud' is read letter by letter"));
     EXPECT_EQ(derived("modules u\naxiom B u d\nB u d -> F", 1), "F");
     testing::LsysModel never("modules A B\naxiom A\nA B -> F");
-    EXPECT_THAT(never.errors(), HasSubstr("this production never fits"));
+    EXPECT_THAT(never.errors(), HasSubstr("this production never applies"));
 }
 
 /// `pattern -> successor`, letters and brackets.

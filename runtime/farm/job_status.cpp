@@ -1,7 +1,6 @@
 #include "runtime/farm/job_status.h"
 
 #include <algorithm>
-#include <filesystem>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -61,8 +60,7 @@ JobStatus look_at_job(const JobFolder& folder, const Job& job) {
         status.tasks_a_second = static_cast<double>(ends.size() - 1) / (ends.back() - ends.front());
         status.seconds_left = static_cast<double>(status.tasks - status.done) / *status.tasks_a_second;
     }
-    std::error_code error;
-    status.merged = std::filesystem::exists(folder.result(job), error);
+    status.merged = folder.has_result(job);
     return status;
 }
 

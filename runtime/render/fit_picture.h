@@ -6,6 +6,7 @@
 
 #include "runtime/render/fit_work.h"
 #include "runtime/render/render.h"
+#include "runtime/render/samplings.h"
 
 namespace graftal {
 

@@ -23,7 +23,7 @@ constexpr std::size_t longest_complaint = 2000;
 } // namespace
 
 void say(const std::string& text) {
-    std::fputs(text.c_str(), stderr);
+    std::fputs(escaped_lines(text).c_str(), stderr);
 }
 
 void complain(std::string_view text) {
@@ -66,6 +66,10 @@ int print_output(std::string_view text) {
     if (status.ok()) return exit_done;
     complain(status.message());
     return exit_environment;
+}
+
+int print_lines(std::string_view text) {
+    return print_output(escaped_lines(text));
 }
 
 CommandSession::CommandSession(const Options& options, const std::string& path, Keep keep)

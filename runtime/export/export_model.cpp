@@ -40,9 +40,8 @@ void note_what_is_missing(const ExportedScene& scene, Span model, Diagnostics& d
                                             scene.thickened));
 }
 
-} // namespace
-
-std::optional<std::string> export_model(PictureSession& session, const ExportModelOptions& options,
+/// As export_model(), except that a stage that is cancelled throws Cancelled.
+std::optional<std::string> export_whole(PictureSession& session, const ExportModelOptions& options,
                                         Compilation& compilation) {
     const ExportFormat* const format = find_export_format(options.file.output);
     GRAFTAL_CHECK(format, "export: no such format");
@@ -72,6 +71,19 @@ std::optional<std::string> export_model(PictureSession& session, const ExportMod
     if (!compilation.status.ok() || compilation.diagnostics.has_errors()) return std::nullopt;
     const SceneCounts counts = count(*scene);
     return fmt::format("{} leaves: {}", in_words(counts.leaves), report.summary);
+}
+
+} // namespace
+
+std::optional<std::string> export_model(PictureSession& session, const ExportModelOptions& options,
+                                        Compilation& compilation) {
+    std::optional<std::string> written;
+    try {
+        written = export_whole(session, options, compilation);
+    } catch (const Cancelled&) {
+    }
+    if (!written && session.control().cancel.raised()) compilation.status = Status::failure("interrupted");
+    return written;
 }
 
 } // namespace graftal

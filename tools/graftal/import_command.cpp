@@ -5,6 +5,7 @@
 
 #include "compiler/import/importers.h"
 #include "compiler/support/file.h"
+#include "runtime/system/made_folders.h"
 #include "tools/graftal/commands.h"
 #include "tools/graftal/report.h"
 
@@ -19,6 +20,7 @@ class Importing {
 
     int run() {
         const int status = import_file();
+        made_.take_back(); // where nothing was written
         conclude(options_, found_);
         return status;
     }
@@ -54,15 +56,12 @@ class Importing {
         std::string names;
         for (const ForeignModel& model : models)
             names += model.name + "\n";
-        return print_output(names);
+        return print_lines(names);
     }
 
     bool make_folder() {
-        std::error_code error;
-        std::filesystem::create_directories(output_, error);
-        if (error)
-            found_.status = Status::failure(fmt::format("cannot make '{}': {}", output_, error.message()));
-        return !error;
+        found_.status = made_.make(output_);
+        return found_.status.ok();
     }
 
     int import_all(const Importer& importer, const ForeignFile& foreign) {
@@ -114,6 +113,7 @@ class Importing {
     ModelPath path_;
     Compilation found_;
     std::set<std::string> taken_;
+    MadeFolders made_;
 };
 
 } // namespace

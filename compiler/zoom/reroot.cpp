@@ -265,7 +265,7 @@ class Rerooter {
         const Vec3 sigma = singular_values(map->linear);
         if (sigma.x > worst_condition * sigma.z) return refuse_condition(sigma.x / sigma.z);
         whole_ = own_fits(scale);
-        if (whole_) return is_seen(sigma.x, around_.radius(around_.own())) || refuse_nothing();
+        if (whole_) return sigma.x >= least_size || refuse_nothing();
         const double rounding = std::numeric_limits<double>::epsilon() * around_.radius(around_.own());
         if (px(sigma.x * std::max(focus_.error, rounding)) > visible_px) return refuse_end();
         return around_.spread(focus_.at(result_.depth), frame_reach(scale), reach_ / sigma.x) ||
@@ -306,14 +306,10 @@ class Rerooter {
                       "give an address instead of the point: --at a.b.(c.d)*");
     }
 
-    /// Whether the coordinates of the whole model are still numbers of the range. A point has no radius.
-    static bool is_seen(double stretch, double radius) {
-        return stretch >= least_size && (radius == 0 || stretch * radius >= least_size);
-    }
-
     bool refuse_nothing() {
-        return refuse(fmt::format("at this zoom, the whole model is smaller than {:g} units", least_size),
-                      std::string("zoom out less: ") + range_hint);
+        return refuse(
+            fmt::format("this zoom makes the whole model more than {:g} times smaller", largest_size),
+            std::string("zoom out less: ") + range_hint);
     }
 
     double px(double picture_length) const {

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "compiler/support/printable.h"
 #include "runtime/farm/task_records.h"
 #include "runtime/render/frame_clock.h"
 
@@ -84,7 +85,7 @@ std::string status_text(const JobFolder& folder, const Job& job, const JobStatus
                             status.runs - status.done);
     for (std::size_t i = 0; i < std::min(status.failures.size(), most_failures_shown); ++i)
         text += fmt::format("task {} failed: {} (all of it: {})\n", status.failures[i].task,
-                            status.failures[i].message, folder.log(status.failures[i].task));
+                            escaped(status.failures[i].message), folder.log(status.failures[i].task));
     if (status.failures.size() > most_failures_shown)
         text += fmt::format("and {} more\n", status.failures.size() - most_failures_shown);
     if (status.merged)

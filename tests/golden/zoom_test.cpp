@@ -56,7 +56,7 @@ TEST_F(Zoom, WrongAddressesAndFactors) {
     }
 }
 
-/// A small model, seen from far away: its coordinates leave the range where the zoom alone does not.
+/// A small model, seen from far away.
 TEST_F(Zoom, EverySmallZoomIsDrawnOrRefused) {
     write("m.inst", "object m { instance: ball scale: 1e-90 }\nobject ball { sphere }\n");
     for (const std::string command : {"render", "export", "compile", "points"}) {
@@ -67,8 +67,6 @@ TEST_F(Zoom, EverySmallZoomIsDrawnOrRefused) {
         for (const std::string zoom : {"1e-9", "1e-11", "1e-100"}) {
             const RunResult result = graftal(command + " m.inst --size 9x9 --zoom " + zoom + options);
             EXPECT_TRUE(result.status == 0 || result.status == 1) << command << " " << zoom << result.err;
-            if (zoom != "1e-9")
-                EXPECT_THAT(result.err, HasSubstr("the whole model is smaller than 1e-100 units")) << command;
         }
     }
 }

@@ -136,7 +136,7 @@ int run_farm_status(const Options& options) {
     if (!open_job(folder, job)) return exit_environment;
     const JobStatus status = look_at_job(folder, job);
     const int printed =
-        options.json ? print_output(status_json(status)) : print_lines(status_text(folder, job, status));
+        options.json ? print_output(status_json(status)) : print_output(status_text(folder, job, status));
     return printed != exit_done || status.failures.empty() ? printed : exit_fault;
 }
 

@@ -5,6 +5,7 @@
 
 #include "compiler/import/importers.h"
 #include "compiler/support/file.h"
+#include "compiler/support/printable.h"
 #include "runtime/system/made_folders.h"
 #include "tools/graftal/commands.h"
 #include "tools/graftal/report.h"
@@ -55,8 +56,8 @@ class Importing {
     static int list(const std::vector<ForeignModel>& models) {
         std::string names;
         for (const ForeignModel& model : models)
-            names += model.name + "\n";
-        return print_lines(names);
+            names += escaped(model.name) + "\n";
+        return print_output(names);
     }
 
     bool make_folder() {

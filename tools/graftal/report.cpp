@@ -68,10 +68,6 @@ int print_output(std::string_view text) {
     return exit_environment;
 }
 
-int print_lines(std::string_view text) {
-    return print_output(escaped_lines(text));
-}
-
 CommandSession::CommandSession(const Options& options, const std::string& path, Keep keep)
     : PictureSession(path, keep) {
     if (options.dump_after.empty()) return;

@@ -29,9 +29,6 @@ int conclude_out_of_memory(const std::bad_alloc& fault) noexcept;
 /// Writes to standard output; exit status 0, or 3 with a complaint if it is closed or full.
 int print_output(std::string_view text);
 
-/// The same for people: control characters are escaped, since names in the lines come from outside.
-int print_lines(std::string_view text);
-
 /// The session of a command, with `--dump-after` connected.
 class CommandSession : public PictureSession {
   public:

@@ -15,7 +15,7 @@ int run_stats(const Options& options) {
     if (!model || status != exit_done) return status;
     const std::optional<unsigned> steps = levels_of(*model, compile.lower.steps);
     return options.json ? print_output(stats_json(*model, steps, compilation.sources))
-                        : print_lines(stats_text(*model, steps, compilation.sources));
+                        : print_output(stats_text(*model, steps, compilation.sources));
 }
 
 } // namespace graftal

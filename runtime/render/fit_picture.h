@@ -6,7 +6,6 @@
 
 #include "runtime/render/fit_work.h"
 #include "runtime/render/render.h"
-#include "runtime/render/samplings.h"
 
 namespace graftal {
 

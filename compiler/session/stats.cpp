@@ -5,6 +5,7 @@
 
 #include "compiler/analysis/counts.h"
 #include "compiler/languages/lower.h"
+#include "compiler/support/printable.h"
 
 namespace graftal {
 
@@ -150,7 +151,10 @@ Json json_of(const AnalysedModel& model, std::optional<unsigned> steps, const So
 }
 
 std::string text_of(const Json& value) {
-    if (value.is_string()) return value.get<std::string>();
+    if (value.is_string()) {
+        const std::string text = value.get<std::string>();
+        return escaped(text, text.size());
+    }
     if (!value.is_array()) return value.is_null() ? "-" : value.dump();
     std::string text;
     for (const Json& item : value)

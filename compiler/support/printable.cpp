@@ -10,10 +10,10 @@ bool continues(std::string_view text, std::size_t at) {
     return at < text.size() && (text[at] & 0xC0) == 0x80;
 }
 
-void append_escaped(std::string& out, std::string_view text) {
+void append_escaped(std::string& out, std::string_view text, bool in_lines = false) {
     for (std::size_t at = 0; at < text.size();) {
         const CodePoint character = code_point(text, at);
-        if (!is_control(character))
+        if (!is_control(character) || (in_lines && character.value == '\n'))
             out += text.substr(at, character.size);
         else if (character.value == '\n')
             out += "\\n";
@@ -54,6 +54,15 @@ bool is_control(CodePoint character) {
     return turns || unseen || c == 0x2028 || c == 0x2029;
 }
 
+bool is_printable(std::string_view text) {
+    for (std::size_t at = 0; at < text.size();) {
+        const CodePoint character = code_point(text, at);
+        if (is_control(character)) return false;
+        at += character.size;
+    }
+    return true;
+}
+
 std::string masked(std::string_view text) {
     std::string out;
     out.reserve(text.size());
@@ -83,6 +92,12 @@ std::string escaped(std::string_view text, std::size_t longest) {
     append_escaped(out, text.substr(0, head));
     out += "...";
     append_escaped(out, text.substr(tail));
+    return out;
+}
+
+std::string escaped_lines(std::string_view text) {
+    std::string out;
+    append_escaped(out, text, true);
     return out;
 }
 

@@ -22,11 +22,18 @@ CodePoint code_point(std::string_view text, std::size_t at);
 /// and bytes that are no UTF-8. Characters of no width are counted among them, since nobody sees them.
 bool is_control(CodePoint character);
 
+/// Whether a text is in UTF-8 and has no control character. Names that graftal writes are so: a line end in a
+/// name would be a line of its own in a file or on a terminal.
+bool is_printable(std::string_view text);
+
 /// The text with one `?` for each control character, and a blank for each tab: columns stay where they are.
 std::string masked(std::string_view text);
 
 /// The text in one line: control characters as `\n`, `\x1b` or `\u202e`. Of a text that is longer than
 /// `longest` bytes the middle is left out.
 std::string escaped(std::string_view text, std::size_t longest = 400);
+
+/// The same of a text of several lines, each as long as it is.
+std::string escaped_lines(std::string_view text);
 
 } // namespace graftal

@@ -265,7 +265,7 @@ class Rerooter {
         const Vec3 sigma = singular_values(map->linear);
         if (sigma.x > worst_condition * sigma.z) return refuse_condition(sigma.x / sigma.z);
         whole_ = own_fits(scale);
-        if (whole_) return true;
+        if (whole_) return sigma.x >= least_size || refuse_nothing();
         const double rounding = std::numeric_limits<double>::epsilon() * around_.radius(around_.own());
         if (px(sigma.x * std::max(focus_.error, rounding)) > visible_px) return refuse_end();
         return around_.spread(focus_.at(result_.depth), frame_reach(scale), reach_ / sigma.x) ||
@@ -304,6 +304,12 @@ class Rerooter {
                           "make it longer, for instance with a repetition at its end: (a.b)*");
         return refuse("the zoom needs more digits than the point has",
                       "give an address instead of the point: --at a.b.(c.d)*");
+    }
+
+    bool refuse_nothing() {
+        return refuse(
+            fmt::format("this zoom makes the whole model more than {:g} times smaller", largest_size),
+            std::string("zoom out less: ") + range_hint);
     }
 
     double px(double picture_length) const {

@@ -115,9 +115,8 @@ class Exporter {
     const ExportFormat& format_;
 };
 
-} // namespace
-
-std::optional<std::string> export_model(PictureSession& session, const ExportModelOptions& options,
+/// As export_model(), except that a stage that is cancelled throws Cancelled.
+std::optional<std::string> export_whole(PictureSession& session, const ExportModelOptions& options,
                                         Compilation& compilation) {
     const ExportFormat* const format = find_export_format(options.file.output);
     GRAFTAL_CHECK(format, "export: no such format");
@@ -135,6 +134,19 @@ std::optional<std::string> export_model(PictureSession& session, const ExportMod
     }
     compilation = std::move(made.compilation);
     return made.written;
+}
+
+} // namespace
+
+std::optional<std::string> export_model(PictureSession& session, const ExportModelOptions& options,
+                                        Compilation& compilation) {
+    std::optional<std::string> written;
+    try {
+        written = export_whole(session, options, compilation);
+    } catch (const Cancelled&) {
+    }
+    if (!written && session.control().cancel.raised()) compilation.status = Status::failure("interrupted");
+    return written;
 }
 
 } // namespace graftal

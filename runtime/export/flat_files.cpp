@@ -6,6 +6,7 @@
 
 #include "compiler/detail/coarser.h"
 #include "compiler/primitives/tessellate.h"
+#include "compiler/support/printable.h"
 
 namespace graftal {
 
@@ -86,11 +87,8 @@ std::array<std::uint8_t, 3> srgb_bytes(Rgb linear) {
 
 std::vector<std::string> comment_lines(const ImageMetadata& metadata) {
     std::vector<std::string> lines;
-    for (std::string line : {metadata.software, metadata.description}) {
-        for (char& c : line)
-            if (static_cast<unsigned char>(c) < 0x20) c = ' ';
-        if (!line.empty()) lines.push_back(std::move(line));
-    }
+    for (const std::string& line : {metadata.software, metadata.description})
+        if (!line.empty()) lines.push_back(escaped(line, line.size()));
     return lines;
 }
 

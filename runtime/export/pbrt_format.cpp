@@ -25,7 +25,7 @@ std::string pbrt_vector(Vec3 v) {
 std::string pbrt_quoted(std::string_view text) {
     std::string quoted = "\"";
     for (const char c : text)
-        if (c != '"' && c != '\\' && static_cast<unsigned char>(c) >= 0x20) quoted += c;
+        quoted += c == '"' || c == '\\' ? std::string("\\") + c : std::string(1, c);
     return quoted + "\"";
 }
 

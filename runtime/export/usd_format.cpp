@@ -29,6 +29,12 @@ constexpr std::size_t most_usd_looks = 1'000'000;
 /// So many parts are wanted at most in a file that has few, or so many times those of the graph.
 constexpr std::uint64_t fewest_wanted_parts = 2000, most_times_parts = 2;
 
+/// The name of a file: one with an @ stands between three of them.
+std::string usd_asset(std::string_view name) {
+    const std::string_view mark = name.find('@') == std::string_view::npos ? "@" : "@@@";
+    return fmt::format("{0}{1}{0}", mark, name);
+}
+
 /// A name that USD takes, and no other prim has: numbered.
 std::string usd_name(std::string_view name, std::size_t number) {
     std::string text;
@@ -281,11 +287,11 @@ class UsdWriter {
                         "= \"UsdPrimvarReader_float2\"\n    string inputs:varname = \"st\"\n"
                         "    float2 outputs:result\n   }}\n"
                         "   def Shader \"picture\"\n   {{\n    uniform token "
-                        "info:id = \"UsdUVTexture\"\n    asset inputs:file = @{}@\n"
+                        "info:id = \"UsdUVTexture\"\n    asset inputs:file = {}\n"
                         "    token inputs:wrapS = \"repeat\"\n    token inputs:wrapT = "
                         "\"repeat\"\n    float2 inputs:st.connect = <{}/place.outputs:result>\n"
                         "    float3 outputs:rgb\n    float outputs:a\n   }}\n",
-                        pictures_.name(number), here);
+                        usd_asset(pictures_.name(number)), here);
         }
         file_.text("  }\n");
     }

@@ -6,6 +6,7 @@
 
 #include "runtime/image/small_text.h"
 #include "runtime/image/texture.h"
+#include "runtime/trace/picture_tracer.h"
 
 namespace graftal {
 
@@ -37,6 +38,8 @@ class ReducedSink : public RowSink {
 
     std::string begin(int width, int height, int file_channels) override {
         if (file_channels < channels) return "it is not in colour";
+        constexpr std::uint64_t most_pixels = 1u << 28;
+        if (whole_of({width, height}).pixels() > most_pixels) return "it is too large";
         file_width_ = width;
         file_channels_ = file_channels;
         factor_ = std::max(

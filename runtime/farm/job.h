@@ -42,15 +42,20 @@ struct Job {
     std::string framing;           ///< of frames: SharedFraming::json()
     std::string sources;           ///< of frames: MeasuredAnimation::sources
     std::vector<SweepAxis> axes;   ///< of a sweep
-    double task_seconds = 0;       ///< of one processor that a task takes, about
-    std::uint64_t task_bytes = 0;  ///< of memory, about
+    /// JobFolder::identity() of the folder that it was planned in. Only there it may write its result
+    /// elsewhere, and run POV-Ray unconfined: a copy of the folder may come from a stranger.
+    std::string home;
+    double task_seconds = 0;      ///< of one processor that a task takes, about
+    std::uint64_t task_bytes = 0; ///< of memory, about
 
     /// Of the task of a picture in tiles: row by row, cut off at the right and below.
     Tile tile_of(std::uint64_t task) const;
+    /// Of a part, at most.
+    std::uint64_t most_part_bytes() const;
     std::uint64_t tile_columns() const;
 };
 
-/// Where the parts of a job lie in its folder.
+/// Where the parts of a job lie in its folder, which may come from a stranger (files_below.h).
 class JobFolder {
   public:
     explicit JobFolder(std::string path) : path_(std::move(path)) {}
@@ -67,9 +72,29 @@ class JobFolder {
     std::string starts(std::uint64_t task) const;               ///< a line for each time that it began
     std::string log(std::uint64_t task) const;                  ///< what it said last
 
+    /// Tells the folder from every other and from its copies, by numbers that nobody can choose; "" for a
+    /// folder of another user.
+    std::string identity() const;
+
+    /// Requires texts in UTF-8.
     Status write(const Job& job) const;
-    /// Fails for a folder that holds no job, or one of another version of graftal's format.
+    /// Fails for a folder that holds no job, or one of another version of graftal's format; and for a job
+    /// that asks for more than it may where it is.
     Status read(Job& job) const;
+
+    /// The name of a path of the above within the folder.
+    std::string_view name_of(std::string_view path) const { return path.substr(path_.size() + 1); }
+    Status read_file(const std::string& path, std::string& text, std::uint64_t most_bytes) const;
+    Status write_file(const std::string& path, std::string_view text) const;
+    /// Whether others may open it, and right now: a regular file of the folder, there or not.
+    Status check_file(const std::string& path) const;
+    /// file_digest() of a file in the folder of at most so many bytes; "" for others.
+    std::string digest(const std::string& path, std::uint64_t most_bytes) const;
+    bool has_result(const Job& job) const;
+    /// check_file() of a result in the folder. One outside of it has the user chosen.
+    Status check_result(const Job& job) const;
+    /// Whether this is the very folder that the job was planned in.
+    bool is_at_home(const Job& job) const { return !job.home.empty() && job.home == identity(); }
 
   private:
     std::string numbered(std::uint64_t task, std::string_view ending) const;
@@ -83,5 +108,8 @@ std::string program_identity(const std::string& version);
 /// FNV-1a of the file's bytes, 64 bits in hexadecimal digits; "" where it cannot be read. It tells what was
 /// changed or cut short, not what was forged.
 std::string file_digest(const std::string& path);
+
+/// The same of a regular file below a folder (files_below.h), of at most so many bytes; "" for others.
+std::string digest_below(const std::string& folder, std::string_view name, std::uint64_t most_bytes);
 
 } // namespace graftal

@@ -1,11 +1,11 @@
 #include "runtime/farm/job_status.h"
 
 #include <algorithm>
-#include <filesystem>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "compiler/support/printable.h"
 #include "runtime/farm/task_records.h"
 #include "runtime/render/frame_clock.h"
 
@@ -61,8 +61,7 @@ JobStatus look_at_job(const JobFolder& folder, const Job& job) {
         status.tasks_a_second = static_cast<double>(ends.size() - 1) / (ends.back() - ends.front());
         status.seconds_left = static_cast<double>(status.tasks - status.done) / *status.tasks_a_second;
     }
-    std::error_code error;
-    status.merged = std::filesystem::exists(folder.result(job), error);
+    status.merged = folder.has_result(job);
     return status;
 }
 
@@ -86,7 +85,7 @@ std::string status_text(const JobFolder& folder, const Job& job, const JobStatus
                             status.runs - status.done);
     for (std::size_t i = 0; i < std::min(status.failures.size(), most_failures_shown); ++i)
         text += fmt::format("task {} failed: {} (all of it: {})\n", status.failures[i].task,
-                            status.failures[i].message, folder.log(status.failures[i].task));
+                            escaped(status.failures[i].message), folder.log(status.failures[i].task));
     if (status.failures.size() > most_failures_shown)
         text += fmt::format("and {} more\n", status.failures.size() - most_failures_shown);
     if (status.merged)

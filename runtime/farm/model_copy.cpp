@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "compiler/import/importers.h"
+#include "compiler/support/printable.h"
 
 namespace graftal {
 
@@ -55,6 +56,11 @@ Status copy_model(const std::string& model, const std::vector<std::string>& used
     if (!named.model.empty()) copy.model += ":" + named.model;
     for (const fs::path& path : paths) {
         const std::string name = path.lexically_relative(common).string();
+        if (!is_printable(name))
+            return Status::failure(
+                fmt::format("'{}': the names in a job are in UTF-8, without line ends and other "
+                            "control characters: rename the file",
+                            name));
         const fs::path target = fs::path(folder) / name;
         if (Status status = copy_whole(path, target); !status.ok()) return status;
         copy.files.push_back({name, file_digest(target.string())});
@@ -64,10 +70,11 @@ Status copy_model(const std::string& model, const std::vector<std::string>& used
 
 Status check_files(const std::string& folder, const std::vector<JobFile>& files) {
     for (const JobFile& file : files) {
-        const std::string path = folder + "/" + file.name;
-        if (file_digest(path) != file.digest)
+        constexpr std::uint64_t most_bytes = 1u << 30;
+        if (file.digest.empty() || digest_below(folder, file.name, most_bytes) != file.digest)
             return Status::failure(
-                fmt::format("'{}' is not the file that the job was planned with; plan the job again", path));
+                fmt::format("'{}/{}' is not the file that the job was planned with; plan the job again",
+                            folder, file.name));
     }
     return {};
 }

@@ -6,16 +6,19 @@
 #include <sstream>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
-#include "compiler/support/file.h"
+#include "runtime/farm/job_json.h"
 #include "runtime/farm/task_records.h"
 
 namespace graftal {
 
 namespace {
 
-using Json = nlohmann::ordered_json;
+using Json = JobJson;
+
+constexpr std::uint64_t most_arrays_bytes = 16u << 20;
+/// In all groups of all arrays.
+constexpr std::size_t most_listed = 10 * most_tasks, most_arrays = 1000;
 
 std::string arrays_file(const JobFolder& folder) {
     return slurm_folder(folder) + "/arrays.json";
@@ -54,18 +57,23 @@ std::string slurm_folder(const JobFolder& folder) {
 std::vector<SlurmArray> read_arrays(const JobFolder& folder) {
     std::string text;
     std::vector<SlurmArray> arrays;
-    if (!read_text(arrays_file(folder), text).ok()) return arrays;
-    try {
-        for (const Json& json : Json::parse(text)) {
+    if (!folder.read_file(arrays_file(folder), text, most_arrays_bytes).ok()) return arrays;
+    std::size_t listed = 0;
+    bool well = true;
+    const std::string problem = read_job_json(text, [&](const Json& all) {
+        for (const Json& json : all) {
             SlurmArray array{json.at("id"), json.at("merge"), {}};
-            for (const Json& group : json.at("groups"))
+            well = well && parse_job_id(array.id) == array.id && !array.id.empty();
+            for (const Json& group : json.at("groups")) {
+                if (!well || listed > most_listed) break;
                 array.groups.push_back(parse_task_list(group.get<std::string>(), most_tasks)
                                            .value_or(std::vector<std::uint64_t>()));
+                listed += array.groups.back().size();
+            }
             arrays.push_back(std::move(array));
         }
-    } catch (const Json::exception&) {
-        arrays.clear();
-    }
+    });
+    if (!problem.empty() || !well || listed > most_listed || arrays.size() > most_arrays) arrays.clear();
     return arrays;
 }
 
@@ -77,7 +85,7 @@ Status write_arrays(const JobFolder& folder, const std::vector<SlurmArray>& arra
             groups.push_back(task_list_text(group));
         json.push_back({{"id", array.id}, {"merge", array.merge_id}, {"groups", groups}});
     }
-    return write_text(arrays_file(folder), json.dump(1) + "\n");
+    return folder.write_file(arrays_file(folder), json.dump(1) + "\n");
 }
 
 Status write_array_script(const JobFolder& folder, std::size_t number,
@@ -88,16 +96,17 @@ Status write_array_script(const JobFolder& folder, std::size_t number,
     std::string lines;
     for (const std::vector<std::uint64_t>& group : groups)
         lines += task_list_text(group) + "\n";
-    if (Status status = write_text(fmt::format("{}/groups_{}.txt", slurm_folder(folder), number), lines);
+    if (Status status =
+            folder.write_file(fmt::format("{}/groups_{}.txt", slurm_folder(folder), number), lines);
         !status.ok())
         return status;
     script = fmt::format("{}/array_{}.sh", slurm_folder(folder), number);
-    return write_text(script,
-                      fmt::format("#!/bin/sh\n"
-                                  "# One group of tasks: the line of groups_{}.txt with the array's index.\n"
-                                  "tasks=$(sed -n \"${{SLURM_ARRAY_TASK_ID}}p\" \"$1\") || exit 3\n"
-                                  "exec {} \"$tasks\" --quiet --threads \"${{SLURM_CPUS_PER_TASK:-1}}\"\n",
-                                  number, command));
+    return folder.write_file(
+        script, fmt::format("#!/bin/sh\n"
+                            "# One group of tasks: the line of groups_{}.txt with the array's index.\n"
+                            "tasks=$(sed -n \"${{SLURM_ARRAY_TASK_ID}}p\" \"$1\") || exit 3\n"
+                            "exec {} \"$tasks\" --quiet --threads \"${{SLURM_CPUS_PER_TASK:-1}}\"\n",
+                            number, command));
 }
 
 std::string parse_job_id(const std::string& printed) {

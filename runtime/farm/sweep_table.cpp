@@ -5,16 +5,16 @@
 #include <vector>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include "compiler/support/file.h"
+#include "runtime/farm/job_json.h"
 #include "runtime/farm/task_records.h"
 
 namespace graftal {
 
 namespace {
 
-using Json = nlohmann::ordered_json;
+using Json = JobJson;
 
 /// As RFC 4180 has it.
 std::string quoted(const std::string& text) {

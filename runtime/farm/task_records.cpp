@@ -3,26 +3,30 @@
 #include <algorithm>
 #include <charconv>
 #include <chrono>
-#include <filesystem>
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 #include <unistd.h>
 
-#include "compiler/support/file.h"
+#include "runtime/farm/job_json.h"
+#include "runtime/system/files_below.h"
 
 namespace graftal {
 
 namespace {
 
-using Json = nlohmann::ordered_json;
+using Json = JobJson;
 
-constexpr std::size_t most_record_bytes = 16u << 20;
+constexpr std::uint64_t most_record_bytes = 256u << 10, most_starts_bytes = 1u << 20;
 
 std::string host_name() {
     char name[256] = "";
     return ::gethostname(name, sizeof name - 1) == 0 ? name : "";
+}
+
+/// Whether the part is there, by its size alone.
+bool has_part(const JobFolder& folder, const Job& job, std::uint64_t task, const TaskRecord& record) {
+    const std::string path = folder.part(job, task);
+    return bytes_below(folder.path(), folder.name_of(path)) == record.bytes;
 }
 
 } // namespace
@@ -53,40 +57,39 @@ Status write_record(const JobFolder& folder, std::uint64_t task, const TaskRecor
     json["ended"] = record.ended;
     if (!record.stats.empty()) json["stats"] = Json::parse(record.stats);
     // What a model or the system says need not be UTF-8.
-    return write_text(folder.record(task), json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n");
+    return folder.write_file(folder.record(task),
+                             json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n");
 }
 
 std::optional<TaskRecord> read_record(const JobFolder& folder, std::uint64_t task) {
     std::string text;
-    if (!read_text(folder.record(task), text, most_record_bytes).ok()) return std::nullopt;
-    try {
-        const Json json = Json::parse(text);
-        TaskRecord record;
+    if (!folder.read_file(folder.record(task), text, most_record_bytes).ok()) return std::nullopt;
+    TaskRecord record;
+    const std::string problem = read_job_json(text, [&](const Json& json) {
         record.done = json.at("state") == "done";
         record.message = json.value("message", "");
         record.host = json.at("host");
-        record.seconds = json.at("seconds");
-        record.draw_seconds = json.at("draw_seconds");
-        record.processor_seconds = json.at("processor_seconds");
-        record.peak_bytes = json.at("peak_bytes");
-        record.bytes = json.value("bytes", std::uint64_t{0});
+        record.seconds = amount_of_json(json.at("seconds"));
+        record.draw_seconds = amount_of_json(json.at("draw_seconds"));
+        record.processor_seconds = amount_of_json(json.at("processor_seconds"));
+        record.peak_bytes = whole_of_json(json.at("peak_bytes"));
+        if (json.contains("bytes")) record.bytes = whole_of_json(json["bytes"]);
         record.digest = json.value("digest", "");
-        record.ended = json.at("ended");
+        record.ended = amount_of_json(json.at("ended"));
         if (json.contains("stats")) record.stats = json["stats"].dump();
-        return record;
-    } catch (const Json::exception&) {
-        return std::nullopt;
-    }
+    });
+    return problem.empty() ? std::optional(record) : std::nullopt;
 }
 
 bool is_done(const JobFolder& folder, const Job& job, std::uint64_t task) {
     const std::optional<TaskRecord> record = read_record(folder, task);
-    return record && record->done && file_digest(folder.part(job, task)) == record->digest;
+    return record && record->done && !record->digest.empty() && has_part(folder, job, task, *record) &&
+           folder.digest(folder.part(job, task), job.most_part_bytes()) == record->digest;
 }
 
 void note_start(const JobFolder& folder, std::uint64_t task) {
-    const int file =
-        ::open(folder.starts(task).c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, S_IRUSR | S_IWUSR);
+    const std::string path = folder.starts(task);
+    const int file = open_below(folder.path(), folder.name_of(path), O_WRONLY | O_CREAT | O_APPEND);
     if (file < 0) return;
     const std::string line = fmt::format("{:.3f} {} {}\n", now_seconds(), host_name(), ::getpid());
     if (::write(file, line.data(), line.size()) < 0) {
@@ -97,18 +100,15 @@ void note_start(const JobFolder& folder, std::uint64_t task) {
 
 std::uint64_t count_starts(const JobFolder& folder, std::uint64_t task) {
     std::string text;
-    if (!read_text(folder.starts(task), text, most_record_bytes).ok()) return 0;
+    if (!folder.read_file(folder.starts(task), text, most_starts_bytes).ok()) return 0;
     return static_cast<std::uint64_t>(std::count(text.begin(), text.end(), '\n'));
 }
 
 std::vector<std::uint64_t> missing_tasks(const JobFolder& folder, const Job& job) {
     std::vector<std::uint64_t> missing;
-    std::error_code error;
     for (std::uint64_t task = 1; task <= job.tasks; ++task) {
         const std::optional<TaskRecord> record = read_record(folder, task);
-        const bool there = record && record->done &&
-                           std::filesystem::file_size(folder.part(job, task), error) == record->bytes;
-        if (!there) missing.push_back(task);
+        if (!record || !record->done || !has_part(folder, job, task, *record)) missing.push_back(task);
     }
     return missing;
 }

@@ -13,6 +13,7 @@
 #include <fmt/format.h>
 
 #include "compiler/support/file.h"
+#include "compiler/support/printable.h"
 
 namespace graftal {
 
@@ -44,17 +45,10 @@ Status check_room(const std::string& path, std::uint64_t points) {
                                        bytes_text(static_cast<double>(space.available))));
 }
 
-/// Comments of a header end with their line.
-std::string one_line(std::string text) {
-    for (char& c : text)
-        if (static_cast<unsigned char>(c) < 0x20) c = ' ';
-    return text;
-}
-
 std::string header(std::uint64_t points, const ImageMetadata& metadata) {
     std::string text = "ply\nformat binary_little_endian 1.0\n";
     for (const std::string& line : {metadata.software, metadata.description})
-        if (!line.empty()) text += "comment " + one_line(line) + "\n";
+        if (!line.empty()) text += "comment " + escaped(line, line.size()) + "\n";
     text += fmt::format("element vertex {}\n", points);
     for (const char* property : {"float x", "float y", "float z", "uchar red", "uchar green", "uchar blue"})
         text += fmt::format("property {}\n", property);

@@ -55,7 +55,7 @@ class Animation {
         const Clock::time_point begin = Clock::now();
         outcome_.done = know_models() && prepare() && draw() && (options_.only || assemble());
         if (!outcome_.done)
-            store_.discard_if_empty();
+            discard();
         else if (!options_.only)
             clean_up();
         outcome_.seconds = seconds_since(begin);
@@ -171,19 +171,52 @@ class Animation {
         for (const std::size_t frame : wanted)
             if (!store_.has(frame, stamp(frame))) missing.push_back(frame);
         outcome_.found = wanted.size() - missing.size();
+        if (!missing.empty() && options_.measured && !options_.only)
+            return fail(
+                moment(missing.front()).name,
+                Status::failure("this frame is not of the job's model: remove it, and submit the job again"));
+        const bool sampled =
+            !options_.only && !options_.sweeps.empty() && missing.size() >= fewest_sampled_frames;
+        if (sampled) put_samples_first(missing);
         FrameClock clock;
+        std::vector<double> seconds; // of the first few
         for (std::size_t i = 0; i < missing.size(); ++i) {
             const Clock::time_point begin = Clock::now();
             if (!draw_frame(missing[i], clock.seconds_left(missing.size() - i))) return false;
             clock.add(seconds_since(begin));
+            drawn_.push_back(missing[i]);
             ++outcome_.drawn;
+            if (seconds.size() == estimating_frames) continue;
+            seconds.push_back(seconds_since(begin));
+            if (seconds.size() == estimating_frames && missing.size() > estimating_frames &&
+                options_.on_estimate)
+                options_.on_estimate(
+                    {missing.size(), mean_of(seconds, sampled) * static_cast<double>(missing.size())});
         }
         return true;
     }
 
+    /// A film whose models change makes some of them once more for its samples: a short one is not worth
+    /// that.
+    static constexpr std::size_t estimating_frames = 3, fewest_sampled_frames = 20;
+
+    /// A film that grows takes longer at its end: its first frame, one in the middle and its last are drawn
+    /// before all others.
+    static void put_samples_first(std::vector<std::size_t>& frames) {
+        const auto middle = frames.begin() + static_cast<std::ptrdiff_t>(frames.size() / 2);
+        std::rotate(frames.begin() + 1, middle, middle + 1);
+        std::rotate(frames.begin() + 2, frames.end() - 1, frames.end());
+    }
+
+    /// Of a frame: of samples in the order above by Simpson's rule.
+    static double mean_of(const std::vector<double>& seconds, bool sampled) {
+        const double weight = sampled ? 4 : 1;
+        return (seconds[0] + weight * seconds[1] + seconds[2]) / (weight + 2);
+    }
+
     bool draw_frame(std::size_t frame, std::optional<double> seconds_left) {
         if (cancelled()) return fail("", Status::failure("interrupted"));
-        show({Stage::drawing, frame, options_.frames, seconds_left, {}});
+        show({Stage::drawing, outcome_.found + outcome_.drawn, options_.frames, seconds_left, {}});
         RenderOptions render = options_.render;
         render.output = store_.path(frame);
         render.metadata.stamp = stamp(frame);
@@ -228,7 +261,7 @@ class Animation {
         render.sequence = static_cast<std::uint64_t>(part); // or all moments would have one noise
         render.on_progress = [&](const DrawProgress& progress) {
             if (progress.fraction)
-                show({Stage::drawing, frame, options_.frames, seconds_left,
+                show({Stage::drawing, outcome_.found + outcome_.drawn, options_.frames, seconds_left,
                       (part + *progress.fraction) / parts_});
         };
         Compilation compilation;
@@ -273,6 +306,15 @@ class Animation {
         return status.ok() || fail("", status);
     }
 
+    /// Frames that this run has drawn stay for the next one, except where the model is at fault: then there
+    /// is no next one of the same frames.
+    void discard() {
+        if (!outcome_.compilation.diagnostics.has_errors() || options_.only) return;
+        for (const std::size_t frame : drawn_)
+            store_.remove(frame);
+        outcome_.drawn = 0;
+    }
+
     void clean_up() {
         if (kind_ == AnimationKind::frames) outcome_.strangers = store_.strangers();
         if (kind_ == AnimationKind::frames || options_.keep_frames)
@@ -307,8 +349,9 @@ class Animation {
     std::optional<unsigned> steps_; ///< of the model measured last
     Digest model_sources_;
     Digest all_sources_;
-    std::string sources_text_;    ///< of that, once all are known
-    std::vector<Digest> sources_; ///< by frame and moment
+    std::string sources_text_;       ///< of that, once all are known
+    std::vector<Digest> sources_;    ///< by frame and moment
+    std::vector<std::size_t> drawn_; ///< frames, by this run
     AnimationOutcome outcome_;
 };
 

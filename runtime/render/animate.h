@@ -24,7 +24,7 @@ std::string frames_directory(const std::string& output);
 struct AnimationProgress {
     enum class Stage { measuring, drawing, assembling };
     Stage stage = Stage::measuring;
-    std::size_t frame = 0; ///< from 0
+    std::size_t frame = 0; ///< from 0; while drawing: how many are there
     std::size_t frames = 0;
     std::optional<double> seconds_left; ///< while drawing, once that can be guessed
     std::optional<double> fraction;     ///< of this frame, once its pixels are being drawn
@@ -34,6 +34,12 @@ struct AnimationProgress {
 struct MeasuredAnimation {
     std::shared_ptr<const SharedFraming> framing;
     std::string sources; ///< a digest of all models that are shown
+};
+
+/// What is known after the first few frames.
+struct AnimationEstimate {
+    std::size_t frames = 0; ///< to be drawn
+    double seconds = 0;     ///< that they take, the first ones too
 };
 
 struct AnimateOptions {
@@ -50,13 +56,16 @@ struct AnimateOptions {
     double shutter = 0;
     bool keep_frames = false;  ///< after they have been assembled
     std::string frames_folder; ///< "": frames_directory(output)
-    /// The models are known: they are not looked at before a frame is drawn.
+    /// The models are known: they are not looked at before a frame is drawn. Where frames are missing then,
+    /// others than `only` are not drawn, and it fails.
     std::optional<MeasuredAnimation> measured;
     /// These frames, from 0 on, are drawn, and nothing is put together; others may draw in the folder at the
     /// same time. Nothing: all. Requires `measured`.
     std::optional<std::vector<std::size_t>> only;
     std::string identity; ///< what the frames depend on besides the model: the program and its options
     std::function<void(const AnimationProgress&)> on_progress;
+    /// Once, after the first few frames, if there are more.
+    std::function<void(const AnimationEstimate&)> on_estimate;
     /// After each model, and each frame, that is without errors: warnings.
     std::function<void(const Compilation&)> on_compiled;
 };

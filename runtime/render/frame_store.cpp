@@ -43,14 +43,7 @@ FrameStore::FrameStore(std::string directory, std::size_t count)
       digits_(std::max(4, static_cast<int>(std::to_string(count).size()))) {}
 
 Status FrameStore::join() {
-    std::error_code error;
-    made_ = fs::create_directories(directory_, error);
-    if (!error && !fs::is_directory(directory_, error))
-        error = std::make_error_code(std::errc::not_a_directory);
-    if (error)
-        return Status::failure(
-            fmt::format("cannot make the directory '{}': {}", directory_, error.message()));
-    return {};
+    return made_.make(directory_);
 }
 
 Status FrameStore::create() {
@@ -64,7 +57,9 @@ Status FrameStore::create() {
 }
 
 FrameStore::~FrameStore() {
-    if (lock_ >= 0) ::close(lock_);
+    if (lock_ < 0) return;
+    made_.take_back();
+    ::close(lock_);
 }
 
 std::string FrameStore::name(std::size_t frame) const {
@@ -113,9 +108,8 @@ void FrameStore::remove() const {
     fs::remove(directory_, ignored); // fails if something else is in it
 }
 
-void FrameStore::discard_if_empty() const {
-    std::error_code ignored;
-    if (made_ && lock_ >= 0) fs::remove(directory_, ignored);
+void FrameStore::remove(std::size_t frame) const {
+    ::unlink(path(frame).c_str());
 }
 
 std::size_t FrameStore::strangers() const {

@@ -7,6 +7,7 @@
 
 #include "compiler/support/source.h"
 #include "compiler/support/status.h"
+#include "runtime/system/made_folders.h"
 
 namespace graftal {
 
@@ -20,6 +21,7 @@ class FrameStore {
     FrameStore& operator=(const FrameStore&) = delete;
 
     /// Makes the directory if it is missing, and locks it (flock): fails where another run is at work in it.
+    /// A directory that was made here and has nothing in it in the end goes with this.
     Status create();
     /// The same without the lock: many may draw in it, each its own frames.
     Status join();
@@ -41,8 +43,8 @@ class FrameStore {
     /// Removes all frames, those of other animations that bear a stamp of ours too, and the directory if
     /// nothing else is in it. Requires that the animation is done: each of its frames was found or drawn.
     void remove() const;
-    /// Takes back an unused create().
-    void discard_if_empty() const;
+    /// Removes a frame that is not wanted after all.
+    void remove(std::size_t frame) const;
     /// Pictures in the directory that are named like frames but are not of this animation.
     std::size_t strangers() const;
 
@@ -52,7 +54,7 @@ class FrameStore {
     std::string directory_;
     std::size_t count_;
     int digits_;
-    bool made_ = false; ///< the directory, by us
+    MadeFolders made_; ///< taken back in the end if they are empty
     int lock_ = -1;
 };
 

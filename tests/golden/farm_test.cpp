@@ -253,6 +253,31 @@ TEST_F(Farm, PovrayDrawsFramesAndSweepsAndNoTiles) {
     expect_same("film.png", "one.png");
 }
 
+TEST_F(Farm, EachMillionPixelsOfAPosterHasTheWorkOfAPicture) {
+    const struct {
+        std::string size, work, planned;
+    } cases[] = {{"2000x1500", "", "45"}, {"2000x1500", "--work 2 ", "6"}, {"900x500", "", ""}};
+    for (const auto& [size, work, planned] : cases) {
+        succeed("farm plan " + gasket + "--plain-light --tiles 500x500 -o job -q " + work + "--size " + size);
+        const std::string manifest = read("job/job.json");
+        const std::size_t at = manifest.rfind("\"--work\"");
+        EXPECT_EQ(at == std::string::npos, planned.empty()) << size;
+        if (!planned.empty())
+            EXPECT_THAT(manifest.substr(at), StartsWith("\"--work\",\n  \"" + planned + "\"\n"));
+        shell("rm -r job");
+    }
+    // Many hours are not for a picture that shows less than was asked for.
+    const std::string poor = "farm plan '" + source_path("scenes/hart/ternary_tree_limit.inst") +
+                             "' --size 200x150 --plain-light --work 0.01 --tiles 100x100 -o job -q";
+    const RunResult refused = graftal(poor);
+    EXPECT_EQ(refused.status, 1);
+    EXPECT_THAT(refused.err,
+                AllOf(HasSubstr("graftal: this picture would leave out parts of up to "),
+                      HasSubstr("--work"), HasSubstr("--coarse")));
+    EXPECT_FALSE(exists("job"));
+    succeed(poor + " --coarse");
+}
+
 TEST_F(Farm, UsageErrors) {
     const struct {
         std::string arguments, message;

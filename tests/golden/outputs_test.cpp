@@ -1,5 +1,6 @@
 // What an output may be, and what stays where none comes to be.
 
+#include <algorithm>
 #include <filesystem>
 
 #include <gmock/gmock.h>
@@ -47,6 +48,104 @@ TEST_F(Outputs, PipesAndDevicesAreRefused) {
         }
         EXPECT_TRUE(std::filesystem::is_character_file("/dev/null"));
     }
+}
+
+TEST_F(Outputs, NamesAreOneLineOfText) {
+    std::vector<std::pair<std::string, std::string>> all = commands();
+    for (const char* ending : {"obj", "usda", "gltf", "xml", "pbrt", "stl", "svg"})
+        all.emplace_back("export m.rifs -q --steps 2 ", std::string("a.") + ending);
+    for (const auto& [command, name] : all)
+        for (const char* bytes : {"\\n", "\\033[31m", "\\377", "\\342\\200\\256", "\\177"}) {
+            const RunResult result =
+                shell("timeout 60 $graftal " + command + "-o \"$(printf 'x" + bytes + name + "')\"");
+            EXPECT_EQ(result.status, 2) << command << bytes;
+            EXPECT_THAT(result.err, HasSubstr("a name that graftal writes is in UTF-8, without line ends"))
+                << command;
+            EXPECT_EQ(result.err.find_first_of("\033\377\342\177"), std::string::npos) << command;
+            EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 2) << command;
+            EXPECT_EQ(files(), "m.rifs") << command;
+        }
+}
+
+/// The name of a model that a stranger has sent: graftal reads it, and shows and writes it escaped.
+TEST_F(Outputs, NamesOfModelsReachNoFileAndNoTerminalRaw) {
+    shell("mkdir in && mv m.rifs \"in/$(printf 'x\\nv 9 9 9\\n\\033[31m\\377.rifs')\"");
+    std::vector<std::string> runs = {"check in/*",
+                                     "stats in/*",
+                                     "stats in/* --json",
+                                     "print in/*",
+                                     "graph in/*",
+                                     "check in/*:none",
+                                     "check --root in /none/in/*",
+                                     "compile in/* --size 16x12",
+                                     "render in/* --engine native --size 16x12",
+                                     "render in/* --engine native --size 16x12 -o a.png",
+                                     "animate in/* --engine native --size 16x12 --frames 2 -o a.gif",
+                                     "points in/* --points 1000 --size 16x12 -o b.png",
+                                     "points in/* --points 1000 -o a.ply",
+                                     "compile in/* --size 16x12 -o a.pov",
+                                     "compile in/* -o a.inc --name Mine"};
+    for (const char* ending : {"obj", "ply", "usda", "gltf", "xml", "pbrt", "stl", "svg"})
+        runs.push_back(std::string("export in/* --steps 2 -o a.") + ending);
+    for (const std::string& run : runs) {
+        const RunResult result = shell("timeout 60 $graftal " + run);
+        EXPECT_LE(result.status, 3) << run;
+        EXPECT_EQ((result.out + result.err).find_first_of("\033\377"), std::string::npos) << run;
+        EXPECT_EQ((result.out + result.err).find("\nv 9 9 9"), std::string::npos) << run;
+    }
+    for (const char* name :
+         {"a.obj", "a.mtl", "a.usda", "a.gltf", "a.xml", "a.pbrt", "a.svg", "a.pov", "a.inc"}) {
+        const std::string text = read(name);
+        EXPECT_NE(text, "") << name;
+        EXPECT_EQ(text.find_first_of("\033\377"), std::string::npos) << name;
+        EXPECT_EQ(text.find("\nv 9 9 9\n"), std::string::npos) << name;
+    }
+    for (const char* name : {"a.png", "a.ply", "a.stl"})
+        EXPECT_EQ(read(name).find("v 9 9 9\n"), std::string::npos) << name;
+    // It has no name of its own for a picture then.
+    EXPECT_EQ(shell("$graftal render in/* --engine native -q").status, 2);
+}
+
+TEST_F(Outputs, AFolderIsNoFile) {
+    shell("mkdir folder");
+    for (const auto& [command, name] : commands()) {
+        if (command.starts_with("animate")) continue; // its frames have a folder
+        for (const char* folder : {"folder", "folder/", "new/"}) {
+            const RunResult result = shell("timeout 60 $graftal " + command + "-o " + folder);
+            EXPECT_EQ(result.status, 2) << command;
+            EXPECT_THAT(result.err, HasSubstr(std::string("'") + folder +
+                                              "' is a folder: name a file in it, such as "
+                                              "'-o "))
+                << command;
+        }
+    }
+    write("k.l", "Koch1 {\n Angle 6\n Axiom F--F--F\n F=F+F--F+F\n}\n");
+    shell("mkdir a.lsys");
+    for (const char* folder : {"folder", "a.lsys", "deep/er/"}) {
+        EXPECT_EQ(graftal(std::string("import -q k.l -o ") + folder).status, 0) << folder;
+        EXPECT_TRUE(exists(std::string(folder) + "/Koch1.lsys")) << folder;
+    }
+    write("bad.es", "r1 {\n");
+    EXPECT_EQ(graftal("import -q bad.es -o none/of/it/").status, 1);
+    EXPECT_EQ(files(), "a.lsys bad.es deep folder k.l m.rifs");
+}
+
+TEST_F(Outputs, FoldersThatWereMadeForNothingAreTakenBack) {
+    shell("mkdir bin there");
+    write("bin/povray", "#!/bin/sh\nexit 1\n");
+    shell("chmod +x bin/povray");
+    write("bad.inst", "object top {\n    union: nowhere\n}\n");
+    for (const std::string top : {"deep", "there/deep"}) {
+        EXPECT_EQ(shell("PATH=\"$PWD/bin:$PATH\" $graftal animate m.rifs -q --size 16x12 --frames 2 -o " +
+                        top + "/er/film/")
+                      .status,
+                  3);
+        EXPECT_EQ(graftal("farm plan bad.inst -q --tiles 9x9 -o " + top + "/er/job").status, 1);
+        EXPECT_EQ(graftal("farm plan m.rifs -q --tiles 9x9 --size 20000x20000 -o " + top + "/er/job").status,
+                  2);
+    }
+    EXPECT_EQ(files(), "bad.inst bin m.rifs there");
+    EXPECT_EQ(shell("ls -A there").out, "");
 }
 
 TEST_F(Outputs, LinksAreWrittenThrough) {

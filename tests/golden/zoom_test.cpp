@@ -36,8 +36,10 @@ TEST_F(Zoom, WrongAddressesAndFactors) {
     const Case cases[] = {
         {"--at up..left", 2, "--at: 'up..left': expected a name, not '.' at character 4"},
         {"--at ''", 2, "--at: '': expected a name at character 1"},
-        {"--zoom 0", 2, "--zoom: '0' is not a number above 0, such as 1e100 or 2^330"},
-        {"--zoom big", 2, "is not a number above 0"},
+        {"--zoom 0", 2, "--zoom: '0' is not a number of at least 1e-100, such as 1e100 or 2^330"},
+        {"--zoom big", 2, "is not a number of at least 1e-100"},
+        {"--zoom 2^-1080", 2, "is not a number of at least 1e-100"},
+        {"--zoom 1e-320", 2, "is not a number of at least 1e-100"},
         {"--at down", 1, "error: the address does not exist: 'top' has no part 'down'"},
         {"--at 'up#2'", 1, "'top' has no part 'up#2'"},
         {"--at '(up)*'", 1, "an endless address is a point"},
@@ -51,6 +53,21 @@ TEST_F(Zoom, WrongAddressesAndFactors) {
         EXPECT_EQ(result.status, c.status) << c.options;
         EXPECT_THAT(result.err, HasSubstr(c.message)) << c.options;
         EXPECT_EQ(files(), "") << c.options;
+    }
+}
+
+/// A small model, seen from far away.
+TEST_F(Zoom, EverySmallZoomIsDrawnOrRefused) {
+    write("m.inst", "object m { instance: ball scale: 1e-90 }\nobject ball { sphere }\n");
+    for (const std::string command : {"render", "export", "compile", "points"}) {
+        const std::string options = command == "render"    ? " --engine native -q -o m.png"
+                                    : command == "export"  ? " -q -o m.usda"
+                                    : command == "compile" ? " -q -o m.pov"
+                                                           : " -q --points 100 -o m.png";
+        for (const std::string zoom : {"1e-9", "1e-11", "1e-100"}) {
+            const RunResult result = graftal(command + " m.inst --size 9x9 --zoom " + zoom + options);
+            EXPECT_TRUE(result.status == 0 || result.status == 1) << command << " " << zoom << result.err;
+        }
     }
 }
 

@@ -7,6 +7,7 @@
 #include "runtime/render/frame_clock.h"
 #include "runtime/render/frame_store.h"
 #include "runtime/system/interruption.h"
+#include "runtime/system/worker_threads.h"
 #include "tools/graftal/animate_options.h"
 #include "tools/graftal/commands.h"
 #include "tools/graftal/progress_bar.h"
@@ -48,6 +49,12 @@ class Warnings {
     std::set<std::string> said_;
 };
 
+std::string estimate_text(const Options& options, const AnimationEstimate& estimate) {
+    const int threads = WorkerThreads(options.render.threads).count();
+    return fmt::format("graftal: {} frames take about {} in all, on {} processor{}\n", estimate.frames,
+                       duration_text(estimate.seconds), threads, threads == 1 ? "" : "s");
+}
+
 std::string done_text(const Options& options, const AnimationOutcome& outcome) {
     std::string text = fmt::format("{}: {} frames, {:g} per second", options.render.output,
                                    options.animation.frames, options.animation.rate.per_second());
@@ -77,6 +84,12 @@ int run_animate(const Options& options) {
     Warnings warnings(bar);
     AnimateOptions animate = animate_options(options);
     animate.on_progress = [&](const AnimationProgress& progress) { bar.show(progress_text(progress)); };
+    animate.on_estimate = [&](const AnimationEstimate& estimate) {
+        constexpr double worth_a_word = 5;
+        if (options.quiet || estimate.seconds < worth_a_word) return;
+        bar.clear();
+        say(estimate_text(options, estimate));
+    };
     animate.on_compiled = [&](const Compilation& compilation) { warnings.say_new(compilation); };
 
     CommandSession session(options, options.operands.front(), Keep::for_views);

@@ -30,6 +30,7 @@ class Merging {
         : folder_(folder), job_(job), planned_(planned), bar_(!options.quiet) {}
 
     Status run(const CancelFlag& cancel) {
+        if (Status status = check_results(); !status.ok()) return status;
         if (Status status = check_parts(cancel); !status.ok()) return status;
         switch (job_.kind) {
         case JobKind::tiles:
@@ -52,6 +53,14 @@ class Merging {
     }
 
   private:
+    Status check_results() const {
+        Status status = folder_.check_result(job_);
+        if (!status.ok() || job_.kind != JobKind::sweep) return status;
+        Job beside = job_;
+        beside.result = fs::path(job_.result).replace_extension(".csv").string();
+        return folder_.check_result(beside);
+    }
+
     /// Each part is still the one that its task has checked.
     Status check_parts(const CancelFlag& cancel) {
         std::vector<std::uint64_t> missing;
@@ -92,7 +101,7 @@ class Merging {
         for (std::uint64_t task = 1; task <= job_.tasks; ++task) {
             if (cancel.raised()) return Status::failure("interrupted");
             std::string bytes;
-            Status status = read_text(folder_.part(job_, task), bytes, std::size_t{4} << 30);
+            Status status = folder_.read_file(folder_.part(job_, task), bytes, job_.most_part_bytes());
             if (status.ok()) status = write_text(store.path(task - 1), bytes);
             if (!status.ok()) return status;
         }
@@ -126,7 +135,8 @@ int run_farm_status(const Options& options) {
     Job job;
     if (!open_job(folder, job)) return exit_environment;
     const JobStatus status = look_at_job(folder, job);
-    const int printed = print_output(options.json ? status_json(status) : status_text(folder, job, status));
+    const int printed =
+        options.json ? print_output(status_json(status)) : print_output(status_text(folder, job, status));
     return printed != exit_done || status.failures.empty() ? printed : exit_fault;
 }
 
@@ -135,7 +145,7 @@ int run_farm_merge(const Options& options) {
     Job job;
     if (!open_job(folder, job)) return exit_environment;
     const std::optional<Options> planned = planned_options(folder, job);
-    if (!planned) return exit_usage;
+    if (!planned) return exit_environment;
     const Interruption interruption;
     const Stopwatch watch;
     std::vector<std::string> results;
@@ -160,7 +170,7 @@ int run_farm_clean(const Options& options) {
     Job job;
     if (!open_job(folder, job)) return exit_environment;
     std::error_code error;
-    if (!options.farm.everything && !fs::exists(folder.result(job), error)) {
+    if (!options.farm.everything && !folder.has_result(job)) {
         complain(
             fmt::format("'{}' is not there yet: merge the job first, or give --all", folder.result(job)));
         return exit_fault;

@@ -2,6 +2,8 @@
 
 #include <filesystem>
 
+#include <fmt/format.h>
+
 #include "compiler/session/shared_framing.h"
 #include "tools/graftal/animate_options.h"
 #include "tools/graftal/commands.h"
@@ -56,7 +58,26 @@ std::optional<Options> planned_options(const JobFolder& folder, const Job& job,
     words[2] = folder.model_folder() + "/" + words[2];
     words.insert(words.end(), {"--root", folder.model_folder()});
     words.insert(words.end(), more.begin(), more.end());
-    return parse_command_line(std::move(words), job.kind == JobKind::tiles).options;
+    std::optional<Options> planned = parse_command_line(std::move(words), job.kind == JobKind::tiles).options;
+    if (!planned) return std::nullopt;
+    std::string problem = refusal_of_tasks(*planned);
+    if (problem.empty() && planned->render.unconfined && !folder.is_at_home(job))
+        problem = "--unconfined: a job may ask for it only in the very folder that it was planned in: plan "
+                  "it again";
+    if (problem.empty()) return planned;
+    complain(fmt::format("'{}': {}", folder.manifest(), problem));
+    return std::nullopt;
+}
+
+std::string refusal_of_tasks(const Options& planned) {
+    const RenderOptions& render = planned.render;
+    if (planned.operands.front() == "-") return "give the model as a file: its tasks read it again";
+    if (planned.watch || render.progressive)
+        return fmt::format("a task draws once, at its finest: leave out {}",
+                           planned.watch ? "--watch" : "--progressive");
+    if (!render.keep.empty() || !planned.dump_after.empty())
+        return "--keep and --dump-after are for one run: leave them out";
+    return {};
 }
 
 std::string own_identity() {

@@ -16,6 +16,9 @@ JobFolder job_folder(const Options& options);
 /// Reads the job, or complains.
 bool open_job(const JobFolder& folder, Job& job);
 
+/// What is wrong with options for a task that are right for one run, or "".
+std::string refusal_of_tasks(const Options& planned);
+
 /// The options of the one command that does what the job does, read from its words and `more` of them; its
 /// model is the copy in the folder. Nothing after a complaint.
 std::optional<Options> planned_options(const JobFolder& folder, const Job& job,

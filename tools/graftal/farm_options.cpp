@@ -57,12 +57,15 @@ void add_plan(CLI::App& farm, Options& options) {
            "each combination")
         ->allow_extra_args(false)
         ->type_name("NAME=VALUES");
+    app.add_flag("--coarse", own.coarse,
+                 "With --tiles: plan a picture even where its work leaves out parts of more than 2 pixels");
     app.add_option("--result", own.result,
                    "File that 'farm merge' makes (default: MODEL's name + .png or .gif, in JOB)")
         ->type_name("FILE");
     app.footer(
         "One of three things is planned:\n"
-        "  --tiles WxH      one picture, by all options of 'graftal render'; up to 131072 pixels a side\n"
+        "  --tiles WxH      one picture, by all options of 'graftal render'; up to 131072 pixels a side;\n"
+        "                   --work is for each million pixels of a large one\n"
         "  --frames N       an animation, by all options of 'graftal animate'\n"
         "  --sweep VALUES   many pictures, by all options of 'graftal render'; the merge makes a contact\n"
         "                   sheet of them, and a table (.csv) with the 'stats' of each model\n"
@@ -72,7 +75,7 @@ void add_plan(CLI::App& farm, Options& options) {
         "the\n"
         "very bytes that one run of 'graftal render' or 'graftal animate' with these options writes.\n"
         "Examples:\n"
-        "  graftal farm plan elm.inst --tiles 1000x300 --size 40000x30000 --work 1e6 -o poster/\n"
+        "  graftal farm plan elm.inst --tiles 1000x300 --size 40000x30000 --work 60 -o poster/\n"
         "  graftal farm plan plant.lsys --frames 3000 --steps 1..12 --result growth.mp4 -o film/\n"
         "  graftal farm plan plant.lsys --sweep seed=1..10000 --size 160x160 -o seeds/\n"
         "  graftal farm plan tree.inst --sweep \"k=0..1 by 0.1\" --sweep a=10,20,30 -o grid/");
@@ -212,7 +215,8 @@ std::vector<std::string> take_foreign_words(std::vector<std::string>& words) {
     if (words[2] != "plan") return planned;
     std::vector<std::string> own(words.begin(), words.begin() + 3);
     for (std::size_t i = 3; i < words.size(); ++i) {
-        if (words[i] == "--help" || words[i] == "-h" || is_own_with_value(words[i])) {
+        if (words[i] == "--help" || words[i] == "-h" || words[i] == "--coarse" ||
+            is_own_with_value(words[i])) {
             own.push_back(words[i]);
         } else if (is_own(words[i])) {
             own.push_back(words[i]);

@@ -24,6 +24,7 @@ struct FarmOptions {
     std::vector<std::string> words;
     // plan
     std::optional<ImageSize> tile;
+    bool coarse = false; ///< a picture may be coarser than 2 pixels
     std::vector<SweepAxis> sweeps;
     std::string result;
     // submit

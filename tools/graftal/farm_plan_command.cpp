@@ -1,5 +1,8 @@
 #include <algorithm>
+#include <atomic>
+#include <cmath>
 #include <filesystem>
+#include <mutex>
 #include <set>
 
 #include <fmt/format.h>
@@ -7,12 +10,15 @@
 #include "compiler/import/importers.h"
 #include "compiler/session/shared_framing.h"
 #include "compiler/support/file.h"
+#include "compiler/support/printable.h"
 #include "runtime/farm/join_tiles.h"
 #include "runtime/farm/model_copy.h"
+#include "runtime/render/fit_picture.h"
 #include "runtime/render/frame_clock.h"
 #include "runtime/render/native_engine.h"
 #include "runtime/render/scene_files.h"
 #include "runtime/system/interruption.h"
+#include "runtime/system/made_folders.h"
 #include "runtime/system/process_memory.h"
 #include "tools/graftal/commands.h"
 #include "tools/graftal/farm_job.h"
@@ -58,12 +64,7 @@ std::vector<std::string> whole_command(const FarmOptions& farm) {
 /// What is wrong with options that are right for one run, or "".
 std::string refusal(const FarmOptions& farm, const Options& planned) {
     const RenderOptions& render = planned.render;
-    if (planned.operands.front() == "-") return "give the model as a file: its tasks read it again";
-    if (planned.watch || render.progressive)
-        return fmt::format("a task draws once, at its finest: leave out {}",
-                           planned.watch ? "--watch" : "--progressive");
-    if (!render.keep.empty() || !planned.dump_after.empty())
-        return "--keep and --dump-after are for one run: leave them out";
+    if (std::string problem = refusal_of_tasks(planned); !problem.empty()) return problem;
     if (farm.tile && render.tile) return "give --tiles or --tile, not both";
     if (farm.tile && planned.engine->name != native_engine.name)
         return "tiles need '--engine native': POV-Ray smooths the edges of a part otherwise than those of "
@@ -74,12 +75,52 @@ std::string refusal(const FarmOptions& farm, const Options& planned) {
         return fmt::format("--result: '{}': the name of a contact sheet must end in .png", farm.result);
     if (!farm.sweeps.empty() && (render.aovs || render.format == SampleFormat::linear16))
         return "the pictures of a sweep are PNGs for people: leave out --aovs and --linear";
+    const auto unwritable = [](const std::string& word) { return !is_printable(word); };
+    if (const auto word = std::ranges::find_if(farm.words, unwritable); word != farm.words.end())
+        return fmt::format("'{}': the words of a job are in UTF-8, without line ends and other control "
+                           "characters: rename the file",
+                           *word);
     return {};
 }
+
+/// Whoever does long work asks whether it is to end: meanwhile this shows how long it has taken.
+class ShownTime {
+  public:
+    ShownTime(ProgressBar& bar, CancelFlag asked) : bar_(bar), asked_(std::move(asked)) {}
+    CancelFlag flag() {
+        return CancelFlag(
+            [this] {
+                show();
+                return asked_.raised();
+            },
+            asked_.wake_descriptor());
+    }
+
+  private:
+    void show() {
+        const auto now = static_cast<long>(watch_.seconds());
+        if (now <= shown_ || !mutex_.try_lock()) return;
+        const std::lock_guard lock(mutex_, std::adopt_lock);
+        shown_ = now;
+        bar_.show(
+            fmt::format("fitting the picture to the work, {}", duration_text(static_cast<double>(now))));
+    }
+
+    ProgressBar& bar_;
+    CancelFlag asked_;
+    Stopwatch watch_;
+    std::mutex mutex_; ///< of the bar
+    std::atomic<long> shown_ = 0;
+};
 
 class Planning {
   public:
     explicit Planning(const Options& options) : options_(options), folder_(job_folder(options)) {}
+    ~Planning() {
+        if (began_ && !planned_) discard();
+    }
+    Planning(const Planning&) = delete;
+    Planning& operator=(const Planning&) = delete;
 
     int run() {
         const FarmOptions& farm = options_.farm;
@@ -92,7 +133,7 @@ class Planning {
         const Interruption interruption;
         cancel_ = interruption.flag();
         const int status = plan(*parsed.options);
-        if (status != exit_done) discard();
+        planned_ = status == exit_done;
         return interruption.signal() ? 128 + interruption.signal() : status;
     }
 
@@ -108,6 +149,7 @@ class Planning {
         if (Status status = make_folder(); !status.ok()) return fail(status);
         job_.kind = kind_of(options_.farm);
         job_.program = own_identity();
+        job_.home = folder_.identity();
         bar.show("copying the model...");
         if (const int status = copy(asked); status != exit_done) return status;
         name_result(asked);
@@ -136,23 +178,19 @@ class Planning {
         if (fs::exists(folder_.path(), error) && !fs::is_empty(folder_.path(), error))
             return Status::failure(fmt::format(
                 "'{}' holds other files: name a folder that is empty or not there", folder_.path()));
-        made_ = fs::create_directories(folder_.path(), error);
-        for (const std::string& path : {folder_.parts(), folder_.tasks(), folder_.model_folder()})
-            if (!error) fs::create_directories(path, error);
         began_ = true;
-        return error ? Status::failure(
-                           fmt::format("cannot make the folder '{}': {}", folder_.path(), error.message()))
-                     : Status();
+        for (const std::string& path : {folder_.parts(), folder_.tasks(), folder_.model_folder()})
+            if (Status status = made_.make(path); !status.ok()) return status;
+        return {};
     }
 
     /// Nothing stays of a job that was not planned to its end.
-    void discard() const {
+    void discard() {
         std::error_code ignored;
-        if (!began_) return;
         for (const std::string& path : {folder_.parts(), folder_.tasks(), folder_.model_folder(),
                                         folder_.commands(), folder_.manifest()})
             fs::remove_all(path, ignored);
-        if (made_) fs::remove(folder_.path(), ignored);
+        made_.take_back();
     }
 
     /// The session of the model itself tells what it is made of.
@@ -202,9 +240,15 @@ class Planning {
         if (job_.kind == JobKind::tiles && !view.shaped) // then the size is known before all work
             if (const int status = divide(view.size); status != exit_done) return status;
         CommandSession session(planned, planned.operands.front());
-        session.set_control({cancel_, {}});
+        ShownTime time(bar, cancel_);
+        session.set_control({time.flag(), {}});
         Compilation compilation;
-        const std::optional<PictureFit> fit = fit_natively(session, planned.render, compilation);
+        RenderOptions render = planned.render;
+        if (job_.kind == JobKind::tiles) allow_work(session, render, compilation);
+        std::optional<PictureFit> fit;
+        if (compilation.status.ok() && !compilation.diagnostics.has_errors())
+            fit = fit_natively(session, render, compilation);
+        bar.clear();
         if (const int status = conclude(planned, compilation); status != exit_done) return status;
         job_.task_seconds = fit->seconds;
         std::uint64_t pixels = whole_of(fit->size).pixels();
@@ -212,11 +256,40 @@ class Planning {
         if (job_.kind == JobKind::tiles) {
             job_.fit = fit;
             if (const int status = divide(fit->size); status != exit_done) return status;
+            if (refuse_coarse(*fit, render)) return exit_fault;
             pixels = whole_of(job_.tile).pixels();
             job_.task_seconds /= static_cast<double>(job_.tasks);
         }
         estimate_memory(pixels);
         return exit_done;
+    }
+
+    /// The work that `render` gives a picture goes to each million pixels of a large one. The one run that
+    /// does the same is told so.
+    void allow_work(CommandSession& session, RenderOptions& render, Compilation& compilation) {
+        constexpr double pixels_of_work = 1e6;
+        PreparedView view;
+        view.viewed = session.viewed(render.compile, compilation);
+        if (!view.viewed) return;
+        const double share = static_cast<double>(whole_of(view.viewed->view.size).pixels()) / pixels_of_work;
+        if (!(share > 1)) return;
+        view.detail = render.compile.detail;
+        const double seconds = std::ceil(share * plan_picture(view, render).detail.work_seconds);
+        render.limit_work(seconds);
+        job_.words.insert(job_.words.end(), {"--work", fmt::format("{}", seconds)});
+    }
+
+    /// Many hours of a farm are not for a picture that shows less than was asked for.
+    bool refuse_coarse(const PictureFit& fit, const RenderOptions& render) const {
+        constexpr double coarse_px = 2;
+        const double wanted_px = render.compile.detail.error_px;
+        if (options_.farm.coarse || !(fit.error_px > std::max(coarse_px, wanted_px))) return false;
+        complain(
+            fmt::format("this picture would leave out parts of up to {:.2g} pixels, for the work that it may "
+                        "take: allow each million pixels more with --work, plan a smaller picture, or allow "
+                        "this with --coarse",
+                        fit.error_px));
+        return true;
     }
 
     int divide(ImageSize size) {
@@ -302,7 +375,8 @@ class Planning {
     JobFolder folder_;
     CancelFlag cancel_;
     Job job_;
-    bool made_ = false, began_ = false;
+    MadeFolders made_;
+    bool began_ = false, planned_ = false;
 };
 
 } // namespace

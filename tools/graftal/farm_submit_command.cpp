@@ -6,7 +6,6 @@
 
 #include <fmt/format.h>
 
-#include "compiler/support/file.h"
 #include "runtime/farm/job_status.h"
 #include "runtime/farm/slurm.h"
 #include "runtime/farm/task_records.h"
@@ -186,8 +185,8 @@ class SlurmSubmission {
             after += ":" + id;
         const std::string script = slurm_folder(folder_) + "/merge.sh";
         const Status status =
-            write_text(script, fmt::format("#!/bin/sh\nexec {} --quiet\n",
-                                           shell_quoted({program, "farm", "merge", folder_.path()})));
+            folder_.write_file(script, fmt::format("#!/bin/sh\nexec {} --quiet\n",
+                                                   shell_quoted({program, "farm", "merge", folder_.path()})));
         if (!status.ok()) {
             complain(status.message());
             return false;

@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <filesystem>
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -8,10 +7,10 @@
 
 #include "compiler/session/stages.h"
 #include "compiler/session/stats.h"
-#include "compiler/support/file.h"
 #include "runtime/farm/model_copy.h"
 #include "runtime/farm/task_records.h"
 #include "runtime/render/stopwatch.h"
+#include "runtime/system/files_below.h"
 #include "runtime/system/interruption.h"
 #include "runtime/system/memory_limit.h"
 #include "runtime/system/process_memory.h"
@@ -26,8 +25,8 @@ namespace {
 /// While it lives, standard error goes to a file: what the task says, its libraries and the system too.
 class ErrorLog {
   public:
-    explicit ErrorLog(const std::string& path) {
-        const int file = ::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, S_IRUSR | S_IWUSR);
+    ErrorLog(const JobFolder& folder, const std::string& path) {
+        const int file = open_below(folder.path(), folder.name_of(path), O_WRONLY | O_CREAT | O_TRUNC);
         if (file < 0) return;
         saved_ = ::fcntl(STDERR_FILENO, F_DUPFD_CLOEXEC, 3);
         if (saved_ >= 0) ::dup2(file, STDERR_FILENO);
@@ -45,9 +44,9 @@ class ErrorLog {
     int saved_ = -1;
 };
 
-std::string last_line(const std::string& path) {
+std::string last_line(const JobFolder& folder, const std::string& path) {
     std::string text;
-    if (!read_text(path, text, 64u << 20).ok()) return {};
+    if (!folder.read_file(path, text, 64u << 20).ok()) return {};
     while (!text.empty() && text.back() == '\n')
         text.pop_back();
     return text.substr(text.rfind('\n') + 1);
@@ -90,8 +89,8 @@ class TaskRunner {
         TaskRecord record;
         int status = exit_done;
         {
-            const ErrorLog log(folder_.log(task));
-            status = draw(task, record);
+            const ErrorLog log(folder_, folder_.log(task));
+            status = check_place(task) ? draw(task, record) : exit_environment;
             if (status == exit_done) status = check(task, record);
         }
         record.done = status == exit_done;
@@ -101,7 +100,7 @@ class TaskRunner {
         record.ended = now_seconds();
         if (status > 128) return status; // interrupted, which is no result
         if (!record.done) {
-            record.message = last_line(folder_.log(task));
+            record.message = last_line(folder_, folder_.log(task));
             complain(fmt::format("task {} failed: {}", task, record.message));
         }
         if (const Status written = write_record(folder_, task, record); !written.ok()) {
@@ -112,6 +111,13 @@ class TaskRunner {
     }
 
   private:
+    /// Whether the part may be written where it belongs.
+    bool check_place(std::uint64_t task) const {
+        const Status status = folder_.check_file(folder_.part(job_, task));
+        if (!status.ok()) complain("cannot write the picture: " + status.message());
+        return status.ok();
+    }
+
     int draw(std::uint64_t task, TaskRecord& record) {
         std::vector<std::string> more;
         if (job_.kind == JobKind::sweep) {
@@ -122,7 +128,7 @@ class TaskRunner {
         }
         if (!planned_ || job_.kind == JobKind::sweep) {
             planned_ = planned_options(folder_, job_, more);
-            if (!planned_) return exit_usage;
+            if (!planned_) return exit_environment;
             planned_->quiet = true;
             if (options_.render.threads > 0) planned_->render.threads = options_.render.threads;
             constexpr std::uint64_t least_memory_bytes = 2ull << 30;
@@ -183,10 +189,13 @@ class TaskRunner {
             complain(status.message());
             return exit_environment;
         }
-        std::error_code error;
-        record.bytes = std::filesystem::file_size(path, error);
-        record.digest = file_digest(path);
-        return exit_done;
+        record.bytes = bytes_below(folder_.path(), folder_.name_of(path)).value_or(0);
+        record.digest = folder_.digest(path, job_.most_part_bytes());
+        if (!record.digest.empty()) return exit_done;
+        complain(
+            fmt::format("'{}' is larger than the {} bytes that a part may have: draw it in tiles, or smaller",
+                        path, job_.most_part_bytes()));
+        return exit_fault;
     }
 
     const Options& options_;

@@ -5,6 +5,8 @@
 
 #include "compiler/import/importers.h"
 #include "compiler/support/file.h"
+#include "compiler/support/printable.h"
+#include "runtime/system/made_folders.h"
 #include "tools/graftal/commands.h"
 #include "tools/graftal/report.h"
 
@@ -19,6 +21,7 @@ class Importing {
 
     int run() {
         const int status = import_file();
+        made_.take_back(); // where nothing was written
         conclude(options_, found_);
         return status;
     }
@@ -57,16 +60,13 @@ class Importing {
     static int list(const std::vector<ForeignModel>& models) {
         std::string names;
         for (const ForeignModel& model : models)
-            names += model.name + "\n";
+            names += escaped(model.name) + "\n";
         return print_output(names);
     }
 
     bool make_folder() {
-        std::error_code error;
-        std::filesystem::create_directories(output_, error);
-        if (error)
-            found_.status = Status::failure(fmt::format("cannot make '{}': {}", output_, error.message()));
-        return !error;
+        found_.status = made_.make(output_);
+        return found_.status.ok();
     }
 
     int import_all(const Importer& importer, const ForeignFile& foreign) {
@@ -118,6 +118,7 @@ class Importing {
     ModelPath path_;
     Compilation found_;
     std::set<std::string> taken_;
+    MadeFolders made_;
 };
 
 } // namespace

@@ -6,6 +6,7 @@
 #include "compiler/graph/print.h"
 #include "compiler/rifs/orbit_model.h"
 #include "compiler/support/file.h"
+#include "compiler/support/printable.h"
 #include "runtime/system/interruption.h"
 #include "runtime/system/process.h"
 #include "runtime/system/temporary_directory.h"
@@ -34,10 +35,11 @@ int check_one(const Options& options, const std::string& path) {
     if (!orbit && compilation.status.ok()) model = session.analysed(compile, compilation);
     const int status = conclude(options, compilation);
     if (status == exit_done && orbit && !options.quiet)
-        return print_output(fmt::format("{}: ok, an orbit of {} map{}: 'graftal points' draws it\n", path,
-                                        orbit->maps.size(), orbit->maps.size() == 1 ? "" : "s"));
+        return print_output(fmt::format("{}: ok, an orbit of {} map{}: 'graftal points' draws it\n",
+                                        escaped(path), orbit->maps.size(),
+                                        orbit->maps.size() == 1 ? "" : "s"));
     if (status != exit_done || !model || options.quiet) return status;
-    return print_output(fmt::format("{}: ok, {}\n", path, verdict_text(model->contraction)));
+    return print_output(fmt::format("{}: ok, {}\n", escaped(path), verdict_text(model->contraction)));
 }
 
 /// DOT -> SVG by Graphviz's own program, which writes beside the output and is renamed.

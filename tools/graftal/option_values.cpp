@@ -88,6 +88,11 @@ std::optional<StepsValue> parse_steps(std::string_view text, std::uint64_t most)
     return StepsValue{std::nullopt, *time};
 }
 
+std::optional<Magnification> parse_zoom(std::string_view text) {
+    const std::optional<Magnification> zoom = Magnification::parse(text);
+    return zoom && zoom->log2() >= std::log2(least_size) ? zoom : std::nullopt;
+}
+
 std::optional<std::pair<std::string, double>> parse_setting(std::string_view text) {
     const std::size_t equals = text.find('=');
     if (equals == std::string_view::npos || equals == 0) return std::nullopt;

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "compiler/scene/scene.h"
+#include "compiler/zoom/magnification.h"
 #include "runtime/trace/picture_tracer.h"
 
 namespace graftal {
@@ -44,6 +45,11 @@ struct StepsValue {
 
 /// "7" or "7.3", from 0 to `most`.
 std::optional<StepsValue> parse_steps(std::string_view text, std::uint64_t most);
+
+/// As Magnification::parse(), and no smaller than a model may be.
+std::optional<Magnification> parse_zoom(std::string_view text);
+/// The values that parse_zoom() takes, in words.
+inline constexpr const char* zoom_values = "a number of at least 1e-100, such as 1e100 or 2^330";
 
 /// "NAME=VALUE" with a finite number.
 std::optional<std::pair<std::string, double>> parse_setting(std::string_view text);

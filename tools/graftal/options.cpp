@@ -339,7 +339,7 @@ std::string refusal_of_size(const Options& options, bool in_parts) {
 }
 
 /// What is wrong with options that are each right, or "".
-std::string complete(Options& options, bool in_parts) {
+std::string complete_command(Options& options, bool in_parts) {
     if (options.command == Command::farm) {
         options.engine = &native_engine;
         return complete_farm(options);
@@ -377,6 +377,13 @@ std::string complete(Options& options, bool in_parts) {
         return fmt::format("'{}': the name of a graph's drawing must end in .dot or .svg",
                            options.render.output);
     return {};
+}
+
+std::string complete(Options& options, bool in_parts) {
+    std::string problem = refusal_of_folder(options); // before all that is said of a file's name
+    if (problem.empty()) problem = complete_command(options, in_parts);
+    if (problem.empty()) problem = refusal_of_folder(options); // a name that the model gave
+    return problem.empty() ? refusal_of_names(options) : problem;
 }
 
 } // namespace

@@ -4,6 +4,7 @@
 #include <set>
 #include <vector>
 
+#include "compiler/support/printable.h"
 #include "tools/graftal/option_values.h"
 
 namespace graftal {
@@ -32,7 +33,8 @@ std::string picture_description(const CLI::App& command, const Engine& engine) {
             words.push_back(values[i]);
         }
     }
-    return shell_quoted(words);
+    const std::string text = shell_quoted(words);
+    return escaped(text, text.size());
 }
 
 } // namespace graftal

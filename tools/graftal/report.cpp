@@ -23,7 +23,7 @@ constexpr std::size_t longest_complaint = 2000;
 } // namespace
 
 void say(const std::string& text) {
-    std::fputs(text.c_str(), stderr);
+    std::fputs(escaped_lines(text).c_str(), stderr);
 }
 
 void complain(std::string_view text) {

@@ -10,7 +10,7 @@
 
 namespace graftal {
 
-/// TEXT on standard error, which may be closed.
+/// TEXT on standard error, which may be closed: lines, with control characters escaped.
 void say(const std::string& text);
 
 /// "graftal: TEXT" on standard error.

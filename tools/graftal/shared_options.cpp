@@ -8,6 +8,7 @@
 
 #include "compiler/passes/pipeline.h"
 #include "compiler/support/number_range.h"
+#include "compiler/support/printable.h"
 #include "tools/graftal/option_values.h"
 #include "tools/graftal/sweep_values.h"
 #include "tools/graftal/usage_errors.h"
@@ -171,7 +172,7 @@ void add_camera(CLI::App& app, Options& options) {
         app, options, "--zoom", "F",
         "Enlarge F times, such as 1e100 or 2^330, around the part at --at, or else the point that the camera "
         "looks at",
-        "a number above 0, such as 1e100 or 2^330", Magnification::parse, parse_zoom_sweep,
+        zoom_values, parse_zoom, parse_zoom_sweep,
         [&](Magnification zoom) { compile.view.zoom.zoom = zoom; });
 }
 
@@ -308,6 +309,53 @@ void add_drawing(CLI::App& app, Options& options) {
            "--antialias", antialias, "Smooth edges with up to 4^(N-1) samples per pixel, or off (default 2)")
         ->type_name("off|N")
         ->take_last();
+}
+
+namespace {
+
+std::string usual_ending(Command command) {
+    switch (command) {
+    case Command::compile:
+        return ".pov";
+    case Command::export_model:
+        return ".glb";
+    case Command::graph:
+        return ".svg";
+    default:
+        return ".png";
+    }
+}
+
+/// Whether an output names a folder: one that is there, or one by the slash at its end.
+bool names_folder(const std::string& output) {
+    std::error_code error;
+    return output.ends_with('/') || std::filesystem::is_directory(output, error);
+}
+
+} // namespace
+
+std::string refusal_of_folder(Options& options) {
+    std::string& output = options.render.output;
+    if (options.command == Command::animate || options.command == Command::farm || !names_folder(output))
+        return {};
+    if (options.command != Command::import_foreign)
+        return fmt::format(
+            "'{}' is a folder: name a file in it, such as '-o {}'", output,
+            (std::filesystem::path(output) / ("NAME" + usual_ending(options.command))).string());
+    if (!output.ends_with('/')) output += '/';
+    return {};
+}
+
+std::string refusal_of_names(const Options& options) {
+    const std::string* const names[] = {&options.render.output, &options.render.keep, &options.points.card,
+                                        &options.farm.folder, &options.farm.result};
+    for (const std::string* const name : names)
+        if (!is_printable(*name))
+            return fmt::format(
+                "'{}': a name that graftal writes is in UTF-8, without line ends and other control "
+                "characters: choose another",
+                *name);
+    return {};
 }
 
 } // namespace graftal

@@ -43,4 +43,12 @@ CLI::Option* add_bits(CLI::App& app, Options& options);
 /// What those take that make pictures.
 void add_drawing(CLI::App& app, Options& options);
 
+/// What is wrong with an output that is a folder, or "". `import` writes into a folder, and `animate` writes
+/// one; other outputs are files.
+std::string refusal_of_folder(Options& options);
+
+/// What is wrong with the name of something that the command writes, or "". Names go into files of many
+/// formats and to terminals: a line end in one would be a line of its own there.
+std::string refusal_of_names(const Options& options);
+
 } // namespace graftal

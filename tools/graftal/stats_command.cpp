@@ -13,8 +13,9 @@ int run_stats(const Options& options) {
     const std::shared_ptr<const AnalysedModel> model = session.analysed(compile, compilation, true);
     const int status = conclude(options, compilation);
     if (!model || status != exit_done) return status;
-    const auto text = options.json ? stats_json : stats_text;
-    return print_output(text(*model, levels_of(*model, compile.lower.steps), compilation.sources));
+    const std::optional<unsigned> steps = levels_of(*model, compile.lower.steps);
+    return options.json ? print_output(stats_json(*model, steps, compilation.sources))
+                        : print_output(stats_text(*model, steps, compilation.sources));
 }
 
 } // namespace graftal

@@ -109,7 +109,7 @@ std::optional<Sweep> parse_setting_sweep(std::string_view text) {
 std::optional<Sweep> parse_zoom_sweep(std::string_view text) {
     const auto range = parse_range(text);
     if (!range) return std::nullopt;
-    const auto from = Magnification::parse(range->first), to = Magnification::parse(range->second);
+    const auto from = parse_zoom(range->first), to = parse_zoom(range->second);
     if (!from || !to) return std::nullopt;
     return Sweep{"--zoom", [from = from->log2(), to = to->log2()](double t, StageOptions& options) {
                      const double log2 = swept(from, to, t);

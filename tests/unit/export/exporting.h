@@ -1,6 +1,8 @@
 #pragma once
 
+#include <filesystem>
 #include <optional>
+#include <set>
 #include <string>
 
 #include <gtest/gtest.h>
@@ -33,6 +35,19 @@ class Exporting {
         if (!prepared) return std::nullopt;
         return build_scene(*prepared, viewed->view, resolved(stages.detail, *viewed), meshes, {}, limits,
                            no_control(), compilation.diagnostics);
+    }
+
+    void set_cancel(CancelFlag cancel) { session_->set_control({std::move(cancel), {}}); }
+
+    /// The names in the folder, separated by blanks.
+    std::string files() const {
+        std::set<std::string> names;
+        for (const auto& entry : std::filesystem::directory_iterator(folder_.path()))
+            names.insert(entry.path().filename().string());
+        std::string text;
+        for (const std::string& name : names)
+            text += (text.empty() ? "" : " ") + name;
+        return text;
     }
 
     /// What was written, or nothing.

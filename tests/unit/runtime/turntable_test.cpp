@@ -1,6 +1,8 @@
 // The frames of an animation go through one session: what does not move is made once.
 
+#include <algorithm>
 #include <filesystem>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -96,6 +98,39 @@ TEST_F(Turntable, EndsSoonWhereItIsCancelled) {
     EXPECT_EQ(outcome.compilation.status.message(), "interrupted");
     EXPECT_EQ(outcome.drawn, 3u);
     EXPECT_EQ(drawing, 3u);
+}
+
+/// A film that grows is estimated by its first frame, one in the middle and its last.
+TEST_F(Turntable, AFilmIsEstimatedAfterThreeFrames) {
+    options_.frames = 20;
+    options_.turn_deg = 0;
+    std::vector<double> drawn; // at what time of the sweep
+    options_.sweeps.push_back({"--steps", [&](double t, StageOptions& options) {
+                                   options.lower.steps = static_cast<unsigned>(1 + 3 * t);
+                                   drawn.push_back(t);
+                                   return std::string("--steps");
+                               }});
+    std::vector<std::size_t> shown;
+    options_.on_progress = [&](const AnimationProgress& progress) {
+        if (progress.stage != AnimationProgress::Stage::drawing || progress.fraction) return;
+        if (progress.frame == 0) drawn.clear(); // all before was measured
+        shown.push_back(progress.frame);
+    };
+    std::vector<std::size_t> estimates; // how many frames were drawn then
+    options_.on_estimate = [&](const AnimationEstimate& estimate) {
+        EXPECT_EQ(estimate.frames, 20u);
+        EXPECT_GT(estimate.seconds, 0);
+        estimates.push_back(shown.size());
+    };
+    animated("gasket.inst", gasket);
+    EXPECT_EQ(estimates, std::vector<std::size_t>{3});
+    ASSERT_GE(drawn.size(), 4u);
+    EXPECT_EQ(drawn[0], 0);
+    EXPECT_NEAR(drawn[1], 0.5, 0.05);
+    EXPECT_EQ(drawn[2], 1);
+    EXPECT_NEAR(drawn[3], 1.0 / 19, 1e-12);
+    EXPECT_EQ(shown.size(), 20u);
+    EXPECT_TRUE(std::is_sorted(shown.begin(), shown.end())) << "whoever looks on sees frames counted";
 }
 
 } // namespace

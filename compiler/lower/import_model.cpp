@@ -14,6 +14,7 @@
 #include "compiler/primitives/mesh_file.h"
 #include "compiler/support/check.h"
 #include "compiler/support/file.h"
+#include "compiler/support/stage_price.h"
 
 namespace graftal {
 
@@ -206,6 +207,11 @@ std::string free_prefix(const Graph& graph, std::string_view name) {
     return fmt::format("{}{}", stem, last + 1);
 }
 
+void charge_copy(const Graph& model, Lowering& lowering) {
+    lowering.meter.add(model.objects.size(), StagePrice::copied_object);
+    lowering.meter.add(instance_count(model), StagePrice::copied_instance);
+}
+
 bool has_room(const Graph& into, const Graph& model, Span span, Lowering& lowering) {
     return within_limits(into.objects.size() + model.objects.size(),
                          instance_count(into) + instance_count(model), span, lowering);
@@ -254,6 +260,19 @@ bool within_limits(std::size_t objects, std::size_t instances, Span span, Loweri
     return false;
 }
 
+bool leaves_out_colours(std::size_t objects, std::size_t instances, double work_left, Span place,
+                        Lowering& lowering) {
+    if (!lowering.options.may_leave_out_colours) return false;
+    const double copies = StagePrice::copied_object * static_cast<double>(objects) +
+                          StagePrice::copied_instance * static_cast<double>(instances);
+    if (copies + work_of_graph(objects, instances) <= work_left) return false;
+    lowering.notes.limited_by_work = true;
+    lowering.diagnostics.note(
+        place, "graftal leaves the hues and inks out here, since their many objects take more work than "
+               "--work allows: they change no shape, no bound and no count of leaves");
+    return true;
+}
+
 std::optional<FileId> read_model(const UseStatement& use, Lowering& lowering) {
     if (!check_path(use.path_span, use.path, lowering)) return std::nullopt;
     if (++lowering.use_count > max_uses) {
@@ -266,7 +285,7 @@ std::optional<FileId> read_model(const UseStatement& use, Lowering& lowering) {
 std::optional<ObjectId> import_model(Graph& into, const UseStatement& use, Lowering& lowering) {
     const std::shared_ptr<const Graph> model = load(use, {}, {}, lowering);
     if (!model || !has_room(into, *model, use.path_span, lowering)) return std::nullopt;
-    lowering.meter.add(model->objects.size());
+    charge_copy(*model, lowering);
     return append_objects(into, *model, use.name.text, append_materials(into, *model, use.name.text, false));
 }
 
@@ -274,7 +293,7 @@ std::optional<ObjectId> import_member(Graph& into, const UseStatement& use, cons
                                       Lowering& lowering) {
     const std::shared_ptr<const Graph> model = load(use, inner, {}, lowering);
     if (!model || !has_room(into, *model, use.path_span, lowering)) return std::nullopt;
-    lowering.meter.add(model->objects.size());
+    charge_copy(*model, lowering);
     return append_objects(into, *model, free_prefix(into, use.name.text),
                           append_materials(into, *model, use.name.text, true));
 }
@@ -290,7 +309,7 @@ std::optional<ObjectId> import_part(Graph& into, const std::unordered_map<std::s
     if (lowering.part_missing) return std::nullopt;
     const std::shared_ptr<const Graph> model = load(use, {}, part, lowering);
     if (!model || !has_room(into, *model, use.path_span, lowering)) return std::nullopt;
-    lowering.meter.add(model->objects.size());
+    charge_copy(*model, lowering);
     return append_objects(into, *model, use.name.text, append_materials(into, *model, use.name.text, false),
                           known);
 }

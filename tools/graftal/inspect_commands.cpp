@@ -24,7 +24,7 @@ std::string verdict_text(const Contraction& contraction) {
 
 int check_one(const Options& options, const std::string& path) {
     Compilation compilation;
-    StageOptions compile = options.render.compile;
+    StageOptions compile = inspecting(options, true);
     compile.lower.may_be_orbit = true;
     CommandSession session(options, path);
     std::shared_ptr<const OrbitModel> orbit;
@@ -80,7 +80,7 @@ int run_print(const Options& options) {
     Compilation compilation;
     CommandSession session(options, options.operands.front());
     const std::shared_ptr<const AnalysedModel> model =
-        session.analysed(options.render.compile, compilation, true);
+        session.analysed(inspecting(options), compilation, true);
     const int status = conclude(options, compilation);
     return model && status == exit_done ? print_output(print(model->graph)) : status;
 }
@@ -89,7 +89,7 @@ int run_graph(const Options& options) {
     Compilation compilation;
     CommandSession session(options, options.operands.front());
     const std::shared_ptr<const AnalysedModel> model =
-        session.analysed(options.render.compile, compilation, true);
+        session.analysed(inspecting(options), compilation, true);
     const Interruption interruption;
     if (model) {
         const std::string dot = emit_dot(model->graph, model->components);

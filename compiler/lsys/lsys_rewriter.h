@@ -84,7 +84,7 @@ class LsysRewriter {
     /// Who composes has made a part of so many instances.
     void work_of_part(std::size_t instances) const {
         if (meter_)
-            meter_->add(1, StagePrice::part + StagePrice::copied_instance * static_cast<double>(instances));
+            meter_->add(1, StagePrice::part + StagePrice::part_instance * static_cast<double>(instances));
     }
     /// The seconds of work that are left.
     double work_left() const { return meter_ ? meter_->left() : StageWork::unlimited; }

@@ -186,7 +186,6 @@ bool Session::need_lowered(const StageOptions& options, bool wanted, Compilation
             model && model->notes.derivation ? &*model->notes.derivation : nullptr;
         reads_steps_ = !model || derivation;
         reads_time_ = !model || (derivation && derivation->timed);
-        if (getenv("DBGWORK")) fprintf(stderr, "DBGWORK lower %.3f\n", work.seconds());
         limited_by_work_ = !model || model->notes.limited_by_work;
         if (model) meshes_ = model->notes.meshes;
         finish(lowered_, std::move(key), std::move(model), std::move(findings));
@@ -225,8 +224,6 @@ bool Session::need_analysed(const StageOptions& options, bool wanted, Compilatio
         std::optional<AnalysedModel> model =
             analyse(std::move(lowered), options.view.zoom.at, {options.stop_after, after_pass_}, findings,
                     compilation.times, charging(work));
-        if (getenv("DBGWORK"))
-            fprintf(stderr, "DBGWORK lower %.3f all %.3f\n", model ? 0.0 : 0.0, work.seconds());
         finish(analysed_, std::move(key), std::move(model), std::move(findings));
     }
     compilation.diagnostics = analysed_.findings;

@@ -10,9 +10,11 @@ struct StagePrice {
     // Lowering
     static constexpr double word = 1e-7;          ///< of a text, each time that it is read to make an object
     static constexpr double module = 5e-8;        ///< of an L-system, each time that one is looked at
-    static constexpr double drawn_module = 3e-7;  ///< by itself, into a run
-    static constexpr double part = 2e-5;          ///< composed of modules
-    static constexpr double random_part = 8e-5;   ///< of a random model, until it is bounded
+    static constexpr double new_module = 2e-7;    ///< with parameters that none before it has
+    static constexpr double drawn_module = 4e-7;  ///< by itself, into a run
+    static constexpr double part = 4e-6;          ///< composed of modules
+    static constexpr double part_instance = 3e-7; ///< of such a part
+    static constexpr double random_part = 6e-5;   ///< of a random model, until it is bounded
     static constexpr double draw = 5e-8;          ///< a random number
     static constexpr double copied_object = 5e-6; ///< such as one under another hue
     static constexpr double copied_instance = 1.5e-6; ///< of such an object

@@ -67,11 +67,11 @@ TEST(StageWork, ManyCopiesEndAtTheLimit) {
         "copies.inst",
         "object a { 1000 * { translate: 1, 0, 0 } 1000 * { translate: 0, 1, 0 rotate: y, 1 } sphere "
         "scale: random(0.3, 0.8) }\n",
-        "passes");
+        "lower");
 }
 
 TEST(StageWork, ManyHuesEndAtTheLimit) {
-    expect_refused("hues.inst", hued(4, 800, "hue: 1"), "lower");
+    expect_refused("hues.inst", hued(4, 2500, "hue: 1"), "lower");
 }
 
 TEST(StageWork, WhoAsksForShapesGetsThemWithoutTheHues) {
@@ -90,11 +90,11 @@ TEST(StageWork, HuesWithinTheLimitStay) {
     const Analysis analysis = analysed("hues.inst", hued(3, 4, "hue: 10"), 2, false);
     ASSERT_TRUE(analysis.model);
     EXPECT_EQ(analysis.messages, "");
-    EXPECT_GT(analysis.model->graph.objects.size(), 100u);
+    EXPECT_EQ(analysis.model->graph.objects.size(), 38u) << "one for each hue that comes about";
 }
 
 TEST(StageWork, RandomPlantsGetFewerVariants) {
-    const std::string text = "lsys a {\n  angle 1\n  steps 60\n  axiom A\n  A -> BAB\n  B -> ABB : 0.289\n"
+    const std::string text = "lsys a {\n  angle 1\n  steps 600\n  axiom A\n  A -> BAB\n  B -> ABB : 0.289\n"
                              "  B -> F(.5)[+F]AAF(.5) : 0.711\n}\n";
     const Analysis limited = analysed("chance.lsys", text, 2), whole = analysed("chance.lsys", text, 1e6);
     ASSERT_TRUE(limited.model);
@@ -125,7 +125,7 @@ TEST(StageWork, ALimitThatSufficesChangesNothing) {
 TEST(StageWork, ASessionGoesOnWithALargerLimit) {
     StageOptions options;
     options.detail.work_seconds = 2;
-    Session session("hues.inst", hued(4, 100, "hue: 1"));
+    Session session("hues.inst", hued(4, 800, "hue: 1"));
     Compilation refused, allowed;
     EXPECT_EQ(session.analysed(options, refused), nullptr);
     EXPECT_TRUE(refused.diagnostics.has_errors());
@@ -140,7 +140,7 @@ TEST(StageWork, ColoursDoNotMoveBounds) {
     const Analysis plain = analysed("hues.inst", hued(4, 40, ""), 1e6);
     ASSERT_TRUE(coloured.model);
     ASSERT_TRUE(plain.model);
-    EXPECT_GT(coloured.model->graph.objects.size(), 300 * plain.model->graph.objects.size());
+    EXPECT_GT(coloured.model->graph.objects.size(), 50 * plain.model->graph.objects.size());
     const Box a = coloured.model->bounds[coloured.model->graph.root].box,
               b = plain.model->bounds[plain.model->graph.root].box;
     for (int axis = 0; axis < 3; ++axis) {

@@ -30,7 +30,8 @@ int check_one(const Options& options, const std::string& path) {
     std::shared_ptr<const OrbitModel> orbit;
     if (const auto lowered = session.lowered(compile, compilation)) orbit = lowered->notes.orbit;
     std::shared_ptr<const AnalysedModel> model;
-    if (!orbit && compilation.status.ok()) model = session.analysed(compile, compilation);
+    const bool failed = !compilation.status.ok() || compilation.diagnostics.has_errors();
+    if (!orbit && !failed) model = session.analysed(compile, compilation);
     const int status = conclude(options, compilation);
     if (status == exit_done && orbit && !options.quiet)
         return print_output(fmt::format("{}: ok, an orbit of {} map{}: 'graftal points' draws it\n", path,

@@ -15,6 +15,7 @@
 #include "compiler/graph/planes.h"
 #include "compiler/primitives/primitive.h"
 #include "compiler/support/check.h"
+#include "compiler/support/stage_price.h"
 
 namespace graftal {
 
@@ -45,17 +46,23 @@ class Effort {
     }
 
   private:
-    std::uint64_t left_ = 8'000'000, spent_ = 0;
+    std::uint64_t left_ = most_pieces, spent_ = 0;
     std::uint64_t queries_left_;
 };
 
-/// So many faces will be looked for.
-std::uint64_t queries(const Graph& graph, const Components& components) {
+/// The faces that will be looked for, with `weight` of each object.
+template<typename Weight>
+std::uint64_t queries(const Graph& graph, const Components& components, const Weight& weight) {
     std::uint64_t count = 0;
     for (ObjectId id = 0; id < graph.objects.size(); ++id)
         if (!graph.objects[id].primitive)
-            count += faces * (components.cyclic[components.component_of[id]] ? passes_of_cycle.size() : 1);
+            count += faces * (components.cyclic[components.component_of[id]] ? passes_of_cycle.size() : 1) *
+                     weight(graph.objects[id]);
     return count;
+}
+
+std::uint64_t queries(const Graph& graph, const Components& components) {
+    return queries(graph, components, [](const Object&) { return std::uint64_t{1}; });
 }
 
 class Bounder {
@@ -64,7 +71,7 @@ class Bounder {
             const Control& control)
         : graph_(graph), components_(components), contraction_(contraction), outers_(graph.objects.size()),
           unbounded_(plane_holders(graph, components)), search_(graph, outers_),
-          effort_(queries(graph, components)), meter_(control, "bounding", pieces_a_look),
+          effort_(queries(graph, components)), meter_(control, "bounding", pieces_a_look, StagePrice::piece),
           pieces_of_ball_(std::clamp<std::size_t>(400'000 / graph.objects.size(), 4, 400)),
           wants_ball_(graph.objects.size(), true) {}
 
@@ -93,6 +100,7 @@ class Bounder {
 
   private:
     void bound_component(const CycleGraph& cycle) {
+        meter_.add(cycle.edges.size(), StagePrice::cycle_edge);
         bound_cycle(cycle, components_, contraction_.certificate, outers_);
         for (const double tolerance : passes_of_cycle)
             for (const ObjectId id : cycle.objects)
@@ -141,6 +149,7 @@ class Bounder {
 
     void bound_run(ObjectId id, std::shared_ptr<const Run> run) {
         Outer& outer = outers_[id];
+        meter_.add(run->size());
         outer.run = std::make_shared<const RunBounds>(std::move(run));
         outer.box = outer.run->box();
         outer.set_ball(outer.run->ball());
@@ -184,6 +193,7 @@ class Bounder {
 
     void find_ball(ObjectId id) {
         if (!wants_ball_[id]) return;
+        meter_.add(graph_.objects[id].instances.size() + pieces_of_ball_);
         Ball ball = tight_ball(graph_, outers_, id, pieces_of_ball_);
         ball.radius = within_range(ball.radius * (1 + 4e-12) + 4e-15 * glm::length(ball.centre));
         if (ball.radius < outers_[id].ball().radius) outers_[id].set_ball(ball);
@@ -229,6 +239,10 @@ void require_proof(const Contraction& contraction) {
 ObjectBounds primitive_bounds(const Primitive& primitive) {
     const PrimitiveTraits& traits = traits_of(primitive);
     return {traits.box(primitive), traits.ball(primitive), !traits.bounded, nullptr};
+}
+
+std::uint64_t fewest_pieces(const Graph& graph, const Components& components) {
+    return queries(graph, components, [](const Object& object) { return object.instances.size(); });
 }
 
 std::vector<ObjectBounds> bound_objects(const Graph& graph, const Components& components,

@@ -25,6 +25,10 @@ struct ObjectBounds {
 /// The box of a primitive (exact), and its smallest ball. A plane has neither.
 ObjectBounds primitive_bounds(const Primitive& primitive);
 
+/// Pieces that the search for the faces of all boxes may look at, and the fewest that it takes.
+inline constexpr std::uint64_t most_pieces = 8'000'000;
+std::uint64_t fewest_pieces(const Graph& graph, const Components& components);
+
 /// Bounds by object, masters before their users: ending objects from exact support functions of what they
 /// hold; unending ones by best-first support functions over balls that are first made invariant in the
 /// certificate's metric. Terminals do not count: the bounds are those of the limit set. Requires a

@@ -9,6 +9,7 @@
 #include "compiler/analysis/cycle_mean.h"
 #include "compiler/analysis/gripenberg.h"
 #include "compiler/analysis/metric.h"
+#include "compiler/support/stage_price.h"
 
 namespace graftal {
 
@@ -161,16 +162,18 @@ void take_in(Contraction& result, const CycleGraph& cycle, const Findings& findi
 
 } // namespace
 
-Contraction decide_contraction(const Graph& graph, const Components& components) {
+Contraction decide_contraction(const Graph& graph, const Components& components, const Control& control) {
     Contraction result;
     if (!components.any_cycle()) return result;
     result.certificate.metric.assign(graph.objects.size(), Mat3(1.0));
     result.certificate.log_weight.assign(graph.objects.size(), 0.0);
     const std::vector<std::uint32_t> places = places_in_components(components);
     EffortLeft effort;
+    WorkMeter meter(control, "contraction", 1, StagePrice::cycle_edge);
     for (std::uint32_t c = 0; c < components.members.size(); ++c) {
         if (!components.cyclic[c]) continue;
         const CycleGraph cycle = cycle_graph(graph, components, places, c);
+        meter.add(cycle.edges.size());
         take_in(result, cycle, examine(cycle, effort));
     }
     result.certificate.rate *= 1 + rounding_room(result.certificate);

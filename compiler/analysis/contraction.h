@@ -5,6 +5,7 @@
 
 #include "compiler/graph/components.h"
 #include "compiler/graph/graph.h"
+#include "compiler/support/control.h"
 
 namespace graftal {
 
@@ -46,7 +47,8 @@ struct Contraction {
 /// Decides by the cycle mean of norms, one linear solve for metrics, then Gripenberg's branch and bound over
 /// paths (research notes, Karp 1978, Gripenberg 1996). Effort is bounded: what it cannot settle it calls
 /// undecided, with the interval reached. A refutation names a cycle whose spectral radius is at least 1.
-Contraction decide_contraction(const Graph& graph, const Components& components);
+Contraction decide_contraction(const Graph& graph, const Components& components,
+                               const Control& control = no_control());
 
 /// Re-checks a certificate from the graph alone, by other means than those that found it: eigenvalues of
 /// M^T M with a margin for rounding, over all paths as far as needed. False, too, where that takes over

@@ -11,6 +11,7 @@
 #include "compiler/lower/permutation.h"
 #include "compiler/support/number.h"
 #include "compiler/support/number_range.h"
+#include "compiler/support/stage_price.h"
 
 namespace graftal {
 
@@ -83,6 +84,7 @@ void InstLowerer::lower_copies(const InstGroup& group, std::size_t depth, const 
         } else {
             if (!within_limits(graph_.objects.size(), ++instance_count_, repeat.span, lowering_))
                 stopped_ = true;
+            lowering_.meter.add(1, StagePrice::copied_instance);
             object.add({*shared, copy.parent_from_child, copy.tint, {}, repeat.span}, copy);
         }
         if (scratch_.has_errors()) return; // the other copies have them too

@@ -12,6 +12,7 @@
 
 #include "compiler/inst/variant_name.h"
 #include "compiler/support/hue.h"
+#include "compiler/support/stage_price.h"
 
 namespace graftal {
 
@@ -43,17 +44,19 @@ class HueStates {
         for (const Material& material : graph_.materials)
             material_names_.insert(material.name);
         instances_ = instance_count(graph_);
+        work_left_ = lowering.meter.left();
         find_coloured();
     }
 
     bool run() {
         for (const auto& [id, turns] : hues_)
             turn_object(id, id, {});
-        while (!open_.empty() && good_) {
+        while (!open_.empty() && good_ && !left_out_) {
             const auto [from, turn, id] = open_.front();
             open_.pop_front();
             turn_object(from, id, turn);
         }
+        if (left_out_) graph_ = std::move(source_);
         return good_;
     }
 
@@ -105,6 +108,8 @@ class HueStates {
     void turn_object(ObjectId from, ObjectId id, HueTurn turn) {
         const auto hues = hues_.find(from);
         const Object& source = source_.objects[from];
+        lowering_.meter.add(1, StagePrice::copied_object);
+        lowering_.meter.add(source.instances.size(), StagePrice::copied_instance);
         std::vector<Instance> instances = source.instances;
         for (std::size_t i = 0; i < instances.size() && good_; ++i)
             turn_instance(instances[i], hues == hues_.end() ? HueTurn() : hues->second.instances[i], turn);
@@ -131,6 +136,9 @@ class HueStates {
         const auto [known, fresh] = states_.try_emplace({from, turn}, 0);
         if (!fresh) return known->second;
         instances_ += source_.objects[from].instances.size();
+        if (!left_out_)
+            left_out_ = leaves_out_colours(graph_.objects.size(), instances_, work_left_, place_, lowering_);
+        if (left_out_) return known->second = from;
         const std::size_t most = lowering_.options.max_objects;
         if (graph_.objects.size() >= most || instances_ > most * max_instances_per_object) {
             fail(fmt::format("the turns of hues make more than {} objects or {} instances", most,
@@ -171,7 +179,7 @@ class HueStates {
     }
 
     Graph& graph_;
-    const Graph source_;
+    Graph source_; ///< as it was
     const HueTable& hues_;
     Span place_;
     Lowering& lowering_;
@@ -183,6 +191,8 @@ class HueStates {
     std::map<std::string, unsigned> numbers_;
     std::set<MaterialId> pictures_; ///< that were noted
     std::size_t instances_ = 0;
+    double work_left_; ///< at the beginning
+    bool left_out_ = false;
     bool good_ = true;
 };
 

@@ -40,8 +40,8 @@ using HueTable = std::map<ObjectId, ObjectHues>;
 /// Carries out the turns. If paths reach an object with different sums of turns, the graph gets one copy of
 /// it for each sum, with turned tints and materials. Sums are exact fractions, so a cycle that turns by p/q
 /// has q states, and its colours repeat for ever. Greys stay, and so do the pictures of materials, with a
-/// note. Errors, at `place`: more objects than the options allow, and sums without a small common
-/// denominator.
+/// note. Where there would be too many for the work allowed, leaves_out_colours() may leave the graph as it
+/// is. Errors, at `place`: more objects than the options allow, and sums without a small common denominator.
 bool apply_hues(Graph& graph, const HueTable& hues, Span place, Lowering& lowering);
 
 } // namespace graftal

@@ -15,6 +15,7 @@
 #include "compiler/support/hue.h"
 #include "compiler/support/number.h"
 #include "compiler/support/srgb.h"
+#include "compiler/support/stage_price.h"
 
 namespace graftal {
 
@@ -80,10 +81,11 @@ class FreeNames {
 /// The objects under their inks.
 class InkStates {
   public:
-    InkStates(const Graph& source, const InkTable& inks, const HueTable& hues, Lowering& lowering)
-        : source_(source), graph_(source), inks_(inks), hues_(hues), most_(lowering.options.max_objects),
+    InkStates(const Graph& source, const InkTable& inks, const HueTable& hues, Span place, Lowering& lowering)
+        : source_(source), graph_(source), inks_(inks), hues_(hues), place_(place),
+          most_(lowering.options.max_objects),
           most_new_(std::min(most_, std::max(most_new_objects, 2 * source.objects.size()))),
-          lowering_(lowering) {
+          lowering_(lowering), work_left_(lowering.meter.left()) {
         for (const Object& object : graph_.objects)
             names_.take(object.name);
         for (const Material& material : graph_.materials)
@@ -95,7 +97,7 @@ class InkStates {
     bool run() {
         for (const auto& [id, changes] : inks_)
             write(id, id, {});
-        while (!open_.empty() && good_) {
+        while (!open_.empty() && good_ && !left_out_) {
             const Open next = open_.front();
             open_.pop_front();
             write(next.from, next.id, next.ink);
@@ -103,6 +105,7 @@ class InkStates {
         return good_;
     }
 
+    bool left_out() const { return left_out_; }
     bool merged() const { return merged_; }
     Graph take_graph() { return std::move(graph_); }
     HueTable take_hues() { return std::move(hues_); }
@@ -130,7 +133,8 @@ class InkStates {
     void write(ObjectId from, ObjectId id, std::optional<Ink> ink) {
         const auto changes = inks_.find(from);
         const Object& source = source_.objects[from];
-        lowering_.meter.add(source.instances.size());
+        lowering_.meter.add(1, StagePrice::copied_object);
+        lowering_.meter.add(source.instances.size(), StagePrice::copied_instance);
         std::vector<Instance> instances = source.instances;
         static const InkChange none;
         for (std::size_t i = 0; i < instances.size() && good_; ++i)
@@ -164,6 +168,9 @@ class InkStates {
             return known->second = nearest(others, ink);
         }
         instances_ += source_.objects[from].instances.size();
+        if (!left_out_)
+            left_out_ = leaves_out_colours(graph_.objects.size(), instances_, work_left_, place_, lowering_);
+        if (left_out_) return from;
         if (graph_.objects.size() >= most_ || instances_ > most_ * max_instances_per_object) {
             good_ = false;
             return from;
@@ -213,9 +220,11 @@ class InkStates {
     Graph graph_;
     const InkTable& inks_;
     HueTable hues_;
+    Span place_;
     std::size_t most_;
     std::size_t most_new_;
     Lowering& lowering_;
+    double work_left_; ///< at the beginning
     std::map<std::pair<ObjectId, Key>, ObjectId> states_;
     std::map<std::pair<std::optional<MaterialId>, int>, MaterialId> sheer_;
     std::map<ObjectId, std::vector<std::pair<Ink, ObjectId>>> by_object_;
@@ -224,6 +233,7 @@ class InkStates {
     std::size_t instances_ = 0;
     bool good_ = true;
     bool merged_ = false;
+    bool left_out_ = false;
 };
 
 class StepLowerer {
@@ -336,8 +346,9 @@ std::optional<InkChange> lower_ink(const std::vector<InstInkStep>& steps, const 
 
 bool apply_inks(Graph& graph, const InkTable& inks, HueTable& hues, Span place, Lowering& lowering) {
     const std::size_t most = lowering.options.max_objects;
-    InkStates states(graph, inks, hues, lowering);
+    InkStates states(graph, inks, hues, place, lowering);
     if (states.run()) {
+        if (states.left_out()) return true;
         if (states.merged())
             lowering.diagnostics.note(place,
                                       "there are too many different inks: the deepest parts have the nearest "

@@ -13,6 +13,7 @@
 #include "compiler/lower/lower_area.h"
 #include "compiler/lower/lower_transform.h"
 #include "compiler/support/number.h"
+#include "compiler/support/stage_price.h"
 
 namespace graftal {
 
@@ -83,7 +84,7 @@ class ScatterLowerer {
         if (!points) return;
         taker.begin(points->size());
         for (std::size_t i = 0; i < points->size(); ++i) {
-            if (context_.meter) context_.meter->add();
+            if (context_.meter) context_.meter->add(1, StagePrice::draw);
             taker.take(place(i, (*points)[i]));
         }
     }

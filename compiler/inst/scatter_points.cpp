@@ -7,6 +7,8 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
+#include "compiler/support/stage_price.h"
+
 namespace graftal {
 
 namespace {
@@ -25,7 +27,7 @@ class Draws {
     Draws(CounterRandom random, WorkMeter* meter) : random_(random), meter_(meter) {}
 
     double unit() {
-        if (meter_) meter_->add();
+        if (meter_) meter_->add(1, StagePrice::draw);
         return CounterRandom::unit(random_(next_++));
     }
     Vec2 in_square() {

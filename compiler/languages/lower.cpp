@@ -12,6 +12,7 @@
 #include "compiler/lower/lowering.h"
 #include "compiler/support/file.h"
 #include "compiler/support/number.h"
+#include "compiler/support/stage_price.h"
 
 namespace graftal {
 
@@ -22,7 +23,7 @@ constexpr std::uint64_t lowered_a_look = 10'000;
 
 LoweredText lower_root(FileId file, const std::string& path, const LowerOptions& options, SourceMap& sources,
                        Diagnostics& diagnostics, const LowerHelp& help) {
-    WorkMeter meter(help.control, "lower", lowered_a_look);
+    WorkMeter meter(help.control, "lower", lowered_a_look, StagePrice::word);
     Lowering lowering{.sources = sources,
                       .diagnostics = diagnostics,
                       .options = options,

@@ -14,6 +14,7 @@
 #include "compiler/primitives/mesh_file.h"
 #include "compiler/support/check.h"
 #include "compiler/support/file.h"
+#include "compiler/support/stage_price.h"
 
 namespace graftal {
 
@@ -214,6 +215,11 @@ std::string free_prefix(const Graph& graph, std::string_view name) {
     return fmt::format("{}{}", stem, last + 1);
 }
 
+void charge_copy(const Graph& model, Lowering& lowering) {
+    lowering.meter.add(model.objects.size(), StagePrice::copied_object);
+    lowering.meter.add(instance_count(model), StagePrice::copied_instance);
+}
+
 bool has_room(const Graph& into, const Graph& model, Span span, Lowering& lowering) {
     return within_limits(into.objects.size() + model.objects.size(),
                          instance_count(into) + instance_count(model), span, lowering);
@@ -256,11 +262,27 @@ std::optional<Primitive> load_mesh(Span name_span, std::string_view path, Loweri
 bool within_limits(std::size_t objects, std::size_t instances, Span span, Lowering& lowering) {
     const std::size_t most_objects = lowering.options.max_objects;
     const std::size_t most_instances = most_objects * max_instances_per_object;
+    // Those that come later need not be made, if these take too much already.
+    if (work_of_graph(objects, instances) > lowering.meter.left())
+        throw OutOfWork("lower", lowering.help.control.work->limit());
     if (objects <= most_objects && instances <= most_instances) return true;
     lowering.diagnostics.error(
         span, objects > most_objects ? fmt::format("the model has more than {} objects", most_objects)
                                      : fmt::format("the model has more than {} instances", most_instances));
     return false;
+}
+
+bool leaves_out_colours(std::size_t objects, std::size_t instances, double work_left, Span place,
+                        Lowering& lowering) {
+    if (!lowering.options.may_leave_out_colours) return false;
+    const double copies = StagePrice::copied_object * static_cast<double>(objects) +
+                          StagePrice::copied_instance * static_cast<double>(instances);
+    if (copies + work_of_graph(objects, instances) <= work_left) return false;
+    lowering.notes.limited_by_work = true;
+    lowering.diagnostics.note(
+        place, "graftal leaves the hues and inks out here, since their many objects take more work than "
+               "--work allows: they change no shape, no bound and no count of leaves");
+    return true;
 }
 
 std::optional<FileId> read_model(const UseStatement& use, Lowering& lowering) {
@@ -275,7 +297,7 @@ std::optional<FileId> read_model(const UseStatement& use, Lowering& lowering) {
 std::optional<ObjectId> import_model(Graph& into, const UseStatement& use, Lowering& lowering) {
     const std::shared_ptr<const Graph> model = load(use, {}, {}, lowering);
     if (!model || !has_room(into, *model, use.path_span, lowering)) return std::nullopt;
-    lowering.meter.add(model->objects.size());
+    charge_copy(*model, lowering);
     return append_objects(into, *model, use.name.text, append_materials(into, *model, use.name.text, false));
 }
 
@@ -283,7 +305,7 @@ std::optional<ObjectId> import_member(Graph& into, const UseStatement& use, cons
                                       Lowering& lowering) {
     const std::shared_ptr<const Graph> model = load(use, inner, {}, lowering);
     if (!model || !has_room(into, *model, use.path_span, lowering)) return std::nullopt;
-    lowering.meter.add(model->objects.size());
+    charge_copy(*model, lowering);
     return append_objects(into, *model, free_prefix(into, use.name.text),
                           append_materials(into, *model, use.name.text, true));
 }
@@ -299,7 +321,7 @@ std::optional<ObjectId> import_part(Graph& into, const std::unordered_map<std::s
     if (lowering.part_missing) return std::nullopt;
     const std::shared_ptr<const Graph> model = load(use, {}, part, lowering);
     if (!model || !has_room(into, *model, use.path_span, lowering)) return std::nullopt;
-    lowering.meter.add(model->objects.size());
+    charge_copy(*model, lowering);
     return append_objects(into, *model, use.name.text, append_materials(into, *model, use.name.text, false),
                           known);
 }

@@ -38,6 +38,9 @@ struct LowerOptions {
     /// A model that draws nothing is an error; with this the root model may, with a note, and gives its
     /// `derivation` but no graph.
     bool may_draw_nothing = false;
+    /// Where hues and inks would make so many objects that the work allowed does not suffice, they are left
+    /// out, with a note: shapes, bounds and counts of leaves stay as they are. Else they are made.
+    bool may_leave_out_colours = false;
     /// The root model may be an orbit (rifs/orbit_model.h), which has no graph; else an orbit is an error.
     bool may_be_orbit = false;
 };
@@ -62,6 +65,7 @@ struct LowerNotes {
     std::optional<Derivation> derivation;         ///< of an L-system
     std::shared_ptr<const OrbitModel> orbit;      ///< or null; what is one has no graph
     std::map<std::string, FileStamp> meshes = {}; ///< by path: the files of meshes, as they were when read
+    bool limited_by_work = false;                 ///< with more work allowed the graph would be another
 };
 
 } // namespace graftal

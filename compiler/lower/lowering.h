@@ -109,6 +109,11 @@ std::optional<ObjectId> import_part(Graph& into, const std::unordered_map<std::s
 /// The most instances that one model may have, as a multiple of LowerOptions::max_objects.
 inline constexpr std::size_t max_instances_per_object = 4;
 
+/// Whether colours that make a graph of so many objects and instances are to be left out: a note at `place`
+/// says so (LowerOptions::may_leave_out_colours). `work_left`: before they were made, in seconds.
+bool leaves_out_colours(std::size_t objects, std::size_t instances, double work_left, Span place,
+                        Lowering& lowering);
+
 /// Reports and gives false if a graph with these counts is larger than the options allow.
 bool within_limits(std::size_t objects, std::size_t instances, Span span, Lowering& lowering);
 

@@ -354,6 +354,7 @@ class LsysLowering {
                                                         .meter = &lowering_.meter},
                                                        graph_, pool_, diagnostics_);
         if (!drawing) return std::nullopt;
+        if (drawing->limited_by_work) lowering_.notes.limited_by_work = true;
         if (is_root(block)) {
             lowering_.notes.derivation = std::move(drawing->derivation);
             lowering_.notes.derivation->families = families();

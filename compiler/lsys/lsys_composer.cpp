@@ -280,6 +280,7 @@ void LsysComposer::complete_piece() {
     const bool is_branch = FoldedWord::is_branch(task.module);
     TurtlePart part = std::move(task.turtle).finish();
     clean_exit(part);
+    rewriter_.work_of_part(part.instances.size());
     if (is_branch) part.modules += 2;
     std::optional<Instance> line = line_for(part, task);
     part.instances =
@@ -360,6 +361,7 @@ void LsysComposer::complete_task() {
     std::optional<Instance> line = line_for(part, task);
     const Mat3 frame = context_.limit ? chord_frame(part.start_from_exit.translation) : Mat3(1.0);
     const std::size_t count = part.instances.size();
+    rewriter_.work_of_part(count);
     part.instances =
         pool_.share(std::move(part.instances), std::move(line), name_of_part(task), task.span, frame);
     if (count > 1 && part.instances.size() == 1)

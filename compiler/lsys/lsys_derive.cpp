@@ -108,6 +108,7 @@ std::optional<std::uint64_t> LsysDeriver::choose() {
 }
 
 void LsysDeriver::gather(std::uint64_t length) {
+    rewriter_.work(length);
     next_.clear();
     next_.reserve(length);
     if (successors_.is_plain())

@@ -21,6 +21,7 @@
 #include "compiler/lsys/lsys_sizes.h"
 #include "compiler/lsys/lsys_stream.h"
 #include "compiler/lsys/lsys_width.h"
+#include "compiler/support/stage_price.h"
 
 namespace graftal {
 
@@ -188,6 +189,7 @@ class Drawer {
     LsysDrawing drawing_of(TurtlePart& part, const char* way, std::size_t part_count) const {
         LsysDrawing drawing;
         drawing.instances = std::move(part.instances);
+        drawing.limited_by_work = limited_by_work_;
         Derivation& derivation = drawing.derivation;
         derivation.way = way;
         derivation.steps = steps_;
@@ -393,10 +395,27 @@ class Drawer {
         const double wanted = variance * std::max(1u, steps_) / (most_drift * most_drift);
         const double parts = static_cast<double>(composition.composer.part_count()) / judged;
         const double room = 0.5 * static_cast<double>(options_.max_parts) / std::max(parts, 1.0);
-        while (variants_ < wanted && 2 * variants_ <= std::min<double>(room, most_variants))
-            variants_ *= 2;
+        const auto doubled = [&](double most) {
+            std::uint32_t variants = variants_;
+            while (variants < wanted && 2 * variants <= std::min<double>(most, most_variants))
+                variants *= 2;
+            return variants;
+        };
+        const std::uint32_t without_limit = doubled(room);
+        const double affordable = rewriter_.work_left() / (StagePrice::random_part * std::max(parts, 1.0));
+        variants_ = doubled(std::min(room, affordable));
+        if (variants_ < without_limit) report_few_variants(without_limit);
         drift_ = std::sqrt(variance * std::max(1u, steps_) / variants_);
         return true;
+    }
+
+    void report_few_variants(std::uint32_t without_limit) {
+        limited_by_work_ = true;
+        diagnostics_.note(
+            grammar_.source->name.span,
+            fmt::format("graftal makes {} variants of each random part in place of {}, since more "
+                        "take more work than --work allows",
+                        variants_, without_limit));
     }
 
     static std::uint32_t fewest_of(const LsysGrammar& grammar) {
@@ -475,6 +494,7 @@ class Drawer {
     unsigned steps_ = 0;
     std::uint32_t variants_ = 1;
     double drift_ = 0;
+    bool limited_by_work_ = false;   ///< the variants are fewer than the drift asks for
     std::deque<Rounding> roundings_; ///< that are left to try; the first is in use
     std::vector<Material> palette_;  ///< of the colour indices
 };

@@ -34,6 +34,7 @@ struct LsysDrawing {
     std::shared_ptr<const Run> run;  ///< with what is here, if anything is
     std::vector<std::optional<MaterialId>> run_materials;
     Derivation derivation;
+    bool limited_by_work = false; ///< with more work allowed it would be another
 };
 
 /// Draws what a grammar derives into `graph`. A word that is derived is composed of its pieces, each drawn

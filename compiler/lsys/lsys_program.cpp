@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "compiler/support/number.h"
+#include "compiler/support/stage_price.h"
 
 namespace graftal {
 
@@ -206,7 +207,7 @@ std::optional<LsysFormula> compile_formula(const Expression& expression, const L
 }
 
 bool LsysMachine::count(const LsysInstruction& instruction) {
-    if (meter_) meter_->add();
+    if (meter_) meter_->add(1, StagePrice::module);
     if (done_++ < most_) return true;
     diagnostics_
         .error(instruction.source->span, fmt::format("the blocks carry out more than {} statements", most_))

@@ -291,6 +291,7 @@ std::optional<double> LsysRewriter::value(const ExpressionCode& code, const Lsys
 bool LsysRewriter::append(const std::vector<LsysTemplate>& templates, const LsysRule* rule,
                           std::span<const double> slots, std::span<const double> cells,
                           ModuleString& string) {
+    const std::size_t known = modules_.size();
     const bool stamps = birth_ != ModuleTable::no_birth && (!rule || rule->kind != RuleKind::interpret);
     for (const LsysTemplate& module : templates) {
         arguments_.clear();
@@ -309,6 +310,7 @@ bool LsysRewriter::append(const std::vector<LsysTemplate>& templates, const Lsys
         string.push_back(
             modules_.intern(module.symbol, arguments_, stamped ? birth_ : ModuleTable::no_birth));
     }
+    if (meter_) meter_->add(modules_.size() - known, StagePrice::new_module);
     if (modules_.size() <= max_distinct_modules) return true;
     diagnostics_
         .error(rule ? rule->source->span : grammar_.source->name.span,

@@ -14,6 +14,7 @@
 #include "compiler/lsys/module_table.h"
 #include "compiler/support/control.h"
 #include "compiler/support/id_table.h"
+#include "compiler/support/stage_price.h"
 
 namespace graftal {
 
@@ -74,8 +75,19 @@ class LsysRewriter {
 
     /// Who derives or draws by this has looked at so many modules.
     void work(std::uint64_t modules = 1) const {
-        if (meter_) meter_->add(modules);
+        if (meter_) meter_->add(modules, StagePrice::module);
     }
+    /// Who draws module by module has drawn one.
+    void work_of_drawing() const {
+        if (meter_) meter_->add(1, StagePrice::drawn_module);
+    }
+    /// Who composes has made a part of so many instances.
+    void work_of_part(std::size_t instances) const {
+        if (meter_)
+            meter_->add(1, StagePrice::part + StagePrice::part_instance * static_cast<double>(instances));
+    }
+    /// The seconds of work that are left.
+    double work_left() const { return meter_ ? meter_->left() : StageWork::unlimited; }
 
     /// Readies the variables for a derivation of so many steps; to be called before anything else is. False
     /// after an error. O(1) where there are none.

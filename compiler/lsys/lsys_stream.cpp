@@ -141,6 +141,7 @@ bool LsysStream::emit(const Module& module, std::uint32_t repeated) {
         model = models_(module.symbol, parameters(module), module.span);
         if (!model) return false;
     }
+    rewriter_.work_of_drawing();
     return turtle_->run(command, parameters(module), model, module.span);
 }
 

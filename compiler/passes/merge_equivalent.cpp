@@ -55,10 +55,21 @@ Placement placement_of(Instance instance, std::optional<double> terminal_px, dou
     return placement;
 }
 
+/// Of the shape alone.
+Placement place_of(const Instance& instance) {
+    const Affine& map = instance.parent_from_child;
+    Placement placement;
+    for (int column = 0; column < 3; ++column)
+        for (int row = 0; row < 3; ++row)
+            placement.put(map.linear[column][row]);
+    for (int row = 0; row < 3; ++row)
+        placement.put(map.translation[row]);
+    return placement;
+}
+
 class Labels {
   public:
-    Label of(const Instance& instance, std::optional<double> terminal_px, double chance) {
-        const Placement placement = placement_of(instance, terminal_px, chance);
+    Label of(const Placement& placement) {
         const auto next = static_cast<Label>(known_.size());
         const Label label = ids_.find_or_add(hash_of(placement), next,
                                              [&](Label known) { return known_[known] == placement; });
@@ -89,7 +100,13 @@ struct Edges {
     }
 };
 
-Edges edges_of(const Graph& graph) {
+/// What objects must have in common to be equal.
+enum class Alike {
+    in_all,  ///< what they unfold to
+    in_shape ///< where that is: neither its colours and materials, nor terminals, nor chances
+};
+
+Edges edges_of(const Graph& graph, Alike alike) {
     Edges edges;
     edges.labels_of.resize(graph.objects.size());
     edges.first_arrival.assign(graph.objects.size() + 1, 0);
@@ -98,12 +115,14 @@ Edges edges_of(const Graph& graph) {
         const Object& object = graph.objects[user];
         const double chances = chance_sum(object);
         for (const Instance& instance : object.instances) {
-            edges.labels_of[user].push_back(
-                labels.of(instance, std::nullopt, chance_share(instance.chance, chances)));
+            edges.labels_of[user].push_back(labels.of(
+                alike == Alike::in_shape
+                    ? place_of(instance)
+                    : placement_of(instance, std::nullopt, chance_share(instance.chance, chances))));
             ++edges.first_arrival[instance.master + 1];
         }
-        if (object.terminal) {
-            edges.labels_of[user].push_back(labels.of(*object.terminal, object.terminal_px, 0));
+        if (object.terminal && alike == Alike::in_all) {
+            edges.labels_of[user].push_back(labels.of(placement_of(*object.terminal, object.terminal_px, 0)));
             ++edges.first_arrival[object.terminal->master + 1];
         }
     }
@@ -116,7 +135,8 @@ Edges edges_of(const Graph& graph) {
         std::vector<Label>& own = edges.labels_of[user];
         for (std::size_t i = 0; i < object.instances.size(); ++i)
             edges.arrivals[next[object.instances[i].master]++] = {user, own[i]};
-        if (object.terminal) edges.arrivals[next[object.terminal->master]++] = {user, own.back()};
+        if (object.terminal && alike == Alike::in_all)
+            edges.arrivals[next[object.terminal->master]++] = {user, own.back()};
         std::sort(own.begin(), own.end());
     }
     return edges;
@@ -173,8 +193,9 @@ class Partition {
 /// edge is looked at again only when its master lies in a block of at most half the size: O(E log V) visits.
 class Refinement {
   public:
-    explicit Refinement(const Graph& graph) : edges_(edges_of(graph)), partition_(graph.objects.size()) {
-        split_by_own_labels(graph);
+    Refinement(const Graph& graph, Alike alike)
+        : edges_(edges_of(graph, alike)), partition_(graph.objects.size()) {
+        split_by_own_labels(graph, alike);
         for (BlockId block = 0; block < partition_.block_count(); ++block)
             enqueue(block);
     }
@@ -197,13 +218,14 @@ class Refinement {
         std::span<const Edges::Arrival> arrivals;
     };
 
-    void split_by_own_labels(const Graph& graph) {
+    void split_by_own_labels(const Graph& graph, Alike alike) {
         std::vector<ObjectId> order(graph.objects.size());
         std::iota(order.begin(), order.end(), 0u);
+        const bool coloured = alike == Alike::in_all;
         const auto same_kind = [&](ObjectId a, ObjectId b) {
             return graph.objects[a].primitive == graph.objects[b].primitive &&
                    graph.objects[a].run == graph.objects[b].run &&
-                   graph.objects[a].run_materials == graph.objects[b].run_materials &&
+                   (!coloured || graph.objects[a].run_materials == graph.objects[b].run_materials) &&
                    edges_.labels_of[a] == edges_.labels_of[b];
         };
         std::sort(order.begin(), order.end(), [&](ObjectId a, ObjectId b) {
@@ -212,7 +234,7 @@ class Refinement {
             const Object &x = graph.objects[a], &y = graph.objects[b];
             // Whichever comes first, the blocks are the same.
             if (x.run != y.run) return std::less<>()(x.run.get(), y.run.get());
-            if (x.run_materials != y.run_materials) return x.run_materials < y.run_materials;
+            if (coloured && x.run_materials != y.run_materials) return x.run_materials < y.run_materials;
             if (edges_.labels_of[a] != edges_.labels_of[b]) return edges_.labels_of[a] < edges_.labels_of[b];
             return a < b;
         });
@@ -303,7 +325,7 @@ class Refinement {
 } // namespace
 
 Rewritten merge_equivalent(Graph graph) {
-    const Partition partition = Refinement(graph).run();
+    const Partition partition = Refinement(graph, Alike::in_all).run();
     std::vector<ObjectId> first_of(partition.block_count());
     std::vector<bool> keep(graph.objects.size(), false);
     for (BlockId block = 0; block < partition.block_count(); ++block) {
@@ -320,6 +342,22 @@ Rewritten merge_equivalent(Graph graph) {
     for_each_instance(graph, [&](Instance& instance) { instance.master = renumbering.now[instance.master]; });
     graph.root = renumbering.now[graph.root];
     return {std::move(graph), std::move(renumbering)};
+}
+
+ShapeClasses classes_of_shape(const Graph& graph) {
+    const Partition partition = Refinement(graph, Alike::in_shape).run();
+    constexpr std::uint32_t unseen = UINT32_MAX;
+    std::vector<std::uint32_t> number(partition.block_count(), unseen);
+    ShapeClasses classes;
+    for (ObjectId id = 0; id < graph.objects.size(); ++id) {
+        std::uint32_t& own = number[partition.block_of(id)];
+        if (own == unseen) {
+            own = static_cast<std::uint32_t>(classes.first.size());
+            classes.first.push_back(id);
+        }
+        classes.class_of.push_back(own);
+    }
+    return classes;
 }
 
 } // namespace graftal

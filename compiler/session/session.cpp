@@ -1,8 +1,11 @@
 #include "compiler/session/session.h"
 
+#include <fmt/format.h>
+
 #include "compiler/import/importers.h"
 #include "compiler/session/stage_clock.h"
 #include "compiler/support/file.h"
+#include "compiler/support/number.h"
 
 namespace graftal {
 
@@ -12,7 +15,8 @@ namespace {
 bool same_options(const LowerOptions& a, const LowerOptions& b) {
     return a.set == b.set && a.seed == b.seed && a.root == b.root && a.exact == b.exact &&
            a.max_modules == b.max_modules && a.run_from == b.run_from && a.max_objects == b.max_objects &&
-           a.may_draw_nothing == b.may_draw_nothing && a.may_be_orbit == b.may_be_orbit;
+           a.may_draw_nothing == b.may_draw_nothing && a.may_leave_out_colours == b.may_leave_out_colours &&
+           a.may_be_orbit == b.may_be_orbit;
 }
 
 /// The depth as the stages after lowering read it: that of an L-system is spent.
@@ -49,23 +53,37 @@ void Session::reload(bool textures_changed) {
 }
 
 template<typename Value, typename Work>
-std::shared_ptr<const Value> Session::unless_cancelled(Compilation& compilation, const Work& work) {
+std::shared_ptr<const Value> Session::unless_ended(Compilation& compilation, const Work& work) {
     try {
         return work();
     } catch (const Cancelled&) {
         compilation.status = Status::failure("interrupted");
-        return nullptr;
+    } catch (const OutOfWork& fault) {
+        compilation.sources = sources_;
+        compilation.diagnostics
+            .error(Span{0, 0, 0},
+                   fmt::format("the model takes more than {} seconds of work before it can be drawn: graftal "
+                               "gave it up in the stage '{}'",
+                               shortest(fault.limit_seconds()), fault.stage()))
+            .with_hint("allow more with --work, or ask for less: fewer steps, copies, or kinds of parts");
     }
+    return nullptr;
+}
+
+Control Session::charging(StageWork& work) const {
+    Control control = control_;
+    control.work = &work;
+    return control;
 }
 
 std::shared_ptr<const LoweredModel> Session::lowered(const StageOptions& options, Compilation& compilation) {
-    return unless_cancelled<LoweredModel>(
+    return unless_ended<LoweredModel>(
         compilation, [&] { return need_lowered(options, true, compilation) ? lowered_.value : nullptr; });
 }
 
 std::shared_ptr<const AnalysedModel> Session::analysed(const StageOptions& options, Compilation& compilation,
                                                        bool for_report) {
-    return unless_cancelled<AnalysedModel>(compilation, [&]() -> std::shared_ptr<const AnalysedModel> {
+    return unless_ended<AnalysedModel>(compilation, [&]() -> std::shared_ptr<const AnalysedModel> {
         if (!need_analysed(options, true, compilation)) return nullptr;
         if (!for_report && refuse_divergent(*analysed_.value, compilation.diagnostics)) return nullptr;
         return analysed_.value;
@@ -73,12 +91,12 @@ std::shared_ptr<const AnalysedModel> Session::analysed(const StageOptions& optio
 }
 
 std::shared_ptr<const ViewedModel> Session::viewed(const StageOptions& options, Compilation& compilation) {
-    return unless_cancelled<ViewedModel>(
+    return unless_ended<ViewedModel>(
         compilation, [&] { return need_viewed(options, compilation) ? viewed_.value : nullptr; });
 }
 
 std::shared_ptr<const PreparedCut> Session::prepared(const StageOptions& options, Compilation& compilation) {
-    return unless_cancelled<PreparedCut>(compilation, [&] {
+    return unless_ended<PreparedCut>(compilation, [&] {
         const bool there = need_viewed(options, compilation) && need_prepared(options, compilation);
         return there ? prepared_.value : nullptr;
     });
@@ -86,7 +104,7 @@ std::shared_ptr<const PreparedCut> Session::prepared(const StageOptions& options
 
 std::shared_ptr<const CompiledModel> Session::compiled(const StageOptions& options,
                                                        Compilation& compilation) {
-    return unless_cancelled<CompiledModel>(compilation, [&] {
+    return unless_ended<CompiledModel>(compilation, [&] {
         const bool there = need_viewed(options, compilation) && need_compiled(options, compilation);
         return there ? compiled_.value : nullptr;
     });
@@ -109,7 +127,8 @@ bool Session::same_inputs(const LowerKey& before, const LowerKey& now) const {
     const LowerOptions &a = before.options, &b = now.options;
     // A time between steps is an error where there is none, and stands in for steps that are not given.
     const bool time_counts = reads_time_ || !a.steps || !b.steps;
-    return (!reads_steps_ || a.steps == b.steps) && (!time_counts || a.time == b.time);
+    return (!reads_steps_ || a.steps == b.steps) && (!time_counts || a.time == b.time) &&
+           (!limited_by_work_ || before.work_seconds == now.work_seconds);
 }
 
 template<typename Of> void Session::restart(Of& slot, bool same) {
@@ -147,27 +166,29 @@ bool Session::need_source(const StageOptions& options, Compilation& compilation)
 }
 
 bool Session::need_lowered(const StageOptions& options, bool wanted, Compilation& compilation) {
+    StageWork work(stage_work_limit(options));
     const auto up_to_date = [&] {
         if (!source_.key || *source_.key != SourceKey{options.lower.root, edits_}) return false;
-        const LowerKey key{source_.serial, file_changes_, options.lower};
+        const LowerKey key{source_.serial, file_changes_, options.lower, work.limit()};
         return lowered_.key && same_inputs(*lowered_.key, key) &&
                (lowered_.value || lowered_.failed || !wanted);
     };
     const auto lower = [&] {
         if (!need_source(options, compilation)) return false;
         if (up_to_date()) return true;
-        LowerKey key{source_.serial, file_changes_, options.lower};
+        LowerKey key{source_.serial, file_changes_, options.lower, work.limit()};
         restart(lowered_, lowered_.key && same_inputs(*lowered_.key, key));
         sources_ = SourceMap();
         Diagnostics findings;
         ++runs_.lowered;
         std::optional<LoweredModel> model =
             lower_source(*source_.value, options.lower,
-                         {look_at_texture_, control_, on_file_, load_sky_picture_}, sources_, findings);
+                         {look_at_texture_, charging(work), on_file_, load_sky_picture_}, sources_, findings);
         const Derivation* const derivation =
             model && model->notes.derivation ? &*model->notes.derivation : nullptr;
         reads_steps_ = !model || derivation;
         reads_time_ = !model || (derivation && derivation->timed);
+        limited_by_work_ = !model || model->notes.limited_by_work;
         if (model) meshes_ = model->notes.meshes;
         finish(lowered_, std::move(key), std::move(model), std::move(findings));
         return true;
@@ -199,10 +220,12 @@ bool Session::need_analysed(const StageOptions& options, bool wanted, Compilatio
             lowered_.value.reset();
         }
         findings = lowered_.findings;
+        compilation.diagnostics = findings;
         ++runs_.analysed;
+        StageWork work(stage_work_limit(options), lowered.work_seconds);
         std::optional<AnalysedModel> model =
             analyse(std::move(lowered), options.view.zoom.at, {options.stop_after, after_pass_}, findings,
-                    compilation.times, control_);
+                    compilation.times, charging(work));
         finish(analysed_, std::move(key), std::move(model), std::move(findings));
     }
     compilation.diagnostics = analysed_.findings;

@@ -48,7 +48,8 @@ class Session {
     Session(std::string name, std::string text, Keep keep = Keep::everything);
 
     /// Long stages are ended and followed by this from now on. A stage that is cancelled gives null, and a
-    /// failed status: "interrupted".
+    /// failed status: "interrupted". Its account of work does not count: stages up to the analysis may take
+    /// stage_work_limit() together, and more is an error.
     void set_control(Control control) { control_ = std::move(control); }
     const Control& control() const { return control_; }
 
@@ -104,6 +105,7 @@ class Session {
         std::uint64_t source = 0;
         std::uint64_t files = 0; ///< how often those that it names were found to have changed
         LowerOptions options;
+        double work_seconds = 0; ///< allowed
     };
     struct AnalyseKey {
         std::uint64_t lowered = 0;
@@ -131,9 +133,12 @@ class Session {
         bool operator==(const CompileKey&) const = default;
     };
 
-    /// What the work gives; null, with a failed status, if it was cancelled.
+    /// What the work gives; null, with a failed status, if it was cancelled, or after an error if it would
+    /// take more than is allowed.
     template<typename Value, typename Work>
-    std::shared_ptr<const Value> unless_cancelled(Compilation& compilation, const Work& work);
+    std::shared_ptr<const Value> unless_ended(Compilation& compilation, const Work& work);
+    /// The control, with an account for the work of a stage.
+    Control charging(StageWork& work) const;
     /// What lowering gives does not depend on the steps and times that it does not read.
     bool same_inputs(const LowerKey& before, const LowerKey& now) const;
     PrepareKey prepare_key(const StageOptions& options) const;
@@ -171,6 +176,7 @@ class Session {
     std::map<std::string, FileStamp> meshes_; ///< that it read, too
     bool reads_steps_ = true; ///< the last lowering: what it gives depends on steps and on the time
     bool reads_time_ = true;
+    bool limited_by_work_ = false;
     Slot<AnalyseKey, AnalysedModel> analysed_;
     Slot<ViewKey, ViewedModel> viewed_;
     Slot<PrepareKey, PreparedCut> prepared_;

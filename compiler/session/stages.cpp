@@ -12,6 +12,7 @@
 #include "compiler/graph/verify.h"
 #include "compiler/import/importers.h"
 #include "compiler/languages/lower.h"
+#include "compiler/session/analyse_shapes.h"
 #include "compiler/session/frame_model.h"
 #include "compiler/session/shared_framing.h"
 #include "compiler/session/stage_clock.h"
@@ -19,6 +20,7 @@
 #include "compiler/support/file.h"
 #include "compiler/support/number.h"
 #include "compiler/support/number_range.h"
+#include "compiler/support/stage_price.h"
 
 namespace graftal {
 
@@ -28,6 +30,7 @@ namespace {
 Graph optimise(Graph graph, std::optional<GraphPath>& at, const PipelineOptions& options,
                std::vector<StageTime>& times, const Control& control) {
     WorkMeter meter(control, "passes", 1);
+    meter.charge(work_of_graph(graph.objects.size(), instance_count(graph)));
     std::vector<PassTime> pass_times;
     BoundedGraph before{std::move(graph), {}};
     if (at) {
@@ -89,11 +92,6 @@ void report_undecided(const Graph& graph, const Contraction& contraction, Diagno
                         fmt::format("the cycle that contracts least is {}", describe_cycle(graph, cycle)));
 }
 
-/// Whether the limit of the unfolding is known to exist.
-bool converges(const Contraction& contraction) {
-    return contraction.verdict == Verdict::acyclic || contraction.verdict == Verdict::proved;
-}
-
 View view_of(const AnalysedModel& model, std::optional<unsigned> steps, const ViewOptions& options,
              bool part) {
     if (!options.framing) return frame_model(model, steps, options);
@@ -139,6 +137,11 @@ std::optional<ViewedModel> zoom_in(const AnalysedModel& model, std::optional<uns
 
 } // namespace
 
+double stage_work_limit(const StageOptions& options) {
+    constexpr double least_seconds = 2;
+    return std::max(options.detail.work_seconds, least_seconds);
+}
+
 std::optional<Source> read_source(const std::string& path, const std::string& root, Diagnostics& diagnostics,
                                   Status& status) {
     const std::string file = model_path(path).file;
@@ -157,6 +160,7 @@ std::optional<LoweredModel> lower_source(const Source& source, const LowerOption
                                          Diagnostics& diagnostics) {
     LoweredText lowered = lower_text(source.path, source.text, options, sources, diagnostics, help);
     LoweredModel model{source.path, std::move(lowered.graph), std::move(lowered.notes)};
+    if (help.control.work) model.work_seconds = help.control.work->seconds();
     const bool draws_nothing =
         model.notes.derivation && options.may_draw_nothing && !diagnostics.has_errors();
     if (!model.graph && !model.notes.orbit && !draws_nothing) return std::nullopt;
@@ -180,23 +184,20 @@ std::optional<AnalysedModel> analyse(LoweredModel lowered, const std::optional<A
     model.path = std::move(lowered.path);
     model.derivation = std::move(lowered.notes.derivation);
     if (!lowered.graph) return model;
-    check_verified(*lowered.graph, "after lowering");
-    model.written = {lowered.graph->objects.size(),
-                     instance_count(*lowered.graph) + run_part_count(*lowered.graph)};
+    const std::size_t instances = instance_count(*lowered.graph);
+    model.written = {lowered.graph->objects.size(), instances + run_part_count(*lowered.graph)};
     // Names are those of the text only here: equal objects are merged next.
     if (at) {
         model.at = find_path(*lowered.graph, *at, diagnostics);
         if (!model.at) return std::nullopt;
     }
     model.graph = optimise(std::move(*lowered.graph), model.at, options, times, control);
-    StageClock clock(times);
-    model.components = clock.run("components", [&] { return strong_components(model.graph); });
-    model.contraction =
-        clock.run("contraction", [&] { return decide_contraction(model.graph, model.components); });
-    if (!converges(model.contraction)) return model;
-    model.bounds = clock.run(
-        "bounding", [&] { return bound_objects(model.graph, model.components, model.contraction, control); });
-    if (!check_range(model.graph, model.components, model.bounds, diagnostics)) return std::nullopt;
+    model.components = StageClock(times).run("components", [&] { return strong_components(model.graph); });
+    analyse_shapes(model, times, control);
+    if (converges(model.contraction) &&
+        !check_range(model.graph, model.components, model.bounds, diagnostics))
+        return std::nullopt;
+    if (control.work) model.work_seconds = control.work->seconds();
     return model;
 }
 

@@ -19,6 +19,10 @@ namespace graftal {
 std::optional<Source> read_source(const std::string& path, const std::string& root, Diagnostics& diagnostics,
                                   Status& status);
 
+/// The seconds of counted work (support/stage_work.h) that the stages up to the analysis may take together:
+/// as many as the picture, but a few in any case.
+double stage_work_limit(const StageOptions& options);
+
 /// Text -> graph. Nothing after an error. `sources` gets the texts of all files that the model reads.
 std::optional<LoweredModel> lower_source(const Source& source, const LowerOptions& options,
                                          const LowerHelp& help, SourceMap& sources, Diagnostics& diagnostics);

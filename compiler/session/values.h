@@ -49,6 +49,7 @@ struct LoweredModel {
     std::string path;
     std::optional<Graph> graph; ///< nothing of an orbit, and where nothing is drawn
     LowerNotes notes;
+    double work_seconds = 0; ///< counted (support/stage_work.h)
 };
 
 /// Of a graph: its objects, and its instances, which are its edges.
@@ -68,6 +69,7 @@ struct AnalysedModel {
     std::vector<ObjectBounds> bounds;     ///< empty unless the contraction is proved or acyclic
     std::optional<Derivation> derivation; ///< of an L-system
     std::optional<GraphPath> at;          ///< where the zoom's address leads
+    double work_seconds = 0;              ///< counted, of the lowering too (support/stage_work.h)
 };
 
 /// A model that is looked at: what every engine starts from.

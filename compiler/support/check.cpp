@@ -25,6 +25,8 @@ void rethrow_in_stage(std::string_view stage) {
         throw;
     } catch (const Cancelled&) {
         throw;
+    } catch (const OutOfWork&) {
+        throw;
     } catch (const OutOfMemory&) {
         throw;
     } catch (const std::bad_alloc&) {

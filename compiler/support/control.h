@@ -6,6 +6,8 @@
 #include <string_view>
 #include <utility>
 
+#include "compiler/support/stage_work.h"
+
 namespace graftal {
 
 /// Whether somebody wants long work to end early. Copies ask the same; one made from nothing is never raised.
@@ -37,6 +39,7 @@ struct Progress {
 struct Control {
     CancelFlag cancel;
     std::function<void(const Progress&)> on_progress; ///< by the thread that runs the stage
+    StageWork* work = nullptr; ///< what stages before a picture charge their work to; null: nobody does
 };
 
 /// For callers that neither cancel nor listen.
@@ -49,17 +52,31 @@ class Cancelled : public std::exception {
 };
 
 /// Counts the work of a stage. After every `interval` units it asks the flag, and throws Cancelled if that is
-/// raised; else it tells the progress. So a stage ends within one interval of being cancelled.
+/// raised; else it charges the work so far (OutOfWork), and tells the progress. So a stage ends within one
+/// interval of being cancelled.
 class WorkMeter {
   public:
-    /// Keeps a reference to the control, and the stage's name.
-    WorkMeter(const Control& control, std::string_view stage, std::uint64_t interval, std::uint64_t total = 0)
-        : control_(control), progress_{stage, 0, total}, interval_(interval) {}
+    /// Keeps a reference to the control, and the stage's name. `price`: of a unit, in seconds (stage_price.h).
+    WorkMeter(const Control& control, std::string_view stage, std::uint64_t interval, double price = 0)
+        : control_(control), progress_{stage, 0, 0}, interval_(interval), price_(price) {}
+    WorkMeter(const WorkMeter&) = delete;
+    WorkMeter& operator=(const WorkMeter&) = delete;
+    ~WorkMeter() {
+        if (control_.work) control_.work->settle(owed_);
+    }
 
-    void add(std::uint64_t units = 1) {
+    void add(std::uint64_t units = 1) { add(units, price_); }
+    /// Units that cost as much as this each.
+    void add(std::uint64_t units, double price) {
+        owed_ += static_cast<double>(units) * price;
         progress_.done += units;
         if (progress_.done >= next_) look();
     }
+    /// Work that is known before it is done, and that no progress is told of.
+    void charge(double seconds);
+
+    /// The seconds of work that are left. Infinite: there is no limit.
+    double left() const { return control_.work ? control_.work->left() - owed_ : StageWork::unlimited; }
 
   private:
     void look();
@@ -67,6 +84,8 @@ class WorkMeter {
     const Control& control_;
     Progress progress_;
     std::uint64_t interval_;
+    double price_;
+    double owed_ = 0;        ///< not yet charged
     std::uint64_t next_ = 0; ///< the first unit is looked at: what is cancelled already does not begin
 };
 

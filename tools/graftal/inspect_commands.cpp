@@ -26,13 +26,14 @@ std::string verdict_text(const Contraction& contraction) {
 
 int check_one(const Options& options, const std::string& path) {
     Compilation compilation;
-    StageOptions compile = options.render.compile;
+    StageOptions compile = inspecting(options, true);
     compile.lower.may_be_orbit = true;
     CommandSession session(options, path);
     std::shared_ptr<const OrbitModel> orbit;
     if (const auto lowered = session.lowered(compile, compilation)) orbit = lowered->notes.orbit;
     std::shared_ptr<const AnalysedModel> model;
-    if (!orbit && compilation.status.ok()) model = session.analysed(compile, compilation);
+    const bool failed = !compilation.status.ok() || compilation.diagnostics.has_errors();
+    if (!orbit && !failed) model = session.analysed(compile, compilation);
     const int status = conclude(options, compilation);
     if (status == exit_done && orbit && !options.quiet)
         return print_output(fmt::format("{}: ok, an orbit of {} map{}: 'graftal points' draws it\n",
@@ -83,7 +84,7 @@ int run_print(const Options& options) {
     Compilation compilation;
     CommandSession session(options, options.operands.front());
     const std::shared_ptr<const AnalysedModel> model =
-        session.analysed(options.render.compile, compilation, true);
+        session.analysed(inspecting(options), compilation, true);
     const int status = conclude(options, compilation);
     return model && status == exit_done ? print_output(print(model->graph)) : status;
 }
@@ -92,7 +93,7 @@ int run_graph(const Options& options) {
     Compilation compilation;
     CommandSession session(options, options.operands.front());
     const std::shared_ptr<const AnalysedModel> model =
-        session.analysed(options.render.compile, compilation, true);
+        session.analysed(inspecting(options), compilation, true);
     const Interruption interruption;
     if (model) {
         const std::string dot = emit_dot(model->graph, model->components);

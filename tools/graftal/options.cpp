@@ -158,6 +158,7 @@ void add_check(CLI::App& app, Options& options) {
         ->required()
         ->expected(1, -1)
         ->type_name("");
+    add_inspecting_work(app, options);
     add_common(app, options);
     app.footer("Example:\n  graftal check scenes/*/*.rifs      # exit status 1 if any model is faulty");
 }
@@ -165,6 +166,7 @@ void add_check(CLI::App& app, Options& options) {
 void add_stats(CLI::App& app, Options& options) {
     add_model(app, options);
     app.add_flag("--json", options.json, "Print one JSON object on standard output");
+    add_inspecting_work(app, options);
     add_common(app, options);
     std::string keys = "Keys:\n";
     for (const StatsKey& key : stats_keys())
@@ -184,6 +186,7 @@ void add_after(CLI::App& app, Options& options, const std::string& verb) {
 void add_print(CLI::App& app, Options& options) {
     add_model(app, options);
     add_after(app, options, "Print");
+    add_inspecting_work(app, options);
     add_common(app, options);
     app.footer("Examples:\n"
                "  graftal print fern.rifs > fern.inst     # the same model in the instancing language\n"
@@ -197,6 +200,7 @@ void add_graph(CLI::App& app, Options& options) {
            "Drawing of the graph to write: .dot, or .svg by Graphviz (default: DOT on standard output)")
         ->type_name("FILE");
     add_after(app, options, "Draw");
+    add_inspecting_work(app, options);
     add_common(app, options);
     app.footer(
         "Examples:\n"

@@ -54,6 +54,9 @@ struct PointsSettings {
     bool light = false;
 };
 
+/// The limit of work for a command that only tells of a model, where --work does not say.
+inline constexpr double inspecting_seconds = 5;
+
 /// The command line, understood.
 struct Options {
     Command command = Command::render;

@@ -61,6 +61,13 @@ int conclude_out_of_memory(const std::bad_alloc& fault) noexcept {
     return memory_limit() > 0 ? exit_fault : exit_environment;
 }
 
+StageOptions inspecting(const Options& options, bool shapes_only) {
+    StageOptions compile = options.render.compile;
+    compile.detail.work_seconds = options.render.work_seconds.value_or(inspecting_seconds);
+    compile.lower.may_leave_out_colours = shapes_only;
+    return compile;
+}
+
 int print_output(std::string_view text) {
     const Status status = write_text("-", text);
     if (status.ok()) return exit_done;

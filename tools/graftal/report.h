@@ -26,6 +26,10 @@ int conclude(const Options& options, const Compilation& compilation, int signal 
 /// follows.
 int conclude_out_of_memory(const std::bad_alloc& fault) noexcept;
 
+/// What a command asks of the stages that only tells of the model: little work, where --work does not say.
+/// Colours may be left out where only shapes are told of.
+StageOptions inspecting(const Options& options, bool shapes_only = false);
+
 /// Writes to standard output; exit status 0, or 3 with a complaint if it is closed or full.
 int print_output(std::string_view text);
 

@@ -206,16 +206,29 @@ void add_plain_light(CLI::App& app, Options& options) {
         "Where the model names no light: one sun and no sky, which is many times faster to draw");
 }
 
+void add_work(CLI::App& app, Options& options, const std::string& help) {
+    add_value(
+        app, "--work", "SECONDS", help, "a number of seconds above 0",
+        [](const std::string& text) { return parse_at_least(text, 1e-3); },
+        [&](double seconds) { options.render.limit_work(seconds); });
+}
+
+void add_inspecting_work(CLI::App& app, Options& options) {
+    add_work(
+        app, options,
+        fmt::format("Limit of the work, roughly in seconds of one processor; graftal refuses a model that "
+                    "takes more (default {})",
+                    inspecting_seconds));
+}
+
 void add_view(CLI::App& app, Options& options) {
     add_camera(app, options);
     add_error(app, options);
     StageOptions& compile = options.render.compile;
-    add_value(
-        app, "--work", "SECONDS",
-        "Limit of the work for a picture, roughly in seconds of one processor; graftal draws coarser where a "
-        "picture would take more (default by --quality: 5, 15 or 600; with POV-Ray 20, 40 or 1200)",
-        "a number of seconds above 0", [](const std::string& text) { return parse_at_least(text, 1e-3); },
-        [&](double seconds) { options.render.limit_work(seconds); });
+    add_work(
+        app, options,
+        "Limit of the work for a picture, roughly in seconds of one processor; graftal draws coarser where "
+        "a picture would take more (default by --quality: 5, 15 or 600; with POV-Ray 20, 40 or 1200)");
     app.add_flag("--visible-only", compile.detail.visible_only,
                  "Leave out parts that the camera does not see, and their shadows too");
     static const std::map<std::string, Quality> qualities = {

@@ -36,6 +36,10 @@ void add_camera(CLI::App& app, Options& options);
 void add_error(CLI::App& app, Options& options);
 /// The light of models that name none.
 void add_plain_light(CLI::App& app, Options& options);
+/// The limit of the work.
+void add_work(CLI::App& app, Options& options, const std::string& help);
+/// The same for commands that only tell of the model.
+void add_inspecting_work(CLI::App& app, Options& options);
 /// What add_camera() adds, and how much of the model is drawn.
 void add_view(CLI::App& app, Options& options);
 /// `--bits`, of a PNG for people.

@@ -7,7 +7,7 @@ namespace graftal {
 
 int run_stats(const Options& options) {
     Compilation compilation;
-    StageOptions compile = options.render.compile;
+    StageOptions compile = inspecting(options, true);
     compile.lower.may_draw_nothing = true;
     CommandSession session(options, options.operands.front());
     const std::shared_ptr<const AnalysedModel> model = session.analysed(compile, compilation, true);

@@ -12,7 +12,7 @@ OPTIONS = {
     'export': ['--limit', '--unit', '--levels', '--nodes', '--instancing', '--plotter', '--size', '--error', '--error-world',
                '--zoom', '--at', '--camera'],
     'animate': ['--frames', '--fps', '--turn', '--ease', '--camera', '--zoom', '--keep-frames'],
-    'stats': ['--json'], 'check': [], 'print': ['--after'], 'graph': ['--after'], 'collage': ['--threshold', '--light', '--json'],
+    'stats': ['--json', '--work'], 'check': ['--work'], 'print': ['--after', '--work'], 'graph': ['--after', '--work'], 'collage': ['--threshold', '--light', '--json'],
     'compare': ['--threshold', '-q'],
 }
 COMMON = ['--steps', '--set', '--seed', '--exact', '--memory', '--threads', '--dump-after', '--time', '-q', '--root']

@@ -110,6 +110,26 @@ ObjectId add_gasket(Graph& graph, const std::string& name) {
     return gasket;
 }
 
+TEST(ClassesOfShape, ColoursMaterialsAndTerminalsDoNotTellApart) {
+    Graph graph;
+    const ObjectId a = add_gasket(graph, "a"), b = add_gasket(graph, "b"), c = add_gasket(graph, "c"),
+                   d = add_gasket(graph, "d");
+    const ObjectId cube = graph.primitive(PrimitiveKind::cube);
+    graph.materials = {Material()};
+    for (Instance& instance : graph.objects[b].instances)
+        instance.tint = {Rgb(1, 0, 0), 0.5};
+    graph.objects[b].instances[0].master = a;
+    graph.objects[c].instances[1].material = 0;
+    graph.objects[c].terminal = instance_of(cube);
+    graph.objects[d].instances[2].parent_from_child = Affine::scale(Vec3(0.4));
+    graph.root = add_union(graph, "root", {instance_of(a), instance_of(b), instance_of(c), instance_of(d)});
+    const ShapeClasses classes = classes_of_shape(graph);
+    EXPECT_EQ(classes.class_of[b], classes.class_of[a]);
+    EXPECT_EQ(classes.class_of[c], classes.class_of[a]);
+    EXPECT_NE(classes.class_of[d], classes.class_of[a]) << "its third map is another one";
+    EXPECT_EQ(classes.first, (std::vector<ObjectId>{a, d, cube, graph.root}));
+}
+
 TEST(MergeEquivalent, TwoGasketsAreOne) {
     Graph graph;
     const ObjectId a = add_gasket(graph, "first");

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <exception>
+#include <limits>
+#include <string>
+#include <string_view>
+
+namespace graftal {
+
+/// The work of the stages of one model, counted and priced (stage_price.h), and its limit.
+class StageWork {
+  public:
+    static constexpr double unlimited = std::numeric_limits<double>::infinity();
+
+    /// `spent`: by stages before.
+    explicit StageWork(double limit_seconds = unlimited, double spent_seconds = 0)
+        : limit_(limit_seconds), seconds_(spent_seconds) {}
+
+    /// Throws OutOfWork where that goes beyond the limit.
+    void add(std::string_view stage, double seconds);
+    /// The same without a limit: of a stage that is done.
+    void settle(double seconds) { seconds_ += seconds; }
+
+    double limit() const { return limit_; }
+    double seconds() const { return seconds_; }
+    double left() const { return limit_ > seconds_ ? limit_ - seconds_ : 0; }
+
+  private:
+    double limit_;
+    double seconds_;
+};
+
+/// Thrown by a stage that would take more work than is allowed: it leaves nothing behind. Session makes an
+/// error of it.
+class OutOfWork : public std::exception {
+  public:
+    OutOfWork(std::string_view stage, double limit_seconds);
+
+    const std::string& stage() const { return stage_; }
+    double limit_seconds() const { return limit_seconds_; }
+    const char* what() const noexcept override { return "out of work"; }
+
+  private:
+    std::string stage_;
+    double limit_seconds_;
+};
+
+} // namespace graftal

@@ -240,6 +240,22 @@ void InstLowerer::choose_root() {
         .with_hint("write 'object NAME { ... }' for the object that the picture shows");
 }
 
+/// The names of the objects that an object is made of, however deep.
+std::set<std::string_view> InstLowerer::names_below(std::string_view name) const {
+    std::set<std::string_view> found;
+    std::vector<std::string_view> waiting = {name};
+    while (!waiting.empty()) {
+        const std::string_view next = waiting.back();
+        waiting.pop_back();
+        for (const InstDefinition& definition : module_.definitions)
+            if (definition.name == next)
+                for (const InstGroup& group : definition.groups)
+                    for (const InstReference& reference : group.masters)
+                        if (found.insert(reference.name).second) waiting.push_back(reference.name);
+    }
+    return found;
+}
+
 void InstLowerer::note_drawn_twice() {
     std::map<std::string_view, Span> drawn; // by the names of objects without parameters
     for (const InstDefinition& definition : module_.definitions)
@@ -252,6 +268,7 @@ void InstLowerer::note_drawn_twice() {
                 if (used == drawn.end() || reference.name == definition.name ||
                     !reference.arguments.empty() || group.terminal) // a terminal may stand for a whole model
                     continue;
+                if (names_below(reference.name).contains(definition.name)) continue; // a recursion
                 diagnostics_
                     .note(used->second, fmt::format("'{}' is drawn by itself, and again inside '{}'",
                                                     reference.name, definition.name))

@@ -271,9 +271,10 @@ class Cutter {
         if (failed_by_work_) {
             diagnostics_
                 .error(graph_.objects[graph_.root].span,
-                       fmt::format("{} primitives take more than the {:g} seconds of work allowed, even drawn as "
-                                   "coarsely as possible",
-                                   readable_count(choice_.leaves), options_.work_seconds))
+                       fmt::format(
+                           "{} primitives take more than the {:g} seconds of work allowed, even drawn as "
+                           "coarsely as possible",
+                           readable_count(choice_.leaves), options_.work_seconds))
                 .with_hint("allow more with --work, lower --steps, or use '--engine native'");
             return std::nullopt;
         }
@@ -284,8 +285,8 @@ class Cutter {
             need = "about " + readable_bytes(choice_.bytes + picture_bytes()) + " in POV-Ray, ";
         diagnostics_
             .error(graph_.objects[graph_.root].span,
-                   fmt::format("{} primitives need {}more than the {} allowed", readable_count(choice_.leaves),
-                               need, readable_bytes(memory)))
+                   fmt::format("{} primitives need {}more than the {} allowed",
+                               readable_count(choice_.leaves), need, readable_bytes(memory)))
             .with_hint(
                 cut_options_.flatten
                     ? "drop --flatten, leave out small parts with --error, lower --steps, or allow more with "

@@ -56,7 +56,8 @@ class Cancelled : public std::exception {
 /// interval of being cancelled.
 class WorkMeter {
   public:
-    /// Keeps a reference to the control, and the stage's name. `price`: of a unit, in seconds (stage_price.h).
+    /// Keeps a reference to the control, and the stage's name. `price`: of a unit, in seconds
+    /// (stage_price.h).
     WorkMeter(const Control& control, std::string_view stage, std::uint64_t interval, double price = 0)
         : control_(control), progress_{stage, 0, 0}, interval_(interval), price_(price) {}
     WorkMeter(const WorkMeter&) = delete;

@@ -129,8 +129,9 @@ std::vector<std::string> povray_arguments(const PovrayJob& job) {
     if (job.antialias) {
         // Every pixel is divided: four corners that agree say nothing about parts smaller than a pixel.
         // Jitter is off: a picture must not depend on how its blocks were shared among threads.
-        for (const std::string& argument : {fmt::format("+A{:g}", job.antialias_threshold), std::string("+AM2"),
-                                            fmt::format("+R{}", *job.antialias), std::string("-J")})
+        for (const std::string& argument :
+             {fmt::format("+A{:.2f}", job.antialias_threshold), std::string("+AM2"),
+              fmt::format("+R{}", *job.antialias), std::string("-J")})
             arguments.push_back(argument);
     } else {
         arguments.push_back("-A");

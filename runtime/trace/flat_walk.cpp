@@ -137,7 +137,7 @@ bool Traversal::meet_drawn(const Primitive& primitive, const Affine& drawn, cons
         glm::dot(drawn.translation - ray_.origin, ray_.direction) / glm::dot(ray_.direction, ray_.direction);
     PrimitiveHit hit;
     if (!meet(primitive, {leaf_from_world(ray_(at)), direction / speed},
-                   {(range.least - at) * speed, (best_.t - at) * speed}, hit))
+              {(range.least - at) * speed, (best_.t - at) * speed}, hit))
         return false;
     best_.t = at + hit.t / speed;
     best_.found = true;

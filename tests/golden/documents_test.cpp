@@ -132,15 +132,15 @@ TEST_F(DocumentsTest, ThePageOfGraftalItselfLeadsToAPicture) {
                       end = set.out.find("\n       }\n", model);
     ASSERT_NE(end, std::string::npos) << set.out;
     write("crystal.rifs", set.out.substr(model, end + 10 - model));
-    ASSERT_THAT(set.out, HasSubstr("\n       graftal render crystal.rifs --engine native\n"));
-    const RunResult drawn = graftal("render crystal.rifs --engine native -q --size 64x48");
+    ASSERT_THAT(set.out, HasSubstr("\n       graftal render crystal.rifs\n"));
+    const RunResult drawn = graftal("render crystal.rifs -q --size 64x48");
     EXPECT_EQ(drawn.status, 0) << drawn.err;
     EXPECT_TRUE(std::filesystem::exists(path("crystal.png")));
 }
 
 TEST_F(DocumentsTest, WhatIsIndentedInHelpStandsSoInTheManual) {
     const std::string page = shell("'" GRAFTAL_PROGRAM "' manual farm plan | groff -man -Tascii -P-cbou").out;
-    EXPECT_THAT(page, HasSubstr("by all options of 'graftal render'; up to 131072 pixels a side\n"));
+    EXPECT_THAT(page, HasSubstr("by all options of 'graftal render'; up to 131072 pixels a side;\n"));
 }
 
 TEST_F(DocumentsTest, AllShellsOfferTheCommands) {

@@ -271,9 +271,8 @@ TEST_F(Farm, EachMillionPixelsOfAPosterHasTheWorkOfAPicture) {
                              "' --size 200x150 --plain-light --work 0.01 --tiles 100x100 -o job -q";
     const RunResult refused = graftal(poor);
     EXPECT_EQ(refused.status, 1);
-    EXPECT_THAT(refused.err,
-                AllOf(HasSubstr("graftal: this picture would leave out parts of up to "),
-                      HasSubstr("--work"), HasSubstr("--coarse")));
+    EXPECT_THAT(refused.err, AllOf(HasSubstr("graftal: this picture would show nothing smaller than "),
+                                   HasSubstr("--work"), HasSubstr("--coarse")));
     EXPECT_FALSE(exists("job"));
     succeed(poor + " --coarse");
 }

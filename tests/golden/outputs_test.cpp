@@ -136,7 +136,8 @@ TEST_F(Outputs, FoldersThatWereMadeForNothingAreTakenBack) {
     shell("chmod +x bin/povray");
     write("bad.inst", "object top {\n    union: nowhere\n}\n");
     for (const std::string top : {"deep", "there/deep"}) {
-        EXPECT_EQ(shell("PATH=\"$PWD/bin:$PATH\" $graftal animate m.rifs -q --size 16x12 --frames 2 -o " +
+        EXPECT_EQ(shell("PATH=\"$PWD/bin:$PATH\" $graftal animate --engine povray m.rifs -q --size 16x12 "
+                        "--frames 2 -o " +
                         top + "/er/film/")
                       .status,
                   3);
@@ -217,7 +218,9 @@ TEST_F(Outputs, APictureOfAnotherSizeIsNone) {
 TEST_F(Outputs, TimesThatALanguageDoesNotKnowHaveAPlace) {
     const RunResult result = graftal("check --steps 7.5 m.rifs");
     EXPECT_EQ(result.status, 1);
-    EXPECT_THAT(result.err, testing::StartsWith("m.rifs:1:1: error: only L-systems have times between two steps, such as 7.5"));
+    EXPECT_THAT(
+        result.err,
+        testing::StartsWith("m.rifs:1:1: error: only L-systems have times between two steps, such as 7.5"));
 }
 
 } // namespace

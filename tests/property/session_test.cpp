@@ -332,7 +332,8 @@ TEST(Session, EndsWhereItIsCancelled) {
         expected = sdl_of(*whole);
         most = asked;
     }
-    EXPECT_EQ(stages, (std::set<std::string>{"lower", "passes", "bounding", "prepare", "cut"}));
+    EXPECT_EQ(stages,
+              (std::set<std::string>{"lower", "passes", "contraction", "bounding", "prepare", "cut"}));
     for (std::uint64_t last = 0; last < most; last += 1 + most / 40) {
         Session session("tower.inst", text);
         asked = 0;

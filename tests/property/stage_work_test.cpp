@@ -94,7 +94,7 @@ TEST(StageWork, HuesWithinTheLimitStay) {
 }
 
 TEST(StageWork, RandomPlantsGetFewerVariants) {
-    const std::string text = "lsys a {\n  angle 1\n  steps 600\n  axiom A\n  A -> BAB\n  B -> ABB : 0.289\n"
+    const std::string text = "lsys a {\n  angle 1\n  steps 300\n  axiom A\n  A -> BAB\n  B -> ABB : 0.289\n"
                              "  B -> F(.5)[+F]AAF(.5) : 0.711\n}\n";
     const Analysis limited = analysed("chance.lsys", text, 2), whole = analysed("chance.lsys", text, 1e6);
     ASSERT_TRUE(limited.model);

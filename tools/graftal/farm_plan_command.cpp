@@ -283,12 +283,13 @@ class Planning {
     bool refuse_coarse(const PictureFit& fit, const RenderOptions& render) const {
         constexpr double coarse_px = 2;
         const double wanted_px = render.compile.detail.error_px;
-        if (options_.farm.coarse || !(fit.error_px > std::max(coarse_px, wanted_px))) return false;
+        const double shown_px = std::max<double>(fit.error_px, fit.sampling.block);
+        if (options_.farm.coarse || !(shown_px > std::max(coarse_px, wanted_px))) return false;
         complain(
-            fmt::format("this picture would leave out parts of up to {:.2g} pixels, for the work that it may "
-                        "take: allow each million pixels more with --work, plan a smaller picture, or allow "
-                        "this with --coarse",
-                        fit.error_px));
+            fmt::format("this picture would show nothing smaller than {:.2g} pixels, for the work that it "
+                        "may take: allow each million pixels more with --work, plan a smaller picture, or "
+                        "allow this with --coarse",
+                        shown_px));
         return true;
     }
 

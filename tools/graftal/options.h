@@ -66,10 +66,10 @@ struct Options {
     bool time = false;
     bool quiet = false;
 
-    const Engine* engine = nullptr; ///< as --engine names it; never null after parse_command_line()
+    const Engine* engine = nullptr;  ///< as --engine names it; never null after parse_command_line()
     std::optional<bool> progressive; ///< of `render`: as asked for; run_render() decides
-    bool watch = false;             ///< of `render`: again after each change
-    std::string identifier;         ///< of `compile` to an .inc; "": as the model's file
+    bool watch = false;              ///< of `render`: again after each change
+    std::string identifier;          ///< of `compile` to an .inc; "": as the model's file
     AnimationOptions animation;
     PointsSettings points;
     FarmOptions farm;

@@ -35,7 +35,7 @@ TEST(ExportCancelled, AtEachOfManyMomentsItIsInterruptedAndLeavesNothing) {
             ASSERT_EQ(exporting.files(), "m.rifs") << moment;
             ++interrupted;
         }
-        EXPECT_GT(interrupted, 3);
+        EXPECT_GE(interrupted, 3);
     }
 }
 

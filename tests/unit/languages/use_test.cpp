@@ -267,7 +267,7 @@ TEST(Language, follows_the_name_of_the_file) {
     EXPECT_FALSE(lower_text("tree.lsys", "lsys tree { }", {}, sources, diagnostics).graph);
     EXPECT_THAT(diagnostics.render(sources), HasSubstr("tree.lsys:1:6: error: 'lsys tree' has no axiom"));
     Diagnostics unknown;
-    EXPECT_FALSE(lower_text("tree.txt", "", {}, sources, unknown).graph);
+    EXPECT_FALSE(lower_text("tree.doc", "", {}, sources, unknown).graph);
     EXPECT_THAT(unknown.render(sources), HasSubstr("hint: the names of models end in .lsys, .rifs or .inst"));
 }
 

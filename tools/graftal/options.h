@@ -55,7 +55,7 @@ struct PointsSettings {
 };
 
 /// The limit of work for a command that only tells of a model, where --work does not say.
-inline constexpr double inspecting_seconds = 20;
+inline constexpr double inspecting_seconds = 10;
 
 /// The command line, understood.
 struct Options {

@@ -262,8 +262,9 @@ TEST_F(Farm, EachMillionPixelsOfAPosterHasTheWorkOfAPicture) {
         const std::string manifest = read("job/job.json");
         const std::size_t at = manifest.rfind("\"--work\"");
         EXPECT_EQ(at == std::string::npos, planned.empty()) << size;
-        if (!planned.empty())
+        if (!planned.empty()) {
             EXPECT_THAT(manifest.substr(at), StartsWith("\"--work\",\n  \"" + planned + "\"\n"));
+        }
         shell("rm -r job");
     }
     // Many hours are not for a picture that shows less than was asked for.

@@ -42,7 +42,9 @@ TEST(LibraryWords, AreKnownForEveryOptionThatMessagesName) {
     }
     EXPECT_GE(seen.size(), 15u);
     for (const std::string& name : seen)
-        if (!of_commands.contains(name)) EXPECT_NE(in_library_words(name), name);
+        if (!of_commands.contains(name)) {
+            EXPECT_NE(in_library_words(name), name);
+        }
     EXPECT_EQ(in_library_words("add 'steps 5' to it, or give '--steps 5' with --memory"),
               "add 'steps 5' to it, or give 'steps(5)' with memory()");
 }

@@ -124,7 +124,6 @@ class InstLowerer {
     /// errors would follow.
     void report(std::size_t index);
     void choose_root();
-    std::set<std::string_view> names_below(std::string_view name) const;
     /// A note for each object that is drawn by itself and used by another: `canonical` may be forgotten.
     void note_drawn_twice();
     void add_scene(const std::vector<const Reached*>& rendered);

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <map>
+#include <set>
 #include <string_view>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -15,6 +17,35 @@
 namespace graftal {
 
 namespace {
+
+/// The names that the groups of an object refer to.
+using NamesWithin = std::map<std::string_view, std::vector<std::string_view>>;
+
+NamesWithin names_within(const InstModule& module) {
+    NamesWithin names;
+    for (const InstDefinition& definition : module.definitions)
+        for (const InstGroup& group : definition.groups)
+            for (const InstReference& reference : group.masters)
+                names[definition.name].push_back(reference.name);
+    return names;
+}
+
+/// Whether an object is made of another, however deep. True too once `looks_left` is used up.
+bool leads_to(const NamesWithin& names, std::string_view from, std::string_view to, std::size_t& looks_left) {
+    std::set<std::string_view> found;
+    std::vector<std::string_view> waiting = {from};
+    while (!waiting.empty()) {
+        const auto within = names.find(waiting.back());
+        waiting.pop_back();
+        if (within == names.end()) continue;
+        for (const std::string_view name : within->second) {
+            if (name == to || looks_left == 0) return true;
+            --looks_left;
+            if (found.insert(name).second) waiting.push_back(name);
+        }
+    }
+    return false;
+}
 
 /// `f(0) -> f(1) -> f(2) -> ... -> f(99999) -> f(100000)`
 std::string abridged_chain(const std::vector<std::string_view>& names) {
@@ -240,27 +271,13 @@ void InstLowerer::choose_root() {
         .with_hint("write 'object NAME { ... }' for the object that the picture shows");
 }
 
-/// The names of the objects that an object is made of, however deep.
-std::set<std::string_view> InstLowerer::names_below(std::string_view name) const {
-    std::set<std::string_view> found;
-    std::vector<std::string_view> waiting = {name};
-    while (!waiting.empty()) {
-        const std::string_view next = waiting.back();
-        waiting.pop_back();
-        for (const InstDefinition& definition : module_.definitions)
-            if (definition.name == next)
-                for (const InstGroup& group : definition.groups)
-                    for (const InstReference& reference : group.masters)
-                        if (found.insert(reference.name).second) waiting.push_back(reference.name);
-    }
-    return found;
-}
-
 void InstLowerer::note_drawn_twice() {
     std::map<std::string_view, Span> drawn; // by the names of objects without parameters
     for (const InstDefinition& definition : module_.definitions)
         if (definition.rendered && definition.parameters.empty())
             drawn.emplace(definition.name, definition.span);
+    const NamesWithin names = names_within(module_);
+    std::size_t looks_left = 1'000'000; // a note is not worth more
     for (const InstDefinition& definition : module_.definitions)
         for (const InstGroup& group : definition.groups)
             for (const InstReference& reference : group.masters) {
@@ -268,7 +285,7 @@ void InstLowerer::note_drawn_twice() {
                 if (used == drawn.end() || reference.name == definition.name ||
                     !reference.arguments.empty() || group.terminal) // a terminal may stand for a whole model
                     continue;
-                if (names_below(reference.name).contains(definition.name)) continue; // a recursion
+                if (leads_to(names, reference.name, definition.name, looks_left)) continue; // a recursion
                 diagnostics_
                     .note(used->second, fmt::format("'{}' is drawn by itself, and again inside '{}'",
                                                     reference.name, definition.name))

@@ -1,6 +1,7 @@
 #include "compiler/syntax/everyday_words.h"
 
 #include <algorithm>
+#include <span>
 
 #include <fmt/format.h>
 
@@ -10,6 +11,12 @@ namespace graftal {
 
 namespace {
 
+/// A word of everyday English, or of another program, for what the languages call differently.
+struct EverydayWord {
+    std::string_view word; ///< in small letters
+    std::string_view how;  ///< what to write
+};
+
 constexpr std::string_view flat_cylinder = "'cylinder', and flatten it: 'scale: 1, 0.05, 1'";
 constexpr std::string_view flat_cube = "'cube', and flatten it: 'scale: 1, 1, 0.05'";
 constexpr std::string_view thin_cylinder = "'cylinder', and make it thin: 'scale: 0.1, 1, 0.1'";
@@ -17,41 +24,24 @@ constexpr std::string_view file_of_mesh = "'mesh \"FILE.obj\"'";
 constexpr std::string_view swept = "'sphere_sweep(...)': a ball along points";
 
 constexpr EverydayWord shapes[] = {
-    {"box", "cube", "'cube'"},
-    {"block", "cube", "'cube'"},
-    {"brick", "cube", "'cube'"},
-    {"cuboid", "cube", "'cube'"},
-    {"ball", "sphere", "'sphere'"},
-    {"globe", "sphere", "'sphere'"},
-    {"bubble", "sphere", "'sphere'"},
-    {"ellipsoid", "sphere", "'sphere', and stretch it by 'scale: 1, 2, 1'"},
-    {"tube", "cylinder", "'cylinder'"},
-    {"pipe", "cylinder", "'cylinder'"},
-    {"column", "cylinder", "'cylinder'"},
-    {"rod", "cylinder", thin_cylinder},
-    {"stick", "cylinder", thin_cylinder},
-    {"pole", "cylinder", thin_cylinder},
-    {"line", "cylinder", thin_cylinder},
-    {"disk", "cylinder", flat_cylinder},
-    {"disc", "cylinder", flat_cylinder},
-    {"circle", "cylinder", flat_cylinder},
-    {"plate", "cylinder", flat_cylinder},
-    {"coin", "cylinder", flat_cylinder},
-    {"square", "cube", flat_cube},
-    {"rectangle", "cube", flat_cube},
-    {"rect", "cube", flat_cube},
-    {"quad", "cube", flat_cube},
-    {"tile", "cube", flat_cube},
-    {"spike", "cone", "'cone'"},
-    {"ring", "torus", "'torus'"},
-    {"donut", "torus", "'torus'"},
-    {"doughnut", "torus", "'torus'"},
-    {"floor", "plane", "'plane'"},
-    {"capsule", "sphere_sweep", swept},
-    {"spline", "sphere_sweep", swept},
-    {"curve", "sphere_sweep", swept},
-    {"obj", "mesh", file_of_mesh},
-    {"model", "mesh", file_of_mesh},
+    {"box", "'cube'"},        {"block", "'cube'"},
+    {"brick", "'cube'"},      {"cuboid", "'cube'"},
+    {"ball", "'sphere'"},     {"globe", "'sphere'"},
+    {"bubble", "'sphere'"},   {"ellipsoid", "'sphere', and stretch it by 'scale: 1, 2, 1'"},
+    {"tube", "'cylinder'"},   {"pipe", "'cylinder'"},
+    {"column", "'cylinder'"}, {"rod", thin_cylinder},
+    {"stick", thin_cylinder}, {"pole", thin_cylinder},
+    {"line", thin_cylinder},  {"disk", flat_cylinder},
+    {"disc", flat_cylinder},  {"circle", flat_cylinder},
+    {"plate", flat_cylinder}, {"coin", flat_cylinder},
+    {"square", flat_cube},    {"rectangle", flat_cube},
+    {"rect", flat_cube},      {"quad", flat_cube},
+    {"tile", flat_cube},      {"spike", "'cone'"},
+    {"ring", "'torus'"},      {"donut", "'torus'"},
+    {"doughnut", "'torus'"},  {"floor", "'plane'"},
+    {"capsule", swept},       {"spline", swept},
+    {"curve", swept},         {"obj", file_of_mesh},
+    {"model", file_of_mesh},
 };
 
 constexpr std::string_view move = "'translate: 1, 0, 0'";
@@ -59,30 +49,30 @@ constexpr std::string_view resize = "'scale: 2', or 'scale: 1, 2, 1' for each ax
 constexpr std::string_view turn = "'rotate: y, 30': an axis, then the degrees";
 
 constexpr EverydayWord lines[] = {
-    {"move", "translate", move},
-    {"moveto", "translate", move},
-    {"shift", "translate", move},
-    {"offset", "translate", move},
-    {"place", "translate", move},
-    {"pos", "translate", move},
-    {"position", "translate", move},
-    {"location", "translate", move},
-    {"translation", "translate", move},
-    {"size", "scale", resize},
-    {"resize", "scale", resize},
-    {"grow", "scale", resize},
-    {"shrink", "scale", resize},
-    {"stretch", "scale", resize},
-    {"scaling", "scale", resize},
-    {"turn", "rotate", turn},
-    {"spin", "rotate", turn},
-    {"roll", "rotate", turn},
-    {"rotation", "rotate", turn},
-    {"rotatex", "rotate", "'rotate: x, 30': an axis, then the degrees"},
-    {"rotatey", "rotate", turn},
-    {"rotatez", "rotate", "'rotate: z, 30': an axis, then the degrees"},
-    {"color", "tint", "'tint: r, g, b, alpha' or 'material: NAME'"},
-    {"colour", "tint", "'tint: r, g, b, alpha' or 'material: NAME'"},
+    {"move", move},
+    {"moveto", move},
+    {"shift", move},
+    {"offset", move},
+    {"place", move},
+    {"pos", move},
+    {"position", move},
+    {"location", move},
+    {"translation", move},
+    {"size", resize},
+    {"resize", resize},
+    {"grow", resize},
+    {"shrink", resize},
+    {"stretch", resize},
+    {"scaling", resize},
+    {"turn", turn},
+    {"spin", turn},
+    {"roll", turn},
+    {"rotation", turn},
+    {"rotatex", "'rotate: x, 30': an axis, then the degrees"},
+    {"rotatey", turn},
+    {"rotatez", "'rotate: z, 30': an axis, then the degrees"},
+    {"color", "'tint: r, g, b, alpha' or 'material: NAME'"},
+    {"colour", "'tint: r, g, b, alpha' or 'material: NAME'"},
 };
 
 std::string hint_of(std::span<const EverydayWord> words, std::string_view word) {
@@ -91,14 +81,6 @@ std::string hint_of(std::span<const EverydayWord> words, std::string_view word) 
 }
 
 } // namespace
-
-std::span<const EverydayWord> everyday_shape_words() {
-    return shapes;
-}
-
-std::span<const EverydayWord> everyday_line_words() {
-    return lines;
-}
 
 std::string shape_word_hint(std::string_view word) {
     return hint_of(shapes, word);

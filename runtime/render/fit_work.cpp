@@ -18,12 +18,12 @@ namespace {
 /// is close, one ray for so many pixels: a hundredth of a picture may take all of the work, and a still
 /// smaller share of it is seldom met.
 constexpr std::uint64_t first_piece = 16, growth_of_pieces = 4, pixels_a_ray = 16, least_last = 256;
-/// Of them, before a picture is drawn by what they took.
+/// Rays that are traced before a picture is drawn by what they took.
 constexpr std::uint64_t rays_before_draft = 64;
 /// Shares of the work: of a look, and of all looks.
 constexpr double most_for_a_look = 0.04, most_for_looks = 0.2;
 constexpr double steps_a_visit = 4;
-/// By so much what is culled grows from one try to the next: less for the first tries.
+/// The growth of the error from one try to the next: less for the first tries.
 constexpr double coarser = 1.5;
 constexpr int small_tries = 2;
 constexpr double coarsest = 57; ///< of errors, as a multiple of the one asked for
@@ -34,13 +34,14 @@ constexpr int steps_between = 8;
 /// All is made anew after the memory did not suffice: few tries must do.
 const double coarser_after_memory = std::pow(coarser, 3);
 constexpr std::uint64_t fewest_visits = 16;
-/// Of what is allowed: a look that takes more for shells is broken off, since the picture takes more, too.
+/// The share of what is allowed that shells may take: a look that takes more is broken off, as the picture
+/// would take more, too.
 /// It is taken for one that takes so many times what is allowed.
 constexpr double most_for_shells = 0.5, broken_off = 4;
 /// After so many the picture is made as coarse as may be.
 constexpr int most_broken_looks = 2;
 
-/// What a model takes, in seconds of one processor.
+/// The price of a model, in seconds of one processor.
 struct Price {
     double sample = 0; ///< one for each pixel of the picture
     double fixed = 0;  ///< the shells that its rays meet
@@ -186,7 +187,7 @@ class Fitting {
         }
     }
 
-    /// What trying has left of the work: half in any case.
+    /// The work that trying has left: half in any case.
     double allowed() const { return std::max(work_seconds_ - tried_seconds_, 0.5 * work_seconds_); }
 
     bool cancelled() const { return ask_.cancelled(); }
@@ -200,8 +201,8 @@ class Fitting {
     /// Steps that a look may take.
     double steps_of_a_look() const { return most_for_a_look * work_seconds_ / second_of_steps(); }
 
-    /// By rays all over the picture, piece by piece, until the steps of a look are spent. A ray that would go
-    /// on for longer than they allow is given up, and counts as if it went on to the end.
+    /// Traces rays all over the picture, piece by piece, until the steps of a look are spent. A ray that
+    /// would go on for longer than they allow is given up, and counts as if it went on to the end.
     Price look(TraceModel& model) {
         const auto last = std::max(static_cast<std::uint64_t>(pixels_) / pixels_a_ray, least_last);
         const std::uint64_t whole_visits = model.most_visits;
@@ -233,7 +234,7 @@ class Fitting {
         }
         draft(model, whole_visits, price.sample);
         model.most_visits = whole_visits;
-        // What was seen before it was broken off depends on the threads.
+        // A look that is broken off has seen what its threads came to.
         return price.known ? price : Price{0, broken_off * allowed(), false};
     }
 
@@ -252,7 +253,7 @@ class Fitting {
         return pixels_ * (steps * second_of_steps() / static_cast<double>(rays) + 1 / WorkRates::samples);
     }
 
-    /// By the rays from `begin` to `end`. False if they met more shells than there is work for.
+    /// Traces the rays from `begin` to `end`. False if they met more shells than there is work for.
     bool look_on(TraceModel& model, PictureTracer& tracer, std::uint64_t begin, std::uint64_t end) {
         const double shells_before = shell_seconds(model);
         const std::uint64_t work_before = tracer.statistics().work;

@@ -22,7 +22,7 @@ struct FittedModel {
     bool out_of_memory = false; ///< the error is not for the work alone
 };
 
-/// What a picture is fitted for.
+/// A picture that a model is fitted for.
 struct FitRequest {
     std::shared_ptr<const PreparedCut> prepared;
     const View& view;

@@ -43,7 +43,7 @@ std::string samples_text(const Sampling& sampling) {
     return samples_text(sampling.samples_a_pixel());
 }
 
-/// What has to be allowed for the picture as it was asked for.
+/// The limit of the work, with what the picture as it was asked for needs.
 Limit limit_for(const FittedModel& fitted, const DetailOptions& detail) {
     Limit limit = limit_of_work(detail.work_seconds);
     limit.need = fmt::format("the picture as asked would take about {} seconds of one processor",
@@ -306,7 +306,8 @@ std::string in_words(const NativeReport& report) {
     return text;
 }
 
-/// What a picture will take that starts now. A lack that somebody asked for is a warning (report_work()).
+/// The start of a picture, with what it will take. A lack that somebody asked for is a warning
+/// (report_work()).
 DrawStart start_of(const FittedModel& fitted, const PicturePlan& plan, bool by_default) {
     DrawStart start{fitted.seconds, fitted.whole_seconds, {}};
     if (by_default && fitted.sampling != plan.wanted)

@@ -11,7 +11,7 @@ namespace {
 
 /// Octaves of error for an octave of samples: of light through four samples or more, below, and of edges.
 constexpr double loss_of_light = 0.15, loss_of_last_light = 0.4, loss_of_edges = 0.35;
-/// The same for an octave of a block's width.
+/// Octaves of error for an octave of a block's width.
 constexpr double loss_of_pixels = 1.3;
 constexpr double enough_light = 4; // samples
 

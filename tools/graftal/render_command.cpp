@@ -13,7 +13,7 @@ namespace graftal {
 
 namespace {
 
-/// What is to be said before a picture starts, or "".
+/// The line that stands before a picture starts, or "".
 std::string start_text(const Engine& engine, const RenderOptions& render, const DrawStart& start) {
     const std::string seconds = readable_seconds(start.seconds);
     if (&engine != &engines().front()) {

@@ -186,8 +186,10 @@ class Drawing {
     Status look(const TraceModel& model, const Sampling& sampling) {
         PictureTracer tracer(model, limits_of(model, options_));
         const std::size_t traced = trace(tracer, sampling);
-        report_.rays.noisy_pixels = 0; // of the last look alone
+        // The noise is that of the last look alone.
+        report_.rays.noisy_pixels = report_.rays.noise_1024 = report_.rays.measured_pixels = 0;
         report_.rays += tracer.statistics();
+        report_.error_px = model.options.culls() ? model.projection.error_px() : 0;
         const bool complete = traced == pixels();
         if (!complete && !worth_leaving()) return interrupted();
         const Status status = write();
@@ -299,6 +301,9 @@ std::string in_words(const NativeReport& report) {
     if (report.finer_share > 0)
         text += fmt::format(", in {:.2g} % of the picture {},", 100 * report.finer_share,
                             samples_text(report.finer_samples_a_pixel));
+    if (report.error_px > 0) text += fmt::format(", error {:.3g} px", report.error_px);
+    if (const std::optional<double> noise = report.rays.noise_255())
+        text += fmt::format(", noise {:.2g} of 255", *noise);
     text += fmt::format(" in {:.2f} s, {}", report.seconds, rays_text(report.rays, report.seconds));
     if (report.pictures > 1)
         text += fmt::format("; the first of {} pictures after {:.2f} s", report.pictures,

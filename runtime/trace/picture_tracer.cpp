@@ -76,7 +76,11 @@ class Worker {
     }
 
     TraceStatistics statistics() const {
-        return {camera_rays_, traversal_.work() + shader_.work(), traversal_.given_up(), noisy_pixels_};
+        TraceStatistics seen = noise_;
+        seen.camera_rays = camera_rays_;
+        seen.work = traversal_.work() + shader_.work();
+        seen.given_up = traversal_.given_up();
+        return seen;
     }
 
   private:
@@ -224,11 +228,18 @@ class Worker {
                     return !calm;
                 });
                 if (!whole) return false;
-                if (!calm && sampling.noise_255 > 0) ++noisy_pixels_;
+                if (!calm && sampling.noise_255 > 0) ++noise_.noisy_pixels;
+                note_noise(meter);
                 set(picture, x, y, meter.mean());
                 if (aovs_) set(x, y, sum);
             }
         return true;
+    }
+
+    void note_noise(const NoiseMeter& meter) {
+        if (meter.count() < 2) return;
+        ++noise_.measured_pixels;
+        noise_.noise_1024 += static_cast<std::uint64_t>(std::llround(1024 * meter.error_255(film_)));
     }
 
     /// Row after row of samples, each added to the pixels that it belongs to: those on an edge to both sides.
@@ -298,7 +309,8 @@ class Worker {
     const TraceControl& control_;
     Shader::Ahead ahead_;
     std::vector<SampleStream> randoms_; ///< of the sights ahead
-    std::uint64_t camera_rays_ = 0, noisy_pixels_ = 0;
+    std::uint64_t camera_rays_ = 0;
+    TraceStatistics noise_; ///< the fields of noise
     std::vector<Rgb> row_, sums_;
     Tile window_;
     AovPicture* aovs_ = nullptr; ///< null: none are wanted
@@ -335,7 +347,14 @@ TraceStatistics& TraceStatistics::operator+=(const TraceStatistics& other) {
     work += other.work;
     given_up += other.given_up;
     noisy_pixels += other.noisy_pixels;
+    noise_1024 += other.noise_1024;
+    measured_pixels += other.measured_pixels;
     return *this;
+}
+
+std::optional<double> TraceStatistics::noise_255() const {
+    if (measured_pixels == 0) return {};
+    return static_cast<double>(noise_1024) / 1024 / static_cast<double>(measured_pixels);
 }
 
 PictureTracer::PictureTracer(const TraceModel& model, const ShaderLimits& limits)

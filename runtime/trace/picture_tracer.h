@@ -53,6 +53,11 @@ struct TraceStatistics {
     std::uint64_t given_up = 0;    ///< rays that met too many parts (Traversal::given_up)
     /// Pixels that have all their samples, and more noise than Sampling::noise_255.
     std::uint64_t noisy_pixels = 0;
+    /// The noise that is left, of all pixels with two samples or more (NoiseMeter::error_255()), in 1/1024.
+    std::uint64_t noise_1024 = 0, measured_pixels = 0;
+
+    /// The mean noise of a pixel in 255ths as it is shown; nothing where no pixel has two samples.
+    std::optional<double> noise_255() const;
 
     TraceStatistics& operator+=(const TraceStatistics& other);
 };

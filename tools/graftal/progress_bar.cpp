@@ -49,10 +49,16 @@ void ProgressBar::show(const std::string& text) {
 }
 
 void ProgressBar::show(const std::string& what, double fraction, const std::string& more) {
-    if (fraction < fraction_) begun_ = Clock::now();
+    if (!(fraction >= fraction_)) { // another task begins
+        begun_ = Clock::now();
+        begun_at_ = fraction;
+    }
     fraction_ = fraction;
+    constexpr double enough_to_tell = 0.02;
     const double seconds = std::chrono::duration<double>(Clock::now() - begun_).count();
-    const std::string rest = more + (fraction > 0 ? time_left(seconds * (1 - fraction) / fraction) : "");
+    const double done = fraction - begun_at_;
+    const std::string rest =
+        more + (done >= enough_to_tell ? time_left(seconds * (1 - fraction) / done) : "");
     show(in_place_ ? fmt::format("{:<18}", what) + bar(fraction) + rest
                    : fmt::format("{}, {:.0f} %", what, 100 * fraction) + rest);
 }

@@ -30,8 +30,8 @@ class ProgressBar {
 
     bool wanted_, in_place_;
     Clock::time_point told_;  ///< the last line that is not rewritten, or the beginning
-    Clock::time_point begun_; ///< what fraction_ is of
-    double fraction_ = 1;
+    Clock::time_point begun_; ///< the task that fraction_ is of, at begun_at_
+    double fraction_ = 1, begun_at_ = 0;
     std::string shown_;
 };
 

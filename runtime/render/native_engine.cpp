@@ -284,14 +284,29 @@ class Drawing {
 };
 
 /// The first of progressive pictures, before anything is known but what a few rays took: so coarse that it is
-/// soon there. Nothing if that is not so.
-std::vector<Sampling> first_draft(const TraceModel& model, const Sampling& finest, double sample_seconds) {
-    constexpr double soon = 0.05, too_late = 1; // seconds of one processor
-    if (model.has_shells) return {};            // to make them takes time that nobody knows
-    std::vector<Sampling> looks = looks_before(finest, sample_seconds, soon);
-    if (looks.empty() || looks.front().samples_a_pixel() * sample_seconds > too_late) return {};
-    looks.resize(1);
-    return looks;
+/// soon there.
+struct Draft {
+    std::vector<Sampling> looks;       ///< one, or none where the finest look is there as soon
+    std::unique_ptr<TraceModel> rough; ///< to look at in place of the model, if that might take long
+};
+
+Draft first_draft(const TraceModel& model, const Sampling& finest, double sample_seconds) {
+    constexpr double soon = 0.05, too_late = 0.3; // seconds of one processor
+    constexpr double coarser = 8;                 // of errors: half of the widest block
+    constexpr std::uint64_t most_visits = 1024;
+    Draft draft{looks_before(finest, sample_seconds, soon), nullptr};
+    if (draft.looks.empty()) return draft;
+    draft.looks.resize(1);
+    const bool is_late = draft.looks.front().samples_a_pixel() * sample_seconds > too_late;
+    // Nobody knows how many shells its rays will meet, and they belong to the price of the model itself.
+    if (!model.options.culls() || !(is_late || model.has_shells)) return draft;
+    DetailOptions options = model.options;
+    options.error_px *= coarser;
+    if (options.error_world) *options.error_world *= coarser;
+    draft.rough = std::make_unique<TraceModel>(model.shared, model.view, options, model.textures,
+                                               model.shell_sizes, model.self_shadow_store);
+    draft.rough->most_visits = std::min(model.most_visits, most_visits);
+    return draft;
 }
 
 std::string in_words(const NativeReport& report) {
@@ -419,12 +434,15 @@ std::optional<NativeReport> trace_model(const PreparedView& prepared, const Rend
     const PicturePlan plan = plan_picture(prepared, options);
     Drawing drawing(view, prepared.prepared->cut, options, sink, cancel);
     const double seconds_before = preparing.seconds();
-    std::vector<Sampling> draft;
+    int draft_block = 0;
     std::function<void(const TraceModel&, double)> on_first_look;
     if (options.progressive)
         on_first_look = [&](const TraceModel& tried, double sample_seconds) {
-            draft = first_draft(tried, plan.wanted, sample_seconds);
-            compilation.status = drawing.look(tried, draft, plan.wanted.samples_a_pixel());
+            const Draft draft = first_draft(tried, plan.wanted, sample_seconds);
+            if (draft.looks.empty()) return;
+            draft_block = draft.looks.front().block;
+            compilation.status =
+                drawing.look(draft.rough ? *draft.rough : tried, draft.looks, plan.wanted.samples_a_pixel());
         };
     const FittedModel fitted = fit_picture(
         prepared, options, plan, [&] { return cancel.raised() || !compilation.status.ok(); }, on_first_look);
@@ -443,7 +461,7 @@ std::optional<NativeReport> trace_model(const PreparedView& prepared, const Rend
     if (options.progressive) {
         std::vector<Sampling> looks = looks_before(fitted.sampling, fitted.sample_seconds, soon);
         std::erase_if(looks,
-                      [&](const Sampling& look) { return !draft.empty() && look.block >= draft[0].block; });
+                      [&](const Sampling& look) { return draft_block > 0 && look.block >= draft_block; });
         compilation.status = drawing.look(model, looks, drawing.done() + fitted.sampling.samples_a_pixel());
     }
     if (compilation.status.ok())

@@ -33,7 +33,7 @@ constexpr std::uint64_t pieces_a_look = 10'000;
 /// the next may use.
 class Effort {
   public:
-    explicit Effort(std::uint64_t queries) : queries_left_(queries) {}
+    Effort(std::uint64_t pieces, std::uint64_t queries) : left_(pieces), queries_left_(queries) {}
 
     std::uint64_t allowance() const {
         return std::clamp<std::uint64_t>(8 * left_ / std::max<std::uint64_t>(queries_left_, 1), 16, 400'000);
@@ -46,7 +46,7 @@ class Effort {
     }
 
   private:
-    std::uint64_t left_ = most_pieces, spent_ = 0;
+    std::uint64_t left_, spent_ = 0;
     std::uint64_t queries_left_;
 };
 
@@ -68,10 +68,11 @@ std::uint64_t queries(const Graph& graph, const Components& components) {
 class Bounder {
   public:
     Bounder(const Graph& graph, const Components& components, const Contraction& contraction,
-            const Control& control)
+            const Control& control, std::uint64_t pieces = most_pieces)
         : graph_(graph), components_(components), contraction_(contraction), outers_(graph.objects.size()),
           unbounded_(plane_holders(graph, components)), search_(graph, outers_),
-          effort_(queries(graph, components)), meter_(control, "bounding", pieces_a_look, StagePrice::piece),
+          effort_(pieces, queries(graph, components)),
+          meter_(control, "bounding", pieces_a_look, StagePrice::piece),
           pieces_of_ball_(std::clamp<std::size_t>(400'000 / graph.objects.size(), 4, 400)),
           wants_ball_(graph.objects.size(), true) {}
 
@@ -255,15 +256,15 @@ std::vector<ObjectBounds> bound_objects(const Graph& graph, const Components& co
     return bounds;
 }
 
-std::vector<Box> bound_boxes(const Graph& graph, const Components& components,
-                             const Contraction& contraction) {
+std::vector<Box> bound_boxes(const Graph& graph, const Components& components, const Contraction& contraction,
+                             std::uint64_t most, std::uint64_t& pieces) {
     require_proof(contraction);
-    const Control& control = no_control();
-    Bounder bounder(graph, components, contraction, control);
+    Bounder bounder(graph, components, contraction, no_control(), most);
     bounder.leave_out_last_balls();
     std::vector<Box> boxes;
     for (const ObjectBounds& bounds : bounder.run())
         boxes.push_back(bounds.box);
+    pieces = bounder.pieces();
     return boxes;
 }
 

@@ -39,8 +39,8 @@ std::vector<ObjectBounds> bound_objects(const Graph& graph, const Components& co
                                         std::uint64_t* pieces = nullptr);
 
 /// The boxes of bound_objects(), with the same requirements. Sooner: of an object that no other instances,
-/// no ball is looked for.
-std::vector<Box> bound_boxes(const Graph& graph, const Components& components,
-                             const Contraction& contraction);
+/// no ball is looked for. By about `most` pieces, whose number `pieces` gets.
+std::vector<Box> bound_boxes(const Graph& graph, const Components& components, const Contraction& contraction,
+                             std::uint64_t most, std::uint64_t& pieces);
 
 } // namespace graftal

@@ -16,7 +16,7 @@ using Number = boost::multiprecision::cpp_int;
 
 constexpr std::uint64_t max_bits = std::uint64_t{max_counted_digits} * 10 / 3;
 constexpr std::uint64_t max_held_bits = std::uint64_t{1} << 31; // in all numbers held at once
-constexpr std::uint64_t max_word_operations = 4'000'000'000;
+constexpr std::uint64_t max_word_operations = 1'000'000'000;    // some two seconds
 
 std::uint64_t bits(const Number& number) {
     return number == 0 ? 1 : msb(number) + 1;

@@ -11,6 +11,7 @@
 #include "compiler/detail/ellipsoid_fit.h"
 #include "compiler/detail/lit_colours.h"
 #include "compiler/detail/subtree_shadow.h"
+#include "compiler/support/stage_price.h"
 
 namespace graftal {
 
@@ -24,9 +25,6 @@ constexpr std::size_t most_edges = 10'000;
 constexpr std::size_t many_nodes = 3000;
 constexpr std::size_t fine_factor = 12; ///< so many more parts to see what a cycle ends in
 constexpr int most_rounds = 10;
-/// Bodies that may be drawn for cycles, besides once for each node. Any scene of ours needs less than a
-/// tenth.
-constexpr std::uint64_t most_repeated_draws = 4'000'000;
 /// Of growth_of_area(), about 1.
 constexpr double same_area = 1e-6;
 /// Of the shadow of the ellipsoid in a node's box, for what stands for the node to be full.
@@ -35,10 +33,11 @@ constexpr double full_share = 0.5;
 /// Fits the groups of congruent nodes, masters first.
 class Fitter {
   public:
-    Fitter(CutGraph& cut, const Symmetry& symmetry, WorkMeter* meter)
+    Fitter(CutGraph& cut, const Symmetry& symmetry, std::uint64_t most_bodies, WorkMeter* meter)
         : cut_(cut), symmetry_(symmetry), congruence_(find_congruence(cut, symmetry)),
           members_(cut.nodes.size()), seen_(cut.nodes.size()), shadowless_(cut.nodes.size(), false),
-          ends_full_(cut.nodes.size(), false), meter_(meter) {
+          ends_full_(cut.nodes.size(), false), most_draws_(most_bodies), meter_(meter) {
+        place_.assign(cut.nodes.size(), nowhere);
         for (NodeId id = 0; id < cut.nodes.size(); ++id) {
             members_[congruence_.root[id]].push_back(id);
             box_half_.emplace_back();
@@ -54,16 +53,16 @@ class Fitter {
         for (const auto& members : components.members)
             groups += static_cast<std::size_t>(
                 std::ranges::count_if(members, [&](NodeId id) { return wanted[id]; }));
-        effort_.pieces =
-            std::clamp(all_pieces / std::max<std::size_t>(groups, 1), fewest_pieces, most_pieces);
-        ShadowMeasurer measurer(cut_, groups > many_nodes ? 6 : 16);
+        const std::size_t directions = groups > many_nodes ? 6 : 16;
+        const std::size_t pieces = std::min<std::size_t>(all_pieces, most_draws_ / directions);
+        effort_.pieces = std::clamp(pieces / std::max<std::size_t>(groups, 1), fewest_pieces, most_pieces);
+        ShadowMeasurer measurer(cut_, directions);
         measurer_ = &measurer;
         const EllipsoidFit fit(measurer.along());
         fit_ = &fit;
         for (std::size_t c = 0; c < components.members.size(); ++c) {
-            roots_ = components.members[c];
-            std::erase_if(roots_, [&](NodeId root) { return !fittable(root) || !wanted[root]; });
-            if (roots_.empty()) continue;
+            choose_roots(components.members[c], wanted);
+            if (roots_.empty() || draws_left() == 0) continue;
             if (components.cyclic[c])
                 fit_cycle();
             else
@@ -80,6 +79,23 @@ class Fitter {
     std::uint64_t draws() const { return draws_; }
 
   private:
+    void choose_roots(const std::vector<NodeId>& members, const std::vector<bool>& wanted) {
+        for (const NodeId root : roots_)
+            place_[root] = nowhere;
+        roots_.clear();
+        for (const NodeId root : members) {
+            if (!fittable(root) || !wanted[root]) continue;
+            place_[root] = roots_.size();
+            roots_.push_back(root);
+        }
+    }
+
+    /// For the nodes that are drawn for the first time.
+    std::uint64_t draws_left() const {
+        const std::uint64_t drawn = measurer_->draws() - repeated_draws_;
+        return most_draws_ - std::min(drawn, most_draws_);
+    }
+
     bool fittable(NodeId id) const {
         const CutNode& node = cut_.nodes[id];
         return !node.primitive && !node.edges.empty() && node.edges.size() <= most_edges &&
@@ -125,7 +141,7 @@ class Fitter {
     SubtreeShadow measure(NodeId root, const Effort& effort, bool ended = false) {
         const std::uint64_t before = measurer_->draws();
         SubtreeShadow measured = measurer_->measure(root, effort, ended);
-        if (meter_) meter_->add(measurer_->draws() - before);
+        if (meter_) meter_->add(measurer_->draws() - before, StagePrice::body);
         return measured;
     }
 
@@ -145,8 +161,7 @@ class Fitter {
     bool reaches_area(NodeId root) const {
         for (const CutEdge& edge : cut_.nodes[root].edges) {
             const NodeId master = congruence_.root[edge.child];
-            if (std::find(roots_.begin(), roots_.end(), master) == roots_.end() && !shadowless_[master])
-                return true;
+            if (place_[master] == nowhere && !shadowless_[master]) return true;
         }
         return false;
     }
@@ -177,22 +192,22 @@ class Fitter {
         }
         const std::uint64_t begin = measurer_->draws();
         // Half of what the cycles before have left, and half of that for either step.
-        const std::uint64_t allowed = (most_repeated_draws - repeated_draws_) / 4;
+        const std::uint64_t allowed = (most_draws_ - repeated_draws_) / 4;
         const std::uint64_t round_draws = go_round(allowed);
         if (grows) fit_together(allowed, round_draws);
-        repeated_draws_ =
-            std::min(repeated_draws_ + measurer_->draws() - begin - round_draws, most_repeated_draws);
+        repeated_draws_ = std::min(repeated_draws_ + measurer_->draws() - begin - round_draws, most_draws_);
     }
 
     /// Measures the nodes of a cycle by each other's proxies until these stay as they are. Returns what one
     /// round draws.
     std::uint64_t go_round(std::uint64_t allowed) {
-        const std::uint64_t begin = measurer_->draws();
+        const std::uint64_t begin = measurer_->draws(), first_round = draws_left();
         std::uint64_t round_draws = 0;
         std::vector<double> mean(roots_.size(), 0);
         for (int round = 0; round < most_rounds; ++round) {
             double change = 0;
             for (std::size_t i = 0; i < roots_.size(); ++i) {
+                if (round == 0 && measurer_->draws() - begin > first_round) break;
                 const SubtreeShadow measured = measure(roots_[i], effort_);
                 take(roots_[i], measured, 1);
                 change =
@@ -242,10 +257,10 @@ class Fitter {
         std::vector<std::vector<std::pair<std::size_t, double>>> factors(roots_.size());
         for (std::size_t i = 0; i < roots_.size(); ++i)
             for (const CutEdge& edge : cut_.nodes[roots_[i]].edges) {
-                const auto at = std::find(roots_.begin(), roots_.end(), congruence_.root[edge.child]);
-                if (at == roots_.end()) continue;
+                const std::size_t at = place_[congruence_.root[edge.child]];
+                if (at == nowhere) continue;
                 const Vec3 s = singular_values(edge.node_from_child.linear);
-                factors[i].emplace_back(at - roots_.begin(), (s.x * s.y + s.y * s.z + s.z * s.x) / 3);
+                factors[i].emplace_back(at, (s.x * s.y + s.y * s.z + s.z * s.x) / 3);
             }
         // Of I + M, whose powers converge where those of M may take turns.
         std::vector<double> area(roots_.size(), 1), next(roots_.size());
@@ -324,8 +339,11 @@ class Fitter {
     std::vector<bool> shadowless_;             ///< by root
     std::vector<bool> ends_full_;              ///< by root: of shadowless sets of dimension 2
     Effort effort_{most_pieces, Effort::coarse_grid};
+    const std::uint64_t most_draws_; ///< once for each node, and again for cycles
     std::uint64_t draws_ = 0, repeated_draws_ = 0;
-    std::vector<NodeId> roots_; ///< of the component under way
+    std::vector<NodeId> roots_;      ///< of the component under way
+    std::vector<std::size_t> place_; ///< by node: among them, or nowhere
+    static constexpr std::size_t nowhere = SIZE_MAX;
     ShadowMeasurer* measurer_ = nullptr;
     const EllipsoidFit* fit_ = nullptr;
     WorkMeter* meter_ = nullptr;
@@ -333,8 +351,9 @@ class Fitter {
 
 } // namespace
 
-std::uint64_t fit_proxies(CutGraph& cut, const Symmetry& symmetry, WorkMeter* meter) {
-    Fitter fitter(cut, symmetry, meter);
+std::uint64_t fit_proxies(CutGraph& cut, const Symmetry& symmetry, std::uint64_t most_bodies,
+                          WorkMeter* meter) {
+    Fitter fitter(cut, symmetry, most_bodies, meter);
     fitter.run();
     set_mean_colours(cut);
     set_finishes(cut);

@@ -3,6 +3,7 @@
 #include <cstdint>
 
 #include "compiler/detail/cut_graph.h"
+#include "compiler/detail/detail_options.h"
 #include "compiler/detail/symmetry.h"
 #include "compiler/support/control.h"
 
@@ -21,8 +22,12 @@ namespace graftal {
 /// lines stay visible. Where a full terminal ends a set of dimension 2, it covers about as much at each
 /// level: it is drawn as it is, and its node is not marked.
 ///
-/// Returns how many bodies it drew, which is what it costs, and what the meter counts; null: nobody does.
-std::uint64_t fit_proxies(CutGraph& cut, const Symmetry& symmetry, WorkMeter* meter = nullptr);
+/// Draws about `most_bodies` once for each node, and as many again for cycles. Where fewer are allowed,
+/// subtrees are unfolded to fewer parts; beyond that, nodes keep the ellipsoid in their box. Returns how many
+/// bodies it drew, which is what it costs, and what the meter counts; null: nobody does.
+std::uint64_t fit_proxies(CutGraph& cut, const Symmetry& symmetry,
+                          std::uint64_t most_bodies = PrepareOptions::usual_bodies,
+                          WorkMeter* meter = nullptr);
 
 /// Whether the box of a shadowless node is a sheet or a line. Requires fit_proxies().
 bool is_flat(const CutNode& node);

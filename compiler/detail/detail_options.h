@@ -1,15 +1,20 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <optional>
+
+#include "compiler/support/stage_price.h"
 
 namespace graftal {
 
 /// What prepare_cut() has to know of the picture.
 struct PrepareOptions {
-    std::optional<unsigned> steps; ///< levels; nothing: as deep as the error asks for
-    bool culls = true;             ///< whether anything is culled for its size
-    bool keeps_objects = false;    ///< DetailOptions'
+    std::optional<unsigned> steps;            ///< levels; nothing: as deep as the error asks for
+    bool culls = true;                        ///< whether anything is culled for its size
+    bool keeps_objects = false;               ///< DetailOptions'
+    std::uint64_t most_bodies = usual_bodies; ///< that are drawn to fit proxies (fit_proxies())
+    static constexpr std::uint64_t usual_bodies = 4'000'000;
     bool operator==(const PrepareOptions&) const = default;
 };
 
@@ -29,7 +34,12 @@ struct DetailOptions {
 
     /// Whether anything is culled for its size.
     bool culls() const { return error_world ? *error_world > 0 : error_px > 0; }
-    PrepareOptions preparing() const { return {steps, culls(), keeps_objects}; }
+    PrepareOptions preparing() const {
+        constexpr double share = 0.1; // of the work
+        const double bodies = share * work_seconds / StagePrice::body;
+        const auto usual = static_cast<double>(PrepareOptions::usual_bodies);
+        return {steps, culls(), keeps_objects, static_cast<std::uint64_t>(std::min(bodies, usual))};
+    }
     bool operator==(const DetailOptions&) const = default;
 };
 

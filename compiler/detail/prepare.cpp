@@ -6,6 +6,7 @@
 
 #include "compiler/detail/build_cut_graph.h"
 #include "compiler/detail/coverage.h"
+#include "compiler/support/stage_price.h"
 
 namespace graftal {
 
@@ -51,6 +52,7 @@ PreparedCut prepare_cut(const Graph& graph, const Components& components,
                         const std::vector<ObjectBounds>& bounds, const PrepareOptions& options,
                         const Control& control, const PassObserver& after_each) {
     WorkMeter meter(control, "prepare", prepared_a_look);
+    meter.charge(work_of_preparation(graph.objects.size(), instance_count(graph)));
     PreparedCut prepared;
     BoundedGraph passed = run_passes(detail_passes(options.keeps_objects), {graph, bounds},
                                      {.stop_after = {}, .after_each = after_each}, nullptr, &meter);
@@ -59,12 +61,14 @@ PreparedCut prepare_cut(const Graph& graph, const Components& components,
     prepared.symmetry = find_symmetry(cut);
     meter.add(prepared.symmetry.comparisons);
     if (options.culls || (components.unending[graph.root] && options.steps))
-        fit_proxies(cut, prepared.symmetry, &meter);
+        fit_proxies(cut, prepared.symmetry, options.most_bodies, &meter);
     mark_wide(cut);
     mark_solid(cut);
     prepared.bounds = bounds[graph.root].box;
     prepared.instances = instance_count(graph);
     if (options.steps) prepared.root_steps = *options.steps;
+    meter.charge(0);
+    if (control.work) prepared.work_seconds = control.work->seconds();
     return prepared;
 }
 

@@ -20,9 +20,10 @@ namespace graftal {
 struct PreparedCut {
     CutGraph cut;
     Symmetry symmetry;
-    std::uint32_t root_steps = unlimited_steps;                          ///< levels that the root has
-    Box bounds;                                                          ///< of the limit set
-    std::uint64_t instances = 0;                                         ///< of the graph that it was made of
+    std::uint32_t root_steps = unlimited_steps; ///< levels that the root has
+    Box bounds;                                 ///< of the limit set
+    std::uint64_t instances = 0;                ///< of the graph that it was made of
+    double work_seconds = 0;                    ///< counted, of all stages up to here (support/stage_work.h)
     std::unique_ptr<ShellStore> shells = std::make_unique<ShellStore>(); ///< of this graph
 };
 

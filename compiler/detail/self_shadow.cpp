@@ -10,6 +10,7 @@
 
 #include "compiler/detail/part_rays.h"
 #include "compiler/detail/prepare.h"
+#include "compiler/detail/work.h"
 #include "compiler/scene/light_list.h"
 
 namespace graftal {
@@ -87,8 +88,9 @@ struct LitPoint {
 class Measurer {
   public:
     Measurer(const CutGraph& cut, const Symmetry& symmetry, std::uint32_t root_steps, const View& view,
-             bool limit_normals)
-        : cut_(cut), view_(view), culled_projection_(projection(self_shadow_measured_px)),
+             bool limit_normals, std::uint64_t most_work)
+        : most_work_(most_work), cut_(cut), view_(view),
+          culled_projection_(projection(self_shadow_measured_px)),
           whole_projection_(projection(SelfShadows::lit_as_px)),
           culled_(cut, culled_projection_, root_steps, self_shadow_measured_px, limit_normals),
           whole_(cut, whole_projection_, root_steps, self_shadow_measured_px, limit_normals),
@@ -108,7 +110,7 @@ class Measurer {
         const double g = 1.32471795724474602596;
         double hits = 0;
         for (std::uint64_t i = 0; i < most_rays && hits < enough_hits; ++i) {
-            if (culled_.work() + whole_.work() > most_self_shadow_work) break;
+            if (culled_.work() + whole_.work() > most_work_) break;
             const auto n = static_cast<double>(i);
             const auto part = [&](double slope) { return std::fmod(0.5 + n * slope, 1.0); };
             const Ray ray = camera_ray(part(1 / g), part(1 / (g * g)));
@@ -200,6 +202,7 @@ class Measurer {
         return rays.meets_any({point, direction}, range) ? 0 : scattered;
     }
 
+    const std::uint64_t most_work_;
     const CutGraph& cut_;
     const View& view_;
     const Material plain_; ///< of what names none
@@ -226,8 +229,14 @@ double SelfShadows::share_within(double outer, NodeId node, double detail, doubl
 }
 
 SelfShadows measure_self_shadows(const CutGraph& cut, const Symmetry& symmetry, std::uint32_t root_steps,
-                                 const View& view, bool limit_normals, int steps) {
-    return Measurer(cut, symmetry, root_steps, view, limit_normals).run(steps);
+                                 const View& view, bool limit_normals, int steps, std::uint64_t most_work) {
+    return Measurer(cut, symmetry, root_steps, view, limit_normals, most_work).run(steps);
+}
+
+std::uint64_t self_shadow_work(double work_seconds) {
+    constexpr double share = 0.1;
+    return static_cast<std::uint64_t>(std::min(share * work_seconds * WorkRates::parts_gone_by,
+                                               static_cast<double>(most_self_shadow_work)));
 }
 
 } // namespace graftal

@@ -43,6 +43,8 @@ class SelfShadows {
     std::uint64_t work_ = 0;
 };
 
+inline constexpr std::uint64_t most_self_shadow_work = 8'000'000;
+
 /// Measures the shares for the lights and the camera of a view: some thousands of camera rays meet the parts
 /// once as they are culled at `measured_px`, and once as at SelfShadows::lit_as_px, both in their own
 /// shadows. An object's share makes the mean light that its parts scatter equal: a leaf that stands alone
@@ -50,12 +52,15 @@ class SelfShadows {
 /// all. Shares are rounded to `steps`. Ambient light does not count; of light from all directions a list
 /// stands for it. Nothing is measured without lights that throw shadows.
 ///
-/// Requires fit_proxies(). Work: at most `most_self_shadow_work` parts are gone by.
+/// Requires fit_proxies(). Work: at most `most_work` parts are gone by.
 SelfShadows measure_self_shadows(const CutGraph& cut, const Symmetry& symmetry, std::uint32_t root_steps,
-                                 const View& view, bool limit_normals, int steps);
+                                 const View& view, bool limit_normals, int steps,
+                                 std::uint64_t most_work = most_self_shadow_work);
+
+/// Of the work allowed for a picture.
+std::uint64_t self_shadow_work(double work_seconds);
 
 inline constexpr double self_shadow_measured_px = 4;
-inline constexpr std::uint64_t most_self_shadow_work = 8'000'000;
 
 /// Measures when it is first asked, by whichever thread.
 class SelfShadowStore {
@@ -64,6 +69,8 @@ class SelfShadowStore {
         std::call_once(once_, [&] { shadows_ = measure(); });
         return shadows_;
     }
+    /// That measuring took so far. Requires that nobody asks for them meanwhile.
+    std::uint64_t work() const { return shadows_.work(); }
 
   private:
     std::once_flag once_;

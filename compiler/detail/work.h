@@ -18,9 +18,8 @@ struct WorkRates {
     static constexpr double baked_triangles = 4e6;  ///< triangles of such meshes
     static constexpr double kinds = 4.5e6;          ///< edges of kinds followed to weigh them (Weights)
     static constexpr double trace_edges = 2e5; ///< edges of a prepared graph made ready for rays (TraceModel)
-    /// Of the graph, from the model's text to where it can be unfolded.
-    static constexpr double instances = 1.5e5;
-    static constexpr double pieces = 3e6; ///< pieces looked at to choose among them (choose_cut())
+    static constexpr double parts_gone_by = 1e7; ///< by the rays of SelfShadows
+    static constexpr double pieces = 3e6;        ///< pieces looked at to choose among them (choose_cut())
 };
 
 /// How many times as long steps through a graph of so many instances take: those of a small one are in the
@@ -30,11 +29,9 @@ inline double slowness_of_graph(std::uint64_t instances) {
     return 1 + a_doubling * std::max(0.0, std::log2(static_cast<double>(instances) / at_home));
 }
 
-/// What a graph of so many instances leaves of the work allowed for a picture: a quarter in any case.
-inline double work_beside_graph(double work_seconds, std::uint64_t instances) {
-    const double graph_seconds =
-        slowness_of_graph(instances) * static_cast<double>(instances) / WorkRates::instances;
-    return std::max(work_seconds - graph_seconds, 0.25 * work_seconds);
+/// What the stages before leave of the work allowed for a picture: a quarter in any case.
+inline double work_after_stages(double work_seconds, double spent_seconds) {
+    return std::max(work_seconds - spent_seconds, 0.25 * work_seconds);
 }
 
 /// Steps that rays take, each about as long as others: what a part takes depends on how it is placed.

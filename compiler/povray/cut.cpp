@@ -53,7 +53,7 @@ class Cutter {
     std::optional<Cut> run() {
         // Of what is not to be culled nobody knows a coarser picture.
         work_seconds_left_ =
-            culls() ? share_of_work * work_beside_graph(options_.work_seconds, prepared_.instances)
+            culls() ? share_of_work * work_after_stages(options_.work_seconds, prepared_.work_seconds)
                     : std::numeric_limits<double>::infinity();
         cube_triangles_ = visible_cube_triangles(cut_, symmetry_, prepared_.root_steps);
         if (std::optional<Cut> cut = attempt(0)) return finish(std::move(*cut), 0);
@@ -187,7 +187,7 @@ class Cutter {
         if (!(projection.error_px() > SelfShadows::lit_as_px)) return nullptr;
         return &self_shadows_.get([this] {
             return measure_self_shadows(cut_, symmetry_, prepared_.root_steps, view_, limit_normals(),
-                                        options_.light_steps);
+                                        options_.light_steps, self_shadow_work(options_.work_seconds));
         });
     }
 

@@ -100,6 +100,8 @@ struct PrimitiveTraits {
     Ball (*ball)(const Primitive&);
     /// A point that is farthest along a direction, which need not be of unit length.
     Vec3 (*support_point)(const Primitive&, Vec3 direction);
+    /// At least how far along the direction that is, where the point takes long to find; else null.
+    double (*reach)(const Primitive&, Vec3 direction) = nullptr;
     /// Things whose hull holds it.
     std::vector<HullPiece> (*hull)(const Primitive&);
     /// Convex bodies whose union is the primitive, or casts nearly its shadow.

@@ -144,6 +144,10 @@ Vec3 support_point(const Primitive& primitive, Vec3 direction) {
     return form_of(primitive).tree.farthest(direction);
 }
 
+double reach(const Primitive& primitive, Vec3 direction) {
+    return form_of(primitive).tree.reach(direction);
+}
+
 std::vector<HullPiece> hull(const Primitive& primitive) {
     std::vector<HullPiece> pieces;
     for (const Vec3& corner : form_of(primitive).box.corners())

@@ -35,6 +35,7 @@ namespace triangle_mesh {
 Box box(const Primitive& primitive);
 Ball ball(const Primitive& primitive);
 Vec3 support_point(const Primitive& primitive, Vec3 direction);
+double reach(const Primitive& primitive, Vec3 direction);
 std::vector<HullPiece> hull(const Primitive& primitive);
 std::vector<ConvexPart> convex_parts(const Primitive& primitive);
 double inner_radius(const Primitive& primitive);
@@ -58,6 +59,7 @@ constexpr PrimitiveTraits traits(PrimitiveArguments arguments = {},
         .box = box,
         .ball = ball,
         .support_point = support_point,
+        .reach = reach,
         .hull = hull,
         .convex_parts = convex_parts,
         .inner_radius = inner_radius,

@@ -34,6 +34,14 @@ double distance2(const Box& box, Vec3 point) {
     return glm::dot(out, out);
 }
 
+/// How far the box reaches along the direction.
+double reach(const Box& box, Vec3 direction) {
+    double sum = 0;
+    for (int i = 0; i < 3; ++i)
+        sum += direction[i] * (direction[i] > 0 ? box.max[i] : box.min[i]);
+    return sum;
+}
+
 double half_area(Vec3 size) {
     return size.x * size.y + size.y * size.z + size.z * size.x;
 }
@@ -228,22 +236,28 @@ bool TriangleTree::meet(const Ray& ray, const RayRange& range, TriangleHit& hit,
     return met;
 }
 
+double TriangleTree::reach(Vec3 direction) const {
+    constexpr int levels = 4;
+    return reach(nodes_.front(), direction, levels);
+}
+
+double TriangleTree::reach(const Node& node, Vec3 direction, int levels) const {
+    if (node.count > 0 || levels == 0) return graftal::reach(node.box, direction);
+    return std::max(reach(nodes_[node.first], direction, levels - 1),
+                    reach(nodes_[node.first + 1], direction, levels - 1));
+}
+
 Vec3 TriangleTree::farthest(Vec3 direction) const {
-    const auto reach = [&](const Box& box) {
-        double sum = 0;
-        for (int i = 0; i < 3; ++i)
-            sum += direction[i] * (direction[i] > 0 ? box.max[i] : box.min[i]);
-        return sum;
-    };
     double most = -infinite;
     Vec3 best = triangles_.front()[0];
     std::array<std::uint32_t, 64> stack{};
     std::size_t size = 1;
     while (size > 0) {
         const Node& node = nodes_[stack[--size]];
-        if (!(reach(node.box) > most)) continue;
+        if (!(graftal::reach(node.box, direction) > most)) continue;
         if (node.count == 0) {
-            const bool first = reach(nodes_[node.first].box) >= reach(nodes_[node.first + 1].box);
+            const bool first = graftal::reach(nodes_[node.first].box, direction) >=
+                               graftal::reach(nodes_[node.first + 1].box, direction);
             stack[size++] = first ? node.first + 1 : node.first;
             stack[size++] = first ? node.first : node.first + 1;
             continue;

@@ -28,6 +28,8 @@ class TriangleTree {
 
     /// A corner that is farthest along a direction.
     Vec3 farthest(Vec3 direction) const;
+    /// At least how far that is, and not much more: of the boxes of a few parts.
+    double reach(Vec3 direction) const;
 
     /// The triangle that is nearest to a point.
     std::uint32_t nearest(Vec3 point) const;
@@ -58,6 +60,7 @@ class TriangleTree {
     void add_slabs(std::uint32_t node, std::uint32_t first, std::uint32_t end, const Spread& spread);
     RayRange within(const Node& node, const Ray& ray, double slack, RayRange range) const;
     double distance2(const Node& node, Vec3 point) const;
+    double reach(const Node& node, Vec3 direction, int levels) const;
 
     std::vector<Triangle> triangles_;
     std::vector<std::uint32_t> order_;

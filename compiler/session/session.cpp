@@ -166,17 +166,17 @@ bool Session::need_source(const StageOptions& options, Compilation& compilation)
 }
 
 bool Session::need_lowered(const StageOptions& options, bool wanted, Compilation& compilation) {
-    StageWork work(stage_work_limit(options));
+    StageWork work = stage_work(options);
     const auto up_to_date = [&] {
         if (!source_.key || *source_.key != SourceKey{options.lower.root, edits_}) return false;
-        const LowerKey key{source_.serial, file_changes_, options.lower, work.limit()};
+        const LowerKey key{source_.serial, file_changes_, options.lower, work.left()};
         return lowered_.key && same_inputs(*lowered_.key, key) &&
                (lowered_.value || lowered_.failed || !wanted);
     };
     const auto lower = [&] {
         if (!need_source(options, compilation)) return false;
         if (up_to_date()) return true;
-        LowerKey key{source_.serial, file_changes_, options.lower, work.limit()};
+        LowerKey key{source_.serial, file_changes_, options.lower, work.left()};
         restart(lowered_, lowered_.key && same_inputs(*lowered_.key, key));
         sources_ = SourceMap();
         Diagnostics findings;
@@ -222,7 +222,7 @@ bool Session::need_analysed(const StageOptions& options, bool wanted, Compilatio
         findings = lowered_.findings;
         compilation.diagnostics = findings;
         ++runs_.analysed;
-        StageWork work(stage_work_limit(options), lowered.work_seconds);
+        StageWork work = stage_work(options, lowered.work_seconds);
         std::optional<AnalysedModel> model =
             analyse(std::move(lowered), options.view.zoom.at, {options.stop_after, after_pass_}, findings,
                     compilation.times, charging(work));
@@ -269,9 +269,10 @@ bool Session::need_prepared(const StageOptions& options, Compilation& compilatio
     if (same && prepared_.value) return true;
     restart(prepared_, same);
     ++runs_.prepared;
+    StageWork work = stage_work(options, model.work_seconds);
     finish(prepared_, std::move(key),
            std::optional(prepare_cut(model.graph, model.components, model.bounds, detail.preparing(),
-                                     control_, after_pass_)),
+                                     charging(work), after_pass_)),
            {});
     return true;
 }

@@ -36,6 +36,8 @@ struct StageOptions {
     ViewOptions view;
     DetailOptions detail; ///< its steps are filled in: see resolved()
     CutOptions cut;
+    /// Whether a picture comes after the stages: they leave some of the work for it.
+    bool draws = true;
 };
 
 } // namespace graftal

@@ -138,8 +138,15 @@ std::optional<ViewedModel> zoom_in(const AnalysedModel& model, std::optional<uns
 } // namespace
 
 double stage_work_limit(const StageOptions& options) {
-    constexpr double least_seconds = 2;
+    constexpr double least_seconds = 1.5;
     return std::max(options.detail.work_seconds, least_seconds);
+}
+
+StageWork stage_work(const StageOptions& options, double spent_seconds) {
+    constexpr double share_of_picture = 0.6; // to prepare a graph takes as long as all stages before
+    const double limit = stage_work_limit(options);
+    const bool keeps = options.draws && std::isfinite(limit);
+    return StageWork(limit, spent_seconds, keeps ? share_of_picture * limit : 0);
 }
 
 std::optional<Source> read_source(const std::string& path, const std::string& root, Diagnostics& diagnostics,

@@ -22,6 +22,8 @@ std::optional<Source> read_source(const std::string& path, const std::string& ro
 /// The seconds of counted work (support/stage_work.h) that the stages up to the analysis may take together:
 /// as many as the picture, but a few in any case.
 double stage_work_limit(const StageOptions& options);
+/// The account of the stages, after so much work of those before.
+StageWork stage_work(const StageOptions& options, double spent_seconds = 0);
 
 /// Text -> graph. Nothing after an error. `sources` gets the texts of all files that the model reads.
 std::optional<LoweredModel> lower_source(const Source& source, const LowerOptions& options,

@@ -19,18 +19,25 @@ struct StagePrice {
     static constexpr double copied_object = 5e-6; ///< such as one under another hue
     static constexpr double copied_instance = 1.5e-6; ///< of such an object
     // Checks, passes and strong components, all together
-    static constexpr double object = 1e-5;
-    static constexpr double instance = 3e-6;
+    static constexpr double object = 1.2e-5;
+    static constexpr double instance = 8e-7;
     // Analysis
     static constexpr double instance_again = 4e-7; ///< classed by its shape
     static constexpr double cycle_edge = 4e-7;     ///< of a component that is proved to contract
     static constexpr double piece = 1.2e-7;        ///< that may reach farthest, or holds a ball up
+    // Preparation
+    static constexpr double body = 5e-7; ///< drawn into a shadow, to find what stands for an object
 };
 
 /// Of the checks and passes of a graph.
 constexpr double work_of_graph(std::size_t objects, std::size_t instances) {
     return StagePrice::object * static_cast<double>(objects) +
            StagePrice::instance * static_cast<double>(instances);
+}
+
+/// Of making it ready to be unfolded: its own passes, with checks, symmetry and colours.
+constexpr double work_of_preparation(std::size_t objects, std::size_t instances) {
+    return 3 * work_of_graph(objects, instances);
 }
 
 } // namespace graftal

@@ -12,9 +12,9 @@ class StageWork {
   public:
     static constexpr double unlimited = std::numeric_limits<double>::infinity();
 
-    /// `spent`: by stages before.
-    explicit StageWork(double limit_seconds = unlimited, double spent_seconds = 0)
-        : limit_(limit_seconds), seconds_(spent_seconds) {}
+    /// `spent`: by stages before. `kept`: for what comes after, by stages that choose how much they do.
+    explicit StageWork(double limit_seconds = unlimited, double spent_seconds = 0, double kept_seconds = 0)
+        : limit_(limit_seconds), kept_(kept_seconds), seconds_(spent_seconds) {}
 
     /// Throws OutOfWork where that goes beyond the limit.
     void add(std::string_view stage, double seconds);
@@ -23,10 +23,11 @@ class StageWork {
 
     double limit() const { return limit_; }
     double seconds() const { return seconds_; }
-    double left() const { return limit_ > seconds_ ? limit_ - seconds_ : 0; }
+    /// For who can do with less: without what is kept.
+    double left() const { return limit_ > kept_ + seconds_ ? limit_ - kept_ - seconds_ : 0; }
 
   private:
-    double limit_;
+    double limit_, kept_;
     double seconds_;
 };
 

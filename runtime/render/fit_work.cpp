@@ -62,7 +62,9 @@ class Fitting {
   public:
     explicit Fitting(FitRequest request)
         : ask_(std::move(request)),
-          pixels_(static_cast<double>(ask_.view.size.width) * ask_.view.size.height) {}
+          pixels_(static_cast<double>(ask_.view.size.width) * ask_.view.size.height),
+          work_seconds_(work_after_stages(ask_.options.work_seconds, ask_.prepared->work_seconds)),
+          slowness_(slowness_of_graph(ask_.prepared->instances)) {}
 
     FittedModel run() {
         fit();
@@ -152,10 +154,8 @@ class Fitting {
     /// A model of this error, whose price may be known, or of the smallest larger one for which the memory
     /// suffices.
     void make_anew(double factor, const std::optional<Price>& known = {}) {
-        std::vector<ShellSizes> shell_sizes;
-        if (fitted_.model) shell_sizes = std::move(fitted_.model->shell_sizes);
         fitted_.model.reset();
-        while (!make(std::exchange(shell_sizes, {}), factor, known)) {
+        while (!make(factor, known)) {
             fitted_.out_of_memory = true;
             if (!ask_.options.culls() || factor >= coarsest || failed_seconds_ > work_seconds_)
                 throw std::bad_alloc();
@@ -164,25 +164,25 @@ class Fitting {
     }
 
     /// False where it takes more memory than there is.
-    bool make(std::vector<ShellSizes> shell_sizes, double factor, const std::optional<Price>& known) {
-        const std::uint64_t instances = ask_.prepared->instances;
-        work_seconds_ = work_beside_graph(ask_.options.work_seconds, instances);
-        slowness_ = slowness_of_graph(instances);
+    bool make(double factor, const std::optional<Price>& known) {
         DetailOptions options = ask_.options;
         options.error_px *= factor;
         if (options.error_world) *options.error_world *= factor;
         try {
-            fitted_.model = std::make_unique<TraceModel>(ask_.prepared, ask_.view, options, ask_.textures,
-                                                         std::move(shell_sizes), self_shadow_store_);
+            if (!ground_) ground_ = std::make_shared<TraceGround>(*ask_.prepared, options.work_seconds);
+            fitted_.model =
+                std::make_unique<TraceModel>(ask_.prepared, ask_.view, options, ask_.textures, ground_);
             tried_seconds_ +=
                 slowness_ * (static_cast<double>(fitted_.model->weighed) / WorkRates::kinds +
                              static_cast<double>(fitted_.model->edges.size()) / WorkRates::trace_edges);
             factor_ = factor;
             price_ = known ? *known : look(*fitted_.model);
+            const double ground_before = std::exchange(ground_seconds_, ground_->seconds());
+            tried_seconds_ += ground_seconds_ - ground_before;
             return true;
         } catch (const std::bad_alloc&) {
             fitted_.model.reset();
-            failed_seconds_ += static_cast<double>(instances) / WorkRates::instances;
+            failed_seconds_ += static_cast<double>(ask_.prepared->instances) / WorkRates::trace_edges;
             return false;
         }
     }
@@ -282,13 +282,14 @@ class Fitting {
 
     FitRequest ask_;
     const double pixels_;
-    const std::shared_ptr<SelfShadowStore> self_shadow_store_ = std::make_shared<SelfShadowStore>();
+    const double work_seconds_; ///< for the rays, and for what is tried
+    const double slowness_;     ///< of their steps
+    std::shared_ptr<TraceGround> ground_;
+    double ground_seconds_ = 0; ///< that it took, of what was tried
     FittedModel fitted_;
     Price price_;       ///< of the model
     double factor_ = 1; ///< of its error
     bool drafted_ = false;
-    double work_seconds_ = 0;   ///< for the rays, and for what is tried
-    double slowness_ = 1;       ///< of their steps
     double failed_seconds_ = 0; ///< that models took for which the memory did not suffice
     double tried_seconds_ = 0;  ///< that rays, shells and weights took
     int broken_looks_ = 0;

@@ -25,6 +25,16 @@ Instance instance_of(const CutEdge& edge) {
     return instance;
 }
 
+Box box_by(const Primitive& primitive, const Affine& place, double (*support)(const Primitive&, Vec3)) {
+    const Mat3 rows = glm::transpose(place.linear);
+    Box box;
+    for (int axis = 0; axis < 3; ++axis) {
+        box.min[axis] = place.translation[axis] - support(primitive, -rows[axis]);
+        box.max[axis] = place.translation[axis] + support(primitive, rows[axis]);
+    }
+    return box;
+}
+
 std::size_t edge_count(const CutGraph& cut) {
     std::size_t count = 0;
     for (const CutNode& node : cut.nodes)
@@ -34,7 +44,8 @@ std::size_t edge_count(const CutGraph& cut) {
 
 class Bounder {
   public:
-    explicit Bounder(const CutGraph& cut) : cut_(cut), exact_(edge_count(cut) <= most_exact_edges) {
+    Bounder(const CutGraph& cut, std::uint64_t most_pieces)
+        : cut_(cut), exact_(edge_count(cut) <= most_exact_edges), most_pieces_(most_pieces) {
         graph_.root = cut.root;
         for (const CutNode& node : cut.nodes) {
             Object object;
@@ -75,6 +86,7 @@ class Bounder {
                     if (needs_object(edge)) add_object(edge);
         bound();
         DrawnBounds result;
+        result.pieces = pieces_;
         std::size_t next = nodes + 2;
         for (const CutNode& node : cut_.nodes) {
             result.node.push_back(boxes_[result.node.size()]);
@@ -92,7 +104,8 @@ class Bounder {
         const Components components = strong_components(graph_);
         const Contraction contraction = decide_contraction(graph_, components);
         const bool proved = contraction.verdict == Verdict::acyclic || contraction.verdict == Verdict::proved;
-        boxes_ = proved ? bound_boxes(graph_, components, contraction) : boxes_by_balls();
+        boxes_ =
+            proved ? bound_boxes(graph_, components, contraction, most_pieces_, pieces_) : boxes_by_balls();
     }
 
     /// The model contracts, but this is another graph of it, and the effort that is spent on a proof is
@@ -137,6 +150,8 @@ class Bounder {
 
     const CutGraph& cut_;
     bool exact_;
+    const std::uint64_t most_pieces_;
+    std::uint64_t pieces_ = 0;
     Graph graph_;
     std::vector<Box> boxes_;
 };
@@ -154,17 +169,16 @@ bool keeps_axes(const Mat3& m) {
 }
 
 Box box_of_image(const Primitive& primitive, const Affine& place) {
-    const Mat3 rows = glm::transpose(place.linear);
-    Box box;
-    for (int axis = 0; axis < 3; ++axis) {
-        box.min[axis] = place.translation[axis] - primitive_support(primitive, -rows[axis]);
-        box.max[axis] = place.translation[axis] + primitive_support(primitive, rows[axis]);
-    }
-    return box;
+    return box_by(primitive, place, primitive_support);
 }
 
-DrawnBounds drawn_bounds(const CutGraph& cut) {
-    return Bounder(cut).run();
+Box box_about_image(const Primitive& primitive, const Affine& place) {
+    const auto reach = traits_of(primitive).reach;
+    return box_by(primitive, place, reach ? reach : primitive_support);
+}
+
+DrawnBounds drawn_bounds(const CutGraph& cut, std::uint64_t most_pieces) {
+    return Bounder(cut, most_pieces).run();
 }
 
 } // namespace graftal

@@ -1,7 +1,9 @@
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
+#include "compiler/analysis/bounding.h"
 #include "compiler/detail/cut_graph.h"
 #include "compiler/support/bounds.h"
 
@@ -14,6 +16,7 @@ struct DrawnBounds {
     std::vector<Box> node;                   ///< in the node's frame; empty: nothing but planes
     std::vector<std::vector<Box>> edge;      ///< by node and edge: the child, in the node's frame
     std::vector<std::vector<Box>> stop_edge; ///< likewise
+    std::uint64_t pieces = 0;                ///< looked at to find them (bound_boxes())
 };
 
 /// True if the box of the image is the image of the box.
@@ -21,8 +24,11 @@ bool keeps_axes(const Mat3& m);
 
 /// The box of an image of a primitive, exact. Not for planes.
 Box box_of_image(const Primitive& primitive, const Affine& place);
+/// The same, but somewhat larger where that is sooner found.
+Box box_about_image(const Primitive& primitive, const Affine& place);
 
-/// Requires a graph whose cycles contract. O(graph).
-DrawnBounds drawn_bounds(const CutGraph& cut);
+/// Requires a graph whose cycles contract. O(graph), and about as many pieces as are allowed: fewer make
+/// larger boxes.
+DrawnBounds drawn_bounds(const CutGraph& cut, std::uint64_t most_pieces = graftal::most_pieces);
 
 } // namespace graftal

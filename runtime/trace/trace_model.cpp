@@ -13,6 +13,7 @@
 #include "compiler/detail/piece.h"
 #include "compiler/detail/work.h"
 #include "compiler/primitives/texture_space.h"
+#include "compiler/support/stage_price.h"
 #include "runtime/trace/drawn_bounds.h"
 #include "runtime/trace/unroll.h"
 
@@ -46,7 +47,7 @@ constexpr std::size_t most_edges_spelt_out = 200'000;
 class ModelBuilder {
   public:
     explicit ModelBuilder(TraceModel& model)
-        : model_(model), cut_(model.layers.cut), bounds_(drawn_bounds(cut_)) {
+        : model_(model), cut_(model.layers.cut), bounds_(model.ground->bounds) {
         std::size_t edges = 0;
         for (NodeId id = 0; id < cut_.nodes.size(); ++id) {
             model_.graph_from_frame.push_back(graph_from_frame(cut_.nodes[id], bounds_.node[id]));
@@ -277,7 +278,7 @@ class ModelBuilder {
     TraceModel& model_;
     bool spells_out_groups_ = true;
     const CutGraph& cut_;
-    DrawnBounds bounds_;
+    const DrawnBounds& bounds_;
     std::map<const RunSource*, std::uint32_t> run_of_;
 };
 
@@ -350,7 +351,7 @@ std::vector<ShellSizes> found_shell_sizes(TraceModel& model) {
 /// Where copies lie in each other so often that rays would not come through.
 void find_shells(TraceModel& model) {
     if (!model.projection.culls()) return;
-    std::vector<ShellSizes>& sizes = model.shell_sizes;
+    std::vector<ShellSizes>& sizes = model.ground->shell_sizes;
     if (sizes.empty()) sizes = found_shell_sizes(model);
     if (sizes.empty()) return;
     for (std::size_t i = 0; i < model.nodes.size(); ++i) {
@@ -361,9 +362,16 @@ void find_shells(TraceModel& model) {
     if (std::ranges::any_of(model.prepared.cut.nodes, by_error)) sizes.clear();
 }
 
+/// Of the boxes of what is drawn: bound_boxes().
+std::uint64_t pieces_of_bounds(double work_seconds) {
+    constexpr double share = 0.1; // of the work
+    const double pieces = share * work_seconds / StagePrice::piece;
+    return static_cast<std::uint64_t>(std::min(pieces, static_cast<double>(most_pieces)));
+}
+
 /// Of one shell: there may be several, and they may be made anew at another error.
 std::uint64_t most_shell_work(const DetailOptions& options) {
-    constexpr double share = 0.15, least = 1e7; // with less there is hardly one
+    constexpr double share = 0.15, least = 1e6; // with less there is hardly one
     const double seconds = options.culls() ? std::min(share * options.work_seconds, 1e6) : 1e6;
     return static_cast<std::uint64_t>(std::max(least, seconds * WorkRates::shell_points));
 }
@@ -382,17 +390,24 @@ std::uint32_t TraceRun::edge_of(RunShape shape, std::uint16_t colour) const {
     return no_edge;
 }
 
+TraceGround::TraceGround(const PreparedCut& prepared, double work_seconds)
+    : layers(layered(prepared.cut, prepared.root_steps)),
+      bounds(drawn_bounds(layers.cut, pieces_of_bounds(work_seconds))) {}
+
+double TraceGround::seconds() const {
+    return StagePrice::piece * static_cast<double>(bounds.pieces) +
+           static_cast<double>(self_shadows.work()) / WorkRates::parts_gone_by;
+}
+
 TraceModel::TraceModel(std::shared_ptr<const PreparedCut> ready, const View& seen,
                        const DetailOptions& cut_options, ModelTextures read_textures,
-                       std::vector<ShellSizes> known_shell_sizes,
-                       std::shared_ptr<SelfShadowStore> known_self_shadows)
-    : shared(std::move(ready)), prepared(*shared), layers(layered(prepared.cut, prepared.root_steps)),
-      view(seen), options(cut_options),
+                       std::shared_ptr<TraceGround> known_ground)
+    : shared(std::move(ready)), prepared(*shared),
+      ground(known_ground ? std::move(known_ground)
+                          : std::make_shared<TraceGround>(prepared, cut_options.work_seconds)),
+      layers(ground->layers), view(seen), options(cut_options),
       projection(view, options, options.error_px, nearest_to_eye(prepared.cut)),
-      meshes(prepared, most_shell_work(options)),
-      self_shadow_store(known_self_shadows ? std::move(known_self_shadows)
-                                           : std::make_shared<SelfShadowStore>()),
-      textures(std::move(read_textures)), shell_sizes(std::move(known_shell_sizes)) {
+      meshes(prepared, most_shell_work(options)), textures(std::move(read_textures)) {
     least_detail_per_unit = least_detail(*this);
     const CutNode& root = prepared.cut.nodes[prepared.cut.root];
     for (const CutNode& node : prepared.cut.nodes)
@@ -415,9 +430,10 @@ TraceModel::TraceModel(std::shared_ptr<const PreparedCut> ready, const View& see
 }
 
 const SelfShadows& TraceModel::self_shadows() const {
-    return self_shadow_store->get([this] {
+    return ground->self_shadows.get([this] {
         return measure_self_shadows(prepared.cut, prepared.symmetry, prepared.root_steps, view,
-                                    options.limit_normals, options.light_steps);
+                                    options.limit_normals, options.light_steps,
+                                    self_shadow_work(options.work_seconds));
     });
 }
 

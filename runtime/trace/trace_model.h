@@ -17,6 +17,7 @@
 #include "compiler/support/ray.h"
 #include "runtime/image/texture.h"
 #include "runtime/trace/box_tree.h"
+#include "runtime/trace/drawn_bounds.h"
 #include "runtime/trace/even_parts.h"
 #include "runtime/trace/lanes.h"
 #include "runtime/trace/layers.h"
@@ -161,11 +162,28 @@ struct ModelTextures {
     std::shared_ptr<const Texture> of_ground;                ///< or null
 };
 
+/// What models of one graph and view have in common, whatever their error.
+struct TraceGround {
+    /// `work_seconds`: allowed for the picture.
+    TraceGround(const PreparedCut& prepared, double work_seconds);
+
+    LayeredGraph layers; ///< of prepared.cut
+    DrawnBounds bounds;  ///< of the layers
+    /// By node of the cut, of the first model. Empty where rays come through everywhere, and where the sizes
+    /// depend on the error.
+    std::vector<ShellSizes> shell_sizes;
+    SelfShadowStore self_shadows;
+
+    /// Of a processor, that all this took so far. Requires that no model is asked for more meanwhile.
+    double seconds() const;
+};
+
 /// A prepared graph made ready for rays, for one view. It is read by many threads.
 struct TraceModel {
     std::shared_ptr<const PreparedCut> shared; ///< never null; may be that of other views too
     const PreparedCut& prepared;               ///< the same
-    LayeredGraph layers;                       ///< of prepared.cut
+    std::shared_ptr<TraceGround> ground;       ///< never null; models of other errors share it
+    const LayeredGraph& layers;                ///< the ground's
     View view;
     DetailOptions options;
     Projection projection;
@@ -182,10 +200,9 @@ struct TraceModel {
     std::vector<Unrolling> unrollings;
     std::vector<SpeckLanes> specks;
     std::vector<TraceRun> runs;
-    std::vector<Affine> graph_from_frame;               ///< by node
-    mutable MeshStore meshes;                           ///< of shells
-    std::shared_ptr<SelfShadowStore> self_shadow_store; ///< never null; models of other errors share it
-    ModelTextures textures;                             ///< of_material has all materials
+    std::vector<Affine> graph_from_frame; ///< by node
+    mutable MeshStore meshes;             ///< of shells
+    ModelTextures textures;               ///< of_material has all materials
     /// Nodes and primitives that one ray may go into. Sound models need some tens or hundreds; where
     /// thousands of parts coincide, a ray would not come to an end.
     std::uint64_t most_visits = usual_visits;
@@ -193,9 +210,6 @@ struct TraceModel {
     /// More of them, for a ray that was given up before it met anything: it looks into no more parts that may
     /// be culled, so that few are left.
     std::uint64_t more_visits() const { return std::clamp<std::uint64_t>(most_visits, 32, 256); }
-    /// By node of the cut: what a model of another error may be given, too. Empty where rays come through
-    /// everywhere, and where the sizes depend on the error.
-    std::vector<ShellSizes> shell_sizes;
     bool has_shells = false;   ///< some node may be drawn as one
     std::uint64_t weighed = 0; ///< edges of kinds followed to find where (Weights)
     bool clear_texels = false; ///< some texture has them
@@ -220,11 +234,10 @@ struct TraceModel {
     /// The node as the cut has it.
     const CutNode& source(std::uint32_t node) const { return prepared.cut.nodes[layers.source[node]]; }
 
-    /// Materials without a texture of theirs show their colour. `known_shell_sizes`: of a model of the same
-    /// graph and view with another error, or empty; `self_shadow_store` likewise, or null.
+    /// Materials without a texture of theirs show their colour. `ground`: of the same graph and view, or
+    /// null.
     TraceModel(std::shared_ptr<const PreparedCut> prepared, const View& view, const DetailOptions& options,
-               ModelTextures textures = {}, std::vector<ShellSizes> known_shell_sizes = {},
-               std::shared_ptr<SelfShadowStore> self_shadow_store = nullptr);
+               ModelTextures textures = {}, std::shared_ptr<TraceGround> ground = nullptr);
     TraceModel(const TraceModel&) = delete;
     TraceModel& operator=(const TraceModel&) = delete;
 };

@@ -277,7 +277,7 @@ class Unroller {
                const Affine& parent_from_child) const {
         if (second.box.empty()) return {};
         const TraceNode& child = model_.nodes[second.child];
-        if (is_solid(child)) return box_of_image(child.primitive, parent_from_child);
+        if (is_solid(child)) return box_about_image(child.primitive, parent_from_child);
         const Box box = both(transformed(parent_from_middle, second.box), first.box);
         if (!is_union(child) || keeps_axes(parent_from_child.linear)) return box;
         return both(box, box_of_parts(parent_from_child, child, most_looked_at));
@@ -292,7 +292,7 @@ class Unroller {
             if (edge.box.empty()) continue;
             const TraceNode& child = model_.nodes[edge.child];
             const Affine place_of_child = place * edge.parent_from_child.affine();
-            Box part = is_solid(child) ? box_of_image(child.primitive, place_of_child)
+            Box part = is_solid(child) ? box_about_image(child.primitive, place_of_child)
                                        : transformed(place, edge.box);
             const std::uint32_t most_below = (most - 1) / count;
             if (is_union(child) && most_below > 0)

@@ -122,6 +122,43 @@ TEST(StageWork, ALimitThatSufficesChangesNothing) {
     EXPECT_EQ(limited.model->work_seconds, free.model->work_seconds);
 }
 
+/// What prepares a graph for a picture counts too, before it begins: a graph that could be read within the
+/// work, but not drawn, is refused.
+TEST(StageWork, PreparationCounts) {
+    StageOptions options;
+    options.detail.work_seconds = 1e6;
+    Session session("hues.inst", hued(4, 100, "hue: 1"));
+    Compilation compilation;
+    const auto prepared = session.prepared(options, compilation);
+    const auto analysed = session.analysed(options, compilation);
+    ASSERT_TRUE(prepared);
+    ASSERT_TRUE(analysed);
+    EXPECT_GT(prepared->work_seconds, 2 * analysed->work_seconds);
+    options.draws = false; // the stages before may take it all
+    options.detail.work_seconds = 1.01 * analysed->work_seconds;
+    ASSERT_GT(options.detail.work_seconds, 1.5) << "more than the least that there is";
+    Compilation refused;
+    EXPECT_TRUE(session.analysed(options, refused));
+    EXPECT_EQ(session.prepared(options, refused), nullptr);
+    EXPECT_THAT(refused.diagnostics.render(refused.sources), HasSubstr("in the stage 'prepare'"));
+}
+
+/// Stages that choose how much they do leave most of the work for the picture.
+TEST(StageWork, PicturesGetFewerVariantsThanReports) {
+    const std::string text = "lsys a {\n  angle 1\n  steps 300\n  axiom A\n  A -> BAB\n"
+                             "  B -> ABB : 0.289\n  B -> F(.5)@O(.2)F.+F.F+(10)AAF(.5) : 0.711\n}\n";
+    StageOptions options;
+    options.detail.work_seconds = 2;
+    Compilation compilation;
+    const auto drawn = Session("chance.lsys", text).analysed(options, compilation);
+    options.draws = false;
+    const auto reported = Session("chance.lsys", text).analysed(options, compilation);
+    ASSERT_TRUE(drawn);
+    ASSERT_TRUE(reported);
+    EXPECT_LT(drawn->derivation->variants, reported->derivation->variants);
+    EXPECT_LT(drawn->work_seconds, 0.5 * options.detail.work_seconds);
+}
+
 TEST(StageWork, ASessionGoesOnWithALargerLimit) {
     StageOptions options;
     options.detail.work_seconds = 2;

@@ -65,6 +65,7 @@ StageOptions inspecting(const Options& options, bool shapes_only) {
     StageOptions compile = options.render.compile;
     compile.detail.work_seconds = options.render.work_seconds.value_or(inspecting_seconds);
     compile.lower.may_leave_out_colours = shapes_only;
+    compile.draws = false;
     return compile;
 }
 

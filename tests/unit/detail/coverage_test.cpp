@@ -162,6 +162,18 @@ TEST(Coverage, CyclesShareABudget) {
     }
 }
 
+/// Less work makes rougher proxies, down to the ellipsoids in the boxes.
+TEST(Coverage, DrawsAboutAsManyBodiesAsAreAllowed) {
+    for (const auto& [cycles, parts] : {std::pair(1, 1), {40, 1}, {1, 40}})
+        for (const std::uint64_t most : {std::uint64_t{0}, std::uint64_t{20'000}, std::uint64_t{200'000}}) {
+            CutGraph cut = test::cut_of(cycles_of_toruses(cycles, parts));
+            constexpr std::uint64_t one_node = 60'000; // of hundreds of parts, or four bodies each
+            EXPECT_LT(fit_proxies(cut, find_symmetry(cut), most), 3 * most + one_node)
+                << cycles << " of " << parts << " by " << most;
+            EXPECT_GT(mean_shadow(cut.nodes[cut.root].node_from_proxy), 0);
+        }
+}
+
 TEST(Coverage, AFullBallKeepsItsProxy) {
     const Fitted model = fitted(union_of(PrimitiveKind::sphere, std::vector<Affine>(20)));
     EXPECT_NEAR(model.root_shadow(), pi, 0.02);

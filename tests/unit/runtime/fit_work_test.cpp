@@ -28,8 +28,9 @@ class FitWork : public testing::Test {
         const Components components = strong_components(graph);
         const auto bounds = bound_objects(graph, components, decide_contraction(graph, components));
         view_.camera.location = Vec3(0, 0, 5);
-        const auto prepared =
-            std::make_shared<const PreparedCut>(prepare_cut(graph, components, bounds, options.preparing()));
+        PreparedCut made = prepare_cut(graph, components, bounds, options.preparing());
+        made.work_seconds = spent_seconds_;
+        const auto prepared = std::make_shared<const PreparedCut>(std::move(made));
         const auto limits = [&](const TraceModel& model) {
             if (model.options.error_px != tried_px_) ++tries_;
             tried_px_ = model.options.error_px;
@@ -89,6 +90,7 @@ class FitWork : public testing::Test {
     View view_{.size = {64, 48}};
     Sampling wanted_;
     int threads_ = 1;
+    double spent_seconds_ = 0; ///< by the stages before
     std::function<void(const TraceModel&, double)> on_first_look_;
     int tries_ = 0; ///< models of different errors, one after the other
     double tried_px_ = 0;
@@ -267,11 +269,36 @@ TEST_F(FitWork, ThreadsDecideNothing) {
     }
 }
 
-TEST_F(FitWork, ALargeGraphLeavesLessForThePicture) {
-    EXPECT_EQ(work_beside_graph(30, 0), 30);
-    EXPECT_EQ(work_beside_graph(30, 150'000), 29);
-    EXPECT_NEAR(work_beside_graph(30, 800'000), 20.4, 1e-9);
-    EXPECT_EQ(work_beside_graph(30, 1'000'000'000), 7.5);
+/// One account: stages, tries and rays together keep to the work, down to a quarter for tries and rays.
+TEST_F(FitWork, WhatStagesTookIsNotLeftForThePicture) {
+    DetailOptions options;
+    options.work_seconds = 1e6;
+    const double whole_seconds = fitted(0, options).whole_seconds;
+    options.work_seconds = 2 * whole_seconds;
+    std::vector<double> samples;
+    for (const double spent : {0.0, 1.2, 1.6, 100.0}) {
+        spent_seconds_ = spent * whole_seconds;
+        const FittedModel model = fitted(0, options);
+        EXPECT_LE(model.seconds + model.tried_seconds, 1.05 * std::max(2 - spent, 0.5) * whole_seconds)
+            << spent;
+        samples.push_back(model.sampling.samples_a_pixel());
+    }
+    EXPECT_GT(samples[0], samples[2]);
+    EXPECT_EQ(samples[2], samples[3]) << "both leave a quarter or less";
+}
+
+/// What does not depend on the error is found once, whatever is tried.
+TEST_F(FitWork, TriesShareTheirGround) {
+    DetailOptions options;
+    options.work_seconds = 1e-3;
+    std::shared_ptr<TraceGround> ground;
+    on_first_look_ = [&](const TraceModel& model, double) { ground = model.ground; };
+    const FittedModel model = fitted(crowd(), options, [](double) { return false; });
+    EXPECT_GT(model.error_px, options.error_px);
+    EXPECT_EQ(model.model->ground, ground);
+}
+
+TEST_F(FitWork, LargeGraphsAreSlower) {
     EXPECT_EQ(slowness_of_graph(0), 1);
     EXPECT_EQ(slowness_of_graph(200'000), 1);
     EXPECT_NEAR(slowness_of_graph(1'600'000), 2.2, 1e-9);

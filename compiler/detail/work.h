@@ -40,12 +40,14 @@ struct RayWork {
     static constexpr std::uint64_t stretched = 1; ///< more, for one that a map other than a similarity places
     static constexpr std::uint64_t widened = 6;   ///< a leaf that is drawn larger than it is
     static constexpr std::uint64_t crushed = 3;   ///< looked at in the world: no ray is taken into its frame
-    static constexpr std::uint64_t nodes = 4;     ///< of a mesh's tree, that take a step together
-    static constexpr std::uint64_t shaded = 1;    ///< a level of the path to what is seen
-    static constexpr std::uint64_t lamp = 1;      ///< a sharp light on what is seen, besides its ray
-    static constexpr std::uint64_t soft_lamp = 3; ///< one that is sampled
-    static constexpr std::uint64_t sky = 4;       ///< the sky likewise
-    static constexpr std::uint64_t bright_sky = 12; ///< a picture of one, with bright parts
+    static constexpr std::uint64_t boxes = 4;     ///< nodes of boxes about parts, that take a step together
+    static constexpr std::uint64_t boxes_of_packet = 3; ///< that one takes, for all rays of a packet
+    static constexpr std::uint64_t nodes = 4;           ///< of a mesh's tree, that take a step together
+    static constexpr std::uint64_t shaded = 1;          ///< a level of the path to what is seen
+    static constexpr std::uint64_t lamp = 1;            ///< a sharp light on what is seen, besides its ray
+    static constexpr std::uint64_t soft_lamp = 3;       ///< one that is sampled
+    static constexpr std::uint64_t sky = 4;             ///< the sky likewise
+    static constexpr std::uint64_t bright_sky = 12;     ///< a picture of one, with bright parts
 };
 
 } // namespace graftal

@@ -303,8 +303,8 @@ Draft first_draft(const TraceModel& model, const Sampling& finest, double sample
     DetailOptions options = model.options;
     options.error_px *= coarser;
     if (options.error_world) *options.error_world *= coarser;
-    draft.rough = std::make_unique<TraceModel>(model.shared, model.view, options, model.textures,
-                                               model.shell_sizes, model.self_shadow_store);
+    draft.rough =
+        std::make_unique<TraceModel>(model.shared, model.view, options, model.textures, model.ground);
     draft.rough->most_visits = std::min(model.most_visits, most_visits);
     return draft;
 }

@@ -105,7 +105,7 @@ struct alignas(64) TraceNode {
     enum class Kind : std::uint8_t {
         primitive,
         parts,     ///< a union
-        unbounded, ///< a union that holds planes: its edges are tried one after the other
+        unbounded, ///< a union that holds planes, which no box holds
         run,       ///< a range of a run
         crushed,   ///< leads through a singular map (CutNode::sealed): its edges are met in the world
                    ///< (flat_walk.cpp)
@@ -125,6 +125,7 @@ struct alignas(64) TraceNode {
     std::uint32_t stop_tree = no_tree; ///< of what is drawn where it is cut; none: its proxy
     std::uint32_t first_edge = 0;      ///< of its edges, which follow each other
     std::uint32_t edge_count = 0;
+    std::uint32_t endless_count = 0;   ///< of an unbounded union: the first of its edges, which `tree` lacks
     std::uint32_t stop_edge_count = 0; ///< which follow those
     std::uint32_t first_unrolling = 0; ///< the deepest first
     std::uint32_t unrolling_count = 0;

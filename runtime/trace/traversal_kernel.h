@@ -191,6 +191,7 @@ template<Instructions instructions, bool any> struct Traversal::Kernel : Places 
     template<typename SideOf, typename EntryOf>
     GRAFTAL_INLINE bool test_lanes(const SideOf& side_of, const EntryOf& number_of, std::uint32_t used,
                                    std::uint32_t frame_number, Entry& nearest) {
+        ++self.boxes_;
         const Frame& frame = frames[frame_number];
         // A little more, for what single precision leaves out.
         const float most = static_cast<float>((self.best_.t - frame.base) * frame.speed) + 2e-6f;
@@ -308,9 +309,12 @@ template<Instructions instructions, bool any> struct Traversal::Kernel : Places 
         const auto number = static_cast<std::uint32_t>(depth - 1);
         frame.margin = margin_of(node, frame);
         if (node.kind == TraceNode::Kind::unbounded) {
-            for (std::uint32_t i = 0; i < node.edge_count; ++i)
+            const bool is_near = node.tree != no_tree && go_to_bounded(node, frame);
+            for (std::uint32_t i = 0; i < node.endless_count; ++i)
                 try_edge(frame, node.first_edge + i);
-            return false;
+            if (!is_near) return false;
+            ready_for_boxes(frame);
+            return test_boxes(model.boxes, node.tree, number, entry);
         }
         if (node.kind == TraceNode::Kind::crushed) {
             for (std::uint32_t i = 0; i < node.edge_count; ++i)
@@ -337,6 +341,19 @@ template<Instructions instructions, bool any> struct Traversal::Kernel : Places 
         if (frame.items && !frame.cut && (tree & BoxNode::packed))
             return test_packed(tree & ~BoxNode::packed, number, entry);
         return test_boxes(model.boxes, tree, number, entry);
+    }
+
+    /// Takes the ray to what is bounded of an unbounded union, so that single precision does for its boxes;
+    /// false, and nothing done, if it misses that.
+    GRAFTAL_INLINE bool go_to_bounded(const TraceNode& node, Frame& frame) const {
+        const Box about{Vec3(-node.drawn_radius), Vec3(node.drawn_radius)};
+        const Ray ray{vec3_of(frame.origin), vec3_of(frame.direction)};
+        const RayRange inside =
+            range_in(enlarged(about, frame.margin), ray, range_from(frame.base, frame.speed));
+        if (!(inside.least <= inside.most)) return false;
+        frame.origin = frame.origin + splat(inside.least) * frame.direction;
+        frame.base += inside.least * frame.unit;
+        return true;
     }
 
     GRAFTAL_INLINE void ready_direction(Frame& frame) const {

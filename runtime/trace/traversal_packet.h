@@ -213,6 +213,7 @@ struct Traversal::PacketWalk : PlacesOf {
     /// stack, the farthest first. `used`: the lanes that hold boxes, others may.
     GRAFTAL_INLINE Next test_boxes(const BoxNode& node, std::uint32_t first_box, Going& going,
                                    std::uint32_t used = ~0u) {
+        self.boxes_ += RayWork::boxes_of_packet;
         const std::uint32_t frame_number = going.frame, mask = going.mask;
         Frame& frame = frames[frame_number];
         const Float8 first_at = frame.least, most = most_in(frame);

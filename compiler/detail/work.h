@@ -9,7 +9,7 @@ namespace graftal {
 /// Work is counted, not timed, so that a picture does not depend on the machine or on what else it does.
 /// These many steps stand for a second of one processor of 2024.
 struct WorkRates {
-    static constexpr double ray_steps = 2e7;        ///< of rays, shading included (RayWork)
+    static constexpr double ray_steps = 2.8e7;      ///< of rays, shading included (RayWork)
     static constexpr double samples = 1.2e7;        ///< of pixels, whatever their rays meet
     static constexpr double shell_points = 6e6;     ///< points of shells moved (shell_points.h)
     static constexpr double mesh_triangles = 1.5e6; ///< triangles of meshes sorted into boxes for rays

@@ -339,12 +339,23 @@ bool is_even(const TraceModel& model) {
            std::ranges::all_of(model.edges, is_plain_edge);
 }
 
+/// Of units of which so many take a second, those that making a model may take of the work; no more than
+/// usual.
+std::uint64_t share_of(double work_seconds, double units_a_second, std::uint64_t usual) {
+    constexpr double share = 0.1;
+    return static_cast<std::uint64_t>(
+        std::min(share * work_seconds * units_a_second, static_cast<double>(usual)));
+}
+
 /// By node of the cut; none if rays come through everywhere.
 std::vector<ShellSizes> found_shell_sizes(TraceModel& model) {
     const CutGraph& cut = model.prepared.cut;
     // Sizes are asked for by octaves. An eighth of one tells them apart, and nodes of all sizes share kinds.
     constexpr int grain = PieceKind::steps_an_octave / 8;
-    Weights weights(cut, {.error_px = model.projection.error_px(), .grain = grain});
+    Weights weights(cut, {.error_px = model.projection.error_px(),
+                          .grain = grain,
+                          .most_visits = share_of(model.options.work_seconds, WorkRates::kinds,
+                                                  WeightOptions::usual_visits)});
     Piece root;
     root.node = cut.root;
     root.steps = model.prepared.root_steps;
@@ -372,13 +383,6 @@ void find_shells(TraceModel& model) {
     if (std::ranges::any_of(model.prepared.cut.nodes, by_error)) sizes.clear();
 }
 
-/// Of the boxes of what is drawn: bound_boxes().
-std::uint64_t pieces_of_bounds(double work_seconds) {
-    constexpr double share = 0.1; // of the work
-    const double pieces = share * work_seconds / StagePrice::piece;
-    return static_cast<std::uint64_t>(std::min(pieces, static_cast<double>(most_pieces)));
-}
-
 /// Of one shell: there may be several, and they may be made anew at another error.
 std::uint64_t most_shell_work(const DetailOptions& options) {
     constexpr double share = 0.15, least = 1e6; // with less there is hardly one
@@ -402,7 +406,7 @@ std::uint32_t TraceRun::edge_of(RunShape shape, std::uint16_t colour) const {
 
 TraceGround::TraceGround(const PreparedCut& prepared, double work_seconds)
     : layers(layered(prepared.cut, prepared.root_steps)),
-      bounds(drawn_bounds(layers.cut, pieces_of_bounds(work_seconds))) {}
+      bounds(drawn_bounds(layers.cut, share_of(work_seconds, 1 / StagePrice::piece, most_pieces))) {}
 
 double TraceGround::seconds() const {
     return StagePrice::piece * static_cast<double>(bounds.pieces) +

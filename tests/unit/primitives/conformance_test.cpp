@@ -100,7 +100,7 @@ TEST_P(Conformance, SupportIsThatOfTheMesh) {
         if (const auto reach = traits_of(primitive).reach) {
             const double size = glm::length(traits_of(primitive).box(primitive).size());
             EXPECT_GE(reach(primitive, 3.0 * direction) / 3, support - 1e-12 * size);
-            EXPECT_LE(reach(primitive, 3.0 * direction) / 3, support + 0.5 * size);
+            EXPECT_LE(reach(primitive, 3.0 * direction) / 3, support + size);
         }
         EXPECT_NEAR(support, farthest, 2 * error + 1e-9);
     }

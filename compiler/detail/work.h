@@ -9,7 +9,7 @@ namespace graftal {
 /// Work is counted, not timed, so that a picture does not depend on the machine or on what else it does.
 /// These many steps stand for a second of one processor of 2024.
 struct WorkRates {
-    static constexpr double ray_steps = 2.8e7;      ///< of rays, shading included (RayWork)
+    static constexpr double ray_steps = 1.1e8;      ///< of rays, shading included (RayWork)
     static constexpr double samples = 1.2e7;        ///< of pixels, whatever their rays meet
     static constexpr double shell_points = 6e6;     ///< points of shells moved (shell_points.h)
     static constexpr double mesh_triangles = 1.5e6; ///< triangles of meshes sorted into boxes for rays
@@ -36,18 +36,18 @@ inline double work_after_stages(double work_seconds, double spent_seconds) {
 
 /// Steps that rays take, each about as long as others: what a part takes depends on how it is placed.
 struct RayWork {
-    static constexpr std::uint64_t part = 2;      ///< gone into
-    static constexpr std::uint64_t stretched = 1; ///< more, for one that a map other than a similarity places
-    static constexpr std::uint64_t widened = 6;   ///< a leaf that is drawn larger than it is
-    static constexpr std::uint64_t crushed = 3;   ///< looked at in the world: no ray is taken into its frame
-    static constexpr std::uint64_t boxes = 4;     ///< nodes of boxes about parts, that take a step together
-    static constexpr std::uint64_t boxes_of_packet = 3; ///< that one takes, for all rays of a packet
-    static constexpr std::uint64_t nodes = 4;           ///< of a mesh's tree, that take a step together
-    static constexpr std::uint64_t shaded = 1;          ///< a level of the path to what is seen
-    static constexpr std::uint64_t lamp = 1;            ///< a sharp light on what is seen, besides its ray
-    static constexpr std::uint64_t soft_lamp = 3;       ///< one that is sampled
-    static constexpr std::uint64_t sky = 4;             ///< the sky likewise
-    static constexpr std::uint64_t bright_sky = 12;     ///< a picture of one, with bright parts
+    static constexpr std::uint64_t part = 8;      ///< gone into
+    static constexpr std::uint64_t stretched = 4; ///< more, for one that a map other than a similarity places
+    static constexpr std::uint64_t widened = 24;  ///< a leaf that is drawn larger than it is
+    static constexpr std::uint64_t crushed = 12;  ///< looked at in the world: no ray is taken into its frame
+    static constexpr std::uint64_t boxes = 1;     ///< that lie in one node, held against a ray
+    static constexpr std::uint64_t boxes_of_packet = 3; ///< against all rays of a packet
+    static constexpr std::uint64_t nodes = 1;           ///< of a mesh's tree, that take a step together
+    static constexpr std::uint64_t shaded = 4;          ///< a level of the path to what is seen
+    static constexpr std::uint64_t lamp = 4;            ///< a sharp light on what is seen, besides its ray
+    static constexpr std::uint64_t soft_lamp = 12;      ///< one that is sampled
+    static constexpr std::uint64_t sky = 16;            ///< the sky likewise
+    static constexpr std::uint64_t bright_sky = 48;     ///< a picture of one, with bright parts
 };
 
 } // namespace graftal

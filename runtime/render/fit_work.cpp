@@ -22,7 +22,7 @@ constexpr std::uint64_t first_piece = 16, growth_of_pieces = 4, pixels_a_ray = 1
 constexpr std::uint64_t rays_before_draft = 64;
 /// Shares of the work: of a look, and of all looks.
 constexpr double most_for_a_look = 0.04, most_for_looks = 0.2;
-constexpr double steps_a_visit = 4;
+constexpr double steps_a_visit = 2 * RayWork::part;
 /// The growth of the error from one try to the next: less for the first tries.
 constexpr double coarser = 1.5;
 constexpr int small_tries = 2;

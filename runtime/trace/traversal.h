@@ -61,7 +61,7 @@ class Traversal final : public Surfaces {
     /// Nodes and primitives that rays went into so far.
     std::uint64_t visits() const { return visits_; }
     /// What that took (RayWork, cut/work.h).
-    std::uint64_t work() const { return RayWork::part * visits_ + boxes_ / RayWork::boxes + more_work_; }
+    std::uint64_t work() const { return RayWork::part * visits_ + boxes_ + more_work_; }
     /// Rays that went into too many parts. What they had met by then is what they meet; if that is nothing,
     /// what they had not yet looked into is met as a whole, each part as if it were small enough to be
     /// culled.
@@ -231,7 +231,7 @@ class Traversal final : public Surfaces {
     /// intersect() of intersect.h, and what that took.
     bool meet(const Primitive& primitive, const Ray& ray, const RayRange& range, PrimitiveHit& hit) {
         const bool met = intersect(primitive, ray, range, hit);
-        more_work_ += hit.steps / RayWork::nodes;
+        more_work_ += RayWork::nodes * hit.steps;
         return met;
     }
     /// Appends an edge to the path; of an unrolling's edge those that it stands for.
@@ -279,7 +279,7 @@ class Traversal final : public Surfaces {
         way_; ///< edges through the frames to the best hit, those from cut nodes marked
     std::vector<std::uint32_t> path_; ///< of the graph, likewise, once the ray is done
     std::uint64_t visits_ = 0;
-    std::uint64_t boxes_ = 0;     ///< nodes of boxes that were tested
+    std::uint64_t boxes_ = 0;     ///< that rays were held against (RayWork::boxes)
     std::uint64_t more_work_ = 0; ///< than both tell
     std::uint64_t given_up_ = 0;
 };

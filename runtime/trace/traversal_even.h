@@ -124,7 +124,7 @@ template<Instructions instructions, bool any> struct Traversal::EvenKernel : Eve
     /// Puts the nearest of the boxes that the ray meets in the place of their node, and keeps the others, the
     /// farthest first; false if there is none.
     GRAFTAL_INLINE bool test_boxes(std::uint32_t number, std::uint32_t frame_number, std::int64_t& nearest) {
-        ++self.boxes_;
+        self.boxes_ += RayWork::boxes;
         const BoxNode& node = model.boxes[number];
         const Frame& frame = frames[frame_number];
         // A little more, for what single precision leaves out.

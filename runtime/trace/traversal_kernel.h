@@ -191,7 +191,7 @@ template<Instructions instructions, bool any> struct Traversal::Kernel : Places 
     template<typename SideOf, typename EntryOf>
     GRAFTAL_INLINE bool test_lanes(const SideOf& side_of, const EntryOf& number_of, std::uint32_t used,
                                    std::uint32_t frame_number, Entry& nearest) {
-        ++self.boxes_;
+        self.boxes_ += RayWork::boxes;
         const Frame& frame = frames[frame_number];
         // A little more, for what single precision leaves out.
         const float most = static_cast<float>((self.best_.t - frame.base) * frame.speed) + 2e-6f;

@@ -39,7 +39,7 @@ TEST_F(Native, MakesAPictureNamedAfterTheModelHere) {
     const RunResult result = render(gasket + small);
     EXPECT_EQ(result.status, 0) << result.err;
     EXPECT_EQ(result.out, "");
-    EXPECT_THAT(result.err, MatchesRegex("sierpinski.png: 4 samples per pixel in [0-9]+\\.[0-9][0-9] s, "
+    EXPECT_THAT(result.err, MatchesRegex("sierpinski.png: 4 samples per pixel, error 0.5 px in [0-9]+\\.[0-9][0-9] s, "
                                          "[0-9.]+ million rays per second\n"));
     EXPECT_EQ(files(), "sierpinski.png");
     EXPECT_EQ(temporary_files(), "");
@@ -51,12 +51,12 @@ TEST_F(Native, MakesAPictureNamedAfterTheModelHere) {
 TEST_F(Native, SaysHowManySamplesThereAre) {
     const struct {
         const char *options, *samples;
-    } cases[] = {{"--antialias off", ": 1 sample per pixel in "},
-                 {"--antialias 1", ": 1 sample per pixel in "},
-                 {"--antialias 3", ": 16 samples per pixel in "},
-                 {"--antialias 3 --antialias off", ": 1 sample per pixel in "},
-                 {"--antialias 3 --progressive", ": 16 samples per pixel in "},
-                 {"--antialias 3 --no-progressive", ": 16 samples per pixel in "}};
+    } cases[] = {{"--antialias off", ": 1 sample per pixel, error 0.5 px in "},
+                 {"--antialias 1", ": 1 sample per pixel, error 0.5 px in "},
+                 {"--antialias 3", ": 16 samples per pixel, error 0.5 px in "},
+                 {"--antialias 3 --antialias off", ": 1 sample per pixel, error 0.5 px in "},
+                 {"--antialias 3 --progressive", ": 16 samples per pixel, error 0.5 px in "},
+                 {"--antialias 3 --no-progressive", ": 16 samples per pixel, error 0.5 px in "}};
     for (const auto& [options, samples] : cases) {
         const RunResult result = render(gasket + small + options);
         EXPECT_EQ(result.status, 0) << options << result.err;

@@ -59,7 +59,7 @@ TEST_F(Watch, FollowsTheModelThatIsReplacedOrWrittenAnew) {
     expect_follows(run);
     write("m.inst", ball);
     expect_follows(run);
-    expect_says(run, "m.inst changed: m.png: 4 samples per pixel in ");
+    expect_says(run, "m.inst changed: m.png: 4 samples per pixel, error 0.5 px in ");
     run.send(SIGTERM);
     EXPECT_EQ(run.wait(), 128 + SIGTERM);
     EXPECT_THAT(run.messages(), EndsWith("graftal: interrupted\n"));

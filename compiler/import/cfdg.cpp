@@ -20,7 +20,7 @@ std::optional<Translation> translate(const ForeignFile& file, const ForeignModel
     if (file.diagnostics.error_count() > errors) return std::nullopt;
     // Words first: what the writer has none for is computed.
     Diagnostics tried;
-    const ForeignFile attempt{file.file, file.sources, tried, file.read_beside};
+    const ForeignFile attempt{file.file, file.sources, tried, file.read_beside, file.meter};
     Writer writer(attempt, grammar);
     Translation translation = writer.write();
     if (tried.has_errors() || writer.shows_more()) {

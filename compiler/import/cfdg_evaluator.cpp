@@ -16,7 +16,7 @@ namespace graftal::cfdg {
 namespace {
 
 constexpr int deepest_expressions = 1000; ///< expressions within expressions, through functions too
-constexpr std::size_t most_evaluations = 12'000'000; ///< expressions that are evaluated
+constexpr std::size_t most_evaluations = 100'000'000; ///< expressions that are evaluated
 constexpr std::size_t longest_vector = 10'000;
 constexpr double endless = 1e38;
 
@@ -81,8 +81,8 @@ std::string key_of(const Value& value) {
     return key;
 }
 
-std::nullopt_t Evaluator::fail(Span place, std::string message) {
-    file_.diagnostics.error(place, std::move(message));
+std::nullopt_t Evaluator::fail(Span place, std::string message, std::string hint) {
+    file_.diagnostics.error(place, std::move(message)).with_hint(std::move(hint));
     return std::nullopt;
 }
 
@@ -91,9 +91,11 @@ void Evaluator::note(Span place, std::string message) {
 }
 
 bool Evaluator::spend(Span place) {
+    file_.work(1, ImportPrice::evaluation);
     if (++work_ <= most_evaluations) return true;
     if (work_ == most_evaluations + 1)
-        fail(place, "the expressions of this grammar take too long to evaluate");
+        fail(place, fmt::format("the grammar evaluates more than {} expressions", most_evaluations),
+             "give its loops fewer turns, and its functions fewer steps in which they call themselves");
     return false;
 }
 
@@ -107,7 +109,9 @@ const Definition* Evaluator::definition(std::string_view name, std::string_view 
 std::optional<Value> Evaluator::value(const Expr& expression, const Surroundings& at) {
     if (!spend(expression.span)) return std::nullopt;
     if (depth_ >= deepest_expressions)
-        return fail(expression.span, "functions call each other too deep here");
+        return fail(expression.span,
+                    fmt::format("expressions and functions nest more than {} deep here", deepest_expressions),
+                    "let functions call themselves less often");
     ++depth_;
     std::optional<Value> result = value_of_kind(expression, at);
     --depth_;

@@ -52,7 +52,7 @@ class Evaluator {
 
     /// Notes what changes nothing, once for each place.
     void note(Span place, std::string message);
-    std::nullopt_t fail(Span place, std::string message);
+    std::nullopt_t fail(Span place, std::string message, std::string hint = "");
 
     /// The random numbers of the rule that is evaluated.
     Draws draws;

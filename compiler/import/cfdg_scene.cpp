@@ -240,6 +240,12 @@ void SceneWriter::fail(Span span, std::string message, std::string hint) {
     file_.diagnostics.error(span, std::move(message)).with_hint(std::move(hint));
 }
 
+void SceneWriter::fail_without_start() {
+    const std::string first = grammar_.shapes.empty() ? "NAME" : grammar_.shapes.front().name;
+    fail(file_.span(0, 0), "the grammar has no 'startshape'",
+         fmt::format("name the shape to draw in the first line: startshape {}", first));
+}
+
 void SceneWriter::comment(const std::string& words) {
     line("# " + comment_text(words));
 }

@@ -39,6 +39,7 @@ class SceneWriter {
 
     std::string free_name(std::string_view wanted);
     void fail(Span span, std::string message, std::string hint = {});
+    void fail_without_start();
     void comment(const std::string& words);
     void line(const std::string& words, Span origin = {});
 

@@ -19,6 +19,7 @@ namespace graftal::cfdg {
 
 namespace {
 
+constexpr const char* fewer_shapes = "ask for less: fewer turns of its loops, such as a coarser grid";
 /// As many variants of a random shape as .inst makes of a random object.
 constexpr std::size_t most_variants = 64;
 constexpr std::uint64_t most_trials = 20; ///< where chance draws nothing
@@ -60,7 +61,7 @@ Unfolding::Unfolding(const ForeignFile& file, const Grammar& grammar)
 Translation Unfolding::write() {
     comment("from a grammar of Context Free; an object is a shape with its arguments");
     if (!grammar_.start) {
-        fail(file_.span(0, 0), "the grammar has no 'startshape'");
+        fail_without_start();
         return std::move(out_);
     }
     check_definitions();
@@ -81,7 +82,10 @@ Translation Unfolding::write() {
         if (first) master = name_of(*first);
     }
     if (master.empty()) fail(start.span, fmt::format("'{}' is no shape to start from", shape->name));
-    if (full_ && !drawn_) fail(start.span, "the grammar makes too many shapes");
+    if (full_ && !drawn_)
+        fail(start.span,
+             fmt::format("the grammar makes more than {} different shapes before it draws one", most_nodes),
+             fewer_shapes);
     if (fills_) { // what covers all must not frame the picture
         const Vec3 half = 0.55 * (most_ - least_);
         middle_and_half_ = {0.5 * (least_ + most_), glm::max(half, Vec3(0.05 * std::max(extent_, 1e-3)))};
@@ -320,6 +324,7 @@ void Unfolding::see(const Affine& world) {
 }
 
 void Unfolding::add_line(std::size_t id, Line line) {
+    file_.work(1, ImportPrice::unfolded);
     ++lines_;
     drawn_ = drawn_ || !line.master.empty();
     nodes_[id].lines.push_back(std::move(line));
@@ -366,8 +371,13 @@ void Unfolding::expand_loop(const Element& element, Surroundings at, Under under
     double index = bounds->begin;
     for (; bounds->goes_on(index); index += bounds->step) {
         if (file_.diagnostics.error_count() > 0) return;
+        file_.work(1, ImportPrice::unfolded);
         if (++turns_ > most_loop_turns || lines_ > 2 * most_unfolded_lines)
-            return fail(element.span, "the loops of this grammar turn too often");
+            return fail(element.span,
+                        fmt::format("the loops of this grammar turn more than {} times, or place more than "
+                                    "{} shapes",
+                                    most_loop_turns, 2 * most_unfolded_lines),
+                        fewer_shapes);
         if (!element.name.empty()) at.values.insert_or_assign(element.name, Value::of(index));
         expand(element.body, at, under);
         const std::optional<Change> change = evaluator_.change(element.modification, at);
@@ -416,7 +426,10 @@ void Unfolding::place(const Element& element, const Surroundings& at, const Unde
     if (!own) return;
     colour_steps_ += under.change.colours.size();
     if (colour_steps_ > most_colour_steps)
-        return fail(element.span, "the loops of this grammar change colours too often");
+        return fail(
+            element.span,
+            fmt::format("the loops of this grammar change colours more than {} times", most_colour_steps),
+            fewer_shapes);
     Change change = under.change;
     change.add(*own);
     const auto found = grammar_.numbers.find(shape->name);

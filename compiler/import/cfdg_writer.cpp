@@ -67,7 +67,7 @@ void Writer::write_constants() {
 }
 
 void Writer::write_start_shape() {
-    if (!grammar_.start) return fail(file_.span(0, 0), "the grammar has no 'startshape'");
+    if (!grammar_.start) return fail_without_start();
     const Element& start = *grammar_.start;
     const std::string master = reference(start, nullptr, constants_);
     if (const std::optional<Lines> lines = lines_of(start.modification, constants_, {.lifts = true}))

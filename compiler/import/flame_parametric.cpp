@@ -279,6 +279,16 @@ const std::vector<Row>& rows() {
           {"n", "c*c + d*d"}},
          "(a * c + b * d) / n",
          "(b * c - a * d) / n"},
+        // As JWildfire computes them, in the plane.
+        {"spherical3D", {}, {}, "u / (r2 + 1e-10)", "v / (r2 + 1e-10)"},
+        {"petal", {}, {}, "cosu * (cosu * cosv)^3", "cosu * (sinu * cosv)^3"},
+        {"henon", {{"a", "0.5"}, {"b", "1"}, {"c", "1"}}, {}, "c - a * u*u + v", "b * u"},
+        {"lozi", {{"a", "0.5"}, {"b", "1"}, {"c", "1"}}, {}, "c - a * abs(u) + v", "b * u"},
+        {"clifford_js",
+         {{"a", "0"}, {"b", "1.6"}, {"c", "1"}, {"d", "0.7"}},
+         {},
+         "sin(deg * a * v) + c * cos(deg * a * u)",
+         "sin(deg * b * u) + d * cos(deg * b * v)"},
     };
     return all;
 }

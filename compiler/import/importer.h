@@ -8,10 +8,18 @@
 #include <string_view>
 #include <vector>
 
+#include "compiler/support/control.h"
 #include "compiler/support/diagnostics.h"
 #include "compiler/support/source.h"
 
 namespace graftal {
+
+/// What a unit of an importer's work costs, as in support/stage_price.h.
+struct ImportPrice {
+    static constexpr double byte = 1.5e-7;     ///< of a file that is read and translated
+    static constexpr double evaluation = 1e-7; ///< of an expression of a grammar that is computed
+    static constexpr double unfolded = 1e-6;   ///< a shape of such a grammar, or a turn of its loops
+};
 
 /// A file of another program, and what its importer may ask for.
 struct ForeignFile {
@@ -21,7 +29,12 @@ struct ForeignFile {
     /// The text of a file that this one names, looked up beside it; nothing, without an error, if there is
     /// none. Texts stay valid.
     std::function<std::optional<FileId>(std::string_view name)> read_beside;
+    WorkMeter* meter = nullptr; ///< counts the work; null: nobody does
 
+    /// Throws OutOfWork where the command allows no more. `price`: of a unit (ImportPrice).
+    void work(std::uint64_t units, double price) const {
+        if (meter) meter->add(units, price);
+    }
     std::string_view text() const { return sources.text(file); }
     Span span(std::size_t begin, std::size_t end) const {
         return {file, static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(end)};

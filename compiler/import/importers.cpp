@@ -103,7 +103,8 @@ std::string model_stem(std::string_view path) {
     return parts.model.empty() ? std::filesystem::path(parts.file).stem().string() : plain_name(parts.model);
 }
 
-ForeignFile foreign_file(FileId file, SourceMap& sources, Diagnostics& diagnostics, BesideOptions beside) {
+ForeignFile foreign_file(FileId file, SourceMap& sources, Diagnostics& diagnostics, BesideOptions beside,
+                         WorkMeter* meter) {
     const auto read_beside = [&sources, file,
                               beside = std::move(beside)](std::string_view name) -> std::optional<FileId> {
         const std::filesystem::path own(sources.name(file));
@@ -116,7 +117,9 @@ ForeignFile foreign_file(FileId file, SourceMap& sources, Diagnostics& diagnosti
         if (!read_text(path, text).ok()) return std::nullopt;
         return sources.add(path, decoded_text(std::move(text), OtherBytes::windows_1252));
     };
-    return {file, sources, diagnostics, read_beside};
+    const ForeignFile foreign{file, sources, diagnostics, read_beside, meter};
+    foreign.work(foreign.text().size(), ImportPrice::byte);
+    return foreign;
 }
 
 const Importer* importer_of(const ForeignFile& file) {
@@ -168,9 +171,9 @@ std::optional<ForeignModel> find_model(const Importer& importer, const ForeignFi
 }
 
 std::optional<FileId> own_text(FileId file, std::string_view model, SourceMap& sources,
-                               Diagnostics& diagnostics, const BesideOptions& beside) {
+                               Diagnostics& diagnostics, const BesideOptions& beside, WorkMeter* meter) {
     if (!is_foreign(sources.name(file))) return file;
-    const ForeignFile foreign = foreign_file(file, sources, diagnostics, beside);
+    const ForeignFile foreign = foreign_file(file, sources, diagnostics, beside, meter);
     const Importer* const importer = importer_of(foreign);
     if (!importer) return std::nullopt;
     const std::optional<ForeignModel> found = find_model(*importer, foreign, model);

@@ -40,9 +40,9 @@ struct BesideOptions {
     std::function<void(const std::string&)> on_file{}; ///< hears of each that is asked for
 };
 
-/// A file of `sources` for importers. Both must outlive it.
-ForeignFile foreign_file(FileId file, SourceMap& sources, Diagnostics& diagnostics,
-                         BesideOptions beside = {});
+/// A file of `sources` for importers. Both must outlive it, and so must the meter. Charges the file as read.
+ForeignFile foreign_file(FileId file, SourceMap& sources, Diagnostics& diagnostics, BesideOptions beside = {},
+                         WorkMeter* meter = nullptr);
 
 /// The importer that reads the file: one of its ending that knows the text, else any that knows it, with a
 /// note, else the only one of its ending. Null after the error that names the formats.
@@ -54,9 +54,11 @@ std::optional<ForeignModel> find_model(const Importer& importer, const ForeignFi
                                        std::string_view name);
 
 /// The text in one of our languages of a file: the file itself, or the translation of the model of this name
-/// in a foreign one, which becomes a file of `sources`. Nothing after an error.
+/// in a foreign one, which becomes a file of `sources`. Nothing after an error. Throws OutOfWork where the
+/// meter allows no more.
 std::optional<FileId> own_text(FileId file, std::string_view model, SourceMap& sources,
-                               Diagnostics& diagnostics, const BesideOptions& beside = {});
+                               Diagnostics& diagnostics, const BesideOptions& beside = {},
+                               WorkMeter* meter = nullptr);
 
 /// A name of letters, digits and '_' for a block, a material or a file, that begins with a letter.
 std::string plain_name(std::string_view name);

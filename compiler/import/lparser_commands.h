@@ -45,21 +45,19 @@ inline constexpr LparserCommand lparser_commands[] = {
     {'c', ";", ";(%)"},
 };
 
-/// Modules of the translation that need an interpretation.
+/// A command whose module of the translation needs an interpretation: without a number, and with one.
 struct LparserMeaning {
-    const char* name;
-    const char* production;
+    char symbol;
+    const char* plain;
+    const char* numbered;
 };
 
 inline constexpr LparserMeaning lparser_meanings[] = {
-    {"Z", "Z -> @S(1/2)F@S(2)"},
-    {"Z", "Z(l) -> F(l)"},
-    {"z", "z -> @S(1/2)f@S(2)"},
-    {"z", "z(l) -> f(l)"},
-    {"t", "t -> @B(0.2)"},
-    {"t", "t(e) -> @B(e)"},
-    {"Shake", "Shake -> Shake(343.77)"}, // 6 radians, where it means degrees
-    {"Shake", "Shake(a) -> +(random(-a, a))&(random(-a, a))/(random(-a, a))"},
+    {'Z', "Z -> @S(1/2)F@S(2)", "Z(l) -> F(l)"},
+    {'z', "z -> @S(1/2)f@S(2)", "z(l) -> f(l)"},
+    {'t', "t -> @B(0.2)", "t(e) -> @B(e)"},
+    {'~', "Shake -> Shake(343.77)", // 6 radians, where it means degrees
+     "Shake(a) -> +(random(-a, a))&(random(-a, a))/(random(-a, a))"},
 };
 
 /// Null for a symbol that means nothing to the turtle.

@@ -122,7 +122,9 @@ class LparserReader {
         number.value = read.value;
         take_comments(system_.head);
         if (read.length == 0 || !std::isfinite(number.value))
-            file_.diagnostics.error(span_, fmt::format("expected a number, found '{}'", comment_text(text)));
+            file_.diagnostics.error(span_, fmt::format("expected a number, found '{}'", comment_text(text)))
+                .with_hint(
+                    "a file of L-Parser begins with lines of recursion depth, angle, thickness, axiom");
     }
 
     void take_comments(std::vector<LparserLine>& lines) {

@@ -68,7 +68,7 @@ class LparserWriter {
     void look(const LparserString& string) {
         for (const LparserSymbol& symbol : string) {
             used_.insert(symbol.letter);
-            if (symbol.number) numbered_.insert(symbol.letter);
+            (symbol.number ? numbered_ : plain_).insert(symbol.letter);
             if (symbol.number) digits_ += *symbol.number;
         }
     }
@@ -169,8 +169,10 @@ class LparserWriter {
         }
         const std::string name = name_of(rule.letter);
         const std::string successor = text_of(rule.successor);
-        out.line(fmt::format("  {} -> {}{}", name, successor.empty() ? "*" : successor, remark(rule.comment)),
-                 rule.span);
+        const std::string said = remark(rule.comment);
+        const bool plain = plain_.contains(rule.letter) || !numbered_.contains(rule.letter);
+        if (plain)
+            out.line(fmt::format("  {} -> {}{}", name, successor.empty() ? "*" : successor, said), rule.span);
         if (!numbered_.contains(rule.letter)) return;
         std::string numbered = successor;
         if (!rule.successor.empty() && !rule.successor.back().number) {
@@ -178,18 +180,26 @@ class LparserWriter {
             string.back().number = "x";
             numbered = text_of(string);
         }
-        out.line(fmt::format("  {}(x) -> {}", name, numbered.empty() ? "*" : numbered), rule.span);
+        out.line(fmt::format("  {}(x) -> {}{}", name, numbered.empty() ? "*" : numbered, plain ? "" : said),
+                 rule.span);
     }
 
     void write_meanings(Translation& out) {
         std::vector<std::string> lines;
-        if (draws_in_polygons()) lines.insert(lines.end(), {"F -> @E", "F(l) -> @E(l)"}); // and so do Z
-        for (const LparserMeaning& meaning : lparser_meanings)
-            if (uses_name(meaning.name)) lines.emplace_back(meaning.production);
+        if (draws_in_polygons()) { // a Z becomes an F
+            if (plain_.contains('F') || plain_.contains('Z')) lines.emplace_back("F -> @E");
+            if (numbered_.contains('F') || numbered_.contains('Z')) lines.emplace_back("F(l) -> @E(l)");
+        }
+        for (const auto& [symbol, plain, numbered] : lparser_meanings) {
+            const bool becomes_number = symbol == '~' && used_.contains(symbol);
+            if (plain_.contains(symbol)) lines.emplace_back(plain);
+            if (numbered_.contains(symbol) || becomes_number) lines.emplace_back(numbered);
+        }
         for (const char letter : ruled_) {
             const LparserCommand* const command = lparser_command(letter);
             if (!command || keeps_name(letter)) continue;
-            lines.push_back(fmt::format("{} -> {}", name_of(letter), command->text));
+            if (plain_.contains(letter))
+                lines.push_back(fmt::format("{} -> {}", name_of(letter), command->text));
             if (numbered_.contains(letter) && *command->with_number)
                 lines.push_back(
                     fmt::format("{}(x) -> {}", name_of(letter), with_number(command->with_number, "x")));
@@ -217,13 +227,6 @@ class LparserWriter {
         return draws(system_.axiom) || std::ranges::any_of(system_.rules, [&](const LparserRule& rule) {
                    return draws(rule.successor);
                });
-    }
-
-    bool uses_name(std::string_view name) const {
-        return std::ranges::any_of(used_, [&](char c) {
-            const LparserCommand* const command = lparser_command(c);
-            return command && name == command->text;
-        });
     }
 
     /// Whether a command is one module of ours, that may have productions.
@@ -297,6 +300,7 @@ class LparserWriter {
     const LparserSystem& system_;
     std::set<char> used_;
     std::set<char> ruled_;
+    std::set<char> plain_;    ///< that are written without a number
     std::set<char> numbered_; ///< that may have a number behind them
     std::string digits_;      ///< of all numbers
 };

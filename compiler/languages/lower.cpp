@@ -74,8 +74,11 @@ LoweredText lower_text(const std::string& name, std::string text, const LowerOpt
                        SourceMap& sources, Diagnostics& diagnostics, const LowerHelp& help) {
     const ModelPath path = model_path(name == "-" ? standard_input : name);
     const FileId file = sources.add(path.file, model_text(path.file, std::move(text)));
-    const std::optional<FileId> own =
-        own_text(file, path.model, sources, diagnostics, {options.root, help.on_file});
+    std::optional<FileId> own;
+    {
+        WorkMeter meter(help.control, "import", 10'000);
+        own = own_text(file, path.model, sources, diagnostics, {options.root, help.on_file}, &meter);
+    }
     if (!own) return {};
     return lower_root(*own, name, options, sources, diagnostics, help);
 }

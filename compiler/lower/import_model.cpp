@@ -104,7 +104,7 @@ std::optional<FileId> read_used(Span use_span, const std::string& path, Lowering
     std::optional<FileId> file = read_file(use_span, parts.file, lowering);
     if (file)
         file = own_text(*file, parts.model, lowering.sources, lowering.diagnostics,
-                        {lowering.options.root, lowering.help.on_file});
+                        {lowering.options.root, lowering.help.on_file}, &lowering.meter);
     return lowering.own_texts[path] = file;
 }
 

@@ -251,6 +251,7 @@ bool Turtle::within_limits(Span span) {
             span, fmt::format("more than {} polygons are open in one place", max_polygon_nesting));
         return false;
     }
+    if (!is_size(scale_)) return report_scale(span); // parts multiply it, too
     const Vec3 place = glm::abs(start_from_turtle_.translation);
     if (place.x <= largest_size && place.y <= largest_size && place.z <= largest_size) return true;
     context_.diagnostics.error(span, "the turtle goes beyond the range of numbers")

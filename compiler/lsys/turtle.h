@@ -197,6 +197,8 @@ class Turtle {
     double written(double length);
     double usual_diameter();
     bool scale_by(double factor, bool written_too, Span span);
+    /// Always false.
+    bool report_scale(Span span);
     void bend_down(double elasticity);
     bool set_tropism(std::span<const double> parameters, Span span);
     void go_to(std::span<const double> parameters);

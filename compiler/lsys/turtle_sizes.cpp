@@ -60,12 +60,15 @@ bool Turtle::scale_by(double factor, bool written_too, Span span) {
         state_.ruler = ruler;
         return true;
     }
-    if (factor > 0 && std::isfinite(factor))
-        context_.diagnostics.error(span, "the scale of the turtle leaves the range of numbers")
-            .with_hint("use fewer steps, or factors closer to 1");
-    else
-        context_.diagnostics.error(
-            span, fmt::format("a factor of the scale must be above 0, but is {}", shortest(factor)));
+    if (factor > 0 && std::isfinite(factor)) return report_scale(span);
+    context_.diagnostics.error(
+        span, fmt::format("a factor of the scale must be above 0, but is {}", shortest(factor)));
+    return false;
+}
+
+bool Turtle::report_scale(Span span) {
+    context_.diagnostics.error(span, "the scale of the turtle leaves the range of numbers")
+        .with_hint("use fewer steps, or factors closer to 1");
     return false;
 }
 

@@ -10,6 +10,8 @@
 #include "compiler/import/importers.h"
 #include "compiler/languages/lower.h"
 #include "compiler/support/check.h"
+#include "compiler/support/control.h"
+#include "compiler/support/stage_work.h"
 
 namespace graftal {
 
@@ -40,12 +42,16 @@ inline void check_model_text(const char* name, const std::uint8_t* data, std::si
 }
 
 /// What must hold for any text of another program: each of its models gives text with one origin a line,
-/// which gives a verified graph, an orbit or an error; or there is an error.
-inline void check_foreign_text(const char* name, const std::uint8_t* data, std::size_t size) {
+/// which gives a verified graph, an orbit or an error; or there is an error, or too much work.
+inline void check_foreign_text_within_work(const char* name, const std::uint8_t* data, std::size_t size) {
     SourceMap sources;
     Diagnostics diagnostics;
     const FileId file = sources.add(name, std::string(reinterpret_cast<const char*>(data), size));
-    const ForeignFile foreign = foreign_file(file, sources, diagnostics);
+    StageWork work(1);
+    Control control;
+    control.work = &work;
+    WorkMeter meter(control, "import", 1000);
+    const ForeignFile foreign = foreign_file(file, sources, diagnostics, {}, &meter);
     const Importer* const importer = importer_of(foreign);
     GRAFTAL_CHECK(importer != nullptr || diagnostics.has_errors(), "an importer or an error");
     if (!importer) return;
@@ -70,6 +76,14 @@ inline void check_foreign_text(const char* name, const std::uint8_t* data, std::
         if (lowered.graph) check_verified(*lowered.graph, "fuzz");
     }
     diagnostics.render(sources);
+}
+
+inline void check_foreign_text(const char* name, const std::uint8_t* data, std::size_t size) {
+    try {
+        check_foreign_text_within_work(name, data, size);
+    } catch (const OutOfWork&) {
+        return;
+    }
 }
 
 } // namespace graftal

@@ -4,8 +4,10 @@
 #include <fmt/format.h>
 
 #include "compiler/import/importers.h"
+#include "compiler/support/control.h"
 #include "compiler/support/file.h"
 #include "compiler/support/printable.h"
+#include "compiler/support/stage_work.h"
 #include "runtime/system/made_folders.h"
 #include "tools/graftal/commands.h"
 #include "tools/graftal/report.h"
@@ -20,14 +22,31 @@ class Importing {
         : options_(options), output_(options.render.output), path_(model_path(options.operands.front())) {}
 
     int run() {
-        const int status = import_file();
+        const int status = import_within_limits();
         made_.take_back(); // where nothing was written
         conclude(options_, found_);
         return status;
     }
 
   private:
-    int import_file() {
+    int import_within_limits() {
+        constexpr double most_seconds = 10;
+        StageWork work(most_seconds);
+        Control control;
+        control.work = &work;
+        try {
+            WorkMeter meter(control, "import", 10'000);
+            return import_file(meter);
+        } catch (const OutOfWork&) {
+            found_.diagnostics
+                .error(Span(), fmt::format("to translate '{}' takes more than {} seconds of work", path_.file,
+                                           most_seconds))
+                .with_hint("ask for less: fewer shapes, turns of loops, or calls of functions");
+            return exit_fault;
+        }
+    }
+
+    int import_file(WorkMeter& meter) {
         const std::string& root = options_.render.compile.lower.root;
         if (!is_foreign(path_.file)) {
             found_.diagnostics.error(Span(),
@@ -42,7 +61,8 @@ class Importing {
         found_.status = read_text(path_.file, text);
         if (!found_.status.ok()) return exit_environment;
         const FileId file = found_.sources.add(path_.file, model_text(path_.file, std::move(text)));
-        const ForeignFile foreign = foreign_file(file, found_.sources, found_.diagnostics, {root, {}});
+        const ForeignFile foreign =
+            foreign_file(file, found_.sources, found_.diagnostics, {root, {}}, &meter);
         const Importer* const importer = importer_of(foreign);
         if (!importer) return exit_fault;
         if (path_.model.empty() && output_.ends_with('/')) return import_all(*importer, foreign);

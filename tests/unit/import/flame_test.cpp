@@ -221,6 +221,40 @@ TEST(Flame, FormulasOfComplexNumbers) {
         }
 }
 
+TEST(Flame, FormulasOfJWildfire) {
+    struct Case {
+        const char* name;
+        std::map<std::string, double> numbers;
+        std::function<Point(double x, double y)> expected;
+    };
+    const Case cases[] = {
+        {"spherical3D", {}, [](double x, double y) { return Point(x, y) / (x * x + y * y); }},
+        {"petal",
+         {},
+         [](double x, double y) {
+             const double a = std::cos(x);
+             return a * Point(std::pow(std::cos(x) * std::cos(y), 3), std::pow(std::sin(x) * std::cos(y), 3));
+         }},
+        {"henon",
+         {{"henon_a", 1.4}, {"henon_b", 0.3}},
+         [](double x, double y) { return Point(1 - 1.4 * x * x + y, 0.3 * x); }},
+        {"lozi", {{"lozi_c", 2}}, [](double x, double y) { return Point(2 - 0.5 * std::abs(x) + y, x); }},
+        {"clifford_js",
+         {{"clifford_js_a", -1.4}},
+         [](double x, double y) {
+             return Point(std::sin(-1.4 * y) + std::cos(-1.4 * x),
+                          std::sin(1.6 * x) + 0.7 * std::cos(1.6 * y));
+         }},
+    };
+    for (const Case& expected : cases)
+        for (const Point z : {Point(0.3, 0.8), Point(-0.6, -0.4)}) {
+            const std::vector<flame::Formula> found = formulas(expected.name, expected.numbers);
+            ASSERT_EQ(found.size(), 1u) << expected.name;
+            EXPECT_NEAR(std::abs(value(found[0], z) - expected.expected(z.real(), z.imag())), 0, 1e-6)
+                << expected.name << " of " << z;
+        }
+}
+
 TEST(Flame, NamesOfOtherPrograms) {
     const auto said = [](const std::string& map) {
         const ImportedShapes model("a.flame",

@@ -7,6 +7,8 @@
 
 #include <gtest/gtest.h>
 
+#include "compiler/support/control.h"
+#include "compiler/support/stage_work.h"
 #include "tests/unit/import/imported.h"
 
 namespace graftal::testing {
@@ -112,6 +114,41 @@ TEST_P(Hostile, ManyRules) {
     const std::size_t end = text.rfind('\n', text.size() - 2);
     expect_soon(text.insert(end + 1, rules));
     expect_soon(with("B", "1") + rules);
+}
+
+/// The stage in which the translation of the first model goes beyond the seconds of work; "": it does not.
+std::string stage_out_of_work(const char* file, const std::string& text, double most_seconds) {
+    StageWork work(most_seconds);
+    Control control;
+    control.work = &work;
+    SourceMap sources;
+    Diagnostics diagnostics;
+    try {
+        WorkMeter meter(control, "import", 1000);
+        own_text(sources.add(file, text), "", sources, diagnostics, {}, &meter);
+    } catch (const OutOfWork& fault) {
+        return fault.stage();
+    }
+    EXPECT_FALSE(diagnostics.has_errors()) << diagnostics.render(sources);
+    return "";
+}
+
+TEST_P(Hostile, ReadsWithinTheWorkOfTheCommand) {
+    const std::string text = with("B", "1") + times(100'000, "\n"); // 15 ms by the price of a byte
+    EXPECT_EQ(stage_out_of_work(GetParam().file, text, 0.01), "import");
+    EXPECT_EQ(stage_out_of_work(GetParam().file, text, 10), "");
+}
+
+TEST(HostileGrammar, IsComputedWithinTheWorkOfTheCommand) {
+    // A vector as a parameter has no word of ours.
+    const std::string turns = "startshape A\nshape A { loop i = 10000 [x 1] B((i, i)) [] }\n"
+                              "shape B(vector2 v) { SQUARE [x (v[0])] }\n";
+    EXPECT_EQ(stage_out_of_work("a.cfdg", turns, 0.02), "import");
+    EXPECT_EQ(stage_out_of_work("a.cfdg", turns, 10), "");
+    // A function that calls itself doubles the expressions with each step.
+    const std::string calls = "startshape A\nf(n) = if(n < 1, 1, f(n - 1) + f(n - 1))\n"
+                              "shape A { SQUARE [s (f(30))] }\n";
+    EXPECT_EQ(stage_out_of_work("a.cfdg", calls, 1), "import");
 }
 
 INSTANTIATE_TEST_SUITE_P(Import, Hostile, ::testing::ValuesIn(formats()), [](const auto& format) {

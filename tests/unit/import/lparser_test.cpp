@@ -41,6 +41,24 @@ TEST(Lparser, LengthsAreMultipliedAndOthersWritten) {
     expect_near(ends("'(.5)F(100)F").back(), {0, 1.5, 0}); // what is written does not shrink
 }
 
+TEST(Lparser, RefusesScalesThatVanish) {
+    // Each A takes up two of the A before it, without brackets: their scales are multiplied.
+    for (const char* const axiom : {"A={.+(3)F'A.+F.F}A", "A=F'AA", "A=F\"AA", "A=F'(.5)A[A]A"}) {
+        const Imported model("a.ls", std::string("30\n20\n10\nA\n") + axiom + "\n@\n");
+        EXPECT_FALSE(model.graph);
+        EXPECT_THAT(model.said(), HasSubstr("the scale of the turtle leaves the range of numbers"));
+    }
+}
+
+TEST(Lparser, WritesOnlyProductionsThatApply) {
+    for (const char* const axiom :
+         {"{F}Z", "{F(5)}z(3)", "t(.1)F", "tF", "~F", "~(5)F", "Zz(1)", "a(7)F\na=Fb\nb=F", "f(3)F\nf=g"}) {
+        const Imported model("a.ls", std::string("3\n90\n10\n") + axiom + "\n@\n");
+        EXPECT_TRUE(model.graph);
+        EXPECT_EQ(model.said(), "") << axiom;
+    }
+}
+
 TEST(Lparser, AnglesAreMultipliedAndOthersWritten) {
     expect_near(ends(":(.5)+F").back(), {-std::sqrt(0.5), std::sqrt(0.5), 0});
     expect_near(ends(":(.5)+(90)F").back(), {-1, 0, 0});

@@ -38,10 +38,8 @@ constexpr std::uint64_t fewest_visits = 16;
 /// would take more, too.
 /// It is taken for one that takes so many times what is allowed.
 constexpr double most_for_shells = 0.5, broken_off = 4;
-/// After so many the picture is made as coarse as may be; until then the error grows by more than usual, for
-/// the work of shells goes with its square.
-constexpr int most_broken_looks = 3;
-constexpr double coarser_after_broken_look = 3;
+/// After so many the picture is made as coarse as may be.
+constexpr int most_broken_looks = 2;
 
 /// The price of a model, in seconds of one processor.
 struct Price {
@@ -138,8 +136,7 @@ class Fitting {
 
     double next_step(int tries) const {
         if (broken_looks_ >= most_broken_looks) return std::max(coarsest / factor_, coarser);
-        if (broken_looks_ > 0) return coarser_after_broken_look;
-        return tries <= small_tries ? coarser : coarser * coarser;
+        return tries <= small_tries && broken_looks_ == 0 ? coarser : coarser * coarser;
     }
 
     Choice choice(double factor, const Price& price) const {

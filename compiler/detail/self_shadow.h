@@ -69,8 +69,6 @@ class SelfShadowStore {
         std::call_once(once_, [&] { shadows_ = measure(); });
         return shadows_;
     }
-    /// That measuring took so far. Requires that nobody asks for them meanwhile.
-    std::uint64_t work() const { return shadows_.work(); }
 
   private:
     std::once_flag once_;

@@ -265,7 +265,11 @@ template<typename Function> double crossing(const Function& f, double out, doubl
     return out;
 }
 
+/// The powers of one point take as long as so many nodes of a mesh's tree.
+constexpr std::uint64_t steps_a_point = 20;
+
 bool intersect(const Primitive& primitive, const Ray& ray, const RayRange& range, PrimitiveHit& hit) {
+    hit.steps = 0;
     const Norm& norm = form_of(primitive).norm;
     const Vec3 &o = ray.origin, &d = ray.direction;
     const Passage within =
@@ -276,6 +280,7 @@ bool intersect(const Primitive& primitive, const Ray& ray, const RayRange& range
     if (!std::isfinite(middle) || !std::isfinite(half)) return false;
     const Vec3 start = ray(middle);
     const auto f = [&](double t) {
+        hit.steps += steps_a_point;
         const Vec3 p = start + t * d;
         return std::pair(norm(p), glm::dot(norm.gradient(p), d));
     };
@@ -299,7 +304,8 @@ bool intersect(const Primitive& primitive, const Ray& ray, const RayRange& range
     PassageEnd end;
     const double leave = enter > range.least ? enter : middle + crossing(f, half, inside);
     if (!first_end({enter, leave}, range, end)) return false;
-    hit = {end.t, glm::normalize(norm.gradient(start + (end.t - middle) * d))};
+    hit.t = end.t;
+    hit.normal = glm::normalize(norm.gradient(start + (end.t - middle) * d));
     return true;
 }
 

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "compiler/detail/work.h"
+#include "compiler/support/stage_price.h"
 #include "runtime/trace/picture_tracer.h"
 
 namespace graftal {
@@ -169,22 +170,32 @@ class Fitting {
         options.error_px *= factor;
         if (options.error_world) *options.error_world *= factor;
         try {
-            if (!ground_) ground_ = std::make_shared<TraceGround>(*ask_.prepared, options.work_seconds);
+            if (!ground_) {
+                ground_ = std::make_shared<TraceGround>(*ask_.prepared, options.work_seconds);
+                tried_seconds_ += StagePrice::piece * static_cast<double>(ground_->bounds.pieces);
+            }
             fitted_.model =
                 std::make_unique<TraceModel>(ask_.prepared, ask_.view, options, ask_.textures, ground_);
             tried_seconds_ +=
                 slowness_ * (static_cast<double>(fitted_.model->weighed) / WorkRates::kinds +
                              static_cast<double>(fitted_.model->edges.size()) / WorkRates::trace_edges);
+            measure_self_shadows();
             factor_ = factor;
             price_ = known ? *known : look(*fitted_.model);
-            const double ground_before = std::exchange(ground_seconds_, ground_->seconds());
-            tried_seconds_ += ground_seconds_ - ground_before;
             return true;
         } catch (const std::bad_alloc&) {
             fitted_.model.reset();
             failed_seconds_ += static_cast<double>(ask_.prepared->instances) / WorkRates::trace_edges;
             return false;
         }
+    }
+
+    /// Before somebody asks, so that the work does not depend on who does.
+    void measure_self_shadows() {
+        if (measured_ || !(fitted_.model->projection.error_px() > SelfShadows::lit_as_px)) return;
+        measured_ = true;
+        tried_seconds_ +=
+            static_cast<double>(fitted_.model->self_shadows().work()) / WorkRates::parts_gone_by;
     }
 
     /// The work that trying has left: half in any case.
@@ -285,7 +296,7 @@ class Fitting {
     const double work_seconds_; ///< for the rays, and for what is tried
     const double slowness_;     ///< of their steps
     std::shared_ptr<TraceGround> ground_;
-    double ground_seconds_ = 0; ///< that it took, of what was tried
+    bool measured_ = false; ///< the shadows of the ground
     FittedModel fitted_;
     Price price_;       ///< of the model
     double factor_ = 1; ///< of its error

@@ -372,15 +372,15 @@ std::vector<ShellSizes> found_shell_sizes(TraceModel& model) {
 /// Where copies lie in each other so often that rays would not come through.
 void find_shells(TraceModel& model) {
     if (!model.projection.culls()) return;
-    std::vector<ShellSizes>& sizes = model.ground->shell_sizes;
-    if (sizes.empty()) sizes = found_shell_sizes(model);
+    std::optional<std::vector<ShellSizes>>& known = model.ground->shell_sizes;
+    const auto by_error = [](const CutNode& node) { return node.terminal_px > 0; };
+    if (!known || std::ranges::any_of(model.prepared.cut.nodes, by_error)) known = found_shell_sizes(model);
+    const std::vector<ShellSizes>& sizes = *known;
     if (sizes.empty()) return;
     for (std::size_t i = 0; i < model.nodes.size(); ++i) {
         model.nodes[i].shell = sizes[model.layers.source[i]];
         model.has_shells = model.has_shells || model.nodes[i].shell.any();
     }
-    const auto by_error = [](const CutNode& node) { return node.terminal_px > 0; };
-    if (std::ranges::any_of(model.prepared.cut.nodes, by_error)) sizes.clear();
 }
 
 /// Of one shell: there may be several, and they may be made anew at another error.
@@ -407,11 +407,6 @@ std::uint32_t TraceRun::edge_of(RunShape shape, std::uint16_t colour) const {
 TraceGround::TraceGround(const PreparedCut& prepared, double work_seconds)
     : layers(layered(prepared.cut, prepared.root_steps)),
       bounds(drawn_bounds(layers.cut, share_of(work_seconds, 1 / StagePrice::piece, most_pieces))) {}
-
-double TraceGround::seconds() const {
-    return StagePrice::piece * static_cast<double>(bounds.pieces) +
-           static_cast<double>(self_shadows.work()) / WorkRates::parts_gone_by;
-}
 
 TraceModel::TraceModel(std::shared_ptr<const PreparedCut> ready, const View& seen,
                        const DetailOptions& cut_options, ModelTextures read_textures,

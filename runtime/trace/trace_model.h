@@ -170,13 +170,10 @@ struct TraceGround {
 
     LayeredGraph layers; ///< of prepared.cut
     DrawnBounds bounds;  ///< of the layers
-    /// By node of the cut, of the first model. Empty where rays come through everywhere, and where the sizes
-    /// depend on the error.
-    std::vector<ShellSizes> shell_sizes;
+    /// By node of the cut, of the first model; empty where rays come through everywhere. Found for each model
+    /// where they depend on the error.
+    std::optional<std::vector<ShellSizes>> shell_sizes;
     SelfShadowStore self_shadows;
-
-    /// Of a processor, that all this took so far. Requires that no model is asked for more meanwhile.
-    double seconds() const;
 };
 
 /// A prepared graph made ready for rays, for one view. It is read by many threads.

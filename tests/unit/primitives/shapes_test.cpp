@@ -351,6 +351,17 @@ std::uint64_t most_steps(const MeshData& data) {
     return most;
 }
 
+/// Powers take longer than what other plain primitives ask for: their rays are dear, and count so.
+TEST(Superellipsoid, ARayCountsItsPowers) {
+    const Primitive body = made_of(PrimitiveKind::superellipsoid, {0.3, 0.4});
+    PrimitiveHit hit;
+    EXPECT_TRUE(intersect(body, {{0.1, 0.2, 5}, {0.01, 0.02, -1}}, {}, hit));
+    EXPECT_GE(hit.steps, 60u);
+    EXPECT_LE(hit.steps, 2000u);
+    EXPECT_FALSE(intersect(body, {{3, 0.2, 5}, {0, 0, -1}}, {}, hit));
+    EXPECT_EQ(hit.steps, 0u) << "it passes by the box";
+}
+
 TEST(Mesh, RaysComeToFewOfManyTriangles) {
     EXPECT_LT(most_steps(fan_of(20000)), 1000u);
     EXPECT_LT(most_steps(pile_of(20000)), 300u);

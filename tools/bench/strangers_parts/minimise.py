@@ -19,7 +19,7 @@ def smallest(program, folder, command, limits, say):
         found = trial.attempt(program, command, work, limits)['findings']
         return found[0].split(' ')[0] if found else None
 
-    lines, chosen = main.read_text().splitlines(), {key: model[key] for key in ('options', 'drawn')}
+    lines, chosen = main.read_text(errors='replace').splitlines(), {key: model[key] for key in ('options', 'drawn')}
     wanted = finding(lines, chosen)
     if wanted is None:
         return None

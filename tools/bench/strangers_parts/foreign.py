@@ -1,4 +1,6 @@
 """Random files of other programs, in the shape that people write them and in the bytes that their editors leave."""
+import re
+
 import foreign_shapes
 from draw import number, numbers
 
@@ -9,9 +11,11 @@ def write(draw, model):
     if draw.chance(0.03):
         text = text[:int(draw.random() * len(text))]
     text = text.replace('\n', draw.weighted({'\n': 8, '\r\n': 2, '\r': 0.5}))
-    encoding = draw.weighted({'utf-8': 8, 'utf-8-sig': 2, 'utf-16': 1, 'utf-16-le': 0.3, 'utf-16-be': 0.3, 'cp1252': 1})
+    encoding = draw.weighted({'utf-8': 8, 'utf-8-sig': 2, 'utf-16': 1, 'utf-16-le': 0.1, 'utf-16-be': 0.1, 'cp1252': 1})
     model.main = 'model.' + (ending if draw.chance(0.95) else 'txt')
     model.content = text.encode(encoding)
+    if many := NAMES.get(text_of):
+        model.name = draw.pick(re.findall(many, text)) if len(re.findall(many, text)) > 1 else None
     if ending == 'l' and draw.chance(0.2):
         model.files['model.v'] = f'angle factor: 20\nline width: {draw.whole(1, 9)} pixel\nscale factor: 0.9\n'
     if draw.chance(0.2):
@@ -35,7 +39,7 @@ def fractint(draw):
         if draw.chance(0.2):
             rules += [f'  {letters[0]}={word(draw, symbols)}', '  F=']
         systems.append('\n'.join([f'System{index or ""} {{ ; by somebody\xe9' if draw.chance(0.2) else f'System{index or ""} {{',
-                                  f'  Angle {draw.whole(3, 40)}', f'  Axiom {word(draw, symbols)}', *rules,
+                                  f'  Angle {2 * draw.whole(2, 20) if draw.chance(0.9) else 7}', f'  Axiom {word(draw, symbols)}', *rules,
                                   '  }' if draw.chance(0.9) else '']))
     return '\n'.join(systems) + '\n'
 
@@ -64,7 +68,7 @@ def lparser(draw):
 def cpfg(draw):
     letters = draw.some('ABCDE', draw.whole(1, 4))
     symbols = [*[f'{letter}(r*x)' for letter in letters], 'F(x)', 'f', '+', '-', '&(30)', '/(137.5)', '!(x/9)', ';', '@O(0.2)',
-               '|', '_(0.1)', '{.f+f+f.}', '?P(x,y)', '@Gs F @Ge', '%', '~l(1)', '@M(0,0,0)']
+               '|', '_(0.1)', '{.f+f+f.}', '?P(0,0)', '@Gs F @Ge', '%', '~l(1)', '@M(0,0,0)']
     rules = []
     for letter in letters:
         way = draw.weighted({'plain': 4, 'condition': 3, 'block': 2, 'chance': 2, 'context': 1})
@@ -74,7 +78,7 @@ def cpfg(draw):
         elif way == 'block':
             rules.append(f'{letter}(x) : {{ y = x*n; while (y > 2) {{ y = y/2; }} }} y > 0 {{ n = n+1; }} --> F(y) {text}')
         elif way == 'chance':
-            share = draw.uniform(0, 1.2)
+            share = draw.random()
             rules += [f'{letter}(x) --> {text} : {number(share)}', f'{letter}(x) --> F(ran(1)) : {number(1 - share)}']
         elif way == 'context':
             rules += [f'{draw.pick(letters)}(y) < {letter}(x) > {draw.pick(letters)}(z) --> {text}', f'{letter}(x) --> {letter}(x)']
@@ -98,12 +102,12 @@ def flame(draw):
     for index in range(draw.pick([1, 1, 1, 2, 20])):
         maps = draw.pick([1, 2, 3, 5, draw.log_whole(1, 100)])
         lines = []
-        for tag in ['xform'] * maps + ['finalxform'] * draw.chance(0.1):
+        for tag in ['xform'] * maps + ['finalxform'] * draw.chance(0.03):
             chosen = {} if draw.chance(0.3) else {name: draw.uniform(-1, 1) for name in draw.some(VARIATIONS, draw.whole(1, 4))}
             words = ' '.join(f'{name}="{number(value)}"' for name, value in (chosen or {'linear': 1}).items())
             if 'julian' in chosen:
                 words += f' julian_power="{draw.whole(-5, 9)}" julian_dist="1"'
-            if draw.chance(0.2):
+            if draw.chance(0.05):
                 words += f' chaos="{numbers([draw.pick([0, 1, 2.5]) for _ in range(maps)], " ")}"'
             if draw.chance(0.2):
                 words += f' post="{numbers([draw.uniform(-1, 1) for _ in range(6)], " ")}"'
@@ -114,10 +118,12 @@ def flame(draw):
         if draw.chance(0.2):
             lines.append(f'  <symmetry kind="{draw.whole(-8, 8)}"/>')
         lines += [f'  <color index="{i}" rgb="{draw.whole(0, 255)} {draw.whole(0, 255)} 30"/>' for i in range(0, 256, draw.pick([1, 51]))]
-        flames.append('\n'.join([f'<flame name="it {index} \xe9" size="640 480" center="0 0" scale="{number(draw.log_uniform(1, 500))}">',
+        flames.append('\n'.join([f'<flame name="it{index}" size="640 480" center="0 0" scale="{number(draw.log_uniform(1, 500))}">',
                                  *lines, '</flame>']))
     return '<flames>\n' * (len(flames) > 1) + '\n'.join(flames) + '\n</flames>' * (len(flames) > 1) + '\n'
 
 
+# The names of the models of a file that may hold several.
+NAMES = {fractint: r'(System\d*) \{', flame: r'name="([^"]*)"'}
 FORMATS = {('cfdg', foreign_shapes.cfdg): 5, ('es', foreign_shapes.eisenscript): 3, ('flame', flame): 2.5, ('l', fractint): 2,
            ('l', cpfg): 3, ('ls', lparser): 2, ('ifs', fractint_ifs): 1}

@@ -54,7 +54,7 @@ def cfdg_3(draw):
              'CF::Background = [b -0.2]' if draw.chance(0.5) else '',
              'CF::Symmetry = CF::Dihedral, 5' if draw.chance(0.05) else '', f'size = {number(size)}', 'f(number n) = n * 2 + 1']
     if draw.chance(0.3):
-        lines += ['path blob {', '  MOVETO(0, 0)', f'  {draw.whole(1, 30)} [r 12] LINETO(1, f(0.1))' if draw.chance(0.3) else
+        lines += ['path blob {', '  MOVETO(0, 0)', f'  loop {draw.whole(1, 30)} [r 12] LINETO(1, f(0.1))' if draw.chance(0.3) else
                   '  LINETO(1, 0)\n  CURVETO(0, 1, 1, 1)', '  CLOSEPOLY()', draw.pick(['  FILL[]', '  STROKE(0.1)[]']), '}']
     blob = ['blob'] * any('path blob' in line for line in lines)
 
@@ -64,7 +64,7 @@ def cfdg_3(draw):
         if counts.get(name):
             argument = '(n - 1)' if own else f'({draw.whole(0, 30)})'
         scale = most if name in counts else 1
-        text = changes(draw, 0, scale, CFDG_WORDS) + (draw.pick([' r (rand(-9, 9))', ' s size', f' x (f({draw.whole(0, 4)}))']) * draw.chance(0.2))
+        text = changes(draw, 0, scale, CFDG_WORDS) + (draw.pick([' r (rand(-9, 9))', ' s (size)', f' x (f({draw.whole(0, 4)}))']) * draw.chance(0.2))
         return f'{name}{argument} [{text}]'
 
     def statement(own, depth):
@@ -74,12 +74,12 @@ def cfdg_3(draw):
             count = draw.pick([str(draw.log_whole(1, 100)), 'n' if own else '7', f'i{depth} = {draw.whole(1, 9)}', f'{draw.log_whole(1, 3000)}'])
             return f'loop {count} [{changes(draw, 0, 1, CFDG_WORDS[:3])}] {{ {inner} }}'
         if kind == 'if':
-            return f'if ({"n % 3 == 0" if own else draw.pick(["rand() < 0.5", "size > 0.5"])}) {{ {inner} }}' + \
+            return f'if ({"mod(n, 3) == 0" if own else draw.pick(["rand() < 0.5", "size > 0.5"])}) {{ {inner} }}' + \
                 (f' else {{ {call(own)} }}' if draw.chance(0.5) else '')
         if kind == 'switch':
             return f'switch ({"n" if own else "randint(3)"}) {{ case 0: {{ {inner} }} case 1, 2: {{ {call(own)} }} else: {{ }} }}'
         if kind == 'block':
-            return f'transform [{changes(draw, 0, 1, CFDG_WORDS[:3])}] [r 90] {{ {inner} }}'
+            return f'transform [{changes(draw, 0, 1, CFDG_WORDS[:3])}] {{ {inner} }}'
         if kind == 'let':
             return f'w{depth} = f(size) {call(own)}'
         return call(own)
@@ -131,5 +131,5 @@ def eisenscript(draw):
         for _ in range(draw.pick([1, 1, 2, 4])):
             limits = (f' md {draw.log_whole(1, 300)}' + (f' > {draw.pick(names)}' if draw.chance(0.4) else '')) if draw.chance(0.5) else ''
             limits += f' w {number(draw.log_uniform(0.1, 20))}' if draw.chance(0.4) else ''
-            lines += [f'rule {name}{limits} {{', *(call(False) for _ in range(draw.whole(1, 4))), '}']
+            lines += [f'rule {name}{limits} {{', *(call(False) for _ in range(draw.whole(1, 4))), *(['  box'] if draw.chance(0.7) else []), '}']
     return '\n'.join(lines) + ('\n/* the end */\n' if draw.chance(0.3) else '\n')

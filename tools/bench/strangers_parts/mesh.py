@@ -15,7 +15,7 @@ def write(draw, model, small):
     content = {'obj': obj, 'ply': ply, 'stl': stl}[kind](draw, vertices, faces)
     if draw.chance(0.05):
         content = content[:int(draw.random() * len(content))]
-    if draw.chance(0.2):
+    if draw.chance(0.1):
         model.main, model.content = f'model.{kind}', content
         return None
     model.files[f'shape.{kind}'] = content

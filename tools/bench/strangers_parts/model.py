@@ -20,6 +20,7 @@ class Model:
         self.language = language
         self.main = f'{name}.{language}'
         self.content = None  # of the main file, text or bytes, in place of the lines
+        self.name = None     # of the one among several in the main file
         self.work = None     # --work of all commands
         self.files = {}      # name -> text or bytes, besides the main file
         self.lines = []
@@ -37,7 +38,7 @@ class Model:
         for name, content in {**self.files, self.main: main}.items():
             (folder / name).write_bytes(content if isinstance(content, bytes) else content.encode())
         (folder / 'options.json').write_text(json.dumps(
-            {'model': self.main, 'options': self.options, 'drawn': self.drawn, 'work': self.work,
+            {'model': ':'.join(filter(None, [self.main, self.name])), 'options': self.options, 'drawn': self.drawn, 'work': self.work,
              'visible_only': self.visible_only}) + '\n')
 
 

@@ -74,7 +74,7 @@ def ages(draw, wanted):
 
 def nested(draw, wanted):
     """Brackets as deep as the steps."""
-    steps = draw.log_whole(100, 200_000)
+    steps = draw.log_whole(100, 10_000)
     inner = draw.pick(['[+F A]', '[A]F', 'F[+A][-F]', '[[A]]', '[F[-(1)F A]]'])
     return 'A', steps, [f'A -> {inner}', *([f'F -> {draw.pick(["F", "f F"])}'] if draw.chance(0.1) else [])]
 
@@ -87,7 +87,7 @@ def polygons(draw, wanted):
 
 def written_out(draw, wanted):
     """An axiom, or a successor, of a text as long."""
-    text = drawn(draw, int(min(wanted, draw.log_uniform(1e4, 1e6)) / 5))
+    text = drawn(draw, int(min(wanted, draw.log_uniform(1e4, 2e5)) / 2))
     if draw.chance(0.5):
         return text, 1, ['F -> F+F'] if draw.chance(0.5) else []
     return 'A', draw.whole(1, 3), [f'A -> {text} A']

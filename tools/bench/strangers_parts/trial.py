@@ -17,8 +17,7 @@ COMMANDS = {
     'povray': (['render', '--engine', 'povray'], 'povray.png'),
 }
 
-# A command may take so many times its --work in seconds of this machine, and so many seconds besides.
-MOST_OF_WORK, START_S = 1.5, 2
+START_S = 2   # that a command may take besides its --work
 
 
 def command_line(program, name, model, size=None):
@@ -47,7 +46,7 @@ def attempt(program, name, folder, limits, size=None):
     row = {'command': name, 'code': ended.code, 'signal': ended.signal, 'cpu': round(ended.usage.cpu, 2),
            'peak': round(ended.usage.peak), 'said': (wrong or said or [''])[0][:200] if ended.code != 0 else '',
            'line': ' '.join(['graftal', *line[1:]])}
-    # What graftal says that it will take, or else what it may.
+    # Seconds that graftal foretells count in place of its --work.
     foretold = re.search(r'(?:will take|, in) about (\d+) seconds', ' '.join(said))
     work_s = max(model['work'], int(foretold[1]) if foretold else 0)
     row['findings'] = judged(row, ended, limits, work_s)
@@ -68,7 +67,7 @@ def judged(row, ended, limits, work_s):
         return ['hangs']
     if ended.over == 'time' or row['cpu'] > limits.report_s:
         return ['time']
-    found = ['work'] if row['cpu'] > MOST_OF_WORK * work_s + START_S else []
+    found = ['work'] if row['cpu'] > limits.ratio * work_s + START_S else []
     found += ['memory'] if ended.over == 'memory' or row['peak'] > limits.report_mib else []
     if row['signal'] and not ended.over:
         found.append(f'signal {row["signal"]}')

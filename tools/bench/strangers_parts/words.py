@@ -25,7 +25,7 @@ def steps_for(wanted, growth):
 
 
 def drawn(draw, items):
-    """Of segments, turns and what else leaves the turtle's word as long as it is."""
+    """Segments, turns and other words of the turtle, which no production replaces."""
     choices = ['F', 'F', 'f', '+', '-', '&', '^', '/', '[+F]', '[-(30)F@O(0.1)]', '!(0.05)', ';', '@o(0.2)', '|',
                '~sphere(0.1)', '@Gs F@Gc F@Ge', '{.f+f+f}']
     return ' '.join(draw.pick(choices) for _ in range(items))

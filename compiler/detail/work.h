@@ -42,7 +42,7 @@ struct RayWork {
     static constexpr std::uint64_t crushed = 12;  ///< looked at in the world: no ray is taken into its frame
     static constexpr std::uint64_t boxes = 1;     ///< that lie in one node, held against a ray
     static constexpr std::uint64_t boxes_of_packet = 3; ///< against all rays of a packet
-    static constexpr std::uint64_t nodes = 1;           ///< of a mesh's tree, that take a step together
+    static constexpr std::uint64_t mesh_step = 4;       ///< a node or a triangle of a mesh's tree
     static constexpr std::uint64_t shaded = 4;          ///< a level of the path to what is seen
     static constexpr std::uint64_t lamp = 4;            ///< a sharp light on what is seen, besides its ray
     static constexpr std::uint64_t soft_lamp = 12;      ///< one that is sampled

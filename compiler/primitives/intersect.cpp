@@ -2,6 +2,8 @@
 
 #include <glm/geometric.hpp>
 
+#include "compiler/primitives/triangle_mesh.h"
+
 namespace graftal {
 namespace {
 
@@ -14,8 +16,13 @@ bool is_sane(const Ray& ray) {
 
 } // namespace
 
-bool intersect(const Primitive& primitive, const Ray& ray, const RayRange& range, PrimitiveHit& hit) {
-    return is_sane(ray) && traits_of(primitive).intersect(primitive, ray, range, hit);
+bool intersect(const Primitive& primitive, const Ray& ray, const RayRange& range, PrimitiveHit& hit,
+               std::uint64_t most_steps) {
+    if (!is_sane(ray)) return false;
+    const auto of_kind = traits_of(primitive).intersect;
+    return of_kind == triangle_mesh::intersect
+               ? triangle_mesh::intersect_within(primitive, ray, range, hit, most_steps)
+               : of_kind(primitive, ray, range, hit);
 }
 
 } // namespace graftal

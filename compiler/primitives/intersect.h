@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstdint>
+
 #include "compiler/primitives/primitive.h"
 
 namespace graftal {
@@ -8,6 +10,8 @@ namespace graftal {
 /// inside too. False if there is none, and where the ray's numbers are not finite. Requires of the ray that
 /// its origin is within some thousand units of the primitive and that the largest component of its
 /// direction has an absolute value of about 1: rays are brought near before they are intersected.
-bool intersect(const Primitive& primitive, const Ray& ray, const RayRange& range, PrimitiveHit& hit);
+/// A primitive of many triangles takes `most_steps` at most (TriangleTree::meet()).
+bool intersect(const Primitive& primitive, const Ray& ray, const RayRange& range, PrimitiveHit& hit,
+               std::uint64_t most_steps = UINT64_MAX);
 
 } // namespace graftal

@@ -232,11 +232,16 @@ SurfaceSite site(const Primitive& primitive, Vec3 u) {
 }
 
 bool intersect(const Primitive& primitive, const Ray& ray, const RayRange& range, PrimitiveHit& hit) {
+    return intersect_within(primitive, ray, range, hit, UINT64_MAX);
+}
+
+bool intersect_within(const Primitive& primitive, const Ray& ray, const RayRange& range, PrimitiveHit& hit,
+                      std::uint64_t most_steps) {
     const TriangleMesh& form = form_of(primitive);
     TriangleHit met;
     std::uint32_t number = 0;
     hit.steps = 0;
-    if (!form.tree.meet(ray, range, met, number, hit.steps)) return false;
+    if (!form.tree.meet(ray, range, met, number, hit.steps, most_steps)) return false;
     hit.t = met.t;
     hit.normal = normal_at(form, number, met.share);
     return true;

@@ -202,7 +202,7 @@ double TriangleTree::distance2(const Node& node, Vec3 point) const {
 }
 
 bool TriangleTree::meet(const Ray& ray, const RayRange& range, TriangleHit& hit, std::uint32_t& triangle,
-                        std::uint64_t& steps) const {
+                        std::uint64_t& steps, std::uint64_t most_steps) const {
     const TriangleRay triangle_ray(ray, extent_);
     const double far =
         extent_ + std::max({std::abs(ray.origin.x), std::abs(ray.origin.y), std::abs(ray.origin.z)});
@@ -216,7 +216,14 @@ bool TriangleTree::meet(const Ray& ray, const RayRange& range, TriangleHit& hit,
     while (size > 0) {
         const Node& node = nodes_[stack[--size]];
         ++steps;
-        if (const RayRange inside = within(node, ray, slack, left); !(inside.least <= inside.most)) continue;
+        const RayRange inside = within(node, ray, slack, left);
+        if (!(inside.least <= inside.most)) continue;
+        if (steps >= most_steps) {
+            if (met) break;
+            hit = {inside.least, {1.0 / 3, 1.0 / 3, 1.0 / 3}};
+            triangle = first_below(node);
+            return true;
+        }
         if (node.count == 0) {
             const std::uint32_t near = node.first, far_child = node.first + 1;
             const bool turned =
@@ -225,6 +232,7 @@ bool TriangleTree::meet(const Ray& ray, const RayRange& range, TriangleHit& hit,
             stack[size++] = turned ? far_child : near;
             continue;
         }
+        steps += node.count;
         for (std::uint32_t i = node.first; i < node.first + node.count; ++i)
             if (TriangleHit at; triangle_ray.meet(triangles_[order_[i]], left, at)) {
                 left.most = std::max(at.t - tie, left.least);
@@ -245,6 +253,13 @@ double TriangleTree::reach(const Node& node, Vec3 direction, int levels) const {
     if (node.count > 0 || levels == 0) return graftal::reach(node.box, direction);
     return std::max(reach(nodes_[node.first], direction, levels - 1),
                     reach(nodes_[node.first + 1], direction, levels - 1));
+}
+
+std::uint32_t TriangleTree::first_below(const Node& node) const {
+    const Node* at = &node;
+    while (at->count == 0)
+        at = &nodes_[at->first];
+    return order_[at->first];
 }
 
 Vec3 TriangleTree::farthest(Vec3 direction) const {

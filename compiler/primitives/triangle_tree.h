@@ -22,9 +22,11 @@ class TriangleTree {
 
     /// The first triangle that a ray meets within the range, from either side; false if there is none. Of
     /// triangles that lie no farther apart than `one_depth`, any may be the first. Adds to `steps` the nodes
-    /// that the ray came to.
+    /// that the ray came to and the triangles that it was held against. Ends after `most_steps`, which are
+    /// about as many: the first triangle is then the first one met so far. If none was met, the box that
+    /// the ray came to last is met as a whole.
     bool meet(const Ray& ray, const RayRange& range, TriangleHit& hit, std::uint32_t& triangle,
-              std::uint64_t& steps) const;
+              std::uint64_t& steps, std::uint64_t most_steps = UINT64_MAX) const;
 
     /// A corner that is farthest along a direction.
     Vec3 farthest(Vec3 direction) const;
@@ -59,6 +61,7 @@ class TriangleTree {
     Spread split(std::uint32_t node, std::uint32_t first, std::uint32_t end);
     void add_slabs(std::uint32_t node, std::uint32_t first, std::uint32_t end, const Spread& spread);
     RayRange within(const Node& node, const Ray& ray, double slack, RayRange range) const;
+    std::uint32_t first_below(const Node& node) const;
     double distance2(const Node& node, Vec3 point) const;
     double reach(const Node& node, Vec3 direction, int levels) const;
 

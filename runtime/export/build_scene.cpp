@@ -61,6 +61,14 @@ struct SceneTask {
     std::optional<PlacedNode> placed;
 };
 
+/// Nodes that differ by their levels alone: at least so many, where nothing is culled.
+std::size_t least_nodes(const PreparedCut& prepared) {
+    const std::vector<CutNode>& nodes = prepared.cut.nodes;
+    if (!nodes[prepared.cut.root].unending || prepared.root_steps == unlimited_steps) return 0;
+    // The leaves below a singular map are counted one by one.
+    return std::ranges::any_of(nodes, &CutNode::sealed) ? 0 : prepared.root_steps;
+}
+
 /// Thrown where a scene gets too large; caught by build_scene().
 struct SceneTooLarge {};
 
@@ -396,6 +404,14 @@ std::optional<ExportedScene> build_scene(const PreparedCut& prepared, const View
         }
         return std::nullopt;
     };
+    if (const std::size_t least = least_nodes(prepared); !detail.culls() && least > limits.nodes) {
+        diagnostics
+            .error(model, fmt::format("this model has {} levels, each with a part of its own, and {} are the "
+                                      "most: too many to export",
+                                      least, limits.nodes))
+            .with_hint("leave out small parts with '--error PX', or set a smaller depth with '--steps N'");
+        return std::nullopt;
+    }
     std::optional<ExportedScene> scene;
     if (detail.culls())
         scene = attempt(culling_grain);

@@ -43,6 +43,13 @@ JobStatus look_at_job(const JobFolder& folder, const Job& job) {
             status.failures.push_back({task, record->message});
             continue;
         }
+        if (!has_part(folder, job, task, *record)) {
+            status.failures.push_back(
+                {task, fmt::format("its part '{}' is gone, or not as long as it was: 'graftal farm submit' "
+                                   "makes it again",
+                                   folder.part(job, task))});
+            continue;
+        }
         ++status.done;
         seconds += record->seconds;
         draw_seconds += record->draw_seconds;

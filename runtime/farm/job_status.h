@@ -18,7 +18,7 @@ struct JobStatus {
 
     std::uint64_t tasks = 0, done = 0;
     std::uint64_t begun = 0;       ///< started, and without a record: at work, or killed
-    std::vector<Failure> failures; ///< of tasks whose last run failed
+    std::vector<Failure> failures; ///< of tasks whose last run failed, or whose part is damaged
     std::uint64_t runs = 0;        ///< of all tasks together, those that were killed too
     double mean_seconds = 0;       ///< of a task that is done
     double slowest_seconds = 0;

@@ -23,13 +23,12 @@ std::string host_name() {
     return ::gethostname(name, sizeof name - 1) == 0 ? name : "";
 }
 
-/// Whether the part is there, by its size alone.
+} // namespace
+
 bool has_part(const JobFolder& folder, const Job& job, std::uint64_t task, const TaskRecord& record) {
     const std::string path = folder.part(job, task);
     return bytes_below(folder.path(), folder.name_of(path)) == record.bytes;
 }
-
-} // namespace
 
 std::optional<std::uint64_t> whole_number(std::string_view text) {
     std::uint64_t value = 0;

@@ -30,6 +30,9 @@ Status write_record(const JobFolder& folder, std::uint64_t task, const TaskRecor
 /// Nothing where there is none, or none that can be read: the task is to be run again then.
 std::optional<TaskRecord> read_record(const JobFolder& folder, std::uint64_t task);
 
+/// Whether the part of a task that is done is there, by its size alone.
+bool has_part(const JobFolder& folder, const Job& job, std::uint64_t task, const TaskRecord& record);
+
 /// Whether the record says that the task is done, and its part is what the record says.
 bool is_done(const JobFolder& folder, const Job& job, std::uint64_t task);
 

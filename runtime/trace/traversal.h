@@ -228,10 +228,17 @@ class Traversal final : public Surfaces {
     void lose_patience(std::uint64_t parts) { patience_ -= std::min(patience_, parts); }
     /// False once the ray went into too many parts, and hurrying did not help.
     bool goes_on();
-    /// intersect() of intersect.h, and what that took.
+    /// intersect() of intersect.h within the visits that the ray has left, and what that took.
     bool meet(const Primitive& primitive, const Ray& ray, const RayRange& range, PrimitiveHit& hit) {
-        const bool met = intersect(primitive, ray, range, hit);
-        more_work_ += RayWork::nodes * hit.steps;
+        const std::uint64_t left = visit_limit_ > visits_ ? visit_limit_ - visits_ : 1;
+        return meet_within(primitive, ray, range, hit, left);
+    }
+    bool meet_within(const Primitive& primitive, const Ray& ray, const RayRange& range, PrimitiveHit& hit,
+                     std::uint64_t most_visits) {
+        constexpr std::uint64_t steps_a_visit = RayWork::part / RayWork::mesh_step;
+        const bool met = intersect(primitive, ray, range, hit, most_visits * steps_a_visit);
+        visits_ += hit.steps / steps_a_visit;
+        more_work_ += RayWork::mesh_step * (hit.steps % steps_a_visit);
         return met;
     }
     /// Appends an edge to the path; of an unrolling's edge those that it stands for.

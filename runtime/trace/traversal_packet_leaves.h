@@ -116,7 +116,9 @@ GRAFTAL_INLINE auto Traversal::PacketWalk<instructions, Packet, PlacesOf, FrameO
             2 * rounding * (std::abs(best.half[half][j]) + std::abs(near.base[j])) * near.speed[j];
         const RayRange range{near.least[j], near.most[j] < INFINITY ? near.most[j] + slack : near.most[j]};
         PrimitiveHit hit;
-        if (!self.meet(primitive, {here(near.origin), here(near.along)}, range, hit)) continue;
+        if (!self.meet_within(primitive, {here(near.origin), here(near.along)}, range, hit,
+                              TraceModel::usual_visits))
+            continue;
         crossing.t[j] = hit.t;
         for (int axis = 0; axis < 3; ++axis)
             crossing.normal[axis][j] = hit.normal[axis];

@@ -59,6 +59,7 @@ TEST_F(CommandLine, UsageErrorsAreStatusTwoAndPointAtTheHelp) {
         {"render a.inst --memory 0", "--memory: '0' is not"},
         {"render a.inst --memory 99999999999999G", "is not a number of bytes"},
         {"render a.inst --error -1", "--error: '-1' is not"},
+        {"render a.inst --error 1e-320", "--error: '1e-320' is not 0, or a number of pixels from 1e-100"},
         {"render a.inst --error nan", "--error: 'nan' is not"},
         {"render a.inst --error 1 --error-world 1",
          "graftal: --error and --error-world exclude each other: give only one of them\n"},

@@ -143,6 +143,9 @@ TEST_F(Farm, DamagedPartsAreDrawnAgain) {
     succeed("farm submit job --local 1 -q");
     const std::string whole = read("job/parts/tile_000002.png");
     write("job/parts/tile_000002.png", whole.substr(0, whole.size() / 2));
+    const RunResult status = graftal("farm status job");
+    EXPECT_EQ(status.status, 1);
+    EXPECT_THAT(status.out, AllOf(HasSubstr(", 1 failed"), HasSubstr("task 2 failed: its part ")));
     EXPECT_EQ(graftal("farm merge job").status, 3);
     EXPECT_FALSE(exists("job/sierpinski.png"));
     succeed("farm submit job --local 1 -q");

@@ -176,27 +176,27 @@ void add_camera(CLI::App& app, Options& options) {
         [&](Magnification zoom) { compile.view.zoom.zoom = zoom; });
 }
 
+/// An error whose inverse is a number, too, or 0.
+std::optional<double> parse_error(const std::string& text) {
+    const std::optional<double> error = parse_at_least(text, 0);
+    return error && (*error == 0 || is_size(*error)) ? error : std::nullopt;
+}
+
 void add_error(CLI::App& app, Options& options) {
     StageOptions& compile = options.render.compile;
-    CLI::Option* pixels = add_value(
-        app, "--error", "PX",
-        "Leave out parts smaller than this in the picture (default 0.5; 0 keeps every part)",
-        "a number of pixels, 0 or more", [](const std::string& text) { return parse_at_least(text, 0); },
-        [&](double error) {
-            compile.detail.error_px = error;
-            options.error_asked = true;
-        });
-    add_value(
-        app, "--error-world", "X", "Like --error, but a length in the model's units",
-        "0, or a length from 1e-100 to 1e100",
-        [](const std::string& text) {
-            const std::optional<double> error = parse_at_least(text, 0);
-            return error && (*error == 0 || is_size(*error)) ? error : std::nullopt;
-        },
-        [&](double error) {
-            compile.detail.error_world = error;
-            options.error_asked = true;
-        })
+    CLI::Option* pixels =
+        add_value(app, "--error", "PX",
+                  "Leave out parts smaller than this in the picture (default 0.5; 0 keeps every part)",
+                  "0, or a number of pixels from 1e-100 to 1e100", parse_error, [&](double error) {
+                      compile.detail.error_px = error;
+                      options.error_asked = true;
+                  });
+    add_value(app, "--error-world", "X", "Like --error, but a length in the model's units",
+              "0, or a length from 1e-100 to 1e100", parse_error,
+              [&](double error) {
+                  compile.detail.error_world = error;
+                  options.error_asked = true;
+              })
         ->excludes(pixels);
 }
 

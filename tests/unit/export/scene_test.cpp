@@ -125,6 +125,14 @@ TEST(ExportedScene, TooManyPartsAreAnError) {
     EXPECT_THAT(exporting.said(), HasSubstr("too many to export"));
 }
 
+// A chain of two billion levels was unfolded three times, up to the limit of nodes, before it was refused.
+TEST(ExportedScene, TooManyLevelsAreAnErrorBeforehand) {
+    Exporting exporting("m.rifs", cubes);
+    exporting.options.compile.lower.steps = 2147483648;
+    EXPECT_FALSE(exporting.scene(SceneMeshes::shared));
+    EXPECT_THAT(exporting.said(), HasSubstr("this model has 2147483648 levels"));
+}
+
 TEST(ExportedScene, PlanesAreLeftOut) {
     Exporting exporting("m.inst", "object m {\n plane\n cube\n}\n");
     const auto scene = exporting.scene(SceneMeshes::shared);

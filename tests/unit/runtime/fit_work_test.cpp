@@ -3,12 +3,14 @@
 #include <cmath>
 #include <functional>
 #include <new>
+#include <random>
 #include <string>
 #include <utility>
 
 #include <gtest/gtest.h>
 
 #include "compiler/detail/work.h"
+#include "compiler/primitives/mesh_file.h"
 #include "runtime/trace/picture_tracer.h"
 #include "tests/unit/trace/models.h"
 
@@ -188,6 +190,33 @@ TEST_F(FitWork, LooksNoLongerThanItMay) {
     const FittedModel model = fitted(inner_cubes(), options, [](double) { return false; });
     EXPECT_LT(model.seconds, model.whole_seconds);
     EXPECT_LT(model.tried_seconds, options.work_seconds);
+}
+
+// Rays went through all of a mesh, whatever they had left: 200,000 spikes took twelve seconds of one allowed.
+TEST_F(FitWork, RaysGiveWayInMeshes) {
+    std::mt19937 generator(5);
+    const auto number = [&] { return static_cast<double>(generator()) / 2147483648.0 - 1; };
+    MeshData spikes;
+    for (std::uint32_t i = 0; i < 20'000; ++i) {
+        for (int corner = 0; corner < 3; ++corner) {
+            const double x = number(), y = number();
+            spikes.vertices.emplace_back(x, y, number());
+        }
+        spikes.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
+    }
+    Graph graph;
+    graph.root = graph.primitive(mesh_primitive("spikes", spikes));
+    DetailOptions options;
+    options.work_seconds = 0.05;
+    const FittedModel model = fitted(graph, options, [](double) { return false; });
+    EXPECT_TRUE(model.rays_cut);
+    EXPECT_LE(model.seconds, options.work_seconds);
+    EXPECT_LE(model.tried_seconds, options.work_seconds);
+    PictureTracer tracer(*model.model);
+    ASSERT_TRUE(tracer.probe(0, 64 * 48, {.threads = 1, .cancelled = {}, .on_tile = {}}));
+    EXPECT_GT(tracer.statistics().given_up, 0u);
+    const double seconds = static_cast<double>(tracer.statistics().work) / WorkRates::ray_steps;
+    EXPECT_LE(seconds * model.sampling.samples_a_pixel(), 1.5 * options.work_seconds);
 }
 
 // A tower of a few pixels' width among an empty picture was never met by a look, and took a quarter of an

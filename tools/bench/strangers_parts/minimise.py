@@ -8,18 +8,18 @@ import trial
 def smallest(program, folder, command, limits, say):
     """Rewrites the model in `folder`; returns the finding, or None if there is none to begin with."""
     model = json.loads((folder / 'options.json').read_text())
-    main = folder / model['model']
+    main = folder / model['model'].split(':')[0]
     work = folder.parent / (folder.name + '.smaller')
 
     def finding(lines, chosen):
         shutil.rmtree(work, ignore_errors=True)
         shutil.copytree(folder, work)
-        (work / model['model']).write_text('\n'.join(lines) + '\n')
+        (work / main.name).write_text('\n'.join(lines) + '\n')
         (work / 'options.json').write_text(json.dumps({**model, **chosen}))
         found = trial.attempt(program, command, work, limits)['findings']
         return found[0].split(' ')[0] if found else None
 
-    lines, chosen = main.read_text().splitlines(), {key: model[key] for key in ('options', 'drawn')}
+    lines, chosen = main.read_text(errors='replace').splitlines(), {key: model[key] for key in ('options', 'drawn')}
     wanted = finding(lines, chosen)
     if wanted is None:
         return None

@@ -1,19 +1,27 @@
 """A random model: its files, and the options that it is drawn with."""
 import json
 
+import foreign
 import inst
 import lsys
+import mesh
 import rifs
 import scene
+import words
 from draw import Draw, number, numbers
 
 LANGUAGES = {'rifs': rifs, 'lsys': lsys, 'inst': inst}
+KINDS = {**LANGUAGES, 'mesh': mesh, 'foreign': foreign, 'words': words}
+ENDINGS = {'mesh': 'inst', 'words': 'lsys'}   # of kinds that are not called as their language is
 
 
 class Model:
     def __init__(self, language, name='model'):
         self.language = language
         self.main = f'{name}.{language}'
+        self.content = None  # of the main file, text or bytes, in place of the lines
+        self.name = None     # of the one among several in the main file
+        self.work = None     # --work of all commands
         self.files = {}      # name -> text or bytes, besides the main file
         self.lines = []
         self.drawn = []      # options of the commands that draw: --zoom, --at, --camera
@@ -26,18 +34,24 @@ class Model:
 
     def write(self, folder):
         folder.mkdir(parents=True, exist_ok=True)
-        for name, content in {**self.files, self.main: '\n'.join(self.lines) + '\n'}.items():
+        main = '\n'.join(self.lines) + '\n' if self.content is None else self.content
+        for name, content in {**self.files, self.main: main}.items():
             (folder / name).write_bytes(content if isinstance(content, bytes) else content.encode())
         (folder / 'options.json').write_text(json.dumps(
-            {'model': self.main, 'options': self.options, 'drawn': self.drawn,
+            {'model': ':'.join(filter(None, [self.main, self.name])), 'options': self.options, 'drawn': self.drawn, 'work': self.work,
              'visible_only': self.visible_only}) + '\n')
 
 
-def generate(seed, language, index):
+def generate(seed, kind, index):
     """The model of this number; the same for ever, unless the generator itself is changed."""
-    draw = Draw(seed, language, index)
-    model = Model(language)
-    model.say(f'# tools/bench/strangers --seed {seed} --only {language}-{index}')
+    draw = Draw(seed, kind, index)
+    model = Model(ENDINGS.get(kind, kind))
+    model.work = draw.whole(1, 30)
+    if kind == 'foreign':
+        foreign.write(draw, model)
+        view(draw, model, None)
+        return model
+    model.say(f'# tools/bench/strangers --seed {seed} --only {kind}-{index}')
     if draw.chance(0.15):
         other = draw.pick(list(LANGUAGES))
         part = Model(other, 'part')
@@ -46,7 +60,7 @@ def generate(seed, language, index):
         model.say(f'use part = "{part.main}"')
         model.used.append('part')
     scene.surroundings(draw, model)
-    address = LANGUAGES[language].write(draw, model, small=False)
+    address = KINDS[kind].write(draw, model, small=False)
     view(draw, model, address)
     return model
 

@@ -7,7 +7,7 @@ import re
 
 import commits
 
-LANGUAGES = ('inst', 'lsys', 'rifs')
+KINDS = ('inst', 'lsys', 'rifs', 'mesh', 'foreign', 'words')
 
 
 def quantile(sorted_values, share):
@@ -28,9 +28,9 @@ def table(rows):
     cells = collections.OrderedDict()
     for row in rows:
         cells.setdefault((row['model'].split('-')[0], row['command']), []).append(row)
-    lines = ['| language | command | models | done | refused | findings | CPU s: median, 95 %, most | '
+    lines = ['| kind | command | models | done | refused | findings | CPU s: median, 95 %, most | '
              'peak MiB: median, 95 %, most |', '|---|---|---|---|---|---|---|---|']
-    for (language, command), group in sorted(cells.items(), key=lambda cell: cell[0][0]):
+    for (language, command), group in sorted(cells.items(), key=lambda cell: KINDS.index(cell[0][0])):
         lines.append(f'| {language} | {command} | {len(group)} | {sum(row["code"] == 0 for row in group)} | '
                      f'{sum(row["code"] == 1 for row in group)} | {sum(bool(row["findings"]) for row in group)} | '
                      f'{three([row["cpu"] for row in group], "%.2f")} | {three([row["peak"] for row in group], "%d")} |')
@@ -74,7 +74,7 @@ def page(rows, campaign, root, limits, most=60):
     models = len({row['model'] for row in rows})
     accepted = sum(row['command'] == 'check' and row['code'] == 0 for row in rows)
     hours = sum(row['cpu'] for row in rows) / 3600
-    command = f'tools/bench/strangers --seed {campaign["seed"]} --models {models // len(LANGUAGES)}'
+    command = f'tools/bench/strangers --seed {campaign["seed"]} --models {models // len(KINDS)}'
     lines = ["# Strangers' models", '',
              '`tools/bench/strangers` draws models by chance from wide distributions, and runs every command on them under',
              'limits. It writes this page.', '',
@@ -82,12 +82,13 @@ def page(rows, campaign, root, limits, most=60):
              f'Seed {campaign["seed"]}: {models} models, of which `check` accepts {accepted}; {len(rows)} commands, '
              f'{hours:.2f} CPU hours.',
              f'Limits: {limits.report_s} s of CPU and {limits.report_mib} MiB a command; pictures of '
-             f'{campaign["size"] or "1280x720"}.', '',
+             f'{campaign["size"] or "1280x720"}. Each model has a `--work` of 1 to 30 seconds.', '',
+             '`mesh` are meshes in files, `foreign` files of other programs, and `words` L-systems with long words.', '',
              *table(rows), '',
              '"Refused" is status 1, with a message.', '',
              f'## Findings: {len(found)}', '',
-             'A command over a limit, one that ends by a signal or with a status other than 0 and 1, and one that leaves files',
-             'behind.']
+             'A command over a limit, one that takes over 1.5 times its work and 2 s besides, one that ends by a signal or with a',
+             'status other than 0 and 1, and one that leaves files behind.']
     if found:
         lines += [f'`tools/bench/strangers --seed {campaign["seed"]} --only MODEL --out FOLDER` makes one again.', '',
                   *listed(found, most)]

@@ -17,10 +17,12 @@ COMMANDS = {
     'povray': (['render', '--engine', 'povray'], 'povray.png'),
 }
 
+START_S = 2   # that a command may take besides its --work
+
 
 def command_line(program, name, model, size=None):
     words, result = COMMANDS[name]
-    line = [program, *words, model['model'], *model['options']]
+    line = [program, *words, model['model'], *model['options'], '--work', str(model['work'])]
     if result:
         line += [*model['drawn'], '-o', f'out/{result}']
         if name != 'native' and model['visible_only']:
@@ -44,10 +46,12 @@ def attempt(program, name, folder, limits, size=None):
     row = {'command': name, 'code': ended.code, 'signal': ended.signal, 'cpu': round(ended.usage.cpu, 2),
            'peak': round(ended.usage.peak), 'said': (wrong or said or [''])[0][:200] if ended.code != 0 else '',
            'line': ' '.join(['graftal', *line[1:]])}
-    row['findings'] = judged(row, ended, limits)
-    foretold = re.search(r'will take about (\d+) seconds', ' '.join(said))
-    if row['findings'] == ['time'] and foretold and int(foretold[1]) > limits.report_s / 2:
-        row['findings'], row['foretold'] = [], int(foretold[1])
+    # Seconds that graftal foretells count in place of its --work.
+    foretold = re.search(r'(?:will take|, in) about (\d+) seconds', ' '.join(said))
+    work_s = max(model['work'], int(foretold[1]) if foretold else 0)
+    row['findings'] = judged(row, ended, limits, work_s)
+    if row['findings'] == ['time'] and work_s > limits.report_s / 2:
+        row['findings'], row['foretold'] = [], work_s
     row['findings'] += leftovers(name, row, out, temporary)
     if name in ('native', 'povray') and ended.code == 0 and not model['drawn']:
         if not picture.shows_something(out / COMMANDS[name][1]):
@@ -58,12 +62,13 @@ def attempt(program, name, folder, limits, size=None):
     return row
 
 
-def judged(row, ended, limits):
+def judged(row, ended, limits, work_s):
     if ended.over == 'time (it hangs)':
         return ['hangs']
     if ended.over == 'time' or row['cpu'] > limits.report_s:
         return ['time']
-    found = ['memory'] if ended.over == 'memory' or row['peak'] > limits.report_mib else []
+    found = ['work'] if row['cpu'] > limits.ratio * work_s + START_S else []
+    found += ['memory'] if ended.over == 'memory' or row['peak'] > limits.report_mib else []
     if row['signal'] and not ended.over:
         found.append(f'signal {row["signal"]}')
     elif row['code'] not in (0, 1, None):

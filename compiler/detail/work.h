@@ -29,9 +29,9 @@ inline double slowness_of_graph(std::uint64_t instances) {
     return 1 + a_doubling * std::max(0.0, std::log2(static_cast<double>(instances) / at_home));
 }
 
-/// What the stages before leave of the work allowed for a picture: a quarter in any case.
+/// What the stages before leave of the work allowed for a picture: half in any case, for their prices are high.
 inline double work_after_stages(double work_seconds, double spent_seconds) {
-    return std::max(work_seconds - spent_seconds, 0.25 * work_seconds);
+    return std::max(work_seconds - spent_seconds, 0.5 * work_seconds);
 }
 
 /// Steps that rays take, each about as long as others: what a part takes depends on how it is placed.

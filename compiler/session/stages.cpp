@@ -138,7 +138,7 @@ std::optional<ViewedModel> zoom_in(const AnalysedModel& model, std::optional<uns
 } // namespace
 
 double stage_work_limit(const StageOptions& options) {
-    constexpr double least_seconds = 1.5;
+    constexpr double least_seconds = 2;
     return std::max(options.detail.work_seconds, least_seconds);
 }
 

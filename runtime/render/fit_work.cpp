@@ -136,7 +136,9 @@ class Fitting {
     }
 
     double next_step(int tries) const {
-        if (broken_looks_ >= most_broken_looks) return std::max(coarsest / factor_, coarser);
+        const bool nothing_left = tried_seconds_ > work_seconds_;
+        if (nothing_left || broken_looks_ >= most_broken_looks) return std::max(coarsest / factor_, coarser);
+        if (tried_seconds_ > most_for_looks * work_seconds_) return coarser * coarser * coarser;
         return tries <= small_tries && broken_looks_ == 0 ? coarser : coarser * coarser;
     }
 

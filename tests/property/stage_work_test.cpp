@@ -127,7 +127,7 @@ TEST(StageWork, ALimitThatSufficesChangesNothing) {
 TEST(StageWork, PreparationCounts) {
     StageOptions options;
     options.detail.work_seconds = 1e6;
-    Session session("hues.inst", hued(4, 300, "hue: 1"));
+    Session session("hues.inst", hued(4, 600, "hue: 1"));
     Compilation compilation;
     const auto prepared = session.prepared(options, compilation);
     const auto analysed = session.analysed(options, compilation);
@@ -136,7 +136,7 @@ TEST(StageWork, PreparationCounts) {
     EXPECT_GT(prepared->work_seconds, 1.05 * analysed->work_seconds);
     options.draws = false; // the stages before may take it all
     options.detail.work_seconds = 1.01 * analysed->work_seconds;
-    ASSERT_GT(options.detail.work_seconds, 1.5) << "more than the least that there is";
+    ASSERT_GT(options.detail.work_seconds, 2) << "more than the least that there is";
     Compilation refused;
     EXPECT_TRUE(session.analysed(options, refused));
     EXPECT_EQ(session.prepared(options, refused), nullptr);

@@ -298,24 +298,24 @@ TEST_F(FitWork, ThreadsDecideNothing) {
     }
 }
 
-/// One account: what the stages before took is subtracted, down to a quarter for tries and rays.
+/// One account: what the stages before took is subtracted, down to half for tries and rays.
 TEST_F(FitWork, WhatStagesTookIsNotLeftForThePicture) {
     wanted_ = {.most_samples = 256};
     DetailOptions options;
     options.work_seconds = 1e6;
     const double whole_seconds = fitted(0, options).whole_seconds;
-    options.work_seconds = 2 * whole_seconds;
+    options.work_seconds = 1.5 * whole_seconds;
     std::vector<double> samples;
-    for (const double spent : {0.0, 1.2, 1.6, 100.0}) {
+    for (const double spent : {0.0, 0.6, 0.75, 100.0}) {
         spent_seconds_ = spent * whole_seconds;
         const FittedModel model = fitted(0, options);
-        EXPECT_LE(model.seconds, 1.05 * std::max(2 - spent, 0.5) * whole_seconds) << spent;
+        EXPECT_LE(model.seconds, 1.05 * std::max(1.5 - spent, 0.75) * whole_seconds) << spent;
         samples.push_back(model.sampling.samples_a_pixel());
     }
     EXPECT_EQ(samples[0], 256);
     EXPECT_LT(samples[1], samples[0]);
     EXPECT_LT(samples[2], samples[1]);
-    EXPECT_EQ(samples[3], samples[2]) << "both leave a quarter or less";
+    EXPECT_EQ(samples[3], samples[2]) << "both leave half or less";
 }
 
 /// What does not depend on the error is found once, whatever is tried.

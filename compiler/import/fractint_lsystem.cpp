@@ -24,10 +24,13 @@ template<typename See> bool each_block(std::string_view text, const See& see) {
             at = std::min(text.find('\n', at), text.size());
             name_begin = at + 1;
         } else if (text[at] == '\n') {
-            // A name may stand on the line before the brace.
-            const std::size_t next = text.find_first_not_of(" \t\r\n", at);
+            // A name may stand before the line of the brace. Lines without a name are not looked beyond.
             const bool blank = trimmed(text.substr(name_begin, at - name_begin)).empty();
-            if (blank || next == std::string_view::npos || text[next] != '{') name_begin = at + 1;
+            const std::size_t next = blank ? at : text.find_first_not_of(" \t\r\n", at);
+            if (next != std::string_view::npos && text[next] == '{')
+                at = next - 1;
+            else
+                name_begin = at + 1;
         } else if (text[at] == '{') {
             std::size_t end = at + 1;
             while (end < text.size() && text[end] != '}')

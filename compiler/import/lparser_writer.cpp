@@ -63,12 +63,31 @@ class LparserWriter {
                 if (!last.number) grows = numbered_.insert(last.letter).second || grows;
             }
         }
+        find_plain();
+    }
+
+    /// Without the last symbol where a number of the symbol that becomes the string stands behind it.
+    void look_for_plain(const LparserString& string, bool last_too) {
+        for (std::size_t i = 0; i + (last_too ? 0 : 1) < string.size(); ++i)
+            if (!string[i].number) plain_.insert(string[i].letter);
+    }
+
+    void find_plain() {
+        look_for_plain(system_.axiom, true);
+        std::size_t known = 0;
+        do {
+            known = plain_.size();
+            for (const LparserRule& rule : system_.rules) {
+                const bool plain = plain_.contains(rule.letter) || !numbered_.contains(rule.letter);
+                look_for_plain(rule.successor, plain);
+            }
+        } while (plain_.size() > known);
     }
 
     void look(const LparserString& string) {
         for (const LparserSymbol& symbol : string) {
             used_.insert(symbol.letter);
-            (symbol.number ? numbered_ : plain_).insert(symbol.letter);
+            if (symbol.number) numbered_.insert(symbol.letter);
             if (symbol.number) digits_ += *symbol.number;
         }
     }
@@ -300,7 +319,7 @@ class LparserWriter {
     const LparserSystem& system_;
     std::set<char> used_;
     std::set<char> ruled_;
-    std::set<char> plain_;    ///< that are written without a number
+    std::set<char> plain_;    ///< that may have no number behind them
     std::set<char> numbered_; ///< that may have a number behind them
     std::string digits_;      ///< of all numbers
 };

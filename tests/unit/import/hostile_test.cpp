@@ -141,14 +141,14 @@ TEST_P(Hostile, ReadsWithinTheWorkOfTheCommand) {
 
 TEST(HostileGrammar, IsComputedWithinTheWorkOfTheCommand) {
     // A vector as a parameter has no word of ours.
-    const std::string turns = "startshape A\nshape A { loop i = 10000 [x 1] B((i, i)) [] }\n"
+    const std::string turns = "startshape A\nshape A { loop i = 20000 [x 1] B((i, i)) [] }\n"
                               "shape B(vector2 v) { SQUARE [x (v[0])] }\n";
     EXPECT_EQ(stage_out_of_work("a.cfdg", turns, 0.02), "import");
     EXPECT_EQ(stage_out_of_work("a.cfdg", turns, 10), "");
     // A function that calls itself doubles the expressions with each step.
     const std::string calls = "startshape A\nf(n) = if(n < 1, 1, f(n - 1) + f(n - 1))\n"
                               "shape A { SQUARE [s (f(30))] }\n";
-    EXPECT_EQ(stage_out_of_work("a.cfdg", calls, 1), "import");
+    EXPECT_EQ(stage_out_of_work("a.cfdg", calls, 0.1), "import");
 }
 
 INSTANTIATE_TEST_SUITE_P(Import, Hostile, ::testing::ValuesIn(formats()), [](const auto& format) {

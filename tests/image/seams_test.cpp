@@ -115,9 +115,7 @@ std::unique_ptr<TraceModel> load(const Covered& covered, const std::string& plac
     EXPECT_TRUE(directory.create().ok());
     const std::string path = directory.path() + "/m.inst";
     EXPECT_TRUE(write_text(path, covered.text + "object m { flat " + place + " }\n").ok());
-    if (!covered.mesh.empty()) {
-        EXPECT_TRUE(write_text(directory.path() + "/net.obj", covered.mesh).ok());
-    }
+    EXPECT_TRUE(write_text(directory.path() + "/net.obj", covered.mesh).ok());
     StageOptions options;
     options.view.light = DefaultLight::plain;
     Compilation compilation;

@@ -165,7 +165,7 @@ TEST_F(Work, IsAPositiveNumber) {
 }
 
 /// Kinds of parts were told apart for as long as it took, and left nothing for what is drawn: 950 px.
-TEST_F(Work, OfASecondIsNotSpentOnTellingPartsApart) {
+TEST_F(Work, OfThreeSecondsIsNotSpentOnTellingPartsApart) {
     write("similar.lsys", R"(
 lsys similar {
   angle 25
@@ -174,7 +174,7 @@ lsys similar {
   X(s) -> F(s)[+X(s*0.83)]F(s*0.97)[-X(s*0.79)][+X(s*0.71)]F(s*0.9)[-X(s*0.61)]X(s*0.53)
 }
 )");
-    const RunResult result = graftal("compile --work 1 similar.lsys -o similar.pov");
+    const RunResult result = graftal("compile --work 3 similar.lsys -o similar.pov");
     ASSERT_EQ(result.status, 0) << result.err;
     const std::string mark = "an error of ";
     const std::size_t at = result.err.find(mark);

@@ -39,8 +39,9 @@ TEST_F(Native, MakesAPictureNamedAfterTheModelHere) {
     const RunResult result = render(gasket + small);
     EXPECT_EQ(result.status, 0) << result.err;
     EXPECT_EQ(result.out, "");
-    EXPECT_THAT(result.err, MatchesRegex("sierpinski.png: 4 samples per pixel, error 0.5 px in [0-9]+\\.[0-9][0-9] s, "
-                                         "[0-9.]+ million rays per second\n"));
+    EXPECT_THAT(result.err,
+                MatchesRegex("sierpinski.png: 4 samples per pixel, error 0.5 px in [0-9]+\\.[0-9][0-9] s, "
+                             "[0-9.]+ million rays per second\n"));
     EXPECT_EQ(files(), "sierpinski.png");
     EXPECT_EQ(temporary_files(), "");
     expect_size("sierpinski.png", 96, 54);

@@ -314,7 +314,7 @@ std::string in_words(const NativeReport& report) {
     if (report.fewer_where_calm) text += "up to ";
     text += samples_text(report.samples_a_pixel);
     if (report.finer_share > 0)
-        text += fmt::format(", in {:.2g} % of the picture {},", 100 * report.finer_share,
+        text += fmt::format(", in {:.2g} % of the picture {}", 100 * report.finer_share,
                             samples_text(report.finer_samples_a_pixel));
     if (report.error_px > 0) text += fmt::format(", error {:.3g} px", report.error_px);
     if (const std::optional<double> noise = report.rays.noise_255())

@@ -266,7 +266,7 @@ template<typename Function> double crossing(const Function& f, double out, doubl
 }
 
 /// The powers of one point take as long as so many nodes of a mesh's tree.
-constexpr std::uint64_t steps_a_point = 26;
+constexpr std::uint64_t steps_a_point = 7;
 
 bool intersect(const Primitive& primitive, const Ray& ray, const RayRange& range, PrimitiveHit& hit) {
     hit.steps = 0;

@@ -94,8 +94,9 @@ class Fitting {
         if (best.factor != factor_)
             make_anew(best.factor, best.factor == 1 ? std::optional(price_asked) : std::nullopt);
         fitted_.sampling = affordable_sampling(ask_.wanted, samples_for(price_));
-        while (price_.known && !fits(fitted_.sampling) && fitted_.model->most_visits > fewest_visits &&
-               !cancelled()) {
+        if (is_almost_affordable(best.sampling)) fitted_.sampling = best.sampling;
+        while (price_.known && !fits(fitted_.sampling) && !is_almost_affordable(fitted_.sampling) &&
+               fitted_.model->most_visits > fewest_visits && !cancelled()) {
             const std::uint64_t fewer = price_.of(fitted_.sampling.samples_a_pixel()) > 4 * allowed() ? 4 : 2;
             fitted_.model->most_visits = std::max(fitted_.model->most_visits / fewer, fewest_visits);
             fitted_.rays_cut = true;
@@ -105,6 +106,14 @@ class Fitting {
 
     bool fits(const Sampling& sampling) const {
         return price_.known && price_.of(sampling.samples_a_pixel()) <= allowed();
+    }
+
+    /// Tries take of the work while a choice is made; a fourth of the samples for the last of them would be a
+    /// bad bargain.
+    bool is_almost_affordable(const Sampling& sampling) const {
+        constexpr double overdraft = 1.2;
+        return price_.known &&
+               tried_seconds_ + price_.of(sampling.samples_a_pixel()) <= overdraft * work_seconds_;
     }
 
     /// Tries larger and larger errors, as long as they may still win.

@@ -57,7 +57,7 @@ SelfShadows measure_self_shadows(const CutGraph& cut, const Symmetry& symmetry, 
                                  const View& view, bool limit_normals, int steps,
                                  std::uint64_t most_work = most_self_shadow_work);
 
-/// Of the work allowed for a picture.
+/// Self-shadows may take so much of the work allowed for a picture.
 std::uint64_t self_shadow_work(double work_seconds);
 
 inline constexpr double self_shadow_measured_px = 4;

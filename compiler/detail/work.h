@@ -29,8 +29,7 @@ inline double slowness_of_graph(std::uint64_t instances) {
     return 1 + a_doubling * std::max(0.0, std::log2(static_cast<double>(instances) / at_home));
 }
 
-/// What the stages before leave of the work allowed for a picture: half in any case, for their prices are
-/// high.
+/// Work allowed for a picture, less that of the stages before: half in any case, for their prices are high.
 inline double work_after_stages(double work_seconds, double spent_seconds) {
     return std::max(work_seconds - spent_seconds, 0.5 * work_seconds);
 }

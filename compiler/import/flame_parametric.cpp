@@ -279,7 +279,7 @@ const std::vector<Row>& rows() {
           {"n", "c*c + d*d"}},
          "(a * c + b * d) / n",
          "(b * c - a * d) / n"},
-        // As JWildfire computes them, in the plane.
+        // JWildfire's formulas, in the plane.
         {"spherical3D", {}, {}, "u / (r2 + 1e-10)", "v / (r2 + 1e-10)"},
         {"petal", {}, {}, "cosu * (cosu * cosv)^3", "cosu * (sinu * cosv)^3"},
         {"henon", {{"a", "0.5"}, {"b", "1"}, {"c", "1"}}, {}, "c - a * u*u + v", "b * u"},

@@ -14,7 +14,7 @@
 
 namespace graftal {
 
-/// What a unit of an importer's work costs, as in support/stage_price.h.
+/// Prices of an importer's work, in the unit of support/stage_price.h.
 struct ImportPrice {
     static constexpr double byte = 1.5e-7;     ///< of a file that is read and translated
     static constexpr double evaluation = 1e-7; ///< of an expression of a grammar that is computed

@@ -49,7 +49,7 @@ std::array<TexturePoint, 3> texture_triangle(const Primitive& primitive, const s
 double area(const Primitive& primitive);
 SurfaceSite site(const Primitive& primitive, Vec3 choice);
 bool intersect(const Primitive& primitive, const Ray& ray, const RayRange& range, PrimitiveHit& hit);
-/// The same within so many steps (TriangleTree::meet()).
+/// intersect() within so many steps (TriangleTree::meet()).
 bool intersect_within(const Primitive& primitive, const Ray& ray, const RayRange& range, PrimitiveHit& hit,
                       std::uint64_t most_steps);
 

@@ -35,7 +35,7 @@ constexpr double work_of_graph(std::size_t objects, std::size_t instances) {
            StagePrice::instance * static_cast<double>(instances);
 }
 
-/// Of making it ready to be unfolded: its own passes, with checks, symmetry and colours.
+/// Work of making a graph ready to be unfolded: passes of its own, with checks, symmetry and colours.
 constexpr double work_of_preparation(std::size_t objects, std::size_t instances) {
     return 3 * work_of_graph(objects, instances);
 }

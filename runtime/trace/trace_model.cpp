@@ -232,8 +232,8 @@ class ModelBuilder {
             else
                 parts.push_back({edges[i], boxes[i], length_in_turns(edges[i].node_from_child.linear)});
         }
-        std::ranges::stable_partition(
-            parts, [&](const Part& part) { return is_endless(cut_.nodes[part.edge.child]); });
+        std::stable_partition(parts.begin(), parts.end(),
+                              [&](const Part& part) { return is_endless(cut_.nodes[part.edge.child]); });
         return parts;
     }
 
@@ -339,8 +339,7 @@ bool is_even(const TraceModel& model) {
            std::ranges::all_of(model.edges, is_plain_edge);
 }
 
-/// Of units of which so many take a second, those that making a model may take of the work; no more than
-/// usual.
+/// Units that making a model may take of the work, where so many take a second; no more than usual.
 std::uint64_t share_of(double work_seconds, double units_a_second, std::uint64_t usual) {
     constexpr double share = 0.1;
     return static_cast<std::uint64_t>(

@@ -163,15 +163,15 @@ struct ModelTextures {
     std::shared_ptr<const Texture> of_ground;                ///< or null
 };
 
-/// What models of one graph and view have in common, whatever their error.
+/// Parts that models of one graph and view have in common, whatever their error.
 struct TraceGround {
     /// `work_seconds`: allowed for the picture.
     TraceGround(const PreparedCut& prepared, double work_seconds);
 
     LayeredGraph layers; ///< of prepared.cut
     DrawnBounds bounds;  ///< of the layers
-    /// By node of the cut, of the first model; empty where rays come through everywhere. Found for each model
-    /// where they depend on the error.
+    /// Sizes by node of the cut, of the first model; empty where rays come through everywhere. Found for each
+    /// model where they depend on the error.
     std::optional<std::vector<ShellSizes>> shell_sizes;
     SelfShadowStore self_shadows;
 };

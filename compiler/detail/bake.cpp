@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <future>
 #include <map>
 #include <new>
 #include <numbers>
@@ -34,7 +33,6 @@ namespace {
 constexpr std::uint64_t visits_of_widening = 10, visits_of_keeping = 5;
 /// Room is made for so many leaves beforehand, at most.
 constexpr double most_expected_leaves = 1 << 20;
-constexpr std::size_t fewest_leaves_for_a_thread = 10'000;
 
 struct KeptLeaf {
     Affine place;
@@ -112,14 +110,9 @@ class Baker {
         place_body();
         gather_leaves();
         if (!baked_.complete) return;
-        // Shapes and colours have nothing to do with each other, and take about as long.
-        const auto when = numbers_.size() < fewest_leaves_for_a_thread
-                              ? std::launch::deferred
-                              : std::launch::async | std::launch::deferred;
-        std::future<void> coloured = std::async(when, [this] { colour_leaves(); });
+        colour_leaves();
         for (BakedPart& part : parts_)
             build(part);
-        coloured.get(); // throws what stopped it
         for (BakedPart& part : parts_)
             finish(part);
     }

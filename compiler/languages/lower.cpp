@@ -24,12 +24,14 @@ constexpr std::uint64_t lowered_a_look = 10'000;
 LoweredText lower_root(FileId file, const std::string& path, const LowerOptions& options, SourceMap& sources,
                        Diagnostics& diagnostics, const LowerHelp& help) {
     WorkMeter meter(help.control, "lower", lowered_a_look, StagePrice::word);
+    ParsedFiles parsed_here;
     Lowering lowering{.sources = sources,
                       .diagnostics = diagnostics,
                       .options = options,
                       .help = help,
                       .meter = meter,
-                      .languages = languages()};
+                      .languages = languages(),
+                      .parsed = help.parsed ? *help.parsed : parsed_here};
     const Language* const language = language_of(file, sources, languages());
     if (options.time && !options.steps && !(language && language->has_time)) {
         diagnostics

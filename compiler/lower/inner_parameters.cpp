@@ -88,11 +88,12 @@ std::vector<InnerParameter> inner_parameters_of(FileId file, Lowering& lowering)
                    .help = lowering.help,
                    .meter = lowering.meter,
                    .languages = lowering.languages,
+                   .parsed = lowering.parsed,
                    .loading = std::vector<LoadingFile>(2)};
     const Language* const language = language_of(file, lowering.sources, lowering.languages);
     if (!language) return {};
     const InnerStatements statements =
-        parse_model(*language, file, lowering.sources, lowering.languages, quiet)->inner_statements();
+        lowering.parsed.tree(*language, file, lowering.sources, lowering.languages, quiet).inner_statements();
     const Environment of_file = evaluate_lets(statements.file, {}, aside);
     const Environment of_block = evaluate_lets(statements.block, of_file, aside);
     std::vector<SceneStatement> all = statements.file;

@@ -134,8 +134,9 @@ std::optional<Graph> lower_file(FileId file, Span asked_for, Lowering& lowering)
         return std::nullopt;
     }
     lowering.loading.back().failures_before = lowering.failures();
-    return parse_model(*language, file, lowering.sources, lowering.languages, lowering.diagnostics)
-        ->lower(lowering);
+    return lowering.parsed
+        .tree(*language, file, lowering.sources, lowering.languages, lowering.diagnostics)
+        .lower(lowering);
 }
 
 } // namespace graftal

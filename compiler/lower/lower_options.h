@@ -18,6 +18,7 @@
 namespace graftal {
 
 struct OrbitModel;
+class ParsedFiles;
 
 struct LowerOptions {
     std::map<std::string, double, std::less<>> set; ///< `--set NAME=VALUE`: replaces the value of a `let`
@@ -58,6 +59,7 @@ struct LowerHelp {
     Control control;               ///< follows modules, parts and objects
     OnFile on_file = {};
     LoadSkyPicture load_sky_picture = {}; ///< without this, environments are taken on trust, and are white
+    ParsedFiles* parsed = nullptr;        ///< of lowerings before; null: each text is parsed anew
 };
 
 /// What lowering learns beside the graph.

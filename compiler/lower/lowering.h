@@ -14,6 +14,7 @@
 #include "compiler/graph/graph.h"
 #include "compiler/lower/language.h"
 #include "compiler/lower/lower_options.h"
+#include "compiler/lower/parsed_files.h"
 #include "compiler/support/diagnostics.h"
 #include "compiler/support/source.h"
 #include "compiler/syntax/expression.h"
@@ -55,6 +56,7 @@ struct Lowering {
     const LowerHelp& help;
     WorkMeter& meter;                      ///< of modules, parts and objects
     std::span<const Language> languages;   ///< that models may be written in
+    ParsedFiles& parsed;
     std::vector<LoadingFile> loading = {}; ///< from the root model to the file being lowered
     /// Models already lowered; null after errors. A model used twice is read and reported once.
     std::map<LoweredKey, std::shared_ptr<const Graph>> lowered = {};

@@ -22,6 +22,12 @@ std::optional<MeshData> read_mesh(std::string_view bytes, std::string& fault) {
                                        ? read_ply(bytes, fault)
                                        : read_obj(bytes, fault);
     if (!data) return std::nullopt;
+    if (data->triangles.empty()) {
+        fault = data->vertices.empty()
+                    ? "it holds no vertex ('v' in an OBJ file, 'element vertex' in a PLY file)"
+                    : "it holds no face, so there is nothing to draw";
+        return std::nullopt;
+    }
     for (Vec3& normal : data->normals) {
         const double largest = std::max({std::abs(normal.x), std::abs(normal.y), std::abs(normal.z)});
         // What is no number, and what has no direction, is as if the file had none there.

@@ -39,7 +39,7 @@ void Session::edit(std::string text) {
 void Session::reload(bool textures_changed) {
     ++edits_;
     // A file that could not be used before may be there now.
-    bool changed = textures_changed || lowered_.failed;
+    bool changed = textures_changed || lowered_.failed();
     for (FileId file = 1; file < sources_.size() && !changed; ++file) {
         if (sources_.original(file)) continue; // a translation of another
         std::string text;
@@ -50,6 +50,12 @@ void Session::reload(bool textures_changed) {
     for (const auto& [path, stamp] : meshes_)
         changed = changed || stamp_of(path) != stamp;
     if (changed) ++file_changes_;
+}
+
+StageRuns Session::runs() const {
+    StageRuns runs = runs_;
+    runs.parsed = parsed_.parsed();
+    return runs;
 }
 
 template<typename Value, typename Work>
@@ -78,78 +84,53 @@ Control Session::charging(StageWork& work) const {
 
 std::shared_ptr<const LoweredModel> Session::lowered(const StageOptions& options, Compilation& compilation) {
     return unless_ended<LoweredModel>(
-        compilation, [&] { return need_lowered(options, true, compilation) ? lowered_.value : nullptr; });
+        compilation, [&] { return need_lowered(options, true, compilation) ? lowered_.value() : nullptr; });
 }
 
 std::shared_ptr<const AnalysedModel> Session::analysed(const StageOptions& options, Compilation& compilation,
                                                        bool for_report) {
     return unless_ended<AnalysedModel>(compilation, [&]() -> std::shared_ptr<const AnalysedModel> {
         if (!need_analysed(options, true, compilation)) return nullptr;
-        if (!for_report && refuse_divergent(*analysed_.value, compilation.diagnostics)) return nullptr;
-        return analysed_.value;
+        if (!for_report && refuse_divergent(*analysed_.value(), compilation.diagnostics)) return nullptr;
+        return analysed_.value();
     });
 }
 
 std::shared_ptr<const ViewedModel> Session::viewed(const StageOptions& options, Compilation& compilation) {
     return unless_ended<ViewedModel>(
-        compilation, [&] { return need_viewed(options, compilation) ? viewed_.value : nullptr; });
+        compilation, [&] { return need_viewed(options, compilation) ? viewed_.value() : nullptr; });
 }
 
 std::shared_ptr<const PreparedCut> Session::prepared(const StageOptions& options, Compilation& compilation) {
     return unless_ended<PreparedCut>(compilation, [&] {
         const bool there = need_viewed(options, compilation) && need_prepared(options, compilation);
-        return there ? prepared_.value : nullptr;
-    });
-}
-
-std::shared_ptr<const CompiledModel> Session::compiled(const StageOptions& options,
-                                                       Compilation& compilation) {
-    return unless_ended<CompiledModel>(compilation, [&] {
-        const bool there = need_viewed(options, compilation) && need_compiled(options, compilation);
-        return there ? compiled_.value : nullptr;
+        return there ? prepared_.value() : nullptr;
     });
 }
 
 void Session::yield_memory() {
-    if (keep_ == Keep::everything) return;
-    compiled_.value.reset();
-    if (keep_ == Keep::for_views) return;
-    prepared_.value.reset();
-    viewed_.value.reset();
-    analysed_.value.reset();
-    lowered_.value.reset();
+    if (keep_ != Keep::nothing) return;
+    prepared_.drop();
+    viewed_.drop();
+    analysed_.drop();
+    lowered_.drop();
 }
 
-bool Session::same_inputs(const LowerKey& before, const LowerKey& now) const {
-    if (before.source != now.source || before.files != now.files ||
-        !same_options(before.options, now.options))
-        return false;
-    const LowerOptions &a = before.options, &b = now.options;
+bool Session::LowerKey::operator==(const LowerKey& other) const {
+    const LowerOptions &a = options, &b = other.options;
+    const bool same_source = source == other.source || source->text == other.source->text;
+    if (!same_source || files != other.files || !same_options(a, b)) return false;
     // A time between steps is an error where there is none, and stands in for steps that are not given.
-    const bool time_counts = reads_time_ || !a.steps || !b.steps;
-    return (!reads_steps_ || a.steps == b.steps) && (!time_counts || a.time == b.time) &&
-           (!limited_by_work_ || before.work_seconds == now.work_seconds);
-}
-
-template<typename Of> void Session::restart(Of& slot, bool same) {
-    if (!same) slot.serial = ++serials_;
-    slot.key.reset();
-    slot.value.reset();
-    slot.failed = false;
-    slot.findings = Diagnostics();
-}
-
-template<typename Of, typename Key, typename Value>
-void Session::finish(Of& slot, Key key, std::optional<Value> value, Diagnostics findings) {
-    if (value) slot.value = std::make_shared<Value>(std::move(*value));
-    slot.failed = !slot.value;
-    slot.findings = std::move(findings);
-    slot.key = std::move(key);
+    const bool steps_count = reads_steps && other.reads_steps;
+    const bool time_counts = (reads_time && other.reads_time) || !a.steps || !b.steps;
+    const bool work_counts = limited_by_work && other.limited_by_work;
+    return (!steps_count || a.steps == b.steps) && (!time_counts || a.time == b.time) &&
+           (!work_counts || work_seconds == other.work_seconds);
 }
 
 bool Session::need_source(const StageOptions& options, Compilation& compilation) {
     SourceKey key{options.lower.root, edits_};
-    if (source_.key == key) return true;
+    if (source_key_ == key) return true;
     Diagnostics findings;
     Status status;
     ++runs_.source;
@@ -160,43 +141,48 @@ bool Session::need_source(const StageOptions& options, Compilation& compilation)
         compilation.status = std::move(status);
         return false;
     }
-    restart(source_, source_.value && source_.value->text == source->text);
-    finish(source_, std::move(key), std::move(source), {});
+    source_ = std::make_shared<const Source>(std::move(*source));
+    source_key_ = std::move(key);
     return true;
 }
 
 bool Session::need_lowered(const StageOptions& options, bool wanted, Compilation& compilation) {
     StageWork work = stage_work(options);
+    const auto key_now = [&] { return LowerKey{source_, file_changes_, options.lower, work.left()}; };
     const auto up_to_date = [&] {
-        if (!source_.key || *source_.key != SourceKey{options.lower.root, edits_}) return false;
-        const LowerKey key{source_.serial, file_changes_, options.lower, work.left()};
-        return lowered_.key && same_inputs(*lowered_.key, key) &&
-               (lowered_.value || lowered_.failed || !wanted);
+        return source_key_ == SourceKey{options.lower.root, edits_} && lowered_.is_of(key_now(), wanted);
     };
     const auto lower = [&] {
         if (!need_source(options, compilation)) return false;
         if (up_to_date()) return true;
-        LowerKey key{source_.serial, file_changes_, options.lower, work.left()};
-        restart(lowered_, lowered_.key && same_inputs(*lowered_.key, key));
-        sources_ = SourceMap();
-        Diagnostics findings;
-        ++runs_.lowered;
-        std::optional<LoweredModel> model =
-            lower_source(*source_.value, options.lower,
-                         {look_at_texture_, charging(work), on_file_, load_sky_picture_}, sources_, findings);
-        const Derivation* const derivation =
-            model && model->notes.derivation ? &*model->notes.derivation : nullptr;
-        reads_steps_ = !model || derivation;
-        reads_time_ = !model || (derivation && derivation->timed);
-        limited_by_work_ = !model || model->notes.limited_by_work;
-        if (model) meshes_ = model->notes.meshes;
-        finish(lowered_, std::move(key), std::move(model), std::move(findings));
+        lowered_.run(key_now(), {}, [&](LowerKey& key, Diagnostics& findings) {
+            sources_ = SourceMap();
+            ++runs_.lowered;
+            std::optional<LoweredModel> model = lower_source(
+                *source_, options.lower,
+                {look_at_texture_, charging(work), on_file_, load_sky_picture_, &parsed_}, sources_, findings);
+            const Derivation* const derivation =
+                model && model->notes.derivation ? &*model->notes.derivation : nullptr;
+            key.reads_steps = reads_steps_ = !model || derivation;
+            key.reads_time = !model || (derivation && derivation->timed);
+            key.limited_by_work = !model || model->notes.limited_by_work;
+            if (model) meshes_ = model->notes.meshes;
+            return model;
+        });
         return true;
     };
     if (!up_to_date() && !StageClock(compilation.times).run("lower", lower)) return false;
     compilation.sources = sources_;
-    compilation.diagnostics = lowered_.findings;
-    return !lowered_.failed;
+    compilation.diagnostics = lowered_.findings();
+    return !lowered_.failed();
+}
+
+/// The lowered model for the next stage: its own where nobody else wants it.
+LoweredModel Session::take_lowered() {
+    if (keep_ == Keep::everything || lowered_.value().use_count() > 1) return *lowered_.value();
+    LoweredModel model = std::move(*lowered_.value());
+    lowered_.drop();
+    return model;
 }
 
 bool Session::need_analysed(const StageOptions& options, bool wanted, Compilation& compilation) {
@@ -206,102 +192,60 @@ bool Session::need_analysed(const StageOptions& options, bool wanted, Compilatio
         return false;
     }
     if (!need_lowered(options, false, compilation)) return false;
-    AnalyseKey key{lowered_.serial, options.stop_after, options.view.zoom.at};
-    const bool same = analysed_.key == key;
-    if (!same || (wanted && !analysed_.value && !analysed_.failed)) {
+    const auto key_now = [&] {
+        return AnalyseKey{lowered_.serial(), options.stop_after, options.view.zoom.at};
+    };
+    if (!analysed_.is_of(key_now(), wanted)) {
         if (!need_lowered(options, true, compilation)) return false;
-        if (lowered_.value->notes.orbit) return false;
-        restart(analysed_, same);
-        LoweredModel lowered;
-        if (keep_ == Keep::everything || lowered_.value.use_count() > 1) {
-            lowered = *lowered_.value;
-        } else {
-            lowered = std::move(*lowered_.value);
-            lowered_.value.reset();
-        }
-        findings = lowered_.findings;
-        compilation.diagnostics = findings;
-        ++runs_.analysed;
-        StageWork work = stage_work(options, lowered.work_seconds);
-        std::optional<AnalysedModel> model =
-            analyse(std::move(lowered), options.view.zoom.at, {options.stop_after, after_pass_}, findings,
-                    compilation.times, charging(work));
-        finish(analysed_, std::move(key), std::move(model), std::move(findings));
+        if (lowered_.value()->notes.orbit) return false;
+        analysed_.run(key_now(), lowered_.findings(), [&](const AnalyseKey&, Diagnostics& found) {
+            ++runs_.analysed;
+            LoweredModel lowered = take_lowered();
+            StageWork work = stage_work(options, lowered.work_seconds);
+            return analyse(std::move(lowered), options.view.zoom.at, {options.stop_after, after_pass_}, found,
+                           compilation.times, charging(work));
+        });
     }
-    compilation.diagnostics = analysed_.findings;
-    return !analysed_.failed;
+    compilation.diagnostics = analysed_.findings();
+    return !analysed_.failed();
 }
 
 bool Session::need_viewed(const StageOptions& options, Compilation& compilation) {
     if (!need_analysed(options, false, compilation)) return false;
-    ViewKey key{analysed_.serial, steps_left(options.lower, reads_steps_), options.view};
-    const bool same = viewed_.key == key;
-    if (!same || (!viewed_.value && !viewed_.failed)) {
+    const auto key_now = [&] {
+        return ViewKey{analysed_.serial(), steps_left(options.lower, reads_steps_), options.view};
+    };
+    if (!viewed_.is_of(key_now())) {
         if (!need_analysed(options, true, compilation)) return false;
-        if (refuse_divergent(*analysed_.value, compilation.diagnostics)) return false;
-        restart(viewed_, same);
-        Diagnostics findings = analysed_.findings;
-        ++runs_.viewed;
-        std::optional<ViewedModel> model = StageClock(compilation.times).run("frame", [&] {
-            const std::optional<unsigned> steps = levels_of(*analysed_.value, options.lower.steps);
-            return look_at(analysed_.value, steps, options.view, findings);
+        if (refuse_divergent(*analysed_.value(), compilation.diagnostics)) return false;
+        viewed_.run(key_now(), analysed_.findings(), [&](const ViewKey&, Diagnostics& findings) {
+            ++runs_.viewed;
+            return StageClock(compilation.times).run("frame", [&] {
+                const std::optional<unsigned> steps = levels_of(*analysed_.value(), options.lower.steps);
+                return look_at(analysed_.value(), steps, options.view, findings);
+            });
         });
-        if (keep_ == Keep::nothing) analysed_.value.reset();
-        finish(viewed_, std::move(key), std::move(model), std::move(findings));
+        if (keep_ == Keep::nothing) analysed_.drop();
     }
-    compilation.diagnostics = viewed_.findings;
-    return !viewed_.failed;
-}
-
-Session::PrepareKey Session::prepare_key(const StageOptions& options) const {
-    const bool zoomed = options.view.zoom.active();
-    return {analysed_.serial, zoomed ? viewed_.serial : 0,
-            resolved(options.detail, *viewed_.value).preparing()};
+    compilation.diagnostics = viewed_.findings();
+    return !viewed_.failed();
 }
 
 bool Session::need_prepared(const StageOptions& options, Compilation& compilation) {
-    const ViewedModel& viewed = *viewed_.value;
+    const ViewedModel& viewed = *viewed_.value();
     const AnalysedModel& model = *viewed.model;
     const DetailOptions detail = resolved(options.detail, viewed);
     if (refuse_endless(model.graph, model.components, detail, compilation.diagnostics)) return false;
-    PrepareKey key = prepare_key(options);
-    const bool same = prepared_.key == key;
-    if (same && prepared_.value) return true;
-    restart(prepared_, same);
-    ++runs_.prepared;
-    StageWork work = stage_work(options, model.work_seconds);
-    finish(prepared_, std::move(key),
-           std::optional(prepare_cut(model.graph, model.components, model.bounds, detail.preparing(),
-                                     charging(work), after_pass_)),
-           {});
+    const bool zoomed = options.view.zoom.active();
+    PrepareKey key{analysed_.serial(), zoomed ? viewed_.serial() : 0, detail.preparing()};
+    if (prepared_.is_of(key)) return true;
+    prepared_.run(std::move(key), {}, [&](const PrepareKey&, Diagnostics&) {
+        ++runs_.prepared;
+        StageWork work = stage_work(options, model.work_seconds);
+        return std::optional(prepare_cut(model.graph, model.components, model.bounds, detail.preparing(),
+                                         charging(work), after_pass_));
+    });
     return true;
-}
-
-bool Session::need_compiled(const StageOptions& options, Compilation& compilation) {
-    const auto key = [&] {
-        return CompileKey{prepared_.serial, viewed_.serial, options.detail, options.cut};
-    };
-    const bool same = prepared_.key == prepare_key(options) && compiled_.key == key();
-    if (!same || (!compiled_.value && !compiled_.failed)) {
-        const auto cut = [&] {
-            if (!need_prepared(options, compilation)) return false;
-            restart(compiled_, same);
-            const ViewedModel& viewed = *viewed_.value;
-            const DetailOptions detail = resolved(options.detail, viewed);
-            Diagnostics findings = viewed_.findings;
-            ++runs_.compiled;
-            std::optional<Cut> made = cut_prepared(viewed.model->graph, *prepared_.value, viewed.view, detail,
-                                                   findings, options.cut, control_);
-            if (keep_ == Keep::nothing) prepared_.value.reset();
-            std::optional<CompiledModel> model;
-            if (made) model = CompiledModel{viewed.model, viewed.steps, viewed.view, std::move(*made)};
-            finish(compiled_, key(), std::move(model), std::move(findings));
-            return true;
-        };
-        if (!StageClock(compilation.times).run("cut", cut)) return false;
-    }
-    compilation.diagnostics = compiled_.findings;
-    return !compiled_.failed;
 }
 
 } // namespace graftal

@@ -9,6 +9,8 @@
 #include <vector>
 
 #include "compiler/detail/prepare.h"
+#include "compiler/lower/parsed_files.h"
+#include "compiler/session/memo.h"
 #include "compiler/session/stage_options.h"
 #include "compiler/session/stages.h"
 #include "compiler/session/values.h"
@@ -26,11 +28,11 @@ enum class Keep {
 /// How often each stage ran.
 struct StageRuns {
     std::uint64_t source = 0;
+    std::uint64_t parsed = 0; ///< texts of all files, each by itself
     std::uint64_t lowered = 0;
     std::uint64_t analysed = 0;
     std::uint64_t viewed = 0;
     std::uint64_t prepared = 0;
-    std::uint64_t compiled = 0;
     bool operator==(const StageRuns&) const = default;
 };
 
@@ -77,35 +79,29 @@ class Session {
     std::shared_ptr<const ViewedModel> viewed(const StageOptions& options, Compilation& compilation);
     /// The graph made ready for any engine. An unfolding without an end is an error.
     std::shared_ptr<const PreparedCut> prepared(const StageOptions& options, Compilation& compilation);
-    /// The cut for POV-Ray.
-    std::shared_ptr<const CompiledModel> compiled(const StageOptions& options, Compilation& compilation);
 
     /// Gives up what `keep` does not want kept while another program draws.
     void yield_memory();
 
-    const StageRuns& runs() const { return runs_; }
+    StageRuns runs() const;
 
   private:
-    /// The last run of a stage. `serial` numbers runs with different inputs: a stage after it has this number
-    /// for an input. The value is null where the stage failed, or where it was given up since.
-    template<typename Key, typename Value> struct Slot {
-        std::optional<Key> key;
-        std::uint64_t serial = 0;
-        std::shared_ptr<Value> value;
-        bool failed = false;
-        Diagnostics findings; ///< of this stage and all before it
-    };
-
     struct SourceKey {
         std::string root;
         std::uint64_t edits = 0;
         bool operator==(const SourceKey&) const = default;
     };
     struct LowerKey {
-        std::uint64_t source = 0;
+        std::shared_ptr<const Source> source;
         std::uint64_t files = 0; ///< how often those that it names were found to have changed
         LowerOptions options;
         double work_seconds = 0; ///< allowed
+        // Whether the value depends on these options.
+        bool reads_steps = true;
+        bool reads_time = true;
+        bool limited_by_work = true;
+        /// Options that one of both does not read make no difference.
+        bool operator==(const LowerKey& other) const;
     };
     struct AnalyseKey {
         std::uint64_t lowered = 0;
@@ -125,37 +121,21 @@ class Session {
         PrepareOptions options;
         bool operator==(const PrepareKey&) const = default;
     };
-    struct CompileKey {
-        std::uint64_t prepared = 0;
-        std::uint64_t viewed = 0;
-        DetailOptions detail;
-        CutOptions cut;
-        bool operator==(const CompileKey&) const = default;
-    };
-
     /// What the work gives; null, with a failed status, if it was cancelled, or after an error if it would
     /// take more than is allowed.
     template<typename Value, typename Work>
     std::shared_ptr<const Value> unless_ended(Compilation& compilation, const Work& work);
     /// The control, with an account for the work of a stage.
     Control charging(StageWork& work) const;
-    /// What lowering gives does not depend on the steps and times that it does not read.
-    bool same_inputs(const LowerKey& before, const LowerKey& now) const;
-    PrepareKey prepare_key(const StageOptions& options) const;
+    LoweredModel take_lowered();
 
-    // Each sees to it that its slot is of these options and, if it is `wanted`, has a value. False where the
+    // Each sees to it that its memo is of these options and, if it is `wanted`, has a value. False where the
     // stage or one before it failed. The compilation gets the findings.
     bool need_source(const StageOptions& options, Compilation& compilation);
     bool need_lowered(const StageOptions& options, bool wanted, Compilation& compilation);
     bool need_analysed(const StageOptions& options, bool wanted, Compilation& compilation);
     bool need_viewed(const StageOptions& options, Compilation& compilation);
     bool need_prepared(const StageOptions& options, Compilation& compilation);
-    bool need_compiled(const StageOptions& options, Compilation& compilation);
-
-    /// Forgets the last run. With the `same` inputs the next one has its number.
-    template<typename Of> void restart(Of& slot, bool same);
-    template<typename Of, typename Key, typename Value>
-    void finish(Of& slot, Key key, std::optional<Value> value, Diagnostics findings);
 
     std::string path_;
     std::optional<std::string> text_; ///< in place of the file's
@@ -167,20 +147,18 @@ class Session {
     PassObserver after_pass_;
     Keep keep_;
     Control control_;
-    StageRuns runs_;
-    std::uint64_t serials_ = 0;
+    StageRuns runs_; ///< apart from those of parsers
 
-    Slot<SourceKey, Source> source_;
-    Slot<LowerKey, LoweredModel> lowered_;
+    std::optional<SourceKey> source_key_;
+    std::shared_ptr<const Source> source_;
+    ParsedFiles parsed_;
+    Memo<LowerKey, LoweredModel> lowered_;
     SourceMap sources_;                       ///< of the last lowering
     std::map<std::string, FileStamp> meshes_; ///< that it read, too
-    bool reads_steps_ = true; ///< the last lowering: what it gives depends on steps and on the time
-    bool reads_time_ = true;
-    bool limited_by_work_ = false;
-    Slot<AnalyseKey, AnalysedModel> analysed_;
-    Slot<ViewKey, ViewedModel> viewed_;
-    Slot<PrepareKey, PreparedCut> prepared_;
-    Slot<CompileKey, CompiledModel> compiled_;
+    bool reads_steps_ = true;                 ///< the last lowering: its value depends on steps
+    Memo<AnalyseKey, AnalysedModel> analysed_;
+    Memo<ViewKey, ViewedModel> viewed_;
+    Memo<PrepareKey, PreparedCut> prepared_;
 };
 
 } // namespace graftal

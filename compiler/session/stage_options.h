@@ -5,7 +5,6 @@
 
 #include "compiler/detail/detail_options.h"
 #include "compiler/lower/lower_options.h"
-#include "compiler/povray/cut.h"
 #include "compiler/scene/scene.h"
 #include "compiler/zoom/reroot.h"
 
@@ -35,7 +34,6 @@ struct StageOptions {
     std::string stop_after; ///< the last pass for models; "": all run
     ViewOptions view;
     DetailOptions detail; ///< its steps are filled in: see resolved()
-    CutOptions cut;
     /// Whether a picture comes after the stages: they leave some of the work for it.
     bool draws = true;
 };

@@ -14,7 +14,6 @@
 #include "compiler/graph/graph.h"
 #include "compiler/lower/derivation.h"
 #include "compiler/lower/lower_options.h"
-#include "compiler/povray/cut.h"
 #include "compiler/scene/scene.h"
 #include "compiler/support/diagnostics.h"
 #include "compiler/support/source.h"
@@ -78,14 +77,6 @@ struct ViewedModel {
     std::optional<unsigned> steps;              ///< levels of recursion, of the new root under a zoom
     View view;
     Magnification zoom; ///< how much larger than in the world lengths are
-};
-
-/// A model ready to emit.
-struct CompiledModel {
-    std::shared_ptr<const AnalysedModel> model; ///< as in ViewedModel
-    std::optional<unsigned> steps;
-    View view;
-    Cut cut;
 };
 
 } // namespace graftal

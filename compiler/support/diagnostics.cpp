@@ -92,6 +92,15 @@ Diagnostic& Diagnostics::note(Span span, std::string message) {
     return add(Severity::note, span, std::move(message));
 }
 
+void Diagnostics::add(const Diagnostics& others) {
+    for (const Diagnostic& other : others.all_) {
+        error_count_ += other.severity == Severity::error ? 1 : 0;
+        warning_count_ += other.severity == Severity::warning ? 1 : 0;
+        add(other.severity, other.span, other.message) = other;
+    }
+    if (others.error_count_ > max_errors) error_count_ += others.error_count_ - max_errors; // counted, not kept
+}
+
 void Diagnostics::drop_repeated_remarks(std::size_t since) {
     const auto repeated = [&](const Diagnostic& finding) {
         if (finding.severity == Severity::error) return false;

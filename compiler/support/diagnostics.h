@@ -40,6 +40,9 @@ class Diagnostics {
     /// Nothing is wrong, but the picture can be better.
     Diagnostic& note(Span span, std::string message);
 
+    /// Adds the findings of another collection, in their order.
+    void add(const Diagnostics& others);
+
     /// Takes back the warnings and notes behind the first `since` findings that say what one before says at
     /// the same place.
     void drop_repeated_remarks(std::size_t since);

@@ -21,29 +21,31 @@ Span join(Span a, Span b) {
     return {a.file, std::min(a.begin, b.begin), std::max(a.end, b.end)};
 }
 
-FileId SourceMap::add(std::string name, std::string text) {
+FileId SourceMap::add(std::string name, std::string text, std::optional<FileId> original,
+                      std::vector<Span> origins) {
     GRAFTAL_CHECK(text.size() < UINT32_MAX, "source text too long");
-    File file{std::move(name), std::move(text), {0}, {}, {}};
+    File file{std::move(name), std::move(text), {0}, original, std::move(origins)};
     // Lines that end with carriage returns alone, as on computers long ago, would be one line.
     if (file.text.find('\n') == std::string::npos)
         std::replace(file.text.begin(), file.text.end(), '\r', '\n');
     for (std::size_t i = 0; i < file.text.size(); ++i)
         if (file.text[i] == '\n') file.line_begins.push_back(static_cast<std::uint32_t>(i + 1));
-    files_.push_back(std::move(file));
+    files_.push_back(std::make_shared<const File>(std::move(file)));
     return static_cast<FileId>(files_.size() - 1);
+}
+
+FileId SourceMap::add(std::string name, std::string text) {
+    return add(std::move(name), std::move(text), std::nullopt, {});
 }
 
 FileId SourceMap::add_translation(std::string name, std::string text, FileId original,
                                   std::vector<Span> origins) {
-    const FileId file = add(std::move(name), std::move(text));
-    files_[file].original = original;
-    files_[file].origins = std::move(origins);
-    return file;
+    return add(std::move(name), std::move(text), original, std::move(origins));
 }
 
 Span SourceMap::origin(Span span) const {
     if (!span.known()) return {};
-    const std::vector<Span>& origins = files_[span.file].origins;
+    const std::vector<Span>& origins = files_[span.file]->origins;
     const std::size_t line = position(span.file, span.begin).line - 1;
     return line < origins.size() ? origins[line] : Span();
 }
@@ -54,7 +56,7 @@ std::string_view SourceMap::text(Span span) const {
 }
 
 Position SourceMap::position(FileId file, std::uint32_t offset) const {
-    const File& source = files_[file];
+    const File& source = *files_[file];
     offset = std::min(offset, static_cast<std::uint32_t>(source.text.size()));
     const auto after = std::upper_bound(source.line_begins.begin(), source.line_begins.end(), offset);
     const auto line = static_cast<std::uint32_t>(after - source.line_begins.begin());
@@ -65,7 +67,7 @@ Position SourceMap::position(FileId file, std::uint32_t offset) const {
 }
 
 std::string_view SourceMap::line(FileId file, std::uint32_t line) const {
-    const File& source = files_[file];
+    const File& source = *files_[file];
     const std::uint32_t begin = source.line_begins[line - 1];
     const std::string_view rest = std::string_view(source.text).substr(begin);
     std::string_view text = rest.substr(0, rest.find('\n'));

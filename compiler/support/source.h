@@ -1,7 +1,7 @@
 #pragma once
 
 #include <cstdint>
-#include <deque>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -33,7 +33,8 @@ struct Position {
     std::uint32_t column = 1;
 };
 
-/// The texts that a compilation has read. Texts and the views of them live as long as the map.
+/// The texts that a compilation has read. A copy shares them: texts, and views of them, live as long as any map
+/// that holds them.
 class SourceMap {
   public:
     /// Adds a text under the name that diagnostics print. Requires text.size() < 2^32 - 1.
@@ -42,13 +43,13 @@ class SourceMap {
     /// comes from, where it is known. Requires as many `origins` as lines, or fewer.
     FileId add_translation(std::string name, std::string text, FileId original, std::vector<Span> origins);
 
-    std::string_view name(FileId file) const { return files_[file].name; }
-    std::string_view text(FileId file) const { return files_[file].text; }
+    std::string_view name(FileId file) const { return files_[file]->name; }
+    std::string_view text(FileId file) const { return files_[file]->text; }
     std::string_view text(Span span) const;
     std::size_t size() const { return files_.size(); }
 
     /// The file that this one was made of; nothing of a file that was read.
-    std::optional<FileId> original(FileId file) const { return files_[file].original; }
+    std::optional<FileId> original(FileId file) const { return files_[file]->original; }
     /// Where the line of a place in a translation comes from; unknown elsewhere.
     Span origin(Span span) const;
 
@@ -66,7 +67,10 @@ class SourceMap {
         std::optional<FileId> original;
         std::vector<Span> origins; ///< of a translation, by lines
     };
-    std::deque<File> files_; // a deque, so that views stay valid while files are added
+
+    FileId add(std::string name, std::string text, std::optional<FileId> original, std::vector<Span> origins);
+
+    std::vector<std::shared_ptr<const File>> files_;
 };
 
 } // namespace graftal

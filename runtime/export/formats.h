@@ -11,8 +11,8 @@
 #include "compiler/support/status.h"
 #include "runtime/export/build_scene.h"
 #include "runtime/export/exported_scene.h"
-#include "runtime/image/image.h"
-#include "runtime/image/texture.h"
+#include "runtime/image_files/image_files.h"
+#include "runtime/image_files/texture_store.h"
 
 namespace graftal {
 

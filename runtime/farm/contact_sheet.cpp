@@ -4,7 +4,7 @@
 
 #include <fmt/format.h>
 
-#include "runtime/image/small_text.h"
+#include "runtime/image_files/small_text.h"
 #include "runtime/image/texture.h"
 #include "runtime/trace/picture_tracer.h"
 

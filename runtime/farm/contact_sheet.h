@@ -6,7 +6,7 @@
 
 #include "compiler/support/control.h"
 #include "compiler/support/status.h"
-#include "runtime/image/image.h"
+#include "runtime/image_files/image_files.h"
 
 namespace graftal {
 

@@ -14,7 +14,7 @@
 #include "compiler/support/file.h"
 #include "runtime/farm/job_json.h"
 #include "runtime/farm/join_tiles.h"
-#include "runtime/image/image.h"
+#include "runtime/image_files/image_files.h"
 #include "runtime/render/frame_store.h"
 #include "runtime/system/files_below.h"
 

@@ -4,7 +4,7 @@
 
 #include "compiler/support/control.h"
 #include "runtime/farm/job.h"
-#include "runtime/image/image.h"
+#include "runtime/image_files/image_files.h"
 
 namespace graftal {
 

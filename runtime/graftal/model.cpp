@@ -10,13 +10,14 @@
 #include <fmt/format.h>
 
 #include "compiler/analysis/counts.h"
+#include "compiler/povray/compile.h"
 #include "compiler/session/stages.h"
 #include "compiler/session/stats.h"
 #include "compiler/support/number_range.h"
 #include "runtime/export/export_model.h"
 #include "runtime/graftal/library_words.h"
 #include "runtime/graftal/listed_graph.h"
-#include "runtime/image/image.h"
+#include "runtime/image_files/image_files.h"
 #include "runtime/points/draw_points.h"
 #include "runtime/render/native_engine.h"
 #include "runtime/render/render.h"
@@ -341,7 +342,7 @@ Result<Drawn> Model::compile_to(const std::string& path) {
             return std::nullopt;
         }
         const Stopwatch watch;
-        const auto model = parts_->session.compiled(parts_->options.compile, compilation);
+        const auto model = compile_scene(parts_->session, parts_->options.compile, compilation);
         if (!model) return std::nullopt;
         compilation.status = write_scene(*model, path, {.include = include}, parts_->session.textures(),
                                          parts_->session.control().cancel);

@@ -12,7 +12,7 @@
 #include "compiler/chaos/chaos_game.h"
 #include "compiler/chaos/ordinary_ifs.h"
 #include "compiler/support/number.h"
-#include "runtime/image/image.h"
+#include "runtime/image_files/image_files.h"
 #include "runtime/points/distance_transform.h"
 
 namespace graftal {

@@ -7,7 +7,7 @@
 #include <string>
 
 #include "compiler/support/file.h"
-#include "runtime/image/image.h"
+#include "runtime/image_files/image_files.h"
 #include "runtime/points/ply_file.h"
 #include "runtime/points/point_source.h"
 #include "runtime/points/tone.h"

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "compiler/support/status.h"
-#include "runtime/image/image.h"
+#include "runtime/image_files/image_files.h"
 #include "runtime/points/point_source.h"
 
 namespace graftal {

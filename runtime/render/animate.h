@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "runtime/image/animation.h"
+#include "runtime/image_files/animation.h"
 #include "runtime/render/render.h"
 #include "runtime/render/sweep.h"
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "runtime/image/image.h"
+#include "runtime/image_files/image_files.h"
 #include "runtime/trace/aovs.h"
 
 namespace graftal {

@@ -9,6 +9,7 @@
 
 #include "compiler/detail/work.h"
 #include "compiler/support/stage_price.h"
+#include "runtime/system/worker_threads.h"
 #include "runtime/trace/picture_tracer.h"
 
 namespace graftal {
@@ -280,7 +281,8 @@ class Fitting {
         const double shells_before = shell_seconds(model);
         const std::uint64_t work_before = tracer.statistics().work;
         TraceControl control;
-        control.threads = ask_.threads;
+        const WorkerThreads workers(ask_.threads);
+        control.workers = &workers;
         const double most_shells = most_for_shells * allowed();
         const auto too_many_shells = [&] {
             return ask_.options.culls() && shell_seconds(model) > most_shells;

@@ -9,8 +9,8 @@
 #include <unistd.h>
 
 #include "compiler/support/file.h"
-#include "runtime/image/image.h"
-#include "runtime/image/png_chunks.h"
+#include "runtime/image_files/image_files.h"
+#include "runtime/image_files/png_chunks.h"
 
 namespace graftal {
 

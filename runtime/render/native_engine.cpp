@@ -221,7 +221,8 @@ class Drawing {
         const double done = samples_ ? samples_done_ : 0;
         std::size_t traced = 0;
         TraceControl control;
-        control.threads = options_.threads;
+        const WorkerThreads workers(options_.threads);
+        control.workers = &workers;
         control.sequence = options_.sequence;
         control.samples = samples_;
         control.cancelled = [this] { return cancel_.raised(); };
@@ -340,6 +341,19 @@ StageOptions stages_of(const RenderOptions& options) {
     StageOptions stages = options.compile;
     stages.detail.keeps_objects = options.aovs;
     return stages;
+}
+
+/// Reads the textures of the materials and the ground, or says which cannot be read.
+Status load_textures(const std::vector<Material>& materials, const View& view, TextureStore& store,
+                     ModelTextures& textures) {
+    Status status;
+    const auto texture_of = [&](const Material& material) {
+        return material.texture.empty() || !status.ok() ? nullptr : store.load(material.texture, status);
+    };
+    for (const Material& material : materials)
+        textures.of_material.push_back(texture_of(material));
+    if (view.ground) textures.of_ground = texture_of(view.ground->material);
+    return status;
 }
 
 bool view_model(PictureSession& session, const StageOptions& stages, PreparedView& model,

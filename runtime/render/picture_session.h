@@ -1,7 +1,7 @@
 #pragma once
 
 #include "compiler/session/session.h"
-#include "runtime/image/texture.h"
+#include "runtime/image_files/texture_store.h"
 
 namespace graftal {
 

@@ -286,7 +286,7 @@ constinit const Engine povray_engine = {
                    : "";
     },
     .compile = [](Session& session, const StageOptions& options, Compilation& compilation) -> bool {
-        return session.compiled(options, compilation) != nullptr;
+        return session.prepared(options, compilation) != nullptr;
     },
     .draw = [](PictureSession& session, const RenderOptions& options,
                Compilation& compilation) -> std::optional<DrawReport> {
@@ -307,7 +307,8 @@ std::string cut_text(const Cut& cut) {
 
 std::optional<PovrayReport> render_by_povray(PictureSession& session, const RenderOptions& options,
                                              Compilation& compilation) {
-    std::shared_ptr<const CompiledModel> model = session.compiled(options.compile, compilation);
+    std::shared_ptr<const CompiledModel> model = 
+        compile_scene(session, options.compile, compilation, options.cut);
     if (!model) return std::nullopt;
     TemporaryDirectory temporary;
     const Film film = model->view.film;

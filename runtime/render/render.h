@@ -6,7 +6,8 @@
 #include <string>
 #include <string_view>
 
-#include "runtime/image/image.h"
+#include "compiler/povray/cut.h"
+#include "runtime/image_files/image_files.h"
 #include "runtime/render/picture_session.h"
 #include "runtime/trace/picture_tracer.h"
 
@@ -43,6 +44,7 @@ struct PictureFit {
 /// A picture that is asked for, whatever engine draws it.
 struct RenderOptions {
     StageOptions compile;
+    CutOptions cut;                            ///< of POV-Ray
     std::string output;                        ///< where the picture goes: is_picture_name(output)
     ImageMetadata metadata;                    ///< to be written into it
     SampleFormat format = SampleFormat::srgb8; ///< of a PNG; an EXR is linear anyhow

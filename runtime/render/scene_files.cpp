@@ -14,9 +14,9 @@
 
 #include "compiler/povray/emit_povray.h"
 #include "compiler/support/file.h"
-#include "runtime/image/image.h"
-#include "runtime/image/sky_file.h"
-#include "runtime/image/texture.h"
+#include "runtime/image_files/image_files.h"
+#include "runtime/image_files/sky_file.h"
+#include "runtime/image_files/texture_store.h"
 #include "runtime/system/temporary_directory.h"
 
 namespace graftal {

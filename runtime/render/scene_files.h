@@ -3,11 +3,11 @@
 #include <optional>
 #include <string>
 
+#include "compiler/povray/compile.h"
 #include "compiler/scene/light_list.h"
-#include "compiler/session/values.h"
 #include "compiler/support/control.h"
 #include "compiler/support/status.h"
-#include "runtime/image/texture.h"
+#include "runtime/image_files/texture_store.h"
 
 namespace graftal {
 

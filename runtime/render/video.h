@@ -4,7 +4,7 @@
 
 #include "compiler/support/control.h"
 #include "compiler/support/status.h"
-#include "runtime/image/animation.h"
+#include "runtime/image_files/animation.h"
 #include "runtime/render/frame_store.h"
 
 namespace graftal {

@@ -15,7 +15,6 @@
 
 #include "compiler/support/check.h"
 #include "compiler/support/counter_random.h"
-#include "runtime/system/worker_threads.h"
 #include "runtime/trace/camera_rays.h"
 #include "runtime/trace/pixel_filter.h"
 #include "runtime/trace/sample_stream.h"
@@ -363,7 +362,8 @@ PictureTracer::PictureTracer(const TraceModel& model, const ShaderLimits& limits
 /// Runs task(worker, number) for all numbers, until one says false; then false.
 template<class Task>
 bool PictureTracer::run(std::uint64_t tasks, const TraceControl& control, const Task& task) {
-    const WorkerThreads threads(control.threads);
+    const SerialWorkers alone;
+    const Workers& threads = control.workers ? *control.workers : static_cast<const Workers&>(alone);
     std::vector<std::unique_ptr<Worker>> workers(static_cast<std::size_t>(threads.count()));
     std::atomic<bool> complete = true;
     threads.for_each(tasks, [&](int thread, std::uint64_t number) {

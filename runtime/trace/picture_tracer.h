@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "compiler/support/workers.h"
 #include "runtime/image/image.h"
 #include "runtime/trace/aovs.h"
 #include "runtime/trace/noise_meter.h"
@@ -63,7 +64,7 @@ struct TraceStatistics {
 };
 
 struct TraceControl {
-    int threads = 0; ///< 0: as many as the machine has
+    const Workers* workers = nullptr; ///< null: the thread that asks works alone
     /// Null, or the samples that each pixel of the window has so far, by light that is sampled: a trace goes
     /// on after them, and then the picture is the one that a single trace of as many samples makes.
     std::vector<NoiseMeter>* samples = nullptr;

@@ -469,16 +469,4 @@ double TraceModel::near_enough(const Ray& ray, double share) const {
     return before_all;
 }
 
-Status load_textures(const std::vector<Material>& materials, const View& view, TextureStore& store,
-                     ModelTextures& textures) {
-    Status status;
-    const auto texture_of = [&](const Material& material) {
-        return material.texture.empty() || !status.ok() ? nullptr : store.load(material.texture, status);
-    };
-    for (const Material& material : materials)
-        textures.of_material.push_back(texture_of(material));
-    if (view.ground) textures.of_ground = texture_of(view.ground->material);
-    return status;
-}
-
 } // namespace graftal

@@ -252,8 +252,4 @@ inline bool is_cut(const TraceNode& node, std::uint32_t steps, double detail) {
     return ends_recursion(node, steps, detail <= node.cut_detail);
 }
 
-/// Reads the textures of the materials and the ground, or says which cannot be read.
-Status load_textures(const std::vector<Material>& materials, const View& view, TextureStore& store,
-                     ModelTextures& textures);
-
 } // namespace graftal

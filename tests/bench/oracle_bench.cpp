@@ -173,7 +173,8 @@ void ask(const Request& request, const std::string& view, const CameraSetting& c
 
 bool cut_into_meshes(const std::string& path, const StageOptions& options) {
     Compilation ignored;
-    const auto compiled = Session(path).compiled(options, ignored);
+    Session session(path);
+    const auto compiled = compile_scene(session, options, ignored);
     return compiled && compiled->cut.triangle_count > 0;
 }
 

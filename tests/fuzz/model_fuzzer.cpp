@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "compiler/support/check.h"
-#include "runtime/image/image.h"
+#include "runtime/image_files/image_files.h"
 #include "tests/fuzz/scratch.h"
 #include "tests/fuzz/words.h"
 #include "tools/graftal/commands.h"

@@ -8,9 +8,9 @@
 #include <string>
 
 #include "compiler/support/check.h"
-#include "runtime/image/image.h"
-#include "runtime/image/sky_file.h"
-#include "runtime/image/texture.h"
+#include "runtime/image_files/image_files.h"
+#include "runtime/image_files/sky_file.h"
+#include "runtime/image_files/texture_store.h"
 #include "tests/fuzz/scratch.h"
 
 using namespace graftal;

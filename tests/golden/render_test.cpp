@@ -13,7 +13,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "runtime/image/image.h"
+#include "runtime/image_files/image_files.h"
 
 namespace graftal {
 namespace {

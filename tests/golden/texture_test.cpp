@@ -4,7 +4,7 @@
 
 #include <gmock/gmock.h>
 
-#include "runtime/image/image.h"
+#include "runtime/image_files/image_files.h"
 
 namespace graftal {
 namespace {

@@ -6,10 +6,9 @@ namespace graftal {
 
 namespace {
 
-template<typename Compile> std::optional<TwoWays> two_ways(StageOptions options, const Compile& compile) {
-    std::optional<CompiledModel> cut = compile(options);
-    options.cut.flatten = true;
-    std::optional<CompiledModel> flat = compile(options);
+template<typename Compile> std::optional<TwoWays> two_ways(const Compile& compile) {
+    std::optional<CompiledModel> cut = compile(CutOptions{});
+    std::optional<CompiledModel> flat = compile(CutOptions{.flatten = true});
     if (!cut || !flat) return std::nullopt;
     EXPECT_GT(cut->cut.triangle_count, 0u) << "nothing is shared: the comparison would mean nothing";
     EXPECT_EQ(flat->cut.triangle_count, 0u);
@@ -21,13 +20,13 @@ template<typename Compile> std::optional<TwoWays> two_ways(StageOptions options,
 
 } // namespace
 
-std::optional<TwoWays> two_ways_of_file(const std::string& path, StageOptions options) {
-    return two_ways(std::move(options), [&](const StageOptions& o) { return compile_file(path, o); });
+std::optional<TwoWays> two_ways_of_file(const std::string& path, const StageOptions& options) {
+    return two_ways([&](const CutOptions& cut) { return compile_file(path, options, cut); });
 }
 
 std::optional<TwoWays> two_ways_of_text(const std::string& name, const std::string& text,
-                                        StageOptions options) {
-    return two_ways(std::move(options), [&](const StageOptions& o) { return compile_text(name, text, o); });
+                                        const StageOptions& options) {
+    return two_ways([&](const CutOptions& cut) { return compile_text(name, text, options, cut); });
 }
 
 Agreement agreement_of(TwoWays ways) {

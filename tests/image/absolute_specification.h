@@ -23,9 +23,9 @@ struct Agreement {
 
 /// Nothing, and a failed test, if one way has no scene, or if they are not two ways: the cut must share
 /// meshes, the absolute specification none.
-std::optional<TwoWays> two_ways_of_file(const std::string& path, StageOptions options);
+std::optional<TwoWays> two_ways_of_file(const std::string& path, const StageOptions& options);
 std::optional<TwoWays> two_ways_of_text(const std::string& name, const std::string& text,
-                                        StageOptions options);
+                                        const StageOptions& options);
 
 /// Draws both ways, in both looks.
 Agreement agreement_of(TwoWays ways);

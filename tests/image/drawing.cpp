@@ -13,9 +13,13 @@ namespace graftal {
 
 namespace {
 
-std::optional<CompiledModel> compile_path(const std::string& path, const StageOptions& options) {
+std::optional<CompiledModel> compile_path(const std::string& path, const StageOptions& options,
+                                          const CutOptions& cut) {
     Compilation compilation;
-    const auto model = Session(path).compiled(options, compilation);
+    const auto model = [&] {
+        Session session(path);
+        return compile_scene(session, options, compilation, cut);
+    }();
     EXPECT_TRUE(model) << compilation.diagnostics.render(compilation.sources) << compilation.status.message();
     return model ? std::optional(*model) : std::nullopt;
 }
@@ -40,16 +44,17 @@ Image picture_of(const std::string& directory, ImageSize size, SampleFormat form
 } // namespace
 
 std::optional<CompiledModel> compile_text(const std::string& name, const std::string& text,
-                                          const StageOptions& options) {
+                                          const StageOptions& options, const CutOptions& cut) {
     TemporaryDirectory directory;
     EXPECT_TRUE(directory.create().ok());
     const std::string path = directory.path() + "/" + name;
     EXPECT_TRUE(write_text(path, text).ok());
-    return compile_path(path, options);
+    return compile_path(path, options, cut);
 }
 
-std::optional<CompiledModel> compile_file(const std::string& path, const StageOptions& options) {
-    return compile_path(GRAFTAL_SOURCE_DIR "/" + path, options);
+std::optional<CompiledModel> compile_file(const std::string& path, const StageOptions& options,
+                                          const CutOptions& cut) {
+    return compile_path(GRAFTAL_SOURCE_DIR "/" + path, options, cut);
 }
 
 Image draw(const CompiledModel& model, SampleFormat format, std::optional<int> antialias) {

@@ -3,7 +3,7 @@
 #include <optional>
 #include <string>
 
-#include "compiler/session/session.h"
+#include "compiler/povray/compile.h"
 #include "runtime/image/image.h"
 
 namespace graftal {
@@ -11,10 +11,11 @@ namespace graftal {
 /// Compiles a model given as text, as render_model_text() takes it. Fails the test, with the diagnostics, if
 /// there is no scene.
 std::optional<CompiledModel> compile_text(const std::string& name, const std::string& text,
-                                          const StageOptions& options);
+                                          const StageOptions& options, const CutOptions& cut = {});
 
 /// The same for a model file of the project.
-std::optional<CompiledModel> compile_file(const std::string& path, const StageOptions& options);
+std::optional<CompiledModel> compile_file(const std::string& path, const StageOptions& options,
+                                          const CutOptions& cut = {});
 
 /// The picture that POV-Ray makes of a compiled model, not antialiased unless asked for (as PovrayJob has
 /// it).

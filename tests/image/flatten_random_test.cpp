@@ -25,8 +25,7 @@ void expect_the_flattened_to_agree(const std::string& name, std::string (*text_o
         const std::string text = text_of(seed);
         SCOPED_TRACE(text);
         StageOptions options = whole(size, steps);
-        options.cut.flatten = true;
-        const std::optional<CompiledModel> flat = compile_text(name, text, options);
+        const std::optional<CompiledModel> flat = compile_text(name, text, options, {.flatten = true});
         if (!flat) return;
         CompiledModel cut = parted_at(*flat, thresholds[seed % std::size(thresholds)]);
         EXPECT_GT(cut.cut.triangle_count, 0u) << "nothing is shared: the comparison would mean nothing";

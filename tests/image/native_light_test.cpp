@@ -407,8 +407,7 @@ TEST_P(NativeLight, IsPovrays) {
     const LitScene& scene = GetParam();
     StageOptions options = whole(scene.size);
     options.view.light = DefaultLight::studio;
-    options.cut.flatten = true;
-    const std::optional<CompiledModel> model = compile_text("lit.inst", scene.text, options);
+    const std::optional<CompiledModel> model = compile_text("lit.inst", scene.text, options, {.flatten = true});
     ASSERT_TRUE(model);
     const NativePicture native = shade(*model, {povray_sample_of_pixel});
     const Image povray = draw(*model, SampleFormat::linear16);
@@ -445,13 +444,12 @@ TEST(NativeLightPicture, OfTheSkyIsPovrays) {
     const ImageSize size{150, 110};
     for (const std::string ground : {"", "ground { height: 0 material: faint }"}) {
         StageOptions options = whole(size);
-        options.cut.flatten = true;
         std::optional<CompiledModel> model = compile_text("lit.inst", mirrors + ground + R"(
             sky { zenith: 1, 1, 1 }
             film { hard }
             camera { location: 2, 4, 9 look_at: 0, 3.4, 0 angle: 100 }
         )",
-                                                          options);
+                                                          options, {.flatten = true});
         ASSERT_TRUE(model);
         SkyLight& sky = *model->view.sky_light;
         sky.picture = sky_picture();
@@ -471,8 +469,7 @@ TEST(NativeLightSamples, ArePovraysOfAnAntialiasedPixel) {
     const LitScene& scene = scenes[1];
     StageOptions options = whole(scene.size);
     options.view.light = DefaultLight::studio;
-    options.cut.flatten = true;
-    const std::optional<CompiledModel> model = compile_text("lit.inst", scene.text, options);
+    const std::optional<CompiledModel> model = compile_text("lit.inst", scene.text, options, {.flatten = true});
     ASSERT_TRUE(model);
     for (const int depth : {1, 2, 3}) {
         SCOPED_TRACE(depth);

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "compiler/session/session.h"
+#include "compiler/povray/compile.h"
 #include "runtime/image/image.h"
 
 namespace graftal {

@@ -242,9 +242,8 @@ TEST(OracleItself, CanSayNo) {
     const DetailedModel ours = look_at_file(path, stopped_after(2), compilation);
     const DetailedModel coarser = look_at_file(path, stopped_after(1), compilation);
     ASSERT_TRUE(ours.viewed && coarser.viewed);
-    StageOptions flat = stopped_after(2);
-    flat.cut.flatten = true;
-    const auto compiled = Session(path).compiled(flat, compilation);
+    Session session(path);
+    const auto compiled = compile_scene(session, stopped_after(2), compilation, {.flatten = true});
     ASSERT_TRUE(compiled);
     CompiledModel theirs = *compiled;
     Status status;

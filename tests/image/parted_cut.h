@@ -1,6 +1,6 @@
 #pragma once
 
-#include "compiler/session/session.h"
+#include "compiler/povray/compile.h"
 
 namespace graftal {
 

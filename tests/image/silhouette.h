@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "compiler/session/session.h"
+#include "compiler/povray/compile.h"
 #include "runtime/image/image.h"
 
 namespace graftal {

@@ -9,7 +9,7 @@
 
 #include <gtest/gtest.h>
 
-#include "compiler/session/session.h"
+#include "compiler/povray/compile.h"
 #include "tests/property/nearest.h"
 
 namespace graftal {
@@ -103,8 +103,8 @@ TEST_P(ChaosGame, PointsAndGeometryAreCloseBothWays) {
     options.view.size = {320, 240};
     options.detail.error_px = 8;
     Compilation compilation;
-    const std::shared_ptr<const CompiledModel> compiled =
-        Session(std::string(GRAFTAL_SOURCE_DIR) + "/" + GetParam()).compiled(options, compilation);
+    Session session(std::string(GRAFTAL_SOURCE_DIR) + "/" + GetParam());
+    const std::shared_ptr<const CompiledModel> compiled = compile_scene(session, options, compilation);
     ASSERT_TRUE(compiled) << compilation.diagnostics.render(compilation.sources);
     const std::vector<Vec3> points = chaos_points(*compiled->model);
     const std::vector<Vec3> drawn = drawn_points(compiled->cut);

@@ -1,6 +1,6 @@
 // The pipeline as a whole: text -> analysed model -> cut.
 
-#include "compiler/session/session.h"
+#include "compiler/povray/compile.h"
 
 #include <algorithm>
 #include <filesystem>
@@ -36,6 +36,10 @@ class Compile : public ::testing::Test {
     std::shared_ptr<const AnalysedModel> analyse(const std::string& text, bool for_report = false) {
         EXPECT_TRUE(write_text("model.inst", text).ok());
         return Session("model.inst").analysed(options_, compilation_, for_report);
+    }
+    std::shared_ptr<const CompiledModel> compile(Compilation& compilation) {
+        Session session("model.inst");
+        return compile_scene(session, options_, compilation);
     }
     std::string messages() const { return compilation_.diagnostics.render(compilation_.sources); }
 
@@ -141,14 +145,14 @@ TEST_F(Compile, AFileThatCannotBeReadIsTheEnvironmentsFault) {
 TEST_F(Compile, ABadModelStopsBeforeAnalysis) {
     EXPECT_FALSE(analyse("object a { instance: b }\n"));
     EXPECT_THAT(messages(), HasSubstr("unknown object 'b'"));
-    EXPECT_FALSE(Session("model.inst").compiled(options_, compilation_));
+    EXPECT_FALSE(compile(compilation_));
 }
 
 TEST_F(Compile, CompilesToACutForTheView) {
     ASSERT_TRUE(write_text("model.inst", gasket).ok());
     options_.view.size = {320, 240};
     options_.lower.steps = 3;
-    const auto model = Session("model.inst").compiled(options_, compilation_);
+    const auto model = compile(compilation_);
     ASSERT_TRUE(model) << messages();
     EXPECT_EQ(model->view.size, options_.view.size);
     EXPECT_EQ(model->cut.leaf_count, 27);
@@ -163,7 +167,7 @@ TEST_F(Compile, CompilesToACutForTheView) {
 
 TEST_F(Compile, AModelOfPlanesOnlyHasAView) {
     ASSERT_TRUE(write_text("model.inst", "object floor { instance: plane }\n").ok());
-    EXPECT_TRUE(Session("model.inst").compiled(options_, compilation_)) << messages();
+    EXPECT_TRUE(compile(compilation_)) << messages();
 }
 
 TEST_F(Compile, PointsAndSpecksAreNoCrash) {
@@ -176,7 +180,7 @@ TEST_F(Compile, PointsAndSpecksAreNoCrash) {
     for (const std::string& text : models) {
         ASSERT_TRUE(write_text("model.inst", text).ok());
         Compilation compilation;
-        const bool compiled = Session("model.inst").compiled(options_, compilation) != nullptr;
+        const bool compiled = compile(compilation) != nullptr;
         EXPECT_NE(compiled, compilation.diagnostics.has_errors()) << text;
     }
 }

@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include "compiler/povray/compile.h"
 #include "compiler/povray/emit_povray.h"
 #include "compiler/session/shared_framing.h"
 #include "compiler/session/stages.h"
@@ -127,7 +128,7 @@ std::vector<float> picture_of(const ViewedModel& viewed, std::shared_ptr<const P
     Image picture{viewed.view.size.width, viewed.view.size.height, 3, {}};
     picture.pixels.resize(3u * static_cast<std::size_t>(picture.width) *
                           static_cast<std::size_t>(picture.height));
-    EXPECT_TRUE(PictureTracer(model).trace({}, {.threads = 1, .cancelled = {}, .on_tile = {}}, picture));
+    EXPECT_TRUE(PictureTracer(model).trace({}, {}, picture));
     return picture.pixels;
 }
 
@@ -147,7 +148,7 @@ Seen look(Session& session, const StageOptions& options, bool with_picture) {
     if (const auto model = session.analysed(options, compilation, true))
         seen.stats = stats_json(*model, levels_of(*model, options.lower.steps), compilation.sources);
     tell();
-    if (const auto model = session.compiled(options, compilation)) seen.sdl = sdl_of(*model);
+    if (const auto model = compile_scene(session, options, compilation)) seen.sdl = sdl_of(*model);
     tell();
     if (!with_picture) return seen;
     const auto viewed = session.viewed(options, compilation);
@@ -185,7 +186,7 @@ TEST_P(Edited, GivesWhatAFreshRunGives) {
     }
     EXPECT_GT(good, edits / 3);
     EXPECT_GT(pictures, edits / edits_a_picture / 3);
-    const StageRuns& runs = session.runs();
+    const StageRuns runs = session.runs();
     EXPECT_LT(runs.lowered, edits / 2u);
     EXPECT_LT(runs.prepared, edits - edits / 10u);
 }
@@ -205,7 +206,7 @@ class Runs : public ::testing::TestWithParam<std::size_t> {
 
     void make() {
         Compilation compilation;
-        EXPECT_TRUE(session_.compiled(options_, compilation))
+        EXPECT_TRUE(session_.prepared(options_, compilation))
             << compilation.diagnostics.render(compilation.sources);
     }
 
@@ -214,9 +215,9 @@ class Runs : public ::testing::TestWithParam<std::size_t> {
         const StageRuns before = session_.runs();
         change();
         make();
-        const StageRuns& now = session_.runs();
-        return {now.source - before.source, now.lowered - before.lowered,   now.analysed - before.analysed,
-                now.viewed - before.viewed, now.prepared - before.prepared, now.compiled - before.compiled};
+        const StageRuns now = session_.runs();
+        return {now.source - before.source,     now.parsed - before.parsed, now.lowered - before.lowered,
+                now.analysed - before.analysed, now.viewed - before.viewed, now.prepared - before.prepared};
     }
 
     bool is_lsys() const { return GetParam() == 0; }
@@ -228,19 +229,18 @@ class Runs : public ::testing::TestWithParam<std::size_t> {
 TEST_P(Runs, AStageRunsAgainIfAnInputOfItsOwnDiffers) {
     EXPECT_EQ(session_.runs(), (StageRuns{1, 1, 1, 1, 1, 1}));
     EXPECT_EQ(after([] {}), StageRuns());
-    EXPECT_EQ(after([&] { options_.view.camera.angle_deg = 30; }), (StageRuns{0, 0, 0, 1, 0, 1}));
-    EXPECT_EQ(after([&] { options_.view.size.width = 32; }), (StageRuns{0, 0, 0, 1, 0, 1}));
-    EXPECT_EQ(after([&] { options_.detail.error_px = 2; }), (StageRuns{0, 0, 0, 0, 0, 1}));
-    EXPECT_EQ(after([&] { options_.detail.error_px = 0; }), (StageRuns{0, 0, 0, 0, 1, 1}));
-    EXPECT_EQ(after([&] { options_.cut.flatten = true; }), (StageRuns{0, 0, 0, 0, 0, 1}));
+    EXPECT_EQ(after([&] { options_.view.camera.angle_deg = 30; }), (StageRuns{0, 0, 0, 0, 1, 0}));
+    EXPECT_EQ(after([&] { options_.view.size.width = 32; }), (StageRuns{0, 0, 0, 0, 1, 0}));
+    EXPECT_EQ(after([&] { options_.detail.error_px = 2; }), StageRuns());
+    EXPECT_EQ(after([&] { options_.detail.error_px = 0; }), (StageRuns{0, 0, 0, 0, 0, 1}));
     // The steps of an L-system are spent on its text; those of others are levels of the picture.
     EXPECT_EQ(after([&] { options_.lower.steps = 2; }),
-              is_lsys() ? (StageRuns{0, 1, 1, 1, 1, 1}) : (StageRuns{0, 0, 0, 1, 1, 1}));
+              is_lsys() ? (StageRuns{0, 0, 1, 1, 1, 1}) : (StageRuns{0, 0, 0, 0, 1, 1}));
     EXPECT_EQ(after([&] { options_.lower.set[templates[GetParam()].parameter] = 0.2; }),
-              (StageRuns{0, 1, 1, 1, 1, 1}));
+              (StageRuns{0, 0, 1, 1, 1, 1}));
     // A zoom gives the graph that was analysed a new root.
-    EXPECT_EQ(after([&] { options_.view.zoom.zoom = Magnification::of(2); }), (StageRuns{0, 0, 0, 1, 1, 1}));
-    EXPECT_EQ(after([&] { options_.view.camera.angle_deg = 40; }), (StageRuns{0, 0, 0, 1, 1, 1}));
+    EXPECT_EQ(after([&] { options_.view.zoom.zoom = Magnification::of(2); }), (StageRuns{0, 0, 0, 0, 1, 1}));
+    EXPECT_EQ(after([&] { options_.view.camera.angle_deg = 40; }), (StageRuns{0, 0, 0, 0, 1, 1}));
 }
 
 TEST_P(Runs, ATextThatIsTheSameIsNoEdit) {
@@ -262,16 +262,16 @@ TEST(Session, WhatWasGivenUpIsMadeAgain) {
     for (const Keep keep : {Keep::everything, Keep::for_views, Keep::nothing}) {
         Session session("plant.lsys", text, keep);
         Compilation compilation;
-        const auto first = session.compiled(options, compilation);
+        const auto first = compile_scene(session, options, compilation);
         ASSERT_TRUE(first);
         if (expected.empty()) expected = sdl_of(*first);
         session.yield_memory();
-        const auto again = session.compiled(options, compilation);
+        const auto again = compile_scene(session, options, compilation);
         ASSERT_TRUE(again);
         EXPECT_EQ(sdl_of(*first), expected);
         EXPECT_EQ(sdl_of(*again), expected);
         options.view.size.width = 32;
-        EXPECT_TRUE(session.compiled(options, compilation));
+        EXPECT_TRUE(compile_scene(session, options, compilation));
         options.view.size.width = 24;
     }
 }
@@ -327,7 +327,7 @@ TEST(Session, EndsWhereItIsCancelled) {
         session.set_control({CancelFlag([&] { return ++asked, false; }),
                              [&](const Progress& progress) { stages.emplace(progress.stage); }});
         Compilation compilation;
-        const auto whole = session.compiled(options, compilation);
+        const auto whole = compile_scene(session, options, compilation);
         ASSERT_TRUE(whole);
         expected = sdl_of(*whole);
         most = asked;
@@ -340,12 +340,12 @@ TEST(Session, EndsWhereItIsCancelled) {
         bool may_be_raised = true;
         session.set_control({CancelFlag([&] { return ++asked > last && may_be_raised; }), {}});
         Compilation compilation;
-        EXPECT_FALSE(session.compiled(options, compilation));
+        EXPECT_FALSE(compile_scene(session, options, compilation));
         EXPECT_EQ(compilation.status.message(), "interrupted");
         EXPECT_EQ(asked, last + 1) << "it went on";
         may_be_raised = false;
         Compilation again;
-        const auto whole = session.compiled(options, again);
+        const auto whole = compile_scene(session, options, again);
         ASSERT_TRUE(whole);
         EXPECT_EQ(sdl_of(*whole), expected);
     }
@@ -357,7 +357,7 @@ TEST(Session, AFailureIsKept) {
     std::string first;
     for (int i = 0; i < 3; ++i) {
         Compilation compilation;
-        EXPECT_FALSE(session.compiled({}, compilation));
+        EXPECT_FALSE(compile_scene(session, {}, compilation));
         const std::string said = compilation.diagnostics.render(compilation.sources);
         if (i == 0) first = said;
         EXPECT_EQ(said, first);

@@ -28,8 +28,8 @@ std::string progress_text(const AnimationProgress& progress) {
         break;
     }
     std::string text = frame;
+    if (progress.fraction) text += fmt::format(" at {:.0f} %", 100 * *progress.fraction);
     if (progress.seconds_left) text += fmt::format(", {} left", duration_text(*progress.seconds_left));
-    if (progress.fraction) text += fmt::format("  {:3.0f} %", 100 * *progress.fraction);
     return text;
 }
 

@@ -1,6 +1,6 @@
 #include <fmt/format.h>
 
-#include "runtime/image/image.h"
+#include "runtime/image_files/image_files.h"
 #include "tools/graftal/commands.h"
 #include "tools/graftal/report.h"
 

@@ -27,7 +27,7 @@ PointsOptions points_options(const Options& options) {
 
 /// Says what many points take, within a factor of five: it depends on how deep their parts lie.
 void say_what_points_take(const PointsOptions& points) {
-    constexpr double points_a_second = 5e6, worth_saying_s = 60;
+    constexpr double points_a_second = 2e7, worth_saying_s = 60;
     const double seconds = static_cast<double>(point_count(points)) / points_a_second;
     if (seconds > worth_saying_s)
         say(fmt::format("graftal: {} points will take about {} seconds of one processor; ask for fewer "

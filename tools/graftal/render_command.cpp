@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include "compiler/detail/coarser.h"
+#include "compiler/povray/compile.h"
 #include "runtime/render/povray_engine.h"
 #include "runtime/render/render.h"
 #include "runtime/render/scene_files.h"
@@ -66,7 +67,8 @@ int run_render(const Options& options) {
 int run_compile(const Options& options) {
     Compilation compilation;
     CommandSession session(options, options.operands.front());
-    const std::shared_ptr<const CompiledModel> model = session.compiled(options.render.compile, compilation);
+    const std::shared_ptr<const CompiledModel> model = 
+        compile_scene(session, options.render.compile, compilation, options.render.cut);
     const Interruption interruption;
     if (model) {
         const bool include = options.render.output.ends_with(".inc");

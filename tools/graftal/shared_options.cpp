@@ -241,7 +241,7 @@ void add_view(CLI::App& app, Options& options) {
         ->transform(CLI::CheckedTransformer(qualities).description(""))
         ->type_name("draft|normal|best")
         ->take_last();
-    app.add_flag("--flatten", compile.cut.flatten,
+    app.add_flag("--flatten", options.render.cut.flatten,
                  "Write every part in its place, without sharing (for comparison)");
 }
 

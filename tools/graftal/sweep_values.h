@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "runtime/image/animation.h"
+#include "runtime/image_files/animation.h"
 #include "runtime/render/sweep.h"
 
 namespace graftal {

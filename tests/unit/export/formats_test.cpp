@@ -12,7 +12,7 @@
 #include <gtest/gtest.h>
 
 #include "compiler/primitives/mesh_file.h"
-#include "runtime/image/texture.h"
+#include "runtime/image_files/texture_store.h"
 #include "tests/unit/export/exporting.h"
 
 namespace graftal {

@@ -9,7 +9,7 @@
 #include "compiler/support/file.h"
 #include "runtime/farm/contact_sheet.h"
 #include "runtime/farm/join_tiles.h"
-#include "runtime/image/small_text.h"
+#include "runtime/image_files/small_text.h"
 #include "runtime/system/temporary_directory.h"
 
 namespace graftal {

@@ -1,4 +1,4 @@
-#include "runtime/image/animation.h"
+#include "runtime/image_files/animation.h"
 
 #include <csignal>
 #include <filesystem>
@@ -8,8 +8,8 @@
 #include <sys/resource.h>
 
 #include "compiler/support/file.h"
-#include "runtime/image/image.h"
-#include "runtime/image/png_chunks.h"
+#include "runtime/image_files/image_files.h"
+#include "runtime/image_files/png_chunks.h"
 #include "runtime/render/frame_store.h"
 #include "runtime/system/temporary_directory.h"
 

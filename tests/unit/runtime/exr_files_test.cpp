@@ -1,4 +1,4 @@
-#include "runtime/image/exr_files.h"
+#include "runtime/image_files/exr_files.h"
 
 #include <array>
 #include <bit>

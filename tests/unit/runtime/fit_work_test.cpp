@@ -215,7 +215,7 @@ TEST_F(FitWork, RaysGiveWayInMeshes) {
     EXPECT_LE(model.seconds, options.work_seconds);
     EXPECT_LE(model.tried_seconds, options.work_seconds);
     PictureTracer tracer(*model.model);
-    ASSERT_TRUE(tracer.probe(0, 64 * 48, {.threads = 1, .cancelled = {}, .on_tile = {}}));
+    ASSERT_TRUE(tracer.probe(0, 64 * 48, {}));
     const double seconds = static_cast<double>(tracer.statistics().work) / WorkRates::ray_steps;
     EXPECT_LE(seconds * model.sampling.samples_a_pixel(), 1.5 * options.work_seconds);
 }
@@ -235,7 +235,7 @@ TEST_F(FitWork, SeesWhatIsThin) {
     const FittedModel model = fitted(graph, options, [](double) { return false; });
     ASSERT_EQ(model.error_px, options.error_px);
     PictureTracer tracer(*model.model);
-    ASSERT_TRUE(tracer.probe(0, 320 * 240, {.threads = 1, .cancelled = {}, .on_tile = {}}));
+    ASSERT_TRUE(tracer.probe(0, 320 * 240, {}));
     const double seconds = static_cast<double>(tracer.statistics().work) / WorkRates::ray_steps;
     EXPECT_GT(model.seconds, seconds / 1.5);
     EXPECT_LT(model.seconds, seconds * 1.5);

@@ -1,4 +1,4 @@
-#include "runtime/image/image.h"
+#include "runtime/image_files/image_files.h"
 
 #include <cmath>
 #include <filesystem>

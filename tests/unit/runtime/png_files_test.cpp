@@ -1,4 +1,4 @@
-#include "runtime/image/png_files.h"
+#include "runtime/image_files/png_files.h"
 
 #include <algorithm>
 #include <cstdlib>
@@ -10,7 +10,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "runtime/image/png_chunks.h"
+#include "runtime/image_files/png_chunks.h"
 #include "runtime/system/temporary_directory.h"
 
 namespace graftal {

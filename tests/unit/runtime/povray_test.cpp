@@ -7,7 +7,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "runtime/image/image.h"
+#include "runtime/image_files/image_files.h"
 #include "runtime/system/interruption.h"
 #include "runtime/system/temporary_directory.h"
 

@@ -1,4 +1,4 @@
-#include "runtime/image/sky_file.h"
+#include "runtime/image_files/sky_file.h"
 
 #include <cmath>
 #include <limits>
@@ -6,8 +6,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "runtime/image/image.h"
-#include "runtime/image/texture.h"
+#include "runtime/image_files/image_files.h"
+#include "runtime/image_files/texture_store.h"
 #include "runtime/system/temporary_directory.h"
 
 namespace graftal {

@@ -1,11 +1,11 @@
-#include "runtime/image/texture.h"
+#include "runtime/image_files/texture_store.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 
 #include "compiler/support/file.h"
-#include "runtime/image/image.h"
+#include "runtime/image_files/image_files.h"
 #include "runtime/system/temporary_directory.h"
 
 namespace graftal {

@@ -55,7 +55,7 @@ TEST_F(Turntable, ACameraThatMovesLowersAnalysesAndPreparesOnce) {
     EXPECT_EQ(runs.analysed, 1u);
     EXPECT_EQ(runs.prepared, 1u);
     EXPECT_EQ(runs.viewed, 60u);
-    EXPECT_EQ(runs.compiled, 0u);
+    EXPECT_EQ(runs.parsed, 1u);
 }
 
 TEST_F(Turntable, SoItIsForAnLSystem) {

@@ -1,4 +1,4 @@
-#include "runtime/image/small_text.h"
+#include "runtime/image_files/small_text.h"
 
 #include <algorithm>
 #include <array>

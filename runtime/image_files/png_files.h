@@ -5,8 +5,8 @@
 #include <span>
 #include <string>
 
-#include "runtime/image/image.h"
-#include "runtime/image/row_sink.h"
+#include "runtime/image_files/image_files.h"
+#include "runtime/image_files/row_sink.h"
 
 namespace graftal {
 

@@ -1,4 +1,4 @@
-#include "runtime/image/png_files.h"
+#include "runtime/image_files/png_files.h"
 
 #include <algorithm>
 #include <cerrno>
@@ -13,7 +13,7 @@
 #include <png.h>
 
 #include "compiler/support/check.h"
-#include "runtime/image/png_chunks.h"
+#include "runtime/image_files/png_chunks.h"
 
 namespace graftal {
 
@@ -145,13 +145,6 @@ std::string write(const std::string& path, const Kind& kind, const ImageMetadata
     return std::fclose(file.release()) == 0 ? "" : std::strerror(errno);
 }
 
-/// largest * value, rounded, halves up. Adding 0.5 would round a float just below a half up as well.
-unsigned level(float value, float largest) {
-    const float scaled = largest * (value > 0 ? std::min(value, 1.0f) : 0.0f);
-    const int below = static_cast<int>(scaled);
-    return static_cast<unsigned>(below + (scaled - static_cast<float>(below) >= 0.5f ? 1 : 0));
-}
-
 void put_level16(png_byte* bytes, unsigned value) {
     bytes[0] = static_cast<png_byte>(value >> 8);
     bytes[1] = static_cast<png_byte>(value & 0xff);
@@ -163,7 +156,7 @@ void put_row(const float* values, std::size_t count, int bits, png_byte* row) {
             row[i] = level8_of(values[i]);
     else
         for (std::size_t i = 0; i < count; ++i)
-            put_level16(row + 2 * i, level(values[i], 65535));
+            put_level16(row + 2 * i, level_of(values[i], 65535));
 }
 
 // Reading
@@ -250,10 +243,6 @@ class Reader {
 };
 
 } // namespace
-
-std::uint8_t level8_of(float sample) {
-    return static_cast<std::uint8_t>(level(sample, 255));
-}
 
 std::optional<bool> is_png_file(const std::string& path) {
     const OpenFile file(std::fopen(path.c_str(), "rb"));

@@ -1,4 +1,4 @@
-#include "runtime/image/sky_file.h"
+#include "runtime/image_files/sky_file.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +7,7 @@
 
 #include "compiler/support/small_letters.h"
 #include "compiler/support/srgb.h"
-#include "runtime/image/image.h"
+#include "runtime/image_files/image_files.h"
 
 namespace graftal {
 

@@ -1,4 +1,4 @@
-#include "runtime/image/picture_files.h"
+#include "runtime/image_files/picture_files.h"
 
 #include <algorithm>
 #include <cerrno>
@@ -12,7 +12,7 @@
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
 
-#include "runtime/image/files/claims.h"
+#include "runtime/image_files/module/claims.h"
 
 namespace graftal {
 

@@ -1,4 +1,4 @@
-#include "runtime/image/png_chunks.h"
+#include "runtime/image_files/png_chunks.h"
 
 #include <boost/crc.hpp>
 

@@ -1,4 +1,4 @@
-#include "runtime/image/animation.h"
+#include "runtime/image_files/animation.h"
 
 #include <algorithm>
 #include <cerrno>
@@ -11,7 +11,7 @@
 #include <fmt/format.h>
 
 #include "compiler/support/file.h"
-#include "runtime/image/png_chunks.h"
+#include "runtime/image_files/png_chunks.h"
 
 namespace graftal {
 

@@ -1,4 +1,4 @@
-#include "runtime/image/files/claims.h"
+#include "runtime/image_files/module/claims.h"
 
 #include <algorithm>
 #include <array>

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <string>
 
-#include "runtime/image/image.h"
+#include "runtime/image_files/image_files.h"
 
 namespace graftal {
 

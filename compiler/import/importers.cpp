@@ -8,15 +8,15 @@
 
 #include <fmt/format.h>
 
-#include "compiler/import/cfdg.h"
-#include "compiler/import/cpfg.h"
-#include "compiler/import/eisenscript.h"
-#include "compiler/import/flame.h"
+#include "compiler/import/cfdg/importer.h"
+#include "compiler/import/cpfg/importer.h"
+#include "compiler/import/cpfg/surface.h"
+#include "compiler/import/eisenscript/importer.h"
+#include "compiler/import/flame/importer.h"
 #include "compiler/import/foreign_text.h"
-#include "compiler/import/fractint_ifs.h"
-#include "compiler/import/fractint_lsystem.h"
-#include "compiler/import/lparser.h"
-#include "compiler/import/vlab_surface.h"
+#include "compiler/import/fractint/ifs.h"
+#include "compiler/import/fractint/lsystem.h"
+#include "compiler/import/lparser/importer.h"
 #include "compiler/support/file.h"
 #include "compiler/support/small_letters.h"
 #include "compiler/support/text_encoding.h"

@@ -1,7 +1,7 @@
 #include "compiler/languages/languages.h"
 
 #include "compiler/inst/inst_language.h"
-#include "compiler/lsys/lsys_language.h"
+#include "compiler/lsys/language.h"
 #include "compiler/rifs/rifs_language.h"
 
 namespace graftal {

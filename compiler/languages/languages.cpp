@@ -2,7 +2,7 @@
 
 #include "compiler/inst/inst_language.h"
 #include "compiler/lsys/language.h"
-#include "compiler/rifs/rifs_language.h"
+#include "compiler/rifs/language.h"
 
 namespace graftal {
 

@@ -1,4 +1,4 @@
-#include "compiler/rifs/rifs_chances.h"
+#include "compiler/rifs/chances.h"
 
 #include <algorithm>
 #include <cmath>

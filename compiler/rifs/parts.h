@@ -4,7 +4,7 @@
 #include <optional>
 #include <string_view>
 
-#include "compiler/rifs/rifs_ast.h"
+#include "compiler/rifs/ast.h"
 #include "compiler/syntax/token_stream.h"
 
 // The pieces of the `.rifs` grammar that stand in more than one place. All of them report what is wrong;

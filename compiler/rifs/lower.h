@@ -3,7 +3,7 @@
 #include <optional>
 
 #include "compiler/graph/graph.h"
-#include "compiler/rifs/rifs_ast.h"
+#include "compiler/rifs/ast.h"
 
 namespace graftal {
 

@@ -1,4 +1,4 @@
-#include "compiler/rifs/rifs_parser.h"
+#include "compiler/rifs/parser.h"
 
 #include <string>
 

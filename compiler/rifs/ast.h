@@ -6,8 +6,8 @@
 #include <string_view>
 #include <vector>
 
+#include "compiler/rifs/look.h"
 #include "compiler/rifs/orbit_ast.h"
-#include "compiler/rifs/rifs_look.h"
 #include "compiler/support/source.h"
 #include "compiler/syntax/expression.h"
 #include "compiler/syntax/names.h"

@@ -1,4 +1,4 @@
-#include "compiler/rifs/rifs_system.h"
+#include "compiler/rifs/system.h"
 
 #include <algorithm>
 #include <cmath>

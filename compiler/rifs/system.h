@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "compiler/lower/lowering.h"
-#include "compiler/rifs/rifs_ast.h"
+#include "compiler/rifs/ast.h"
 
 // A `.rifs` file between its tree and the graph: names looked up, numbers evaluated, digraphs spelled out.
 

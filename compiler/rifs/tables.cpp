@@ -1,11 +1,11 @@
-#include "compiler/rifs/rifs_tables.h"
+#include "compiler/rifs/tables.h"
 
 #include <algorithm>
 #include <utility>
 
 #include <fmt/format.h>
 
-#include "compiler/rifs/rifs_parts.h"
+#include "compiler/rifs/parts.h"
 #include "compiler/support/affine.h"
 #include "compiler/syntax/expression_parser.h"
 

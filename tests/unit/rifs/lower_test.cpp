@@ -1,4 +1,4 @@
-#include "compiler/rifs/lower_rifs.h"
+#include "compiler/rifs/lower.h"
 
 #include <cmath>
 #include <map>

@@ -1,4 +1,4 @@
-#include "compiler/rifs/lower_rifs.h"
+#include "compiler/rifs/lower.h"
 
 #include <algorithm>
 #include <map>
@@ -16,9 +16,9 @@
 #include "compiler/lower/lowering.h"
 #include "compiler/lower/model_family.h"
 #include "compiler/primitives/primitive.h"
+#include "compiler/rifs/chances.h"
 #include "compiler/rifs/lower_orbit.h"
-#include "compiler/rifs/rifs_chances.h"
-#include "compiler/rifs/rifs_system.h"
+#include "compiler/rifs/system.h"
 #include "compiler/support/number_range.h"
 #include "compiler/syntax/everyday_words.h"
 

@@ -1,4 +1,4 @@
-#include "compiler/rifs/rifs_parts.h"
+#include "compiler/rifs/parts.h"
 
 #include <algorithm>
 #include <array>

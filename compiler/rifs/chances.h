@@ -3,7 +3,7 @@
 #include <optional>
 #include <vector>
 
-#include "compiler/rifs/rifs_system.h"
+#include "compiler/rifs/system.h"
 
 namespace graftal {
 

@@ -1,4 +1,4 @@
-#include "compiler/rifs/rifs_parser.h"
+#include "compiler/rifs/parser.h"
 
 #include <optional>
 #include <string>
@@ -7,8 +7,8 @@
 #include <fmt/format.h>
 
 #include "compiler/rifs/orbit_parser.h"
-#include "compiler/rifs/rifs_parts.h"
-#include "compiler/rifs/rifs_tables.h"
+#include "compiler/rifs/parts.h"
+#include "compiler/rifs/tables.h"
 #include "compiler/syntax/everyday_words.h"
 #include "compiler/syntax/expression_parser.h"
 

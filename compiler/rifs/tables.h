@@ -4,10 +4,10 @@
 #include <optional>
 #include <vector>
 
-#include "compiler/rifs/rifs_ast.h"
+#include "compiler/rifs/ast.h"
 #include "compiler/syntax/token_stream.h"
 
-// The two tables of the `.rifs` grammar: rows of codes, and the control digraph. As in rifs_parts.h, after
+// The two tables of the `.rifs` grammar: rows of codes, and the control digraph. As in parts.h, after
 // `false` or nothing the caller decides where to go on.
 
 namespace graftal {

@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-#include "compiler/rifs/rifs_system.h"
+#include "compiler/rifs/system.h"
 #include "compiler/support/number.h"
 
 namespace graftal {

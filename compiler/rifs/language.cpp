@@ -1,9 +1,9 @@
-#include "compiler/rifs/rifs_language.h"
+#include "compiler/rifs/language.h"
 
 #include <utility>
 
-#include "compiler/rifs/lower_rifs.h"
-#include "compiler/rifs/rifs_parser.h"
+#include "compiler/rifs/lower.h"
+#include "compiler/rifs/parser.h"
 
 namespace graftal {
 

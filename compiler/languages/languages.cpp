@@ -1,6 +1,6 @@
 #include "compiler/languages/languages.h"
 
-#include "compiler/inst/inst_language.h"
+#include "compiler/inst/language.h"
 #include "compiler/lsys/language.h"
 #include "compiler/rifs/language.h"
 

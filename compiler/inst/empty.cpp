@@ -1,4 +1,4 @@
-#include "compiler/inst/inst_empty.h"
+#include "compiler/inst/empty.h"
 
 #include <algorithm>
 #include <utility>

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "compiler/inst/inst_hues.h"
-#include "compiler/inst/inst_ink.h"
+#include "compiler/inst/hues.h"
+#include "compiler/inst/ink.h"
 
 namespace graftal {
 

@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-#include "compiler/inst/inst_lowerer.h"
+#include "compiler/inst/lowerer.h"
 #include "compiler/lower/inner_parameters.h"
 #include "compiler/lower/lower_settings.h"
 #include "compiler/lower/lower_transform.h"

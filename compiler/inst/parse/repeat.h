@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "compiler/inst/inst_ast.h"
+#include "compiler/inst/parse/ast.h"
 #include "compiler/syntax/token_stream.h"
 
 // Lines that the groups of an object and the blocks of its repeats share.

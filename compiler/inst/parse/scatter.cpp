@@ -1,4 +1,4 @@
-#include "compiler/inst/scatter.h"
+#include "compiler/inst/parse/scatter.h"
 
 #include <algorithm>
 #include <array>

@@ -1,4 +1,4 @@
-#include "compiler/inst/inst_hues.h"
+#include "compiler/inst/hues.h"
 
 #include <cmath>
 #include <deque>

@@ -1,4 +1,4 @@
-#include "compiler/inst/inst_ink.h"
+#include "compiler/inst/ink.h"
 
 #include <algorithm>
 #include <cmath>

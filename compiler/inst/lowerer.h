@@ -9,10 +9,10 @@
 #include <utility>
 #include <vector>
 
-#include "compiler/inst/inst_chance.h"
-#include "compiler/inst/inst_hues.h"
-#include "compiler/inst/inst_index.h"
-#include "compiler/inst/inst_ink.h"
+#include "compiler/inst/chance.h"
+#include "compiler/inst/hues.h"
+#include "compiler/inst/index.h"
+#include "compiler/inst/ink.h"
 #include "compiler/lower/lowering.h"
 #include "compiler/lower/model_family.h"
 #include "compiler/support/counter_random.h"
@@ -23,8 +23,8 @@ namespace graftal {
 /// work.
 inline constexpr std::size_t max_inst_work = 30'000'000;
 
-/// Lowers one `.inst` file. lower_inst.cpp enumerates the objects, inst_names.cpp looks up names, and
-/// inst_groups.cpp makes instances of the groups of one object.
+/// Lowers one `.inst` file. lower.cpp enumerates the objects, names.cpp looks up names, and
+/// groups.cpp makes instances of the groups of one object.
 class InstLowerer {
   public:
     /// Both must outlive this.

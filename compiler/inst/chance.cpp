@@ -1,4 +1,4 @@
-#include "compiler/inst/inst_chance.h"
+#include "compiler/inst/chance.h"
 
 #include <map>
 #include <utility>

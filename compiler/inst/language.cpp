@@ -1,9 +1,9 @@
-#include "compiler/inst/inst_language.h"
+#include "compiler/inst/language.h"
 
 #include <utility>
 
-#include "compiler/inst/inst_parser.h"
-#include "compiler/inst/lower_inst.h"
+#include "compiler/inst/lower.h"
+#include "compiler/inst/parse/parser.h"
 
 namespace graftal {
 

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "compiler/graph/graph.h"
-#include "compiler/inst/inst_ast.h"
-#include "compiler/inst/inst_hues.h"
+#include "compiler/inst/hues.h"
+#include "compiler/inst/parse/ast.h"
 #include "compiler/lower/lowering.h"
 
 namespace graftal {

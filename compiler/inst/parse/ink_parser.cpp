@@ -3,7 +3,7 @@
 #include <string_view>
 #include <utility>
 
-#include "compiler/inst/inst_repeat.h"
+#include "compiler/inst/parse/repeat.h"
 #include "compiler/syntax/expression_parser.h"
 
 namespace graftal {

@@ -1,4 +1,4 @@
-#include "compiler/inst/inst_body.h"
+#include "compiler/inst/parse/body.h"
 
 #include <algorithm>
 #include <iterator>
@@ -10,7 +10,7 @@
 
 #include <fmt/format.h>
 
-#include "compiler/inst/inst_repeat.h"
+#include "compiler/inst/parse/repeat.h"
 #include "compiler/syntax/everyday_words.h"
 #include "compiler/syntax/expression_parser.h"
 

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "compiler/inst/inst_ast.h"
+#include "compiler/inst/parse/ast.h"
 #include "compiler/support/diagnostics.h"
 
 namespace graftal {

@@ -1,4 +1,4 @@
-#include "compiler/inst/inst_repeat.h"
+#include "compiler/inst/parse/repeat.h"
 
 #include <algorithm>
 #include <utility>

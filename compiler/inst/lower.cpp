@@ -1,4 +1,4 @@
-#include "compiler/inst/lower_inst.h"
+#include "compiler/inst/lower.h"
 
 #include <algorithm>
 #include <map>
@@ -8,8 +8,8 @@
 
 #include <fmt/format.h>
 
-#include "compiler/inst/inst_empty.h"
-#include "compiler/inst/inst_lowerer.h"
+#include "compiler/inst/empty.h"
+#include "compiler/inst/lowerer.h"
 #include "compiler/lower/inner_parameters.h"
 #include "compiler/lower/lower_settings.h"
 #include "compiler/syntax/lost_value.h"

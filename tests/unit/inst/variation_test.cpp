@@ -9,7 +9,7 @@
 
 #include "compiler/graph/print.h"
 #include "compiler/graph/unfold.h"
-#include "compiler/inst/inst_hues.h"
+#include "compiler/inst/hues.h"
 #include "compiler/support/hue.h"
 #include "tests/unit/inst/inst_model.h"
 

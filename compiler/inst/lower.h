@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "compiler/graph/graph.h"
-#include "compiler/inst/inst_ast.h"
+#include "compiler/inst/parse/ast.h"
 #include "compiler/lower/lowering.h"
 
 namespace graftal {

@@ -5,8 +5,8 @@
 
 #include <fmt/format.h>
 
-#include "compiler/inst/inst_lowerer.h"
 #include "compiler/inst/lower_scatter.h"
+#include "compiler/inst/lowerer.h"
 #include "compiler/lower/lower_transform.h"
 #include "compiler/lower/permutation.h"
 #include "compiler/support/number.h"

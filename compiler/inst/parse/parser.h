@@ -3,7 +3,7 @@
 #include <array>
 #include <string_view>
 
-#include "compiler/inst/inst_ast.h"
+#include "compiler/inst/parse/ast.h"
 #include "compiler/support/diagnostics.h"
 #include "compiler/support/source.h"
 #include "compiler/syntax/foreign_words.h"

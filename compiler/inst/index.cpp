@@ -1,4 +1,4 @@
-#include "compiler/inst/inst_index.h"
+#include "compiler/inst/index.h"
 
 #include <algorithm>
 

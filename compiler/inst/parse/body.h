@@ -2,7 +2,7 @@
 
 #include <cstddef>
 
-#include "compiler/inst/inst_ast.h"
+#include "compiler/inst/parse/ast.h"
 #include "compiler/syntax/token_stream.h"
 
 namespace graftal {

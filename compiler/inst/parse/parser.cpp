@@ -1,4 +1,4 @@
-#include "compiler/inst/inst_parser.h"
+#include "compiler/inst/parse/parser.h"
 
 #include <algorithm>
 #include <string_view>
@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-#include "compiler/inst/inst_body.h"
+#include "compiler/inst/parse/body.h"
 #include "compiler/syntax/expression_parser.h"
 #include "compiler/syntax/lexer.h"
 #include "compiler/syntax/token_stream.h"

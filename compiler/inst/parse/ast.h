@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "compiler/inst/scatter.h"
+#include "compiler/inst/parse/scatter.h"
 #include "compiler/syntax/expression.h"
 #include "compiler/syntax/names.h"
 #include "compiler/syntax/scene_statements.h"

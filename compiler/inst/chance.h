@@ -7,7 +7,7 @@
 #include <unordered_map>
 #include <vector>
 
-#include "compiler/inst/inst_ast.h"
+#include "compiler/inst/parse/ast.h"
 
 namespace graftal {
 

@@ -5,7 +5,7 @@
 
 #include "compiler/detail/detail_options.h"
 #include "compiler/lower/lower_options.h"
-#include "compiler/povray/cut.h"
+#include "compiler/povray/cut/cut.h"
 #include "compiler/scene/scene.h"
 #include "compiler/zoom/reroot.h"
 

@@ -14,7 +14,7 @@
 #include "compiler/graph/graph.h"
 #include "compiler/lower/derivation.h"
 #include "compiler/lower/lower_options.h"
-#include "compiler/povray/cut.h"
+#include "compiler/povray/cut/cut.h"
 #include "compiler/scene/scene.h"
 #include "compiler/support/diagnostics.h"
 #include "compiler/support/source.h"

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <filesystem>
 #include <utility>
 
@@ -184,20 +183,6 @@ std::optional<FileId> own_text(FileId file, std::string_view model, SourceMap& s
     const std::string name =
         fmt::format("{}:{}.{}", sources.name(file), plain_name(found->name), translation->extension);
     return sources.add_translation(name, std::move(translation->text), file, std::move(translation->origins));
-}
-
-std::string plain_name(std::string_view name) {
-    std::string plain;
-    for (const char c : name)
-        plain += std::isalnum(static_cast<unsigned char>(c)) ? c : '_';
-    const bool letter_first = !plain.empty() && std::isalpha(static_cast<unsigned char>(plain[0]));
-    return letter_first ? plain : "m_" + plain;
-}
-
-std::string block_name(std::string_view name) {
-    std::string block = plain_name(name);
-    block[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(block[0])));
-    return block;
 }
 
 } // namespace graftal

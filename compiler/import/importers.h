@@ -60,9 +60,4 @@ std::optional<FileId> own_text(FileId file, std::string_view model, SourceMap& s
                                Diagnostics& diagnostics, const BesideOptions& beside = {},
                                WorkMeter* meter = nullptr);
 
-/// A name of letters, digits and '_' for a block, a material or a file, that begins with a letter.
-std::string plain_name(std::string_view name);
-/// The same with a capital, for a block: primitives have small letters.
-std::string block_name(std::string_view name);
-
 } // namespace graftal

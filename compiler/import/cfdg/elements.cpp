@@ -9,7 +9,7 @@
 
 #include "compiler/import/cfdg/evaluate/affine.h"
 #include "compiler/import/cfdg/writer.h"
-#include "compiler/import/importers.h"
+#include "compiler/import/foreign_text.h"
 #include "compiler/import/own_words.h"
 #include "compiler/support/number.h"
 

@@ -11,7 +11,6 @@
 #include "compiler/import/cfdg/paths/path.h"
 #include "compiler/import/cfdg/text.h"
 #include "compiler/import/foreign_text.h"
-#include "compiler/import/importers.h"
 #include "compiler/import/own_words.h"
 #include "compiler/support/number.h"
 

@@ -12,7 +12,6 @@
 
 #include "compiler/import/cpfg/expression.h"
 #include "compiler/import/foreign_text.h"
-#include "compiler/import/importers.h"
 #include "compiler/support/number.h"
 #include "compiler/support/small_letters.h"
 

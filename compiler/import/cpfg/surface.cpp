@@ -10,7 +10,6 @@
 #include <fmt/format.h>
 
 #include "compiler/import/foreign_text.h"
-#include "compiler/import/importers.h"
 #include "compiler/support/number.h"
 
 namespace graftal {

@@ -11,7 +11,6 @@
 #include <fmt/format.h>
 
 #include "compiler/import/foreign_text.h"
-#include "compiler/import/importers.h"
 
 namespace graftal {
 

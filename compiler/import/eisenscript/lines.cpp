@@ -11,7 +11,7 @@
 
 #include "compiler/import/eisenscript/text.h"
 #include "compiler/import/eisenscript/writer.h"
-#include "compiler/import/importers.h"
+#include "compiler/import/foreign_text.h"
 #include "compiler/support/number.h"
 
 namespace graftal::eisenscript {

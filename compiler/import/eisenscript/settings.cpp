@@ -12,7 +12,7 @@
 #include "compiler/import/colour_names.h"
 #include "compiler/import/eisenscript/text.h"
 #include "compiler/import/eisenscript/writer.h"
-#include "compiler/import/importers.h"
+#include "compiler/import/foreign_text.h"
 #include "compiler/support/number.h"
 #include "compiler/support/small_letters.h"
 

@@ -13,7 +13,6 @@
 #include "compiler/import/flame/reader.h"
 #include "compiler/import/flame/variations.h"
 #include "compiler/import/foreign_text.h"
-#include "compiler/import/importers.h"
 #include "compiler/import/own_words.h"
 #include "compiler/import/spectral_radius.h"
 #include "compiler/support/angle.h"

@@ -10,7 +10,6 @@
 #include <fmt/format.h>
 
 #include "compiler/import/foreign_text.h"
-#include "compiler/import/importers.h"
 #include "compiler/import/own_words.h"
 #include "compiler/import/spectral_radius.h"
 #include "compiler/support/number.h"

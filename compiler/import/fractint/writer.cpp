@@ -9,7 +9,6 @@
 #include <fmt/format.h>
 
 #include "compiler/import/foreign_text.h"
-#include "compiler/import/importers.h"
 #include "compiler/support/small_letters.h"
 
 namespace graftal {

@@ -12,7 +12,6 @@
 #include <fmt/format.h>
 
 #include "compiler/import/foreign_text.h"
-#include "compiler/import/importers.h"
 #include "compiler/import/lparser/commands.h"
 #include "compiler/support/number.h"
 

@@ -10,7 +10,6 @@
 #include <fmt/ranges.h>
 
 #include "compiler/import/cfdg/evaluate/functions.h"
-#include "compiler/import/importers.h"
 #include "compiler/support/counter_random.h"
 #include "compiler/support/number.h"
 

@@ -17,7 +17,6 @@
 #include "compiler/import/cpfg/write/variables.h"
 #include "compiler/import/cpfg/write/words.h"
 #include "compiler/import/foreign_text.h"
-#include "compiler/import/importers.h"
 #include "compiler/support/number.h"
 
 namespace graftal {

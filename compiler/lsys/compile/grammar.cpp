@@ -1,5 +1,4 @@
 #include "compiler/lsys/compile/grammar.h"
-#include "compiler/lsys/compile/surroundings.h"
 
 #include <algorithm>
 #include <cctype>
@@ -14,6 +13,7 @@
 #include "compiler/lower/lower_transform.h"
 #include "compiler/lsys/compile/checks.h"
 #include "compiler/lsys/compile/declarations.h"
+#include "compiler/lsys/compile/surroundings.h"
 #include "compiler/lsys/parse/commands.h"
 #include "compiler/support/number.h"
 #include "compiler/support/number_range.h"

@@ -8,9 +8,9 @@
 
 #include <fmt/format.h>
 
-#include "compiler/lsys/compile/surroundings.h"
 #include "compiler/lsys/parse/commands.h"
 #include "compiler/lsys/parse/productions.h"
+#include "compiler/lsys/parse/surroundings.h"
 #include "compiler/lsys/parse/tables.h"
 #include "compiler/support/small_letters.h"
 #include "compiler/syntax/expression_functions.h"

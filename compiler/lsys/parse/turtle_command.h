@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <string_view>
 
@@ -71,6 +72,9 @@ struct TropismKind {
 
     bool is_plain() const { return across == 0 && !twists; }
 };
+
+/// Tropisms of a block beside its first.
+inline constexpr std::size_t most_other_tropisms = 7;
 
 struct TurtleSymbol {
     std::string_view text;

@@ -1,17 +1,14 @@
 #pragma once
 
 #include <array>
-#include <cstddef>
 #include <cstdint>
 
+#include "compiler/lsys/parse/turtle_command.h"
 #include "compiler/support/affine.h"
 
 // What the turtle of some models knows of the world beside its own frame.
 
 namespace graftal {
-
-/// Beside the first.
-inline constexpr std::size_t most_other_tropisms = 7;
 
 /// A direction that segments bend towards, the more the larger the elasticity.
 struct Tropism {

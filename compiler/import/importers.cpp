@@ -78,6 +78,10 @@ std::span<const Importer> importers() {
     return table;
 }
 
+Translator importing_translator() {
+    return {.model_path = model_path, .model_text = model_text, .own_text = own_text};
+}
+
 bool is_foreign(std::string_view file_name) {
     const std::string ending = ending_of(file_name);
     return std::ranges::any_of(importers(), [&](const Importer& row) { return has_ending(row, ending); }) ||

@@ -14,6 +14,7 @@
 #include "compiler/support/file.h"
 #include "compiler/support/status.h"
 #include "compiler/support/texture_facts.h"
+#include "compiler/syntax/translator.h"
 
 namespace graftal {
 
@@ -57,7 +58,8 @@ struct LowerHelp {
     LookAtTexture look_at_texture; ///< without this, textures are taken on trust
     Control control;               ///< follows modules, parts and objects
     OnFile on_file = {};
-    LoadSkyPicture load_sky_picture = {}; ///< without this, environments are taken on trust, and are white
+    LoadSkyPicture load_sky_picture = {};    ///< without this, environments are taken on trust, and are white
+    Translator translator = no_translator(); ///< of the files of other programs
 };
 
 /// What lowering learns beside the graph.

@@ -6,11 +6,11 @@
 #include <string_view>
 
 #include "compiler/import/importer.h"
-#include "compiler/syntax/translator.h"
+#include "compiler/lower/translator.h"
 
 namespace graftal {
 
-/// The formats of other programs. To add one: its files in this folder, and a row of this table.
+/// The formats of other programs. To add one: a room of its own in this folder, and a row of this table.
 std::span<const Importer> importers();
 
 /// The functions of this header as lowering asks for them.

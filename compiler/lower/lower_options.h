@@ -10,11 +10,11 @@
 
 #include "compiler/light/sky_picture.h"
 #include "compiler/lower/derivation.h"
+#include "compiler/lower/translator.h"
 #include "compiler/support/control.h"
 #include "compiler/support/file.h"
 #include "compiler/support/status.h"
 #include "compiler/support/texture_facts.h"
-#include "compiler/syntax/translator.h"
 
 namespace graftal {
 
@@ -59,7 +59,7 @@ struct LowerHelp {
     Control control;               ///< follows modules, parts and objects
     OnFile on_file = {};
     LoadSkyPicture load_sky_picture = {};    ///< without this, environments are taken on trust, and are white
-    Translator translator = no_translator(); ///< of the files of other programs
+    Translator translator = no_translator(); ///< reads the files of other programs
 };
 
 /// What lowering learns beside the graph.

@@ -1,4 +1,4 @@
-#include "compiler/syntax/translator.h"
+#include "compiler/lower/translator.h"
 
 #include <utility>
 

@@ -53,13 +53,16 @@ function(graftal_targets result)
   set(${result} ${ARGN} PARENT_SCOPE)
 endfunction()
 
-# graftal_layer(FOLDER [USES folder...] [LINK target...] [PRIVATE_LINK target...])
-# makes a library from the sources right in FOLDER.
+# graftal_layer(FOLDER [USES folder...] [LINK target...] [PRIVATE_LINK target...] [WITHOUT folder])
+# makes a library from the sources of FOLDER, its sub-rooms included, apart from those in FOLDER/folder.
 function(graftal_layer folder)
-  cmake_parse_arguments(arg "" "" "USES;LINK;PRIVATE_LINK" ${ARGN})
+  cmake_parse_arguments(arg "" "WITHOUT" "USES;LINK;PRIVATE_LINK" ${ARGN})
   graftal_targets(name ${folder})
   graftal_targets(layers ${arg_USES})
-  file(GLOB sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/${folder}/*.cpp)
+  file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/${folder}/*.cpp)
+  if(arg_WITHOUT)
+    list(FILTER sources EXCLUDE REGEX "/${folder}/${arg_WITHOUT}/")
+  endif()
   add_library(${name} STATIC ${sources})
   set_property(GLOBAL APPEND PROPERTY GRAFTAL_LAYERS ${name})
   target_include_directories(${name} PUBLIC ${PROJECT_SOURCE_DIR})
@@ -68,13 +71,13 @@ function(graftal_layer folder)
   target_precompile_headers(${name} REUSE_FROM graftal_headers)
 endfunction()
 
-# graftal_test(FOLDER USES folder...): one GoogleTest program from the sources of tests/FOLDER. The label of its tests is
-# the first folder of FOLDER: `ctest -L unit` is the inner loop.
+# graftal_test(FOLDER USES folder...): one GoogleTest program from the sources of tests/FOLDER, its sub-rooms included. The
+# label of its tests is the first folder of FOLDER: `ctest -L unit` is the inner loop.
 function(graftal_test folder)
   cmake_parse_arguments(arg "" "" "USES;LINK" ${ARGN})
   string(REPLACE "/" "_" name ${folder})
   string(REGEX REPLACE "/.*" "" label ${folder})
-  file(GLOB sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/tests/${folder}/*.cpp)
+  file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/tests/${folder}/*.cpp)
   graftal_targets(layers ${arg_USES})
   add_executable(${name}_test ${sources})
   target_link_libraries(${name}_test PRIVATE ${layers} ${arg_LINK} graftal_flags GTest::gmock GTest::gtest_main)

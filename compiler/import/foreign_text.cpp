@@ -70,6 +70,20 @@ bool is_hex_digit(char c) {
 
 } // namespace
 
+std::string plain_name(std::string_view name) {
+    std::string plain;
+    for (const char c : name)
+        plain += std::isalnum(static_cast<unsigned char>(c)) ? c : '_';
+    const bool letter_first = !plain.empty() && std::isalpha(static_cast<unsigned char>(plain[0]));
+    return letter_first ? plain : "m_" + plain;
+}
+
+std::string block_name(std::string_view name) {
+    std::string block = plain_name(name);
+    block[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(block[0])));
+    return block;
+}
+
 LeadingNumber leading_number(std::string_view text) {
     std::string_view rest = text.substr(std::min(text.find_first_not_of(" \t\r\n\f\v"), text.size()));
     const bool negative = rest.starts_with('-');

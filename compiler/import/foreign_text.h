@@ -32,6 +32,11 @@ std::string comment_text(std::string_view text);
 /// something else, or nothing, in our strings.
 std::string symbol_name(char symbol);
 
+/// A name of letters, digits and '_' for a block, a material or a file, that begins with a letter.
+std::string plain_name(std::string_view name);
+/// The plain name with a capital, for a block: primitives have small letters.
+std::string block_name(std::string_view name);
+
 /// The number that a text begins with, and how many characters it has with the blanks before it; none: no
 /// number. As strtod() reads it where the decimal point is a point, whatever the locale is.
 struct LeadingNumber {

@@ -2,21 +2,20 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <filesystem>
 #include <utility>
 
 #include <fmt/format.h>
 
-#include "compiler/import/cfdg.h"
-#include "compiler/import/cpfg.h"
-#include "compiler/import/eisenscript.h"
-#include "compiler/import/flame.h"
+#include "compiler/import/cfdg/importer.h"
+#include "compiler/import/cpfg/importer.h"
+#include "compiler/import/cpfg/surface.h"
+#include "compiler/import/eisenscript/importer.h"
+#include "compiler/import/flame/importer.h"
 #include "compiler/import/foreign_text.h"
-#include "compiler/import/fractint_ifs.h"
-#include "compiler/import/fractint_lsystem.h"
-#include "compiler/import/lparser.h"
-#include "compiler/import/vlab_surface.h"
+#include "compiler/import/fractint/ifs.h"
+#include "compiler/import/fractint/lsystem.h"
+#include "compiler/import/lparser/importer.h"
 #include "compiler/support/file.h"
 #include "compiler/support/small_letters.h"
 #include "compiler/support/text_encoding.h"
@@ -77,6 +76,10 @@ std::span<const Importer> importers() {
         cpfg_importer(),         fractint_lsystem_importer(), lparser_importer(), vlab_surface_importer(),
         fractint_ifs_importer(), eisenscript_importer(),      cfdg_importer(),    flame_importer()};
     return table;
+}
+
+Translator importing_translator() {
+    return {.model_path = model_path, .model_text = model_text, .own_text = own_text};
 }
 
 bool is_foreign(std::string_view file_name) {
@@ -184,20 +187,6 @@ std::optional<FileId> own_text(FileId file, std::string_view model, SourceMap& s
     const std::string name =
         fmt::format("{}:{}.{}", sources.name(file), plain_name(found->name), translation->extension);
     return sources.add_translation(name, std::move(translation->text), file, std::move(translation->origins));
-}
-
-std::string plain_name(std::string_view name) {
-    std::string plain;
-    for (const char c : name)
-        plain += std::isalnum(static_cast<unsigned char>(c)) ? c : '_';
-    const bool letter_first = !plain.empty() && std::isalpha(static_cast<unsigned char>(plain[0]));
-    return letter_first ? plain : "m_" + plain;
-}
-
-std::string block_name(std::string_view name) {
-    std::string block = plain_name(name);
-    block[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(block[0])));
-    return block;
 }
 
 } // namespace graftal

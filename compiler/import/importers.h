@@ -1,24 +1,20 @@
 #pragma once
 
-#include <functional>
 #include <optional>
 #include <span>
 #include <string>
 #include <string_view>
-#include <vector>
 
 #include "compiler/import/importer.h"
+#include "compiler/lower/translator.h"
 
 namespace graftal {
 
-/// The formats of other programs. To add one: its files in this folder, and a row of this table.
+/// The formats of other programs. To add one: a room of its own in this folder, and a row of this table.
 std::span<const Importer> importers();
 
-/// How a command or a `use` names a model.
-struct ModelPath {
-    std::string file;
-    std::string model; ///< in a foreign file; "" where only the file is named
-};
+/// The functions of this header as lowering asks for them.
+Translator importing_translator();
 
 /// "trees.l:Tree1" names the model Tree1 in the foreign file trees.l. A path that holds no ending of the
 /// table before a colon is the file itself.
@@ -33,12 +29,6 @@ bool is_foreign(std::string_view file_name);
 /// The text of a model's file from its bytes, in the encoding that they have; foreign ones may have that of
 /// old Windows.
 std::string model_text(std::string_view file_name, std::string bytes);
-
-/// How files beside a foreign one are found.
-struct BesideOptions {
-    std::string root{};                                ///< they must lie in this folder; "": anywhere
-    std::function<void(const std::string&)> on_file{}; ///< hears of each that is asked for
-};
 
 /// A file of `sources` for importers. Both must outlive it, and so must the meter. Charges the file as read.
 ForeignFile foreign_file(FileId file, SourceMap& sources, Diagnostics& diagnostics, BesideOptions beside = {},
@@ -59,10 +49,5 @@ std::optional<ForeignModel> find_model(const Importer& importer, const ForeignFi
 std::optional<FileId> own_text(FileId file, std::string_view model, SourceMap& sources,
                                Diagnostics& diagnostics, const BesideOptions& beside = {},
                                WorkMeter* meter = nullptr);
-
-/// A name of letters, digits and '_' for a block, a material or a file, that begins with a letter.
-std::string plain_name(std::string_view name);
-/// The same with a capital, for a block: primitives have small letters.
-std::string block_name(std::string_view name);
 
 } // namespace graftal

@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-#include "compiler/import/importers.h"
+#include "compiler/import/foreign_text.h"
 
 namespace graftal {
 

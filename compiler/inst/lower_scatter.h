@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "compiler/graph/settings.h"
-#include "compiler/inst/inst_ast.h"
+#include "compiler/inst/parse/ast.h"
 #include "compiler/support/affine.h"
 #include "compiler/support/control.h"
 

@@ -1,8 +1,8 @@
 #include "compiler/languages/languages.h"
 
-#include "compiler/inst/inst_language.h"
-#include "compiler/lsys/lsys_language.h"
-#include "compiler/rifs/rifs_language.h"
+#include "compiler/inst/language.h"
+#include "compiler/lsys/language.h"
+#include "compiler/rifs/language.h"
 
 namespace graftal {
 

@@ -6,7 +6,6 @@
 #include <fmt/format.h>
 
 #include "compiler/graph/verify.h"
-#include "compiler/import/importers.h"
 #include "compiler/languages/languages.h"
 #include "compiler/lower/check_graph.h"
 #include "compiler/lower/lowering.h"
@@ -62,7 +61,7 @@ std::string model_language(const SourceMap& sources) {
 LoweredText lower_model(const std::string& path, const LowerOptions& options, SourceMap& sources,
                         Diagnostics& diagnostics, Status& status, const LowerHelp& help) {
     std::string text;
-    const std::string file = model_path(path).file;
+    const std::string file = help.translator.model_path(path).file;
     if (file != "-" && !options.root.empty() && !lies_in(file, options.root)) {
         diagnostics.error(Span(), fmt::format("'{}' leads out of the root folder '{}'", file, options.root));
         return {};
@@ -74,12 +73,14 @@ LoweredText lower_model(const std::string& path, const LowerOptions& options, So
 
 LoweredText lower_text(const std::string& name, std::string text, const LowerOptions& options,
                        SourceMap& sources, Diagnostics& diagnostics, const LowerHelp& help) {
-    const ModelPath path = model_path(name == "-" ? standard_input : name);
-    const FileId file = sources.add(path.file, model_text(path.file, std::move(text)));
+    const Translator& translator = help.translator;
+    const ModelPath path = translator.model_path(name == "-" ? standard_input : name);
+    const FileId file = sources.add(path.file, translator.model_text(path.file, std::move(text)));
     std::optional<FileId> own;
     {
         WorkMeter meter(help.control, "import", 10'000);
-        own = own_text(file, path.model, sources, diagnostics, {options.root, help.on_file}, &meter);
+        own =
+            translator.own_text(file, path.model, sources, diagnostics, {options.root, help.on_file}, &meter);
     }
     if (!own) return {};
     return lower_root(*own, name, options, sources, diagnostics, help);

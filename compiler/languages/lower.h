@@ -18,8 +18,8 @@ struct LoweredText {
     LowerNotes notes;
 };
 
-/// Reads a model, and all that it uses, and lowers it. The path may name a model in a foreign file
-/// (importers.h), which is translated first. The language follows the file name (languages.h), for
+/// Reads a model, and all that it uses, and lowers it. The path may name a model in a foreign file, which the
+/// translator of `help` translates first. The language follows the file name (languages.h), for
 /// "-" (standard input) the text. Bad input is reported to `diagnostics` and gives nothing; a root file that
 /// cannot be read gives nothing and a failed `status`. Used files are looked up beside the file that names
 /// them. The flag of `help` ends it by Cancelled.

@@ -8,7 +8,6 @@
 
 #include <fmt/format.h>
 
-#include "compiler/import/importers.h"
 #include "compiler/lower/language.h"
 #include "compiler/lower/lowering.h"
 #include "compiler/primitives/mesh_file.h"
@@ -89,7 +88,8 @@ std::optional<FileId> read_file(Span use_span, const std::string& path, Lowering
     Status read = check_regular(path, lowering);
     if (read.ok()) read = read_text(path, text);
     if (read.ok())
-        return lowering.files[path] = lowering.sources.add(path, model_text(path, std::move(text)));
+        return lowering.files[path] =
+                   lowering.sources.add(path, lowering.help.translator.model_text(path, std::move(text)));
     add_chain(lowering.diagnostics.error(use_span, read.message()).with_hint(missing_hint(read)), lowering);
     return std::nullopt;
 }
@@ -100,11 +100,12 @@ std::optional<FileId> read_used(Span use_span, const std::string& path, Lowering
         if (!known->second) ++lowering.known_failures;
         return known->second;
     }
-    const ModelPath parts = model_path(path);
+    const Translator& translator = lowering.help.translator;
+    const ModelPath parts = translator.model_path(path);
     std::optional<FileId> file = read_file(use_span, parts.file, lowering);
     if (file)
-        file = own_text(*file, parts.model, lowering.sources, lowering.diagnostics,
-                        {lowering.options.root, lowering.help.on_file}, &lowering.meter);
+        file = translator.own_text(*file, parts.model, lowering.sources, lowering.diagnostics,
+                                   {lowering.options.root, lowering.help.on_file}, &lowering.meter);
     return lowering.own_texts[path] = file;
 }
 

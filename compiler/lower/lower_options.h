@@ -10,6 +10,7 @@
 
 #include "compiler/light/sky_picture.h"
 #include "compiler/lower/derivation.h"
+#include "compiler/lower/translator.h"
 #include "compiler/support/control.h"
 #include "compiler/support/file.h"
 #include "compiler/support/status.h"
@@ -58,8 +59,9 @@ struct LowerHelp {
     LookAtTexture look_at_texture; ///< without this, textures are taken on trust
     Control control;               ///< follows modules, parts and objects
     OnFile on_file = {};
-    LoadSkyPicture load_sky_picture = {}; ///< without this, environments are taken on trust, and are white
-    ParsedFiles* parsed = nullptr;        ///< of lowerings before; null: each text is parsed anew
+    LoadSkyPicture load_sky_picture = {};    ///< without this, environments are taken on trust, and are white
+    Translator translator = no_translator(); ///< reads the files of other programs
+    ParsedFiles* parsed = nullptr;           ///< of lowerings before; null: each text is parsed anew
 };
 
 /// What lowering learns beside the graph.

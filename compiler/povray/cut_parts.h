@@ -9,8 +9,8 @@
 
 #include "compiler/detail/mesh.h"
 #include "compiler/graph/graph.h"
-#include "compiler/povray/povray_units.h"
 #include "compiler/povray/run_placements.h"
+#include "compiler/povray/units.h"
 
 namespace graftal {
 

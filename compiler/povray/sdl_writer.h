@@ -5,7 +5,7 @@
 #include <memory>
 #include <string_view>
 
-#include "compiler/povray/povray_output.h"
+#include "compiler/povray/output.h"
 #include "compiler/support/affine.h"
 
 namespace graftal {

@@ -11,7 +11,7 @@
 
 #include "compiler/lower/lower_settings.h"
 #include "compiler/rifs/orbit_model.h"
-#include "compiler/rifs/rifs_system.h"
+#include "compiler/rifs/system.h"
 #include "compiler/support/number.h"
 #include "compiler/syntax/lost_value.h"
 

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "compiler/lower/lowering.h"
-#include "compiler/rifs/rifs_ast.h"
+#include "compiler/rifs/ast.h"
 
 namespace graftal {
 

@@ -4,7 +4,7 @@
 #include <string_view>
 #include <vector>
 
-#include "compiler/rifs/rifs_look.h"
+#include "compiler/rifs/look.h"
 #include "compiler/support/source.h"
 #include "compiler/syntax/expression.h"
 

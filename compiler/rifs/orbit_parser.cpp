@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-#include "compiler/rifs/rifs_parts.h"
+#include "compiler/rifs/parts.h"
 #include "compiler/syntax/expression_functions.h"
 #include "compiler/syntax/expression_parser.h"
 

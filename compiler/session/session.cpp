@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include "compiler/import/importers.h"
 #include "compiler/session/stage_clock.h"
 #include "compiler/support/file.h"
 #include "compiler/support/number.h"
@@ -45,7 +44,7 @@ void Session::reload(bool textures_changed) {
         std::string text;
         const std::string name(sources_.name(file));
         const Status status = read_text(name, text);
-        changed = !status.ok() || model_text(name, std::move(text)) != sources_.text(file);
+        changed = !status.ok() || translator_.model_text(name, std::move(text)) != sources_.text(file);
     }
     for (const auto& [path, stamp] : meshes_)
         changed = changed || stamp_of(path) != stamp;
@@ -135,7 +134,7 @@ bool Session::need_source(const StageOptions& options, Compilation& compilation)
     Status status;
     ++runs_.source;
     std::optional<Source> source =
-        text_ ? Source{path_, *text_} : read_source(path_, key.root, findings, status);
+        text_ ? Source{path_, *text_} : read_source(path_, key.root, translator_, findings, status);
     if (!source) { // asked again it may be there
         compilation.diagnostics = std::move(findings);
         compilation.status = std::move(status);
@@ -160,7 +159,7 @@ bool Session::need_lowered(const StageOptions& options, bool wanted, Compilation
             ++runs_.lowered;
             std::optional<LoweredModel> model = lower_source(
                 *source_, options.lower,
-                {look_at_texture_, charging(work), on_file_, load_sky_picture_, &parsed_}, sources_, findings);
+                {look_at_texture_, charging(work), on_file_, load_sky_picture_, translator_, &parsed_}, sources_, findings);
             const Derivation* const derivation =
                 model && model->notes.derivation ? &*model->notes.derivation : nullptr;
             key.reads_steps = reads_steps_ = !model || derivation;

@@ -67,6 +67,8 @@ class Session {
     void on_file(OnFile hear) { on_file_ = std::move(hear); }
     /// Without this, environments too, and they are white.
     void load_sky_pictures(LoadSkyPicture load) { load_sky_picture_ = std::move(load); }
+    /// Without this, models of other programs are not read.
+    void translate_with(Translator translator) { translator_ = translator; }
     /// Sees the graph after each pass, for models and for detail.
     void after_each_pass(PassObserver observer) { after_pass_ = std::move(observer); }
 
@@ -144,6 +146,7 @@ class Session {
     LookAtTexture look_at_texture_;
     OnFile on_file_;
     LoadSkyPicture load_sky_picture_;
+    Translator translator_ = no_translator();
     PassObserver after_pass_;
     Keep keep_;
     Control control_;

@@ -10,7 +10,6 @@
 
 #include "compiler/analysis/model_range.h"
 #include "compiler/graph/verify.h"
-#include "compiler/import/importers.h"
 #include "compiler/languages/lower.h"
 #include "compiler/session/analyse_shapes.h"
 #include "compiler/session/frame_model.h"
@@ -149,9 +148,9 @@ StageWork stage_work(const StageOptions& options, double spent_seconds) {
     return StageWork(limit, spent_seconds, keeps ? share_of_picture * limit : 0);
 }
 
-std::optional<Source> read_source(const std::string& path, const std::string& root, Diagnostics& diagnostics,
-                                  Status& status) {
-    const std::string file = model_path(path).file;
+std::optional<Source> read_source(const std::string& path, const std::string& root,
+                                  const Translator& translator, Diagnostics& diagnostics, Status& status) {
+    const std::string file = translator.model_path(path).file;
     if (file != "-" && !root.empty() && !lies_in(file, root)) {
         diagnostics.error(Span(), fmt::format("'{}' leads out of the root folder '{}'", file, root));
         return std::nullopt;

@@ -14,10 +14,10 @@
 
 namespace graftal {
 
-/// Reads the model's own file. A path that leads out of `root` is an error in `diagnostics`; a file that
-/// cannot be read gives a failed `status`.
-std::optional<Source> read_source(const std::string& path, const std::string& root, Diagnostics& diagnostics,
-                                  Status& status);
+/// Reads the model's own file, which the translator finds in the path. A path that leads out of `root` is an
+/// error in `diagnostics`; a file that cannot be read gives a failed `status`.
+std::optional<Source> read_source(const std::string& path, const std::string& root,
+                                  const Translator& translator, Diagnostics& diagnostics, Status& status);
 
 /// The seconds of counted work (support/stage_work.h) that the stages up to the analysis may take together:
 /// as many as the picture, but a few in any case.

@@ -10,7 +10,7 @@
 #include <fmt/format.h>
 
 #include "compiler/analysis/counts.h"
-#include "compiler/povray/compile.h"
+#include "compiler/povray/cut/compile.h"
 #include "compiler/session/stages.h"
 #include "compiler/session/stats.h"
 #include "compiler/support/number_range.h"

@@ -1,6 +1,6 @@
 #include "runtime/render/fit_picture.h"
 
-#include "compiler/povray/povray_units.h"
+#include "compiler/povray/units.h"
 #include "runtime/render/native_engine.h"
 
 namespace graftal {

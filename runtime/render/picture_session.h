@@ -1,14 +1,16 @@
 #pragma once
 
+#include "compiler/import/importers.h"
 #include "compiler/session/session.h"
 #include "runtime/image_files/texture_store.h"
 
 namespace graftal {
 
-/// A session for pictures: it has the textures that the model names, too.
+/// A session for pictures: it reads models of other programs, and the textures that a model names.
 class PictureSession : public Session {
   public:
     explicit PictureSession(std::string path, Keep keep = Keep::everything) : Session(std::move(path), keep) {
+        translate_with(importing_translator());
         look_at_textures(
             [this](const std::string& name, TextureFacts& facts) { return textures_.look_at(name, facts); });
         load_sky_pictures([this](const std::string& name, LoadedSkyPicture& loaded) {

@@ -11,7 +11,7 @@
 
 #include <fmt/format.h>
 
-#include "compiler/povray/overlap.h"
+#include "compiler/povray/cut/overlap.h"
 #include "compiler/scene/light_list.h"
 #include "runtime/image/develop.h"
 #include "runtime/povray/povray.h"

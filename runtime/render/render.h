@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-#include "compiler/povray/cut.h"
+#include "compiler/povray/cut/cut.h"
 #include "runtime/image_files/image_files.h"
 #include "runtime/render/picture_session.h"
 #include "runtime/trace/picture_tracer.h"

@@ -12,7 +12,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include "compiler/povray/emit_povray.h"
+#include "compiler/povray/emit/scene.h"
 #include "compiler/support/file.h"
 #include "runtime/image_files/image_files.h"
 #include "runtime/image_files/sky_file.h"

@@ -3,7 +3,7 @@
 #include <optional>
 #include <string>
 
-#include "compiler/povray/compile.h"
+#include "compiler/povray/cut/compile.h"
 #include "compiler/scene/light_list.h"
 #include "compiler/support/control.h"
 #include "compiler/support/status.h"

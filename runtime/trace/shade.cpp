@@ -21,7 +21,7 @@ namespace {
 
 /// max_trace_level of what is emitted.
 constexpr unsigned most_surfaces = 32;
-/// The share of a zenith that the emitted sky reaches (povray_view.cpp).
+/// The share of a zenith that the emitted sky reaches (povray/emit/view.cpp).
 constexpr double most_zenith = 0.999999;
 /// As shadow_pixels, of what is mirrored: a tenth, as in POV-Ray.
 constexpr double mirror_pixels = 1e-4;

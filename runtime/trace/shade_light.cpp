@@ -15,7 +15,7 @@ namespace {
 
 /// Which lie one behind the other before a light: more are as good as a wall.
 constexpr int most_panes = 1000;
-/// What is emitted is no smoother (povray_textures.cpp).
+/// What is emitted is no smoother (povray/emit/textures.cpp).
 constexpr double least_roughness = 5e-4;
 /// e to the minus this is nothing, even of the brightest light.
 constexpr double dark_exponent = 40;

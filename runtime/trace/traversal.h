@@ -43,8 +43,8 @@ class FlatImage {
 
 /// Takes rays through the graph itself (J. Hart and T. DeFanti, "Efficient Antialiased Rendering of 3-D
 /// Linear Fractals", 1991): depth first, the nearest child first, into each child's frame, and only as deep
-/// as the parts are that the view shows. What is drawn of a node is what the cut draws of it (cut.h), part by
-/// part. Memory O(depth). For one thread.
+/// as the parts are that the view shows. What is drawn of a node is what the cut draws of it
+/// (povray/cut/cut.h), part by part. Memory O(depth). For one thread.
 class Traversal final : public Surfaces {
   public:
     explicit Traversal(const TraceModel& model, Instructions instructions = best_instructions());

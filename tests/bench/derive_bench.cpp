@@ -4,7 +4,7 @@
 
 #include <benchmark/benchmark.h>
 
-#include "tests/unit/lsys/lsys_words.h"
+#include "tests/unit/lsys/words.h"
 
 namespace graftal {
 namespace {

@@ -11,8 +11,8 @@
 #include "compiler/analysis/contraction.h"
 #include "compiler/analysis/model_range.h"
 #include "compiler/passes/drop_unreachable.h"
-#include "compiler/povray/cut.h"
-#include "compiler/povray/emit_povray.h"
+#include "compiler/povray/cut/cut.h"
+#include "compiler/povray/emit/scene.h"
 #include "compiler/support/check.h"
 #include "tests/property/random_graph.h"
 

@@ -22,7 +22,8 @@ inline int try_import(const std::string& name, const std::uint8_t* data, std::si
     for (int time = 0; time < 2; ++time) {
         SourceMap sources;
         Diagnostics diagnostics;
-        const LoweredText lowered = lower_text("no_such_folder/" + name, text, options, sources, diagnostics);
+        const LoweredText lowered = lower_text("no_such_folder/" + name, text, options, sources, diagnostics,
+                                               {.translator = importing_translator()});
         GRAFTAL_CHECK(lowered.graph || diagnostics.has_errors() || lowered.notes.derivation ||
                           lowered.notes.orbit,
                       "import fuzzer: a model or errors");

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <string>
 
-#include "compiler/lsys/lsys_parser.h"
+#include "compiler/lsys/parse/parser.h"
 #include "compiler/support/check.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

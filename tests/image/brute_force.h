@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "compiler/povray/cut.h"
+#include "compiler/povray/cut/cut.h"
 #include "runtime/trace/surfaces.h"
 
 namespace graftal {

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "compiler/povray/emit_povray.h"
+#include "compiler/povray/emit/scene.h"
 #include "tests/image/drawing.h"
 #include "tests/image/random_model.h"
 #include "tests/image/render_helpers.h"

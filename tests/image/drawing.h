@@ -3,7 +3,7 @@
 #include <optional>
 #include <string>
 
-#include "compiler/povray/compile.h"
+#include "compiler/povray/cut/compile.h"
 #include "runtime/image/image.h"
 
 namespace graftal {

@@ -11,7 +11,7 @@
 
 #include <gtest/gtest.h>
 
-#include "compiler/povray/povray_view.h"
+#include "compiler/povray/emit/view.h"
 #include "runtime/trace/camera_rays.h"
 #include "runtime/trace/shade.h"
 #include "tests/image/brute_force.h"

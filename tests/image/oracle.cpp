@@ -9,8 +9,8 @@
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
 
-#include "compiler/povray/emit_povray.h"
-#include "compiler/povray/povray_view.h"
+#include "compiler/povray/emit/scene.h"
+#include "compiler/povray/emit/view.h"
 #include "compiler/session/stages.h"
 #include "compiler/support/file.h"
 #include "runtime/povray/povray.h"

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "compiler/povray/compile.h"
+#include "compiler/povray/cut/compile.h"
 #include "runtime/image/image.h"
 
 namespace graftal {

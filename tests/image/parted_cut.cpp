@@ -6,7 +6,7 @@
 #include "compiler/detail/coverage.h"
 #include "compiler/detail/shell_store.h"
 #include "compiler/passes/pipeline.h"
-#include "compiler/povray/assemble.h"
+#include "compiler/povray/cut/assemble.h"
 
 namespace graftal {
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "compiler/povray/compile.h"
+#include "compiler/povray/cut/compile.h"
 
 namespace graftal {
 

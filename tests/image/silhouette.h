@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "compiler/povray/compile.h"
+#include "compiler/povray/cut/compile.h"
 #include "runtime/image/image.h"
 
 namespace graftal {

@@ -9,7 +9,7 @@
 
 #include <gtest/gtest.h>
 
-#include "compiler/povray/compile.h"
+#include "compiler/povray/cut/compile.h"
 #include "tests/property/nearest.h"
 
 namespace graftal {

@@ -1,6 +1,6 @@
 // The pipeline as a whole: text -> analysed model -> cut.
 
-#include "compiler/povray/compile.h"
+#include "compiler/povray/cut/compile.h"
 
 #include <algorithm>
 #include <filesystem>

@@ -8,7 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "compiler/languages/lower.h"
-#include "tests/unit/lsys/lsys_turtle.h"
+#include "tests/unit/lsys/turtle.h"
 
 namespace graftal {
 namespace {

@@ -10,8 +10,8 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "compiler/povray/compile.h"
-#include "compiler/povray/emit_povray.h"
+#include "compiler/povray/cut/compile.h"
+#include "compiler/povray/emit/scene.h"
 #include "compiler/session/shared_framing.h"
 #include "compiler/session/stages.h"
 #include "compiler/session/stats.h"

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "compiler/import/foreign_text.h"
 #include "compiler/import/importers.h"
 #include "compiler/support/control.h"
 #include "compiler/support/file.h"

@@ -12,8 +12,8 @@
 
 #include "compiler/import/importers.h"
 #include "compiler/passes/pipeline.h"
-#include "compiler/povray/emit_povray.h"
-#include "compiler/povray/povray_names.h"
+#include "compiler/povray/emit/names.h"
+#include "compiler/povray/emit/scene.h"
 #include "compiler/session/stats.h"
 #include "runtime/render/native_engine.h"
 #include "tools/graftal/animate_options.h"

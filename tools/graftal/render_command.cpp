@@ -1,7 +1,7 @@
 #include <fmt/format.h>
 
 #include "compiler/detail/coarser.h"
-#include "compiler/povray/compile.h"
+#include "compiler/povray/cut/compile.h"
 #include "runtime/render/povray_engine.h"
 #include "runtime/render/render.h"
 #include "runtime/render/scene_files.h"

@@ -18,7 +18,8 @@ namespace graftal::testing {
 struct Imported {
     Imported(const std::string& name, const std::string& text, LowerOptions options = {}) {
         options.may_draw_nothing = true;
-        LoweredText lowered = lower_text(name, text, options, sources, diagnostics);
+        LoweredText lowered =
+            lower_text(name, text, options, sources, diagnostics, {.translator = importing_translator()});
         graph = std::move(lowered.graph);
         derivation = std::move(lowered.notes.derivation);
         for (FileId file = 0; file < sources.size(); ++file)

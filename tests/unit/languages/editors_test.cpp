@@ -9,7 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "compiler/graph/primitive.h"
-#include "compiler/inst/inst_repeat.h"
+#include "compiler/inst/parse/repeat.h"
 #include "compiler/languages/languages.h"
 #include "compiler/support/file.h"
 #include "compiler/syntax/expression_functions.h"

@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "compiler/graph/print.h"
+#include "compiler/import/importers.h"
 #include "compiler/languages/lower.h"
 
 namespace graftal {
@@ -28,7 +29,8 @@ class Use : public ::testing::Test {
     void lower(const std::string& name, const LowerOptions& options = {}) {
         sources_ = SourceMap();
         diagnostics_ = Diagnostics();
-        graph_ = lower_model((folder_ / name).string(), options, sources_, diagnostics_, status_).graph;
+        const LowerHelp help{.translator = translator_};
+        graph_ = lower_model((folder_ / name).string(), options, sources_, diagnostics_, status_, help).graph;
     }
     std::string errors() const { return diagnostics_.render(sources_); }
     const Object& object(std::string_view name) const {
@@ -46,6 +48,7 @@ class Use : public ::testing::Test {
     const std::filesystem::path folder_ = std::filesystem::temp_directory_path() /
                                           ("graftal_use_" + std::to_string(::getpid()) + "_" +
                                            ::testing::UnitTest::GetInstance()->current_test_info()->name());
+    Translator translator_ = importing_translator();
     SourceMap sources_;
     Diagnostics diagnostics_;
     Status status_;
@@ -105,6 +108,24 @@ TEST_F(Use, models_of_other_programs_have_parts_where_their_translations_have) {
     write("b.inst", "use l = \"lines.ls\" object b { l.F }");
     lower("b.inst");
     EXPECT_THAT(errors(), HasSubstr("'l.F'"));
+}
+
+TEST_F(Use, models_of_other_programs_are_read_by_the_translator_that_is_handed_in) {
+    write("tree.es", "box { y 1 }");
+    write("a.inst", "use t = \"tree.es\" object a { t }");
+    translator_ = no_translator();
+    lower("a.inst");
+    EXPECT_FALSE(graph_);
+    EXPECT_THAT(errors(), HasSubstr("names of models end in .lsys, .rifs or .inst"));
+
+    translator_.own_text = [](FileId file, std::string_view, SourceMap& sources, Diagnostics&,
+                              const BesideOptions&, WorkMeter*) -> std::optional<FileId> {
+        if (!sources.name(file).ends_with(".es")) return file;
+        return sources.add_translation("tree.inst", "object tree { sphere, cube }\n", file, {});
+    };
+    lower("a.inst");
+    ASSERT_TRUE(graph_) << errors();
+    EXPECT_EQ(object("t.tree").instances.size(), 2u);
 }
 
 TEST_F(Use, parts_that_are_not_there_are_errors_of_the_user) {

@@ -9,7 +9,7 @@
 
 #include <gtest/gtest.h>
 
-#include "compiler/povray/emit_povray.h"
+#include "compiler/povray/emit/scene.h"
 
 namespace graftal::by_hand {
 

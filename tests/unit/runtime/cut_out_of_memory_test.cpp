@@ -10,7 +10,7 @@
 #include "compiler/detail/cut_graph.h"
 #include "compiler/detail/shell_store.h"
 #include "compiler/detail/weights.h"
-#include "compiler/povray/assemble.h"
+#include "compiler/povray/cut/assemble.h"
 #include "runtime/system/memory_limit.h"
 #include "tests/unit/detail/models.h"
 

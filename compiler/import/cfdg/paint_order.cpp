@@ -1,0 +1,116 @@
+#include "compiler/import/cfdg/paint_order.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace graftal::cfdg {
+
+namespace {
+
+/// Logarithms of sizes that differ by less are those of equal sizes.
+constexpr double same_size = 1e-6;
+/// The same where shapes are translucent: more would need heights that engines round.
+constexpr double same_size_of_veils = 1e-3;
+/// The share of the picture's size by which sizes of a ratio of e lie apart.
+constexpr double flatness = 1e-3;
+/// The share of the picture's size from which on both engines see one veil behind another.
+constexpr double least_gap_of_veils = 1e-5;
+/// Lines of an object, and of all levels, that heights tell apart.
+constexpr double most_width = 1e7, most_lines = 1e8;
+/// Depths lie so much farther apart than all other heights.
+constexpr double depth_factor = 1000;
+
+bool is_equal(const PaintedLine& line) {
+    return line.is_call && std::abs(line.log_shrunk) <= same_size;
+}
+
+/// The objects below the root, those that others draw before these.
+std::vector<std::size_t> from_the_leaves(const std::vector<std::vector<PaintedLine>>& objects,
+                                         std::size_t root) {
+    std::vector<std::size_t> order;
+    std::vector<bool> seen(objects.size());
+    std::vector<std::pair<std::size_t, std::size_t>> path = {{root, 0}};
+    seen[root] = true;
+    while (!path.empty()) {
+        auto& [object, line] = path.back();
+        if (line == objects[object].size()) {
+            order.push_back(object);
+            path.pop_back();
+            continue;
+        }
+        const std::size_t next = objects[object][line++].node;
+        if (next == PaintedLine::none || seen[next]) continue;
+        seen[next] = true;
+        path.emplace_back(next, 0);
+    }
+    return order;
+}
+
+} // namespace
+
+PaintOrder::PaintOrder(const std::vector<std::vector<PaintedLine>>& objects, std::size_t root, double extent,
+                       bool translucent)
+    : heights_(objects.size()) {
+    const std::vector<std::size_t> order = from_the_leaves(objects, root);
+    std::vector<Spread> spreads(objects.size());
+    double least_depth = std::numeric_limits<double>::infinity();
+    for (const std::size_t object : order) {
+        Spread& spread = spreads[object];
+        double painted = 0, called = 0, before = 0;
+        for (const PaintedLine& line : objects[object]) {
+            double& sum = line.is_call ? called : painted;
+            const Spread below = line.node == PaintedLine::none ? Spread{1, 0} : spreads[line.node];
+            heights_[object].push_back(line.beside ? before : sum);
+            before = heights_[object].back();
+            if (!line.beside) sum += below.width;
+            spread.levels = std::max(spread.levels, below.levels + (is_equal(line) ? 1 : 0));
+            if (line.depth != 0) least_depth = std::min(least_depth, std::abs(line.depth));
+        }
+        spread.width = std::max({painted, called, 1.0});
+        if (spread.width <= most_width) continue;
+        for (double& number : heights_[object])
+            number *= most_width / spread.width;
+        spread.width = most_width;
+    }
+    const double levels = spreads[root].levels + 1;
+    const double level = std::min(spreads[root].width, most_lines / levels);
+    const double lines = level * levels;
+    const double gap = translucent ? least_gap_of_veils * extent : flatness * extent * same_size / lines;
+    const double size = translucent ? gap * lines / same_size_of_veils : flatness * extent;
+    // Of each object, how high and how deep it reaches without depths, and then with them.
+    std::vector<std::pair<double, double>> reach(objects.size());
+    const auto find_reach = [&](double depth) {
+        for (const std::size_t object : order) {
+            auto& [low, high] = reach[object] = {0, 0};
+            for (std::size_t i = 0; i < objects[object].size(); ++i) {
+                const PaintedLine& line = objects[object][i];
+                const double at = heights_[object][i] + depth * line.depth;
+                const auto [below, above] =
+                    line.node == PaintedLine::none ? std::pair(0.0, 0.0) : reach[line.node];
+                low = std::min(low, at + below);
+                high = std::max(high, at + above);
+            }
+        }
+    };
+    for (const std::size_t object : order)
+        for (std::size_t i = 0; i < objects[object].size(); ++i) {
+            const PaintedLine& line = objects[object][i];
+            heights_[object][i] =
+                gap * (heights_[object][i] + (is_equal(line) ? level : 0)) + size * line.log_shrunk;
+        }
+    find_reach(0);
+    if (std::isfinite(least_depth)) {
+        const double range = std::max(reach[root].second - reach[root].first, gap);
+        const double depth = depth_factor * range / least_depth;
+        find_reach(depth);
+        for (const std::size_t object : order)
+            for (std::size_t i = 0; i < objects[object].size(); ++i)
+                heights_[object][i] += depth * objects[object][i].depth;
+    }
+    gap_ = gap;
+    top_ = reach[root].second;
+}
+
+} // namespace graftal::cfdg

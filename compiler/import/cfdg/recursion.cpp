@@ -1,0 +1,316 @@
+#include "compiler/import/cfdg/recursion.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <map>
+#include <numeric>
+#include <set>
+#include <utility>
+
+#include "compiler/import/cfdg/evaluate/evaluator.h"
+
+namespace graftal::cfdg {
+
+namespace {
+
+constexpr double unknown = std::numeric_limits<double>::infinity();
+/// Recursion that does not shrink is drawn so deep.
+constexpr int endless_generations = 300;
+/// The logarithm of a size that becomes smaller: an unfolding tells the sizes of all turns apart.
+constexpr double least_growth = -2e-6;
+/// The share of a size that no picture shows.
+constexpr double invisible = 1e-4;
+/// Recursion that shrinks less than by this factor is slow.
+const double slow_growth = std::log(0.85);
+/// The share of its own area that recursion draws again where it fills a picture.
+constexpr double filling_area = 0.95;
+/// Components up to this size are searched for cycles that grow.
+constexpr std::size_t most_shapes = 150;
+
+} // namespace
+
+double growth_of(const Modification& modification, const Expressions& expressions) {
+    double growth = 0;
+    for (const Adjustment& adjustment : modification.adjustments) {
+        if (adjustment.word == "skew") return unknown;
+        if (adjustment.word == "trans") {
+            const Definition* const inner = expressions.modification(adjustment);
+            if (!inner || inner->value.change->adjustments.size() > 20) return unknown;
+            for (const Adjustment& part : inner->value.change->adjustments)
+                if (part.word == "trans") return unknown;
+            growth += growth_of(*inner->value.change, expressions);
+            continue;
+        }
+        if (adjustment.word != "s") continue;
+        double largest = 0;
+        for (std::size_t i = 0; i < adjustment.values.size() && i < 2; ++i) {
+            const std::optional<Interval> range = expressions.range(adjustment.values[i]);
+            if (!range) return unknown;
+            largest = std::max({largest, std::abs(range->least), std::abs(range->most)});
+        }
+        growth += std::log(std::max(largest, 1e-100));
+    }
+    return growth;
+}
+
+Recursion::Recursion(const Grammar& grammar, const Expressions& expressions)
+    : grammar_(grammar), expressions_(expressions) {
+    call_passed();
+    for (std::size_t shape = 0; shape < grammar_.shapes.size(); ++shape)
+        for (const Rule& rule : grammar_.shapes[shape].rules)
+            walk(shape, rule.body, 0);
+    find_components();
+    find_limits();
+}
+
+std::optional<std::size_t> Recursion::index(const std::string& name) const {
+    return grammar_.shape(name, "");
+}
+
+/// Of the largest of its copies.
+double Recursion::growth_of_transform(const Element& element) const {
+    double growth = -unknown;
+    for (const Expr& change : element.arguments)
+        growth =
+            std::max(growth, change.kind == Expr::Kind::modification ? growth_of(*change.change, expressions_)
+                                                                     : unknown);
+    return growth;
+}
+
+void Recursion::walk(std::size_t from, const Elements& elements, double growth) {
+    for (const Element& element : elements) {
+        double inner = growth + growth_of(element.modification, expressions_);
+        if (element.kind == Element::Kind::transform) inner += growth_of_transform(element);
+        if (element.kind == Element::Kind::loop) {
+            // The last copy is the largest where copies grow.
+            const double copies =
+                element.arguments.empty() ? 1 : expressions_.number(element.arguments[0]).value_or(100);
+            const double step = inner - growth;
+            inner = growth + (step > 0 ? step * std::max(1.0, copies) : 0);
+        }
+        walk(from, element.body, inner);
+        walk(from, element.other, inner);
+        for (const Case& one : element.cases)
+            walk(from, one.body, growth);
+        if (element.kind != Element::Kind::shape) continue;
+        const std::string& space = grammar_.shapes[from].space;
+        if (const std::optional<std::size_t> to = grammar_.shape(element.name, space);
+            to && !element.computed)
+            call(from, *to, element, inner);
+        else if (element.computed || primitive_named(element.name).empty())
+            call(from, grammar_.shapes.size(), element,
+                 inner); // a parameter, or a function that gives a shape
+    }
+}
+
+void Recursion::call(std::size_t from, std::size_t to, const Element& element, double growth) {
+    Call call{from, to, growth};
+    const std::vector<Parameter>& own = grammar_.shapes[from].parameters;
+    for (std::size_t i = 0; i < element.arguments.size(); ++i) {
+        const Expr& argument = element.arguments[i];
+        const bool handed_on =
+            argument.kind == Expr::Kind::name && from == to && i < own.size() && own[i].name == argument.text;
+        if (!handed_on && !expressions_.number(argument)) call.changes_parameters = true;
+    }
+    for (const Adjustment& adjustment : element.modification.adjustments)
+        call.changes_parameters = call.changes_parameters || adjustment.sets_target;
+    calls_.push_back(call);
+}
+
+/// Shapes that expressions name may be called by another name.
+void Recursion::call_passed() {
+    std::set<std::size_t> passed;
+    const auto in_expression = [&](const auto& self, const Expr& expression,
+                                   const std::string& space) -> void {
+        if (expression.kind == Expr::Kind::name || expression.kind == Expr::Kind::call)
+            if (const std::optional<std::size_t> shape = grammar_.shape(expression.text, space))
+                passed.insert(*shape);
+        for (const Expr& operand : expression.operands)
+            self(self, operand, space);
+    };
+    const auto in_elements = [&](const auto& self, const Elements& elements,
+                                 const std::string& space) -> void {
+        for (const Element& element : elements) {
+            for (const Expr& argument : element.arguments)
+                in_expression(in_expression, argument, space);
+            self(self, element.body, space);
+            self(self, element.other, space);
+            for (const Case& one : element.cases)
+                self(self, one.body, space);
+        }
+    };
+    for (const Shape& shape : grammar_.shapes)
+        for (const Rule& rule : shape.rules)
+            in_elements(in_elements, rule.body, shape.space);
+    for (const Definition& definition : grammar_.definitions)
+        in_expression(in_expression, definition.value, definition.space);
+    if (grammar_.start)
+        for (const Expr& argument : grammar_.start->arguments)
+            in_expression(in_expression, argument, "");
+    for (const std::size_t shape : passed)
+        calls_.push_back({grammar_.shapes.size(), shape});
+}
+
+/// Whether the areas of its calls add up to nearly the whole, or more: the largest eigenvalue by power
+/// iteration.
+bool Recursion::fills(const std::vector<const Call*>& calls,
+                      const std::map<std::size_t, std::size_t>& place) {
+    constexpr int rounds = 40;
+    std::vector<double> areas(place.size(), 1);
+    double grown = 0;
+    for (int round = 0; round < rounds; ++round) {
+        std::vector<double> next(place.size());
+        for (const Call* const call : calls)
+            next[place.at(call->from)] +=
+                std::exp(2 * std::clamp(call->growth, -50.0, 1.0)) * areas[place.at(call->to)];
+        grown = *std::ranges::max_element(next);
+        if (!(grown > 0)) return false;
+        for (double& area : next)
+            area /= grown;
+        areas = std::move(next);
+    }
+    return grown > filling_area;
+}
+
+bool Recursion::fades_slowly(std::size_t from) const {
+    std::vector<std::vector<std::size_t>> to(component_.size());
+    for (const Call& call : calls_)
+        to[call.from].push_back(call.to);
+    std::vector<std::array<bool, 2>> seen(component_.size()); // by whether recursion leads there
+    std::vector<std::pair<std::size_t, bool>> open = {{from, false}};
+    while (!open.empty()) {
+        const auto [shape, below] = open.back();
+        open.pop_back();
+        if (std::exchange(seen[shape][below ? 1 : 0], true)) continue;
+        const std::size_t component = component_[shape];
+        if (branches_[component] || (slow_[component] && below)) return true;
+        for (const std::size_t next : to[shape])
+            open.emplace_back(next, below || (recurs_[component] && component_[next] != component));
+    }
+    return false;
+}
+
+std::vector<std::size_t> Recursion::from_the_leaves() const {
+    std::vector<std::size_t> order(grammar_.shapes.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    // Kosaraju's second walk finds components before those that they call.
+    std::ranges::stable_sort(order, std::greater<>(), [&](std::size_t shape) { return component_[shape]; });
+    return order;
+}
+
+void Recursion::mark_callers(std::vector<bool>& marked) const {
+    marked.resize(grammar_.shapes.size() + 1);
+    std::vector<std::vector<std::size_t>> callers(marked.size());
+    for (const Call& call : calls_)
+        callers[call.to].push_back(call.from);
+    std::vector<std::size_t> open;
+    for (std::size_t shape = 0; shape < marked.size(); ++shape)
+        if (marked[shape]) open.push_back(shape);
+    while (!open.empty()) {
+        const std::size_t shape = open.back();
+        open.pop_back();
+        for (const std::size_t caller : callers[shape])
+            if (!marked[caller]) {
+                marked[caller] = true;
+                open.push_back(caller);
+            }
+    }
+}
+
+/// Kosaraju's two walks, without recursion.
+void Recursion::find_components() {
+    const std::size_t count = grammar_.shapes.size() + 1;
+    std::vector<std::vector<std::size_t>> to(count), back(count);
+    for (const Call& call : calls_) {
+        to[call.from].push_back(call.to);
+        back[call.to].push_back(call.from);
+    }
+    std::vector<std::size_t> order, at(count);
+    std::vector<bool> seen(count);
+    for (std::size_t root = 0; root < count; ++root) {
+        if (seen[root]) continue;
+        std::vector<std::size_t> path = {root};
+        seen[root] = true;
+        while (!path.empty()) {
+            const std::size_t id = path.back();
+            if (at[id] == to[id].size()) {
+                order.push_back(id);
+                path.pop_back();
+                continue;
+            }
+            const std::size_t next = to[id][at[id]++];
+            if (seen[next]) continue;
+            seen[next] = true;
+            path.push_back(next);
+        }
+    }
+    component_.assign(count, count);
+    std::size_t components = 0;
+    for (auto root = order.rbegin(); root != order.rend(); ++root) {
+        if (component_[*root] != count) continue;
+        std::vector<std::size_t> open = {*root};
+        component_[*root] = components;
+        while (!open.empty()) {
+            const std::size_t id = open.back();
+            open.pop_back();
+            for (const std::size_t next : back[id])
+                if (component_[next] == count) component_[next] = components, open.push_back(next);
+        }
+        ++components;
+    }
+    limits_.resize(components);
+    shrinks_.assign(components, true);
+    recurs_.assign(components, false);
+    slow_.assign(components, false);
+    branches_.assign(components, false);
+}
+
+void Recursion::find_limits() {
+    std::vector<std::vector<std::size_t>> members_of(limits_.size());
+    std::vector<std::vector<const Call*>> calls_within(limits_.size());
+    for (std::size_t shape = 0; shape < component_.size(); ++shape)
+        members_of[component_[shape]].push_back(shape);
+    for (const Call& call : calls_)
+        if (component_[call.from] == component_[call.to])
+            calls_within[component_[call.from]].push_back(&call);
+    for (std::size_t component = 0; component < limits_.size(); ++component) {
+        const std::vector<const Call*>& inner = calls_within[component];
+        std::map<std::size_t, std::size_t> place;
+        for (const std::size_t member : members_of[component])
+            place.emplace(member, place.size());
+        const std::size_t n = place.size();
+        const bool changes = std::ranges::any_of(inner, &Call::changes_parameters);
+        if (inner.empty()) continue;
+        recurs_[component] = true;
+        // The largest growth of any way from one to another (Floyd 1962; Warshall 1962).
+        double largest = unknown;
+        if (n <= most_shapes) {
+            std::vector<std::vector<double>> way(n, std::vector<double>(n, -unknown));
+            for (const Call* const call : inner) {
+                double& growth = way[place[call->from]][place[call->to]];
+                growth = std::max(growth, call->growth);
+            }
+            for (std::size_t k = 0; k < n; ++k)
+                for (std::size_t i = 0; i < n; ++i)
+                    for (std::size_t j = 0; j < n; ++j)
+                        if (way[i][k] > -unknown && way[k][j] > -unknown)
+                            way[i][j] = std::max(way[i][j], std::min(way[i][k] + way[k][j], 1e6));
+            largest = -unknown;
+            for (std::size_t i = 0; i < n; ++i)
+                largest = std::max(largest, way[i][i]);
+        }
+        shrinks_[component] = largest < least_growth;
+        branches_[component] = inner.size() > n && fills(inner, place);
+        slow_[component] = largest > slow_growth;
+        if (shrinks_[component] && !changes) continue;
+        limits_[component] = endless_generations;
+        if (!shrinks_[component]) continue;
+        const double steps = std::log(invisible) / largest * static_cast<double>(n);
+        limits_[component] = static_cast<int>(std::clamp(std::ceil(steps), 20.0, 2000.0));
+    }
+}
+
+} // namespace graftal::cfdg

@@ -1,0 +1,13 @@
+#pragma once
+
+#include <optional>
+
+#include "compiler/import/cpfg/names.h"
+#include "compiler/import/cpfg/system.h"
+
+namespace graftal {
+
+/// The L-system of a source; nothing after an error.
+std::optional<CpfgSystem> read_cpfg_system(CpfgNames& names);
+
+} // namespace graftal

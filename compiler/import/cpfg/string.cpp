@@ -1,0 +1,108 @@
+#include "compiler/import/cpfg/string.h"
+
+#include <algorithm>
+#include <cctype>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "compiler/import/cpfg/expression.h"
+#include "compiler/import/foreign_text.h"
+
+namespace graftal {
+
+namespace {
+
+/// All macros outside of parentheses; inside them those that are no numbers.
+std::string expanded_string(std::string_view text, CpfgNames& names, Span span) {
+    const std::vector<CpfgMacro>& macros = names.source().macros;
+    std::string out;
+    for (std::size_t i = 0; i < text.size();) {
+        const std::size_t open = std::min(text.find('(', i), text.size());
+        std::size_t close = open;
+        int depth = 0;
+        do {
+            if (close >= text.size()) break;
+            depth += (text[close] == '(') - (text[close] == ')');
+            ++close;
+        } while (depth > 0);
+        // A macro with arguments takes its parentheses along.
+        std::size_t name = open;
+        while (name > i && is_cpfg_name(text[name - 1]))
+            --name;
+        const auto macro = std::ranges::find(macros, text.substr(name, open - name), &CpfgMacro::name);
+        if (macro != macros.end() && macro->parameters) {
+            out += names.expanded(text.substr(i, name - i), span, true);
+            out += names.expanded(text.substr(name, close - name), span, true);
+        } else {
+            out += names.expanded(text.substr(i, open - i), span, true);
+            out += names.expanded(text.substr(open, close - open), span, false);
+        }
+        i = close;
+    }
+    return out;
+}
+
+void skip_blanks(std::string_view text, std::size_t& i) {
+    std::size_t next = i;
+    while (next < text.size() && text[next] == ' ')
+        ++next;
+    if (next < text.size() && text[next] == '(') i = next;
+}
+
+void take_parameters(std::string_view text, std::size_t& i, CpfgModule& module, CpfgNames& names, Span span) {
+    if (i >= text.size() || text[i] != '(') return;
+    module.has_parentheses = true;
+    const std::size_t begin = ++i;
+    int depth = 1;
+    for (; i < text.size() && depth > 0; ++i)
+        depth += (text[i] == '(') - (text[i] == ')');
+    if (depth > 0) {
+        names.error(span, fmt::format("the '(' after '{}' is not closed", module.symbol));
+        return;
+    }
+    const std::string_view inside = text.substr(begin, i - begin - 1);
+    for (std::size_t from = 0; from <= inside.size() && !trimmed(inside).empty();) {
+        const std::size_t comma = std::min(find_outside(inside, ",", from), inside.size());
+        module.parameters.emplace_back(trimmed(inside.substr(from, comma - from)));
+        from = comma + 1;
+    }
+}
+
+} // namespace
+
+CpfgString read_cpfg_string(std::string_view given, CpfgNames& names, Span span) {
+    const std::string text = expanded_string(given, names, span);
+    CpfgString string;
+    for (std::size_t i = 0; i < text.size();) {
+        const char c = text[i];
+        if (c == ' ' || c == '\t') {
+            ++i;
+            continue;
+        }
+        CpfgModule module;
+        module.symbol = c;
+        ++i;
+        // Blanks do not count.
+        if (c == '@' || c == '~') i = std::min(text.find_first_not_of(" \t", i), text.size());
+        const bool queries =
+            c == '?' && i < text.size() && std::string_view("PHLUQE").find(text[i]) != std::string_view::npos;
+        if ((c == '@' || c == '~' || queries) && i < text.size()) module.symbol += text[i++];
+        skip_blanks(text, i);
+        take_parameters(text, i, module, names, span);
+        constexpr std::string_view longer = "GPTDbm";
+        if (c == '@' && module.symbol.size() == 2 &&
+            longer.find(module.symbol[1]) != std::string_view::npos && !module.has_parentheses &&
+            i < text.size() && std::isalpha(static_cast<unsigned char>(text[i]))) {
+            module.symbol += text[i++];
+            skip_blanks(text, i);
+            take_parameters(text, i, module, names, span);
+        }
+        string.push_back(std::move(module));
+    }
+    return string;
+}
+
+} // namespace graftal

@@ -1,0 +1,76 @@
+#pragma once
+
+#include <map>
+#include <set>
+#include <string>
+#include <utility>
+
+#include "compiler/import/cpfg/names.h"
+#include "compiler/import/cpfg/system.h"
+
+namespace graftal {
+
+/// Writes the modules of a cpfg model as ours.
+class CpfgWords {
+  public:
+    /// Both must outlive this.
+    CpfgWords(CpfgNames& names, const CpfgSystem& system);
+
+    /// A string that productions go on to rewrite, or the homomorphism to draw.
+    std::string text_of(const CpfgString& string, Span span) { return text_of(string, span, Use::word); }
+    /// The successor of a homomorphism whose modules are drawn as they are.
+    std::string drawn_text_of(const CpfgString& string, Span span) {
+        return text_of(string, span, Use::drawn);
+    }
+    /// A predecessor or a context.
+    std::string formals(const CpfgString& string);
+    /// The module of ours that has this name in productions; "" for what has none.
+    std::string name_of(const std::string& symbol);
+
+    /// How often the productions of a section are applied to what they give.
+    int depth_of(CpfgSection section) const;
+
+    // What the strings so far have used:
+    const std::set<std::string>& declared() const { return declared_; } ///< names of modules to declare
+    const std::set<char>& surfaces() const { return used_surfaces_; }
+    bool uses_cut() const { return uses_cut_; }
+    bool bends_of_old() const { return bends_of_old_; }                 ///< by `_`
+    const std::set<std::size_t>& tropisms() const { return tropisms_; } ///< their numbers
+    /// Productions of `interpret` that draw modules which have other names here than where they are drawn.
+    std::string stand_ins(Span span);
+    bool has_stand_ins() const { return !stand_ins_.empty(); }
+
+    static std::string surface_name(char letter);
+    static constexpr const char* cut_name = "Cut";
+
+  private:
+    enum class Use { word, drawn };
+
+    bool is_renamed(const std::string& symbol) const;
+    std::string text_of(const CpfgString& string, Span span, Use use);
+    std::string text_of(const CpfgModule& module, Span span, Use use);
+    std::string own_text_of(const CpfgModule& module, Span span, bool other_arity);
+    std::string parameters(const CpfgModule& module, Span span, bool other_arity);
+    std::string default_parameter(const std::string& symbol, Span span);
+    std::string surface(const CpfgModule& module, Span span);
+    std::string width(const CpfgModule& module, Span span);
+    std::string elasticity(const CpfgModule& module, Span span);
+    std::string directive(const CpfgModule& module, Span span);
+    std::string tropism(const CpfgModule& module, Span span);
+    std::string colour_step(const CpfgModule& module) const;
+    std::string query(const CpfgModule& module, Span span);
+
+    CpfgNames& names_;
+    const CpfgSystem& system_;
+    using WithParameters = std::set<std::pair<std::string, std::size_t>>; ///< symbols with so many parameters
+    std::set<std::string> mentioned_; ///< symbols that productions look at
+    std::set<std::string> rewritten_; ///< symbols that begin a predecessor
+    WithParameters drawn_otherwise_;  ///< what the homomorphism draws as something else
+    WithParameters stand_ins_;
+    std::set<std::string> declared_;
+    std::set<char> used_surfaces_;
+    bool uses_cut_ = false, bends_of_old_ = false;
+    std::set<std::size_t> tropisms_;
+};
+
+} // namespace graftal

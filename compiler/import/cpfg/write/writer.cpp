@@ -1,0 +1,334 @@
+#include "compiler/import/cpfg/write/writer.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <map>
+#include <set>
+#include <sstream>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "compiler/import/cpfg/string.h"
+#include "compiler/import/cpfg/write/environment.h"
+#include "compiler/import/cpfg/write/variables.h"
+#include "compiler/import/cpfg/write/words.h"
+#include "compiler/import/foreign_text.h"
+#include "compiler/support/number.h"
+
+namespace graftal {
+
+namespace {
+
+constexpr std::size_t most_table_text = 64; ///< values in a table of a function that a line of text shows
+
+class SystemWriter {
+  public:
+    SystemWriter(CpfgNames& names, CpfgSystem& system, const ForeignModel& model,
+                 const std::string& environment)
+        : names_(names), system_(system), model_(model), environment_(environment), words_(names, system),
+          variables_(names, system) {}
+
+    Translation write() {
+        share_probabilities();
+        const Translation body = write_body();
+        const std::string filter = filter_text();
+        Translation out{"lsys", {}, {}};
+        comments(out, system_.head_comments, "");
+        for (const char letter : words_.surfaces())
+            out.line(fmt::format("use {} = \"{}\"", CpfgWords::surface_name(letter),
+                                 names_.view().surfaces.at(letter).file));
+        out.line(fmt::format("lsys {} {{", block_name(model_.name)), model_.span);
+        if (!words_.declared().empty()) out.line("  modules " + declared_names());
+        write_lets(out, body.text);
+        for (const CpfgFunction& table : names_.tables())
+            write_table(out, table);
+        out.line(fmt::format("  angle {}", names_.view().angle_deg));
+        if (names_.view().width && !names_.view().width_in_pixels)
+            out.line(fmt::format("  width {}", *names_.view().width));
+        write_tropisms(out);
+        if (!system_.length.empty()) out.line("  steps " + system_.length, system_.length_span);
+        if (!system_.seed.empty()) out.line("  seed " + system_.seed, system_.seed_span);
+        if (body.text.find("?E") != std::string::npos) write_environment(out);
+        if (!filter.empty()) out.line(filter, system_.filter_span);
+        if (has_contexts()) out.line("  precedence text");
+        write_variables(out);
+        comments(out, system_.axiom_comments, "  ");
+        out.text += body.text;
+        out.origins.insert(out.origins.end(), body.origins.begin(), body.origins.end());
+        return out;
+    }
+
+  private:
+    std::vector<CpfgProduction>& productions(CpfgSection section) { return system_.productions[section]; }
+
+    /// cpfg chooses by the shares of the probabilities in their sum.
+    void share_probabilities() {
+        for (auto& [section, productions] : system_.productions) {
+            std::map<std::string, double> sums;
+            const auto key = [](const CpfgProduction& p) {
+                return p.predecessor.empty()
+                           ? ""
+                           : p.predecessor[0].symbol + std::to_string(p.predecessor[0].parameters.size());
+            };
+            const auto number = [&](const CpfgProduction& p) {
+                const std::string text(trimmed(names_.expanded(p.probability, p.span, true)));
+                const auto [value, length] = leading_number(text);
+                return length > 0 && length == text.size() && std::isfinite(value) ? value : -1;
+            };
+            bool plain = true;
+            for (const CpfgProduction& p : productions) {
+                if (p.probability.empty()) continue;
+                plain = plain && number(p) >= 0 && p.condition.empty() && !p.has_left && !p.has_right;
+                sums[key(p)] += number(p);
+            }
+            if (!plain) continue;
+            for (CpfgProduction& p : productions)
+                if (!p.probability.empty() && std::abs(sums[key(p)] - 1) > 1e-9 && sums[key(p)] > 0)
+                    p.probability += fmt::format("/{}", sums[key(p)]);
+        }
+    }
+
+    /// From the axiom to the end. What it uses is then known.
+    Translation write_body() {
+        Translation body{"lsys", {}, {}};
+        const std::string axiom = words_.text_of(system_.axiom, system_.axiom_span);
+        Translation rest{"lsys", {}, {}};
+        for (const CpfgProduction& production : productions(CpfgSection::productions))
+            write_production(rest, production, "  ", CpfgSection::productions);
+        write_section(rest, CpfgSection::decomposition, "decompose");
+        write_section(rest, CpfgSection::homomorphism, "interpret");
+        write_stand_ins(rest);
+        if (words_.uses_cut()) { // in cpfg a step goes by before it cuts
+            rest.line(fmt::format("  {} -> %", CpfgWords::cut_name));
+            if (!names_.view().draws_past_cuts)
+                rest.line(fmt::format("  interpret {} -> %", CpfgWords::cut_name));
+        }
+        rest.line("}");
+        body.line("  axiom " + start_state() + axiom, system_.axiom_span);
+        body.text += rest.text;
+        body.origins.insert(body.origins.end(), rest.origins.begin(), rest.origins.end());
+        return body;
+    }
+
+    /// What the view file says of the turtle at the start, as modules.
+    std::string start_state() const {
+        const CpfgView& view = names_.view();
+        std::string text = view.has_colour ? fmt::format(";({})", view.colour) : "";
+        if (view.elasticity != 0) text += fmt::format("T({})", view.elasticity);
+        for (std::size_t i = 0; i < view.tropisms.size(); ++i)
+            if (view.tropisms[i].elasticity != 0)
+                text += fmt::format("@T({}, {})", i + 1, view.tropisms[i].elasticity);
+        return text;
+    }
+
+    void write_stand_ins(Translation& out) {
+        if (!words_.has_stand_ins()) return;
+        out.line("  interpret {");
+        std::istringstream lines(words_.stand_ins(system_.axiom_span));
+        for (std::string line; std::getline(lines, line);)
+            out.line("    " + line);
+        out.line("  }");
+    }
+
+    void write_lets(Translation& out, const std::string& body) {
+        std::string text = body + " " + system_.length + " " + system_.seed + " ";
+        for (const auto* values : {&variables_.lets(), &variables_.variables()})
+            for (const auto& [name, value] : *values)
+                text += value + " ";
+        for (const auto& [moment, block] : variables_.blocks())
+            text += cpfg_block_text(block) + " ";
+        for (const CpfgArray& array : system_.arrays)
+            text += array.sizes + " " + array.values + " ";
+        // Macros that are numbers may use others.
+        const std::vector<CpfgMacro>& macros = names_.source().macros;
+        for (auto macro = macros.rbegin(); macro != macros.rend(); ++macro)
+            if (names_.lets().contains(macro->name) && uses(text, macro->name)) text += macro->body + " ";
+        for (const CpfgMacro& macro : macros)
+            if (names_.lets().contains(macro.name) && uses(text, macro.name))
+                out.line(fmt::format("  let {} = {}", macro.name, macro.body), macro.span);
+        for (const auto& [name, value] : variables_.lets())
+            out.line(fmt::format("  let {} = {}", name, value), span_of(CpfgMoment::start));
+    }
+
+    Span span_of(CpfgMoment moment) const {
+        const auto known = system_.block_spans.find(moment);
+        return known == system_.block_spans.end() ? Span() : known->second;
+    }
+
+    void write_variables(Translation& out) {
+        for (const CpfgArray& array : system_.arrays)
+            out.line(fmt::format("  array {}{}{}{}", array.name, array.sizes,
+                                 array.values.empty() ? "" : " = ", array.values),
+                     array.span);
+        for (const auto& [name, value] : variables_.variables())
+            out.line(fmt::format("  variable {} = {}", name, value), span_of(CpfgMoment::start));
+        constexpr std::pair<CpfgMoment, const char*> words[] = {{CpfgMoment::start, "start"},
+                                                                {CpfgMoment::start_each, "start each"},
+                                                                {CpfgMoment::end_each, "end each"},
+                                                                {CpfgMoment::end, "end"}};
+        for (const auto& [moment, word] : words) {
+            const auto block = variables_.blocks().find(moment);
+            if (block != variables_.blocks().end() && !block->second.empty())
+                out.line(fmt::format("  {} {}", word, cpfg_block_text(block->second)), span_of(moment));
+        }
+    }
+
+    bool has_contexts() const {
+        const auto known = system_.productions.find(CpfgSection::productions);
+        return known != system_.productions.end() &&
+               std::ranges::any_of(known->second, [](const CpfgProduction& production) {
+                   return !production.left.empty() || !production.right.empty();
+               });
+    }
+
+    /// cpfg decomposes in steps only, and so not the axiom.
+    bool decomposes_axiom() {
+        const auto& decompositions = productions(CpfgSection::decomposition);
+        return std::ranges::any_of(system_.axiom, [&](const CpfgModule& module) {
+            return std::ranges::any_of(decompositions, [&](const CpfgProduction& production) {
+                return production.predecessor[0].symbol == module.symbol;
+            });
+        });
+    }
+
+    void write_environment(Translation& out) {
+        if (environment_.empty())
+            names_.warn_once(system_.axiom_span,
+                             "the model names no environment program: '?E' keeps the values that it has");
+        else
+            out.line("  " + translated_cpfg_environment(environment_, names_, system_.axiom_span));
+    }
+
+    /// `_` bends after each move, numbered tropisms before.
+    void write_tropisms(Translation& out) {
+        const CpfgView& view = names_.view();
+        const bool old = words_.bends_of_old() || view.elasticity != 0;
+        std::set<std::size_t> numbers = words_.tropisms();
+        for (std::size_t i = 0; i < view.tropisms.size(); ++i)
+            if (view.tropisms[i].elasticity != 0) numbers.insert(i + 1);
+        if (old && !numbers.empty())
+            names_.error(system_.axiom_span, "'_' together with numbered tropisms has no translation");
+        if (old) {
+            out.line("  tropism " + view.tropism_direction);
+            out.line("  bending after moves");
+        } else if (!numbers.empty()) {
+            for (const CpfgTropism& tropism : view.tropisms)
+                out.line(fmt::format("  {} {}{}", tropism.twists ? "torque" : "tropism", tropism.direction,
+                                     tropism.angle_deg == 0 ? "" : fmt::format(", {}", tropism.angle_deg)));
+            out.line("  bending before moves");
+        }
+    }
+
+    static bool uses(std::string_view text, std::string_view name) {
+        for (std::size_t at = text.find(name); at != std::string_view::npos; at = text.find(name, at + 1)) {
+            const bool begins = at == 0 || !is_cpfg_name(text[at - 1]);
+            const std::size_t end = at + name.size();
+            if (begins && (end == text.size() || !is_cpfg_name(text[end]))) return true;
+        }
+        return false;
+    }
+
+    static void comments(Translation& out, const std::vector<std::pair<std::string, Span>>& lines,
+                         const char* indent) {
+        for (const auto& [line, span] : lines)
+            out.line(fmt::format("{}# {}", indent, line), span);
+    }
+
+    std::string declared_names() const {
+        std::string names;
+        for (const std::string& name : words_.declared())
+            names += (names.empty() ? "" : " ") + name;
+        return names;
+    }
+
+    void write_table(Translation& out, const CpfgFunction& table) {
+        const std::vector<double>& values = table.values;
+        std::string text = fmt::format("  table {} =", table.name);
+        for (std::size_t i = 0; i < values.size(); ++i) {
+            if (i > 0) text += ",";
+            if (i > 0 && i % most_table_text == 0) {
+                out.line(text);
+                text = "   ";
+            }
+            text += " " + shortest(values[i]);
+        }
+        out.line(text);
+    }
+
+    /// Where cpfg passes over '[' as over any ignored symbol, its right contexts see into branches and out of
+    /// them.
+    void check_brackets() {
+        const bool listed = system_.filter_symbols.find('[') != std::string::npos;
+        if (listed == (system_.filter == "consider")) return;
+        for (const CpfgProduction& production : productions(CpfgSection::productions))
+            if (!production.right.empty())
+                names_.error(production.span,
+                             "a right context that sees through ignored brackets has no translation");
+    }
+
+    std::string filter_text() {
+        if (system_.filter.empty()) return "";
+        check_brackets();
+        std::set<std::string> names;
+        std::string text;
+        for (const CpfgModule& module :
+             read_cpfg_string(system_.filter_symbols, names_, system_.filter_span)) {
+            if (std::string_view("[]{}").find(module.symbol) != std::string_view::npos) continue;
+            const std::string name = words_.name_of(module.symbol);
+            if (names.insert(name).second) text += " " + name;
+        }
+        return text.empty() ? text : "  " + system_.filter + text;
+    }
+
+    void write_section(Translation& out, CpfgSection section, const char* word) {
+        if (productions(section).empty()) return;
+        out.line(fmt::format("  {} {{", word));
+        for (const CpfgProduction& production : productions(section))
+            write_production(out, production, "    ", section);
+        out.line("  }");
+    }
+
+    void write_production(Translation& out, const CpfgProduction& production, const char* indent,
+                          CpfgSection section) {
+        comments(out, production.comments, indent);
+        std::string text = indent;
+        if (section == CpfgSection::productions && production.has_left && !production.left.empty())
+            text += words_.formals(production.left) + " < ";
+        text += words_.formals(production.predecessor);
+        if (section == CpfgSection::productions && production.has_right && !production.right.empty())
+            text += " > " + words_.formals(production.right);
+        if (section != CpfgSection::productions && production.predecessor.size() > 1)
+            names_.error(production.span,
+                         "a decomposition or homomorphism of several modules has no translation");
+        if (section == CpfgSection::decomposition && (!production.left.empty() || !production.right.empty()))
+            names_.error(production.span, "a context of a decomposition has no translation");
+        text += cpfg_condition_text(production, variables_,
+                                    section == CpfgSection::decomposition && decomposes_axiom());
+        const bool drawn = section == CpfgSection::homomorphism && words_.depth_of(section) == 1;
+        const std::string successor = drawn ? words_.drawn_text_of(production.successor, production.span)
+                                            : words_.text_of(production.successor, production.span);
+        text += " -> " + (successor.empty() ? "*" : successor);
+        if (!production.probability.empty()) text += " : " + production.probability;
+        out.line(text, production.span);
+    }
+
+    CpfgNames& names_;
+    CpfgSystem& system_;
+    const ForeignModel& model_;
+    const std::string& environment_; ///< the file of its program
+    CpfgWords words_;
+    CpfgVariables variables_;
+};
+
+} // namespace
+
+Translation write_cpfg_system(CpfgNames& names, CpfgSystem system, const ForeignModel& model,
+                              const std::string& environment) {
+    return SystemWriter(names, system, model, environment).write();
+}
+
+} // namespace graftal

@@ -1,0 +1,334 @@
+#include "compiler/import/flame/importer.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <set>
+#include <utility>
+
+#include <fmt/format.h>
+#include <pugixml.hpp>
+
+#include "compiler/import/flame/parametric.h"
+#include "compiler/import/flame/reader.h"
+#include "compiler/import/flame/variations.h"
+#include "compiler/import/foreign_text.h"
+#include "compiler/import/own_words.h"
+#include "compiler/import/spectral_radius.h"
+#include "compiler/support/angle.h"
+#include "compiler/support/number.h"
+#include "compiler/support/srgb.h"
+
+namespace graftal {
+
+namespace flame {
+
+std::vector<ForeignModel> models(const ForeignFile& file) {
+    Reader reader(file);
+    const pugi::xml_document* const document = reader.document();
+    std::vector<ForeignModel> found;
+    if (!document) return found;
+    std::set<std::string> names;
+    for (const pugi::xml_node& flame : flames_of(*document)) {
+        std::string name = comment_text(flame.attribute("name").value());
+        if (name.empty()) name = fmt::format("flame{}", found.size() + 1);
+        if (!names.insert(name).second) name = fmt::format("{}_{}", name, found.size() + 1);
+        names.insert(name);
+        found.push_back({name, reader.span(flame)});
+    }
+    return found;
+}
+
+// Text
+
+class Writer {
+  public:
+    Writer(const ForeignFile& file, const ForeignModel& model, Flame flame)
+        : file_(file), name_(own_name(model.name)), flame_(std::move(flame)) {
+        add_symmetry();
+        fill_palette();
+        out_.line(comment(model.name + ", a flame"));
+    }
+
+    std::optional<Translation> write() {
+        double sum = 0;
+        for (const Map& map : flame_.maps)
+            sum += map.weight;
+        for (Map& map : flame_.maps)
+            map.weight /= sum;
+        const bool affine =
+            std::ranges::all_of(flame_.maps, &Map::is_affine) && (!flame_.last || flame_.last->is_affine());
+        for (const Map& map : flame_.maps)
+            if (map.opacity < 1)
+                file_.diagnostics.warning(map.span,
+                                          "'opacity' changes nothing here: the map draws what it makes");
+        const Map* const growing = affine ? find_growing() : nullptr;
+        if (affine && !growing)
+            write_maps();
+        else if (!write_orbit(growing))
+            return std::nullopt;
+        return std::move(out_);
+    }
+
+  private:
+    static constexpr const char *start_x = "0.1", *start_y = "0.2";
+
+    static std::string comment(const std::string& words) { return "# " + comment_text(words); }
+    static std::string own_name(const std::string& name) {
+        const std::string plain = plain_name(name);
+        return is_own_word(plain) ? plain + "_flame" : plain;
+    }
+    static std::string number(double value) { return shortest(value); }
+
+    void add_symmetry() {
+        if (flame_.symmetry == 1 || flame_.symmetry == 0) return;
+        const int turns = std::min(std::abs(flame_.symmetry), 100);
+        double sum = 0;
+        for (const Map& map : flame_.maps)
+            sum += map.weight;
+        const auto add = [&](const Affine& whole) {
+            Map map;
+            map.pre = whole;
+            map.variations = {{"linear", 1}};
+            map.weight = sum;
+            map.speed = 0;
+            map.span = flame_.symmetry_span;
+            flame_.maps.push_back(std::move(map));
+        };
+        for (int i = 1; i < turns; ++i)
+            add(Affine::rotate({0, 0, 1}, 360.0 * i / turns));
+        if (flame_.symmetry < 0) add(Affine::scale({-1, 1, 1}));
+    }
+
+    /// Colours between those that are given.
+    void fill_palette() {
+        std::optional<std::size_t> before;
+        for (std::size_t i = 0; i < 256; ++i) {
+            if (!flame_.has_colour[i]) continue;
+            for (std::size_t j = before ? *before + 1 : 0; j < i; ++j) {
+                const double share =
+                    before ? static_cast<double>(j - *before) / static_cast<double>(i - *before) : 1;
+                for (std::size_t k = 0; k < 3; ++k)
+                    flame_.palette[j][k] =
+                        (1 - share) * flame_.palette[before.value_or(i)][k] + share * flame_.palette[i][k];
+            }
+            before = i;
+        }
+        for (std::size_t j = before ? *before + 1 : 256; j < 256; ++j)
+            flame_.palette[j] = flame_.palette[*before];
+        has_palette_ = before.has_value();
+    }
+
+    /// A map whose powers do not shrink; of two together.
+    const Map* find_growing() const {
+        constexpr double limit = 1 - 1e-7;
+        for (const Map& map : flame_.maps)
+            if (spectral_radius(map.whole().linear) >= limit) return &map;
+        if (flame_.maps.size() > 64) return nullptr;
+        for (std::size_t i = 0; i < flame_.maps.size(); ++i)
+            for (std::size_t j = 0; j < i; ++j)
+                if (spectral_radius(flame_.maps[i].whole().linear * flame_.maps[j].whole().linear) >= limit &&
+                    may_follow(i, j) && may_follow(j, i))
+                    return &flame_.maps[i];
+        return nullptr;
+    }
+
+    double chaos(std::size_t from, std::size_t to) const {
+        const std::vector<double>& factors = flame_.maps[from].chaos;
+        return to < factors.size() ? std::max(0.0, factors[to]) : 1;
+    }
+
+    bool may_follow(std::size_t from, std::size_t to) const {
+        return chaos(from, to) * flame_.maps[to].weight > 0;
+    }
+
+    std::string tint(const Map& map) const {
+        if (!has_palette_ || map.speed == 0) return "";
+        const std::array<double, 3>& rgb =
+            flame_.palette[static_cast<std::size_t>(std::lround(255 * map.colour))];
+        const auto linear = [](double v) { return number(linear_from_srgb(v)); };
+        return fmt::format("  tint rgb <{}, {}, {}> {}", linear(rgb[0]), linear(rgb[1]), linear(rgb[2]),
+                           number(map.speed));
+    }
+
+    void write_camera() {
+        const std::array<double, 3>& b = flame_.background;
+        out_.line(fmt::format("background: {}, {}, {}", number(linear_from_srgb(b[0])),
+                              number(linear_from_srgb(b[1])), number(linear_from_srgb(b[2]))));
+        if (!flame_.centre || !(flame_.scale > 0) || !(flame_.width > 0)) return;
+        const double x = (*flame_.centre)[0], y = (*flame_.centre)[1];
+        const auto [cosine, sine] = cos_sin_deg(flame_.rotate);
+        out_.line(fmt::format(
+            "camera {{ orthographic  location: {0},{1},-10  look_at: {0},{1},0  up: {3},{4},0  width: {2} }}"
+            "   # y points downwards",
+            number(x), number(y), number(flame_.width / flame_.scale), number(-sine), number(-cosine)));
+    }
+
+    void write_maps() {
+        write_camera();
+        const bool chaotic = std::ranges::any_of(flame_.maps, &Map::steers);
+        out_.line(fmt::format("rifs {} {{", name_));
+        out_.line("  codes 2d {");
+        for (const Map& map : flame_.maps) {
+            const Affine whole = map.whole();
+            out_.line(fmt::format("    {} {} {} {}  {} {}  {}{}{}", number(whole.linear[0][0]),
+                                  number(whole.linear[1][0]), number(whole.linear[0][1]),
+                                  number(whole.linear[1][1]), number(whole.translation.x),
+                                  number(whole.translation.y), number(map.weight), tint(map),
+                                  map.name.empty() ? "" : "   " + comment(map.name)),
+                      map.span);
+        }
+        out_.line("  }");
+        if (chaotic) write_chaos();
+        out_.line("}");
+        if (!flame_.last) return;
+        const Affine whole = flame_.last->whole();
+        out_.line(fmt::format("main rifs {}_final {{", name_));
+        out_.line(
+            fmt::format("  map final from {} {{ matrix {}, {}, 0, {},  {}, {}, 0, {},  0, 0, {}, 0{} }}",
+                        name_, number(whole.linear[0][0]), number(whole.linear[1][0]),
+                        number(whole.translation.x), number(whole.linear[0][1]), number(whole.linear[1][1]),
+                        number(whole.translation.y), number(whole.linear[2][2]), tint(*flame_.last)),
+            flame_.last->span);
+        out_.line("}");
+    }
+
+    /// Row i: the factors of `chaos`, divided by their sum. As flam3 does, random iteration multiplies them
+    /// by the weights of the maps, which stand in the rows of codes.
+    void write_chaos() {
+        out_.line("  follow matrix {   # 'chaos'");
+        for (std::size_t i = 0; i < flame_.maps.size(); ++i) {
+            double sum = 0;
+            for (std::size_t j = 0; j < flame_.maps.size(); ++j)
+                sum += chaos(i, j);
+            std::string row = "   ";
+            for (std::size_t j = 0; j < flame_.maps.size(); ++j)
+                row += " " + number(sum > 0 ? chaos(i, j) / sum : 0);
+            out_.line(row, flame_.maps[i].span);
+        }
+        out_.line("  }");
+    }
+
+    bool write_orbit(const Map* growing) {
+        bool good = true;
+        const auto fail = [&](Span span, std::string message) {
+            file_.diagnostics.error(span, std::move(message));
+            good = false;
+        };
+        if (flame_.last)
+            fail(flame_.last->span, "a 'finalxform' of a flame that is no limit set is not translated");
+        for (const Map& map : flame_.maps)
+            if (map.steers()) fail(map.span, "'chaos' in a flame that is no limit set is not translated");
+        if (growing)
+            file_.diagnostics
+                .warning(growing->span,
+                         "this map does not shrink, alone or with another, so the flame has no limit set")
+                .with_hint("the model is an orbit: 'graftal points' draws it");
+        write_camera();
+        out_.line(fmt::format("orbit {} {{", name_));
+        out_.line(fmt::format("  start {}, {}", start_x, start_y));
+        for (const Map& map : flame_.maps)
+            good = write_map(map) && good;
+        out_.line("}");
+        return good;
+    }
+
+    bool write_map(const Map& map) {
+        // Variations with two branches make maps for each choice.
+        std::vector<std::vector<std::pair<double, Formula>>> choices = {{}};
+        for (const auto& [variation, weight] : map.variations) {
+            const Setting setting{
+                .pre = map.pre, .weight = weight, .number = [&](const std::string& name, double otherwise) {
+                    const auto known = map.numbers.find(name);
+                    return known == map.numbers.end() ? otherwise : known->second;
+                }};
+            const std::vector<Formula> formulas = formulas_of(variation, setting);
+            if (formulas.empty() || choices.size() * formulas.size() > most_branches) {
+                file_.diagnostics.error(map.span,
+                                        fmt::format("the variation '{}' is not translated", variation));
+                return false;
+            }
+            std::vector<std::vector<std::pair<double, Formula>>> more;
+            for (const auto& choice : choices)
+                for (const Formula& formula : formulas) {
+                    more.push_back(choice);
+                    more.back().emplace_back(weight, formula);
+                }
+            choices = std::move(more);
+        }
+        for (const auto& choice : choices) {
+            out_.line("  map {", map.span);
+            const Affine& pre = map.pre;
+            out_.line(fmt::format("    let u = ({}) * x + ({}) * y + ({})", number(pre.linear[0][0]),
+                                  number(pre.linear[1][0]), number(pre.translation.x)));
+            out_.line(fmt::format("    let v = ({}) * x + ({}) * y + ({})", number(pre.linear[0][1]),
+                                  number(pre.linear[1][1]), number(pre.translation.y)));
+            if (!map.is_affine()) {
+                out_.line("    let r2 = u*u + v*v");
+                out_.line("    let r = sqrt(r2)");
+                out_.line("    let theta = pi / 180 * atan2(u, v)");
+            }
+            std::string x, y;
+            for (const auto& [weight, formula] : choice) {
+                const std::string sign = x.empty() ? "" : " + ";
+                x += fmt::format("{}({}) * ({})", sign, number(weight), formula.x);
+                y += fmt::format("{}({}) * ({})", sign, number(weight), formula.y);
+            }
+            // As flam3 does, a point that runs away begins anew.
+            out_.line("    let p = " + x);
+            out_.line("    let q = " + y);
+            out_.line("    let near = abs(p) < 1e10 && abs(q) < 1e10");
+            const Affine& post = map.post;
+            const auto after = [&](std::size_t axis, double translation, const char* unmoved) {
+                if (post == Affine()) return std::string(unmoved);
+                return fmt::format("({}) * p + ({}) * q + ({})", number(post.linear[0][axis]),
+                                   number(post.linear[1][axis]), number(translation));
+            };
+            out_.line(
+                fmt::format("    x = choose(near, {}, {})", after(0, post.translation.x, "p"), start_x));
+            out_.line(
+                fmt::format("    y = choose(near, {}, {})", after(1, post.translation.y, "q"), start_y));
+            out_.line(fmt::format("    probability {}{}",
+                                  number(map.weight / static_cast<double>(choices.size())), tint(map)));
+            out_.line("  }");
+        }
+        return true;
+    }
+
+    const ForeignFile& file_;
+    std::string name_;
+    Flame flame_;
+    bool has_palette_ = false;
+    Translation out_{.extension = "rifs"};
+};
+
+std::optional<Translation> translate(const ForeignFile& file, const ForeignModel& model) {
+    Reader reader(file);
+    const pugi::xml_document* const document = reader.document();
+    if (!document) return std::nullopt;
+    for (const pugi::xml_node& node : flames_of(*document)) {
+        if (reader.span(node) != model.span) continue;
+        std::optional<Flame> flame = reader.read(node);
+        if (!flame) return std::nullopt;
+        return Writer(file, model, std::move(*flame)).write();
+    }
+    return std::nullopt;
+}
+
+bool recognises(std::string_view text) {
+    return text.find("<flame") != std::string_view::npos;
+}
+
+} // namespace flame
+
+Importer flame_importer() {
+    static constexpr std::string_view endings[] = {"flame", "flam3"};
+    return {.format = "fractal flame",
+            .endings = endings,
+            .recognises = flame::recognises,
+            .sign = "an element '<flame ...>'",
+            .models = flame::models,
+            .translate = flame::translate};
+}
+
+} // namespace graftal

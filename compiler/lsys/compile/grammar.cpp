@@ -1,0 +1,472 @@
+#include "compiler/lsys/compile/grammar.h"
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <set>
+#include <unordered_map>
+#include <utility>
+
+#include <fmt/format.h>
+#include <glm/geometric.hpp>
+
+#include "compiler/lower/lower_transform.h"
+#include "compiler/lsys/compile/checks.h"
+#include "compiler/lsys/compile/declarations.h"
+#include "compiler/lsys/compile/surroundings.h"
+#include "compiler/lsys/parse/commands.h"
+#include "compiler/support/number.h"
+#include "compiler/support/number_range.h"
+#include "compiler/syntax/write_out.h"
+
+namespace graftal {
+
+namespace {
+
+constexpr std::size_t most_symbols = 0xFFFF;
+constexpr double largest_seed = 9007199254740992.0; // 2^53
+
+/// Polygons need not be balanced in a string; branches only where the predecessor's are not. A string without
+/// braces moves no bracket past one.
+bool polygons_cross_branches(const LsysString& string) {
+    const auto is_brace = [](const LsysModule& module) {
+        return module.symbol == "{" || module.symbol == "}";
+    };
+    if (std::ranges::none_of(string.modules, is_brace)) return false;
+    std::string open;
+    for (const LsysModule& module : string.modules) {
+        if (module.symbol == "[" || module.symbol == "{") open += module.symbol;
+        if (module.symbol != "]" && module.symbol != "}") continue;
+        if (open.empty() || open.back() != (module.symbol == "]" ? '[' : '{')) return true;
+        open.pop_back();
+    }
+    return !open.empty();
+}
+
+class GrammarBuilder {
+  public:
+    GrammarBuilder(const LsysBlock& block, Environment lets, Diagnostics& diagnostics)
+        : block_(block), diagnostics_(diagnostics), errors_before_(diagnostics.error_count()) {
+        grammar_.source = &block;
+        grammar_.lets = std::move(lets);
+    }
+
+    std::optional<LsysGrammar> run() && {
+        grammar_.cells = std::make_shared<CellPlaces>(
+            declare_variables(block_, grammar_.lets, grammar_.first_cells, diagnostics_));
+        add_settings();
+        add_step_programs();
+        if (block_.axiom) grammar_.axiom = templates(*block_.axiom, {}, nullptr);
+        add_rules(block_.productions, RuleKind::produce);
+        add_rules(block_.decompose, RuleKind::decompose);
+        add_rules(block_.interpret, RuleKind::interpret);
+        add_filter();
+        for (auto& rules : grammar_.rules_of)
+            rules.resize(grammar_.symbols.size());
+        note_times();
+        if (!block_.precedence || !block_.precedence->by_text) prefer_contexts();
+        check_grammar(grammar_, uses_, diagnostics_);
+        build_surroundings(block_, grammar_, diagnostics_);
+        grammar_.needs_word |= grammar_.has_queries();
+        if (diagnostics_.error_count() > errors_before_) return std::nullopt;
+        return std::move(grammar_);
+    }
+
+  private:
+    template<typename Predicate>
+    std::optional<double> setting(const std::optional<LsysValue>& value, const Predicate& good,
+                                  std::string_view name, std::string_view demand) {
+        if (!value) return std::nullopt;
+        return checked(value->value, good, name, demand);
+    }
+
+    template<typename Predicate>
+    std::optional<double> checked(const Expression& expression, const Predicate& good, std::string_view name,
+                                  std::string_view demand) {
+        if (const Expression* const variable = variable_in(expression)) {
+            diagnostics_.error(variable->span, fmt::format("'{}' is a variable, and '{}' has one value",
+                                                           variable->text, name));
+            return std::nullopt;
+        }
+        const std::optional<double> number = evaluate(expression, grammar_.lets, diagnostics_);
+        if (!number || good(*number)) return number;
+        diagnostics_.error(expression.span,
+                           fmt::format("'{}' must {}, not {}", name, demand, shortest(*number)));
+        return std::nullopt;
+    }
+
+    const Expression* variable_in(const Expression& expression) const {
+        const bool names =
+            expression.kind == Expression::Kind::name || expression.kind == Expression::Kind::element;
+        if (names && grammar_.cells->contains(expression.text)) return &expression;
+        for (const Expression& operand : expression.operands)
+            if (const Expression* const found = variable_in(operand)) return found;
+        return nullptr;
+    }
+
+    void add_step_programs() {
+        const auto add = [&](const std::optional<LsysCommands>& commands, LsysProgram& program) {
+            if (!commands) return;
+            const LsysProgramNames names{grammar_.lets, *grammar_.cells, step_slots, &grammar_.step_draws};
+            program = compile_program(*commands, names, diagnostics_);
+        };
+        add(block_.start, grammar_.start);
+        add(block_.start_each, grammar_.start_each);
+        add(block_.end_each, grammar_.end_each);
+        add(block_.end, grammar_.end);
+    }
+
+    /// A size that the turtle can take.
+    std::optional<double> size(const std::optional<LsysValue>& value, std::string_view name) {
+        const auto known = setting(
+            value, [](double x) { return x > 0; }, name, "be positive");
+        if (!known || (*known >= least_size && *known <= largest_size)) return known;
+        diagnostics_.error(value->value.span,
+                           fmt::format("'{}' must lie between {} and {}, not {}", name, shortest(least_size),
+                                       shortest(largest_size), shortest(*known)));
+        return std::nullopt;
+    }
+
+    void add_settings() {
+        const auto any = [](double) { return true; };
+        grammar_.angle_deg = setting(block_.angle, any, "angle", "").value_or(grammar_.angle_deg);
+        grammar_.step = size(block_.step, "step").value_or(grammar_.step);
+        grammar_.width = size(block_.width, "width");
+        grammar_.thickness = size(block_.thickness, "thickness");
+        grammar_.thinnest = size(block_.thinnest, "thinnest").value_or(0);
+        grammar_.taper = setting(
+            block_.taper, [](double x) { return x > 0 && x <= 1; }, "taper", "be above 0 and at most 1");
+        if (block_.thinnest && !block_.thickness)
+            diagnostics_.error(block_.thinnest->span, "'thinnest' is the least width beside a 'thickness'");
+        if (block_.width && block_.thickness)
+            diagnostics_.error(block_.thickness->span, "a block has a 'width' or a 'thickness'")
+                .with_note(block_.width->span, "the width is here");
+        const auto seed = setting(
+            block_.seed, [](double x) { return x >= 0 && x <= largest_seed && x == std::floor(x); }, "seed",
+            "be a whole number from 0 to 2^53");
+        grammar_.seed = static_cast<std::uint64_t>(seed.value_or(0));
+        if (block_.vertical) set_direction(*block_.vertical, "vertical", grammar_.vertical);
+        if (!block_.steps) return;
+        grammar_.infinite = !block_.steps->value;
+        if (grammar_.infinite) return;
+        const auto steps = checked(
+            *block_.steps->value,
+            [](double x) { return x >= 0 && x <= max_derivation_steps && x == std::floor(x); }, "steps",
+            fmt::format("be a whole number from 0 to {}, or infinite", max_derivation_steps));
+        if (steps) grammar_.steps = static_cast<unsigned>(*steps);
+    }
+
+    void set_direction(const LsysDirection& statement, std::string_view name, Vec3& direction) {
+        const std::optional<Vec3> given = lower_vector(statement.direction, grammar_.lets, diagnostics_);
+        if (!given) return;
+        const double length = glm::length(*given);
+        if (length > 0 && std::isfinite(length))
+            direction = *given / length;
+        else
+            diagnostics_.error(statement.span, fmt::format("'{}' must have a direction", name));
+    }
+
+    SymbolId symbol(std::string_view name, Span span) {
+        const auto [known, fresh] = ids_.try_emplace(std::string(name), static_cast<SymbolId>(ids_.size()));
+        if (!fresh) return known->second;
+        if (grammar_.symbols.size() == most_symbols) { // more would have no number
+            diagnostics_.error(span, fmt::format("a block has at most {} different symbols", most_symbols));
+            return known->second = 0;
+        }
+        grammar_.symbols.push_back(known->first);
+        grammar_.commands.push_back(turtle_command(name));
+        grammar_.first_uses.push_back(span);
+        return known->second;
+    }
+
+    SymbolId symbol(const LsysModule& module) {
+        if (module.symbol != "~") return symbol(module.symbol, module.span);
+        return symbol(fmt::format("~{}", module.model), module.span);
+    }
+
+    /// `draws`: counts random numbers; null where there are none.
+    std::vector<LsysTemplate> templates(const LsysString& string,
+                                        const std::vector<std::string_view>& variables,
+                                        std::uint32_t* draws) {
+        std::vector<LsysTemplate> result;
+        result.reserve(string.modules.size());
+        for (const LsysModule& module : string.modules) {
+            LsysTemplate& added = result.emplace_back();
+            added.symbol = symbol(module);
+            uses_.push_back({added.symbol, module.parameters.size(), module.span});
+            for (const Expression& parameter : module.parameters)
+                if (auto code = ExpressionCode::compile(parameter, grammar_.lets, variables, diagnostics_,
+                                                        draws, grammar_.cells.get()))
+                    added.parameters.push_back(std::move(*code));
+        }
+        grammar_.polygons_cross_branches |= polygons_cross_branches(string);
+        return result;
+    }
+
+    LsysPattern pattern(const LsysFormal& formal, LsysRule& rule) {
+        for (const Name& name : formal.parameters) {
+            rule.variables.push_back(name.text); // the parser has seen to it that they differ
+        }
+        return {symbol(formal.symbol, formal.span), static_cast<std::uint16_t>(formal.parameters.size())};
+    }
+
+    void add_rules(const std::vector<LsysProduction>& productions, RuleKind kind) {
+        for (const LsysProduction& production : productions) {
+            if (diagnostics_.full()) return;
+            add_rule(production, kind);
+        }
+    }
+
+    void add_rule(const LsysProduction& production, RuleKind kind) {
+        LsysRule rule;
+        rule.source = &production;
+        rule.kind = kind;
+        rule.predecessor = pattern(production.predecessor, rule);
+        for (const LsysFormal& formal : production.following)
+            rule.following.push_back(pattern(formal, rule));
+        for (const LsysFormal& formal : production.left)
+            rule.left.push_back(pattern(formal, rule));
+        for (const LsysFormal& formal : production.right)
+            rule.right.push_back(pattern(formal, rule));
+        name_slots(rule);
+        compile(rule);
+        rule.time = time_of(rule);
+        grammar_.in_order |= rule.in_order();
+        grammar_.needs_word |= rule.sees_word() || rule.in_order();
+        grammar_.is_stochastic |= rule.is_random();
+        auto& of_kind = grammar_.rules_of[static_cast<std::size_t>(kind)];
+        if (of_kind.size() <= rule.predecessor.symbol) of_kind.resize(rule.predecessor.symbol + 1u);
+        of_kind[rule.predecessor.symbol].push_back(static_cast<std::uint32_t>(grammar_.rules.size()));
+        grammar_.rules.push_back(std::move(rule));
+    }
+
+    /// The names that blocks assign and that mean nothing else are local values.
+    std::vector<const LsysCommand*> locals_of(const std::optional<LsysCommands>& block,
+                                              const LsysRule& rule) {
+        std::vector<const LsysCommand*> locals;
+        if (!block) return locals;
+        for_each_assignment(block->list, [&](const LsysCommand& command) {
+            const std::string_view name = command.target;
+            const auto is_known = [&](std::string_view other) { return other == name; };
+            const bool known =
+                std::ranges::any_of(rule.variables, is_known) ||
+                std::ranges::any_of(locals, [&](auto* other) { return other->target == name; });
+            if (!known && command.indices.empty() && name != "pi" && !grammar_.lets.contains(name) &&
+                !grammar_.cells->contains(name))
+                locals.push_back(&command);
+        });
+        return locals;
+    }
+
+    void name_slots(LsysRule& rule) {
+        locals_ = locals_of(rule.source->before, rule);
+        locals_before_ = locals_.size();
+        for (const LsysCommand* local : locals_of(rule.source->after, rule))
+            if (std::ranges::none_of(locals_, [&](auto* other) { return other->target == local->target; }))
+                locals_.push_back(local);
+        rule.slots = rule.variables;
+        for (const std::string_view name : {"step", "age"})
+            rule.slots.push_back(is_taken(name, rule) ? std::string_view() : name);
+        for (const LsysCommand* local : locals_)
+            rule.slots.push_back(local->target);
+    }
+
+    /// Names of the model hide those of the time.
+    bool is_taken(std::string_view name, const LsysRule& rule) const {
+        return grammar_.lets.contains(name) ||
+               std::ranges::find(rule.variables, name) != rule.variables.end() ||
+               std::ranges::any_of(locals_, [&](auto* local) { return local->target == name; });
+    }
+
+    /// What is asked before the production is applied knows the local values of the first block only.
+    void compile(LsysRule& rule) {
+        const LsysProduction& source = *rule.source;
+        std::vector<std::string_view> early = rule.slots;
+        std::fill(early.end() - static_cast<std::ptrdiff_t>(locals_.size() - locals_before_), early.end(),
+                  std::string_view());
+        const bool draws = rule.kind != RuleKind::interpret;
+        const LsysProgramNames before{grammar_.lets, *grammar_.cells, early, draws ? &rule.draws : nullptr};
+        const bool refused = !draws && refuse_chance(source);
+        if (source.before && !refused) rule.before = compile_program(*source.before, before, diagnostics_);
+        if (source.condition && !refused)
+            rule.condition = compile_formula(*source.condition, before, diagnostics_);
+        if (source.probability)
+            rule.probability = ExpressionCode::compile(*source.probability, grammar_.lets, early,
+                                                       diagnostics_, nullptr, grammar_.cells.get());
+        const LsysProgramNames after{grammar_.lets, *grammar_.cells, rule.slots, &rule.draws, false};
+        if (source.after) rule.after = compile_program(*source.after, after, diagnostics_);
+        rule.successor = templates(source.successor, rule.slots, &rule.draws);
+        if (!draws) check_drawing(rule);
+        warn_of_idle_locals(rule);
+    }
+
+    /// What draws has no order. Whether it was reported.
+    bool refuse_chance(const LsysProduction& source) {
+        const std::size_t errors = diagnostics_.error_count();
+        const auto check = [&](const Expression& e) {
+            if (calls_chance(e))
+                diagnostics_.error(e.span, "chance does not decide here how a module is drawn")
+                    .with_hint("in 'interpret', random numbers stand in successors, or in a block behind the "
+                               "condition");
+        };
+        if (source.condition) check(*source.condition);
+        if (source.before) for_each_expression(source.before->list, check);
+        return diagnostics_.error_count() > errors;
+    }
+
+    void check_drawing(const LsysRule& rule) {
+        for (const auto* block : {&rule.source->before, &rule.source->after}) {
+            if (!*block) continue;
+            for_each_assignment((*block)->list, [&](const LsysCommand& command) {
+                if (std::ranges::find(rule.slots, command.target) == rule.slots.end() &&
+                    grammar_.cells->contains(command.target))
+                    diagnostics_
+                        .error(command.span,
+                               fmt::format("a drawing cannot change the variable '{}'", command.target))
+                        .with_hint("productions of 'interpret' may set local values only");
+            });
+        }
+        if (rule.after.draws_anew)
+            diagnostics_.error(rule.source->after->span, "random numbers in a loop cannot be drawn here")
+                .with_hint("a block of 'interpret' draws its random numbers once");
+    }
+
+    void warn_of_idle_locals(const LsysRule& rule) {
+        for (std::size_t i = 0; i < locals_.size(); ++i) {
+            const std::size_t slot = rule.variables.size() + 2 + i;
+            const auto reads = [&](const ExpressionCode& code) { return code.reads(slot); };
+            const bool is_read = rule.before.reads(slot) || rule.after.reads(slot) ||
+                                 (rule.condition && reads(rule.condition->code)) ||
+                                 (rule.probability && reads(*rule.probability)) ||
+                                 std::ranges::any_of(rule.successor, [&](const LsysTemplate& module) {
+                                     return std::ranges::any_of(module.parameters, reads);
+                                 });
+            if (is_read) continue;
+            std::vector<std::string> known;
+            for (const auto& [name, place] : *grammar_.cells)
+                known.push_back(name);
+            diagnostics_
+                .warning(locals_[i]->span,
+                         fmt::format("nothing reads the local value '{}'", locals_[i]->target))
+                .with_hint(known.empty() ? "a variable keeps its value for others: variable NAME = 0"
+                                         : choices(locals_[i]->target, known));
+        }
+    }
+
+    static TimeMask time_of(const LsysRule& rule) {
+        TimeMask time = 0;
+        const auto note = [&](const ExpressionCode& code) {
+            if (code.reads(rule.variables.size())) time |= reads_step;
+            if (code.reads(rule.variables.size() + 1)) time |= reads_age;
+            if (code.reads_changing_cells()) time |= reads_variables;
+        };
+        for (const LsysProgram* program : {&rule.before, &rule.after}) {
+            if (program->reads(rule.variables.size())) time |= reads_step;
+            if (program->reads(rule.variables.size() + 1)) time |= reads_age;
+            if (program->reads_changing_cells()) time |= reads_variables;
+        }
+        if (rule.condition) note(rule.condition->code);
+        if (rule.probability) note(*rule.probability);
+        for (const LsysTemplate& module : rule.successor)
+            std::ranges::for_each(module.parameters, note);
+        return time;
+    }
+
+    void note_times() {
+        for (std::size_t kind = 0; kind < rule_kind_count; ++kind) {
+            for (const auto& rules : grammar_.rules_of[kind]) {
+                TimeMask time = 0;
+                for (const std::uint32_t rule : rules)
+                    time |= grammar_.rules[rule].time;
+                grammar_.time_of[kind].push_back(time);
+            }
+        }
+        grammar_.ages.assign(grammar_.symbols.size(), false);
+        for (const auto& times : grammar_.time_of)
+            for (std::size_t symbol = 0; symbol < times.size(); ++symbol)
+                if (times[symbol] & reads_age) grammar_.ages[symbol] = true;
+        while (hand_on_ages()) {
+        }
+    }
+
+    /// What a module is drawn as has the age of the module. True if that made a symbol one of these.
+    bool hand_on_ages() {
+        bool changed = false;
+        for (const LsysRule& rule : grammar_.rules) {
+            if (rule.kind != RuleKind::interpret || grammar_.ages[rule.predecessor.symbol]) continue;
+            changed |= grammar_.ages[rule.predecessor.symbol] = std::ranges::any_of(
+                rule.successor, [&](const LsysTemplate& module) { return grammar_.ages[module.symbol]; });
+        }
+        return changed;
+    }
+
+    void add_filter() {
+        std::set<SymbolId> named;
+        if (block_.filter)
+            for (const Name& name : block_.filter->symbols)
+                named.insert(symbol(name.text, name.span));
+        const auto is_model = [&](SymbolId id) { return grammar_.symbols[id].starts_with('~'); };
+        const auto is_named = [&](SymbolId id) {
+            return named.contains(id) || (is_model(id) && ids_.contains("~") && named.contains(ids_.at("~")));
+        };
+        const bool consider = block_.filter && block_.filter->consider;
+        grammar_.ignored.resize(grammar_.symbols.size());
+        for (SymbolId id = 0; id < grammar_.symbols.size(); ++id)
+            grammar_.ignored[id] = block_.filter && is_named(id) != consider;
+    }
+
+    void prefer_contexts() {
+        for (auto& rules : grammar_.rules_of)
+            for (auto& of_symbol : rules)
+                std::stable_partition(of_symbol.begin(), of_symbol.end(),
+                                      [&](std::uint32_t id) { return grammar_.rules[id].has_context(); });
+    }
+
+    const LsysBlock& block_;
+    Diagnostics& diagnostics_;
+    std::size_t errors_before_;
+    LsysGrammar grammar_;
+    std::unordered_map<std::string, SymbolId> ids_;
+    std::vector<LsysUse> uses_;              ///< in axiom and successors
+    std::vector<const LsysCommand*> locals_; ///< of the rule that is added: the first assignment to each
+    std::size_t locals_before_ = 0;          ///< those of its first block
+};
+
+} // namespace
+
+bool LsysGrammar::is_rewritten(SymbolId symbol) const {
+    return std::ranges::any_of(rules_of, [&](const auto& of_kind) { return !of_kind[symbol].empty(); });
+}
+
+bool LsysGrammar::has_rules(RuleKind kind) const {
+    return std::ranges::any_of(rules_of[static_cast<std::size_t>(kind)],
+                               [](const auto& of_symbol) { return !of_symbol.empty(); });
+}
+
+TimeMask LsysGrammar::time(RuleKind kind) const {
+    TimeMask all = 0;
+    for (const TimeMask time : time_of[static_cast<std::size_t>(kind)])
+        all |= time;
+    return all;
+}
+
+bool LsysGrammar::draws(RuleKind kind) const {
+    return std::ranges::any_of(rules,
+                               [&](const LsysRule& rule) { return rule.kind == kind && rule.draws > 0; });
+}
+
+bool LsysGrammar::is_random(RuleKind kind) const {
+    return std::ranges::any_of(rules,
+                               [&](const LsysRule& rule) { return rule.kind == kind && rule.is_random(); });
+}
+
+bool LsysGrammar::uses(std::initializer_list<TurtleCommand> wanted) const {
+    return std::ranges::any_of(
+        commands, [&](TurtleCommand command) { return std::ranges::find(wanted, command) != wanted.end(); });
+}
+
+std::optional<LsysGrammar> build_grammar(const LsysBlock& block, Environment lets, Diagnostics& diagnostics) {
+    return GrammarBuilder(block, std::move(lets), diagnostics).run();
+}
+
+} // namespace graftal

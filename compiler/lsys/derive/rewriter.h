@@ -1,0 +1,236 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <deque>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "compiler/lsys/compile/grammar.h"
+#include "compiler/lsys/compile/module_table.h"
+#include "compiler/lsys/compile/program.h"
+#include "compiler/lsys/derive/variables.h"
+#include "compiler/support/control.h"
+#include "compiler/support/id_table.h"
+#include "compiler/support/stage_price.h"
+
+namespace graftal {
+
+/// What a module may become, and with which probability.
+struct Alternative {
+    const LsysRule* rule = nullptr;
+    double probability = 1;
+    ModuleString successor; ///< empty where the rule draws random numbers: see LsysRewriter::draw()
+};
+
+struct ChosenAlternative {
+    const Alternative* alternative = nullptr;
+    double within = 0; ///< [0, 1): where in the alternative the number fell
+};
+
+/// The alternative in which a number of [0, 1) falls, laid end to end by their probabilities. Requires some;
+/// one of no probability is not chosen.
+ChosenAlternative alternative_at(const std::vector<Alternative>& alternatives, double share);
+
+/// When rules are tried; for those that read it.
+struct Moment {
+    double step = 0; ///< the step being carried out; when drawing: those done
+    double age = 0;  ///< of the module
+};
+
+/// Of a module that came into being in step `birth`, if that is known.
+inline Moment moment_of(std::uint32_t step, std::uint32_t birth) {
+    return {static_cast<double>(step),
+            birth == ModuleTable::no_birth ? 0.0 : static_cast<double>(step - birth)};
+}
+
+/// The random numbers of a rule are drawn together, as one of so many sets: for each call the values are
+/// spread evenly over the distribution (a Latin hypercube), so that the mean and the variance over the sets
+/// are those of the distribution. A power of two.
+inline constexpr std::uint32_t draw_sets = 64;
+
+/// What became of a rule that was tried on a module.
+enum class Fit : std::uint8_t { no, yes, error };
+
+/// The different modules of one derivation may not be more.
+inline constexpr std::size_t max_distinct_modules = 20'000'000;
+
+/// Applies the productions of a grammar to single modules; each module is rewritten once and then known.
+class LsysRewriter {
+  public:
+    /// All must outlive this. The meter counts what work() is told; null: nobody does. `most_instructions`:
+    /// of all blocks.
+    LsysRewriter(const LsysGrammar& grammar, Diagnostics& diagnostics, std::uint64_t seed = 0,
+                 WorkMeter* meter = nullptr, std::uint64_t most_instructions = max_instructions)
+        : grammar_(grammar), diagnostics_(diagnostics), seed_(seed), meter_(meter),
+          machine_(grammar.lets, diagnostics, meter, most_instructions),
+          variables_(grammar, machine_, diagnostics, seed),
+          has_ages_(std::ranges::find(grammar.ages, true) != grammar.ages.end()) {}
+
+    const LsysGrammar& grammar() const { return grammar_; }
+    ModuleTable& modules() { return modules_; }
+    const ModuleTable& modules() const { return modules_; }
+
+    /// Who derives or draws by this has looked at so many modules.
+    void work(std::uint64_t modules = 1) const {
+        if (meter_) meter_->add(modules, StagePrice::module);
+    }
+    /// Who draws module by module has drawn one.
+    void work_of_drawing() const {
+        if (meter_) meter_->add(1, StagePrice::drawn_module);
+    }
+    /// Who composes has made a part of so many instances.
+    void work_of_part(std::size_t instances) const {
+        if (meter_)
+            meter_->add(1, StagePrice::part + StagePrice::part_instance * static_cast<double>(instances));
+    }
+    /// The seconds of work that are left.
+    double work_left() const { return meter_ ? meter_->left() : StageWork::unlimited; }
+
+    /// Readies the variables for a derivation of so many steps; to be called before anything else is. False
+    /// after an error. O(1) where there are none.
+    bool prepare(unsigned steps);
+    LsysVariables& variables() { return variables_; }
+    /// Where the word is derived in order, from now on until it is null: where chance is drawn anew. Then
+    /// productions may change the variables.
+    void derive_in_order(LsysChance* chance) { chance_ = chance; }
+
+    /// The modules of the axiom; nothing after an error.
+    std::optional<ModuleString> axiom();
+
+    /// The alternatives of a module by itself: productions that see more of the word are passed over.
+    /// Their probabilities sum to 1; none: no production applies, and the module stays. Null after an error
+    /// (a division by zero, probabilities that do not sum to 1); reported once. Valid as long as this.
+    const std::vector<Alternative>* alternatives(RuleKind kind, ModuleId module, const Moment& moment);
+
+    /// Whether alternatives() would give any, or an error.
+    bool is_rewritten(RuleKind kind, ModuleId module, const Moment& moment);
+
+    /// The successor of an alternative of a module that draws random numbers: of the sets, the one at
+    /// `within`. Nothing after an error.
+    std::optional<ModuleString> draw(const Alternative& alternative, ModuleId module, const Moment& moment,
+                                     double within);
+
+    /// From now on modules of `ages` symbols are told apart by the step in which they came into being; but
+    /// not what they are drawn as. `no_birth`: no longer.
+    void set_birth(std::uint32_t step) { birth_ = step; }
+
+    /// The same for one rule and the values of its variables, those of the contexts included. Nothing if its
+    /// condition is false, or after an error.
+    bool condition_holds(const LsysRule& rule, std::span<const double> values, const Moment& moment);
+    /// The steps of applying a rule, for who keeps its slots. `slots` has the values of its variables, from
+    /// `first` on and last, and gets what else the rule's condition knows; then, if it is applied, one of the
+    /// draw_sets, and what its second block assigns. False after an error.
+    bool try_slots(const LsysRule& rule, const Moment& moment, std::vector<double>& slots,
+                   std::size_t first = 0);
+    bool apply_slots(const LsysRule& rule, const Moment& moment, std::uint32_t set,
+                     std::vector<double>& slots, std::size_t first = 0);
+    /// Of a rule whose slots are ready: whether its condition holds; nothing after an error.
+    std::optional<bool> holds(const LsysRule& rule, const Moment& moment, std::span<const double> slots);
+    std::optional<double> probability_of(const LsysRule& rule, const Moment& moment,
+                                         std::span<const double> slots);
+    bool append_by(const LsysRule& rule, const Moment& moment, std::span<const double> slots,
+                   ModuleString& string);
+
+    /// The variables as expressions of rules of a kind see them.
+    std::span<const double> cells(RuleKind kind, double step) const {
+        return grammar_.first_cells.empty() ? std::span<const double>() : known_cells(kind, step);
+    }
+
+    /// Adds the rule's successor to `string`, drawn by one of the draw_sets; false after an error.
+    bool append_successor(const LsysRule& rule, std::span<const double> values, const Moment& moment,
+                          std::uint32_t set, ModuleString& string);
+    /// 1 for a rule without.
+    std::optional<double> probability(const LsysRule& rule, std::span<const double> values,
+                                      const Moment& moment);
+
+    /// The three above at once: tries the rule and, if it fits, says what it gives. Leaves chance to draw().
+    Fit apply(const LsysRule& rule, std::span<const double> values, const Moment& moment,
+              Alternative& result);
+
+    /// Calls `apply(rule)`, which gives a Fit, for the rules that may rewrite a module of this many
+    /// parameters. The first that fits decides: without a probability it is applied; with one, all others
+    /// that fit and have one compete. Gives the first that fits, or null; nothing after an error.
+    template<typename Apply>
+    std::optional<const LsysRule*> try_rules(std::span<const std::uint32_t> rules, std::size_t arity,
+                                             const Apply& apply);
+
+    /// Whether the probabilities of competing rules sum to 1 as closely as books print them; if not, reports
+    /// it.
+    bool sums_to_one(double sum, const LsysRule& first);
+
+    /// The random numbers of a rule: for each call one of each set, call by call.
+    const std::vector<double>& draws_of(const LsysRule& rule);
+
+    bool failed() const { return failed_; }
+
+    /// What to do where there are too many different modules or parts.
+    const char* explosion_hint() const;
+
+  private:
+    static constexpr std::uint32_t unknown = UINT32_MAX;
+    static constexpr std::uint32_t none = UINT32_MAX - 1;
+    static constexpr std::uint32_t error = UINT32_MAX - 2;
+
+    /// Of a module whose rules read the time.
+    struct Timed {
+        RuleKind kind;
+        ModuleId module;
+        Moment moment; ///< what is not read is 0
+        std::uint32_t found;
+    };
+
+    std::uint32_t find(RuleKind kind, ModuleId module, const Moment& moment);
+    std::uint32_t find_timed(RuleKind kind, ModuleId module, Moment moment, TimeMask reads);
+    std::uint32_t compute(RuleKind kind, ModuleId module, const Moment& moment);
+    bool collect(const std::vector<std::uint32_t>& rules, ModuleId module, const Moment& moment,
+                 std::vector<Alternative>& found);
+    bool normalise(std::vector<Alternative>& found, const LsysRule& first);
+    std::span<const double> known_cells(RuleKind kind, double step) const;
+    LsysMachine::State state_of(const LsysRule& rule, const Moment& moment, std::span<double> slots);
+    std::optional<double> value(const ExpressionCode& code, const LsysRule& rule, const Moment& moment,
+                                std::span<const double> slots);
+    std::optional<std::span<const double>> slots_of(const LsysRule& rule, std::span<const double> values,
+                                                    const Moment& moment);
+    bool append(const std::vector<LsysTemplate>& templates, const LsysRule* rule,
+                std::span<const double> slots, std::span<const double> cells, ModuleString& string);
+
+    const LsysGrammar& grammar_;
+    Diagnostics& diagnostics_;
+    std::uint64_t seed_;
+    WorkMeter* meter_;
+    LsysMachine machine_;
+    LsysVariables variables_;
+    LsysChance* chance_ = nullptr;
+    bool has_ages_;
+    std::uint32_t birth_ = ModuleTable::no_birth;
+    ModuleTable modules_;
+    std::array<std::vector<std::uint32_t>, rule_kind_count> known_; ///< by module, into alternatives_
+    std::deque<std::vector<Alternative>> alternatives_;             ///< stay where they are
+    std::vector<Timed> timed_;
+    IdTable timed_ids_;
+    std::vector<std::vector<double>> draws_; ///< of the rules, set by set
+    std::vector<double> arguments_;
+    std::vector<double> slots_;
+    bool failed_ = false;
+};
+
+template<typename Apply>
+std::optional<const LsysRule*> LsysRewriter::try_rules(std::span<const std::uint32_t> rules,
+                                                       std::size_t arity, const Apply& apply) {
+    const LsysRule* first = nullptr;
+    for (const std::uint32_t id : rules) {
+        const LsysRule& rule = grammar_.rules[id];
+        if (rule.predecessor.arity != arity || (first && !rule.probability)) continue;
+        const Fit fit = apply(rule);
+        if (fit == Fit::error) return std::nullopt;
+        if (fit == Fit::no) continue;
+        if (!first) first = &rule;
+        if (!rule.probability) break;
+    }
+    return first;
+}
+
+} // namespace graftal

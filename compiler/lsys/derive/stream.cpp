@@ -1,0 +1,253 @@
+#include "compiler/lsys/derive/stream.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "compiler/lsys/derive/word.h"
+
+namespace graftal {
+
+namespace {
+
+/// Of the sequences of a seed, those of the steps choose productions; this one interprets.
+constexpr std::uint64_t interpreting = UINT64_MAX - 1;
+/// Interpretations may follow each other so often.
+constexpr std::uint32_t most_interpretations = 1000;
+
+} // namespace
+
+bool LsysStream::can_derive(const LsysGrammar& grammar) {
+    return !grammar.needs_word && !grammar.has_rules(RuleKind::decompose) &&
+           !grammar.uses({TurtleCommand::cut});
+}
+
+bool LsysStream::can_draw(const LsysGrammar& grammar) {
+    return !grammar.draws_in_time() || !grammar.is_random(RuleKind::interpret);
+}
+
+LsysStream::LsysStream(LsysRewriter& rewriter, const ModelPlacer& models, Diagnostics& diagnostics,
+                       const Options& options)
+    : rewriter_(rewriter), grammar_(rewriter.grammar()), models_(models), diagnostics_(diagnostics),
+      options_(options), random_(options.seed), chooses_(grammar_.is_random(RuleKind::produce)),
+      in_word_(options.steps + std::size_t{1}) {}
+
+bool LsysStream::derive(Turtle& turtle) {
+    turtle_ = &turtle;
+    return count();
+}
+
+bool LsysStream::count() {
+    if (!rewriter_.prepare(options_.steps)) return false;
+    frames_.push_back({.string = &grammar_.axiom, .cells = rewriter_.cells(RuleKind::produce, 0)});
+    return run();
+}
+
+/// Until no string is under way.
+bool LsysStream::run() {
+    while (!frames_.empty()) {
+        Frame& frame = frames_.back();
+        if (frame.at == frame.string->size()) {
+            values_.resize(frame.slots);
+            frames_.pop_back();
+            continue;
+        }
+        rewriter_.work();
+        Module module;
+        if (!read_module(frame, module)) return false;
+        // The frame may move now.
+        const std::size_t slots_end = frame.slots + frame.slot_count, depth = frames_.size();
+        if (!(frame.interprets ? emit(module, frame.repeated) : meet(module, frame.word))) return false;
+        if (frames_.size() == depth) values_.resize(slots_end);
+    }
+    return true;
+}
+
+/// The next of a string, its parameters at the end of values_.
+bool LsysStream::read_module(Frame& frame, Module& module) {
+    const LsysTemplate& source = (*frame.string)[frame.at++];
+    module.symbol = source.symbol;
+    module.arity = static_cast<std::uint32_t>(source.parameters.size());
+    module.birth = frame.birth;
+    module.span = frame.rule ? frame.rule->source->span : grammar_.source->axiom->span;
+    for (const ExpressionCode& code : source.parameters) {
+        const std::span<const double> slots = std::span(values_).subspan(frame.slots, frame.slot_count);
+        const std::optional<double> value = code.value(slots, frame.cells);
+        if (!value) {
+            code.report(slots, grammar_.lets,
+                        frame.rule ? std::span<const std::string_view>(frame.rule->slots)
+                                   : std::span<const std::string_view>(),
+                        diagnostics_, frame.cells);
+            return false;
+        }
+        values_.push_back(unrounded(*value));
+    }
+    return true;
+}
+
+/// A module of the word after so many steps.
+bool LsysStream::meet(const Module& module, std::uint32_t word) {
+    if (grammar_.has_rules(RuleKind::produce, module.symbol)) {
+        const bool waits = grammar_.time(RuleKind::produce, module.symbol) != 0;
+        for (; word < options_.steps; ++word) {
+            const Moment moment = moment_of(word + 1, module.birth);
+            const std::uint64_t draw = chooses_ ? random_.sequence(word + 1)(in_word_[word]) : 0;
+            Chosen chosen;
+            if (!choose(RuleKind::produce, module, moment, draw, chosen)) return false;
+            if (!chosen.rule && !waits) break; // what none fits now, none will fit later
+            if (++in_word_[word] > options_.max_modules)
+                return refuse_length(grammar_, options_.max_modules, word, diagnostics_);
+            if (!chosen.rule) continue;
+            return push(chosen, module, moment, {.word = word + 1, .birth = word + 1});
+        }
+    }
+    return count_from(word) && emit(module, 0);
+}
+
+/// Counts a module that stays as it is from that step on.
+bool LsysStream::count_from(std::uint32_t word) {
+    if (++modules_ > options_.max_modules)
+        return refuse_length(grammar_, options_.max_modules, options_.steps, diagnostics_);
+    if (chooses_)
+        for (std::size_t i = word; i < options_.steps; ++i)
+            ++in_word_[i];
+    return true;
+}
+
+/// Draws a module of the last word, or of what one is drawn as.
+bool LsysStream::emit(const Module& module, std::uint32_t repeated) {
+    if (grammar_.has_rules(RuleKind::interpret, module.symbol)) {
+        Moment moment = moment_of(options_.steps, module.birth);
+        moment = {moment.step + options_.share, moment.age + options_.share};
+        Chosen chosen;
+        const std::uint64_t draw = random_.sequence(interpreting)(interpreted_);
+        if (!choose(RuleKind::interpret, module, moment, draw, chosen)) return false;
+        if (chosen.rule) {
+            if (chosen.rule->is_random()) ++interpreted_;
+            if (repeated < most_interpretations) {
+                return push(chosen, module, moment,
+                            {.word = options_.steps,
+                             .birth = module.birth,
+                             .repeated = repeated + 1,
+                             .interprets = true});
+            }
+            return refuse_endless(grammar_, RuleKind::interpret, module.symbol, chosen.rule->source->span,
+                                  diagnostics_);
+        }
+    }
+    if (!turtle_) return ++drawn_ <= options_.max_modules;
+    const TurtleCommand command = grammar_.commands[module.symbol];
+    std::optional<PlacedModel> model;
+    if (command == TurtleCommand::model && !turtle_->passing_over()) {
+        model = models_(module.symbol, parameters(module), module.span);
+        if (!model) return false;
+    }
+    rewriter_.work_of_drawing();
+    return turtle_->run(command, parameters(module), model, module.span);
+}
+
+/// Goes on with what a rule makes of the module; false after an error.
+bool LsysStream::push(const Chosen& chosen, const Module& module, const Moment& moment, Frame frame) {
+    const LsysRule& rule = *chosen.rule;
+    frame.string = &rule.successor;
+    frame.rule = &rule;
+    frame.slots = static_cast<std::uint32_t>(values_.size() - module.arity);
+    frame.cells = rewriter_.cells(rule.kind, moment.step);
+    if (!rule.is_plain() && !(rewriter_.try_slots(rule, moment, values_, frame.slots) &&
+                              rewriter_.apply_slots(rule, moment, chosen.set, values_, frame.slots)))
+        return false;
+    frame.slot_count = static_cast<std::uint32_t>(values_.size() - frame.slots);
+    frames_.push_back(frame);
+    return true;
+}
+
+/// As LsysSuccessors does, to the last bit. No rule: none fits. False after an error.
+bool LsysStream::choose(RuleKind kind, const Module& module, const Moment& moment, std::uint64_t draw,
+                        Chosen& chosen) {
+    const std::span<const double> values = parameters(module);
+    competitors_.clear();
+    const auto first = rewriter_.try_rules(
+        grammar_.candidates(kind, module.symbol), values.size(), [&](const LsysRule& rule) {
+            if (rule.sees_word()) return Fit::no;
+            if (rule.condition) {
+                const std::size_t errors = diagnostics_.error_count();
+                if (!rewriter_.condition_holds(rule, values, moment))
+                    return diagnostics_.error_count() > errors ? Fit::error : Fit::no;
+            }
+            double probability = 1;
+            if (rule.probability) {
+                const std::optional<double> known = rewriter_.probability(rule, values, moment);
+                if (!known) return Fit::error;
+                probability = *known;
+            }
+            competitors_.push_back({&rule, probability});
+            return Fit::yes;
+        });
+    if (!first) return false;
+    if (!*first) return true;
+    chosen.rule = *first;
+    if (!chosen.rule->is_random()) return true;
+    double sum = 0;
+    for (const Competitor& competitor : competitors_)
+        sum += competitor.probability;
+    if (!rewriter_.sums_to_one(sum, **first)) return false;
+    double share = 0;
+    std::uint64_t below = 0, upto = 0;
+    for (const Competitor& competitor : competitors_) {
+        if (competitor.probability == 0) continue;
+        below = upto;
+        share += competitor.probability / sum;
+        const double scaled = std::ldexp(share, 64);
+        upto = scaled < 0x1p64 ? static_cast<std::uint64_t>(scaled) : UINT64_MAX;
+        chosen.rule = competitor.rule;
+        if (draw <= upto) break;
+    }
+    chosen.set = static_cast<std::uint32_t>(CounterRandom::scrambled(draw - below) % draw_sets);
+    return true;
+}
+
+bool LsysStream::draw(const FoldedWord& word, Turtle& turtle) {
+    turtle_ = &turtle;
+    return draw(word, word.trunk());
+}
+
+/// Pieces are nested as deep as branches are.
+bool LsysStream::draw(const FoldedWord& word, std::span<const ModuleId> string) {
+    struct Level {
+        std::span<const ModuleId> rest;
+        bool is_branch;
+    };
+    const ModuleTable& modules = rewriter_.modules();
+    std::vector<Level> levels = {{string, false}};
+    while (!levels.empty()) {
+        if (levels.back().rest.empty()) {
+            if (levels.back().is_branch && !draw_bracket(TurtleCommand::close_branch)) return false;
+            levels.pop_back();
+            continue;
+        }
+        const ModuleId id = levels.back().rest.front();
+        levels.back().rest = levels.back().rest.subspan(1);
+        if (FoldedWord::is_piece(id)) {
+            const bool is_branch = FoldedWord::is_branch(id);
+            if (is_branch && !draw_bracket(TurtleCommand::open_branch)) return false;
+            levels.push_back({word.piece(id), is_branch});
+            continue;
+        }
+        const std::span<const double> known = modules.parameters(id);
+        values_.assign(known.begin(), known.end());
+        const std::uint32_t birth = modules.birth(id);
+        const Module module{modules.symbol(id), static_cast<std::uint32_t>(known.size()), birth,
+                            grammar_.source->axiom->span};
+        ++modules_;
+        rewriter_.work();
+        if (!emit(module, 0) || !run()) return false;
+        values_.clear();
+    }
+    return true;
+}
+
+bool LsysStream::draw_bracket(TurtleCommand command) {
+    ++modules_;
+    return turtle_->run(command, {}, std::nullopt, grammar_.source->axiom->span);
+}
+
+} // namespace graftal

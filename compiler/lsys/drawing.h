@@ -1,0 +1,54 @@
+#pragma once
+
+#include <cstddef>
+#include <map>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "compiler/graph/graph.h"
+#include "compiler/lower/derivation.h"
+#include "compiler/lower/object_pool.h"
+#include "compiler/lsys/compile/grammar.h"
+#include "compiler/lsys/turtle/model_placer.h"
+#include "compiler/support/control.h"
+
+namespace graftal {
+
+struct LsysDrawOptions {
+    std::optional<unsigned> steps; ///< nothing: infinitely many
+    double share = 0;              ///< of the step after these that has passed: ages are larger by so much
+    std::uint64_t seed = 0;
+    bool exact = false; ///< derive the word, rather than compose parts; so are contexts anyway
+    std::uint64_t max_modules = 50'000'000; ///< of the word
+    /// Of the models that have some, how many parameters come before the scale.
+    std::map<SymbolId, std::size_t> inner;
+    bool has_other_models = false; ///< than primitives of finite size
+    std::size_t max_parts = 1'000'000;
+    std::uint64_t run_from = 4096; ///< words of so many modules are drawn into a run, if they repeat little
+    WorkMeter* meter = nullptr;    ///< counts modules, each time that one is looked at; null: nobody does
+};
+
+struct LsysDrawing {
+    std::vector<Instance> instances; ///< the whole model, in world space
+    std::shared_ptr<const Run> run;  ///< with what is here, if anything is
+    std::vector<std::optional<MaterialId>> run_materials;
+    Derivation derivation;
+    bool limited_by_work = false; ///< with more work allowed it would be another
+};
+
+/// Draws what a grammar derives into `graph`. A word that is derived is composed of its pieces, each drawn
+/// once, where they repeat; where little does, its round bodies go into a run (graph/run.h). `models` places
+/// models there; `pool` makes the objects. Nothing after an error.
+///
+/// Of random parts there are as many variants as keep the drift, the relative standard error of the mean
+/// number of segments over a pool, below 5 % by the theory for independent samples
+/// (nu_n = n nu / K, nu the relative variance of one level); stratified ones stray less.
+///
+/// Where sizes, or directions, make too many parts, those that differ by little are taken for equal, and by
+/// as little as does: Derivation::error bounds the displacement.
+std::optional<LsysDrawing> draw_lsys(const LsysGrammar& grammar, const ModelPlacer& models,
+                                     const LsysDrawOptions& options, Graph& graph, ObjectPool& pool,
+                                     Diagnostics& diagnostics);
+
+} // namespace graftal

@@ -1,0 +1,168 @@
+#include "compiler/lsys/turtle/bodies.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include <glm/geometric.hpp>
+
+#include "compiler/lsys/turtle/triangulate.h"
+#include "compiler/support/number_range.h"
+
+namespace graftal {
+
+namespace {
+
+/// Of a disc, per diameter.
+constexpr double disc_thickness = 1e-3;
+
+/// Places the canonical triangle on three corners.
+Affine on_corners(Vec3 a, Vec3 b, Vec3 c) {
+    const Vec3 centre = (a + b + c) / 3.0;
+    const Vec3 x = (c - b) / std::numbers::sqrt3, y = a - centre;
+    const Vec3 normal = glm::cross(x, y);
+    return {Mat3(x, y, normal / std::sqrt(glm::length(normal))), centre};
+}
+
+} // namespace
+
+void widen(Run& run, double factor) {
+    for (std::size_t i = 0; i < run.size(); ++i) {
+        RunItem& item = run[i];
+        if (!(item.colour & open_width)) continue;
+        item.colour &= static_cast<std::uint16_t>(~open_width);
+        item.radius *= factor;
+    }
+}
+
+int TurtleBodies::colour_index(double number) const {
+    const auto size = static_cast<double>(palette_.size());
+    const double index = std::fmod(number, size);
+    return static_cast<int>(index < 0 ? index + size : index);
+}
+
+MaterialId TurtleBodies::material(int colour) {
+    const auto index = static_cast<std::size_t>(colour);
+    if (ids_[index]) return *ids_[index];
+    const auto known = std::ranges::find(graph_.materials, palette_[index].name, &Material::name);
+    ids_[index] = static_cast<MaterialId>(known - graph_.materials.begin());
+    if (known == graph_.materials.end()) graph_.materials.push_back(palette_[index]);
+    return *ids_[index];
+}
+
+Instance TurtleBodies::body(const Primitive& primitive, const Affine& place, int colour, Span span) {
+    const auto [known, added] = primitives_.try_emplace(primitive);
+    if (added) known->second = graph_.primitive(primitive);
+    return {known->second, place, Tint(), material(colour), span};
+}
+
+/// `x`: of unit length, where the body's x axis points.
+void TurtleBodies::add_item(RunShape shape, Vec3 base, Vec3 axis, double radius, Vec3 x, bool ball,
+                            int colour, const BodySink& sink) {
+    const auto index = static_cast<std::size_t>(colour);
+    material(colour);
+    RunItem item{base, axis, std::abs(radius), 0, shape, ball, static_cast<std::uint16_t>(index)};
+    if (!is_sound(item)) return; // too small for numbers
+    if (!palette_[index].texture.empty()) item.turn = turn_of(axis, x);
+    if (sink.open_width) item.colour |= open_width;
+    sink.run->add(item);
+}
+
+void TurtleBodies::add_segment(const Affine& start_from_turtle, double length, double width, int colour,
+                               Span span, BodySink sink) {
+    if (length == 0 || width == 0) return;
+    const double radius = width / 2;
+    if (sink.run) {
+        add_item(PrimitiveKind::cylinder, start_from_turtle.translation, length * start_from_turtle.linear[1],
+                 radius, start_from_turtle.linear[0], true, colour, sink);
+        return;
+    }
+    add(PrimitiveKind::cylinder, start_from_turtle * Affine::scale({radius, length, radius}), colour, span,
+        sink);
+    const Affine end = start_from_turtle * Affine::translate({0, length, 0});
+    add(PrimitiveKind::sphere, end * Affine::scale(Vec3(radius)), colour, span, sink);
+}
+
+void TurtleBodies::add_taper(const Affine& start_from_turtle, Vec3 from, double from_width, double width,
+                             int colour, Span span, BodySink sink) {
+    Vec3 thick = from, thin = start_from_turtle.translation;
+    if (width > from_width) std::swap(thick, thin);
+    const Vec3 y = thin - thick;
+    const double length = glm::length(y), radius = std::max(width, from_width) / 2;
+    if (!(length > 0) || !(radius > 0)) return;
+    // Round it may face anywhere: as the turtle does, so that equal pieces stay equal.
+    Vec3 x = start_from_turtle.linear[0] - glm::dot(start_from_turtle.linear[0], y) / (length * length) * y;
+    if (glm::length(x) < 1e-3)
+        x = start_from_turtle.linear[2] - glm::dot(start_from_turtle.linear[2], y) / (length * length) * y;
+    x = glm::normalize(x);
+    if (sink.run) {
+        add_item(tapered(std::min(width, from_width) / (2 * radius)), thick, y, radius, x, false, colour,
+                 sink);
+        add_sphere(start_from_turtle, width, colour, span, sink);
+        return;
+    }
+    const Mat3 linear(radius * x, y, radius * glm::cross(x, y / length));
+    add(tapered(std::min(width, from_width) / (2 * radius)), {linear, thick}, colour, span, sink);
+    add_sphere(start_from_turtle, width, colour, span, sink);
+}
+
+std::optional<Instance> TurtleBodies::line(Vec3 end, int colour, Span span) {
+    const double length = glm::length(end);
+    if (!(length > 0)) return std::nullopt;
+    const Vec3 y = end / length;
+    const Vec3 aside = std::abs(y.z) < 0.9 ? Vec3(0, 0, 1) : Vec3(1, 0, 0);
+    const Vec3 x = glm::normalize(glm::cross(y, aside));
+    const double radius = 0.5 * length;
+    return body(PrimitiveKind::cylinder, {Mat3(radius * x, end, radius * glm::cross(x, y)), Vec3(0.0)},
+                colour, span);
+}
+
+void TurtleBodies::add_sphere(const Affine& start_from_turtle, double diameter, int colour, Span span,
+                              BodySink sink) {
+    diameter = at_least_size(diameter);
+    if (diameter == 0) return;
+    if (sink.run) {
+        const double radius = std::abs(diameter) / 2;
+        add_item(PrimitiveKind::sphere, start_from_turtle.translation, radius * start_from_turtle.linear[1],
+                 radius, start_from_turtle.linear[0], false, colour, sink);
+        return;
+    }
+    add(PrimitiveKind::sphere, start_from_turtle * Affine::scale(Vec3(diameter / 2)), colour, span, sink);
+}
+
+void TurtleBodies::add_disc(const Affine& start_from_turtle, double diameter, int colour, Span span,
+                            BodySink sink) {
+    diameter = at_least_size(diameter);
+    if (diameter == 0) return;
+    const Affine upright = start_from_turtle * Affine::rotate({1, 0, 0}, 90);
+    const double thickness = disc_thickness * diameter;
+    if (sink.run) {
+        const Vec3 axis = std::abs(thickness) * upright.linear[1];
+        add_item(PrimitiveKind::cylinder, upright.translation - 0.5 * axis, axis, diameter / 2,
+                 upright.linear[0], false, colour, sink);
+        return;
+    }
+    add(PrimitiveKind::cylinder,
+        upright * Affine::translate({0, -thickness / 2, 0}) *
+            Affine::scale({diameter / 2, thickness, diameter / 2}),
+        colour, span, sink);
+}
+
+void TurtleBodies::add_polygon(std::span<const Vec3> corners, int colour, Span span, BodySink sink) {
+    for (const auto& [a, b, c] : triangulate(corners)) {
+        const Affine place = on_corners(corners[a], corners[b], corners[c]);
+        if (is_finite(place)) add(PrimitiveKind::triangle, place, colour, span, sink);
+    }
+}
+
+void TurtleBodies::add_model(const PlacedModel& model, const Affine& start_from_turtle, Span span,
+                             BodySink sink) {
+    const Vec3 scale(at_least_size(model.scale.x), at_least_size(model.scale.y),
+                     at_least_size(model.scale.z));
+    if (scale.x == 0 || scale.y == 0) return;
+    sink.instances.push_back(
+        {model.root, start_from_turtle * Affine::scale(scale), Tint(), std::nullopt, span});
+}
+
+} // namespace graftal

@@ -1,0 +1,79 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <unordered_map>
+#include <utility>
+#include <vector>
+
+#include "compiler/graph/graph.h"
+#include "compiler/graph/run.h"
+#include "compiler/lsys/turtle/model_placer.h"
+
+namespace graftal {
+
+/// Where bodies go.
+struct BodySink {
+    std::vector<Instance>& instances;
+    Run* run = nullptr; ///< of round bodies, if there is one
+    /// The body is as thick as lines are, and that is not known yet: its item is marked (open_width).
+    bool open_width = false;
+};
+
+/// In RunItem::colour, until widen() has been called.
+inline constexpr std::uint16_t open_width = 1u << 15;
+
+/// Makes what is marked by open_width thicker by a factor, and takes the marks away.
+void widen(Run& run, double factor);
+
+/// Makes the instances of what a turtle draws. A turtle's frame has x to its right, y ahead, and z up, so
+/// that the canonical cylinder is a segment.
+class TurtleBodies {
+  public:
+    /// Colour index k draws with `palette[k mod size]`. `graph` gets the primitives and materials that are
+    /// used, a material that it has by this name is taken; it must outlive this.
+    TurtleBodies(Graph& graph, std::vector<Material> palette) : graph_(graph), palette_(std::move(palette)) {
+        ids_.resize(palette_.size());
+    }
+
+    /// The place in the palette, from 0 on, of a whole number that is counted around it.
+    int colour_index(double number) const;
+
+    /// A cylinder with a ball at its far end, which fills the gap to what goes on from there.
+    void add_segment(const Affine& start_from_turtle, double length, double width, int colour, Span span,
+                     BodySink sink);
+    /// A round piece from a point, of this width, to the turtle, of that, with a ball at the turtle. Its
+    /// taper is rounded to 1/128 (primitive.h).
+    void add_taper(const Affine& start_from_turtle, Vec3 from, double from_width, double width, int colour,
+                   Span span, BodySink sink);
+    /// What stands for a line from the start to `end` where it is too small to see: as thick as it is long,
+    /// so that fine curves stay visible. Nothing if the points are equal.
+    std::optional<Instance> line(Vec3 end, int colour, Span span);
+    void add_sphere(const Affine& start_from_turtle, double diameter, int colour, Span span, BodySink sink);
+    /// A flat disc about the turtle, in the plane of its heading and its left.
+    void add_disc(const Affine& start_from_turtle, double diameter, int colour, Span span, BodySink sink);
+    void add_polygon(std::span<const Vec3> corners, int colour, Span span, BodySink sink);
+    void add_model(const PlacedModel& model, const Affine& start_from_turtle, Span span, BodySink sink);
+
+    /// Whether colours fit into a run.
+    bool can_run() const { return palette_.size() < open_width; }
+    /// The materials of a run's colours.
+    std::vector<std::optional<MaterialId>> run_materials() const { return ids_; }
+
+  private:
+    MaterialId material(int colour);
+    void add_item(RunShape shape, Vec3 base, Vec3 axis, double radius, Vec3 x, bool ball, int colour,
+                  const BodySink& sink);
+    Instance body(const Primitive& primitive, const Affine& place, int colour, Span span);
+    void add(const Primitive& primitive, const Affine& place, int colour, Span span, const BodySink& sink) {
+        sink.instances.push_back(body(primitive, place, colour, span));
+    }
+
+    Graph& graph_;
+    std::vector<Material> palette_;                      ///< not empty
+    std::vector<std::optional<MaterialId>> ids_;         ///< of the palette's materials used so far
+    std::unordered_map<Primitive, ObjectId> primitives_; ///< those used so far
+};
+
+} // namespace graftal

@@ -1,0 +1,82 @@
+#include "compiler/povray/cut/assemble.h"
+
+#include <algorithm>
+#include <new>
+#include <utility>
+#include <vector>
+
+#include "compiler/detail/bake.h"
+#include "compiler/detail/shell_shares.h"
+#include "compiler/detail/work.h"
+#include "compiler/povray/cut/grouping.h"
+#include "compiler/povray/cut/place_pieces.h"
+
+namespace graftal {
+
+namespace {
+
+std::optional<Cut> assemble_within(AssemblyLimits& limits, const CutGraph& cut, const Symmetry& symmetry,
+                                   const Projection& projection, const Piece& root, const Choice& choice,
+                                   Weights& weights, bool limit_normals, ShellStore& shells,
+                                   const SelfShadows* self_shadows) {
+    std::optional<PlacedPieces> pieces =
+        place_pieces(cut, symmetry, projection, root, choice, weights, limits, self_shadows);
+    if (!pieces) return std::nullopt;
+    ShellShares shell_shares(cut, pieces->requests);
+    std::vector<Baked> baked;
+    std::size_t triangles = 0;
+    double culled_detail = pieces->culled_detail;
+    double tessellation_px = 0;
+    for (BakeRequest& request : pieces->requests) {
+        request.limit_normals = limit_normals;
+        request.shells = &shells;
+        request.self_shadows = self_shadows;
+        std::size_t most_triangles = limits.max_triangles - triangles;
+        if (request.shell) {
+            const ShellShare share = shell_shares.take(request, limits.work_seconds, most_triangles);
+            request.most_shell_work = share.work;
+            most_triangles = share.triangles;
+        }
+        request.most_visits = static_cast<std::uint64_t>(std::min(limits.work_seconds, 1e6) *
+                                                         WorkRates::visits / limits.slowness);
+        baked.push_back(bake(cut, symmetry, request, most_triangles));
+        if (limits.meter) limits.meter->add(baked.back().visits);
+        triangles += baked.back().triangles;
+        limits.work_seconds -=
+            limits.slowness * static_cast<double>(baked.back().visits) / WorkRates::visits +
+            static_cast<double>(baked.back().triangles) / WorkRates::baked_triangles +
+            static_cast<double>(baked.back().shell_work) / WorkRates::shell_points;
+        if (limits.work_seconds < 0) return std::nullopt;
+        if (!baked.back().complete || triangles > limits.max_triangles) return std::nullopt;
+        culled_detail =
+            std::max(culled_detail, baked.back().culled_detail * pieces->seen_share(baked.size() - 1));
+        tessellation_px = std::max(tessellation_px, baked.back().tessellation_px);
+    }
+    Grouping grouping(cut, *pieces, baked);
+    for (const Placed& thing : pieces->things)
+        grouping.add(thing);
+    const double finest_of_runs = pieces->runs.sift(cut, projection);
+    for (const PlacedRuns::Range& range : pieces->runs.ranges())
+        grouping.add(range);
+    Cut result = std::move(grouping).take();
+    result.error_px = culled_detail;
+    result.tessellation_px = tessellation_px;
+    result.finest = std::min(pieces->finest, finest_of_runs);
+    result.leaf_count = choice.leaves;
+    return result;
+}
+
+} // namespace
+
+std::optional<Cut> assemble(const CutGraph& cut, const Symmetry& symmetry, const Projection& projection,
+                            const Piece& root, const Choice& choice, Weights& weights, bool limit_normals,
+                            ShellStore& shells, AssemblyLimits& limits, const SelfShadows* self_shadows) {
+    try {
+        return assemble_within(limits, cut, symmetry, projection, root, choice, weights, limit_normals,
+                               shells, self_shadows);
+    } catch (const std::bad_alloc&) {
+        return std::nullopt; // the work is taken off nevertheless
+    }
+}
+
+} // namespace graftal

@@ -1,0 +1,317 @@
+#include "compiler/povray/emit/scene.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <iterator>
+#include <optional>
+#include <string_view>
+#include <tuple>
+
+#include <fmt/format.h>
+
+#include "compiler/povray/emit/bodies.h"
+#include "compiler/povray/emit/names.h"
+#include "compiler/povray/emit/textures.h"
+#include "compiler/povray/emit/view.h"
+#include "compiler/povray/sdl_writer.h"
+#include "compiler/scene/ground.h"
+#include "compiler/support/check.h"
+#include "compiler/support/number.h"
+
+namespace graftal {
+
+namespace {
+
+/// POV-Ray leaves out a layer that contributes less than its adc_bailout, by default 1/255: hundreds of times
+/// what a 16-bit picture shows.
+constexpr double default_bailout = 1.0 / 255;
+constexpr std::string_view fine_bailout = "adc_bailout 1e-6";
+
+/// Placements begin to end - 1 of one group.
+struct Range {
+    std::uint32_t group;
+    std::size_t begin, end;
+};
+
+/// What becomes one union: all placements of one texture and interior, whatever groups they come from.
+struct Bucket {
+    std::uint32_t texture;
+    std::optional<Interior> interior;
+    std::vector<Range> ranges;
+    std::vector<const RunPlacements*> runs;
+    std::uint64_t count = 0;
+};
+
+/// Planes are objects of their own: an infinite part would take a union out of POV-Ray's tree.
+struct Plane {
+    std::uint32_t texture;
+    std::optional<Interior> interior;
+    const Placement* placement;
+};
+
+/// The pictures of an include file are named as it is: several of one model may lie side by side.
+std::string picture_stem(const PovrayOptions& options) {
+    std::string_view name = options.file_name;
+    if (!options.include || name.empty()) return harmless(options.scene_name);
+    if (name.ends_with(".inc")) name.remove_suffix(4);
+    return harmless(name);
+}
+
+/// Nothing where no ray asks for it.
+std::optional<Interior> declared_interior(const Material& material) {
+    if (!material.is_transparent() && !material.has_coat()) return std::nullopt;
+    return interior_of(material);
+}
+
+class Emitter {
+  public:
+    Emitter(const Cut& cut, const PovrayOptions& options, const PovrayUnits& units, const TextSink& sink)
+        : cut_(cut), options_(options), units_(units), out_(sink),
+          identifier_(options.identifier.empty() ? model_identifier(options.scene_name) : options.identifier),
+          prefix_(options.include ? identifier_ + "_" : ""), bodies_(cut, prefix_),
+          textures_(cut, prefix_, picture_stem(options), options.include),
+          progress_(out_, cut.placement_count + bodies_.triangle_count(), options.progress) {
+        sort_into_buckets();
+    }
+
+    bool write_scene(const View& view, std::vector<PaletteImage>& pictures);
+    bool write_include(std::vector<PaletteImage>& pictures);
+
+  private:
+    void sort_into_buckets();
+    void write_header();
+    bool write_objects();
+    bool write_bucket(const Bucket& bucket);
+    std::string interior_text(const Interior& interior) const;
+    void write_usage(const std::vector<std::string>& materials, bool pictures);
+    bool needs_fine_bailout() const { return textures_.least_transmit() < default_bailout; }
+
+    const Cut& cut_;
+    const PovrayOptions& options_;
+    const PovrayUnits units_;
+    SdlWriter out_;
+    const std::string identifier_;
+    const std::string prefix_;
+    PovrayBodies bodies_;
+    PovrayTextures textures_;
+    ProgressMarks progress_;
+    std::vector<Bucket> buckets_;
+    std::vector<Plane> planes_;
+    std::vector<std::string> texture_texts_; ///< by texture: what stands at the objects
+};
+
+void Emitter::sort_into_buckets() {
+    std::vector<std::vector<std::uint32_t>> buckets_of_texture;
+    for (std::uint32_t g = 0; g < cut_.groups.size(); ++g) {
+        const PlacementGroup& group = cut_.groups[g];
+        if (group.placements.empty() && group.runs.empty()) continue;
+        const std::uint32_t texture = textures_.texture_of(group);
+        const std::optional<Interior> interior = declared_interior(group.material);
+        if (texture == buckets_of_texture.size()) buckets_of_texture.emplace_back();
+        std::vector<std::uint32_t>& alike = buckets_of_texture[texture];
+        const auto known =
+            std::ranges::find(alike, interior, [&](std::uint32_t b) { return buckets_[b].interior; });
+        const std::uint32_t number =
+            known == alike.end() ? static_cast<std::uint32_t>(buckets_.size()) : *known;
+        if (known == alike.end()) {
+            alike.push_back(number);
+            buckets_.push_back({.texture = texture, .interior = interior});
+        }
+        Bucket& bucket = buckets_[number];
+        std::size_t begin = 0;
+        const auto close_range = [&](std::size_t end) {
+            if (end > begin) bucket.ranges.push_back({g, begin, end});
+            bucket.count += end - begin;
+            begin = end + 1;
+        };
+        for (std::size_t i = 0; i < group.placements.size(); ++i) {
+            if (!bodies_.is_plane(group.placements[i].body)) continue;
+            planes_.push_back({texture, interior, &group.placements[i]});
+            close_range(i);
+        }
+        close_range(group.placements.size());
+        for (const RunPlacements& parts : group.runs) {
+            bucket.runs.push_back(&parts);
+            bucket.count += part_count(parts);
+        }
+    }
+    std::erase_if(buckets_, [](const Bucket& bucket) { return bucket.count == 0; });
+    std::ranges::stable_sort(buckets_, {}, [](const Bucket& bucket) {
+        const Interior interior = bucket.interior.value_or(Interior());
+        return std::tuple(bucket.interior.has_value(), interior.ior, interior.absorbed.r, interior.absorbed.g,
+                          interior.absorbed.b);
+    });
+}
+
+void Emitter::write_header() {
+    out_ << "#version 3.7;\n// " << harmless(options_.scene_name) << ": "
+         << fmt::format("{} placements of {} bodies, {} triangles in meshes, drawing {:.4g} primitives.\n",
+                        cut_.placement_count, cut_.bodies.size(), bodies_.triangle_count(), cut_.leaf_count)
+         << "// Written by graftal. The model's space is right-handed, y up";
+}
+
+bool Emitter::write_bucket(const Bucket& bucket) {
+    const std::string& texture = texture_texts_[bucket.texture];
+    const Affine pov_from_world = units_.pov_from_world();
+    const bool single = bucket.count == 1;
+    if (!single) out_ << "union {\n";
+    const auto write = [&](std::uint32_t body, const Affine& world_from_body) {
+        if (out_.stopped()) return;
+        bodies_.place(out_, body, pov_from_world * world_from_body,
+                      single ? std::string_view(texture) : std::string_view());
+        progress_.step();
+    };
+    for (const Range& range : bucket.ranges)
+        for (std::size_t i = range.begin; i < range.end; ++i) {
+            const Placement& placement = cut_.groups[range.group].placements[i];
+            write(placement.body, placement.world_from_body);
+        }
+    for (const RunPlacements* const parts : bucket.runs)
+        for_each_placement(
+            *parts, [&](const Placement& placement) { write(placement.body, placement.world_from_body); });
+    if (!single) out_ << "  " << texture << "\n}\n";
+    return !out_.stopped();
+}
+
+bool Emitter::write_objects() {
+    // One interior for all that has it: a ray that enters one part may leave another.
+    for (auto first = buckets_.begin(); first != buckets_.end();) {
+        const auto next = std::find_if(
+            first, buckets_.end(), [&](const Bucket& bucket) { return bucket.interior != first->interior; });
+        if (first->interior) out_ << "union {\n";
+        for (; first != next; ++first)
+            if (!write_bucket(*first)) return false;
+        const std::optional<Interior>& interior = std::prev(next)->interior;
+        if (interior) out_ << "  " << interior_text(*interior) << "\n}\n";
+    }
+    for (const Plane& plane : planes_) {
+        std::string look = texture_texts_[plane.texture];
+        if (plane.interior) look += " " + interior_text(*plane.interior);
+        bodies_.place(out_, plane.placement->body, units_.pov_from_world() * plane.placement->world_from_body,
+                      look);
+    }
+    return !out_.stopped();
+}
+
+/// Absorbed by a medium: POV-Ray's `fade_distance` dims nothing that lies in the solid.
+std::string Emitter::interior_text(const Interior& interior) const {
+    constexpr int digits = 9;
+    std::string text = "interior { ior ";
+    append_number(text, interior.ior, digits);
+    if (interior.absorbed != Rgb(0.0)) {
+        text += " media { method 1 intervals 1 samples 1,1 absorption rgb <";
+        for (int c = 0; c < 3; ++c) {
+            if (c > 0) text += ",";
+            append_number(text, interior.absorbed[c] / units_.scale, digits);
+        }
+        text += "> }";
+    }
+    return text + " } hollow";
+}
+
+/// Whether rays go on from some surface.
+bool leads_on(const Cut& cut, const View& view) {
+    const auto leads = [](const Material& material) {
+        return material.reflection > 0 || material.is_transparent();
+    };
+    return (view.ground && leads(view.ground->material)) ||
+           std::ranges::any_of(cut.groups, leads, &PlacementGroup::material);
+}
+
+bool Emitter::write_scene(const View& view, std::vector<PaletteImage>& pictures) {
+    write_header();
+    texture_texts_.assign(textures_.all().begin(), textures_.all().end());
+    const Vec3 origin = units_.origin;
+    out_ << "; the camera mirrors it into POV-Ray's.\n// 1 unit of the model is ";
+    out_.number(units_.scale, 6) << " here; <0,0,0> here is ";
+    out_.vector(origin, 12) << " of the model.\n\nglobal_settings { assumed_gamma 1";
+    if (view.sky_light) {
+        out_ << " ambient_light rgb ";
+        out_.vector(view.ambient_light(), 7);
+    }
+    if (needs_fine_bailout()) out_ << " " << fine_bailout;
+    out_ << (leads_on(cut_, view) ? std::string_view(" max_trace_level 32 }\n") : " }\n");
+    std::string ground = view.ground
+                             ? textures_.ground(view.ground->material,
+                                                units_.pov_from_world() * world_from_picture(*view.ground))
+                             : "";
+    if (const auto interior = view.ground ? declared_interior(view.ground->material) : std::nullopt)
+        ground += " " + interior_text(*interior);
+    std::string sky_file;
+    if (view.shows_sky_light && view.sky_light->picture) {
+        sky_file = picture_stem(options_) + "_sky.exr";
+        pictures.push_back({.file_name = sky_file,
+                            .sky = view.sky_light->picture,
+                            .sky_brightness = view.sky_light->brightness});
+    }
+    out_ << textures_.declarations(pictures) << "\n";
+    write_view(out_, view, units_, cut_.bounds.empty() ? Vec3(0.0) : cut_.bounds.centre(),
+               options_.lights.value_or(list_size(view.quality)), ground, sky_file);
+    if (!bodies_.declare(out_, progress_)) return false;
+    out_ << "\n";
+    return write_objects() && out_.flush();
+}
+
+/// How to use an include file, in comments at its beginning.
+void Emitter::write_usage(const std::vector<std::string>& materials, bool pictures) {
+    constexpr std::size_t most_listed = 12;
+    out_ << ", and its colours are linear light.\n// In a scene of your own, with assumed_gamma 1";
+    if (needs_fine_bailout()) out_ << " and " << fine_bailout;
+    const std::string file = harmless(options_.file_name);
+    out_ << ":\n"
+         << fmt::format("//     #include \"{}\"\n", file)
+         << fmt::format("//     object {{ {} }}                   // right-handed\n", identifier_)
+         << fmt::format(
+                "//     object {{ {} scale <1,1,-1> }}    // for a camera with look_at, left-handed\n",
+                identifier_)
+         << "// If " << file << (pictures ? " and its pictures lie" : " lies")
+         << " in another folder, say it to POV-Ray: povray +LFOLDER ...\n"
+         << fmt::format("// Placed so, it lies between the corners {0}_min and {0}_max.\n", identifier_);
+    if (textures_.all().size() == 1)
+        out_ << fmt::format("// For a texture of your own: object {{ {} texture {{ ... }} }}\n", identifier_);
+    else
+        out_ << "// For one texture of your own in place of all, before the #include:\n"
+             << fmt::format("//     #declare {0}_bare = yes;  and then  object {{ {0} texture {{ ... }} }}\n",
+                            identifier_);
+    out_ << "// For one material with another texture, before the #include:\n";
+    for (std::size_t i = 0; i < std::min(materials.size(), most_listed); ++i)
+        out_ << fmt::format("//     #declare {} = texture {{ ... }}\n", materials[i]);
+    if (materials.size() > most_listed)
+        out_ << fmt::format("//     and {} more, each after an #ifndef below\n",
+                            materials.size() - most_listed);
+}
+
+bool Emitter::write_include(std::vector<PaletteImage>& pictures) {
+    const PovrayTextures::Overridable textures = textures_.overridable();
+    const bool several = textures.names.size() > 1;
+    for (const std::string& name : textures.names)
+        texture_texts_.push_back(
+            several ? fmt::format("#ifndef ({}_bare) texture {{ {} }} #end", identifier_, name)
+                    : fmt::format("texture {{ {} }}", name));
+    const std::string declarations = textures_.declarations(pictures); // of what the textures are made of
+    write_header();
+    write_usage(textures.materials, !pictures.empty());
+    out_ << declarations << textures.declarations;
+    if (!cut_.bounds.empty()) {
+        out_ << fmt::format("#declare {}_min = ", identifier_);
+        out_.vector(cut_.bounds.min, 9) << fmt::format(";\n#declare {}_max = ", identifier_);
+        out_.vector(cut_.bounds.max, 9) << ";\n";
+    }
+    if (!bodies_.declare(out_, progress_)) return false;
+    out_ << "\n#declare " << identifier_ << " =\n";
+    const bool single = buckets_.size() + planes_.size() == 1;
+    if (!single) out_ << "union {\n";
+    if (!write_objects()) return false;
+    if (!single) out_ << "}\n";
+    return out_.flush();
+}
+
+} // namespace
+
+bool emit_povray(const Cut& cut, const View& view, const PovrayOptions& options, const TextSink& sink,
+                 std::vector<PaletteImage>& palettes) {
+    if (options.include) return Emitter(cut, options, PovrayUnits{}, sink).write_include(palettes);
+    return Emitter(cut, options, choose_units(cut, view.camera), sink).write_scene(view, palettes);
+}
+
+} // namespace graftal

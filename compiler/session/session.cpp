@@ -225,6 +225,7 @@ bool Session::need_analysed(const StageOptions& options, bool wanted, Compilatio
         std::optional<AnalysedModel> model =
             analyse(std::move(lowered), options.view.zoom.at, {options.stop_after, after_pass_}, findings,
                     compilation.times, charging(work));
+        if (model) model->clouds = clouds_;
         finish(analysed_, std::move(key), std::move(model), std::move(findings));
     }
     compilation.diagnostics = analysed_.findings;

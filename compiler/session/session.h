@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "compiler/detail/prepare.h"
+#include "compiler/light/clouds.h"
 #include "compiler/session/stage_options.h"
 #include "compiler/session/stages.h"
 #include "compiler/session/values.h"
@@ -170,6 +171,7 @@ class Session {
     PassObserver after_pass_;
     Keep keep_;
     Control control_;
+    std::shared_ptr<CloudPictures> clouds_ = std::make_shared<CloudPictures>();
     StageRuns runs_;
     std::uint64_t serials_ = 0;
 
